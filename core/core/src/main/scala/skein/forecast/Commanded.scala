@@ -5,7 +5,7 @@ import skein.vehicle.Guidance
 
 /** One command sent to a vehicle.
   *
-  * @param answeredAt when it was known to have arrived, on the controller's clock
+  * @param answeredAt when the controller learned that it had arrived, on the controller's clock
   */
 final case class Commanded(
     sequence: Long,

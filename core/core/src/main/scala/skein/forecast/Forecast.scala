@@ -5,7 +5,7 @@ import skein.units.*
 import skein.vehicle.VehicleModel
 
 /** Estimates the states of vehicles at any moment, from their readings and from the commands sent to them.
-  * Immutable and pure: events go in as they come, in any order.
+  * Immutable and pure: it accepts events in any order.
   *
   * @param models one per vehicle: the vehicle's own where its commands are known, else
   *   [[skein.vehicle.ConstantVelocity]] or [[skein.vehicle.ConstantTurn]]
@@ -28,9 +28,9 @@ final case class Forecast private (
       updated(vehicle)(_.replaced(sequence, answeredAt))
     case ForecastEvent.Failed(vehicle, sequence) => updated(vehicle)(_.failed(sequence))
 
-  /** Where the vehicles will be when a command acts that is sent now, under the commands that are on their
-    * way; absent until every vehicle was seen. A vehicle of which a newer reading is held than that moment is
-    * where it was read.
+  /** Where the vehicles will be when a command sent now takes effect, given the commands on their way; absent
+    * until every vehicle was read. Where a vehicle's newest reading is later than that moment, its estimate
+    * is that reading.
     *
     * @param now on the controller's clock
     */
@@ -44,8 +44,8 @@ final case class Forecast private (
           told = Some((now, estimates))
           estimates
 
-  /** What each vehicle flies through, from its newest reading on, until a command acts that is sent now;
-    * absent until every vehicle was seen. [[whenActing]] is where that leads.
+  /** The legs of each vehicle's flight from its newest reading until a command sent now takes effect; absent
+    * until every vehicle was read. They end at the state of [[whenActing]].
     */
   def legsWhenActing(now: Instant): Option[Vector[Vector[Leg]]] =
     for delays <- delays if tracks.forall(_.isDefined)
@@ -85,16 +85,13 @@ object Forecast:
 enum ForecastEvent:
   def vehicle: Int
 
-  /** A vehicle was read. */
   case Seen(vehicle: Int, reading: Stamped[Kinematics])
 
-  /** A command was sent to a vehicle. */
   case Sent(vehicle: Int, command: Commanded)
 
-  /** The vehicle answered that a command was replaced, as AirSim does when the next one arrives: a receipt
-    * for that next one.
+  /** The vehicle reported that a command was replaced, as AirSim does when the next one arrives; this
+    * acknowledges the next one.
     */
   case Replaced(vehicle: Int, sequence: Long, answeredAt: Instant)
 
-  /** The call of a command failed. */
   case Failed(vehicle: Int, sequence: Long)

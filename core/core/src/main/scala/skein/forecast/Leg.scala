@@ -2,8 +2,8 @@ package skein.forecast
 
 import skein.units.Span
 
-/** A part of a vehicle's way through time: it flies for so long under one command.
+/** A stretch of a vehicle's predicted flight under one command.
   *
-  * @param command absent before the first: the vehicle holds its place
+  * @param command absent before the first: the vehicle holds its position
   */
 final case class Leg(command: Option[Commanded], span: Span)

@@ -24,7 +24,7 @@ final class Structure(val label: String, val space: SearchSpace, make: Vector[Do
       s"structure $label: expected another name of a parameter: '$name' is a key of model files"
     )
 
-  /** Of the parameters, in the order of a fit's values. */
+  /** Names of the parameters, in the order of a fit's values. */
   def names: Vector[String] = space.axes.map(_.name)
 
   def plant(values: Vector[Double]): ObservedPlant[?] =
@@ -36,11 +36,11 @@ final class Structure(val label: String, val space: SearchSpace, make: Vector[Do
 
   override def toString: String = label
 
-/** Those of a [[skein.vehicle.ReducedModel]]: a parameter that is not free says that its effect is absent.
-  * The bounds are wider than any multirotor.
+/** The structures that vary parameters of a [[skein.vehicle.ReducedModel]]. A parameter that is not free has
+  * the value at which its effect is absent. The bounds are wider than those of any multirotor.
   */
 object Structure:
-  /** Of a model file, beside the structures, and beside each one's parameters. */
+  /** Keys of a model file besides structures and their parameters. */
   private val keys       = Set("use", "version", "horizon", "altitude-m", "recordings", "vehicles")
   private val keysOfEach =
     Set("predictions", "velocity-rms-mps", "position-rms-m", "against-quadrotor", "against-readings")
@@ -54,18 +54,16 @@ object Structure:
   private def reduced(label: String, more: Axis*)(make: Vector[Double] => ReducedModel): Structure =
     Structure(label, SearchSpace(Vector(gain, lag, deadTime) ++ more), make)
 
-  /** A first-order lag with gain and dead time: what the SIMD kernels fly. */
+  /** A first-order lag with gain and dead time: the model that the SIMD kernels simulate. */
   val Lag: Structure = reduced("lag")(v => ReducedModel.lag(v(0), v(1), v(2)))
 
-  /** Besides, the velocity across the command has a lag of its own. */
+  /** [[Lag]], with another lag for the velocity across the command. */
   val Turn: Structure = reduced("turn", turnLag)(v => ReducedModel(v(0), v(1), v(2), v(3), 0))
 
-  /** Besides, quadratic drag; one lag in all directions. */
+  /** [[Lag]] with quadratic drag; one lag in all directions. */
   val Drag: Structure = reduced("drag", drag)(v => ReducedModel(v(0), v(1), v(2), v(1), v(3)))
 
-  /** Both. */
   val DragAndTurn: Structure =
     reduced("drag-and-turn", drag, turnLag)(v => ReducedModel(v(0), v(1), v(2), v(4), v(3)))
 
-  /** Skein's own, the simplest first. */
   val ours: Vector[Structure] = Vector(Lag, Turn, Drag, DragAndTurn)

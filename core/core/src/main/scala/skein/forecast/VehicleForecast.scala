@@ -25,8 +25,8 @@ final case class VehicleForecast[S] private (
 ):
   def newest: Stamped[Kinematics] = readings.last
 
-  /** Takes a reading: the model flies to it under the commands in effect, and is corrected by it. A reading
-    * that is not newer than the newest changes nothing.
+  /** Adds a reading: the model predicts the state at its time under the commands in effect, and the reading
+    * corrects it. A reading that is not newer than the newest changes nothing.
     */
   def seen(reading: Stamped[Kinematics], delays: OneWayDelays): VehicleForecast[S] =
     if reading.validAt <= newest.validAt then this
@@ -40,8 +40,8 @@ final case class VehicleForecast[S] private (
         commands = needed
       )
 
-  /** Takes the first reading by a simulator that has started again with an earlier clock: where the vehicle
-    * is does not follow from where it was, and what was predicted before is never read.
+  /** Adds the first reading of a simulator that has restarted with an earlier clock. The state starts from
+    * this reading alone, and earlier predictions are discarded.
     */
   def startedAgain(reading: Stamped[Kinematics]): VehicleForecast[S] =
     copy(state = model.start(reading.value), readings = Vector(reading))
@@ -49,8 +49,8 @@ final case class VehicleForecast[S] private (
   def sent(command: Commanded): VehicleForecast[S] =
     copy(commands = (commands :+ command).takeRight(VehicleForecast.CommandLimit))
 
-  /** The vehicle answered that a command was replaced: so the one after it has arrived. Where that one was in
-    * effect before all that are held, it tells nothing of these.
+  /** The vehicle reported that a command was replaced, so its successor has arrived. Changes nothing if the
+    * successor took effect before all commands held here.
     */
   def replaced(sequence: Long, answeredAt: Instant): VehicleForecast[S] =
     val successor = commands.indexWhere(_.sequence > sequence)
@@ -58,8 +58,8 @@ final case class VehicleForecast[S] private (
     else
       copy(commands = commands.updated(successor, commands(successor).copy(answeredAt = Some(answeredAt))))
 
-  /** A call failed: unless its command is known to have arrived, or the vehicle already flies under it, it is
-    * taken for lost.
+  /** A call failed. Its command is taken for lost, unless it is known to have arrived or is already in
+    * effect.
     */
   def failed(sequence: Long): VehicleForecast[S] =
     copy(commands =
@@ -74,8 +74,8 @@ final case class VehicleForecast[S] private (
     val flown = advancedTo(at, delays, now)
     Estimate(model.kinematics(flown), at, newest.validAt, model.numbers(flown))
 
-  /** Where the vehicle was at an instant on the simulator's clock, by the cubic through the two readings
-    * around it; absent where there are none, or none close enough together.
+  /** The vehicle's position at an instant on the simulator's clock, by cubic interpolation between the two
+    * readings around it; absent without two such readings within [[VehicleForecast.MaxGap]].
     */
   def positionNedAt(validAt: Instant): Option[Vector3] =
     readings
@@ -86,8 +86,8 @@ final case class VehicleForecast[S] private (
       )
       .map(VehicleForecast.between(_, _, validAt))
 
-  /** What the vehicle flies through from the newest reading until an instant on the simulator's clock, by
-    * what is known now; up to the reading itself where that is not before it.
+  /** The legs of the predicted flight from the newest reading until an instant on the simulator's clock; ends
+    * at the reading if that is not earlier than the instant.
     */
   def legsTo(validAt: Instant, delays: OneWayDelays, now: Instant): Vector[Leg] =
     val until  = validAt.max(newest.validAt)
@@ -114,8 +114,8 @@ final case class VehicleForecast[S] private (
       if part < left then flown(next, left - part) else next
     flown(from, span)
 
-  /** Commands that act, and when, on the simulator's clock. On an ordered connection none acts before one
-    * sent earlier.
+  /** Commands with the times at which they take effect, on the simulator's clock. On an ordered connection
+    * none takes effect before one sent earlier.
     */
   private def effects(delays: OneWayDelays, now: Instant): Iterator[(Commanded, Instant)] =
     var latest = Option.empty[Instant]
@@ -128,8 +128,8 @@ final case class VehicleForecast[S] private (
         latest = Some(acts)
         (command, acts)
 
-  /** A command is taken for lost when its arrival should have been heard of long ago. The oldest held one
-    * never is: the vehicle flies under something.
+  /** Whether a command is taken for lost because its acknowledgement is overdue. The oldest held one never
+    * is: one command is always in effect.
     */
   private def isPresumedLost(command: Commanded, delays: OneWayDelays, now: Instant): Boolean =
     command.answeredAt.isEmpty && command != commands.head &&
@@ -143,21 +143,21 @@ final case class VehicleForecast[S] private (
       .fold(0)((command, _) => commands.indexOf(command))
 
 object VehicleForecast:
-  /** Readings remembered, to hold predictions against. */
+  /** Number of readings kept, to compare predictions with. */
   val ReadingLimit = 8
 
-  /** Commands remembered: at most these can be on their way. */
+  /** Number of commands kept, and so the most that can be on their way. */
   val CommandLimit = 64
 
-  /** On top of two round trips, before a command is presumed lost. */
+  /** Added to two round trips before a command is taken for lost. */
   val Grace: Span = Span.ofMillis(500)
 
-  /** Between two readings, for a position between them to be interpolated: the cubic's error grows with its
-    * fourth power, to about 5 mm here.
+  /** Longest gap between two readings across which a position is interpolated: the cubic's error grows with
+    * its fourth power, to about 5 mm here.
     */
   val MaxGap: Span = Span.ofMillis(300)
 
-  /** The track of a vehicle seen for the first time; until it is commanded it holds its place. */
+  /** The forecast of a vehicle after its first reading; until it is commanded it holds its position. */
   def apply[S](model: VehicleModel[S], first: Stamped[Kinematics]): VehicleForecast[S] =
     new VehicleForecast(
       model,
@@ -177,11 +177,11 @@ object VehicleForecast:
       after.value.positionNed * (u * u * (3 - 2 * u)) +
       after.value.velocityNed * (u * u * (u - 1) * length)
 
-/** Where a vehicle is taken to be.
+/** The estimated state of a vehicle.
   *
-  * @param predictedFor the simulator's time at which this is expected to be true
-  * @param readAt the simulator's time of the reading that it was carried forward from
-  * @param state of its plant, as numbers, where kinematics do not tell all of it
+  * @param predictedFor the simulator's time for which the estimate holds
+  * @param readAt the simulator's time of the reading from which it was predicted
+  * @param state of its plant, as numbers, where kinematics do not describe the whole state
   */
 final case class Estimate(
     kinematics: Kinematics,
@@ -190,5 +190,5 @@ final case class Estimate(
     state: Vector[Double] = Vector.empty
 ):
 
-  /** How far the reading was carried. */
+  /** Time from the reading to the predicted moment. */
   def age: Span = predictedFor.since(readAt)

@@ -3,19 +3,19 @@ package skein.formula
 import scala.collection.mutable
 import skein.formula.Op.*
 
-/** Rewrites an expression for machines that compute many worlds at once, where an arc tangent costs as much
-  * as twenty products: equal but for rounding, and cheaper.
+/** Rewrites an expression for SIMD, where an arc tangent costs as much as twenty products: equal but for
+  * rounding, and cheaper.
   *
-  *   - The sine and cosine of an angle that is made of arc tangents, quarter turns and angles whose direction
-  *     is known are products of directions; of such an angle wrapped to one turn one arc tangent remains.
-  *   - Of what a condition chooses between, that which both have alike is computed once.
+  *   - The sine and cosine of an angle made of arc tangents, quarter turns and angles of known direction
+  *     become products of directions; such an angle wrapped to one turn needs a single arc tangent.
+  *   - What both branches of a condition have in common is computed once.
   *   - What depends on parameters alone becomes a parameter ([[derived]]): it is computed once, in double.
   *
-  * @param source of the old expression
-  * @param target where the new expression goes
-  * @param leaf what stands for an input
+  * @param source trace of the old expression
+  * @param target trace of the new expression
+  * @param leaf node that replaces an input
   * @param direction of an input that is an angle: cosine and sine
-  * @param parameter what stands for a parameter of the new expression, by its number
+  * @param parameter node of a parameter of the new expression, by its number
   */
 final class Angles(
     source: Trace,
@@ -30,7 +30,7 @@ final class Angles(
   private val fixed      = mutable.HashMap.empty[Node, Boolean]
   private val parameters = mutable.LinkedHashMap.empty[Node, Node]
 
-  /** What the new expression's parameters are of the old one's, in their order. */
+  /** The new expression's parameters as nodes of the old one, in their order. */
   def derived: Vector[Node] = parameters.keys.toVector
 
   /** A direction: the vector (x, y), whatever its length. */
@@ -40,12 +40,11 @@ final class Angles(
     land(node)
     inner(node)
 
-  /** The same with what both ways of a condition have alike before it, and with constant factors made one. */
+  /** Moves what both branches of a condition have in common out of it, and combines constant factors. */
   def factored(node: Node): Node =
     for each <- Trace.landings(node) do plained(each): Unit
     plained(node)
 
-  /** Cosine and sine of a converted angle. */
   def cosSin(node: Node): (Node, Node) =
     land(node)
     cosSinOf(node)
@@ -109,21 +108,21 @@ final class Angles(
         case Where => choose(inner(node.args(0)), inner(node.args(1)), inner(node.args(2)))
         case _     => target.again(node, node.args.map(inner))
 
-  /** The sign of a number, or something else where it is 0. */
+  /** Whether a number is the sign of another one, with a chosen value where that is 0. */
   private def isSideOrElse(node: Node) =
     val Vector(condition, _, sign) = node.args
     sign.op == Signum && condition.op == Eq && condition.args(0) == sign.args(0) && condition.args(1).is(0)
 
-  /** Of an angle within half a turn to either side. */
+  /** Direction of an angle that is known to be within half a turn to either side. */
   private def angleOf(node: Node): Option[Direction] = node.op match
     case Remainder if isTurn(node.args(1)) => directionOf(node.args(0))
     case _                                 => None
 
-  /** Of the size of such an angle, if the direction's length is 1. */
+  /** Direction of the absolute value of such an angle, if that direction has length 1. */
   private def sizeOf(node: Node): Option[Direction] =
     if node.op == Abs then angleOf(node.args(0)).filter(_.isUnit) else None
 
-  /** Of a parameter that an angle's size is held against. */
+  /** Cosine of a parameter that an angle's absolute value is compared with. */
   private def cosine(angle: Node): Node =
     val within = source.binary(Max, source.const(0), source.binary(Min, source.const(math.Pi), angle))
     inner(source.unary(Cos, within))
@@ -140,7 +139,7 @@ final class Angles(
 
   private def choose(condition: Node, a: Node, b: Node): Node = choose(target, condition, a, b)
 
-  /** One of two numbers; what they have in common is not computed twice. */
+  /** Chooses one of two numbers; what they have in common is not computed twice. */
   private def choose(in: Trace, condition: Node, a: Node, b: Node): Node =
     def of(x: Node, y: Node): Node = choose(in, condition, x, y)
     if a == b then a
@@ -159,7 +158,7 @@ final class Angles(
 
   private def sum(in: Trace, of: Vector[Node]): Node = of.reduceOption(in.add).getOrElse(in.const(0))
 
-  /** A sum, whose zeros' signs do not count. */
+  /** Adds two numbers whose zeros may have either sign. */
   private def plus(a: Node, b: Node): Node = if a.is(0) then b else if b.is(0) then a else target.add(a, b)
 
   private def times(a: Node, b: Node): Node =
@@ -213,7 +212,6 @@ final class Angles(
     a.isUnit && b.isUnit
   )
 
-  /** An angle, its mirror image, or nothing. */
   private def mirrored(sign: Node, angle: Node): Option[Direction] = directionOf(angle).map: way =>
     val by = inner(sign)
     if neverZero(sign) then way.copy(y = times(by, way.y))
@@ -225,7 +223,6 @@ final class Angles(
         way.isUnit
       )
 
-  /** Whether it is −1, 0 or 1. */
   private def isSign(node: Node): Boolean = node.op match
     case Const  => node.value == 1 || node.value == -1 || node.value == 0
     case Signum => true
@@ -243,7 +240,7 @@ final class Angles(
     val one = target.const(1)
     target.unary(Sqrt, target.binary(Max, target.const(0), target.sub(one, target.mul(part, part))))
 
-  /** Of length 1; where there is no length the angle is 0. */
+  /** The direction scaled to length 1; of length 0, the direction of angle 0. */
   private def unit(way: Direction): (Node, Node) =
     if way.isUnit then (way.x, way.y)
     else

@@ -3,35 +3,34 @@ package skein.formula
 import java.lang.constant.ClassDesc
 import skein.formula.Value.*
 
-/** What a traced method has answered: read as the object is that it stands for. What cannot be read is
-  * refused with the place where it was answered.
+/** The result of a traced method, read like the object that it represents. Throws [[Untraceable]], with the
+  * source line of the result, for what cannot be read.
   */
 final class Answer private[formula] (value: Value, lifter: Lifter):
 
-  /** What a method without arguments answers.
+  /** The result of a method without arguments.
     *
-    * @param answers the type of it, as class files have it
+    * @param answers descriptor of its type, as class files have it
     */
   def get(method: String, answers: String = "Ljava/lang/Object;"): Answer =
     Answer(lifter.get(value, method, answers), lifter)
 
-  /** A number, in an object or not. */
   def number: Node = lifter.numberOf(value)
 
-  /** Whether it is this object, whatever is observed. */
+  /** Whether the result is this object for all inputs. */
   def isOne(of: AnyRef): Boolean = lifter.isKnown(value, of)
 
-  /** What it is, by the class of it: for each of several between which conditions decide.
+  /** The result by its class; where conditions choose between several classes, combined over them.
     *
-    * @param of what it comes to by class and by what is read there
-    * @param or makes one of two
+    * @param of the value for one class, given what is read there
+    * @param or combines the values of two branches
     */
   def fold[A](of: (String, Answer) => A)(or: (Node, A, A) => A): A = lifter.settled(value) match
     case OneOf(condition, yes, no) =>
       or(condition, Answer(yes, lifter).fold(of)(or), Answer(no, lifter).fold(of)(or))
     case one => of(Answer.className(one, lifter), Answer(one, lifter))
 
-  /** Its numbers, if it is like an example: in the order of [[Example.numbers]]. */
+  /** The numbers of the result if it has the form of an example, in the order of [[Example.numbers]]. */
   def numbersOf(example: Example): Vector[Node] =
     val ways           = example.shape.leaves.iterator.map(_.path).toSet
     val found          = Vector.newBuilder[Node]
@@ -80,7 +79,7 @@ final class Answer private[formula] (value: Value, lifter: Lifter):
   def refuse(reason: String): Nothing = lifter.refuse(reason)
 
 private object Answer:
-  /** Of a case without fields, as if it had a class of its own. */
+  /** A class name for a case without fields, as if it had a class of its own. */
   private def className(value: Value, lifter: Lifter): String = value match
     case Known(single: scala.reflect.Enum, _) if single.productArity == 0 =>
       s"${single.getClass.getSuperclass.getName}$$${single.productPrefix}"

@@ -4,13 +4,14 @@ import java.lang.classfile.Opcode
 import scala.collection.mutable
 import skein.formula.Value.*
 
-/** What instructions compute of numbers, and the functions of formulas. A whole number or a truth that
-  * depends on what is observed is a double, or 1 and 0, as far as that goes; the rest is refused.
+/** Traces arithmetic instructions and the functions of formulas. A whole number or a truth that depends on
+  * the inputs is represented by a double, or by 1 and 0, as far as that is exact; what is not exact is
+  * refused.
   */
 private[formula] final class Arithmetic(trace: Trace, assumed: Assumptions, refuse: String => Nothing):
   import Arithmetic.*
 
-  /** Seconds by the number of nanoseconds that was made of them. */
+  /** Seconds by the number of nanoseconds that was computed from them. */
   private val secondsOf = mutable.HashMap.empty[Node, Node]
 
   def ofTwo(opcode: Opcode, a: Value, b: Value): Value = opcode match
@@ -36,7 +37,9 @@ private[formula] final class Arithmetic(trace: Trace, assumed: Assumptions, refu
     case _ if opcode.name.startsWith("F") => noFloats()
     case _                                => Whole(wholes(opcode, whole(a), whole(b)))
 
-  /** A number of nanoseconds times what makes seconds or milliseconds of it is not made of nanoseconds. */
+  /** A number of nanoseconds times the factor to seconds or milliseconds becomes seconds again, without a
+    * detour over nanoseconds.
+    */
   private def product(a: Node, b: Node): Node =
     if a.isConst && secondsOf.contains(b) then product(b, a)
     else
@@ -45,14 +48,13 @@ private[formula] final class Arithmetic(trace: Trace, assumed: Assumptions, refu
         case Some(seconds) if b.is(1e-6) => trace.mul(seconds, trace.const(1e3))
         case _                           => trace.mul(a, b)
 
-  /** Whether one of them is a length of time that depends on what is observed. */
+  /** Whether one of them is a length of time that depends on the inputs. */
   private def isTime(values: Value*): Boolean = values.exists:
     settled(_) match
       case _: Time           => true
       case OneOf(_, yes, no) => isTime(yes, no)
       case _                 => false
 
-  /** Of a length of time. */
   private def seconds(value: Value): Node = settled(value) match
     case Time(seconds)         => seconds
     case Long(nanos)           => trace.const(nanos * 1e-9)
@@ -67,8 +69,8 @@ private[formula] final class Arithmetic(trace: Trace, assumed: Assumptions, refu
     case OneOf(_, yes, no) if isTime(yes, no) => nanosOf(Time(seconds(value)))
     case other                                => trace.const(long(other).toDouble)
 
-  /** As `Long.compare` orders two lengths of time, and `Double.compare` two numbers but for what is none and
-    * the signs of zeros: −1, 0 or 1.
+  /** Compares two lengths of time like `Long.compare`, and two numbers like `Double.compare` except for NaN
+    * and the signs of zeros: −1, 0 or 1.
     */
   def order(a: Node, b: Node): Value =
     val others = trace.where(trace.lt(b, a), trace.const(1), trace.const(0))
@@ -77,11 +79,9 @@ private[formula] final class Arithmetic(trace: Trace, assumed: Assumptions, refu
   def orderOf(a: Value, b: Value): Value =
     if isTime(a, b) then order(seconds(a), seconds(b)) else Whole(trace.const(long(a).compare(long(b))))
 
-  /** The negative of a long. */
   def opposite(value: Value): Value =
     if isTime(value) then Time(trace.neg(seconds(value))) else Long(-long(value))
 
-  /** The negative of a whole number. */
   def negated(a: Node): Node =
     if a.isConst then trace.const(-a.value.toInt) else trace.sub(trace.const(0), a)
 
@@ -138,7 +138,7 @@ private[formula] final class Arithmetic(trace: Trace, assumed: Assumptions, refu
 
   def noFloats(): Nothing = refuse("it computes with floats; formulas are written in doubles")
 
-  /** Whether a branch is taken that asks how two doubles compare.
+  /** The condition of a branch that compares two doubles.
     *
     * @param ifUnordered see [[Compared]]
     */
@@ -160,7 +160,7 @@ private[formula] final class Arithmetic(trace: Trace, assumed: Assumptions, refu
     case "GT" => trace.lt(b, a)
     case "LE" => trace.not(trace.lt(b, a))
 
-  /** A function of the JDK's, if it is none that is made of others there. */
+  /** A function of the JDK as one operation, unless the JDK composes it of others. */
   def function(owner: String, name: String, desc: String, args: Vector[Value]): Option[Value] =
     val exact          = owner.endsWith("StrictMath")
     def strict(): Unit =
@@ -205,7 +205,6 @@ private[formula] final class Arithmetic(trace: Trace, assumed: Assumptions, refu
     val node = whole(value)
     if node.isConst then node.value.toInt else refuse(s"$what that depends on what is observed")
 
-  /** The value that it is where what is assumed holds. */
   def settled(value: Value): Value = value match
     case OneOf(condition, yes, no) => assumed(condition) match
         case Some(holds) => settled(if holds then yes else no)
@@ -213,12 +212,12 @@ private[formula] final class Arithmetic(trace: Trace, assumed: Assumptions, refu
     case Unreadable(reason, _) => refuse(reason)
     case _                     => value
 
-  /** The same, which must be one. */
+  /** The single value under the present assumptions; refuses where several remain. */
   def decided(value: Value): Value = settled(value) match
     case _: OneOf => refuse("which of two objects it is depends on what is observed")
     case one      => one
 
-  /** Whether something holds of a value. */
+  /** Chooses between a property of two values, or reads that of the only one. */
   def asked(value: Value)(holds: Value => Node): Node = settled(value) match
     case OneOf(condition, yes, no) =>
       val (ofYes, ofNo) = (asked(yes)(holds), asked(no)(holds))
@@ -226,7 +225,7 @@ private[formula] final class Arithmetic(trace: Trace, assumed: Assumptions, refu
       else trace.or(trace.and(condition, ofYes), trace.and(trace.not(condition), ofNo))
     case one => holds(one)
 
-  /** One of two values that are numbers, or each other's equal. */
+  /** One of two values, by a condition, where both are numbers or both are equal. */
   def either(condition: Node, a: Value, b: Value): Value = (a, b) match
     case _ if a == b                                      => a
     case (Number(x), Number(y))                           => Number(trace.where(condition, x, y))
@@ -269,9 +268,9 @@ private object Arithmetic:
     "IEEEremainder" -> Op.Remainder
   )
 
-  /** Those that are exact, so that Math and StrictMath are one. */
+  /** Functions that are exact, so that `Math` and `StrictMath` agree on them. */
   private val Exact =
     Set(Op.Sqrt, Op.Abs, Op.Floor, Op.Ceil, Op.Rint, Op.Signum, Op.Min, Op.Max, Op.Remainder)
 
-  /** Made of others in the JDK's own code. */
+  /** Functions that the JDK's own code composes of others. */
   private val Composed = Set("toRadians", "toDegrees", "clamp")

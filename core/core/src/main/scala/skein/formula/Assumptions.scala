@@ -1,16 +1,16 @@
 package skein.formula
 
-/** Which conditions hold on the way that is followed while a method is traced. Mutable. */
+/** Conditions known on the branch that is being traced. Mutable, for one thread. */
 private[formula] final class Assumptions:
   private var known = Map.empty[Node, Boolean]
 
-  /** Whether a condition holds; none where that is not known. */
+  /** Whether a condition holds; None if unknown. */
   def apply(condition: Node): Option[Boolean] = condition.op match
     case Op.Always => Some(true)
     case Op.Not    => apply(condition.args(0)).map(!_)
     case _         => known.get(condition)
 
-  /** Goes a way on which a condition holds, or does not. */
+  /** Traces a branch on which a condition holds, or does not. */
   def under[A](condition: Node, holds: Boolean)(way: => A): A =
     val before = known
     assume(condition, holds)

@@ -22,14 +22,14 @@ private[formula] final class MethodCode(
     places: Map[Label, Int],
     val slots: Int
 ):
-  /** The instruction that a label stands before. */
+  /** Index of the instruction that follows a label. */
   def at(label: Label): Int = places(label)
 
   def where(instruction: Int): String =
     s"${owner.replace('/', '.')}.$name ($source:${lines(instruction)})"
 
-  /** For each instruction the first that every way from it to the method's end goes through; the number of
-    * instructions for the end itself. Ways that end by throwing are left out.
+  /** For each instruction, the first one that every path from it to the method's end passes; the number of
+    * instructions stands for the end itself. Paths that end by throwing are ignored.
     */
   lazy val joins: Array[Int] =
     val end          = instructions.length
@@ -78,7 +78,7 @@ private[formula] final class MethodCode(
       at(switch.defaultTarget) +: switch.cases.asScala.map(each => at(each.target)).toSeq
     case _ => Seq(i + 1)
 
-/** Class files as a loader finds them, each read once. */
+/** Class files as a class loader finds them; each is read once. */
 private[formula] final class ClassFiles(loader: ClassLoader):
   private val classes = mutable.HashMap.empty[String, Option[ClassModel]]
   private val methods = mutable.HashMap.empty[(String, String, String), Option[MethodCode]]
@@ -99,14 +99,15 @@ private[formula] final class ClassFiles(loader: ClassLoader):
     }
   )
 
-  /** The method as an object of this class has it: its own, a superclass's, or an interface's.
+  /** Finds the method that an object of this class inherits: the class's own, a superclass's, or an
+    * interface's.
     *
     * @return none where it has no code
     */
   def method(className: String, name: String, descriptor: String): Option[MethodCode] =
     methods.getOrElseUpdate((className, name, descriptor), inClasses(className, name, descriptor))
 
-  /** Every interface of a class and of its superclasses, and these. */
+  /** All interfaces of a class and its superclasses, and the superclasses. */
   def ancestors(className: String): Vector[String] =
     classModel(className).toVector.flatMap: model =>
       val above =

@@ -7,11 +7,11 @@ import scala.jdk.CollectionConverters.*
 import skein.formula.Thing.*
 import skein.formula.Value.*
 
-/** Which code runs when a method is called while another is traced: methods are gone into, closures applied,
-  * and what the JDK and Scala do to numbers, boxes and arrays is done here.
+/** Resolves method calls during tracing: traces into methods, applies closures, and evaluates the JDK's and
+  * Scala's operations on numbers, boxes and arrays here.
   *
-  * @param enter runs a method
-  * @param either one or another, as a condition decides
+  * @param enter traces a method
+  * @param either joins two values by a condition
   */
 private[formula] final class Calls(
     files: ClassFiles,
@@ -168,7 +168,7 @@ private[formula] final class Calls(
           val answer = invoked("java/lang/Object", "equals", Equals, Opcode.INVOKEVIRTUAL, Vector(one, other))
           trace.not(trace.equal(numbers.whole(answer), trace.const(0)))
 
-  /** A new array with some elements of another, and nothing behind them. */
+  /** A new array with a range of another one's elements, and nothing beyond them. */
   private def part(array: Value, from: Int, until: Int): Value =
     val length = lengthOf(array)
     def none   = if length == 0 then Null else zeroLike(element(array, 0))
@@ -181,7 +181,7 @@ private[formula] final class Calls(
     case _: Long   => Long(0)
     case _         => Null
 
-  /** A static method of whole numbers that are known. */
+  /** Calls a static method of whole numbers that are all known. */
   private def ofKnown(owner: String, name: String, desc: String, args: Vector[Value]): Value =
     val numbers = args.map:
       case Long(number) => java.lang.Long.valueOf(number)
@@ -195,5 +195,5 @@ private[formula] final class Calls(
 private object Calls:
   private val Equals = MethodTypeDesc.ofDescriptor("(Ljava/lang/Object;)Z")
 
-  /** Classes of the JDK whose methods may be gone into. */
+  /** JDK classes whose methods may be traced into. */
   private val Arithmetical = Set("java/lang/Math", "java/lang/StrictMath", "java/lang/Object")

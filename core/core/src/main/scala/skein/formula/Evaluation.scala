@@ -1,6 +1,6 @@
 package skein.formula
 
-/** What some nodes of one [[Trace]] come to, again and again: what they need is found once. */
+/** Evaluates some nodes of one [[Trace]] repeatedly; their order of evaluation is computed once. */
 final class Evaluation(nodes: Vector[Node]):
   private val order   = Trace.needed(nodes).toArray
   private val size    = order.iterator.map(_.id + 1).maxOption.getOrElse(0)
@@ -12,7 +12,7 @@ final class Evaluation(nodes: Vector[Node]):
     answers.map(values(_))
 
 object Evaluation:
-  /** Fills in the values of nodes by number, in an order in which each comes after what it needs; conditions
+  /** Fills in the values of nodes by number, in an order in which arguments precede their users; conditions
     * are 1 or 0.
     */
   private[formula] def compute(

@@ -3,12 +3,12 @@ package skein.formula
 import java.lang.reflect.Modifier
 import scala.collection.mutable
 
-/** What an argument is like while a method is traced: every double in it is an input, and every long a length
-  * of time in nanoseconds, of which the input are the seconds. What else is in it, is so.
+/** An example of an argument, for tracing. Every double in it is an input, and every long is a length of time
+  * in nanoseconds whose seconds are the input. Everything else in it is a constant.
   *
-  * @param takesWholes whether integers and truths are inputs too, and longs are refused; those in Scala's own
-  *   collections are known all the same
-  * @param refused fields that are not to be read, as `Class.field`, and why
+  * @param takesWholes whether integers and booleans are inputs too, and longs are refused; those inside
+  *   Scala's own collections stay constant
+  * @param refused fields that must not be read, as `Class.field`, each with the reason
   */
 final class Example(
     val name: String,
@@ -18,8 +18,7 @@ final class Example(
 ):
   private[formula] val root = Path(None, PathStep.Argument(name))
 
-  /** @throws Untraceable if there is something that no number can stand for
-    */
+  /** @throws Untraceable if it holds something that no number can represent */
   private[formula] lazy val shape: Shape = Shape(this, takesWholes)
 
   /** Its numbers, in the order in which they are inputs. */
@@ -28,7 +27,7 @@ final class Example(
   /** Whether another one differs in numbers alone. */
   def isLike(other: Example): Boolean = shape.form == other.shape.form
 
-/** The numbers of an [[Example]], and what is the same in all that are like it. */
+/** The numbers of an [[Example]], and what is constant in all examples like it. */
 private[formula] final class Shape(of: Example, takesWholes: Boolean):
   private val found   = Vector.newBuilder[Shape.Leaf]
   private val alike   = Vector.newBuilder[(Path, Any)]
@@ -37,7 +36,7 @@ private[formula] final class Shape(of: Example, takesWholes: Boolean):
 
   val leaves: Vector[Shape.Leaf] = found.result()
 
-  /** By way: the class that stands there, or what is known. */
+  /** By path: the class of the object there, or the constant. */
   val form: Vector[(Path, Any)] = alike.result()
 
   private def visit(value: AnyRef, at: Path, isLibrary: Boolean, depth: Int): Unit =
@@ -82,7 +81,6 @@ private[formula] object Shape:
   private val MostDepth = 60
   private val MostParts = 100_000
 
-  /** Superclasses' first. */
   def fieldsOf(kind: Class[?]): Vector[java.lang.reflect.Field] =
     Iterator
       .iterate[Class[?]](kind)(_.getSuperclass)
@@ -95,7 +93,7 @@ private[formula] object Shape:
     if field.trySetAccessible() then field.get(of)
     else throw Untraceable(s"${field.getDeclaringClass.getName} is not made of numbers")
 
-  /** Whether numbers of this field are a library's own, as a collection's size is. */
+  /** Whether this field belongs to a library class, such as a collection's size. */
   def isInternal(field: java.lang.reflect.Field): Boolean =
     field.getType.isPrimitive && ClassFiles.isLibrary(ClassFiles.nameOf(field.getDeclaringClass)) &&
       !field.getDeclaringClass.getName.startsWith("scala.Tuple")

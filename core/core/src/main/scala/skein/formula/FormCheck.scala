@@ -2,7 +2,7 @@ package skein.formula
 
 import scala.collection.mutable
 
-/** Whether objects are of one form, by what stands at some places inside of them. */
+/** Checks whether objects are of one form, by the values at some paths inside them. */
 private final class FormCheck(guards: Vector[Guard]):
   private val walk     = PathWalk(guards.map(_.path))
   private val expected = guards.map(_.expected).toArray
@@ -19,7 +19,7 @@ private final class FormCheck(guards: Vector[Guard]):
     case Guard.Length(count) => value != null && java.lang.reflect.Array.getLength(value) == count
     case number              => value == number
 
-/** Reads numbers inside of objects of one form; those of an array without an object for each, for networks
+/** Reads numbers inside objects of one form. Reads arrays directly, without an object per number: networks
   * have hundreds.
   */
 private final class NumberReader(paths: Vector[Path]):
@@ -44,21 +44,21 @@ private final class NumberReader(paths: Vector[Path]):
 
   private def unboxed(number: AnyRef) = number.asInstanceOf[java.lang.Double].doubleValue
 
-/** Finds what stands at some places inside of objects, each object on the way once. */
+/** Reads the values at some paths inside objects; visits each object on the way once. */
 private final class PathWalk(paths: Vector[Path]):
   private val all                  = mutable.LinkedHashMap.empty[Path, Int]
   private def place(of: Path): Int =
     of.before.foreach(place)
     all.getOrElseUpdate(of, all.size)
 
-  /** Where in what is found each path's end is. */
+  /** For each path, the index of its end in the result of `apply`. */
   val places: Array[Int] = paths.map(place).toArray
 
   private val steps  = all.keysIterator.map(_.step).toArray
   private val before = all.keysIterator.map(_.before.fold(-1)(all)).toArray
   for case PathStep.Of(field) <- steps do field.setAccessible(true)
 
-  /** Nothing stands behind what is not of the form. */
+  /** Reads the values at all paths; null behind an object that is not of the form. */
   def apply(root: AnyRef): Array[AnyRef] =
     val found = Array.ofDim[AnyRef](steps.length)
     var i     = 0

@@ -5,12 +5,12 @@ import scala.collection.mutable
 import scala.util.control.NonFatal
 import skein.formula.Value.*
 
-/** What an ordinary method computes, as data: numbers from [[inputs]] and [[parameters]] to [[outputs]]. A
-  * compiler is a function of it (`skein.simd.LaneCompiler`); one for another machine would be one more.
+/** An ordinary method's computation as data: from [[inputs]] and [[parameters]] to [[outputs]].
+  * `skein.simd.LaneCompiler` compiles it; other compilers may.
   *
-  * @param inputs names of the numbers that the arguments come to
-  * @param outputs what the method answers, by name; an answer that is a single number is called `answer`
-  * @param parameters where in the object the doubles are that the method reads of it
+  * @param inputs names of the numbers in the arguments
+  * @param outputs nodes of the result, by name; a single number is called `answer`
+  * @param parameters paths, inside the object, of the doubles that the method reads
   */
 final class Formula private (
     val trace: Trace,
@@ -23,29 +23,29 @@ final class Formula private (
   private val check  = FormCheck(guards)
   private val reader = NumberReader(parameterPaths)
 
-  /** How the parameters are called, for example `.weights(3)`. */
+  /** Names of the parameters, for example `.weights(3)`. */
   val parameters: Vector[String] = parameterPaths.map(_.toString)
 
-  /** Whether another object's method is this formula, with parameters of its own. */
+  /** Whether another object's method is this formula with other parameter values. */
   def fits(other: AnyRef): Boolean = (other.getClass eq of) && check.fits(other)
 
   /** The parameters of an object that [[fits]]. */
   def parametersOf(other: AnyRef): Array[Double] = reader.read(other)
 
-  /** What comes out for doubles: slow, and to the bit what the method itself answers. */
+  /** Evaluates the formula on doubles: slow, and bit-identical to the method itself. */
   def evaluate(input: Array[Double], parameters: Array[Double]): Array[Double] =
     Evaluation(outputs.map(_._2))(input, parameters)
 
 object Formula:
 
-  /** What an object's method computes.
+  /** Traces an object's method.
     *
-    * @param method by name
+    * @param method its name
     * @param sizes of arguments that are arrays, by name
-    * @param arguments the types of its arguments, where a class has several methods of the name
-    * @param known arguments, or what they hold, by name, that are no doubles: which they are. What is
-    *   answered and still holds them tells the other fields alone
-    * @return or why it cannot be traced
+    * @param arguments types of its arguments, where a class has several methods of the name
+    * @param known constant arguments or fields that are not doubles, by name. A result that contains them
+    *   yields its other fields only
+    * @return Left states why it cannot be traced
     */
   def of(
       target: AnyRef,
@@ -157,12 +157,12 @@ object Formula:
       case refused: Untraceable => Left(refused)
       case NonFatal(other)      => Left(Untraceable(s"${target.getClass.getName}.${method.getName}: $other"))
 
-  /** What an object's method computes of arguments that are like examples.
+  /** Traces an object's method for arguments like the examples.
     *
     * @param descriptor of the method, as class files have it
-    * @param loader of all classes that it uses
-    * @param read what counts of the answer
-    * @return and what was read, or why it cannot be traced
+    * @param loader finds all classes that it uses
+    * @param read extracts the outputs from the result
+    * @return the formula with what `read` returned, or why it cannot be traced
     */
   def ofExamples[A](
       target: AnyRef,
@@ -204,7 +204,7 @@ object Formula:
     ).takeWhile(_ != null).flatMap(_.getDeclaredMethods).toVector ++
       of.getMethods
 
-  /** Superclasses' first, in the order in which they are declared. */
+  /** The fields that tracing reads, superclasses' first, in the order of declaration. */
   private def fieldsOf(kind: Class[?]): Seq[java.lang.reflect.Field] =
     Iterator
       .iterate[Class[?]](kind)(_.getSuperclass)

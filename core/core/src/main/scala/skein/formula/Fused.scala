@@ -3,12 +3,11 @@ package skein.formula
 import scala.collection.mutable
 import skein.formula.Op.*
 
-/** The same numbers with fewer operations where a product and a sum are one operation: equal but for
-  * rounding.
+/** Equal numbers but for rounding, with fewer operations where a fused multiply-add is one operation.
   *
-  *   - A product that is taken away is added with a factor's sign turned, where turning it costs nothing.
-  *   - What is divided by what depends on parameters alone is multiplied by its inverse.
-  *   - An angle that is wrapped only where it is beyond half a turn is wrapped always.
+  *   - A product that is subtracted is added with one factor negated, where negating it is free.
+  *   - Division by a value that depends on parameters alone becomes multiplication by its inverse.
+  *   - An angle that is wrapped only beyond half a turn is wrapped always.
   */
 private[skein] final class Fused(in: Trace, outputs: Vector[Node]):
   private val order = Trace.needed(outputs)
@@ -16,7 +15,7 @@ private[skein] final class Fused(in: Trace, outputs: Vector[Node]):
   private val uses  = mutable.HashMap.empty[Node, Int].withDefaultValue(0)
   private val made  = mutable.HashMap.empty[Node, Node]
 
-  /** In the place of the outputs. */
+  /** The nodes that replace the outputs, in their order. */
   val nodes: Vector[Node] =
     for node <- order do
       if if node.args.isEmpty then node.op != Input else node.args.forall(fixed) then fixed += node
@@ -44,7 +43,7 @@ private[skein] final class Fused(in: Trace, outputs: Vector[Node]):
       case None if a.op == Mul && fixed(b) => in.add(made(a), in.neg(made(b)))
       case None                            => in.sub(made(a), made(b))
 
-  /** A number with its sign turned, if that costs no operation. */
+  /** A number negated, if that costs no operation. */
   private def negated(node: Node): Option[Node] =
     if fixed(node) then Some(in.neg(made(node)))
     else if uses(node) > 1 then None
@@ -57,7 +56,7 @@ private[skein] final class Fused(in: Trace, outputs: Vector[Node]):
           negated(a).map(in.mul(_, made(b))).orElse(negated(b).map(in.mul(made(a), _)))
         case _ => None
 
-  /** Whether it is an angle where it is within half a turn, and the angle wrapped elsewhere. */
+  /** Whether a condition chooses between an angle within half a turn and the wrapped angle elsewhere. */
   private def isWrapped(node: Node): Boolean =
     val Vector(condition, a, b) = node.args
     condition.op == Le && condition.args(0).op == Abs && condition.args(0).args(0) == a &&

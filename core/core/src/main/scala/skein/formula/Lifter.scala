@@ -8,13 +8,12 @@ import scala.jdk.CollectionConverters.*
 import skein.formula.Thing.*
 import skein.formula.Value.*
 
-/** Runs a method's bytecode on numbers that are not known yet, and notes what it computes of them in a
-  * [[Trace]].
+/** Executes a method's bytecode symbolically, and records what it computes of its inputs in a [[Trace]].
   *
-  * Where a condition is not known both ways are gone to where they meet again, and what differs there becomes
-  * an [[Op.Where]]. What is known decides at once: loops over it are unrolled, methods called are gone into,
-  * objects and arrays made on the way exist here alone ([[Objects]]). What is not arithmetic is refused
-  * ([[Untraceable]]).
+  * Where a condition is unknown, both branches are executed up to where they meet again, and values that
+  * differ there become an [[Op.Where]]. Known values are computed immediately: loops over them are unrolled,
+  * and calls are traced into. Objects and arrays that the method makes exist only here ([[Objects]]). What is
+  * not arithmetic is refused ([[Untraceable]]).
   */
 private[formula] final class Lifter(files: ClassFiles, val trace: Trace):
   import Lifter.*
@@ -33,7 +32,7 @@ private[formula] final class Lifter(files: ClassFiles, val trace: Trace):
   export objects.{argument, element, fieldOf, guards, lengthOf, make, parameters, thing}
   export numbers.settled
 
-  /** What the method answers to these arguments, its object first unless it is static. */
+  /** The method's result for these arguments; the receiver comes first unless the method is static. */
   def call(code: MethodCode, args: Vector[Value]): Value =
     if calls.sizeIs > MostDepth then refuse(s"it calls more than $MostDepth methods within one another")
     val locals = Array.fill[Value](code.slots)(Null)
@@ -49,7 +48,7 @@ private[formula] final class Lifter(files: ClassFiles, val trace: Trace):
     isDone |= calls.isEmpty
     answer
 
-  /** Calls a method of an object without arguments. */
+  /** The result of an object's method without arguments. */
   def get(of: Value, name: String, answers: String): Value =
     invocations.invoked(
       "java/lang/Object",
@@ -59,15 +58,14 @@ private[formula] final class Lifter(files: ClassFiles, val trace: Trace):
       Vector(of)
     )
 
-  /** The class of an object. */
+  /** Name of an object's class, if it is known. */
   def classOf(value: Value): Option[String] = objects.classOfThing(value)
 
-  /** A number, in an object or not. */
   def numberOf(value: Value): Node = flat(value) match
     case node: Number => node.node
     case _            => refuse("it answers with something else than a number")
 
-  /** The same of an integer or a truth. */
+  /** The node of an integer or a boolean, boxed or not. */
   def wholeOf(value: Value): Node = flat(value) match
     case Whole(node) => node
     case _           => refuse("it answers with something else than a whole number")
@@ -77,15 +75,14 @@ private[formula] final class Lifter(files: ClassFiles, val trace: Trace):
     case OneOf(condition, yes, no) => either(condition, flat(yes), flat(no))
     case one                       => one
 
-  /** Whether a value is this one. */
   def isKnown(value: Value, what: AnyRef): Boolean = flat(value) match
     case Known(other, _) => other == what
     case Whole(node)     => node.isConst && what != null && node.value == Value.wholeOf(what)
     case Long(number)    => what == java.lang.Long.valueOf(number)
     case _               => false
 
-  /** Refuses, naming the innermost place that is not a library's; behind the end of the method, the place
-    * where it answered.
+  /** Refuses with the innermost source line that is not a library's; after the method has returned, with the
+    * line of its return.
     */
   def refuse(reason: String): Nothing =
     val own = calls.find(call => !ClassFiles.isLibrary(call.code.owner))
@@ -132,7 +129,7 @@ private[formula] final class Lifter(files: ClassFiles, val trace: Trace):
             at += 1
     end.get
 
-  /** Goes both ways to where they meet. */
+  /** Executes both branches of a condition up to where they meet. */
   private def both(frame: Frame, taken: Node, target: Int, at: Int, meet: Int): Option[End] =
     if !frame.calling.open.add(at) then
       refuse("a loop whose end depends on what is observed: give it a fixed number of rounds")
@@ -158,7 +155,7 @@ private[formula] final class Lifter(files: ClassFiles, val trace: Trace):
         None
       case _ => throw IllegalStateException(s"ways of ${frame.calling.code.name} do not meet")
 
-  /** What one call or another one answers. */
+  /** Executes two calls, and joins their results by a condition. */
   private def bothCalls(condition: Node, yes: => Value, no: => Value): Value =
     val before = objects.now
     val ofYes  = assumptions.under(condition, holds = true)(yes)
@@ -245,7 +242,6 @@ private[formula] final class Lifter(files: ClassFiles, val trace: Trace):
       val a = frame.pop()
       frame.push(ofTwo(opcode, a, b))
 
-  /** Whether a branch is taken. */
   private def condition(frame: Frame, opcode: Opcode): Node =
     opcode match
       case Opcode.GOTO | Opcode.GOTO_W         => trace.always

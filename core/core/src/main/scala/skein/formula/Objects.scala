@@ -5,9 +5,9 @@ import scala.collection.mutable
 import skein.formula.Thing.*
 import skein.formula.Value.*
 
-/** Objects and arrays while a method is traced. Those that it makes exist here alone; those that were there
-  * before are read, never changed. What is read of the object whose method it is becomes a parameter if it is
-  * a double, and else something that another object must have alike ([[guards]]) to share the trace.
+/** Objects and arrays during tracing. Those that the method makes exist only here; those that existed before
+  * are read and never changed. A double read from the method's own object becomes a parameter; anything else
+  * read from it must be equal in another object ([[guards]]) for both to share the trace.
   */
 private[formula] final class Objects(
     files: ClassFiles,
@@ -27,13 +27,13 @@ private[formula] final class Objects(
   private val inputs  = mutable.HashMap.empty[Path, Node]
   private val unknown = mutable.HashMap.empty[String, String]
 
-  /** What was changed after it was made, each time. */
+  /** Ids of the changed objects, once per change. */
   private val changed = mutable.ArrayBuffer.empty[Int]
 
-  /** The ways to the doubles read of the object, in the order of the trace's parameters. */
+  /** Paths to the doubles read from the object, in the order of the trace's parameters. */
   def parameters: Vector[Path] = params.keys.toVector
 
-  /** What another object must have alike. */
+  /** What must be equal in another object for it to share the trace. */
   def guards: Vector[Guard] = alike.keys.toVector
 
   def thing(id: Int): Thing = heap(id)
@@ -43,9 +43,9 @@ private[formula] final class Objects(
     heap += made -> thing
     Made(made)
 
-  /** An argument by its example.
+  /** Represents an argument by its example.
     *
-    * @param input makes the input for a number
+    * @param input makes the input for the number at a path
     */
   def argument(of: Example, input: Path => Node): Value =
     for leaf <- of.shape.leaves do inputs(leaf.path) = input(leaf.path)
@@ -56,18 +56,18 @@ private[formula] final class Objects(
     heap += id -> thing
     changed += id
 
-  /** All that was made until now. */
+  /** Snapshot of all objects made so far. */
   def now: Moment = Moment(heap, changed.size)
 
   def backTo(moment: Moment): Unit = heap = moment.things
 
-  /** Makes one of what two ways have left, the second of which ends now. */
+  /** Joins the objects that two branches have left; the second branch ends now. */
   final class Merge(condition: Node, parted: Moment, first: Moment):
     private val (yes, no) = (first.things, heap)
     private val pairs     = mutable.HashMap.empty[(Value, Value), Value]
     heap = yes ++ no
 
-    /** Of what was there before the ways parted. */
+    /** Joins the objects that existed before the branches parted. */
     def things(): Unit =
       for id <- changed.drop(parted.changes).distinct; a <- yes.get(id); b <- no.get(id) if a != b do
         change(
@@ -103,7 +103,7 @@ private[formula] final class Objects(
           case _ => OneOf(condition, a, b)
       case _ => OneOf(condition, a, b)
 
-    /** What was made; or, of a case class of doubles that was there before, the same. */
+    /** The object that was made, or a copy of an existing case class of doubles. */
     private def thingOf(of: Value, in: Map[Int, Thing]): Option[Thing] = of match
       case Made(id)                                                                        => Some(in(id))
       case Known(what, path) if !path.exists(_.isOfArgument) && isOfDoubles(what.getClass) =>
@@ -113,7 +113,9 @@ private[formula] final class Objects(
         Some(Record(ClassFiles.nameOf(what.getClass), fields.toMap))
       case _ => None
 
-    /** A tuple of two numbers has a class of its own where one of them is a constant. */
+    /** Converts a specialised tuple to the generic class where the other branch has that, as when one number
+      * is a constant.
+      */
     private def alikeOf(a: Thing, b: Thing): (Thing, Thing) = (classOf(a), classOf(b)) match
       case (Some(x), Some(y)) if x != y => (unspecialised(a), unspecialised(b))
       case _                            => (a, b)
@@ -131,7 +133,6 @@ private[formula] final class Objects(
     private def boxed(fields: Map[String, Value]) = fields.collect:
       case (SpecialisedField(name), value) => name -> Boxed(value)
 
-  /** Changes an object that was made. */
   def put(of: Value, name: String, value: Value): Unit = of match
     case Made(id) => heap(id) match
         case Record(className, fields) => change(id, Record(className, fields + (name -> value)))
@@ -169,7 +170,7 @@ private[formula] final class Objects(
     case Null => refuse(s"it reads $name of nothing")
     case _    => refuse(s"it reads $name of a number")
 
-  /** One of two values of now. */
+  /** Joins two values of the present state by a condition. */
   private def one(condition: Node, a: Value, b: Value): Value = Merge(condition, now, now).value(a, b)
 
   private def zeroOf(kind: ClassDesc): Value = kind.descriptorString match
@@ -195,7 +196,7 @@ private[formula] final class Objects(
     if field.trySetAccessible() then field
     else refuse(s"it uses ${field.getDeclaringClass.getName}, which is not arithmetic")
 
-  /** What an object that was there before holds. */
+  /** Represents a value that an object from before tracing holds. */
   private def held(value: AnyRef, path: Option[Path], kind: Class[?]): Value =
     def alikeIn(expected: Any): Unit = path.foreach(way => guard(way, expected))
     path.flatMap(inputs.get).fold(heldItself(value, path, kind, alikeIn)): node =>
@@ -208,7 +209,7 @@ private[formula] final class Objects(
         case _ => Whole(node)
       if kind.isPrimitive then number else Boxed(number)
 
-  /** Of an argument its example says already what is alike. */
+  /** Requires a constant of another object; constants of arguments are already fixed by their example. */
   private def guard(way: Path, expected: Any): Unit =
     if !way.isOfArgument then alike(Guard(way, expected)) = ()
 
@@ -239,7 +240,7 @@ private[formula] final class Objects(
       case text: String => alikeIn(text); Known(text, None)
       case other        => alikeIn(other.getClass); Known(other, path)
 
-  /** The element of an index that is known, or chosen among known ones. */
+  /** The element at a known index, or chosen among the elements by an unknown one. */
   def elementAt(array: Value, index: Node): Value =
     if index.isConst then element(array, index.value.toInt)
     else if index.op == Op.Where then
@@ -268,7 +269,7 @@ private[formula] final class Objects(
         case _                       => refuse("it changes one of two arrays, as a condition decides")
     case _ => refuse("it changes an array that was there before; a formula changes nothing")
 
-  /** A value as an array holds it in the place of another. */
+  /** Converts a value to the representation of the array element that it replaces. */
   private def fitting(before: Value, value: Value): Value = (before, value) match
     case (_: (Number | Whole | Long | Time), Boxed(inner)) => inner
     case (_: (Number | Whole | Long | Time), _)            => value
@@ -314,7 +315,7 @@ private[formula] final class Objects(
     case other          =>
       classOfThing(other).exists(own => files.load(name).isAssignableFrom(files.load(own)))
 
-  /** What `System.arraycopy` does, and Scala's `Array.copy`, which puts numbers into objects. */
+  /** Copies array elements like `System.arraycopy` and like Scala's `Array.copy`, which boxes numbers. */
   def copied(args: Vector[Value]): Option[Value] =
     val Vector(fromAt, toAt, count) = Vector(1, 3, 4).map(i => known(args(i), "an index"))
     decided(args(2)) match
@@ -327,10 +328,10 @@ private[formula] final class Objects(
       case _ => refuse("it changes an array that was there before; a formula changes nothing")
 
 private[formula] object Objects:
-  /** What was made until a moment, and how many changes there were until then. */
+  /** A snapshot of the objects made so far, with the number of changes. */
   final case class Moment(things: Map[Int, Thing], changes: Int)
 
-  /** Scala's classes of tuples of primitive numbers, and their fields. */
+  /** Scala's specialised tuple classes, and their fields. */
   private val Specialised      = """(scala/Tuple[12])\$mc[A-Z]+\$sp""".r
   private val SpecialisedField = """(\w+)\$mc[A-Z]\$sp""".r
 
@@ -341,9 +342,8 @@ private[formula] object Objects:
     classOf[Product].isAssignableFrom(kind) && kind.getSuperclass == classOf[Object] &&
       doublesOf(kind).forall(each => each.getType == classOf[Double] || isOfDoubles(each.getType))
 
-/** What an object must have at the end of a way: a class, a number, nothing, or a [[Guard.Length]]. */
+/** What an object must hold at the end of a path: a class, a number, null, or a [[Guard.Length]]. */
 private[formula] final case class Guard(path: Path, expected: Any)
 
 private[formula] object Guard:
-  /** Of an array. */
   final case class Length(value: Int)

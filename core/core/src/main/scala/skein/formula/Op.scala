@@ -1,7 +1,7 @@
 package skein.formula
 
-/** What a node of a [[Trace]] computes of its arguments. Conditions are nodes too: of the last group, and of
-  * [[Op.Where]] the first argument.
+/** The operation of a [[Trace]]'s node. Conditions are nodes too: those of the last group, and the first
+  * argument of [[Op.Where]].
   */
 enum Op:
   // Leaves.
@@ -9,12 +9,12 @@ enum Op:
   case Neg, Abs, Sqrt, Sin, Cos, Asin, Acos, Atan, Exp, Tanh, Floor, Ceil, Rint, Signum
   case Add, Sub, Mul, Div, Min, Max, Atan2, Hypot, Remainder
 
-  /** The second argument where the first holds, the third elsewhere. */
+  /** The second argument where the first holds, else the third. */
   case Where
   // Conditions; a comparison with a NaN does not hold.
   case Lt, Le, Eq, Not, And, Or, Always
 
-  /** Whether it takes no arguments. */
+  /** Whether the operation takes no arguments. */
   def isLeaf: Boolean = this match
     case Const | Input | Param | Always => true
     case _                              => false
@@ -27,7 +27,7 @@ enum Op:
     case _                                                                                    => false
 
 object Op:
-  /** One number of one number, to the bit as the JVM computes it everywhere. */
+  /** A function of one number, bit-identical on every JVM. */
   def compute(op: Op, a: Double): Double = op match
     case Neg    => -a
     case Abs    => Math.abs(a)
@@ -45,7 +45,7 @@ object Op:
     case Signum => Math.signum(a)
     case _      => throw IllegalArgumentException(s"$op takes not one number")
 
-  /** One number of two. */
+  /** A function of two numbers, bit-identical on every JVM. */
   def compute(op: Op, a: Double, b: Double): Double = op match
     case Add       => a + b
     case Sub       => a - b

@@ -25,11 +25,11 @@ final class Node private[formula] (
     case Always => "true"
     case _      => args.mkString(s"$op(", ", ", ")")
 
-/** Expressions as a graph in which equal ones are one node, so that nothing is computed twice. What is known
-  * already is computed at once, to the bit as it would be later; nothing is rearranged. A node's arguments
-  * have smaller numbers than itself. Not for several threads.
+/** A graph of expressions in which equal ones share a node, so that nothing is computed twice. Operations on
+  * constants are evaluated immediately, bit-identical to a later evaluation; nothing is rearranged. A node's
+  * arguments have smaller numbers than the node. Not thread-safe.
   *
-  * @param most nodes; more are refused
+  * @param most limit of nodes; beyond it, tracing is refused
   */
 final class Trace(most: Int = 200_000):
   private val known = mutable.HashMap.empty[Trace.Key, Node]
@@ -103,7 +103,7 @@ final class Trace(most: Int = 200_000):
     else if b.op == Where && b.args(0) == condition then where(condition, a, b.args(2))
     else node(Where, condition, a, b)
 
-  /** The same operation of other arguments. */
+  /** The operation of a node applied to other arguments. */
   def again(node: Node, args: Vector[Node]): Node = node.op match
     case Const | Always => import_(node)
     case Input          => input(node.index)
@@ -119,7 +119,7 @@ final class Trace(most: Int = 200_000):
 
   private def isNever(a: Node) = a.op == Not && a.args(0).op == Always
 
-  /** Whether it is chosen between few numbers that are known. */
+  /** Whether its value is chosen among few constants. */
   private def ofConsts(a: Node, depth: Int = 3): Boolean =
     depth > 0 && a.op == Where && a.args.drop(1).forall(each => each.isConst || ofConsts(each, depth - 1))
 
@@ -149,13 +149,13 @@ final class Trace(most: Int = 200_000):
     made
 
 object Trace:
-  /** What makes a node the same as another: its operation, and its arguments' numbers or its own. */
+  /** Identifies equal nodes: their operation, and their arguments' numbers or their own. */
   private final case class Key(op: Int, first: Long, rest: Long):
     override def hashCode: Int =
       val mixed = (first * 31 + rest) * 0x9e3779b97f4a7c15L + op
       (mixed ^ mixed >>> 32).toInt
 
-  /** What these need, each once, arguments first; in the order in which a depth-first walk ends. */
+  /** The nodes that these depend on, each once, arguments first, in depth-first postorder. */
   def needed(of: Seq[Node]): Vector[Node] =
     val seen  = mutable.HashSet.empty[Int]
     val order = Vector.newBuilder[Node]
@@ -173,14 +173,14 @@ object Trace:
           if seen.add(next.id) then walk.push((next, 0))
     order.result()
 
-  /** The same expressions with others in the place of some nodes. */
+  /** Copies expressions into another trace, with some nodes substituted. */
   def replaced(of: Vector[Node], in: Trace)(by: Node => Option[Node]): Vector[Node] =
     val made = mutable.HashMap.empty[Node, Node]
     for node <- needed(of) do made(node) = by(node).getOrElse(in.again(node, node.args.map(made)))
     of.map(made)
 
-  /** Of what these need, the largest numbers that come of some leaves alone, and of what is fixed: computed
-    * apart, as soon as these leaves are known, they leave least to be computed later.
+  /** The largest subexpressions of these that depend only on constants and the known leaves. Computed ahead,
+    * once those leaves are known, they leave the least work for later.
     */
   def earliest(of: Vector[Node])(isKnown: Node => Boolean): Vector[Node] =
     val order        = needed(of)
@@ -195,8 +195,8 @@ object Trace:
       usedLate ++= node.args
     order.filter(node => known(node) && usedLate(node) && !node.op.isCondition)
 
-  /** Of what a node needs, that at every 256th level, the lowest first. A recursion that remembers what it
-    * has done and goes to these first stays within a thread's stack.
+  /** Of a node's dependencies, those at every 256th level, the lowest first. A memoising recursion that
+    * visits these first stays within a thread's stack.
     */
   def landings(of: Node): Vector[Node] =
     val level = mutable.HashMap.empty[Int, Int]

@@ -1,9 +1,9 @@
 package skein.formula
 
-/** A method is not arithmetic that can be compiled.
+/** A method cannot be compiled as arithmetic.
   *
-  * @param reason what stands against it
-  * @param where `Class.method (File:line)`, the innermost place of the user's own code; empty where it is not
+  * @param reason what prevents it
+  * @param where `Class.method (File:line)`, the innermost line of the user's own code; empty where it is not
   *   known
   */
 final class Untraceable(val reason: String, val where: String = "")

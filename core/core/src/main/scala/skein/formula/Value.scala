@@ -6,60 +6,58 @@ import java.lang.reflect.Field
 private[formula] sealed trait Value
 
 private[formula] object Value:
-  /** A double. */
   final case class Number(node: Node) extends Value
 
   /** An int or smaller, or a boolean as 1 or 0; known if its node is a constant. */
   final case class Whole(node: Node) extends Value
 
-  /** A long that is known. */
+  /** A long whose value is known while tracing. */
   final case class Long(value: scala.Long) extends Value
 
-  /** A long that depends on what is observed: a length of time in nanoseconds, by its seconds. */
+  /** A long that depends on the inputs: a length of time in nanoseconds, represented by its seconds. */
   final case class Time(seconds: Node) extends Value
 
-  /** What `dcmpg` and `dcmpl` leave.
+  /** The result of `dcmpg` or `dcmpl`.
     *
     * @param ifUnordered what a NaN counts as, 1 or −1
     */
   final case class Compared(a: Node, b: Node, ifUnordered: Int) extends Value
 
-  /** An object that was there before.
+  /** An object that existed before tracing.
     *
-    * @param path from the object whose method is traced; none for what every object shares
+    * @param path from the object whose method is traced; none for shared objects
     */
   final case class Known(what: AnyRef, path: Option[Path]) extends Value
 
   /** An object, array or closure made while tracing. */
   final case class Made(id: Int) extends Value
 
-  /** A number in an object of its own. */
   final case class Boxed(value: Value) extends Value
   case object Null                     extends Value
 
-  /** What may be passed on, and not looked at.
+  /** A value that may be passed on, but not read.
     *
     * @param isWide whether it is a long or a double
     */
   final case class Unreadable(reason: String, isWide: Boolean) extends Value
 
-  /** One of two values that cannot be made one, as a condition decides. */
+  /** One of two values, by a condition, that cannot be joined into one. */
   final case class OneOf(condition: Node, yes: Value, no: Value) extends Value
 
-  /** An int or smaller, or a truth as 1 or 0. */
+  /** The value of an integer of at most 32 bits, or of a boolean as 1 or 0. */
   def wholeOf(simple: AnyRef): Int = simple match
     case number: java.lang.Number       => number.intValue
     case truth: java.lang.Boolean       => if truth then 1 else 0
     case character: java.lang.Character => character.charValue.toInt
     case other                          => throw IllegalArgumentException(other.toString)
 
-/** What was made while tracing. */
+/** An object, array or closure that the traced method has made. */
 private[formula] enum Thing:
   case Record(className: String, fields: Map[String, Value])
   case Elements(values: Vector[Value], isFrozen: Boolean = false)
   case Closure(interface: String, method: String, impl: Thing.Impl, captured: Vector[Value])
 
-  /** One of two objects, as a condition decides: it can be read, not changed. */
+  /** One of two objects, by a condition: it can be read, but not changed. */
   case Either(className: String, fields: Map[String, Value])
 
 private[formula] object Thing:
@@ -68,9 +66,9 @@ private[formula] object Thing:
   enum Kind:
     case Static, Instance, Constructor
 
-/** A way from an object to a number or object inside of it. */
+/** A path from an object to a number or object inside it. */
 private[formula] final case class Path(before: Option[Path], step: PathStep):
-  /** Whether it begins at an argument's example, not at the object whose method is traced. */
+  /** Whether it starts at an argument's example, and not at the object whose method is traced. */
   val isOfArgument: Boolean = before.fold(step.isInstanceOf[PathStep.Argument])(_.isOfArgument)
 
   override def toString: String = before.fold("")(_.toString) + (step match

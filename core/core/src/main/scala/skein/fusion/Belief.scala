@@ -21,7 +21,7 @@ final case class Belief(
     velocity: Matrix3
 ):
 
-  /** Predicted for a later moment.
+  /** The estimate predicted for a later moment.
     *
     * @param acceleration spectral density of the unknown acceleration along each axis, m²/s³. The noise it
     *   adds over Δt is Δt³/3, Δt²/2 and Δt times it: Bar-Shalom, Li and Kirubarajan, Estimation with
@@ -30,7 +30,7 @@ final case class Belief(
   def carriedTo(later: Instant, acceleration: Double): Belief =
     carriedBy(later.since(at).toSeconds, acceleration).copy(at = later)
 
-  /** The same, but for what it calls its moment. */
+  /** Predicts over a time step; the estimate's own instant stays unchanged. */
   private[fusion] def carriedBy(dtS: Double, acceleration: Double): Belief =
     def noise(variance: Double) = Matrix3.diagonal(acceleration * variance)
     Belief(
@@ -42,7 +42,7 @@ final case class Belief(
       velocity + noise(dtS)
     )
 
-  /** Updated by a measurement of the estimate's own moment. */
+  /** The estimate updated by a measurement of its own moment. */
   def joined(measured: Measurement): Belief =
     val placed = joinedPosition(measured.positionNed, measured.covariance)
     measured.velocity.fold(placed)(velocity => placed.joinedVelocity(velocity.ned, velocity.covariance))
@@ -74,7 +74,7 @@ final case class Belief(
     )
 
 object Belief:
-  /** From the very first measurement, of a vehicle that may fly as fast as that.
+  /** The estimate after the first measurement.
     *
     * @param speedMps standard deviation of the velocity along each axis
     */

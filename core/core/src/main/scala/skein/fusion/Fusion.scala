@@ -7,8 +7,8 @@ import skein.units.*
   * @param acceleration process noise: spectral density of the vehicle's acceleration, m²/s³. A vehicle that
   *   accelerates with a (m/s²) for about τ (s) at a time has about a²τ
   * @param topSpeed standard deviation of the velocity before it was measured
-  * @param history how much older than the newest one a measurement may be
-  * @param mostMeasurements that are kept at most
+  * @param history the greatest age of a measurement relative to the newest one
+  * @param mostMeasurements limit of measurements kept
   */
 final case class FusionSettings(
     acceleration: Double = 10,
@@ -22,8 +22,8 @@ final case class FusionSettings(
   )
 
 /** Estimates one vehicle's state from measurements in any order. Each enters at its valid time, and all later
-  * ones are processed again after it. So the estimate is that of a filter that got all of them in order. Of
-  * equally old ones, the one that arrived first is processed first.
+  * ones are processed again, so the estimate equals that of a filter that received all of them in order.
+  * Measurements of one time are processed in the order of arrival.
   *
   * Immutable. An update costs one step of the filter for each measurement that is newer.
   */
@@ -34,14 +34,14 @@ final class Fusion private (
 ):
   import Fusion.*
 
-  /** After the newest measurement; none before the first. */
+  /** The estimate after the newest measurement; none before the first. */
   def belief: Option[Belief] = remembered.lastOption.map(_.after).orElse(before)
 
-  /** The estimate for a moment, that of the newest measurement or a later one. */
+  /** The estimate predicted for a moment at or after the newest measurement. */
   def at(later: Instant): Option[Belief] =
     belief.filter(_.at <= later).map(_.carriedTo(later, settings.acceleration))
 
-  /** With one measurement more. None if it is older than all that are kept. */
+  /** The filter with one more measurement. None if the measurement is older than all that are kept. */
   def including(measured: Measurement): Option[Fusion] =
     val isTooOld = before.exists(_.at > measured.validAt) ||
       belief.exists(_.at.since(measured.validAt) > settings.history)

@@ -39,7 +39,7 @@ final case class Matrix3(
 
   def determinant: Double = xx * (yy * zz - yz * zy) - xy * (yx * zz - yz * zx) + xz * (yx * zy - yy * zx)
 
-  /** By the adjugate; of a matrix whose determinant is not 0. */
+  /** The inverse, by the adjugate; the determinant must not be 0. */
   def inverse: Matrix3 = Matrix3(
     yy * zz - yz * zy,
     xz * zy - xy * zz,
@@ -52,15 +52,15 @@ final case class Matrix3(
     xx * yy - xy * yx
   ) * (1 / determinant)
 
-  /** The mean of it and its transpose: what rounding takes from a covariance's symmetry is given back. */
+  /** The mean of the matrix and its transpose: restores a covariance's symmetry after rounding. */
   def symmetric: Matrix3 = (this + transposed) * 0.5
 
 object Matrix3:
   val Zero: Matrix3 = diagonal(0)
 
-  /** The same variance along every axis, and none between them. */
+  /** The covariance with equal variances along all axes, and no correlation. */
   def diagonal(variance: Double): Matrix3 = Matrix3(variance, 0, 0, 0, variance, 0, 0, 0, variance)
 
-  /** v vᵀ: the covariance of what varies along v alone, by its length. */
+  /** v vᵀ: the covariance of what varies along v alone, with the length of v as standard deviation. */
   def along(v: Vector3): Matrix3 =
     Matrix3(v.x * v.x, v.x * v.y, v.x * v.z, v.y * v.x, v.y * v.y, v.y * v.z, v.z * v.x, v.z * v.y, v.z * v.z)

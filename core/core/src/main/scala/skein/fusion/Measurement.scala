@@ -2,10 +2,11 @@ package skein.fusion
 
 import skein.units.*
 
-/** Where a vehicle was at a moment, as something measured it: a reading of its own, or a detection by
-  * somebody's camera or LIDAR.
+/** A measured position of a vehicle: a reading of its own, or a detection by another vehicle's camera or
+  * LIDAR.
   *
-  * @param validAt when it was so: physics sampled, the image exposed; all of one vehicle on one clock
+  * @param validAt when physics was sampled or the image exposed; all measurements of one vehicle use one
+  *   clock
   * @param positionNed m
   * @param covariance of the position, NED, m²
   * @param velocity if it was measured too: NED, m/s, with its covariance, m²/s²
@@ -21,7 +22,7 @@ final case class Measurement(
     s"a measurement's covariance is positive: $this"
   )
 
-/** What a camera or a LIDAR tells of something it found, in its own frame (front, right, down).
+/** What a camera or a LIDAR measures of a detected object, in the sensor's frame (front, right, down).
   *
   * @param azimuth to the right of straight ahead
   * @param elevation above straight ahead
@@ -35,8 +36,8 @@ final case class PolarMeasurement(
     deviation: (azimuth: Radians, elevation: Radians, range: Metres)
 ):
 
-  /** Where it was, given where its observer was at the exposure. To first order about what was measured
-    * ("converted measurement"), which is good to where range · angle² is small beside the range's own
+  /** The object's position, given the sensor's pose at the exposure. Linearised about the measured values
+    * ("converted measurement"), which is accurate where range · angle² is small beside the range's own
     * deviation: Lerro and Bar-Shalom, IEEE Transactions on Aerospace and Electronic Systems 29 (1993), 1015.
     *
     * @param positionNed of the sensor, m
@@ -46,7 +47,7 @@ final case class PolarMeasurement(
     val (place, covariance) = placedFrom(positionNed, orientation)
     Measurement(validAt, place, covariance)
 
-  /** That place, NED, m, and the covariance of it, m². */
+  /** The object's position, NED, m, with its covariance, m². */
   private[fusion] def placedFrom(
       positionNed: Vector3,
       orientation: Quaternion
@@ -66,7 +67,7 @@ final case class PolarMeasurement(
 
 object PolarMeasurement:
 
-  /** That of a point in the sensor's frame (front, right, down), m. */
+  /** The measurement of a point in the sensor's frame (front, right, down), m. */
   def of(
       pointFrd: Vector3,
       deviation: (azimuth: Radians, elevation: Radians, range: Metres)
@@ -79,7 +80,7 @@ object PolarMeasurement:
       deviation
     )
 
-  /** v in world NED. */
+  /** Rotates v from the sensor's frame to world NED. */
   private def turned(v: Vector3, q: Quaternion): Vector3 =
     val (ux, uy, uz) = (
       q.y * v.z - q.z * v.y + q.w * v.x,

@@ -4,12 +4,12 @@ import skein.fusion.SensorFormulas.*
 import skein.policy.CameraPursuer
 import skein.units.{Instant, Vector3}
 
-/** What [[SensorModel]], the filter behind it and [[skein.policy.CameraPursuer]] compute, of numbers alone:
-  * formulas, for compilers. Times are in seconds since the flight's start.
+/** The computations of [[SensorModel]], of the filter behind it and of [[skein.policy.CameraPursuer]], on
+  * plain numbers so that compilers can trace them. Times are in seconds since the flight's start.
   */
 private[skein] final case class SensorFormulas(model: SensorModel):
 
-  /** What comes of an image of an opponent that is found if it is in view.
+  /** The detection in an image, for an opponent that is found whenever it is in view.
     *
     * @param bearing and `range`: see [[SensorModel.seen]]
     */
@@ -23,7 +23,7 @@ private[skein] final case class SensorFormulas(model: SensorModel):
     val (place, covariance) = model.seen(axisRad, ownNed, opponentNed, bearing, range)
     Detected(if model.isInView(axisRad, ownNed, opponentNed) then 1 else 0, place, covariance)
 
-  /** What is believed after an image, which is not older than all before. */
+  /** The estimate after an image, which must not be older than those before. */
   def joined(before: Believed, image: Detected, validS: Double): Believed =
     val belief =
       Belief(
@@ -56,10 +56,11 @@ private[skein] final case class SensorFormulas(model: SensorModel):
       )
     else before
 
-  /** What a decision is made upon, and where the camera looks from then on.
+  /** The inputs of a decision, and the camera's direction from then on.
     *
     * @param startNed of the opponent
-    * @param aheadS until what is decided acts, where the own place is that of then; else −1
+    * @param aheadS time until the command takes effect, if the own position is predicted for that moment;
+    *   else −1
     */
   def decidedUpon(
       known: Believed,
@@ -86,13 +87,15 @@ private[skein] final case class SensorFormulas(model: SensorModel):
     )
 
 private[skein] object SensorFormulas:
-  /** @param isFound 1 or 0
+  /** A detection in an image.
+    *
+    * @param isFound 1 or 0
     */
   final case class Detected(isFound: Double, positionNed: Vector3, covariance: Matrix3)
 
   /** A [[Belief]], if there is one.
     *
-    * @param isKnown 1 or 0
+    * @param isKnown 1 or 0, whether it holds an estimate
     */
   final case class Believed(
       isKnown: Double,
@@ -104,8 +107,8 @@ private[skein] object SensorFormulas:
       velocity: Matrix3
   )
 
-  /** The way to the opponent, m, its velocity, m/s, the direction of that, how old what is known is, s, and
-    * the direction in which it is.
+  /** Relative position of the opponent, m, its velocity, m/s, and that velocity's heading, rad; the age of
+    * the estimate, s, and the bearing of the opponent, rad.
     */
   final case class DecidedUpon(
       northM: Double,

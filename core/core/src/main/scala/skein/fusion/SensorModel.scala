@@ -3,22 +3,22 @@ package skein.fusion
 import skein.signal.{LatencyDistribution, NormalQuantile}
 import skein.units.*
 
-/** What a vehicle knows that sees its opponent by a camera alone, as formulas of where both are: whether an
-  * image shows the opponent and it is found, where it is seen, and when that is known. `skein.identify` fits
-  * it to flights. Images are taken, sent and recognised as `skein.flow.Frames` and `Recognise` do it;
-  * detections enter a [[Fusion]]. The camera looks to where the opponent was believed at the last decision,
-  * as `skein.policy.CameraPursuer` turns it; that the vehicle turns and tilts takes no time here.
+/** What a vehicle knows if it sees its opponent by a camera alone: whether an image shows the opponent and it
+  * is detected, the measured position, and when it is known. Written as formulas of both positions, which
+  * `skein.identify` fits to flights. Images are taken, sent and recognised as in `skein.flow.Frames` and
+  * `Recognise`; detections enter a [[Fusion]]. The camera points at the opponent's estimated position at the
+  * last decision, as `skein.policy.CameraPursuer` turns it; turning and tilting take no time in this model.
   *
-  * @param everyS between images
+  * @param everyS time between images
   * @param fovRad horizontal
-  * @param farthestM beyond, nothing is found
-  * @param detection probability that what is in view is found
+  * @param farthestM nothing beyond it is found
+  * @param detection probability that an opponent in view is found
   * @param bearingSdRad standard deviation of the bearing
   * @param rangeBias mean of the measured over the true range
   * @param rangeSd standard deviation of the measured range, as a share of it
-  * @param takes how long recognition takes
-  * @param workers images that are recognised at the same time
-  * @param deadlineS of each; what takes longer is not used
+  * @param takes duration of recognition
+  * @param workers number of images recognised simultaneously
+  * @param deadlineS of each image; a later result is discarded
   */
 final case class SensorModel(
     everyS: Double,
@@ -44,7 +44,7 @@ final case class SensorModel(
   require(workers > 0, s"expected at least one worker, came $workers")
   require(deadlineS > 0, s"expected a positive deadline, came $deadlineS s")
 
-  /** What comes of an image, if the opponent is found in it. */
+  /** The measurement from an image, if the opponent is found in it. */
   def measured(at: Instant, image: Exposure): Option[Measurement] =
     import image.{axisRad, opponentNed, ownNed}
     Option.when(image.found < detection && isInView(axisRad, ownNed, opponentNed)):
@@ -52,15 +52,15 @@ final case class SensorModel(
       val (place, covariance) = seen(axisRad, ownNed, opponentNed, bearing, range)
       Measurement(at, place, covariance)
 
-  /** Whether an image shows the opponent near enough. */
+  /** Whether the opponent is in an image's field of view and range. */
   private[fusion] def isInView(axisRad: Double, ownNed: Vector3, opponentNed: Vector3): Boolean =
     val way      = opponentNed - ownNed
     val distance = way.norm
     math.abs(offAxis(axisRad, way)) < fovRad / 2 && distance <= farthestM && distance > 0
 
-  /** Where an opponent in view is measured, NED, and the covariance of that, m².
+  /** The measured position of an opponent in view, NED, with its covariance, m².
     *
-    * @param bearing and `range`: two numbers drawn from the standard normal distribution
+    * @param bearing and `range`: two samples of the standard normal distribution
     */
   private[fusion] def seen(
       axisRad: Double,
@@ -86,11 +86,11 @@ final case class SensorModel(
   private def offAxis(axisRad: Double, way: Vector3) =
     math.IEEEremainder(StrictMath.atan2(way.y, way.x) - axisRad, 2 * math.Pi)
 
-/** An image as it is taken, and what chance adds to it.
+/** An exposed image with its random samples.
   *
-  * @param axisRad where the camera looks, from north to the east
-  * @param ownNed and the opponent's place, m
-  * @param found and `bearing`, `range`: three numbers evenly drawn from 0 to 1
+  * @param axisRad direction of the camera, from north to the east
+  * @param ownNed own and opponent's position, m
+  * @param found and `bearing`, `range`: three samples, uniform in 0 to 1
   */
 final case class Exposure(
     axisRad: Double,
@@ -102,5 +102,5 @@ final case class Exposure(
 )
 
 object SensorModel:
-  /** Of the standard normal distribution, by a number evenly drawn from 0 to 1. */
+  /** A sample of the standard normal distribution, from one that is uniform in 0 to 1. */
   private[skein] def normal(even: Double): Double = NormalQuantile(even.max(1e-9).min(1 - 1e-9))

@@ -6,7 +6,6 @@ import skein.units.*
   * until the next one, or for the time that it was sent for; then the vehicle holds its position.
   */
 enum Action:
-  /** Flies with this velocity. */
   case Velocity(velocityNed: Vector3, yaw: Yaw = Yaw.Still)
 
   /** Flies with this horizontal velocity and holds an altitude.
@@ -15,22 +14,21 @@ enum Action:
     */
   case VelocityAt(northMps: Double, eastMps: Double, down: Metres, yaw: Yaw = Yaw.Still)
 
-  /** Flies to a place, no faster than `speed`, and stays there. */
+  /** Flies to a position, no faster than `speed`, and stays there. */
   case Position(positionNed: Vector3, speed: MetresPerSecond, yaw: Yaw = Yaw.Still)
 
-  /** Stays where it is and turns. */
+  /** Holds its position, and turns as `yaw` states. */
   case Turn(yaw: Yaw)
 
-  /** Keeps roll, pitch and yaw.
+  /** Holds roll, pitch and yaw angles.
     *
-    * @param thrust share of the most, 0 to 1
+    * @param thrust share of full thrust, 0 to 1
     */
   case Attitude(roll: Radians, pitch: Radians, yaw: Radians, thrust: Double)
 
-  /** Holds its position. */
   case Hover
 
-  /** Sinks until it stands on the ground. */
+  /** Descends until it stands on the ground. */
   case Land
 
   /** Flies on a heading and holds an altitude.
@@ -45,8 +43,8 @@ object Action:
   val LeastMps: Double = 1e-9
 
   extension (action: Action)
-    /** Rad: where it flies, or else where it looks; the heading before where it says neither. It is what
-      * others know as the heading commanded last.
+    /** The heading of the action's velocity, else that of its yaw, else the heading before, rad. Other
+      * vehicles receive it as the last commanded heading.
       */
     def headingRad(beforeRad: Double): Double = action match
       case Action.Velocity(velocity, _)         => along(velocity.x, velocity.y, beforeRad)
@@ -56,14 +54,14 @@ object Action:
       case Action.Attitude(_, _, yaw, _)        => yaw.value
       case Action.Position(_, _, _) | Action.Turn(_) | Action.Hover | Action.Land => beforeRad
 
-    /** Horizontal; 0 where it says none. */
+    /** The horizontal speed, m/s; 0 for actions without one. */
     def speed: MetresPerSecond = MetresPerSecond(action match
       case Action.Velocity(velocity, _)         => StrictMath.hypot(velocity.x, velocity.y)
       case Action.VelocityAt(north, east, _, _) => StrictMath.hypot(north, east)
       case Action.Along(_, along, _, _)         => along.value
       case _                                    => 0)
 
-    /** Flight along a heading as a velocity; any other action as it is. */
+    /** Flight along a heading as a velocity; returns any other action unchanged. */
     def byVelocity: Action = action match
       case Action.Along(heading, speed, down, yaw) =>
         val (cos, sin) = (StrictMath.cos(heading.value), StrictMath.sin(heading.value))
@@ -76,14 +74,11 @@ object Action:
 
 /** What an action does with the vehicle's yaw. */
 enum Yaw:
-  /** Keeps it. */
   case Still
 
-  /** Turns to this heading, the shorter way. */
   case Towards(heading: Radians)
 
   /** Turns at this rate, rad/s, clockwise seen from above. */
   case Turning(radiansPerSecond: Double)
 
-  /** Turns into the direction of travel. */
   case Forward

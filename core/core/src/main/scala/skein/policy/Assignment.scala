@@ -1,10 +1,10 @@
 package skein.policy
 
-/** Whom every agent plays against: the nearest of its rivals, the first of equals. One rule for live loops,
+/** The opponent of every agent: the nearest of its rivals, the first of equals. One rule for live loops,
   * virtual time and forward simulation. Agents are numbered by their places in a scenario.
   *
   * @param rivals of each agent, at least one, in ascending order; with a single one the agent is assigned for
-  *   good. One that flies alone has itself
+  *   good. A single agent is its own opponent
   */
 final case class Assignment(rivals: Vector[Vector[Int]]):
   for (mine, self) <- rivals.zipWithIndex do
@@ -17,7 +17,9 @@ final case class Assignment(rivals: Vector[Vector[Int]]):
 
   private val byAgent = rivals.map(_.toArray).toArray
 
-  /** @param distanceM of an agent from agent `self`, not asked for where there is one rival only
+  /** The opponent of an agent by the present distances.
+    *
+    * @param distanceM of an agent from agent `self`; not evaluated if there is a single rival
     */
   def opponentOf(self: Int, distanceM: Int => Double): Int =
     val mine    = byAgent(self)

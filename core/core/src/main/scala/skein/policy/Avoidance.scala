@@ -9,8 +9,8 @@ import skein.policy.Avoidance.*
   * are linear programmes of a fixed size ([[HalfPlanes]]), so that the rule is a formula: every other vehicle
   * is in them, those out of reach with a bound that always holds.
   *
-  * The rule takes vehicles for discs that have the commanded velocity at once; a multirotor lags behind, so
-  * the discs are wider than the separation to be kept.
+  * The rule treats vehicles as discs that reach a commanded velocity immediately; a multirotor lags behind
+  * it, so the discs are wider than the separation to be kept.
   *
   * @param goalNorthM where it wants to be; nearer than `cruiseMps / arrivePerS` it slows down in proportion
   * @param minimumM the smallest separation allowed
@@ -95,7 +95,7 @@ final case class Avoidance(
         val normal = if left then Velocity(-along.east, along.north) else Velocity(along.east, -along.north)
         Bound(own + change * 0.5, normal)
 
-  /** Out of a disc of relative velocities, by the shortest way. */
+  /** The shortest way out of a disc of relative velocities. */
   private def fromDisc(own: Velocity, relative: Velocity, centre: Velocity, radius: Double): Bound =
     val off    = relative - centre
     val length = math.sqrt(off dot off)
@@ -109,8 +109,8 @@ final case class Avoidance(
 
 object Avoidance:
 
-  /** Within which two vehicles that are too near to one another are to be apart again. */
+  /** Time within which two vehicles that are too close must be apart again, s. */
   private[policy] val PartingS = 0.5
 
-  /** Velocities v with (v − at)·normal ≥ 0. */
+  /** A half plane of velocities v, m/s: (v − at)·normal ≥ 0. */
   private[policy] final case class Bound(at: Velocity, normal: Velocity)

@@ -2,12 +2,12 @@ package skein.policy
 
 import skein.units.*
 
-/** Pursues as another policy does, and turns its camera to where the opponent is. With a sensor, it knows the
-  * opponent by that alone: by the estimate of [[skein.scenario.Eye]]. If the own position is predicted, the
-  * estimate is carried forward to the same moment with constant velocity; otherwise it is used as it was at
-  * the exposure. Before the first detection, the opponent is assumed to be at its start.
+/** Steers by another policy, and points its camera at the opponent. With a sensor, its only knowledge of the
+  * opponent is the estimate of [[skein.scenario.Eye]]. If the own position is predicted, that estimate is
+  * predicted for an equal moment with constant velocity; otherwise it is used as it was at the exposure.
+  * Before the first detection, the opponent is assumed to be at its start.
   *
-  * @param steers the other policy; it is given the estimate in the place of readings
+  * @param steers the other policy; it receives the estimate instead of readings
   * @param sensor absent where readings of the opponent are used
   */
 final case class CameraPursuer(steers: HeadingPolicy, sensor: Option[String], opponentStartNed: Vector3)
@@ -43,7 +43,7 @@ final case class CameraPursuer(steers: HeadingPolicy, sensor: Option[String], op
       ()
     )
 
-  /** Where it is taken to be, and how it moves. */
+  /** Estimated position and velocity of the opponent. */
   private def opponent(seen: Observation): (Vector3, Vector3) = sensor match
     case None =>
       val told = seen.vehicles(seen.opponent).kinematics
@@ -59,16 +59,16 @@ final case class CameraPursuer(steers: HeadingPolicy, sensor: Option[String], op
           (CameraPursuer.carried(place, moved, ahead), moved)
 
 object CameraPursuer:
-  /** What was lost from sight longer ago is looked for where it was then expected, s. */
+  /** Longest time for which an estimate is predicted, s; an older one is used as predicted for that time. */
   private val FarthestS = 1.5
 
-  /** Where a policy takes something to be that was believed to be there, m, with this velocity, m/s.
+  /** The position, m, at which a policy assumes an object with this estimated position and velocity, m/s.
     *
-    * @param aheadS since the belief, until what is decided now acts; absent where the own place is not
-    *   predicted either
+    * @param aheadS time from the estimate until the present decision takes effect; absent where the own
+    *   position is not predicted either
     */
   private[skein] def carried(placeNed: Vector3, velocityNed: Vector3, aheadS: Option[Double]): Vector3 =
     placeNed + velocityNed * aheadS.fold(0.0)(carriedS)
 
-  /** For how long of this time what is believed is carried on, s. */
+  /** The part of this time, s, for which an estimate is predicted. */
   private[skein] def carriedS(aheadS: Double): Double = aheadS.min(FarthestS)

@@ -13,7 +13,7 @@ package skein.policy
   *     there a pursuer that turns as hard as it can stays R away, and must first fly off (the swerve).
   *   - Elsewhere it runs along the line on which the chase will end: the tangent of the turning circle
   *     through its place, away from the circle. A pursuer who turns as hard as it can and then dashes comes
-  *     onto that line, whose direction stays the same meanwhile.
+  *     onto that line, whose direction does not change meanwhile.
   *
   * Exactly ahead or behind it takes the right side. Source of the game, its barrier and its turn and dash:
   * Isaacs, Differential Games (1965); the swerve is his, made a strategy here. `GuidanceSuite` holds the
@@ -28,7 +28,7 @@ final case class ChauffeurEvader(turningRadiusM: Double = 8.0, speedRatio: Doubl
   require(turningRadiusM > 0, s"the turning radius must be positive, came $turningRadiusM m")
   require(speedRatio >= 0 && speedRatio <= 1, s"the ratio of speeds must be in 0 to 1, came $speedRatio")
 
-  /** The least angle to the pursuer's heading while it dodges. */
+  /** The least angle that it keeps to the pursuer's heading while dodging. */
   private val leastAside = StrictMath.acos(speedRatio)
 
   def heading(
@@ -58,9 +58,9 @@ final case class ChauffeurEvader(turningRadiusM: Double = 8.0, speedRatio: Doubl
       opponentHeadingRad + (if math.abs(aside) > leastAside / 2 then math.signum(aside)
                             else side) * math.Pi / 2
 
-  /** From the pursuer's heading to the evader's side.
+  /** Heading relative to the pursuer's, towards the evader's side.
     *
-    * @param toCentre how far the turning circle's centre lies further to the side than the evader
+    * @param toCentre lateral distance of the turning circle's centre beyond the evader
     */
   private def turn(x: Double, toCentre: Double): Double =
     val square = x * x + toCentre * toCentre - turningRadiusM * turningRadiusM

@@ -2,7 +2,7 @@ package skein.policy
 
 /** The pursuer of Isaacs' homicidal chauffeur, who captures whatever the evader does where that is possible
   * at all: it turns hard towards the evader and dashes, unless the evader would slip by it; then it swerves,
-  * flies straight away until the evader is far enough to be turned upon.
+  * flies straight away until the evader is far enough for a turn towards it.
   *
   * Whether the evader would slip by follows from [[HomicidalChauffeur.radiusNeededM]]: it must not exceed a
   * limit, which is the capture radius for an evader ahead, up to the edge of what it can be run over in, and
@@ -10,12 +10,12 @@ package skein.policy
   * turns, no evader can raise the radius that is needed, and the limit rises, for the evader comes to the
   * front: so the pursuer does not waver between the two, and the time between decisions does not undo what a
   * swerve has won. Without that slack, an evader that keeps to the barrier and slips behind it by the length
-  * of a step is flown away from again and again.
+  * of a step makes the pursuer swerve again and again.
   *
   * It captures, but not in the least time, for which see Merz, The Homicidal Chauffeur (Stanford, 1971):
-  * there the swerve turns away. At γ = 0.5 every pursuit that `HomicidalChauffeurSimulation` flies ends
-  * within distance / (vP − vE) and 19 times turning radius / vP. Source of the game, its barrier and the
-  * swerve: Isaacs, Differential Games (1965).
+  * there the swerve turns away. At γ = 0.5 every pursuit in `HomicidalChauffeurSimulation` ends within
+  * distance / (vP − vE) and 19 times turning radius / vP. Source of the game, its barrier and the swerve:
+  * Isaacs, Differential Games (1965).
   *
   * @param speedRatio γ, the evader's speed over the pursuer's, in 0 to 1
   * @param captureRadiusM below 1.05 times [[HomicidalChauffeur.thresholdM]] it flies as if it were that

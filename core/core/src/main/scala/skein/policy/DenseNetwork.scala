@@ -1,6 +1,6 @@
 package skein.policy
 
-/** A network of one output, evaluated as an ordinary loop over arrays, which lanes compile.
+/** A network of one output, evaluated by an ordinary loop over arrays, which the SIMD compiler can trace.
   *
   * @param parameters as [[NeuralShape]] lays them out
   */
@@ -15,10 +15,12 @@ private[policy] final class DenseNetwork(shape: NeuralShape, parameters: Vector[
   private val widest  = shape.widest
   private val squash  = shape.activations.map(_.ordinal).toArray
 
-  /** Room for inputs and for what a layer gives. */
+  /** An array that holds the inputs and every layer's outputs in turn. */
   def scratch: Array[Double] = Array.ofDim[Double](widest)
 
-  /** @param inputs in [[scratch]], which is overwritten
+  /** Evaluates the network.
+    *
+    * @param inputs in [[scratch]], which is overwritten
     */
   def output(inputs: Array[Double]): Double =
     var input  = inputs

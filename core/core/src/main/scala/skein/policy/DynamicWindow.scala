@@ -5,10 +5,10 @@ import skein.vehicle.FirstOrderLag
 
 /** Flies along a lane past whatever a lidar sees: the dynamic window approach (Fox, Burgard, Thrun: The
   * Dynamic Window Approach to Collision Avoidance, IEEE Robotics & Automation Magazine 4 (1997), 23).
-  * Headings and speeds that could be commanded are each flown forward past the points of the newest scan, by
-  * a model in which the velocity follows the command with a lag, and the one is taken that leads along the
-  * lane and keeps clear. Points stay where they were in the world; nothing is remembered of earlier scans.
-  * Without a scan, or upon one too old, the vehicle stands still.
+  * Candidate headings and speeds are each simulated past the points of the newest scan, by a model whose
+  * velocity follows the command with a lag; the best one along the lane that keeps clear is chosen. Points
+  * are assumed not to move, and earlier scans are forgotten. Without a scan, or with one that is too old, the
+  * vehicle stands still.
   *
   * @param sensor the lidar, whose columns [[skein.scenario.Equipment.Lidar]] describes
   * @param laneNorthM a place on the lane
@@ -48,7 +48,7 @@ final case class DynamicWindow(
   private val (laneN, laneE) =
     (StrictMath.cos(laneHeading.value), StrictMath.sin(laneHeading.value))
 
-  /** The best heading, rad, and speed, m/s. */
+  /** The best candidate's heading, rad, and speed, m/s. */
   private def best(position: Vector3, velocity: Vector3, lastRad: Double, scan: Sensed): (Double, Double) =
     val points = near(position, scan)
     // Back to the lane over some way, not straight.
@@ -72,8 +72,8 @@ final case class DynamicWindow(
         chosen = (headingRad, speed)
     chosen
 
-  /** How clear of all points a command keeps the body, m; after how many instants it touches one; and where
-    * it leads.
+  /** Simulates a command: the least distance from the body to a point, m; the number of steps until it
+    * touches one; and the end position.
     */
   private def flown(
       points: Array[Double],
@@ -99,7 +99,6 @@ final case class DynamicWindow(
       at += 1
     (math.sqrt(clear2) - bodyM, free, north, east)
 
-  /** North and east of each point within reach. */
   private def near(position: Vector3, scan: Sensed): Array[Double] =
     val reach  = cruiseMps * horizonS + keepM + bodyM
     val points = Array.newBuilder[Double]
@@ -115,7 +114,6 @@ final case class DynamicWindow(
     points.result()
 
 object DynamicWindow:
-  /** Behind where the lidar was. */
   private val FirstRange = 3
 
   private val StepS  = 0.15

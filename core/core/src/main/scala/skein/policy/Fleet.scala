@@ -10,7 +10,7 @@ import skein.vehicle.VehicleKind
   * @param startPositionNed m, in the world frame; it also holds this altitude. A car's is 0
   * @param startHeading taken as the last commanded heading before the first decision
   * @param policy how it decides
-  * @param kind of vehicle; a car is steered in the plane, or told to stand still
+  * @param kind of vehicle; a car is steered in the plane or stands still
   */
 final case class Agent(
     name: String,
@@ -35,8 +35,8 @@ final case class Agent(
     case _                      =>
       throw IllegalArgumentException(s"vehicle $name does not play against one opponent")
 
-/** Who flies: what a loop and forward simulation need of a scenario. Every agent has an opponent: the nearest
-  * one of another role, or, where all have the same role, the nearest; one that flies alone has itself.
+/** The agents of a scenario, as loops and forward simulation need them. The opponent of each is the nearest
+  * agent of another role, or, if all roles are equal, the nearest agent; a single agent is its own opponent.
   */
 final case class Fleet(agents: Vector[Agent]):
   private val opponents = agents.indices.toVector.map: self =>
@@ -55,7 +55,6 @@ final case class Fleet(agents: Vector[Agent]):
       s"vehicle ${agent.name} has no opponent: a duel needs both roles"
     )
 
-  /** Whom each agent plays against. */
   val assignment: Assignment = Assignment(opponents)
 
   /** Index of the agent that agent `self` plays against: the nearest of its opponents, the first of equals.

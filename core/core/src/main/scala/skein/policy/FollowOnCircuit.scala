@@ -1,9 +1,9 @@
 package skein.policy
 
-/** Follows a vehicle round a circuit, a distance behind it along the circuit: steers to the point a fixed
-  * length ahead of its own place ([[LeadOnCircuit]]) at the speed of the vehicle before it, corrected by a
-  * share of the error of the gap. It never turns back: it waits. A policy for vehicles that cannot turn on
-  * the spot.
+/** Follows a vehicle round a circuit, a distance behind it along the circuit: steers towards the point a
+  * fixed length ahead of its own place ([[LeadOnCircuit]]) at the speed of the vehicle before it, corrected
+  * by a share of the error of the gap. It never turns back: it waits. A policy for vehicles that cannot turn
+  * on the spot.
   *
   * @param leader its place in the scenario
   * @param aheadM about as far as the vehicle drives before it follows a command

@@ -1,14 +1,14 @@
 package skein.policy
 
-/** What a planner needs to know of a [[Policy]] to decide in its place: where its vehicle is to be. While
-  * plans decide, what the policy remembers stays as it was.
+/** What a planner needs of a [[Policy]] to decide instead of it: the position that its vehicle should reach.
+  * While plans decide, the policy's memory does not change.
   */
 trait Goal:
 
-  /** Where it wants to be a time ahead, north and east, m, if it were alone. */
+  /** The position, north and east, m, that it would choose for a time ahead if it were alone. */
   def wanted(seen: Observation, aheadS: Double): (Double, Double)
 
-  /** The fastest that is commanded, m/s. */
+  /** Limit of the commanded speed, m/s; never exceeded by a plan. */
   def mostMps: Double
 
   /** The smallest separation allowed, m; 0: none. */

@@ -58,9 +58,9 @@ private[policy] final class HalfPlanes(val count: Int):
         worst = taken.broken(round, found)
     found
 
-  /** Puts the one that a velocity breaks most among those taken.
+  /** Moves the half plane that a velocity violates most into those considered.
     *
-    * @return by how much
+    * @return by how much it is violated
     */
   private def takeMostBroken(of: Velocity, taken: HalfPlanes, at: Int): Double =
     var most      = broken(0, of)
@@ -77,13 +77,13 @@ private[policy] final class HalfPlanes(val count: Int):
     taken.put(at, north, east, mostLeast)
     most
 
-  /** The nearest velocity, of few half planes in their order. */
+  /** The nearest velocity within the considered half planes, added one by one. */
   private def inTurn(wanted: Velocity, mostMps: Double): Velocity =
     var found = wanted.limited(mostMps)
     for i <- 0 until count do if broken(i, found) > 0 then found = onEdge(i, wanted, mostMps).velocity
     found
 
-  /** On the edge of one, the nearest velocity within those before. */
+  /** On the edge of one half plane, the nearest velocity within those before it. */
   private def onEdge(number: Int, wanted: Velocity, mostMps: Double): Nearest =
     // The edge: foot + t (−east, north), for low ≤ t ≤ high.
     val north     = normalNorth(number)
@@ -105,7 +105,7 @@ private[policy] final class HalfPlanes(val count: Int):
     val at    = along.max(low).min(high)
     Nearest(Velocity(footNorth - at * east, footEast + at * north), (low - high).max(-inside))
 
-  /** Where none of those before is broken more than one. */
+  /** Half planes of velocities at which none of those before is violated more than this one. */
   private def whereWorst(number: Int): HalfPlanes =
     val planes = HalfPlanes(number)
     for k <- 0 until number do
@@ -119,39 +119,39 @@ private[policy] final class HalfPlanes(val count: Int):
 
 private[policy] object HalfPlanes:
 
-  /** What is nearest to a velocity that is wanted.
+  /** The nearest permitted velocity.
     *
-    * @param missing 0 if it is within all half planes; more if there is no such velocity
+    * @param missing 0 if it lies within all half planes; above 0 if no velocity does
     */
   final case class Nearest(velocity: Velocity, missing: Double)
 
-  /** Of a vehicle's neighbours few bound its velocity. */
+  /** Limit of rounds: of a vehicle's neighbours few bound its velocity. */
   val Rounds = 8
 
-  /** m/s by which a half plane may be broken, far above what floats make of an edge and far below what a
-    * vehicle flies.
+  /** Violation of a half plane, m/s, that counts as none: far above rounding of floats, and far below a
+    * vehicle's accuracy.
     */
   private val Slack = 1e-4
 
   /** A least that, with a normal of 0, bounds nothing. */
   val Always: Double = -1e6
 
-  /** m/s. A violation counts so much more than the distance from what is wanted that only edges within 10⁻³
-    * rad of one another are not told apart.
+  /** Weight of a violation over the distance from the wanted velocity, m/s: so large that only edges within
+    * 10⁻³ rad of one another are treated as equal.
     */
   private val Weight = 1e4
 
-  /** In a sum with it nothing but 0 changes. */
+  /** So small that adding it changes no number but 0. */
   private val Tiny = 1e-30
 
-/** A horizontal velocity, m/s. */
+/** A horizontal velocity, m/s, in the world frame: north and east. */
 private[policy] final case class Velocity(north: Double, east: Double):
   def +(other: Velocity): Velocity       = Velocity(north + other.north, east + other.east)
   def -(other: Velocity): Velocity       = Velocity(north - other.north, east - other.east)
   def *(factor: Double): Velocity        = Velocity(north * factor, east * factor)
   infix def dot(other: Velocity): Double = north * other.north + east * other.east
 
-  /** No faster than allowed. */
+  /** The velocity, shortened to the greatest speed allowed. */
   def limited(mostMps: Double): Velocity =
     val speed = math.sqrt(this dot this)
     if speed > mostMps then this * (mostMps / speed) else this

@@ -1,8 +1,8 @@
 package skein.policy
 
 /** Chooses a heading for one vehicle from what it knows of its opponent. A pure function of its arguments, on
-  * primitives, so that a live loop, virtual time and a batch of a million forward simulations call the same
-  * object without allocation.
+  * primitives, so that a live loop, virtual time and a batch of a million forward simulations call one object
+  * without allocation.
   *
   * A policy's memory is the heading it commanded last. It must integrate over `elapsedS`, never count its
   * calls: deciding twice as often must not turn twice as fast.
@@ -29,15 +29,15 @@ trait HeadingPolicy extends Policy:
       elapsedS: Double
   ): Double
 
-  /** The same from an observation. */
+  /** The heading that [[heading]] chooses for an observation. */
   final def headingFor(seen: PlanarObservation): Double =
     import seen.*
     heading(dxM, dyM, dvxMps, dvyMps, ownHeadingRad, opponentHeadingRad, elapsedS)
 
-  /** A guess at this policy by somebody who knows it roughly, such as a planner that plays against it: its
-    * parameters are off by what is drawn. By default the policy is known exactly.
+  /** This policy as an opponent with rough knowledge assumes it, such as a planner that plays against it: its
+    * parameters deviate by random numbers. By default it is known exactly.
     *
-    * @param draw normal numbers of mean 0 and deviation 1, by place
+    * @param draw samples of the standard normal distribution, by index
     */
   def guessed(draw: Int => Double): HeadingPolicy = this
 
@@ -47,7 +47,7 @@ trait HeadingPolicy extends Policy:
 
   type Memory = Any
 
-  /** Nothing, but for an [[ObservingPolicy]]. */
+  /** The initial memory: none, except for an [[ObservingPolicy]]. */
   def start: Any = ()
 
   def choose(seen: Observation, memory: Any): (Action, Any) =

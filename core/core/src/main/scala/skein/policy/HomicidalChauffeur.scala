@@ -3,8 +3,8 @@ package skein.policy
 /** The geometry of Isaacs' game of the homicidal chauffeur: a pursuer of bounded turn rate against a slower
   * evader who turns freely. Distances in the pursuer's frame: `ahead` of it and `aside`, to either side.
   *
-  * Its barriers are involutes. A pursuer who turns hard towards the evader's side flies a circle of radius R
-  * about a centre beside it; with ρ the evader's distance from that centre, the evader does best to run
+  * Its barriers are involutes. A pursuer who turns hard towards the evader's side follows a circle of radius
+  * R about a centre beside it; with ρ the evader's distance from that centre, the evader does best to run
   * straight along the tangent of the circle of radius γ·R about the same centre. So it comes to the edge of
   * what lies ahead of the pursuer, at the angle arccos γ to its heading, when the pursuer has turned by τ,
   * and is then
@@ -13,7 +13,7 @@ package skein.policy
   *
   * away, going round the pursuer as fast as the pursuer comes. Derived from the barrier's course backwards
   * from the edge of the usable part, Isaacs, Differential Games (1965); the involutes of one τ are the level
-  * lines of this distance. `HomicidalChauffeurSimulation` flies it.
+  * lines of this distance. `HomicidalChauffeurSimulation` simulates it.
   *
   * @param turningRadiusM R, of the pursuer
   * @param speedRatio γ, the evader's speed over the pursuer's, in 0 to 1

@@ -1,7 +1,6 @@
 package skein.policy
 
-/** Goes on in the direction commanded last: what repeats a decision where a policy has not decided in time.
-  */
+/** Keeps the last commanded heading: repeats the last decision where a policy has not decided in time. */
 object KeepHeading extends HeadingPolicy:
 
   def heading(

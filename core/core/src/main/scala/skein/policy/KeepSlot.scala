@@ -55,7 +55,7 @@ final case class KeepSlot(
     )
     (action, ())
 
-  /** The slot when the leader has flown on along the circuit at its present speed. */
+  /** The slot's future position, if the leader follows the circuit at its present speed. */
   def wanted(seen: Observation, aheadS: Double): (Double, Double) =
     val here      = circuit.nearest(seen.northM(leader), seen.eastM(leader))
     val direction = circuit.headingRad(here)
@@ -72,7 +72,7 @@ final case class KeepSlot(
     (north + aheadM * cos - beside * sin, east + aheadM * sin + beside * cos)
 
 object KeepSlot:
-  /** Near the middle of a turn the place on the circuit moves ever faster; not more than four times as fast
-    * here.
+  /** Least share of the radius by which speed along the circuit is scaled: near the middle of a turn the
+    * nearest place on the circuit moves ever faster; here not more than four times as fast.
     */
   private val LeastShare = 0.25

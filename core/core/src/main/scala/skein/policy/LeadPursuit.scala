@@ -4,7 +4,7 @@ package skein.policy
   * the angle from the line of sight to the opponent's heading, the law of sines gives the lead angle asin(γ
   * sin α) ahead of the line of sight. An opponent that cannot be met is led by a right angle at most.
   *
-  * The opponent's course is the heading commanded last to it, which one controller of both vehicles knows.
+  * The opponent's course is the heading last commanded to it, which a controller of both vehicles knows.
   *
   * @param speedRatio γ; the paper's is 0.5
   * @param lead share of the computed lead angle: 1 meets the opponent, 0 is pure pursuit

@@ -1,13 +1,13 @@
 package skein.policy
 
-/** A trained policy: a network whose inputs are all that it observes ([[PlanarObservation.fromOwnHeading]]
-  * over [[LearnedPolicy.scales]]), whose one output, −1 to 1, says how to turn.
+/** A trained policy: a network whose inputs are its observation ([[PlanarObservation.fromOwnHeading]] over
+  * [[LearnedPolicy.scales]]), whose one output, −1 to 1, says how to turn.
   *
-  * Allocates two arrays as wide as its widest layer at a decision, and one of what it sees.
+  * Allocates two arrays as wide as its widest layer at a decision, and one for its observation.
   *
   * @param parameters as [[NeuralShape]] lays them out
   * @param turnRateRadPerS the most that it turns until the next decision
-  * @param turnRad the most that it turns at once
+  * @param turnRad limit of the turn of one decision, whatever the time since the last
   */
 final case class LearnedPolicy(
     shape: NeuralShape,
@@ -27,13 +27,12 @@ final case class LearnedPolicy(
   private val network = DenseNetwork(shape, parameters)
   private val scales  = LearnedPolicy.scales.toArray
 
-  /** Nothing is remembered; a number flies by lanes. */
   def initial: Double = 0
 
   def decide(seen: PlanarObservation, memory: Double): Decided[Double] =
     Decided(seen.ownHeadingRad + share(seen) * (turnRateRadPerS * seen.elapsedS + turnRad), memory)
 
-  /** Of the most that it turns: −1 to 1, to the right. */
+  /** The network's output: share of the largest turn, −1 to 1, positive to the right. */
   def share(seen: PlanarObservation): Double =
     val what  = seen.fromOwnHeading
     val input = network.scratch
@@ -44,26 +43,24 @@ final case class LearnedPolicy(
     network.output(input)
 
 object LearnedPolicy:
-  /** Numbers that it sees. */
   val Inputs = 9
 
-  /** What a learner's numbers are divided by, so that all are of about −1 to 1. */
+  /** Divisors of a learner's inputs, which bring all to about −1 to 1. */
   val scales: Vector[Double] = Vector(20, 20, 10, 10, 1, 1, 0.2, 0.2, 0.2)
 
-  /** Rectifiers and tanh, as learners make them. */
+  /** The shape that learners train: rectifiers in hidden layers, tanh at the output. */
   def shape(hidden: Vector[Int]): NeuralShape =
     NeuralShape(hidden, Inputs, Vector.fill(hidden.size)(Activation.Relu) :+ Activation.Tanh)
 
-  /** The most that a policy of a role turns where nothing says otherwise: rad/s until the next decision, and
-    * rad at once.
+  /** The default limits of a role's turns: rad/s until the next decision, and rad per decision.
     *
     * @param rateRadPerS of a pursuer
     */
   def mostTurn(role: Role, rateRadPerS: Double): Vector[Double] =
     if role == Role.Pursuer then Vector(rateRadPerS, 0.0) else Vector(0.0, math.Pi)
 
-  /** `64x64`: rectifiers, and tanh of the output. What is otherwise is named behind a width, and behind a
-    * colon for the output: `64tanhx64tanh:clip`.
+  /** The label of a shape: `64x64` has rectifiers, and tanh at the output. Another activation stands after a
+    * layer's width, and after a colon for the output: `64tanhx64tanh:clip`.
     */
   def label(shape: NeuralShape): String =
     val hidden = shape.hidden.zip(shape.activations).map: (width, activation) =>
@@ -71,7 +68,7 @@ object LearnedPolicy:
     hidden.mkString("x") + (if shape.activations.last == Activation.Tanh then ""
                             else s":${shape.activations.last.label}")
 
-  /** Reads [[label]] back. */
+  /** Reads the text form that [[label]] writes, such as `64x64`. */
   def parse(text: String): Either[String, NeuralShape] =
     def layer(text: String) =
       val (width, activation) = text.span(_.isDigit)

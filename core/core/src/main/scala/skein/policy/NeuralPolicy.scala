@@ -4,7 +4,7 @@ package skein.policy
   * position over [[NeuralPolicy.LengthM]] and relative velocity over [[NeuralPolicy.SpeedMps]], each ahead
   * and to the right; its one output, in −1 to 1, times the turn rate is how fast it turns.
   *
-  * Allocates two arrays as wide as its widest layer at a decision; by lanes the network has no arrays.
+  * Allocates two arrays as wide as its widest layer at a decision; compiled to SIMD it allocates none.
   *
   * @param parameters as [[NeuralShape]] lays them out
   * @param turnRateRadPerS the most that it turns
@@ -23,7 +23,7 @@ final case class NeuralPolicy(shape: NeuralShape, parameters: Vector[Double], tu
       elapsedS: Double
   ): Double = ownHeadingRad + turnRate(dxM, dyM, dvxMps, dvyMps, ownHeadingRad) * elapsedS
 
-  /** rad/s, to the right. */
+  /** The turn rate for a relative position and velocity, rad/s, positive to the right. */
   def turnRate(dxM: Double, dyM: Double, dvxMps: Double, dvyMps: Double, ownHeadingRad: Double): Double =
     val cos   = StrictMath.cos(ownHeadingRad)
     val sin   = StrictMath.sin(ownHeadingRad)
@@ -35,8 +35,8 @@ final case class NeuralPolicy(shape: NeuralShape, parameters: Vector[Double], tu
     turnRateRadPerS * network.output(input)
 
 object NeuralPolicy:
-  /** Distances of about this much are seen best, m. */
+  /** Scale of distances, m: the network distinguishes those of about this size best. */
   val LengthM = 20.0
 
-  /** The same for velocities, m/s. */
+  /** Scale of velocities, m/s, as [[LengthM]] for distances. */
   val SpeedMps = 10.0

@@ -15,12 +15,11 @@ final case class NeuralShape(hidden: Vector[Int], inputs: Int, activations: Vect
       s"1 to ${NeuralShape.MostWidth} neurons, came $this"
   )
 
-  /** Of all layers, the inputs first. */
   def widths: Vector[Int] = inputs +: hidden :+ 1
 
   def widest: Int = widths.max
 
-  /** How many numbers decide a network. */
+  /** Number of parameters of a network of this shape. */
   def parameters: Int = widths.zip(widths.drop(1)).map((inputs, neurons) => neurons * (inputs + 1)).sum
 
   /** A name per parameter: `weight-LAYER-NEURON-INPUT` or `bias-LAYER-NEURON`, from 1. */
@@ -34,16 +33,14 @@ final case class NeuralShape(hidden: Vector[Int], inputs: Int, activations: Vect
   override def toString: String = if hidden.isEmpty then "no hidden layer" else hidden.mkString("x")
 
 object NeuralShape:
-  /** Of a [[NeuralPolicy]]. */
   val Inputs     = 4
   val MostWidth  = 256
   val MostLayers = 8
 
-  /** Of a [[NeuralPolicy]]: tanh throughout. */
   def apply(hidden: Vector[Int]): NeuralShape =
     NeuralShape(hidden, Inputs, Vector.fill(hidden.size + 1)(Activation.Tanh))
 
-  /** `8x8`: the hidden layers' widths. */
+  /** Reads the hidden layers' widths, such as `8x8`. */
   def parse(text: String): Either[String, NeuralShape] =
     val widths = text.split("x", -1).toVector.map(_.toIntOption)
     if widths.sizeIs <= MostLayers && widths.forall(_.exists(isWidth)) then Right(NeuralShape(widths.flatten))

@@ -3,7 +3,7 @@ package skein.policy
 import skein.signal.Kinematics
 import skein.units.*
 
-/** What a policy decides upon.
+/** The input of a policy's decision.
   *
   * @param self index of the own vehicle in the scenario
   * @param vehicles the estimate of each, the own included, by index
@@ -15,8 +15,8 @@ import skein.units.*
   * @param decisions made for this vehicle before
   * @param cruise the speed that the scenario gives the vehicle
   * @param startDown of the vehicle's start, down, negative above the origin
-  * @param sensed last readings of the own vehicle's sensors, by name: those that the policy asks for
-  *   ([[Policy.sensors]]) and that have answered
+  * @param sensed last readings of the own vehicle's sensors, by name: those that the policy requests
+  *   ([[Policy.sensors]]) and that have been received
   * @param actsIn predicted time until the command acts; zero where nothing is predicted
   */
 final case class Observation(
@@ -33,26 +33,24 @@ final case class Observation(
 ):
   def own: Seen = vehicles(self)
 
-  /** How many vehicles there are. */
+  /** The number of vehicles, the own one included. */
   def count: Int = vehicles.size
 
-  /** A vehicle's place, m. */
+  /** A vehicle's position, m; likewise `eastM` and `downM`. */
   def northM(vehicle: Int): Double = vehicles(vehicle).kinematics.positionNed.x
   def eastM(vehicle: Int): Double  = vehicles(vehicle).kinematics.positionNed.y
 
-  /** A vehicle's velocity, m/s. */
   def northMps(vehicle: Int): Double = vehicles(vehicle).kinematics.velocityNed.x
   def eastMps(vehicle: Int): Double  = vehicles(vehicle).kinematics.velocityNed.y
 
-  /** Commanded last to the own vehicle. */
   def headingRad: Double = headings(self).value
 
-  /** To fly on a heading, at the altitude of the own start. */
+  /** The action that follows a heading at the altitude of the own start. */
   def along(headingRad: Double, speedMps: Double): Action =
     Action.Along(Radians(headingRad), MetresPerSecond(speedMps), startDown)
 
-  /** To fly with a velocity, no faster than allowed, at the altitude of the own start. One without a
-    * direction keeps the heading.
+  /** The action with this velocity, limited to a greatest speed, at the altitude of the own start. A velocity
+    * without a direction keeps the heading.
     */
   def towards(northMps: Double, eastMps: Double, mostMps: Double): Action =
     val speed = StrictMath.hypot(northMps, eastMps)
@@ -63,16 +61,16 @@ final case class Observation(
   *
   * @param kinematics world NED, in three dimensions with attitude
   * @param age of the reading behind it, since physics was sampled, by the estimated clock offset; before
-  *   there is one, since the answer came
-  * @param isPredicted whether it is predicted for the moment at which the command will act, and not just the
+  *   there is an offset, since the answer was received
+  * @param isPredicted whether it is predicted for the moment at which the command will act, and not a plain
   *   reading
   */
 final case class Seen(kinematics: Kinematics, age: Span, isPredicted: Boolean)
 
-/** A sensor's last reading.
+/** The last reading of a sensor.
   *
   * @param columns names with units, such as `altitudeM`
-  * @param values as many
+  * @param values one per column
   * @param age since it was measured, as [[Seen.age]]
   */
 final case class Sensed(columns: Vector[String], values: Vector[Double], age: Span):

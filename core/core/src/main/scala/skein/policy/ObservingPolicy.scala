@@ -1,19 +1,22 @@
 package skein.policy
 
-/** @param memory what the policy is given at its next decision
+/** A decision of an [[ObservingPolicy]].
+  *
+  * @param memory passed to the policy at its next decision
   */
 final case class Decided[M](headingRad: Double, memory: M)
 
-/** A policy with a memory of its own, which also sees the age of each reading. As a [[HeadingPolicy]] it is a
-  * pure function.
+/** A policy with memory, which also observes the age of each reading. As a [[HeadingPolicy]] it is a pure
+  * function.
   *
-  * It flies by lanes if [[decide]] is arithmetic and the memory is a number or a case class of numbers.
+  * It is simulated with SIMD if [[decide]] is arithmetic and the memory is a number or a case class of
+  * numbers.
   *
-  * @tparam M what it remembers
+  * @tparam M its memory
   */
 trait ObservingPolicy[M] extends HeadingPolicy:
 
-  /** What it remembers before its first decision. */
+  /** The memory before its first decision. */
   def initial: M
 
   /** The heading to command now, and what to remember. */
@@ -25,7 +28,6 @@ trait ObservingPolicy[M] extends HeadingPolicy:
     val decided = decide(PlanarObservation.of(seen), memory.asInstanceOf[M])
     (seen.along(decided.headingRad, seen.cruise.value), decided.memory)
 
-  /** As a first decision, on readings of now. */
   final def heading(
       dxM: Double,
       dyM: Double,
@@ -44,8 +46,8 @@ object ObservingPolicy:
 
   /** Decides by a policy of either kind.
     *
-    * @param memory the policy's own; anything where it has none
-    * @return and what it remembers
+    * @param memory the policy's own; ignored where it has none
+    * @return the heading with the next memory
     */
   def decide(policy: HeadingPolicy, seen: PlanarObservation, memory: Any): Decided[Any] = policy match
     case observing: ObservingPolicy[m] =>
@@ -53,7 +55,7 @@ object ObservingPolicy:
       Decided(decided.headingRad, decided.memory)
     case plain => Decided(plain.headingFor(seen), memory)
 
-  /** What a policy remembers before its first decision; nothing where it has no memory. */
+  /** A policy's memory before its first decision; Unit where it has none. */
   def initialOf(policy: Any): Any = policy match
     case observing: ObservingPolicy[?] => observing.initial
     case _                             => ()

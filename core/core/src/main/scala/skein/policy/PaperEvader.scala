@@ -32,7 +32,6 @@ final case class PaperEvader(turningRadiusM: Double = 8.0) extends HeadingPolicy
     else if x * x + y * y < 4 * radius * radius then opponentHeadingRad + StrictMath.atan2(y, x) + math.Pi / 2
     else opponentHeadingRad + StrictMath.atan2(y, x)
 
-  /** The radius within about a tenth. */
   override def guessed(draw: Int => Double): PaperEvader =
     copy(turningRadiusM = turningRadiusM * (1 + PaperEvader.RadiusSd * draw(0)))
 

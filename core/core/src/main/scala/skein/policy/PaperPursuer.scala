@@ -1,7 +1,6 @@
 package skein.policy
 
-/** The paper's pursuer: turns towards the side on which the evader is seen, as hard as its turning circle
-  * allows.
+/** The paper's pursuer: turns towards the side on which the evader is, as hard as its turning circle allows.
   *
   * In the pursuer's frame (its last commanded heading is ahead), the evader at (x, y) gives the turn sign s =
   * sign(y); straight ahead s = 0, exactly behind s = 1. The new heading is θ + s·ω·elapsed.

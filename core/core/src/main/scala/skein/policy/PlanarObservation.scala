@@ -1,10 +1,10 @@
 package skein.policy
 
-/** What an [[ObservingPolicy]] sees of its opponent. North and east, m and m/s; the first seven are the
+/** What an [[ObservingPolicy]] observes of its opponent. North and east, m and m/s; the first seven are the
   * arguments of [[HeadingPolicy.heading]].
   *
-  * @param ownAgeS how old the reading of the own vehicle is, s
-  * @param opponentAgeS the same of the opponent's
+  * @param ownAgeS age of the reading of the own vehicle, s
+  * @param opponentAgeS age of the reading of the opponent, s
   */
 final case class PlanarObservation(
     dxM: Double,
@@ -17,9 +17,10 @@ final case class PlanarObservation(
     ownAgeS: Double,
     opponentAgeS: Double
 ):
-  /** What learners see, in the frame whose x-axis is the own heading commanded last: the opponent's place
-    * ahead and to the right, m; its velocity minus the own one, m/s; cosine and sine of its heading from the
-    * own one; the time since the own last decision, the age of the own reading and of the opponent's, s.
+  /** The inputs of learned policies, in the frame whose x-axis is the own heading commanded last: the
+    * opponent's place ahead and to the right, m; its velocity minus the own one, m/s; cosine and sine of its
+    * heading from the own one; the time since the own last decision, the age of the own reading and of the
+    * opponent's, s.
     */
   def fromOwnHeading: Array[Double] =
     val cos     = StrictMath.cos(ownHeadingRad)

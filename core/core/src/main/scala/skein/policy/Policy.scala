@@ -10,19 +10,19 @@ trait Policy:
   /** What is kept from one decision to the next. Immutable. */
   type Memory
 
-  /** Names of its vehicle's sensors that are to be read; see [[skein.port.VehiclePort.sensors]]. Their last
+  /** Names of its vehicle's sensors that must be read; see [[skein.port.VehiclePort.sensors]]. Their last
     * readings are in [[Observation.sensed]].
     */
   def sensors: Set[String] = Set.empty
 
-  /** Whether it plays against one opponent and regards nobody else; other policies regard all vehicles. */
+  /** Whether it considers a single opponent and no other vehicle; other policies consider all vehicles. */
   def isAgainstOne: Boolean = false
 
-  /** Whether it promises to steer in the plane, at the altitude of its vehicle's start. */
+  /** Whether it guarantees to steer in the plane, at the altitude of its vehicle's start. */
   def isPlanar: Boolean = false
 
-  /** The memory before the first decision. */
+  /** The memory before the first decision; pure. */
   def start: Memory
 
-  /** The action now, and the next memory. */
+  /** Decides: returns the present action, and the memory for the next decision. A pure function. */
   def choose(seen: Observation, memory: Memory): (Action, Memory)

@@ -19,7 +19,9 @@ final class PolicyFamily(
     make: Vector[Double] => HeadingPolicy
 ):
 
-  /** @param parameters one per axis of [[space]], in its order; they may lie outside the bounds, which only
+  /** The policy with these parameters.
+    *
+    * @param parameters one per axis of [[space]], in its order; they may lie outside the bounds, which only
     *   limit a search
     * @throws OwnFailure if the family throws
     */
@@ -52,7 +54,7 @@ object PolicyFamily:
     parameters => PaperEvader(parameters(0))
   )
 
-  /** The paper's policies of a role of the duel, with which results are compared. */
+  /** The paper's policy family for a role of the duel, as a baseline for results. */
   def paperOf(role: Role): PolicyFamily = if role == Role.Pursuer then paperPursuer else paperEvader
 
   private val turnRate = Axis("turnRateRadPerS", 0.2, 3.0, 1.0)
@@ -139,7 +141,7 @@ object PolicyFamily:
   private val NeuralPrefix  = "neural:"
   private val LearnedPrefix = "learned:"
 
-  /** Why a family cannot be known by its name beside those that are there, if it cannot. */
+  /** Why a family's name conflicts with the others, if it does. */
   def mistake(own: Vector[PolicyFamily]): Option[String] =
     val names = (all ++ own).map(_.name)
     names
@@ -150,7 +152,7 @@ object PolicyFamily:
         s"expected small letters, digits and dashes as a family's name, came '$came'"
       ))
 
-  /** All that have a fixed number of parameters, in the order in which they are listed to people. */
+  /** All families with a fixed number of parameters, in the order of listings. */
   val all: Vector[PolicyFamily] =
     Vector(
       paperPursuer,
@@ -164,8 +166,8 @@ object PolicyFamily:
 
   /** The family of this name.
     *
-    * @param own families that a program knows besides
-    * @return or what was expected
+    * @param own further families that the program knows
+    * @return Left states which names were expected
     */
   def parse(text: String, own: Vector[PolicyFamily] = Vector.empty): Either[String, PolicyFamily] =
     def known = all ++ own

@@ -6,14 +6,14 @@ import skein.signal.Kinematics
 import skein.units.*
 
 /** How a policy decides at one place of a team, as a formula of numbers: [[Policy.choose]], read from its
-  * bytecode. It is for forward simulation, whose vehicles fly horizontal velocities at the altitude of their
-  * start: what is decided for must be one.
+  * bytecode. It serves forward simulation, whose vehicles follow horizontal velocities at the altitude of
+  * their start, so its actions must be of that kind.
   *
-  * @param inputs what each of the formula's inputs is
-  * @param motion what is decided
-  * @param down of the velocity that is decided for; absent where it is that of the start in any case
-  * @param memory what is remembered, in the order of [[PolicyInput.Memory]]
-  * @param turns whether it may ask its vehicle to turn
+  * @param inputs meaning of each of the formula's inputs
+  * @param motion nodes of the decided motion
+  * @param down node of the decided altitude; absent where it is always that of the start
+  * @param memory nodes of the next memory, in the order of [[PolicyInput.Memory]]
+  * @param turns whether its actions may turn the vehicle
   */
 final class PolicyFormula private (
     val formula: Formula,
@@ -27,20 +27,19 @@ final class PolicyFormula private (
 ):
   import PolicyFormula.*
 
-  /** Whether another policy differs in numbers alone. */
   def fits(policy: Policy, assignment: Assignment): Boolean =
     formula.fits(Deciding(policy, assignment)) && start.isLike(memoryOf(policy))
 
-  /** The numbers of a policy that [[fits]], for the formula's parameters. */
+  /** The numbers of a policy that [[fits]], as the formula's parameters. */
   def parametersOf(policy: Policy): Array[Double] =
     formula.parametersOf(Deciding(policy, assignment))
 
-  /** What a policy that [[fits]] remembers before its first decision. */
+  /** The initial memory of a policy that [[fits]]. */
   def startOf(policy: Policy): Array[Double] = memoryOf(policy).numbers.toArray
 
-  /** Why it does not fly at the altitude of its vehicle's start alone, if it does not.
+  /** Why the policy leaves the altitude of its vehicle's start, if it does.
     *
-    * @param startDown of a vehicle that it decides for
+    * @param startDown of the vehicle that it controls
     */
   def leaves(policy: Policy, startDown: Metres): Option[String] = down.flatMap: node =>
     val isFixed = Trace.needed(Seq(node)).forall(_.op != Op.Input)
@@ -49,51 +48,44 @@ final class PolicyFormula private (
       isFixed && Evaluation(Vector(node))(Array.emptyDoubleArray, parametersOf(policy))(0) == startDown.value
     )(told)
 
-/** What an input of a [[PolicyFormula]] is. */
+/** The meaning of an input of a [[PolicyFormula]]: where it is read. */
 enum PolicyInput:
-  /** Of a vehicle's estimate, m.
+  /** Estimated position of a vehicle, m.
     *
     * @param axis 0 north, 1 east, 2 down
     */
   case Position(vehicle: Int, axis: Int)
 
-  /** The same, m/s. */
   case Velocity(vehicle: Int, axis: Int)
 
-  /** Commanded last, rad. */
   case Heading(vehicle: Int)
 
-  /** Of the reading behind a vehicle's estimate, s. */
+  /** Age of the reading behind a vehicle's estimate, s. */
   case Age(vehicle: Int)
 
-  /** Since the own last decision, s. */
   case Elapsed
 
-  /** Until the command acts, s. */
   case ActsIn
 
-  /** The vehicle's own speed, m/s. */
   case Cruise
 
-  /** Of the vehicle's start, m. */
   case StartDown
 
-  /** What is remembered, by number. */
   case Memory(number: Int)
 
 object PolicyFormula:
 
-  /** What a formula decides for. */
+  /** The motion that a formula decides: by heading and speed, or by velocity. */
   enum Motion:
-    /** A heading, rad, and a speed, m/s. */
     case Along(heading: Node, speed: Node)
 
-    /** A velocity, m/s. */
     case With(north: Node, east: Node)
 
-  /** @param self the policy's place in its team
+  /** Traces a policy's decision.
+    *
+    * @param self the policy's place in its team
     * @param isPredicted see [[Seen.isPredicted]]
-    * @return or why it is none, with the line
+    * @return Left states why it cannot be traced, with the source line
     */
   def of(
       policy: Policy,
@@ -126,7 +118,7 @@ object PolicyFormula:
         assignment
       )
 
-  /** What a policy remembers before its first decision, and its numbers. */
+  /** A policy's initial memory, as an example and as numbers. */
   private def startOf(policy: Policy): Either[Untraceable, (Example, Vector[Double])] =
     try
       val memory = memoryOf(policy)
@@ -140,7 +132,6 @@ object PolicyFormula:
 
   private final case class Decided(motion: Motion, down: Option[Node], memory: Vector[Node], turns: Boolean)
 
-  /** Reads what a policy answers. */
   private final class Reading(seen: Tagged, memory: Example):
     def of(trace: Trace, answer: Answer): (Vector[(String, Node)], Decided) =
       val next                  = answer.get("_2").numbersOf(memory)
@@ -180,7 +171,7 @@ object PolicyFormula:
           Motion.Along(either(x, y), either(v, w))
       (motion, either(a._2, b._2), a._3 || b._3)
 
-    /** Heading and speed, as [[Action.headingRad]] has them. */
+    /** Heading and speed of an action, as [[Action.headingRad]] defines them. */
     private def along(trace: Trace, motion: Motion): (Node, Node) = motion match
       case Motion.Along(heading, speed) => (heading, speed)
       case Motion.With(north, east)     =>
@@ -189,7 +180,7 @@ object PolicyFormula:
         val isSlow = trace.lt(speed, trace.const(Action.LeastMps))
         (trace.where(isSlow, before, trace.binary(Op.Atan2, east, north)), speed)
 
-/** An observation in which every number tells which input it is. */
+/** An observation in which every number identifies its input. */
 private final class Tagged(val self: Int, count: Int, rivals: Vector[Int], isPredicted: Boolean):
   private val told = Vector.newBuilder[PolicyInput]
   private var next = 0
@@ -203,7 +194,7 @@ private final class Tagged(val self: Int, count: Int, rivals: Vector[Int], isPre
 
   private def vector(of: Int => PolicyInput) = Vector3(tag(of(0)), tag(of(1)), tag(of(2)))
 
-  /** In the order in which the fields are declared, as an example's numbers are. */
+  /** The observation as an example for tracing; its inputs are in the order of the formula's. */
   val example: Example = Example(
     "seen",
     Observation(
@@ -244,7 +235,7 @@ private object Tagged:
       "it counts its decisions; deciding twice as often must not act twice as strongly, so integrate over elapsed"
   )
 
-/** What is traced of a policy: it decides against the opponent that is the nearest at this moment. */
+/** The traced method: decides against the opponent that is nearest at the moment. */
 private final class Deciding(policy: Policy, assignment: Assignment):
   def decide(seen: Observation, memory: AnyRef): AnyRef =
     val own    = seen.own.kinematics.positionNed

@@ -1,7 +1,7 @@
 package skein.policy
 
-/** Pure proportional navigation: turns N times as fast as the line of sight does, so that the line of sight
-  * comes to rest and the course against a target that does not manoeuvre becomes a straight line to the
+/** Pure proportional navigation: turns N times as fast as the line of sight rotates, so that the line of
+  * sight comes to rest and the course against a target that does not manoeuvre becomes a straight line to the
   * intercept. While the distance does not shrink, the law would turn away; then it turns towards the target.
   *
   * Line of sight rate: (dx·dvy − dy·dvx) / (dx² + dy²), from relative position and velocity. Source: Zarchan,

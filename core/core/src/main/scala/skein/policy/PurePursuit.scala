@@ -1,6 +1,6 @@
 package skein.policy
 
-/** Heads for where the opponent is seen, as fast as the turn rate allows.
+/** Heads for the opponent's observed position, as fast as the turn rate allows.
   *
   * @param turnRateRadPerS the most that it turns; a turning circle of radius R at speed v is v / R. The
   *   paper's pursuer turns 1 rad/s.

@@ -9,6 +9,5 @@ package skein.policy
   */
 final case class Pursuit(perS: Double = 0.6, lead: Double = 1.0):
 
-  /** Speed to command on one axis. */
   def along(goalM: Double, goalMps: Double, ownM: Double, ownMps: Double): Double =
     goalMps + perS * (goalM - ownM) + lead * (goalMps - ownMps)

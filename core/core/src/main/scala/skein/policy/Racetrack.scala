@@ -1,15 +1,14 @@
 package skein.policy
 
-/** A closed circuit of two straights joined by two half circles, flown clockwise as seen from above: from the
-  * origin north, a half turn to the right, back south at twice the radius further east, and a half turn to
-  * the right again. Places on it are told by the length flown from the origin.
+/** A closed circuit of two straights joined by two half circles, clockwise from above: from the origin north,
+  * a half turn to the right, back south at twice the radius further east, and a half turn to the right again.
+  * A place on it is given by the length of the path from the origin.
   */
 final case class Racetrack(straightM: Double, radiusM: Double):
   require(straightM >= 0 && radiusM > 0, s"not a circuit: straights of $straightM m, turns of $radiusM m")
 
   private val turnM = math.Pi * radiusM
 
-  /** Of one lap, m. */
   val lengthM: Double = 2 * (straightM + turnM)
 
   /** The place on the circuit nearest to a point, m from the origin, 0 to [[lengthM]]. */
@@ -20,7 +19,7 @@ final case class Racetrack(straightM: Double, radiusM: Double):
     else if eastM < radiusM then northM
     else straightM + turnM + (straightM - northM)
 
-  /** North and east of a place, m. */
+  /** North and east of a place on the circuit, m from the origin. */
   def point(placeM: Double): (Double, Double) =
     val along = lap(placeM)
     if along < straightM then (along, 0)
@@ -40,7 +39,7 @@ final case class Racetrack(straightM: Double, radiusM: Double):
     else if along < 2 * straightM + turnM then math.Pi
     else math.Pi + (along - 2 * straightM - turnM) / radiusM
 
-  /** Turn to the right per metre flown at a place, rad/m. */
+  /** Curvature at a place, rad per metre of path, positive to the right. */
   def curvaturePerM(placeM: Double): Double =
     val along = lap(placeM)
     if along < straightM || along >= straightM + turnM && along < 2 * straightM + turnM then 0

@@ -1,6 +1,6 @@
 package skein.policy
 
-/** A vehicle's part in the scenario, for example `Role("Scout")`. */
+/** The part that a vehicle plays in the scenario, for example `Role("Scout")`. */
 final case class Role(name: String):
   override def toString: String = name
 
@@ -11,10 +11,9 @@ object Role:
   val Follower: Role  = Role("Follower")
   val Traveller: Role = Role("Traveller")
 
-  /** Against whom a role of the duel flies. */
   def opponentOf(role: Role): Role = if role == Pursuer then Evader else Pursuer
 
   private val ours = Vector(Pursuer, Evader, Leader, Follower, Traveller)
 
-  /** By its name; one of ours in letters of any case. */
+  /** The role of this name; letter case is ignored for Skein's own roles. */
   def parse(name: String): Role = ours.find(_.name.equalsIgnoreCase(name)).getOrElse(Role(name))

@@ -2,10 +2,9 @@ package skein.policy
 
 import skein.signal.SplitMix64
 
-/** One parameter of a policy: the bounds within which it is searched, and the value it has when none is
-  * given.
+/** One parameter of a policy: the bounds of a search, and the default value.
   *
-  * @param name with its unit, for example `turnRateRadPerS`; the same in files and on the command line
+  * @param name with its unit, for example `turnRateRadPerS`; used in files and on the command line
   */
 final case class Axis(name: String, least: Double, most: Double, default: Double):
   require(least < most, s"axis $name: the least value $least must be below the most, $most")
@@ -20,7 +19,6 @@ final case class Axis(name: String, least: Double, most: Double, default: Double
   def margin(value: Double): Double = (value - least).min(most - value) / width
 
 object Axis:
-  /** With the default in the middle. */
   def apply(name: String, least: Double, most: Double): Axis = Axis(name, least, most, (least + most) / 2)
 
 /** The parameters of a family of policies. A candidate has one value per axis, in their order. */
@@ -38,12 +36,12 @@ final case class SearchSpace(axes: Vector[Axis]):
   def clamp(candidate: Vector[Double]): Vector[Double] =
     candidate.zip(axes).map((value, axis) => value.max(axis.least).min(axis.most))
 
-  /** How many candidates [[gridAt]] numbers. */
+  /** Number of candidates that [[gridAt]] enumerates. */
   def gridSize(perAxis: Int): Long =
     axes.foldLeft(1L)((product, _) => Math.multiplyExact(product, perAxis.toLong))
 
-  /** One of evenly spread candidates, `perAxis` values on each axis, both bounds included; the last axis
-    * varies fastest.
+  /** One of the candidates on an even grid with `perAxis` values on each axis, both bounds included; the last
+    * axis varies fastest.
     */
   def gridAt(perAxis: Int, index: Long): Vector[Double] =
     require(perAxis >= 2, s"a grid needs at least 2 values per axis, got $perAxis")
@@ -55,7 +53,9 @@ final case class SearchSpace(axes: Vector[Axis]):
   def grid(perAxis: Int): Vector[Vector[Double]] =
     Vector.tabulate(gridSize(perAxis).toInt)(gridAt(perAxis, _))
 
-  /** One of any number of candidates drawn evenly from the space; the same seed and number draw the same. */
+  /** One of any number of candidates drawn uniformly from the space; equal seeds and numbers give equal
+    * candidates.
+    */
   def randomAt(seed: Long, index: Long): Vector[Double] =
     val source = SplitMix64(SplitMix64.seedOf(seed, index))
     axes.map(axis => axis.least + axis.width * source.nextDouble())

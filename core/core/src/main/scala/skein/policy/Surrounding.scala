@@ -2,13 +2,13 @@ package skein.policy
 
 /** Several pursuers on a ring around one evader, at evenly spaced bearings.
   *
-  * Slots keep the cyclic order in which the pursuers stand around the evader, so that their ways to them do
-  * not cross; the ring is turned so that together they have the least to turn: with the bearings β in
-  * ascending order, that of rank k of n gets mean(β) + (k − (n − 1)/2)·2π/n. Wherever bearings are cut open,
-  * the same slots come out, and every pursuer finds them by itself.
+  * Slots keep the cyclic order in which the pursuers stand around the evader, so their paths to them do not
+  * cross; the ring is rotated to minimise the sum of squared changes of bearing: with the bearings β in
+  * ascending order, that of rank k of n gets mean(β) + (k − (n − 1)/2)·2π/n. The slots do not depend on where
+  * the circle of bearings is cut open, so every pursuer computes equal slots by itself.
   *
   * @param evader its place in the scenario; all other vehicles are pursuers
-  * @param mostMps the fastest that is commanded
+  * @param mostMps limit of the commanded speed
   */
 final case class Surrounding(evader: Int, ringM: Double, mostMps: Double, pursuit: Pursuit = Pursuit())
     extends Policy, Goal:

@@ -3,8 +3,8 @@ package skein.policy
 /** Changes of heading within a limit on the turn rate. */
 private[policy] object Turn:
 
-  /** Turns towards a wanted heading by the shorter way, at most by `mostRad`; exactly opposite, to the side
-    * that the wanted heading's own sign says, so that the mirrored case turns to the mirrored side.
+  /** Turns towards a wanted heading by the shorter way, by `mostRad` at most. If the wanted heading is
+    * exactly opposite, its sign decides the side, so that a mirrored case turns to the mirrored side.
     */
   def towards(ownHeadingRad: Double, wantedRad: Double, mostRad: Double): Double =
     ownHeadingRad + limited(math.IEEEremainder(wantedRad - ownHeadingRad, 2 * math.Pi), mostRad)

@@ -12,39 +12,37 @@ trait VehiclePort:
 
   /** Position, velocity and attitude, world NED, by the vehicle's own estimate.
     *
-    * @return with its valid time, on the vehicles' clock, and with the times of asking and answering, on the
+    * @return with its valid time, on the vehicles' clock, and with the times of request and answer, on the
     *   controller's. All vehicles of a flight share one clock; where they do not, their adapter converts (see
     *   [[skein.signal.ClockAlignment]])
     */
   def read(): Future[Either[VehicleError, Stamped[Kinematics]]]
 
-  /** Carries out an action until `lasts` is over or a newer action replaces it. The answer comes then: true
-    * if it ran to its end, false if it was replaced. Actions take effect in the order of the calls.
+  /** Carries out an action until `lasts` has passed or a newer action replaces it. The future completes then:
+    * true if the action ran to its end, false if it was replaced. Actions take effect in the order of the
+    * calls.
     */
   def act(action: Action, lasts: Span): Future[Either[VehicleError, Boolean]]
 
-  /** Ends every action. Answers when the vehicle holds its position. */
+  /** Ends every action. Completes once the vehicle holds its position. */
   def hover(): Future[Either[VehicleError, Boolean]]
 
-  /** Further sensors, by name. */
   def sensors: Map[String, Sensor] = Map.empty
 
-/** A sensor of a vehicle. */
+/** A sensor of a vehicle: its columns, and how to read it. */
 trait Sensor:
 
-  /** Names and units of the numbers of a reading, such as `altitudeM`. */
+  /** Names and units of a reading's numbers, such as `altitudeM`. */
   def columns: Vector[String]
 
-  /** The newest reading: as many numbers as there are columns. */
+  /** Requests the newest reading: one number per column. */
   def read(): Future[Either[VehicleError, Stamped[IArray[Double]]]]
 
 /** A simulator that can be stopped and run in steps: the loop `paused` needs it. */
 trait SteppedTime:
-  /** Stops the simulator. */
   def pause(): Future[Either[VehicleError, Unit]]
 
-  /** Lets it run on by itself. */
   def resume(): Future[Either[VehicleError, Unit]]
 
-  /** Runs it for exactly `span`; answers when it has stopped again. */
+  /** Runs the simulator for exactly `span`; completes when it has stopped again. */
   def continueFor(span: Span): Future[Either[VehicleError, Unit]]

@@ -3,7 +3,7 @@ package skein.scenario
 import skein.policy.*
 import skein.units.*
 
-/** What our scenarios at one altitude share. */
+/** What Skein's scenarios at a single altitude have in common. */
 private object AtOneAltitude:
   val MostVehicles = 100
 

@@ -6,8 +6,8 @@ import skein.units.Decimals.significant
 import skein.vehicle.{ReducedModel, VehicleKind}
 
 /** Two cars drive round a circuit, one behind the other, and three drones escort them: one ahead of the cars
-  * to their right, one beside them to their left, one behind them. The drones' places turn with the road
-  * where the leading car is.
+  * to their right, one beside them to their left, one behind them. The drones' slots rotate with the road at
+  * the leading car.
   *
   * @param gapM distance from the leading car to the other, along the circuit
   * @param carMps speed of the leading car
@@ -15,7 +15,7 @@ import skein.vehicle.{ReducedModel, VehicleKind}
   * @param straightM length of each of the circuit's two straights
   * @param radiusM radius of the half turns between them
   * @param altitudeM altitude of the drones
-  * @param sightM horizontal distance up to which a drone has a car in view
+  * @param sightM horizontal distance up to which a drone observes a car
   */
 final case class Convoy(
     gapM: Double = 12,
@@ -32,7 +32,7 @@ final case class Convoy(
 
   def circuit: Racetrack = Racetrack(straightM, radiusM)
 
-  /** Where the drones' places are: metres ahead of the leading car and to its right. */
+  /** The drones' slots: metres ahead of the leading car and to its right. */
   def places: Vector[(Double, Double)] = Vector((6.0, 7.0), (-gapM / 2, -9.0), (-gapM - 8, 0.0))
 
   def agents: Vector[Agent] =
@@ -82,7 +82,7 @@ final case class Convoy(
       instant => tracks.distanceM(Lead, Rear, instant)
     )
 
-  /** Of the two cars, how far the one is from its nearest drone that is farther from its own. */
+  /** Distance from each car to the nearest drone; of the two cars, that of the farther one. */
   private def unseen =
     Series("from a car to its nearest drone", "m", Some(Bound("in view", sightM)))(tracks =>
       instant =>
@@ -95,9 +95,8 @@ object Convoy:
   private val Drones = 1 to 3
   private val Rear   = 4
 
-  /** Before a car follows a command, s: as long as its driver takes for a turn, and a little for its tyres.
-    */
+  /** Time ahead for which the cars are steered, s: a driver's time for a turn, and a little for the tyres. */
   private val AheadS = 1.0
 
-  /** For the vehicles to get under way; not counted. */
+  /** Time for the vehicles to get under way, s; not measured. */
   private val SettlingS = 10.0

@@ -4,15 +4,15 @@ import skein.policy.*
 import skein.units.Decimals.significant
 import skein.units.Metres
 
-/** Streams of vehicles cross at right angles, each vehicle on its way to a goal beyond the crossing; everyone
-  * avoids all others.
+/** Streams of vehicles cross at right angles, each vehicle flies to a goal beyond the crossing and avoids all
+  * others.
   *
   * @param vehicles number of vehicles, in all streams
   * @param streams number of streams: 2, to the north and to the east, or 4
   * @param spacingM distance between two vehicles of a stream
   * @param entryM distance from the first vehicle of a stream to the middle of the crossing, at the start
   * @param laneM distance by which each stream keeps to the right of the middle
-  * @param cruiseMps speed where nobody is in the way
+  * @param cruiseMps speed where no vehicle is in the way
   * @param mostMps the highest speed that is commanded
   * @param minimumM the limit: the smallest separation allowed
   * @param marginM distance that the avoidance rule keeps on top of it, because it does not know that vehicles
@@ -69,27 +69,26 @@ final case class Crossing(
     "Smallest separation of any two vehicles, and how often two came nearer than the " +
       s"set minimum of ${minimumM.significant(3)} m; arrived: within ${ArrivedM.significant(3)} m of the goal."
 
-  /** By stream. */
   override def shade(vehicle: Int): Int = vehicle % streams
 
-  /** Where the vehicles want to be, north and east, m. */
+  /** Goals of the vehicles, north and east, m. */
   def goals: Vector[(Double, Double)] = routes.map(route => onLane(route.headingRad, route.goalM))
 
   private def separation = Limit.horizontalSeparation(Metres(minimumM))
 
-  /** Of the two nearest to one another. */
   private def smallest =
     Series.of("smallest separation", "m", Separation, Some(Bound("set minimum", minimumM)))
 
-  /** When vehicles came to their goals, s, for those that did. */
+  /** Arrival times of the vehicles that reached their goals, s. */
   private def arrivalsS(tracks: Tracks): Vector[Double] =
     for
       (vehicle, (north, east)) <- tracks.vehicles.toVector.zip(goals)
       instant                  <- tracks.instants.find(tracks.distanceM(vehicle, north, east, _) < ArrivedM)
     yield tracks.timeS(instant)
 
-  /** By vehicle: the streams take vehicles in turn, and those of a stream fly one behind the other. The first
-    * of a stream flies furthest, so that all fly equally far and nobody waits in another's way.
+  /** The routes by vehicle. Vehicles are assigned to the streams in turn, and those of a stream follow one
+    * behind the other. The first of a stream has the farthest goal, so that all fly equally far and none
+    * waits in another's way.
     */
   private def routes: Vector[Route] =
     Vector.tabulate(vehicles): vehicle =>
@@ -106,7 +105,7 @@ final case class Crossing(
     (alongM * cos - laneM * sin, alongM * sin + laneM * cos)
 
 object Crossing:
-  /** From its goal, a vehicle counts as arrived. */
+  /** Distance from its goal at which a vehicle has arrived, m. */
   private val ArrivedM = 3.0
 
   /** Positions along the heading, from the middle of the crossing, m. */

@@ -1,7 +1,7 @@
 package skein.scenario
 
-/** A camera or lidar of a vehicle, besides those that every vehicle has. The built-in simulator gets it from
-  * here; another simulator needs it in its `settings.json`.
+/** A camera or lidar of a vehicle, in addition to those of every vehicle. The built-in simulator configures
+  * it from here; another simulator needs it in its `settings.json`.
   */
 enum Equipment:
   def vehicle: String
@@ -31,7 +31,6 @@ enum Equipment:
   case Camera(vehicle: String, name: String, width: Int, height: Int, fovDeg: Double)
 
 object Equipment:
-  /** Of a lidar as policies read it: 3° each. */
   val Sectors = 120
 
   val BandM = 2.0

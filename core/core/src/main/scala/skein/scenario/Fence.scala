@@ -1,6 +1,6 @@
 package skein.scenario
 
-/** What vehicles stay in, seen from above; north and east, m. */
+/** The area that vehicles must not leave, seen from above; north and east, m. */
 enum Fence:
   case Circle(northM: Double, eastM: Double, radiusM: Double)
 
@@ -30,7 +30,7 @@ enum Fence:
         at += 1
       if isInside then -nearest else nearest
 
-  /** The same, counted from another place. Sides are cut off 1,000 km from there, so that floats hold their
+  /** The fence relative to another origin. Sides are cut off 1,000 km from there, so that floats hold their
     * squares.
     */
   def from(northM: Double, eastM: Double): Fence =

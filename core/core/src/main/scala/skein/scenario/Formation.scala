@@ -71,7 +71,7 @@ final case class Formation(
     val (ahead, right) = slots.unzip
     Series.of("slot error, rms", "m", OffSlots(circuit, IArray.from(ahead), IArray.from(right)))
 
-  /** From each follower to its slot in the frame along the circuit where the leader is, m. */
+  /** Distances from each follower to its slot in the frame along the circuit at the leader's place, m. */
   private def slotErrorsM(tracks: Tracks, instant: Int): Vector[Double] =
     val (north, east) = (tracks.northM(0)(instant), tracks.eastM(0)(instant))
     val heading       = circuit.headingRad(circuit.nearest(north, east))
@@ -86,5 +86,5 @@ final case class Formation(
         )
 
 object Formation:
-  /** For the vehicles to get under way; not counted. */
+  /** Time for the vehicles to get under way, s; not measured. */
   private val SettlingS = 10.0

@@ -3,11 +3,11 @@ package skein.scenario
 import skein.units.*
 import skein.units.Decimals.significant
 
-/** What may not happen: a quantity of some vehicles that must stay at or above a value, or at or below it.
+/** A condition of the flight: a quantity of some vehicles must stay at or above a value, or at or below it.
   *
   * @param name of the limit, for example `separation`
-  * @param groups the groups of vehicles that it holds for, by their places, given the number of vehicles
-  * @param kept the part of it that plans keep, if they keep any
+  * @param groups the groups of vehicles to which it applies, by their places, given the number of vehicles
+  * @param kept the part of it that plans observe, if any
   * @param quantity of a group, by instant
   */
 final class Limit private (
@@ -23,7 +23,7 @@ final class Limit private (
   def text: String =
     s"$name of at ${if isLeast then "least" else "most"} ${Limit.brief(value)} $unit".trim
 
-  /** Every stretch of time in which it was broken, by group. */
+  /** Every stretch of time in which the limit was violated, by group. */
   def violations(tracks: Tracks): Vector[Violation] =
     groups(tracks.vehicles).flatMap: group =>
       val of = quantity(tracks, group)
@@ -45,25 +45,24 @@ final class Limit private (
 
 object Limit:
 
-  /** Between any two vehicles, in space. */
   def separation(least: Metres): Limit = apart(least)((tracks, a, b) => tracks.separationM(a, b, _))
 
-  /** Between any two vehicles, in the horizontal plane alone. */
+  /** Separation between any two vehicles in the horizontal plane. */
   def horizontalSeparation(least: Metres): Limit = apart(least)((tracks, a, b) => tracks.distanceM(a, b, _))
 
-  /** Of every vehicle, above the origin. */
+  /** Least altitude of every vehicle above the origin, m. */
   def floor(altitude: Metres): Limit =
     single("altitude", "m", altitude.value, true, Some(Kept.Above(altitude.value)))((tracks, vehicle) =>
       tracks.altitudeM(vehicle, _)
     )
 
-  /** Of every vehicle, above the origin. */
+  /** Greatest altitude of every vehicle above the origin, m. */
   def ceiling(altitude: Metres): Limit =
     single("altitude", "m", altitude.value, false, Some(Kept.Below(altitude.value)))((tracks, vehicle) =>
       tracks.altitudeM(vehicle, _)
     )
 
-  /** Of every vehicle, in space. */
+  /** Greatest speed of every vehicle in space, m/s. */
   def speed(most: MetresPerSecond): Limit =
     single("speed", "m/s", most.value, false, Some(Kept.NoFaster(most.value)))((tracks, vehicle) =>
       tracks.velocityNed(vehicle, _).norm
@@ -128,11 +127,11 @@ object Limit:
   private def brief(value: Double): String =
     if value == StrictMath.rint(value) && value.abs < 1e9 then value.toLong.toString else value.significant(6)
 
-/** One stretch of time in which a limit was broken.
+/** A stretch of time in which a limit was violated.
   *
   * @param vehicles their places
-  * @param fromS since all vehicles were first seen
-  * @param worst of the quantity, in the limit's unit, and when that was
+  * @param fromS since all vehicles were first read
+  * @param worst value of the quantity, in the limit's unit, with its time
   */
 final case class Violation(
     limit: Limit,
@@ -143,15 +142,13 @@ final case class Violation(
     worstAtS: Double
 )
 
-/** What plans keep of a limit. */
+/** The part of a limit that plans are able to observe. */
 enum Kept:
-  /** Between any two vehicles, in the plane, m. */
+  /** Least distance between any two vehicles, in the plane, m. */
   case Apart(leastM: Double)
   case Inside(fence: Fence)
 
-  /** In altitude above the origin, m. */
   case Above(leastM: Double)
   case Below(mostM: Double)
 
-  /** m/s. */
   case NoFaster(mostMps: Double)

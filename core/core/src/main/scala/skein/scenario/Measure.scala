@@ -3,9 +3,9 @@ package skein.scenario
 /** A number computed from a flight, for example `Measure("out of sight", "s")(tracks => …)`.
   *
   * @param unit may be empty
-  * @param isCount of events: over several flights it is added up
-  * @param over the part of the flight that it is of; of a flight that has no such part there is no value
-  * @param reduced the quantity that it reduces, if it does: then searches can judge by it
+  * @param isCount of events: over several flights it is summed
+  * @param over the measured part of the flight; a flight without such a part has no value
+  * @param reduced the quantity that it reduces, if any: searches can optimise only such measures
   */
 final class Measure private (
     val name: String,
@@ -15,15 +15,14 @@ final class Measure private (
     val reduced: Option[OverFlight],
     value: Tracks => Option[Double]
 ):
-  /** The value; absent where the flight has none, for example a time of arrival if it never arrived, or none
-    * that is a finite number.
+  /** The value; absent where the flight has none, for example a time of arrival if it never arrived, or where
+    * it is not a finite number.
     */
   def of(tracks: Tracks): Option[Double] = value(tracks).filter(_.isFinite)
 
-  /** With the unit, as tables have it. */
   def title: String = s"$name $unit".trim
 
-  /** The same of the first vehicles alone, for people: no search judges by it. */
+  /** The measure restricted to the first vehicles, for reports only: searches do not use it. */
   private[scenario] def ofFirst(count: Int): Measure =
     new Measure(name, unit, isCount, over, None, tracks => of(tracks.first(count)))
 
@@ -31,7 +30,6 @@ object Measure:
   def apply(name: String, unit: String)(of: Tracks => Option[Double]): Measure =
     new Measure(name, unit, false, Window.Whole, None, of)
 
-  /** Of a part of the flight alone. */
   private[scenario] def over(name: String, unit: String, part: Window)(
       of: (Tracks, Range) => Double
   ): Measure =
@@ -41,7 +39,6 @@ object Measure:
   def count(name: String)(of: Tracks => Int): Measure =
     new Measure(name, "", true, Window.Whole, None, tracks => Some(of(tracks).toDouble))
 
-  /** A reduced quantity. */
   private[scenario] def of(
       name: String,
       unit: String,
@@ -49,10 +46,10 @@ object Measure:
   )(of: (Tracks, Range) => Double): Measure =
     new Measure(name, unit, false, by.over, Some(by), tracks => by.over.of(tracks).map(of(tracks, _)))
 
-/** A quantity reduced over a part of a flight. */
+/** A quantity over a part of a flight, reduced to one number. */
 final case class OverFlight(quantity: Quantity, reduction: Reduction, over: Window)
 
-/** A quantity over the time of a flight: drawn, and reduced to measures.
+/** A quantity over the time of a flight: reports draw it, and measures reduce it.
   *
   * {{{
   * private val apart = Series("distance", "m")(tracks => instant => tracks.separationM(0, 1, instant))
@@ -72,36 +69,32 @@ final class Series private (
 
   def curve(tracks: Tracks): Curve = Curve(tracks, at(tracks))
 
-  /** With the unit. */
   def title: String = if unit.isEmpty then name else s"$name, $unit"
 
   def mean(name: String, over: Window = Window.Whole): Measure = reduced(name, over, Reduction.Mean)
 
-  /** Root of the mean square. */
   def rms(name: String, over: Window = Window.Whole): Measure = reduced(name, over, Reduction.Rms)
 
-  /** Standard deviation. */
   def sd(name: String, over: Window = Window.Whole): Measure = reduced(name, over, Reduction.Sd)
 
   def least(name: String, over: Window = Window.Whole): Measure = reduced(name, over, Reduction.Least)
 
   def most(name: String, over: Window = Window.Whole): Measure = reduced(name, over, Reduction.Most)
 
-  /** When it was least, the first time, s. */
+  /** Time at which it was first least, s. */
   def leastAt(name: String, over: Window = Window.Whole): Measure =
     Measure.over(name, "s", over)((tracks, instants) => tracks.timeS(instants.minBy(at(tracks))))
 
-  /** When it was most, the first time, s. */
+  /** Time at which it was first greatest, s. */
   def mostAt(name: String, over: Window = Window.Whole): Measure =
     Measure.over(name, "s", over)((tracks, instants) => tracks.timeS(instants.maxBy(at(tracks))))
 
-  /** How long a condition held in all, s. */
   def timeWhere(name: String, over: Window = Window.Whole)(holds: Double => Boolean): Measure =
     Measure.over(name, "s", over): (tracks, instants) =>
       val value = at(tracks)
       instants.count(instant => holds(value(instant))) * tracks.stepS
 
-  /** From the first instant on at which a condition held, s; absent where it never did. */
+  /** First instant at which a condition held, s; absent where it never did. */
   def firstWhere(name: String)(holds: Double => Boolean): Measure = Measure(name, "s"): tracks =>
     val value = at(tracks)
     tracks.instants.find(instant => holds(value(instant))).map(tracks.timeS)
@@ -116,7 +109,7 @@ object Series:
   def apply(name: String, unit: String, bound: Option[Bound] = None)(at: Tracks => Int => Double): Series =
     new Series(name, unit, bound, None)(at)
 
-  /** Of a quantity that a search can judge by, too. */
+  /** A series of a quantity that searches can optimise, too. */
   def of(name: String, unit: String, quantity: Quantity, bound: Option[Bound] = None): Series =
     new Series(name, unit, bound, Some(quantity))(tracks =>
       instant => Quantity.told(quantity, tracks.positions(instant))

@@ -7,8 +7,8 @@ import skein.units.*
   * side by side, 60 m apart, and are measured by the first.
   *
   * @param pairs number of duels; the vehicles of several are numbered from 1
-  * @param asPublished the pursuer turns by a fixed angle per decision, as the published code does, and not at
-  *   a fixed rate
+  * @param asPublished the pursuer turns by a fixed angle per decision, as in the published code, and not at a
+  *   fixed rate
   * @param altitudeM altitude of all vehicles
   */
 final case class PaperDuel(
@@ -54,7 +54,7 @@ final case class PaperDuel(
 
   override def note: String = "Horizontal distance between pursuer and evader."
 
-  /** Without a word before it: recordings of duels are older than those of other scenarios. */
+  /** Without the scenario's name as a prefix: recordings of duels are older than those of other scenarios. */
   override def recordedAs(setting: String): String = setting
 
   override def crowded(vehicles: Int): PaperDuel = copy(pairs = pairs.max(vehicles / 2))
@@ -62,7 +62,6 @@ final case class PaperDuel(
 object PaperDuel:
   val Name = "duel"
 
-  /** The paper's, m. */
   val AltitudeM = 20.0
 
   private val distance =

@@ -13,7 +13,7 @@ final case class OffRing(ringM: Double) extends Quantity:
       pursuer += 1
     math.sqrt(sum / (positions.count - 1))
 
-/** The largest angle between neighbouring vehicles as the first one sees them, degrees. */
+/** The largest angle between neighbouring vehicles, seen from the first vehicle, degrees. */
 case object WidestGap extends Quantity:
   def of(positions: Positions): Double =
     val bearings = new Array[Double](positions.count - 1)
@@ -31,7 +31,9 @@ case object WidestGap extends Quantity:
       i += 1
     widest.toDegrees
 
-  /** Sorts by exchanging neighbours: which are compared depends on no number, so that lanes sort too. */
+  /** Sorts by exchanging neighbours: the comparisons do not depend on the numbers, so that SIMD can execute
+    * it.
+    */
   private def ascend(numbers: Array[Double]): Unit =
     var last = numbers.length - 1
     while last > 0 do
@@ -43,7 +45,7 @@ case object WidestGap extends Quantity:
         i += 1
       last -= 1
 
-/** Between the two vehicles nearest to one another, m. */
+/** Separation of the two vehicles nearest to one another, m. */
 case object Separation extends Quantity:
   def of(positions: Positions): Double =
     var least = Double.PositiveInfinity
@@ -56,8 +58,8 @@ case object Separation extends Quantity:
       one += 1
     least
 
-/** From each follower to its slot in the frame along the circuit where the leader, the first vehicle, is:
-  * root of the mean square, m.
+/** Deviation of the followers from their slots in the frame along the circuit at the leader, the first
+  * vehicle: root of the mean square, m.
   *
   * @param aheadM of the leader, by follower
   * @param rightM to the right of the leader

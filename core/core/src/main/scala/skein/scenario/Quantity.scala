@@ -2,7 +2,7 @@ package skein.scenario
 
 import skein.units.OwnFailure
 
-/** Where all vehicles are at one moment, by their positions in the scenario. World frame NED, m. */
+/** Positions of all vehicles at one moment, by their places in the scenario. World frame NED, m. */
 final case class Positions(northM: IArray[Double], eastM: IArray[Double], downM: IArray[Double]):
   def count: Int = northM.length
 
@@ -15,7 +15,7 @@ final case class Positions(northM: IArray[Double], eastM: IArray[Double], downM:
     StrictMath.hypot(northM(vehicle) - north, eastM(vehicle) - east)
 
 /** A number computed from the positions of all vehicles at one moment. Reports draw and measure it, searches
-  * judge by it. Pure. If its method is plain arithmetic, it is compiled to SIMD, as policies are
+  * optimise it. Pure. If its method is plain arithmetic, it is compiled to SIMD, as policies are
   * (`docs/guides/formulas.md`).
   */
 trait Quantity:
@@ -33,14 +33,11 @@ object Quantity:
 enum Reduction:
   case Mean
 
-  /** Root of the mean square. */
   case Rms
 
-  /** Standard deviation. */
   case Sd
   case Least, Most
 
-  /** Of at least one value. */
   def of(values: IndexedSeq[Double]): Double = this match
     case Mean  => values.sum / values.size
     case Rms   => math.sqrt(values.map(value => value * value).sum / values.size)

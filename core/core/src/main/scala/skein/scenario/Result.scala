@@ -22,7 +22,9 @@ final case class Result(
       .value
 
 object Result:
-  /** @throws skein.units.OwnFailure if the scenario's code throws
+  /** Evaluates a flight by its scenario.
+    *
+    * @throws skein.units.OwnFailure if the scenario's code throws
     */
   def of(scenario: Scenario, tracks: Tracks): Result = Scenario.told(scenario.name)(Result(
     scenario,
@@ -34,7 +36,9 @@ object Result:
     scenario.limits.flatMap(_.violations(tracks)).sortBy(_.fromS)
   ))
 
-/** @param value absent where the flight has none
-  * @param isTooShort whether the flight has no part that the measure is of, and so no value
+/** A measure with its value for one flight.
+  *
+  * @param value absent where the flight has none
+  * @param isTooShort whether the flight lacks the part to which the measure refers, and so has no value
   */
 final case class Measured(measure: Measure, value: Option[Double], isTooShort: Boolean)

@@ -8,30 +8,31 @@ import scala.deriving.Mirror
   * val patrol = ScenarioKind(Patrol())   // of: case class Patrol(scouts: Int = 2, heightM: Double = 30) extends Scenario
   * }}}
   *
-  * @param standard with all its defaults; a setting is a `String`, a `Boolean`, a number, and is read as what
-  *   its default is
+  * @param standard with all its defaults; a setting is a `String`, a `Boolean` or a number; its type is that
+  *   of its default
   */
 open class ScenarioKind[A <: Scenario](val standard: A)(using mirror: Mirror.ProductOf[A]):
 
   def name: String = standard.name
 
-  /** Names of all settings, in their order. */
   val settings: Vector[String] = standard.productElementNames.toVector
 
   private val readers = settings.zip(standard.productIterator.map(Reader.of(name, _)))
 
-  /** Reads it and asks it once for all that it states, so that what fails does so before the flight.
+  /** Reads a scenario and evaluates all of its definitions once, so that errors surface before the flight.
     *
-    * @param values settings by name; those that are missing have their defaults
+    * @param values settings by name; missing ones have their defaults
     * @throws skein.units.OwnFailure if the scenario's code throws
-    * @return or every mistake: what was expected, and what came
+    * @return Left lists every mistake: what was expected, and what was given
     */
   def read(values: Map[String, String]): Either[Seq[String], Scenario] =
     val made = candidate(values)
     made.foreach(scenario => Scenario.told(name)(ask(scenario)))
     made
 
-  /** The same, but that it is not asked: where a scenario like it was read, as of a search's candidates. */
+  /** Reads a scenario without evaluating its definitions: for candidates of a search, after a similar one was
+    * read.
+    */
   def candidate(values: Map[String, String]): Either[Seq[String], Scenario] =
     val unknown = values.keys.toSeq.sorted.filterNot(settings.contains).map(name =>
       s"no setting '$name'; the nearest is '${Nearest.to(name, settings)}'"
@@ -64,20 +65,22 @@ open class ScenarioKind[A <: Scenario](val standard: A)(using mirror: Mirror.Pro
     val _ = scenario.series
     val _ = scenario.measures
 
-  /** @param parameters of a recording, by name. A setting that it does not have was added since, and takes its
+  /** Reads the scenario of a recording.
+    *
+    * @param parameters of the recording, by name. A setting that it lacks was introduced later, and takes its
     *   default
     */
   def ofRecording(parameters: Map[String, String]): Either[Seq[String], Scenario] =
     read(settings.flatMap(setting => parameters.get(standard.recordedAs(setting)).map(setting -> _)).toMap)
 
-/** How one setting is read.
+/** The parser of one setting.
   *
-  * @param what is expected
+  * @param what describes the expected value
   */
 private final class Reader(val what: String, val read: String => Option[Any])
 
 private object Reader:
-  /** As what a default is. */
+  /** The reader for values of a default's type. */
   def of(scenario: String, default: Any): Reader = default match
     case _: Int     => Reader("a whole number", _.toIntOption)
     case _: Long    => Reader("a whole number", _.toLongOption)
@@ -89,11 +92,11 @@ private object Reader:
         s"scenario $scenario: a setting is a number, a truth value or a text, came $other"
       )
 
-/** Which of some words a misspelt one is nearest to. */
+/** Finds the known word that is nearest to a misspelt one. */
 object Nearest:
   def to(word: String, known: Seq[String]): String = known.sorted.minBy(distance(word, _))
 
-  /** How many letters must be inserted, left out or replaced. */
+  /** Number of letters to insert, delete or replace. */
   def distance(from: String, to: String): Int =
     val first = Vector.range(0, to.length + 1)
     from.zipWithIndex

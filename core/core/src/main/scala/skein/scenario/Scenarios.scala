@@ -3,17 +3,17 @@ package skein.scenario
 import skein.forecast.Structure
 import skein.policy.PolicyFamily
 
-/** A control loop of a program's own, by its name in settings and recordings. */
+/** A user-defined control loop, by its name in settings and recordings. */
 trait NamedLoop:
   def name: String
 
-/** The kinds of scenarios, the families of policies, the structures of plants, and the loops, that a program
-  * knows by name; needed wherever settings or recordings are read.
+/** The kinds of scenarios, families of policies, structures of plants, and loops, that a program knows by
+  * name; required wherever settings or recordings are read.
   *
-  * @param kinds the first is flown where none is named
-  * @param families of policies, besides Skein's
-  * @param ownStructures of plants, besides Skein's
-  * @param loops besides Skein's
+  * @param kinds the first is the default
+  * @param families of policies, in addition to Skein's
+  * @param ownStructures of plants, in addition to Skein's
+  * @param loops in addition to Skein's
   */
 final case class Scenarios(
     kinds: Vector[ScenarioKind[?]],
@@ -32,7 +32,6 @@ final case class Scenarios(
 
   PolicyFamily.mistake(families).foreach(why => throw IllegalArgumentException(why))
 
-  /** Skein's first. */
   val structures: Vector[Structure] = Structure.ours ++ ownStructures
   private val labels                = structures.map(_.label)
   require(
@@ -47,26 +46,25 @@ final case class Scenarios(
 
   def names: Vector[String] = kinds.map(_.name)
 
-  /** @return or what was expected and came */
+  /** The policy family of this name; Left states the names expected and the one given. */
   def family(name: String): Either[String, PolicyFamily] = PolicyFamily.parse(name, families)
 
-  /** @return or what was expected and came */
+  /** The structure of this label; Left states the labels expected and the one given. */
   def structure(label: String): Either[String, Structure] =
     structures
       .find(_.label == label)
       .toRight(s"expected a structure (${labels.mkString(", ")}), came '$label'")
 
-  /** The default scenario of a program without the paper's game, of whose two sides commands ask otherwise.
+  /** The default scenario of a program without the paper's game; for that game, commands need its two sides
+    * instead.
     */
   def firstWithoutGame: Option[String] = Option.when(!kinds.exists(_.standard.isPapersGame))(names.head)
 
-  /** Whether a name, with these settings, is that of the paper's game as it is; ours is known to every
-    * program.
-    */
+  /** Whether a name with these settings denotes the paper's unmodified game; every program knows it. */
   def isPapersGame(name: String, set: Map[String, String]): Boolean =
     set.isEmpty && (kinds ++ Scenarios.ours.kinds).find(_.name == name).exists(_.standard.isPapersGame)
 
-  /** @return or what was expected, what came, and what is nearest */
+  /** The kind of this name; Left states the names expected, the one given, and the nearest. */
   def kind(name: String): Either[String, ScenarioKind[?]] =
     kinds
       .find(_.name == name)
@@ -76,11 +74,11 @@ final case class Scenarios(
           }"
       )
 
-  /** The scenario that a recording is of.
+  /** The scenario of a recording.
     *
     * @param name [[Scenario.name]]
     * @param parameters of the recording, by name
-    * @return or why it is not known here
+    * @return Left states why it is not known here
     */
   def ofRecording(name: String, parameters: Map[String, String]): Either[String, Scenario] =
     kind(name).left
@@ -90,7 +88,6 @@ final case class Scenarios(
 object Scenarios:
   def apply(kinds: ScenarioKind[?]*): Scenarios = new Scenarios(kinds.toVector)
 
-  /** Skein's own. */
   val ours: Scenarios = Scenarios(
     ScenarioKind(PaperDuel()),
     ScenarioKind(Surround()),

@@ -57,11 +57,11 @@ final case class Surround(
 object Surround:
   private val gap = Series.of("gap", "°", WidestGap)
 
-  /** Of the pursuers from the evader, the first vehicle, m. */
+  /** Distances of the pursuers from the evader, the first vehicle, m. */
   private def distancesM(tracks: Tracks, instant: Int) =
     tracks.vehicles.tail.map(tracks.distanceM(0, _, instant))
 
-  /** From when on the evader stays between its pursuers, s: no gap reaches 180° any more. */
+  /** Time from which the evader stays between its pursuers, s: no gap reaches 180° any more. */
   private def surroundedFromS(tracks: Tracks): Option[Double] =
     val gaps    = gap.curve(tracks).points
     val outside = gaps.lastIndexWhere(_._2 >= 180)

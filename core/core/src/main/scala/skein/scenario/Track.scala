@@ -21,12 +21,12 @@ final case class Track private (
 
   def isA(role: Role): Boolean = Role.parse(this.role) == role
 
-  /** On straight lines between samples. A vehicle that circles at 10 m/s on 8 m, seen every 100 ms, is less
-    * than 2 cm from them. Outside the track's times, its first or last position.
+  /** On straight lines between samples. A vehicle that circles at 10 m/s on 8 m, sampled every 100 ms, is
+    * less than 2 cm from them. Outside the track's times, its first or last position.
     */
   def at(time: Instant): Vector3 = between(time, positionsNed)
 
-  /** Likewise, m/s. */
+  /** Interpolated velocity, m/s, like [[at]] for positions. */
   def velocityAt(time: Instant): Vector3 = between(time, velocitiesNed)
 
   private def between(time: Instant, values: Vector[Vector3]): Vector3 =
@@ -39,13 +39,15 @@ final case class Track private (
 
 object Track:
 
-  /** @param samples instant, position and velocity, in any order; of one instant the first counts
+  /** A track of samples.
+    *
+    * @param samples instant, position and velocity, in any order; of one instant the first counts
     */
   def of(vehicle: String, role: String, samples: Vector[(Instant, Vector3, Vector3)]): Track =
     val ordered = samples.distinctBy(_._1).sortBy(_._1)
     Track(vehicle, role.toLowerCase(Locale.ROOT), ordered.map(_._1), ordered.map(_._2), ordered.map(_._3))
 
-  /** Where velocities were not measured: each is that of the way to the next sample. */
+  /** A track without measured velocities: each velocity is that of the straight way to the next sample. */
   def ofPositions(vehicle: String, role: String, samples: Vector[(Instant, Vector3)]): Track =
     val ordered = samples.distinctBy(_._1).sortBy(_._1)
     val moved   = ordered.zip(ordered.drop(1)).map { case ((from, start), (to, end)) =>

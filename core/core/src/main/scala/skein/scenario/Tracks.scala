@@ -2,8 +2,8 @@ package skein.scenario
 
 import skein.units.*
 
-/** Where all vehicles of a flight were at equal instants of the simulator's clock, by vehicle and instant;
-  * vehicles by their positions in the scenario. World frame NED, m.
+/** Positions of all vehicles of a flight at equidistant instants of the simulator's clock, by vehicle and
+  * instant; vehicles by their places in the scenario. World frame NED, m.
   */
 final class Tracks private (
     tracks: Vector[Track],
@@ -17,31 +17,26 @@ final class Tracks private (
 
   def instants: Range = northM.head.indices
 
-  /** Between two instants, s. */
+  /** Time between two successive instants of the tracks, s. */
   def stepS: Double = Tracks.step.toSeconds
 
-  /** Since all were first seen, s. */
   def timeS(instant: Int): Double = instant * stepS
 
-  /** For which all were seen, s. */
   def lastS: Double = timeS(instants.last)
 
   def positionNed(vehicle: Int, instant: Int): Vector3 =
     Vector3(northM(vehicle)(instant), eastM(vehicle)(instant), downM(vehicle)(instant))
 
-  /** Of the first vehicles alone, over the time for which they were all seen. */
+  /** The tracks of the first vehicles, over the time for which all of these were read. */
   def first(count: Int): Tracks = if count == vehicles.size then this else Tracks.of(tracks.take(count)).get
 
-  /** Of all vehicles. */
   def positions(instant: Int): Positions =
     def now(values: Vector[Array[Double]]) = IArray.from(values.map(_(instant)))
     Positions(now(northM), now(eastM), now(downM))
 
-  /** As it was read, m/s. */
   def velocityNed(vehicle: Int, instant: Int): Vector3 =
     tracks(vehicle).velocityAt(from + Tracks.step * instant)
 
-  /** Above the origin, m. */
   def altitudeM(vehicle: Int, instant: Int): Double = -downM(vehicle)(instant)
 
   /** Between two vehicles, in the horizontal plane, m. */
@@ -55,12 +50,11 @@ final class Tracks private (
   def distanceM(vehicle: Int, north: Double, east: Double, instant: Int): Double =
     StrictMath.hypot(northM(vehicle)(instant) - north, eastM(vehicle)(instant) - east)
 
-  /** Between two vehicles, in space, m. */
   def separationM(one: Int, other: Int, instant: Int): Double =
     (positionNed(one, instant) - positionNed(other, instant)).norm
 
-  /** How far the vehicles were from where those of another flight were at the same time since the start: root
-    * of the mean square over vehicles and instants, m.
+  /** Deviation from another flight at equal times since the start: root of the mean square over vehicles and
+    * instants, m.
     *
     * @param inSpace else in the horizontal plane
     */
@@ -78,7 +72,7 @@ final class Tracks private (
 object Tracks:
   private val step = Span.ofMillis(20)
 
-  /** Over the time for which all tracks run; none if there is no such time. */
+  /** The tracks over the time that all of them cover; None if there is no such time. */
   def of(tracks: Vector[Track]): Option[Tracks] =
     val from = tracks.map(_.from).maxOption
     val to   = tracks.map(_.to).minOption

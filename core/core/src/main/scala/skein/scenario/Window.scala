@@ -1,6 +1,6 @@
 package skein.scenario
 
-/** The part of a flight that a measure is of. */
+/** The part of a flight to which a measure refers. */
 enum Window:
   case Whole
 
@@ -10,10 +10,9 @@ enum Window:
   /** All after the first `seconds`; of a shorter flight, the whole. */
   case After(seconds: Double)
 
-  /** Instants of it; never empty. */
   def of(tracks: Tracks): Option[Range] = of(tracks.instants, tracks.stepS)
 
-  /** The same of instants that are so many seconds apart, the first at 0. */
+  /** The instants within this part, for instants `stepS` seconds apart that start at 0. */
   def of(instants: Range, stepS: Double): Option[Range] = this match
     case Whole          => Some(instants)
     case After(seconds) =>

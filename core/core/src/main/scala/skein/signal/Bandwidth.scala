@@ -2,25 +2,24 @@ package skein.signal
 
 import skein.units.*
 
-/** What one direction of a line lets through, and how much may wait before it.
+/** The rate of one direction of a line, with a limited queue before it.
   *
   * @param bitsPerSecond of payload; the headers of a network's own layers are not counted
-  * @param queueBytes what waits before the line at most, first in, first out; what does not fit waits at its
-  *   sender
+  * @param queueBytes limit of the first-in, first-out queue; what does not fit waits at its sender
   */
 final case class Bandwidth(bitsPerSecond: Long, queueBytes: Int):
   require(bitsPerSecond > 0 && queueBytes > 0, s"a line has a rate and a queue above zero: $this")
 
-  /** How long the line takes to send so many bytes. */
+  /** Time that the line takes to send this number of bytes. */
   def timeOf(bytes: Long): Span = Span.ofSeconds(bytes * 8.0 / bitsPerSecond)
 
 object Bandwidth:
-  /** An Ethernet frame: through less no packet would fit whole. */
+  /** An Ethernet frame: a smaller queue would fit no whole packet. */
   private val FrameBytes = 1500
 
   private val LeastQueueBytes = 2 * FrameBytes
 
-  /** A queue that takes longer to send holds everything back for good. */
+  /** Limit of the time to send a full queue; a longer queue would delay everything for good. */
   private val MostQueue = Span.ofSeconds(60)
 
   /** A line with a queue that it sends in 5 ms, the standing delay that CoDel holds a queue to (RFC 8289,
@@ -34,8 +33,8 @@ object Bandwidth:
       s"50mbit/64kB, from ${FrameBytes}B up to 1GB and to what the rate sends in ${MostQueue.toSeconds.toInt} s"
 
   /** Reads `50mbit` (bit, kbit, mbit, gbit a second, in powers of 1000), or `50mbit/64kB` with a queue in B,
-    * kB, MB or GB, from an Ethernet frame to 1 GB and to a minute of the rate. The error says what was
-    * expected and what came.
+    * kB, MB or GB, from an Ethernet frame to 1 GB and to a minute of the rate. The error states what was
+    * expected and what was received.
     */
   def parse(text: String): Either[String, Bandwidth] =
     val bandwidth = text match

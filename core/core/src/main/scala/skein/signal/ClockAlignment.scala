@@ -7,16 +7,16 @@ import skein.units.Decimals.fixed
   *
   * Physics was sampled at some moment between request and answer, so each reading bounds the offset
   * (controller minus simulator) from both sides: `sentAt − validAt ≤ offset ≤ receivedAt − validAt`. The
-  * bounds of all readings hold at once; they narrow with every short delay in either direction, and the
-  * offset cannot lie outside as long as neither clock stops. Between the bounds it is estimated by assuming
-  * that the lower quartile of the latest delays is equal in both directions. (Their minima vary more: over
-  * the paper's VPN by 7 ms.)
+  * bounds of all readings hold simultaneously; they narrow with every short delay in either direction, and
+  * the offset cannot lie outside as long as neither clock stops. Between the bounds it is estimated by
+  * assuming that the lower quartile of the latest delays is equal in both directions. (Their minima vary
+  * more: over the paper's VPN by 7 ms.)
   *
   * Old bounds are widened by [[ClockAlignment.MaxDrift]] with time, so that clocks of different rates neither
-  * contradict themselves nor hold the estimate back. If readings contradict each other all the same, the
-  * simulator was paused or restarted: estimation starts anew, and that is counted. The bounds of the last few
-  * runs are kept. A late answer of a former run contradicts the present bounds and agrees with that run's. It
-  * says nothing about the present clock, and is older than all readings of the present run, whatever its time
+  * contradict themselves nor hold the estimate back. If readings still contradict each other, the simulator
+  * was paused or restarted: estimation restarts, and the restart is counted. The bounds of the last few runs
+  * are kept. A late answer of a former run contradicts the present bounds and agrees with that run's. It says
+  * nothing about the present clock, and is older than all readings of the present run, whatever its time
   * stamp.
   *
   * @param lower the offset is at least this
@@ -42,13 +42,12 @@ final case class ClockAlignment private (
 ):
   import ClockAlignment.{FormerRuns, Memory, Tick, drift, lowQuartile}
 
-  /** Controller's clock minus simulator's. */
   lazy val offset: Span =
     val toSimulator   = lowQuartile(latest)(bounds => Span.Zero - bounds.lower)
     val fromSimulator = lowQuartile(latest)(_.upper)
     ((fromSimulator - toSimulator) / 2).max(lower).min(upper)
 
-  /** The offset lies within ± this. */
+  /** Half width of the interval that contains the offset. */
   def uncertainty: Span = (offset - lower).max(upper - offset)
 
   /** The controller's time at which the simulator's clock showed `simulatorTime`. */
@@ -61,8 +60,8 @@ final case class ClockAlignment private (
   def ageOf(reading: Stamped[?], now: Instant): Option[Span] =
     Some(now.since(toController(reading.validAt))).filter(_ >= Span.Zero)
 
-  /** Whether one reading was sampled later than another: because it was asked for after the other had
-    * arrived, or else because it is of a later run of the simulator, or else by the simulator's clock. The
+  /** Whether one reading was sampled later than another: because it was requested after the other was
+    * received, or else because it is of a later run of the simulator, or else by the simulator's clock. The
     * two readings alone do not suffice: after a restart with an earlier clock, a late answer of the former
     * run has the later time stamp.
     */
@@ -76,7 +75,7 @@ final case class ClockAlignment private (
   /** Whether a reading was sampled by a run of the simulator before the present one. */
   def isOfFormerRun(reading: Stamped[?]): Boolean = runOf(reading) < former.size
 
-  /** What a reading contradicts, if estimation begins anew by it ([[updated]]). */
+  /** What a reading contradicts, if estimation restarts because of it ([[updated]]). */
   def contradiction(reading: Stamped[?]): Option[String] =
     val next = updated(reading)
     Option.when(next.restarts > restarts):
@@ -85,7 +84,7 @@ final case class ClockAlignment private (
         val lost = (next.lower - upper).max(lower - next.upper).toMillis
         s"the offset of the clocks has changed by ${lost.fixed(1)} ms or more"
 
-  /** A reading of a former run changes nothing. */
+  /** The estimate after a reading. A reading of a former run changes nothing. */
   def updated(reading: Stamped[?]): ClockAlignment =
     if isOfFormerRun(reading) then this
     else
@@ -111,8 +110,8 @@ final case class ClockAlignment private (
             if standsStill then former else (former :+ copy(former = Vector.empty)).takeRight(FormerRuns)
         )
 
-  /** By place among the runs that are known, the present one last. What was asked for when that had begun is
-    * its own.
+  /** Index among the known runs, the present one last. A reading requested after a run had begun belongs to
+    * that run or a later one.
     */
   private def runOf(reading: Stamped[?]): Int =
     if reading.sentAt > since || hasTold(reading) then former.size
@@ -121,8 +120,8 @@ final case class ClockAlignment private (
         case -1  => former.size
         case run => run
 
-  /** Whether a reading can be of this run: it came when the run had been heard of, and its bounds and these
-    * may hold at once.
+  /** Whether a reading can be of this run: it was received after the run was first observed, and its bounds
+    * are compatible with the present ones.
     */
   private def hasTold(reading: Stamped[?]): Boolean =
     val slack = drift(since = receivedAt, until = reading.receivedAt)
@@ -132,27 +131,23 @@ final case class ClockAlignment private (
 
 object ClockAlignment:
 
-  /** Bounds of the offset by one reading. */
   final case class Bounds(lower: Span, upper: Span)
 
-  /** Readings that the estimate between the bounds is made from: more of them estimate a quartile better,
-    * fewer follow drifting clocks sooner. At 20 a second, clocks that differ by 50 parts in a million are
-    * followed within 0.5 ms.
+  /** Number of readings from which the estimate between the bounds is made: more of them estimate a quartile
+    * better, fewer follow drifting clocks sooner. At 20 a second, clocks that differ by 50 parts in a million
+    * are followed within 0.5 ms.
     */
   val Memory = 384
 
-  /** Runs of the simulator before the present one that are remembered: more cannot end within one answer's
-    * time.
-    */
+  /** Number of earlier runs of the simulator that are kept: more cannot end within the time of one answer. */
   val FormerRuns = 4
 
-  /** Of one clock against the other, seconds a second: about twice what quartz clocks differ by. */
+  /** Limit of the drift between the two clocks, seconds a second: about twice that of quartz clocks. */
   val MaxDrift = 100e-6
 
   /** A running simulator's clock advances within this: three physics steps of AirSim. */
   val Tick: Span = Span.ofMillis(9)
 
-  /** By a single reading. */
   def of(reading: Stamped[?]): ClockAlignment =
     val bounds = Bounds(reading.sentAt.since(reading.validAt), reading.receivedAt.since(reading.validAt))
     ClockAlignment(
@@ -171,8 +166,8 @@ object ClockAlignment:
   private def drift(since: Instant, until: Instant): Span =
     Span.ofNanos(math.ceil(until.since(since).max(Span.Zero).toNanos * MaxDrift).toLong)
 
-  /** Sorts numbers, not objects: it is asked for at every reading, and would take a tenth of a virtual
-    * flight.
+  /** Sorts primitive numbers, not objects: it runs at every reading, and boxing would take a tenth of a
+    * virtual flight.
     */
   private inline def lowQuartile(latest: Vector[Bounds])(inline leg: Bounds => Span): Span =
     val nanos = new Array[Long](latest.size)

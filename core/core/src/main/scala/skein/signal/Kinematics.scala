@@ -15,7 +15,7 @@ final case class Kinematics(
     orientation: Quaternion,
     angularVelocityFrd: Vector3
 ):
-  /** Whether every component is a number, and none endless. */
+  /** Whether every component is a finite number. */
   def isFinite: Boolean =
     def all(v: Vector3) = v.x.isFinite && v.y.isFinite && v.z.isFinite
     val turn            = Seq(orientation.w, orientation.x, orientation.y, orientation.z)

@@ -5,10 +5,10 @@ import skein.units.*
 /** How long round trips take, given by its inverse cumulative distribution function. */
 enum LatencyDistribution:
 
-  /** Every round trip takes as long. */
+  /** Every round trip takes an equal, constant time. */
   case Constant(roundTrip: Span)
 
-  /** Evenly spread between two bounds. */
+  /** Round trips are uniform between two bounds. */
   case Uniform(least: Span, most: Span)
 
   /** The logarithm is normal with standard deviation `sigma`; half of the round trips are shorter than
@@ -44,7 +44,7 @@ enum LatencyDistribution:
         case Vector((p0, t0), (p1, t1)) => (p1 - p0) * (t0 + t1) / 2
       Span.ofMillis(pieces.sum)
 
-  /** The 99 % quantile less the median. */
+  /** Jitter: the 99 % quantile minus the median. */
   def jitter: Span = quantile(0.99) - quantile(0.5)
 
 object LatencyDistribution:

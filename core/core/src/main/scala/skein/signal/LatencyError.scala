@@ -1,17 +1,15 @@
 package skein.signal
 
-/** Why a text is not a latency profile. `message` says what was expected, what came and where. */
+/** Why a text is not a latency profile. `message` states what was expected, what was received, and where. */
 enum LatencyError(val message: String):
 
-  /** The text has the form of no profile. */
   case UnknownProfile(text: String)
       extends LatencyError(s"unknown latency profile \"$text\"; expected ${LatencyError.forms}")
 
-  /** A profile's name is right and what follows it is not. */
+  /** A profile's name is valid and the rest of it is not. */
   case Malformed(text: String, expected: String, came: String)
       extends LatencyError(s"latency profile \"$text\": expected $expected, got \"$came\"")
 
-  /** The file of samples cannot be read. */
   case Unreadable(path: String, reason: String)
       extends LatencyError(s"cannot read latency samples: $path: $reason")
 
@@ -19,12 +17,10 @@ enum LatencyError(val message: String):
   case BadSample(path: String, line: Int, came: String)
       extends LatencyError(s"$path:$line: expected a round trip in ms, zero or more, got \"$came\"")
 
-  /** The file of samples holds none. */
   case NoSamples(path: String)
       extends LatencyError(s"$path: expected at least one round trip in ms, one a line; the file has none")
 
 object LatencyError:
-  /** What [[LatencyProfile.parse]] reads. */
   val forms: String =
     "none, direct, vpn, vpn-mixed, constant:200ms, uniform:10ms..40ms, lognormal:36ms,0.3 " +
       "or file:PATH (times are round trips), or one of them after 'correlated:250ms,' or 'rate:50mbit,'"

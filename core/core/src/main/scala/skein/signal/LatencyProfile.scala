@@ -24,9 +24,9 @@ enum LatencyProfile:
       quietLasts: Span
   )
 
-  /** Another profile whose delays hold for a while: the share p at which its distribution is read is drawn
-    * anew after exponentially distributed times of mean `over`, for both directions and all connections of a
-    * link at once. Every delay is distributed as before, and the correlation of p at two moments is
+  /** Another profile whose delays persist for a while: the share p at which its distribution is read is
+    * redrawn after exponentially distributed times of mean `over`, simultaneously for both directions and all
+    * connections of a link. Every delay is distributed as before, and the correlation of p at two moments is
     * e^(−t/over): a round trip much shorter than `over` takes as long as one that was measured.
     */
   case Correlated(name: String, latency: LatencyProfile, over: Span)
@@ -60,7 +60,7 @@ object LatencyProfile:
     * round trips; units are `us`, `ms`, `s`. Before any of them may stand `correlated:250ms,` and before all
     * that `rate:50mbit,` or `rate:50mbit/64kB,`: see [[Bandwidth.parse]].
     *
-    * @param read gives the text of the file at a path, or says why it cannot
+    * @param read returns the text of the file at a path, or why it cannot
     */
   def parse(text: String, read: String => Either[String, String]): Either[LatencyError, LatencyProfile] =
     LatencyText.parse(text, read)

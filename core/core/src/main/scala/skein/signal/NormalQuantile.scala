@@ -6,12 +6,11 @@ package skein.signal
   * `LatencyDistributionSuite`.
   */
 private[skein] object NormalQuantile:
-  /** A normal variable lies within so many standard deviations of its mean with 95 % probability. */
+  /** A normal variable lies within this number of standard deviations of its mean with 95 % probability. */
   val TwoSided95 = 1.959964
 
   private val tail = 0.02425
 
-  /** `p` in (0, 1). */
   def apply(p: Double): Double =
     if p < tail then lower(math.sqrt(-2 * StrictMath.log(p)))
     else if p > 1 - tail then -lower(math.sqrt(-2 * StrictMath.log1p(-p)))

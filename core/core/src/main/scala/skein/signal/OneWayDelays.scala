@@ -5,8 +5,8 @@ import skein.units.*
 /** How long messages take to the simulator and back, as means over the latest readings.
   *
   * `toSimulator` is a difference between two clocks: it contains the clocks' offset. That is what prediction
-  * needs (a command sent at t acts when the simulator's clock shows t + toSimulator), and it does not suffer
-  * from what is uncertain about the offset. [[ClockAlignment]] tells the offset.
+  * needs (a command sent at t acts when the simulator's clock shows t + toSimulator), and it does not depend
+  * on the uncertainty of the offset. [[ClockAlignment]] estimates the offset.
   *
   * @param toSimulator mean of simulator's time of sampling minus controller's time of sending
   * @param fromSimulator mean of controller's time of receipt minus simulator's time of sampling
@@ -18,9 +18,9 @@ final case class OneWayDelays private (toSimulator: Span, fromSimulator: Span, r
   /** The simulator's time at which a message acts that left at this controller's time. */
   def expectedArrival(sentAt: Instant): Instant = sentAt + toSimulator
 
-  /** The same for a message whose answer has come. Its round trip says more than the means do: of two
-    * independent, equally spread delays whose sum is known, each is its own mean plus half of what the sum is
-    * off.
+  /** The arrival time of a message whose answer was received. Its round trip says more than the means do: of
+    * two independent, equally spread delays whose sum is known, each is its own mean plus half of the sum's
+    * deviation.
     */
   def arrivalGiven(sentAt: Instant, answeredAt: Instant): Instant =
     sentAt + toSimulator + (answeredAt.since(sentAt) - roundTrip) / 2

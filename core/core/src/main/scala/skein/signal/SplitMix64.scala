@@ -1,8 +1,7 @@
 package skein.signal
 
-/** A small seeded source of random numbers with its own state; the same seed gives the same sequence
-  * everywhere and for ever, which a recording's replay relies on. Not for secrets, and not for several
-  * threads.
+/** A small seeded source of random numbers with its own state; a seed's sequence is equal on all machines and
+  * in all versions, on which replays of recordings rely. Not for secrets, and not for several threads.
   *
   * Source: Steele, Lea, Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014, with the
   * constants of Vigna's public-domain `splitmix64.c`; held to its published first outputs by
@@ -13,12 +12,12 @@ final class SplitMix64(seed: Long):
 
   private var state = seed
 
-  /** Uniform over all 2^64^ values. */
+  /** Uniformly distributed over all 2^64^ values. */
   def nextLong(): Long =
     state += Gamma
     mix(state)
 
-  /** Uniform in [0, 1), in steps of 2^−53^. */
+  /** Uniformly distributed in [0, 1), in steps of 2^−53^. */
   def nextDouble(): Double = (nextLong() >>> 11) * Step
 
   /** Uniform in 0 until `bound`, which is positive. */

@@ -5,15 +5,14 @@ import skein.units.Decimals.fixed
 
 /** Whether the vehicles' clock runs as the controller's does, judged by readings alone.
   *
-  * Physics was sampled between question and answer, so a reading bounds the clocks' offset from both sides
+  * Physics was sampled between request and answer, so a reading bounds the clocks' offset from both sides
   * (see [[ClockAlignment]]). Between two readings the offset has changed by at least the gap between their
-  * bounds, however late the answers came: no delay of the network and no busy controller can make a clock
+  * bounds, however late the answers were: no delay of the network and no busy controller can make a clock
   * look wrong. Each vehicle's readings of the last [[TimeAxis.Window]] are compared with each other, and with
   * those of the other vehicles, which share the clock.
   *
-  * A clock that runs back, or whose offset changes by more than [[TimeAxis.Most]] within the window, is no
-  * axis that distances and ages could stand on: that is a [[fault]], for good. Slower changes are
-  * [[wandering]].
+  * A clock that runs back, or whose offset changes by more than [[TimeAxis.Most]] within the window, cannot
+  * serve for distances and ages: that is a [[fault]], permanently. Slower changes are [[wandering]].
   *
   * @param fault what is wrong with the clock, in a line for a person
   */
@@ -37,7 +36,7 @@ final case class TimeAxis private (
       val all = seen.updated(vehicle, own)
       TimeAxis(all, ranBack(one).orElse(leapt(own)).orElse(differs(all)))
 
-  /** That the clock does not keep pace, as long as it is no fault: its offset has changed by more than
+  /** Why the clock does not keep pace, though it is not a fault: its offset has changed by more than
     * [[TimeAxis.Told]] within the window.
     */
   def wandering: Option[String] =
@@ -46,7 +45,7 @@ final case class TimeAxis private (
       val worst = seen.values.maxBy(_.gapNanos)
       Option.when(worst.gapNanos > Told.toNanos)(worst.text)
 
-  /** Later by the controller's clock, and earlier by the vehicles'. */
+  /** The samples that are later by the controller's clock and earlier by the vehicles'. */
   private def ranBack(one: Sample): Option[String] =
     val before = seen.values.map(_.newest).filter(other =>
       other.receivedNanos < one.sentNanos && minus(other.validNanos, one.validNanos) > Tick.toNanos
@@ -65,7 +64,7 @@ final case class TimeAxis private (
 
   private def leapt(own: Seen): Option[String] = Option.when(own.gapNanos > Most.toNanos)(own.text)
 
-  /** Every vehicle's clock keeps pace by itself, but not all of them show the same. */
+  /** Why the clocks differ, where every vehicle's clock keeps pace by itself. */
   private def differs(all: Map[String, Seen]): Option[String] =
     val (late, early) = (all.values.map(_.latest).maxBy(_.lower), all.values.map(_.earliest).minBy(_.upper))
     val gap           = minus(late.lower, early.upper)
@@ -74,10 +73,9 @@ final case class TimeAxis private (
 
 object TimeAxis:
 
-  /** Nothing was read yet. */
   val begun: TimeAxis = TimeAxis(Map.empty, None)
 
-  /** Of readings in the order in which they came.
+  /** Checks readings in the order of their arrival.
     *
     * @return what is wrong with their clock
     */
@@ -85,7 +83,7 @@ object TimeAxis:
     readings.scanLeft(begun)((axis, one) => axis.updated(one._1, one._2)).collectFirst:
       case TimeAxis(_, Some(fault)) => fault
 
-  /** Of a simulator that is stopped and stepped: every step must take its time, about.
+  /** Checks a simulator that is stopped and stepped: every step must last about its nominal time.
     *
     * @param before the newest time of the step before
     * @param oldest of this step's readings
@@ -105,20 +103,20 @@ object TimeAxis:
         case took if took > 2 * period.toNanos =>
           s"the simulator's clock advanced by ${seconds(took)} in a step of ${seconds(period.toNanos)}"
 
-  /** Readings are compared within it, by the controller's clock. */
+  /** Length of the window within which readings are compared, by the controller's clock. */
   val Window: Span = Span.ofSeconds(10)
 
-  /** By which the offset may change within the window: a twentieth of it. A simulator that computes in real
+  /** Limit of the offset's change within the window: a twentieth of it. A simulator that computes in real
     * time stays far below; one on a starved machine loses some tenths of a second.
     */
   val Most: Span = Span.ofMillis(500)
 
-  /** From which a change is told, and clocks of two vehicles count as different: about the age that readings
-    * have over a slow link.
+  /** Change of the offset from which it is reported, and difference from which two vehicles' clocks count as
+    * different: about the age of readings over a slow link.
     */
   val Told: Span = Span.ofMillis(100)
 
-  /** By which readings of one moment may differ: three physics steps of AirSim. */
+  /** Tolerance between readings of one moment: three physics steps of AirSim. */
   private val Tick = ClockAlignment.Tick
 
   private val BucketNanos = 1_000_000_000L
@@ -129,13 +127,12 @@ object TimeAxis:
     /** The offset, controller minus simulator, is at least this. */
     val lower: Long = minus(sentNanos, validNanos)
 
-    /** And at most this. */
     val upper: Long       = minus(receivedNanos, validNanos)
     def middleNanos: Long = sentNanos + (receivedNanos - sentNanos) / 2
     def bucket: Long      = receivedNanos / BucketNanos
 
-  /** Of a vehicle's readings in one second those with the largest lower bound of the offset and with the
-    * smallest upper one.
+  /** A vehicle's readings in one second with the largest lower bound of the offset and with the smallest
+    * upper one.
     */
   private final case class Second(latest: Sample, earliest: Sample)
 
@@ -144,14 +141,13 @@ object TimeAxis:
     * @param still the first of the newest that show one time
     */
   private final case class Seen(newest: Sample, still: Sample, seconds: Vector[Second]):
-    /** Of the window. */
+    /** Reading with the largest lower bound in the window. */
     val latest: Sample   = seconds.map(_.latest).maxBy(_.lower)
     val earliest: Sample = seconds.map(_.earliest).minBy(_.upper)
 
-    /** By which the offset has changed at least. */
+    /** Least change of the offset within the window, ns. */
     def gapNanos: Long = minus(latest.lower, earliest.upper)
 
-    /** By readings of some seconds. */
     def keepsPace: Boolean = gapNanos < Tick.toNanos && seconds.size > 2
 
     def updated(one: Sample): Seen =
@@ -171,7 +167,7 @@ object TimeAxis:
 
     private def isStill = newest.sentNanos - still.receivedNanos > Most.toNanos / 2
 
-    /** What happened between the two readings that differ most. */
+    /** Describes the change between the two readings that differ most. */
     def text: String =
       val (from, to) =
         if latest.receivedNanos < earliest.receivedNanos then (latest, earliest) else (earliest, latest)
@@ -190,7 +186,7 @@ object TimeAxis:
   private def differ(one: Sample, other: Sample, by: String) =
     s"the clocks of ${one.vehicle} and ${other.vehicle} differ by $by or more: vehicles of one flight share one"
 
-  /** Never beyond what a number holds: time stamps may be anything. */
+  /** The difference, limited to the range of `Long`: time stamps may be anything. */
   private def minus(one: Long, other: Long): Long =
     val difference = one - other
     if ((one ^ other) & (one ^ difference)) < 0 then if one < 0 then Long.MinValue else Long.MaxValue

@@ -2,7 +2,7 @@ package skein.units
 
 import skein.units.Instant
 
-/** The only source of time in live code, so that the same code runs in virtual time. */
+/** The only source of time in live code, so that the code also runs in virtual time. */
 trait Clock:
   /** Nanoseconds since the Unix epoch; never runs backwards. */
   def now(): Instant
@@ -17,5 +17,5 @@ object Clock:
 
     def now(): Instant = Instant.ofNanos(epochNanos + System.nanoTime())
 
-  /** A clock that reads nanoseconds since the Unix epoch from elsewhere, such as virtual time's. */
+  /** A clock that reads nanoseconds since the Unix epoch from a function, such as virtual time. */
   def ofNanos(nanos: () => Long): Clock = () => Instant.ofNanos(nanos())

@@ -2,41 +2,41 @@ package skein.units
 
 import java.util.Locale
 
-/** Numbers in what Skein says: the same digits and the same point in every locale. */
+/** Formats numbers in reports: equal digits and decimal points in every locale. */
 object Decimals:
-  /** From here on, and below the least, numbers are told as powers of ten. */
+  /** From this size on, and below the least, numbers are written as powers of ten. */
   private[units] val MostInFull = 1e12
   private val LeastInFull       = 1e-9
 
-  /** `1 flight`, `2 flights`.
+  /** A count with its noun: `1 flight`, `2 flights`.
     *
-    * @param one of them
+    * @param one the singular
     */
   def counted(count: Long, one: String): String = if count == 1 then s"1 $one" else s"$count ${one}s"
 
   extension (number: Double)
-    /** With so many digits behind the point; very large numbers, of up to 309 digits, as powers of ten. What
-      * rounds to zero has no sign.
+    /** With this number of decimals; very large numbers, of up to 309 digits, as powers of ten. What rounds
+      * to zero has no sign.
       */
     def fixed(decimals: Int): String =
       if number.abs < MostInFull then withoutSignOfZero(String.format(Locale.ROOT, s"%.${decimals}f", number))
       else significant(4)
 
-    /** The same, at least so wide, for columns. */
+    /** `fixed`, padded to this width for columns. */
     def fixed(decimals: Int, width: Int): String =
       val text = fixed(decimals)
       " " * (width - text.length) + text
 
-    /** The same, with its sign. */
+    /** With this number of decimals, and always with a sign. */
     def signed(decimals: Int): String =
       val text = fixed(decimals)
       if number.isNaN || text.startsWith("-") || isZero(text) then text else s"+$text"
 
-    /** Ten and more without decimals, less with one, small ones with two. */
+    /** Numbers from 10 on without decimals, smaller ones with one, small ones with two. */
     def brief: String =
       number.fixed(if number.abs >= 9.95 || number == 0 then 0 else if number.abs >= 0.95 then 1 else 2)
 
-    /** With so many significant digits at most; very large and very small numbers as powers of ten. */
+    /** With at most this number of significant digits; very large and very small numbers as powers of ten. */
     def significant(digits: Int): String =
       if number == 0 || !number.isFinite then withoutSignOfZero(number.toString)
       else

@@ -1,21 +1,20 @@
 package skein.units
 
-/** What users state, held to what is expected of it. */
+/** Checks of users' input against what is expected of it. */
 private[skein] object Expect:
 
-  /** Nothing, or the mistake: what was expected, and what came. */
+  /** Nothing if the input is right; Left holds the mistake: what was expected, and what was received. */
   def that[E](isRight: Boolean)(mistake: => E): Either[E, Unit] = Either.cond(isRight, (), mistake)
 
-  /** What each comes to, in their order, or the first mistake; what stands behind that is not tried. */
+  /** Converts each element in order; stops at the first mistake. */
   def each[A, E, B](of: IterableOnce[A])(one: A => Either[E, B]): Either[E, Vector[B]] =
     of.iterator.foldLeft[Either[E, Vector[B]]](Right(Vector.empty)): (before, next) =>
       before.flatMap(done => one(next).map(done :+ _))
 
-  /** What each comes to, or every mistake, a line each. */
+  /** Converts each element, or returns every mistake, one per line. */
   def all[A, B](of: Seq[A])(one: A => Either[String, B]): Either[String, Seq[B]] =
     val (wrong, right) = of.map(one).partitionMap(identity)
     Either.cond(wrong.isEmpty, right, wrong.mkString("\n"))
 
-  /** What a `require` refused, for a person. */
   def refused(by: IllegalArgumentException): String =
     Option(by.getMessage).fold(by.toString)(_.stripPrefix("requirement failed: "))

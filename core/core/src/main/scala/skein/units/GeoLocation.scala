@@ -33,5 +33,4 @@ final case class GeoLocation(latitudeDeg: Double, longitudeDeg: Double, altitude
   )
 
 object GeoLocation:
-  /** m */
   val EarthRadiusM = 6378137.0

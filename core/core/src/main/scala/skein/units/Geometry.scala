@@ -17,16 +17,16 @@ object Vector3:
 
 /** A rotation from body FRD to world NED as a unit quaternion. */
 final case class Quaternion(w: Double, x: Double, y: Double, z: Double):
-  /** Rad, to the right. */
+  /** Roll angle of the body, rad, positive to the right. */
   def rollRad: Double = StrictMath.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
 
-  /** Rad, upwards. */
+  /** Pitch angle of the body, rad, positive upwards. */
   def pitchRad: Double = StrictMath.asin((2 * (w * y - x * z)).max(-1.0).min(1.0))
 
-  /** Rad from north towards east, −π to π. */
+  /** Yaw, rad from north towards east, −π to π. */
   def yawRad: Double = StrictMath.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
 
-  /** A vector of the body, in the world. */
+  /** Rotates a vector from the body frame to the world. */
   def toWorld(frd: Vector3): Vector3 =
     val (tx, ty, tz) = (
       2 * (y * frd.z - z * frd.y),
@@ -39,10 +39,10 @@ final case class Quaternion(w: Double, x: Double, y: Double, z: Double):
       frd.z + w * tz + x * ty - y * tx
     )
 
-  /** A vector of the world, in the body. */
+  /** Rotates a vector from the world frame to the body. */
   def toBody(ned: Vector3): Vector3 = Quaternion(w, -x, -y, -z).toWorld(ned)
 
-  /** First `inner`, then this: what is turned by `inner` against a body that is turned by this. */
+  /** The rotation composed of `inner` first, then this. */
   def *(inner: Quaternion): Quaternion = Quaternion(
     w * inner.w - x * inner.x - y * inner.y - z * inner.z,
     w * inner.x + x * inner.w + y * inner.z - z * inner.y,
@@ -50,7 +50,7 @@ final case class Quaternion(w: Double, x: Double, y: Double, z: Double):
     w * inner.z + x * inner.y - y * inner.x + z * inner.w
   )
 
-  /** The unit quaternion of this direction; that of zero length is no rotation. */
+  /** This quaternion scaled to length 1; of length zero, no rotation. */
   def normalized: Quaternion =
     val length = math.sqrt(w * w + x * x + y * y + z * z)
     if length == 0 then Quaternion.Identity else Quaternion(w / length, x / length, y / length, z / length)
@@ -58,6 +58,6 @@ final case class Quaternion(w: Double, x: Double, y: Double, z: Double):
 object Quaternion:
   val Identity: Quaternion = Quaternion(1, 0, 0, 0)
 
-  /** Level, with this heading, rad from north towards east. */
+  /** The level orientation with this heading, rad from north towards east. */
   def ofYaw(headingRad: Double): Quaternion =
     Quaternion(StrictMath.cos(headingRad / 2), 0, 0, StrictMath.sin(headingRad / 2))

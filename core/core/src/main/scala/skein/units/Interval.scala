@@ -8,8 +8,8 @@ final case class Interval(mean: String, half: String):
   def text: String = s"$mean ± $half"
 
 object Interval:
-  /** The half width with two significant digits, the mean to the same decimal place. Where the half width is
-    * 0 or not a number, or either is very large, the mean has up to four significant digits.
+  /** The half width with two significant digits, the mean to that decimal place. Where the half width is 0 or
+    * not a number, or either is very large, the mean has up to four significant digits.
     */
   def of(mean: Double, half: Double): Interval =
     if half == 0 then Interval(mean.significant(4), "0")

@@ -2,20 +2,20 @@ package skein.units
 
 import scala.util.control.ControlThrowable
 
-/** Code of a user's own threw something, or answered with what nobody can use.
+/** User code threw an exception, or returned a value that is unusable.
   *
   * @param whose for example `the policy of Scout 1`
   */
 final class OwnFailure(whose: String, reason: String, cause: Throwable | Null = null)
     extends RuntimeException(s"$whose $reason", cause):
 
-  /** The message alone: people read it, also where it has come from another process. */
+  /** The message alone: it is for people, also if it was sent by another process. */
   override def toString: String = getMessage
 
 object OwnFailure:
 
-  /** What a user's code answers; its mistakes are told with whose it is, and the line. That memory is full,
-    * or that the thread shall end, is told as it is, and who asked may end it by a [[ControlThrowable]].
+  /** Evaluates user code; an exception is rethrown with its origin and source line. Exhausted memory, the end
+    * of a thread and a [[ControlThrowable]] pass unchanged.
     *
     * @throws OwnFailure if it throws
     */
@@ -26,24 +26,25 @@ object OwnFailure:
       case asItIs: (OwnFailure | InterruptedException | OutOfMemoryError | ControlThrowable) => throw asItIs
       case mistake: Throwable => throw OwnFailure(whose, s"failed: ${text(mistake)}", mistake)
 
-  /** Whose it is, by its class: `the policy Chase`. */
+  /** Names the code by its kind and class: `the policy Chase`. */
   private[skein] def named(kind: String, own: Any): String = own.getClass.getSimpleName.stripSuffix("$") match
     case ""   => s"a $kind without a name"
     case name => s"the $kind $name"
 
-  /** The mistake, and where it was made if that is known. */
+  /** The mistake, and its source line if known. */
   private def text(mistake: Throwable): String = mistake match
     case shell: ExceptionInInitializerError if shell.getCause != null => text(shell.getCause)
     case _ => s"$mistake${line(own(mistake.getStackTrace.toVector)).fold("")(" (" + _ + ")")}"
 
-  /** Of what was asked, the frames of its own package, rather than those of libraries that it called. */
+  /** The stack frames in the package of the called user code, rather than those of libraries that it called.
+    */
   private def own(frames: Vector[StackTraceElement]): Vector[StackTraceElement] =
     val (asked, asking) = frames.span(frame => frame.getClassName != getClass.getName)
     // Without who asked, it was made elsewhere than thrown.
     val room = asked.findLast(isUsers).filter(_ => asking.nonEmpty).map(_.getClassName)
     room.fold(asked)(name => asked.filter(_.getClassName.startsWith(name.take(name.lastIndexOf('.') + 1))))
 
-  /** Where the user's code itself was, rather than what it called. */
+  /** The source line within user code, rather than within what it called. */
   def line(frames: Iterable[StackTraceElement]): Option[String] =
     frames
       .find(isUsers)
@@ -55,7 +56,7 @@ object OwnFailure:
   private def isOf(rooms: Seq[String], frame: StackTraceElement) =
     rooms.exists(frame.getClassName.startsWith)
 
-  /** The one that another error came of. */
+  /** The [[OwnFailure]] among an error's causes, if any. */
   def behind(error: Throwable): Option[OwnFailure] =
     Iterator
       .iterate(error)(_.getCause)

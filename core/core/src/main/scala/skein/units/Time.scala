@@ -34,15 +34,13 @@ object Span:
 
   inline def ofNanos(nanos: Long): Span = nanos
 
-  /** Rounds to the nearest nanosecond. */
   inline def ofMillis(millis: Double): Span = math.round(millis * 1e6)
 
-  /** Rounds to the nearest nanosecond. */
   inline def ofSeconds(seconds: Double): Span = math.round(seconds * 1e9)
 
   /** Reads a length of time with its unit, for example `100ms`, `1.5 s`, `2 min`, `1h`; zero or more.
     *
-    * @return or what was expected and came
+    * @return Left states what was expected and what was received
     */
   def parse(text: String): Either[String, Span] =
     text.trim match
@@ -85,6 +83,5 @@ object Span:
     inline def max(other: Span): Span   = math.max(span, other)
     inline def min(other: Span): Span   = math.min(span, other)
 
-    /** For Pekko's and Java's interfaces. */
     inline def toDuration: scala.concurrent.duration.FiniteDuration =
       scala.concurrent.duration.FiniteDuration(span, java.util.concurrent.TimeUnit.NANOSECONDS)

@@ -1,16 +1,18 @@
 package skein.vehicle
 
 /** Drives a car after a commanded velocity: steers onto the arc that takes the heading's error away within a
-  * time, and approaches the speed with a time constant, slower while it is turning. Told to stand still, it
-  * brakes. It never drives backwards: what is wanted behind it is reached by turning round.
+  * time, and approaches the speed with a time constant, slower while it is turning. At a commanded speed near
+  * zero it brakes. It never drives backwards: what is wanted behind it is reached by turning round.
   *
-  * @param headingS within which the heading's error would be gone
+  * @param headingS time within which it corrects the heading's error
   * @param speedS time constant of the speed
   * @param leastShare of the commanded speed, while the heading is far off
   */
 final case class CarDriver(headingS: Double = 0.8, speedS: Double = 0.5, leastShare: Double = 0.4):
 
-  /** @param northMps commanded velocity
+  /** The driver's controls.
+    *
+    * @param northMps commanded velocity north; `eastMps` east
     */
   def controls(
       car: SingleTrack,
@@ -32,5 +34,5 @@ final case class CarDriver(headingS: Double = 0.8, speedS: Double = 0.5, leastSh
     )
 
 object CarDriver:
-  /** Who is told to be slower than this is told to stand still. */
+  /** A commanded speed below this means "stand still", m/s. */
   private val StandsMps = 1e-3

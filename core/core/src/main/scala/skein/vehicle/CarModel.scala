@@ -3,8 +3,8 @@ package skein.vehicle
 import skein.signal.Kinematics
 import skein.units.*
 
-/** Predicts a [[DrivenCar]]. Setpoints that are no velocities are taken as "stand still". What no reading
-  * tells, the front wheels' angle and the tyres' deflection, is simulated along.
+/** Predicts a [[DrivenCar]]. A setpoint that is not a velocity means "stand still". The angle of the front
+  * wheels and the tyres' deflection, which readings lack, are simulated between readings.
   */
 final case class CarModel(driven: DrivenCar = DrivenCar()) extends VehicleModel[CarModel.Driving]:
   import CarModel.*
@@ -45,6 +45,8 @@ final case class CarModel(driven: DrivenCar = DrivenCar()) extends VehicleModel[
 
 object CarModel:
 
-  /** @param seen last: what of it the model does not move goes on as it was
+  /** The car's state, with the last reading.
+    *
+    * @param seen provides those components that the model does not change
     */
   final case class Driving private[vehicle] (state: CarState, seen: Kinematics)

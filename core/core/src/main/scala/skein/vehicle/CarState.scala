@@ -33,8 +33,7 @@ final case class CarState(
 final case class CarControls(throttle: Double, steering: Double, brake: Double)
 
 object CarControls:
-  /** Stands, or comes to a stand. */
   val Stop: CarControls = CarControls(0, 0, 1)
 
-  /** Nothing is touched: it rolls out. */
+  /** No control is applied: the car rolls to a stop. */
   val Neutral: CarControls = CarControls(0, 0, 0)

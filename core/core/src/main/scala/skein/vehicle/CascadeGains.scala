@@ -3,11 +3,11 @@ package skein.vehicle
 /** Gains of one controller: of the error, of its integral and of its rate of change. */
 final case class Pid(p: Double, i: Double = 0, d: Double = 0)
 
-/** One controller for each of three axes. */
+/** Gains of one controller for each of three axes, in the order of the loop. */
 final case class AxisGains(first: Pid, second: Pid, third: Pid)
 
 /** The gains that AirSim lets a client set, controller by controller (`set…ControllerGains`). The defaults
-  * are those of [[ControllerGains]], whose limits, throttle and discount go on to hold.
+  * are those of [[ControllerGains]], whose limits, throttle and discount still apply.
   *
   * @param rate roll, pitch, yaw: torque command per rad/s. AirSim takes the proportional gains only and
   *   ignores the others

@@ -1,6 +1,6 @@
 package skein.vehicle
 
-/** What the controllers of a [[TunedFlightController]] remember. Mutable. */
+/** Memory of the controllers of a [[TunedFlightController]]. Mutable, for one vehicle. */
 final private[vehicle] class CascadeMemory:
   import CascadeLoop.*
 
@@ -16,7 +16,7 @@ final private[vehicle] class CascadeMemory:
   /** Whether the controller was created in this update. */
   def isNew(loop: Int): Boolean = created(loop)
 
-  /** An update begins: creates anew the controllers of the axes whose mode has changed. */
+  /** Starts an update: resets the controllers of the axes whose mode has changed. */
   def begin(setpoint: Setpoint): Unit =
     note(setpoint.horizontal ne horizontal, CascadeMemory.Horizontal)
     note(setpoint.vertical ne vertical, CascadeMemory.Vertical)
@@ -59,7 +59,9 @@ private object CascadeMemory:
   private[vehicle] val Yaw      = Array(YawRate, YawAngle)
 
 private[vehicle] object CascadeLoop:
-  /** The controllers of the cascade but the vertical velocity's, whose integral needs [[QuadrotorState]]. */
+  /** Indices of the cascade's controllers, except the vertical velocity's, whose integral is in
+    * [[QuadrotorState]].
+    */
   inline val RollRate      = 0
   inline val PitchRate     = 1
   inline val YawRate       = 2

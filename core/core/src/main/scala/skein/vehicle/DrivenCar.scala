@@ -1,6 +1,6 @@
 package skein.vehicle
 
-/** A car with its driver, who follows commanded velocities. */
+/** A car with a driver model that follows commanded velocities. */
 final case class DrivenCar(
     car: SingleTrack = SingleTrack(),
     driver: CarDriver = CarDriver(),

@@ -11,9 +11,9 @@ import scala.annotation.unused
   * @param maxTilt rad; limit of roll and pitch
   * @param velocityP share of `maxTilt` per m/s
   * @param verticalP out of −1 … 1 per m/s, −1 being full and +1 no throttle
-  * @param verticalI the same per m/s and second
+  * @param verticalI gain of the integral, per m/s and second
   * @param verticalDiscount factor on the integral term at every update
-  * @param minThrottle what a velocity controller leaves at least, so that a falling vehicle can still tilt
+  * @param minThrottle least throttle of a velocity controller, so that a falling vehicle can still tilt
   * @param positionP share of `maxVelocity` per m
   * @param maxVelocity m/s
   * @param minAnglingThrottle below it all rotors get the throttle alone
@@ -41,7 +41,7 @@ final case class ControllerGains(
   * a vehicle tilted by α sees sin α · z as if it were wanted speed and tilts less: the response is slow, the
   * more the higher it flies.
   *
-  * [[TunedFlightController]] is the same cascade with gains of every controller's own.
+  * [[TunedFlightController]] is the same cascade with separate gains for every controller.
   *
   * @param stepS time between updates, s
   */
@@ -129,7 +129,7 @@ open class FlightController(val gains: ControllerGains, stepS: Double):
   private def verticalThrottle(state: QuadrotorState, setpoint: Setpoint, error: Double): Double =
     math.max((1 - climb(state, setpoint, error)) / 2, minThrottle)
 
-  /** What the vertical velocity's controller makes of an error, −1 to 1. */
+  /** Output of the vertical velocity's controller for an error, −1 to 1. */
   protected def climb(state: QuadrotorState, setpoint: Setpoint, error: Double): Double =
     // A controller just created does not integrate: its clock has not advanced yet.
     if state.verticalMode eq setpoint.vertical then
@@ -137,9 +137,9 @@ open class FlightController(val gains: ControllerGains, stepS: Double):
     else state.verticalIntegral = 0.0
     unit(verticalP * error + state.verticalIntegral)
 
-  /** What one controller of the cascade makes of its error, −1 to 1.
+  /** Output of one controller of the cascade for its error, −1 to 1.
     *
-    * @param loop which one; see the companion
+    * @param loop index in the companion
     * @param gain its share of `gains`
     */
   protected def respond(

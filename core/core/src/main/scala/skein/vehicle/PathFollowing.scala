@@ -7,15 +7,14 @@ import skein.units.{Span, Vector3}
   */
 object PathFollowing:
 
-  /** Between two velocities. */
   val Period: Span = Span.ofMillis(20)
 
-  /** Nearer than this, m, AirSim takes two places for one. */
+  /** Closer than this, m, AirSim treats two positions as one. */
   val DistanceAccuracyM = 0.5
 
-  /** How far ahead it aims where nobody said how far, m.
+  /** Default look-ahead distance, m.
     *
-    * @param isAdaptive whether it aims further, the further the vehicle has strayed from the path
+    * @param isAdaptive whether it grows with the vehicle's distance from the path
     */
   def lookaheadM(speedMps: Double, isAdaptive: Boolean): Double =
     (speedMps * Period.toSeconds * (if isAdaptive then 30 else 40)).max(DistanceAccuracyM * 1.5)

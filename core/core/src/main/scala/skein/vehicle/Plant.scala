@@ -1,8 +1,7 @@
 package skein.vehicle
 
-/** How a vehicle moves and what is read of it, written once: pure methods that are arithmetic on a case class
-  * of doubles. The scalar engine calls them; for searches they are compiled to SIMD as they stand
-  * (`skein.forward.PlantResponse`).
+/** A vehicle's motion and readings: pure methods that are arithmetic on a case class of doubles. The scalar
+  * engine calls them; for searches they are compiled to SIMD unchanged (`skein.forward.PlantResponse`).
   *
   * North and east are counted from where the vehicle starts. It rests there until the first command.
   *
@@ -10,33 +9,30 @@ package skein.vehicle
   */
 trait Plant[S]:
 
-  /** At the start. */
   def initial: S
 
   /** The state a time later.
     *
-    * @param northMps commanded velocity, which stands for that time
+    * @param northMps commanded velocity, constant during the step
     * @param dtS above 0, at most [[stepS]]
     */
   def step(state: S, northMps: Double, eastMps: Double, dtS: Double): S
 
-  /** What is read of it. */
   def read(state: S): PlaneReading
 
-  /** The longest step, s. Steps begin when a command begins to act, and after every such time. */
+  /** Longest step, s. Steps begin when a command takes effect, and every `stepS` after that. */
   def stepS: Double
 
-  /** From a command's arrival until the vehicle follows it, s. */
+  /** Time from a command's arrival until the vehicle follows it, s. */
   def deadTimeS: Double = 0
 
-/** A plant whose state can be set right by a reading, so that flights of it can be predicted from what was
-  * read: by `skein identify` and by the loop `predictive` ([[PlantModel]]). Its motion does not depend on
-  * where it is.
+/** A plant whose state can be corrected by a reading, so that its flights can be predicted from readings: by
+  * `skein identify` and by the loop `predictive` ([[PlantModel]]). Its motion does not depend on where it is.
   */
 trait ObservedPlant[S] extends Plant[S]:
 
-  /** The state with what is read of it replaced; what a reading does not tell (a steering angle, an
-    * integrator) stays.
+  /** The state corrected by a reading; what a reading does not contain (a steering angle, an integrator)
+    * stays.
     *
     * @param seen north and east from any origin
     */

@@ -2,8 +2,8 @@ package skein.vehicle
 
 import skein.units.OwnFailure
 
-/** One vehicle that flies by a [[Plant]], from one event to the next. Mutable. How its time is cut into calls
-  * of [[advance]] does not change the flight, but for rounding. What the plant's step throws is told as an
+/** A vehicle simulated by a [[Plant]], from one event to the next. Mutable. How its time is cut into calls of
+  * [[advance]] does not change the flight, but for rounding. An exception in the plant's step becomes an
   * [[skein.units.OwnFailure]].
   */
 final class PlantFlight[S](val plant: Plant[S]):
@@ -15,17 +15,17 @@ final class PlantFlight[S](val plant: Plant[S]):
   def state: S              = now
   def reading: PlaneReading = plant.read(now)
 
-  /** Places it; the command given here, m/s, acts from the start. */
+  /** Sets its state; the command given here, m/s, is in effect from the start. */
   def start(atS: Double, state: S, northMps: Double = 0, eastMps: Double = 0): Unit =
     now = state
     command(atS, northMps, eastMps)
 
-  /** A command, m/s, that acts from now on: dead time is the caller's. */
+  /** Sets the command in effect from now on, m/s; the caller accounts for dead time. */
   def act(atS: Double, northMps: Double, eastMps: Double): Unit =
     advance(atS)
     command(atS, northMps, eastMps)
 
-  /** Flies until this time, s; never earlier than the call before. */
+  /** Simulates until this time, s; times must not decrease. */
   def advance(untilS: Double): Unit =
     while untilS > stepAtS + plant.stepS do
       fly(plant.stepS)

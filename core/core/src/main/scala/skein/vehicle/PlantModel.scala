@@ -3,8 +3,8 @@ package skein.vehicle
 import skein.signal.Kinematics
 import skein.units.*
 
-/** Predicts by a plant, horizontally; the altitude goes on as it was seen. Setpoints that are no velocities
-  * are taken as "stand still". Orientation stays as seen.
+/** Predicts horizontal motion by a plant; altitude and orientation stay as in the last reading. A setpoint
+  * that is not a velocity means "stand still".
   */
 final case class PlantModel[S](plant: ObservedPlant[S]) extends VehicleModel[PlantModel.Flying[S]]:
   import PlantModel.*
@@ -47,9 +47,11 @@ final case class PlantModel[S](plant: ObservedPlant[S]) extends VehicleModel[Pla
 
 object PlantModel:
 
-  /** @param acting the commanded velocity that acts, m/s
-    * @param told the one that came last
-    * @param coming what has come and does not act yet, the oldest first
+  /** State of a prediction.
+    *
+    * @param acting the commanded velocity in effect, m/s
+    * @param told the last command received, m/s
+    * @param coming commands received and not yet in effect, the oldest first
     */
   final case class Flying[S] private[vehicle] (
       now: Kinematics,
@@ -59,7 +61,9 @@ object PlantModel:
       coming: Vector[Coming]
   )
 
-  /** @param in until it acts
+  /** A command within its dead time.
+    *
+    * @param in time until it takes effect
     */
   final case class Coming private[vehicle] (velocityNed: Vector3, in: Span)
 

@@ -1,6 +1,7 @@
 package skein.vehicle
 
-/** States of plants as numbers, to be kept and sent: of case classes of doubles, or of such, in their order.
+/** Converts states of plants to numbers, for storage and messages: case classes of doubles, or of such, in
+  * their order.
   */
 object PlantState:
   def numbers(state: Any): Vector[Double] = state match
@@ -8,9 +9,9 @@ object PlantState:
     case several: Product => several.productIterator.flatMap(numbers).toVector
     case _                => Vector.empty
 
-  /** A state of the same form.
+  /** A state of the form of `like`.
     *
-    * @throws IllegalArgumentException if it has another count of numbers, or cannot be made of its parts
+    * @throws IllegalArgumentException if the count of numbers differs, or the state rejects its parts
     */
   def of[S](like: S, numbers: Vector[Double]): S =
     val expected = PlantState.numbers(like).size

@@ -40,7 +40,9 @@ final class Quadrotor(
       control(state, setpoint)
     else stepInAir(state, setpoint, environment)
 
-  /** The same where nothing is near: arithmetic, which is compiled for many vehicles at once as it stands. */
+  /** [[step]] for a vehicle away from ground and obstacles: arithmetic, which is compiled unchanged to SIMD
+    * over many vehicles.
+    */
   private[skein] def stepInAir(state: QuadrotorState, setpoint: Setpoint, environment: Environment): Unit =
     move(state, environment)
     control(state, setpoint)
@@ -56,8 +58,8 @@ final class Quadrotor(
     (state.thrust0 + state.thrust1 + state.thrust2 + state.thrust3) * maxThrustN *
       densityRatio(state, environment)
 
-  /** The same vehicle with these gains. A state that it is to fly on must
-    * [[QuadrotorState.restartController]]; [[hovering]] goes on to mean the gains that it was made with.
+  /** This vehicle with other gains. A state that it takes over must [[QuadrotorState.restartController]];
+    * [[hovering]] still uses the original gains.
     */
   def tuned(cascade: CascadeGains): Quadrotor = Quadrotor(airframe, gains, stepS, Some(cascade))
 
@@ -110,8 +112,8 @@ final class Quadrotor(
     state.qw = StrictMath.cos(yawRad / 2); state.qz = StrictMath.sin(yawRad / 2)
     state
 
-  /** AirSim hands a rotor's output on twice, so a control acts two steps after its lag: 6 ms that the step
-    * responses show.
+  /** AirSim passes a rotor's output on twice, so a control takes effect two steps after its lag: 6 ms,
+    * visible in the step responses.
     */
   private def spinRotors(state: QuadrotorState): Unit =
     state.thrust0 = state.lagged0; state.thrust1 = state.lagged1
@@ -231,7 +233,6 @@ final class Quadrotor(
       state.qw = before.qw; state.qx = before.qx; state.qy = before.qy; state.qz = before.qz
 
 object Quadrotor:
-  /** AirSim's physics period, s. */
   val AirSimStepS = 0.003
 
   /** How far from 1 the cosine of the tilt may be in a landing: AirSim's `kAxisTolerance`. */

@@ -49,10 +49,11 @@ final class QuadrotorModel(quadrotor: Quadrotor, environment: Environment = Envi
 
 object QuadrotorModel:
 
-  /** AirSim's default vehicle in calm air. */
   val AirSim: QuadrotorModel = QuadrotorModel(Quadrotor.AirSim)
 
-  /** @param owed time that has passed since the last whole step of physics
+  /** A state of the vehicle and its controller.
+    *
+    * @param owed time since the last whole step of physics
     */
   final class Flying private[vehicle] (
       private[vehicle] val state: QuadrotorState,

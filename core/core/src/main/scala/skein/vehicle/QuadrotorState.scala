@@ -10,10 +10,8 @@ import skein.units.{Quaternion, Vector3}
   * World frame NED, body frame FRD, metres, seconds, radians.
   */
 final class QuadrotorState:
-  /** Position (north, east, down), m. */
   var x, y, z = 0.0
 
-  /** Velocity (north, east, down), m/s. */
   var vx, vy, vz = 0.0
 
   /** Acceleration (north, east, down), m/s², gravity included. */
@@ -32,7 +30,7 @@ final class QuadrotorState:
   /** Controls of the rotors, 0 to 1, that the controller has set last. */
   var control0, control1, control2, control3 = 0.0
 
-  /** The same after the rotors' lag. */
+  /** Controls of the rotors after their lag, 0 to 1. */
   var lagged0, lagged1, lagged2, lagged3 = 0.0
 
   /** Thrust over maximal thrust at sea-level density, as it will act in the next step. */
@@ -57,7 +55,6 @@ final class QuadrotorState:
     verticalMode = null
     cascadeMemory = null
 
-  /** How often it has touched the ground. */
   var contacts = 0
 
   def copy: QuadrotorState =
@@ -94,7 +91,6 @@ final class QuadrotorState:
   /** Angle between the rotors' thrust and straight up, rad. */
   def tiltRad: Double = StrictMath.acos((1 - 2 * (qx * qx + qy * qy)).max(-1.0).min(1.0))
 
-  /** Rad from north towards east, −π to π. */
   def yawRad: Double = StrictMath.atan2(2 * (qw * qz + qx * qy), 1 - 2 * (qy * qy + qz * qz))
 
   /** Places the vehicle elsewhere, at this yaw and level, its motion and controller untouched (as AirSim's

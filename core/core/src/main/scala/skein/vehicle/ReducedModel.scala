@@ -42,7 +42,6 @@ final case class ReducedModel(
   def corrected(state: PlaneReading, seen: PlaneReading): PlaneReading = seen
   def stepS: Double = if drags then ReducedModel.PieceS else ReducedModel.LongestPieceS
 
-  /** Whether it is a plain first-order lag. */
   def isLag: Boolean = !drags && !turns
 
   /** Within a piece of the flight, from its begin. */
@@ -68,13 +67,14 @@ final case class ReducedModel(
       across(alike, wantedVx, wantedVy, offVx, offVy, crossLeft - left, carryAcrossS - carriesS)
     else alike
 
-  /** Over what remains of an error that dies away the slower: drag takes the same of both. */
+  /** Integral of what remains of an error with the slower decay: drag reduces both components equally. */
   private def fasterLeft(spanS: Double) = StrictMath.exp(-fasterPerS * spanS)
 
-  /** Of what the velocity is off, the part across the command dies away at its own rate. Told to stand still,
-    * all dies away with the lag along.
+  /** The part of the velocity's error across the command decays at its own rate. If the command is to stand
+    * still, the whole error decays with the lag along.
     *
-    * @param leftMore of that part than of the rest, and for how much longer it carries, s
+    * @param leftMore by how much more of that part remains than of the rest, and for how much longer it
+    *   carries, s
     */
   private def across(
       alike: PlaneReading,
@@ -97,13 +97,13 @@ final case class ReducedModel(
     )
 
 object ReducedModel:
-  /** The longest flight under one value of the drag, s. */
+  /** Longest piece with a constant value of the drag, s. */
   val PieceS = 0.1
 
-  /** That without drag, s. */
+  /** Longest piece of a model without drag, s. */
   val LongestPieceS = 1.0
 
-  /** A plain first-order lag. */
+  /** A plain first-order lag with dead time, without drag. */
   def lag(gain: Double, lagS: Double, deadTimeS: Double): ReducedModel =
     ReducedModel(gain, lagS, deadTimeS, lagS, 0)
 

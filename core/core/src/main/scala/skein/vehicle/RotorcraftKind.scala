@@ -2,10 +2,10 @@ package skein.vehicle
 
 import skein.units.Span
 
-/** What a simulator's multirotors are.
+/** The kind of multirotor that a simulator flies.
   *
-  * @param stepS of every one of them, s
-  * @param make makes one, for one vehicle
+  * @param stepS step length of each, s
+  * @param make makes an instance for one vehicle
   */
 final class RotorcraftKind(val stepS: Double, val make: () => Rotorcraft)
 
@@ -13,7 +13,7 @@ object RotorcraftKind:
   /** AirSim's quadrotor, which serves any number of vehicles. */
   val AirSim: RotorcraftKind = of(Quadrotor.AirSim)
 
-  /** The same in steps of this length. */
+  /** [[AirSim]] with steps of this length. */
   def at(step: Span): RotorcraftKind = of(Quadrotor(stepS = step.toSeconds))
 
   private def of(quadrotor: Quadrotor) = RotorcraftKind(quadrotor.stepS, () => quadrotor)

@@ -3,55 +3,57 @@ package skein.vehicle
 import skein.signal.Kinematics
 import skein.units.{Span, Vector3}
 
-/** What roll and pitch are wanted for; each case names the two numbers it needs. */
+/** The meaning of a setpoint's two horizontal goals, `first` and `second`. */
 enum HorizontalMode:
-  /** None: the four goals are the controls of the four rotors, 0 to 1. */
+  /** The four goals are the controls of the four rotors, 0 to 1; roll and pitch are not controlled. */
   case Rotors
 
-  /** Roll rate and pitch rate, rad/s. */
+  /** Goals are roll rate and pitch rate, rad/s. */
   case Rates
 
-  /** Roll and pitch, rad. */
+  /** Goals are roll angle and pitch angle, rad. */
   case Angles
 
-  /** Velocity north and east, m/s. */
+  /** Goals are the velocities north and east, m/s. */
   case Velocity
 
-  /** Position north and east, m. */
+  /** Goals are the positions north and east, m. */
   case Position
 
-/** What thrust is wanted for. */
+/** The meaning of a setpoint's vertical goal, `third`. */
 enum VerticalMode:
-  /** Throttle of all rotors, 0 to 1. */
+  /** The goal is the throttle of all rotors, 0 to 1. */
   case Throttle
 
-  /** Velocity down, m/s. */
+  /** The goal is the velocity down, m/s, negative upwards. */
   case Velocity
 
   /** Position down (z of NED: negative above the origin), m. */
   case Position
 
-/** What yaw is wanted for. */
+/** The meaning of a setpoint's goal for yaw, `yawGoal`. */
 enum YawMode:
-  /** Yaw rate, rad/s. */
+  /** The goal is the yaw rate, rad/s, clockwise from above. */
   case Rate
 
   /** Yaw, rad from north towards east, reached the shorter way. */
   case Angle
 
-/** What a command makes of where its vehicle is: a goal for the flight controller. A [[Setpoint]] is one that
-  * never changes.
+/** A command as a function of the vehicle's state: yields goals for the flight controller. A [[Setpoint]] is
+  * one that never changes.
   */
 trait Guidance:
-  /** @param now computed only by who asks
+  /** The goal at this state.
+    *
+    * @param now evaluated only if needed
     */
   def setpoint(now: => Kinematics): Setpoint
 
   /** Time between two goals; absent where one is enough. */
   def period: Option[Span]
 
-/** What the flight controller is to reach: per axis a mode and its goal, as AirSim's SimpleFlight keeps them.
-  * The constructors in the companion bear the names of AirSim's commands.
+/** The goals of the flight controller: per axis a mode and its goal, as AirSim's SimpleFlight keeps them. The
+  * constructors in the companion bear the names of AirSim's commands.
   *
   * @param first the goal of `horizontal`: roll (rad, rad/s) or north (m, m/s)
   * @param second pitch or east
@@ -70,15 +72,14 @@ final case class Setpoint(
   def setpoint(now: => Kinematics): Setpoint = this
   def period: Option[Span]                   = None
 
-  /** The same with this yaw, rad from north. */
+  /** This setpoint with a yaw goal, rad from north. */
   def withYaw(yawRad: Double): Setpoint = copy(yaw = YawMode.Angle, yawGoal = yawRad)
 
-  /** The same with this yaw rate, rad/s. */
+  /** This setpoint with a yaw rate goal, rad/s. */
   def withYawRate(yawRateRadps: Double): Setpoint = copy(yaw = YawMode.Rate, yawGoal = yawRateRadps)
 
 object Setpoint:
 
-  /** Motors off. */
   val Disarmed: Setpoint = Setpoint(HorizontalMode.Rates, 0, 0, VerticalMode.Throttle, 0)
 
   /** Motors idle: AirSim's throttle of an armed vehicle that has no goal yet, two thirds of the one above
@@ -96,10 +97,10 @@ object Setpoint:
   def velocityZ(northMps: Double, eastMps: Double, downM: Double): Setpoint =
     Setpoint(HorizontalMode.Velocity, northMps, eastMps, VerticalMode.Position, downM)
 
-  /** Position hold: AirSim's `hover` at the place given, and what an unrenewed goal turns into. The vehicle
-    * settles 2 mm below ([[Quadrotor.hoverSagM]]). As in AirSim, the hold weakens as the yaw turns away from
-    * north: each axis takes only its own coordinate's error into the body frame, so at ±90° it brakes but
-    * does not return.
+  /** Position hold: AirSim's `hover` at the place given, and the goal after a command that was not renewed
+    * expires. The vehicle settles 2 mm below ([[Quadrotor.hoverSagM]]). As in AirSim, the hold weakens as the
+    * yaw turns away from north: each axis takes only its own coordinate's error into the body frame, so at
+    * ±90° it brakes but does not return.
     */
   def hold(positionNed: Vector3): Setpoint =
     Setpoint(

@@ -3,7 +3,7 @@ package skein.vehicle
 import skein.signal.Kinematics
 import skein.units.*
 
-/** Goes on as it was seen, for vehicles whose commands are unknown. */
+/** Predicts constant velocity, for vehicles whose commands are unknown. */
 object ConstantVelocity extends VehicleModel[Kinematics]:
   def start(seen: Kinematics): Kinematics = seen
 
@@ -14,19 +14,21 @@ object ConstantVelocity extends VehicleModel[Kinematics]:
 
   def kinematics(state: Kinematics): Kinematics = state
 
-/** Goes on at the same speed and turns on as between the last two readings, for vehicles whose commands are
+/** Predicts constant speed and the turn rate between the last two readings, for vehicles whose commands are
   * unknown.
   */
 object ConstantTurn extends VehicleModel[ConstantTurn.Turning]:
 
-  /** @param turnRateRadps of the horizontal velocity, from north towards east
+  /** State of a turning vehicle.
+    *
+    * @param turnRateRadps of the horizontal velocity, from north towards east
     * @param seen the last reading
     */
   final case class Turning(now: Kinematics, turnRateRadps: Double, seen: Kinematics)
 
   def start(seen: Kinematics): Turning = Turning(seen, 0, seen)
 
-  /** Integrates the circle exactly. */
+  /** Integrates along the circular arc in closed form. */
   def advanced(state: Turning, setpoint: Setpoint, span: Span): Turning =
     val velocity = state.now.velocityNed
     val t        = span.toSeconds

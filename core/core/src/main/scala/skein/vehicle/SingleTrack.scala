@@ -2,8 +2,8 @@ package skein.vehicle
 
 import skein.vehicle.Airframe.Gravity
 
-/** How a car moves: the single-track ("bicycle") model, whose two wheels of an axle are one, with tyres that
-  * answer late.
+/** How a car moves: the single-track ("bicycle") model, which merges the two wheels of an axle, with lagging
+  * tyres.
   *
   * A tyre pushes sideways in proportion to the angle by which it is deflected, up to what friction holds.
   * That angle follows the slip angle, the direction in which the tyre is drawn over the ground, while it
@@ -24,12 +24,12 @@ import skein.vehicle.Airframe.Gravity
   * within the 0.3 to 0.6 m of passenger cars' tyres; the rolling resistance of 0.015 of the weight, and the
   * air's, 0.5 · 1.2 kg/m³ · 0.6 m² / m.
   *
-  * A pure formula: the simulator, predictions and forward simulation by lanes compute it alike.
+  * A pure formula: the simulator, predictions and SIMD forward simulation compute it alike.
   * `SingleTrackSuite` holds it to its sources.
   *
   * @param rearM from the rear axle to the centre of mass
   * @param gyrationM radius of gyration about the vertical axis: the root of moment of inertia over mass
-  * @param relaxationM the way over which tyres answer
+  * @param relaxationM the distance over which tyres respond
   * @param wattPerKg of the engine
   */
 final case class SingleTrack(
@@ -48,17 +48,17 @@ final case class SingleTrack(
   /** From the centre of mass to the front axle. */
   def frontM: Double = wheelbaseM - rearM
 
-  /** What the brakes give, m/s². */
+  /** Deceleration by the brakes, m/s². */
   def brakeMps2: Double = friction * Gravity
 
-  /** What full throttle gives, m/s². */
+  /** Acceleration at full throttle, m/s². */
   def driveMps2(frontMps: Double): Double =
     (friction * Gravity / 2).min(wattPerKg / math.abs(frontMps).max(1.0))
 
-  /** By which it slows down if nothing is touched, m/s². */
+  /** Deceleration without any control, m/s². */
   def coastMps2(frontMps: Double): Double = rolling * Gravity + airPerM * frontMps * frontMps
 
-  /** The state after `dtS` under controls that stand. Steps of up to 20 ms are stable. */
+  /** The state after `dtS` under constant controls. Steps of up to 20 ms are stable. */
   def step(state: CarState, controls: CarControls, dtS: Double): CarState =
     val most       = mostSteeringRadPerS * dtS
     val wanted     = mostSteeredRad * controls.steering.max(-1.0).min(1.0)
@@ -101,5 +101,5 @@ final case class SingleTrack(
     )
 
 object SingleTrack:
-  /** Slower, tyres answer as if they rolled so fast. A car so slow hardly needs lateral forces. */
+  /** Below this speed, m/s, tyres respond as at this speed; so slow a car hardly needs lateral forces. */
   private val DampedMps = 5.0

@@ -1,7 +1,8 @@
 package skein.vehicle
 
-/** [[FlightController]] with gains, integrals and derivatives of every controller's own, as AirSim's is once
-  * a client has set gains. With [[CascadeGains.Default]] it flies as the plain one does, to the last bit.
+/** [[FlightController]] with separate gains, integrals and derivatives for every controller, as AirSim's is
+  * once a client has set gains. With [[CascadeGains.Default]] it flies as the plain one does, to the last
+  * bit.
   *
   * A controller (`PidController`, `StdPidIntegrator`): out = clip(P·e + I-term + D·de/dt, −1, 1); I-term ←
   * clip(I-term · discount + dt·e·I, −1, 1), where only the vertical velocity's is discounted. When the mode

@@ -3,12 +3,13 @@ package skein.onnx
 import skein.onnx.OnnxGraph.*
 import skein.policy.{Activation, LearnedPolicy, NeuralShape}
 
-/** Dense networks as ONNX writes them: what is seen, in SI units, to how to turn, −1 to 1. */
+/** Dense networks as ONNX graphs: from the observation in SI units to the share of the largest turn, −1 to 1.
+  */
 private[onnx] object DenseGraph:
-  /** A network of ours and its parameters, as [[NeuralShape]] lays them out. */
+  /** A network with its parameters, as [[NeuralShape]] lays them out. */
   type Network = (NeuralShape, Vector[Double])
 
-  /** Operators that are understood; what passes numbers on as they are is listed first. */
+  /** The supported operators, those that pass numbers on unchanged first. */
   val operators: Vector[String] = Vector(
     "Identity",
     "Cast",
@@ -32,10 +33,10 @@ private[onnx] object DenseGraph:
     "Clip"
   )
 
-  /** A graph as a network of [[LearnedPolicy]]. What it multiplies, adds and divides by between two layers is
-    * brought into their weights, in doubles.
+  /** Reads a graph as a network of [[LearnedPolicy]]. Multiplications, additions and divisions between two
+    * layers are folded into their weights, in doubles.
     *
-    * @return or why it is none
+    * @return Left states why the graph is no such network
     */
   def network(graph: OnnxGraph): Either[String, Network] =
     try
@@ -58,12 +59,13 @@ private[onnx] object DenseGraph:
   private sealed trait Value
   private final case class Fixed(tensor: Tensor) extends Value
 
-  /** What is made of the input: layers that are done, and sums that have no activation yet. */
+  /** Intermediate result of a walk along the graph: complete layers, and sums without an activation so far.
+    */
   private final case class Flow(layers: Vector[(Affine, Activation)], sums: Affine) extends Value:
     def activated(kind: Activation): Flow =
       Flow(layers :+ (sums, kind), Affine.scaled(Vector.fill(sums.rows)(1.0)))
 
-    /** Its numbers are beyond −1 and 1 where nothing squashed them last: then they are clipped. */
+    /** The complete network. An output that no activation has limited is clipped to −1 and 1. */
     def network: Network =
       if sums.rows != 1 then throw NotDense(s"expected one output, came ${sums.rows}")
       val isSquashed = layers.lastOption.exists(_._2.squashes) && sums.isIdentity
@@ -88,7 +90,6 @@ private[onnx] object DenseGraph:
 
     def isIdentity: Boolean = this == Affine.scaled(Vector.fill(rows)(1.0))
 
-    /** Sums of these. */
     def into(next: Affine): Affine =
       if next.weights.exists(_.size != rows) then
         throw NotDense(s"expected weights of $rows inputs, came ${next.weights.head.size}")
@@ -210,7 +211,7 @@ private[onnx] object DenseGraph:
       Some(Tensor(Vector(columns, rows), table_(tensor).transpose.flatten))
     case _ => None
 
-  /** As many as there are sums; one alone goes for all. */
+  /** One value per sum; a single value is repeated. */
   private def spread(tensor: Tensor, rows: Int, not: String => Nothing): Vector[Double] =
     if tensor.values.size == 1 then Vector.fill(rows)(tensor.values.head)
     else if tensor.values.size == rows && tensor.shape.last == rows then tensor.values
@@ -225,7 +226,7 @@ private[onnx] object DenseGraph:
       case _     =>
         flow.sums.each((weight, row) => quotient(weight, numbers(row)), (bias, row) => bias / numbers(row)))
 
-  /** A file's 32-bit float of a scale is taken for the scale, so that a network of ours comes back to the
+  /** A file's 32-bit float of a scale counts as the scale, so that Skein's own networks are restored bit for
     * bit.
     */
   private def quotient(one: Double, by: Double): Double = if one.toFloat == by.toFloat then 1 else one / by

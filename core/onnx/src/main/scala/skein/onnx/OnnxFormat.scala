@@ -6,16 +6,15 @@ import java.nio.{ByteBuffer, ByteOrder}
 import scala.collection.mutable
 import skein.onnx.OnnxGraph.*
 
-/** ONNX's bytes: protocol buffers, read and written by field numbers. */
+/** Reads and writes ONNX files: protocol buffers, by field numbers. */
 object OnnxFormat:
-  /** Read by every runtime since 2021. */
   private val IrVersion = 8L
   private val Opset     = 13L
 
-  /** What stands in another file, by its name, from a byte on, so many. */
+  /** Reads external tensor data: file name, offset, length in bytes. */
   type Beside = (String, Long, Long) => Either[String, Array[Byte]]
 
-  /** @return or why it is no model */
+  /** Reads a model; Left states why it is none. */
   def read(bytes: Array[Byte], beside: Beside): Either[String, OnnxGraph] =
     try
       val parts    = Parts(beside)
@@ -31,7 +30,7 @@ object OnnxFormat:
 
   private final class Mistake(reason: String) extends RuntimeException(reason)
 
-  /** Goes through a message's fields; what is not asked for is skipped. */
+  /** Visits a message's fields; skips those for which `field` is not defined. */
   private def each(bytes: Array[Byte])(field: PartialFunction[(Int, CodedInputStream), Unit]): Unit =
     val in  = CodedInputStream.newInstance(bytes)
     var tag = in.readTag()
@@ -39,9 +38,9 @@ object OnnxFormat:
       field.applyOrElse((WireFormat.getTagFieldNumber(tag), in), _ => in.skipField(tag): Unit)
       tag = in.readTag()
 
-  /** One number, or many packed: writers do either.
+  /** A single number, or several packed ones: writers do either.
     *
-    * @param size in bytes of a number alone; 0 where it varies
+    * @param size in bytes of a single number; 0 where it varies
     */
   private def several(in: CodedInputStream, size: Int)(one: CodedInputStream => Double): Vector[Double] =
     if WireFormat.getTagWireType(in.getLastTag) != WireFormat.WIRETYPE_LENGTH_DELIMITED then Vector(one(in))
@@ -129,7 +128,7 @@ object OnnxFormat:
         )
       (name, Tensor(dimensions, values))
 
-  /** Other types than these have no numbers for a network's weights. */
+  /** The numbers of a tensor; other element types cannot hold a network's weights. */
   private def unpacked(element: Int, raw: Array[Byte]): Vector[Double] =
     val buffer                         = ByteBuffer.wrap(raw).order(ByteOrder.LITTLE_ENDIAN)
     def all(size: Int)(one: => Double) = Vector.fill(raw.length / size)(one)

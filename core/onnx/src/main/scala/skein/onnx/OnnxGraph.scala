@@ -1,9 +1,9 @@
 package skein.onnx
 
-/** An ONNX model, as far as small dense networks need it. Source: onnx.proto3 of ONNX 1.23, by the numbers of
-  * its fields.
+/** An ONNX model, limited to what small dense networks need. Source: onnx.proto3 of ONNX 1.23, by the numbers
+  * of its fields.
   *
-  * @param metadata what its maker noted, by key
+  * @param metadata notes by the program that wrote it, by key
   */
 final case class OnnxGraph(
     nodes: Vector[OnnxGraph.Node],
@@ -14,11 +14,12 @@ final case class OnnxGraph(
 )
 
 object OnnxGraph:
-  /** Element types. */
   val Float32 = 1
   val Float64 = 11
 
-  /** @param inputs names of values; an empty one is left out
+  /** An operation of the graph.
+    *
+    * @param inputs names of values; an empty name stands for an omitted one
     * @param attributes by name
     */
   final case class Node(
@@ -35,17 +36,18 @@ object OnnxGraph:
     case Constant(value: Tensor)
     case Other
 
-  /** @param values row by row
+  /** A constant array of numbers.
+    *
+    * @param values row by row
     */
   final case class Tensor(shape: Vector[Int], values: Vector[Double])
 
   /** An input or output of the model.
     *
     * @param element its type
-    * @param shape absent where any length goes; none where it is not told
+    * @param shape lengths, each absent where any length is allowed; None where the model does not state it
     */
   final case class Port(name: String, element: Int, shape: Option[Vector[Option[Int]]]):
-    /** For a person. */
     def text: String =
       s"'$name' of " + shape.fold("a shape that is not told")(
         _.map(_.fold("any")(_.toString)).mkString("(", ", ", ")")

@@ -10,9 +10,9 @@ import skein.onnx.OnnxGraph.{Float32, Port}
 import skein.policy.*
 import skein.units.Expect
 
-/** A policy of an ONNX file. It is shown [[PlanarObservation.fromOwnHeading]], as environments show it, and
-  * its one number says how to turn: as a share, −1 to 1, of the most that it turns until the next decision
-  * (pursuer) or at once (evader).
+/** A policy of an ONNX file. Its input is [[PlanarObservation.fromOwnHeading]], as in environments; its
+  * single output is a share, −1 to 1, of the largest turn: until the next decision (pursuer) or of one
+  * decision (evader).
   *
   * @param role as the file notes it
   * @param family `learned:…` where its network is one of ours
@@ -23,7 +23,7 @@ final case class OnnxPolicy(role: Option[String], family: PolicyFamily, paramete
 object OnnxPolicy:
   val Suffix = ".onnx"
 
-  /** Families of policies that a runtime decides for. */
+  /** Prefix of the names of policies that an ONNX runtime evaluates. */
   val Prefix = "onnx:"
 
   private val MostBytes = 64L << 20
@@ -31,12 +31,11 @@ object OnnxPolicy:
   /** The most that a pursuer turns, unless its file says otherwise: as in environments. */
   private val TurnRateRadPerS = 1.0
 
-  /** Notes in files of ours. */
   private val RoleNote = "skein.role"
   private val RateNote = "skein.turnRateRadPerS"
   private val TurnNote = "skein.turnRad"
 
-  /** @return or what was expected, what came, and where */
+  /** Reads a policy file; Left states what was expected, what was found, and where. */
   def read(path: String): Either[String, OnnxPolicy] =
     (for
       file  <- attempted(Path.of(path).toAbsolutePath.normalize)
@@ -51,9 +50,9 @@ object OnnxPolicy:
         case Left(reason)               => other(file, bytes, graph, reason)
     yield found).left.map(mistake => s"$path: $mistake")
 
-  /** The family of a policy that a runtime decided for, as it was recorded.
+  /** The family of a recorded policy that a runtime evaluated.
     *
-    * @return or why it is not there any more
+    * @return Left states why it is not available any more
     */
   def recorded(name: String): Either[String, PolicyFamily] =
     name.stripPrefix(Prefix).split(":", 2) match
@@ -67,10 +66,10 @@ object OnnxPolicy:
           )
       case _ => Left(s"expected ${Prefix}SHA-256:FILE, came '$name'")
 
-  /** A network as a file.
+  /** Writes a network as an ONNX file.
     *
-    * @param role that it is for
-    * @return or why the policy is none
+    * @param role for which it was trained
+    * @return Left states why the policy is no network
     */
   def write(policy: HeadingPolicy, role: String): Either[String, Array[Byte]] =
     (policy match
@@ -87,7 +86,7 @@ object OnnxPolicy:
         )
       ))
 
-  /** The same, which is shown more and makes nothing of it. */
+  /** An equal network with more inputs, whose weights are zero. */
   private def seeingMore(policy: NeuralPolicy): LearnedPolicy =
     val first        = policy.shape.widths(1)
     val (seen, rest) = policy.parameters.splitAt(first * (NeuralShape.Inputs + 1))
@@ -113,7 +112,7 @@ object OnnxPolicy:
       all  <- attempted(Files.readAllBytes(file))
     yield all
 
-  /** Weights that stand in another file of the same folder. */
+  /** Reads weights from another file in the model's folder. */
   private def beside(file: Path)(name: String, offset: Long, length: Long): Either[String, Array[Byte]] =
     val other = Path.of(name)
     if other.isAbsolute || other.getNameCount != 1 || name == ".." then
@@ -163,7 +162,7 @@ object OnnxPolicy:
     val Vector(rate, turn) = LearnedPolicy.mostTurn(role, TurnRateRadPerS): @unchecked
     Vector(note(RateNote).getOrElse(rate), note(TurnNote).getOrElse(turn))
 
-  /** A model that is no network of ours, for whoever runs models. */
+  /** A model that is not one of Skein's networks, evaluated by a [[skein.policy.ModelRunner]]. */
   private def other(
       file: Path,
       bytes: Array[Byte],
@@ -207,7 +206,9 @@ object OnnxPolicy:
       case Array(share)                   => Left(s"expected a number from -1 to 1, came $share")
       case others                         => Left(s"expected one number, came ${others.length}")
 
-  /** Any thread. Fails where the model does, and where its number is none. */
+  /** A policy that a runtime evaluates; thread-safe. Throws where the model fails or its output is not a
+    * number.
+    */
   private final class RunPolicy(
       asked: Array[Float] => Either[String, Array[Float]],
       turnRateRadPerS: Double,

@@ -4,13 +4,13 @@ import java.util.concurrent.atomic.{AtomicBoolean, AtomicLong}
 import java.util.concurrent.locks.LockSupport
 import scala.util.{Failure, Success, Try}
 
-/** Tests of programs that run by the clock and cannot be told the time: they fail where the machine stops
-  * them for a while, as it may a process on shared cores. Such a failure says nothing of the program.
+/** Tests of programs that depend on the real clock: they fail where the machine suspends them, as it may on
+  * shared cores. Such a failure says nothing about the program.
   */
 trait Conclusive extends munit.FunSuite:
 
-  /** Runs a test again, twice at most, where it fails and the machine stood still for more than 100 ms
-    * meanwhile. Where it does each time, the test is left out, and counted as inconclusive.
+  /** Repeats a failed test, at most twice, if the machine was suspended for more than 100 ms meanwhile. A
+    * test that fails each time so is skipped, and counted as inconclusive.
     */
   def conclusive(test: => Unit): Unit =
     def attempt(left: Int): Unit =
@@ -30,7 +30,7 @@ trait Conclusive extends munit.FunSuite:
 private object Conclusive:
   val MostStandstillMs = 100L
 
-  /** What came of some work, and the longest time, ms, by which a thread that sleeps for 2 ms was late
+  /** The result of some work, and the longest time, ms, by which a thread that sleeps for 2 ms woke late
     * meanwhile: one thread for each core.
     */
   def standstillMs[A](work: => A): (A, Long) =

@@ -2,17 +2,23 @@ package skein.testing
 
 // How a suite is run: `project/TestGroups.scala` reads it from the suite's class file.
 
-/** Measures time, or changes how threads of its JVM are scheduled: nothing else runs meanwhile. */
+/** Marks suites that measure time, or change how threads of their JVM are scheduled: no other suite runs
+  * meanwhile.
+  */
 trait Timing extends Unhurried
 
-/** Mostly waits, for other programs or for the real clock: runs beside those that compute. */
+/** Marks suites that mostly wait, for other programs or for the real clock: they run beside those that
+  * compute.
+  */
 trait Waiting extends Unhurried
 
-/** Takes long: whole processes, foreign programs, minutes by the clock. Run by `testAll` alone, in a JVM of
-  * its own, which it may change for good: before a live flight its compilers are told to give way, and on a
-  * busy machine everything behind it would be interpreted.
+/** Marks long suites: whole processes, foreign programs, minutes by the clock. Only `testAll` runs them, each
+  * in its own JVM, whose state they may change permanently: before a live flight the JIT compilers get a low
+  * priority, and on a busy machine later code would stay interpreted.
   */
 trait Lengthy extends Unhurried
 
-/** Computes for so long that optimising it pays, or by vectors, which are slow until they are optimised. */
+/** Marks suites that compute long enough to profit from JIT optimisation, or by vectors, which are slow
+  * before it.
+  */
 trait Optimised extends Unhurried

@@ -8,17 +8,16 @@ import munit.Assertions.assume
 import scala.sys.process.{Process, ProcessLogger}
 import scala.util.Using
 
-/** Packages of PyPI in a virtual environment of their own, kept in the user's cache under their versions'
-  * names.
+/** Packages of PyPI in their own virtual environment, kept in the user's cache under their versions' names.
   *
-  * @param imports what Python can import when all is there
-  * @param scripts a resource beside which scripts lie, if there are any
-  * @param installs what `pip install` is called with, one call after the other
+  * @param imports what Python can import once all is installed
+  * @param scripts a resource in the folder of the test scripts, if there are any
+  * @param installs arguments of successive calls of `pip install`
   */
 final class PythonEnvironment(imports: String, scripts: Option[String], installs: Seq[String]*):
   private lazy val resources = scripts.map(PythonEnvironment.folderOf)
 
-  /** The environment's Python; whatever test asks for it is left out where there is none. */
+  /** The environment's Python; skips the calling test if there is none. */
   def python(): Path =
     val made = install()
     assume(made.isRight, s"$imports cannot be installed here: ${made.left.getOrElse("")}")
@@ -51,7 +50,7 @@ final class PythonEnvironment(imports: String, scripts: Option[String], installs
 
   /** Runs one of the scripts.
     *
-    * @return its exit status, and what it wrote
+    * @return its exit status, and its output
     */
   def run(script: String, arguments: String*): (Int, String) =
     val output  = StringBuilder()
@@ -59,7 +58,7 @@ final class PythonEnvironment(imports: String, scripts: Option[String], installs
     val status  = process(command).!(ProcessLogger(line => output.append(line).append('\n'): Unit))
     (status, output.toString)
 
-  /** The package's modules are compiled as they are imported: most never are. */
+  /** Installs packages without compiling their modules: most are never imported. */
   private def pip(python: Path, packages: Seq[String]): Either[String, Unit] =
     ran(
       Seq("python3", "-m", "pip", "--python", python.toString, "install", "--quiet", "--no-compile") ++
@@ -78,7 +77,7 @@ final class PythonEnvironment(imports: String, scripts: Option[String], installs
 
 object PythonEnvironment:
 
-  /** Where a resource's folder lies: what is in a jar is unpacked, for as long as this process runs. */
+  /** Folder of a resource; a jar's content is extracted for the lifetime of this process. */
   private def folderOf(resource: String): Path =
     val found = getClass.getResource(resource).toURI
     if found.getScheme != "jar" then Path.of(found).getParent

@@ -4,7 +4,7 @@ import java.nio.file.{Files, Path}
 import scala.jdk.CollectionConverters.*
 import scala.util.Using
 
-/** Folders for a suite's tests, deleted with what is in them when the suite ends. */
+/** Temporary folders for a suite's tests, deleted with their contents when the suite ends. */
 trait TemporaryFolders extends munit.FunSuite:
 
   private object parent extends Fixture[Path]("temporary folders"):
@@ -22,8 +22,6 @@ trait TemporaryFolders extends munit.FunSuite:
 
   override def munitFixtures: Seq[munit.AnyFixture[?]] = super.munitFixtures :+ parent
 
-  /** A new one, which is empty. */
   protected def temporaryFolder(): Path = Files.createTempDirectory(parent(), "test")
 
-  /** One for each test. */
   protected val folder: FunFixture[Path] = FunFixture[Path](_ => temporaryFolder(), _ => ())

@@ -2,6 +2,6 @@ package skein.testing
 
 import scala.concurrent.duration.*
 
-/** Takes long on a busy machine: its tests are ended only where they hang. */
+/** Marks slow suites: the time limit of their tests only ends those that hang. */
 trait Unhurried extends munit.FunSuite:
   override def munitTimeout: Duration = 10.minutes

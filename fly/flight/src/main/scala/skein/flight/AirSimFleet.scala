@@ -14,13 +14,13 @@ import skein.signal.LatencyProfile
 import skein.units.*
 import skein.units.Decimals.fixed
 
-/** The vehicles of flights in a simulator that speaks AirSim's wire.
+/** The vehicles of flights in a simulator that speaks AirSim's wire protocol.
   *
-  * @param startsAirborne whether the simulator can put vehicles into the air; otherwise they climb to their
+  * @param startsAirborne whether the simulator can place vehicles in the air; otherwise they climb to their
   *   starts
-  * @param calledOff why a flight, by its name, goes no further while its vehicles are brought to their starts
-  * @param isWatched whether images and clouds are offered that are not recorded
-  * @param tell says something to a person
+  * @param calledOff why a flight, by its name, must not go on while its vehicles move to their starts
+  * @param isWatched whether images and clouds that are not recorded are still offered to the recorder
+  * @param tell shows a line to the user
   */
 private[flight] final class AirSimFleet(
     transport: Transport,
@@ -33,8 +33,8 @@ private[flight] final class AirSimFleet(
 )(using system: ActorSystem):
   import system.dispatcher
 
-  /** Brings them to their starts, and connects them over the link of the plan. What is opened for that is to
-    * be closed.
+  /** Brings the vehicles to their starts, and connects them over the link of the plan. The connections are
+    * added to `opened`, to be closed with it.
     */
   def connect(
       plan: FlightPlan,
@@ -82,7 +82,7 @@ private[flight] final class AirSimFleet(
       films
     )
 
-  /** What the scenario's eyes make of a vehicle's cameras. */
+  /** The cameras of a vehicle that the scenario's recognisers use. */
   private def look(
       plan: FlightPlan,
       vehicle: VehicleClient,
@@ -100,7 +100,7 @@ private[flight] final class AirSimFleet(
         log.image
       )
 
-  /** Its cameras that nobody decides by. */
+  /** The vehicle's cameras that are only filmed, not used by decisions. */
   private def film(
       plan: FlightPlan,
       vehicle: VehicleClient,
@@ -136,7 +136,7 @@ private[flight] final class AirSimFleet(
       )
       .map(contacts => opened.closing(contacts)(_.close()): Unit)
 
-  /** Over a connection of its own, without the link: this is not part of the flight. */
+  /** Prepares the vehicles over a separate connection without the link: this is not part of the flight. */
   private def prepare(plan: FlightPlan, address: Address): Future[Vector[VehicleClient]] =
     val client      = AirSimClient(RpcClient(transport, address, clock))
     val preparation = Preparation(client, clock, () => calledOff(plan.id))
@@ -146,7 +146,7 @@ private[flight] final class AirSimFleet(
       .flatMap(result => client.close().map(_ => result))
       .map(_.fold(reason => throw CannotFly(reason), identity))
 
-  /** The emulated link, if the flight is to have one. */
+  /** Starts the emulated link, if the flight has one. */
   private def between(plan: FlightPlan, simulator: Address): Future[Option[LinkProxy]] =
     if plan.link == LatencyProfile.none then Future.successful(None)
     else
@@ -167,15 +167,17 @@ private[flight] final class AirSimFleet(
     )
     AirSimClient(rpc, timeout = AirSimFleet.timeout(plan.loop))
 
-/** How long AirSim is waited for, and what of its client a recording keeps. */
+/** Time-outs of AirSim's client, and the events of the client that a recording keeps. */
 object AirSimFleet:
-  /** Of every question of a loop. While the simulator stands still nothing ages, so `paused` waits. */
+  /** Time-out of every request of a loop. While the simulator stands still readings do not age, so `paused`
+    * waits longer.
+    */
   private def timeout(loop: AnyLoop): Span =
     if loop == LoopKind.Paused then Span.ofSeconds(3) else Asking.Timeout
 
-  /** Asks a simulator for its vehicles, over a connection of its own.
+  /** Requests a simulator's vehicles, over a separate connection.
     *
-    * @return or that it does not answer, or which of a fleet's vehicles it has not
+    * @return Left states that it does not answer, or which of a fleet's vehicles it lacks
     */
   def missing(fleet: Fleet, at: Address, transport: Transport, clock: Clock)(using
       system: ActorSystem
@@ -191,7 +193,6 @@ object AirSimFleet:
             case names    => Left(AirSimError.unknown(names, there))
       .flatMap(answer => client.close().map(_ => answer))
 
-  /** Of the client that flies a loop. */
   def rpcSettings(loop: AnyLoop): RpcSettings = loop match
     // Each command must reach the simulator before the step that follows it: one ordered connection.
     case LoopKind.Paused => RpcSettings(controlConnections = 1)
@@ -199,7 +200,7 @@ object AirSimFleet:
 
   private val anyPort = Address("127.0.0.1", 0)
 
-  /** What of the client's events a recording keeps; failed calls are recorded by whoever called. */
+  /** The record of a client's event, if a recording keeps it; failed calls are recorded by their callers. */
   private def eventOf(event: RpcEvent): Option[(EventKind, String)] = event match
     case RpcEvent.Disconnected(lane, connection, reason) =>
       Some(EventKind.Disconnected -> s"$lane connection $connection: $reason")

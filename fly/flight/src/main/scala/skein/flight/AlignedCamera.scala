@@ -6,8 +6,8 @@ import skein.airsim.{Eyes, Image, Shot}
 import skein.rpc.RpcError
 import skein.signal.{ClockAlignment, Stamped}
 
-/** A camera, and how the simulator's clock stands to ours by the times of its images: which of two is newer,
-  * also across a restart of the simulator. From any thread.
+/** A camera with the estimated offset of the simulator's clock from its images: decides which of two images
+  * is newer, also across a restart of the simulator. Thread-safe.
   */
 private[flight] final class AlignedCamera(eyes: Eyes, camera: String):
   private val shot   = Shot(camera)
@@ -22,5 +22,5 @@ private[flight] final class AlignedCamera(eyes: Eyes, camera: String):
   def isNewer(one: Stamped[?], other: Stamped[?]): Boolean =
     clocks.get.getOrElse(ClockAlignment.of(one)).isNewer(one, other)
 
-  /** How often the simulator was started again, as its clock shows. */
+  /** Number of the simulator's restarts, as its clock shows. */
   def restarts: Int = clocks.get.fold(0)(_.restarts)

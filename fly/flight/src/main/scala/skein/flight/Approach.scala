@@ -10,14 +10,14 @@ import skein.units.*
 import skein.units.Decimals.fixed
 import skein.vehicle.GoTo
 
-/** Brings one vehicle to a place by velocity commands, turns it to the north on the way, and lets it hover
+/** Moves one vehicle to a position by velocity commands, turns it to the north on the way, and lets it hover
   * there.
   *
-  * Not by position commands: AirSim's hold of a position works only while the vehicle looks north, and at
-  * more than 90° of yaw it drives the vehicle away. Each command replaces the one before; at most two are
-  * under way.
+  * Position commands do not serve: AirSim's hold of a position works only while the vehicle looks north, and
+  * at more than 90° of yaw it drives the vehicle away. Each command replaces the one before; at most two are
+  * unanswered.
   *
-  * @param calledOff why it goes no further, asked at every step
+  * @param calledOff why it must stop, evaluated at every step
   */
 private[flight] final class Approach(
     name: String,
@@ -30,10 +30,10 @@ private[flight] final class Approach(
   import Approach.*
   import system.dispatcher
 
-  /** Until the vehicle hovers within `limits` of the goal.
+  /** Moves the vehicle until it hovers within `limits` of the goal.
     *
     * @param goalNed in the frame of `vehicle`
-    * @return how it was seen last; `Left` where a call failed, or the vehicle was not there in twice the time
+    * @return the last reading; `Left` where a call failed, or the vehicle was not there in twice the time
     *   that it needs
     */
   def to(goalNed: Vector3, limits: Limits): Future[Either[String, Kinematics]] =
@@ -97,7 +97,7 @@ private[flight] final class Approach(
 private[flight] object Approach:
   private type Move = Future[Either[VehicleError, Boolean]]
 
-  /** How near to its goal a vehicle has to be, how slow, and how well it looks north. */
+  /** Tolerances of an arrival: distance from the goal, speed, and deviation of the yaw from north. */
   final case class Limits(off: Metres, speed: MetresPerSecond, yaw: Radians)
 
   private final case class Goal(placeNed: Vector3, limits: Limits, until: Instant):
@@ -106,23 +106,23 @@ private[flight] object Approach:
         state.velocityNed.norm <= limits.speed.value &&
         math.abs(state.orientation.yawRad) <= limits.yaw.value
 
-  /** On the way. */
   val Passing: Limits = Limits(Metres(1), MetresPerSecond(0.5), Radians(math.toRadians(10)))
 
-  /** At a start. A flight may begin 0.3 m off and at 0.1 m/s; a hover moves a little more before it settles.
+  /** Limits at a start. A flight may begin 0.3 m off and at 0.1 m/s; a hover moves a little more before it
+    * settles.
     */
   val AtRest: Limits = Limits(Metres(0.15), MetresPerSecond(0.05), Radians(math.toRadians(3)))
 
   private val Cruise = MetresPerSecond(5)
 
-  /** Of one command; should the next one never come, the vehicle hovers after it. */
+  /** Duration of one command; if the next one never arrives, the vehicle hovers after it. */
   private val Lasts = Span.ofSeconds(1)
 
   private val Every = Span.ofMillis(100)
 
-  /** Beyond twice the time of the way. */
+  /** Time allowed beyond twice that of the way. */
   private val Patience = Span.ofSeconds(40)
 
-  /** How often a vehicle that hovers is looked at, and how often in a row it has to be where it should. */
+  /** Limit of readings of a hovering vehicle, and how many in a row must be within the limits. */
   private val Looks     = 40
   private val GoodLooks = 10

@@ -17,13 +17,13 @@ import skein.scenario.Eye
 import skein.signal.{LatencySampler, SplitMix64, Stamped}
 import skein.units.*
 
-/** What an [[Eye]] makes of its vehicle's camera, as a sensor:
-  * `frames ~> recognise ~> fuse ~> newest belief`, beside the loop, which waits for none of it. Images come
-  * on connections of their own. Every image of which nothing comes is an event.
+/** The estimate of an [[Eye]] from its vehicle's camera, as a sensor: `frames ~> recognise ~> fuse ~> newest
+  * belief`, beside the loop, which does not wait for it. Images use separate connections. Every image without
+  * a result is recorded as an event.
   *
   * @param eyes of the vehicle
-  * @param seed of how long recognition takes
-  * @param seen is shown each image; must not wait for anything
+  * @param seed of the durations of recognition
+  * @param seen called with each image; must not block
   */
 private[skein] final class CameraSensor(
     val eye: Eye,
@@ -52,12 +52,12 @@ private[skein] final class CameraSensor(
   private val missed        = LongAdder()
   private val over          = Promise[Done]()
 
-  /** Completes when it was closed and all that was asked for has come to something. */
+  /** Completes after it was closed, once every requested image has a result or has failed. */
   def ended: Future[Done] = over.future
 
   def counts: Counts = Counts(due.sum, missed.sum, lost.sum, images)
 
-  /** Looks on until it is closed. */
+  /** Requests images periodically until it is closed. */
   def run(): Unit =
     val ticks = Source
       .fromGraph(Metronome(clock.now(), eye.every, clock))
@@ -91,13 +91,13 @@ private[skein] final class CameraSensor(
     stop.shutdown()
     Future.successful(Done)
 
-  /** What is believed now. */
+  /** The sensor that returns the present estimate. */
   val sensor: Sensor = new Sensor:
     def columns: Vector[String]                                       = Eye.Columns
     def read(): Future[Either[VehicleError, Stamped[IArray[Double]]]] =
       Future.successful(newest.get.toRight(VehicleError.Refused("nothing was seen yet")))
 
-  /** For while the simulator stands still: takes an image and answers when it has been looked at. */
+  /** The sensor for a simulator that stands still: takes an image and completes after recognition. */
   val looking: Sensor = new Sensor:
     def columns: Vector[String]                                       = Eye.Columns
     def read(): Future[Either[VehicleError, Stamped[IArray[Double]]]] =
@@ -177,17 +177,16 @@ private[skein] final class CameraSensor(
 
 private[skein] object CameraSensor:
 
-  /** What became of the images of an eye. Once it has ended, each that was due is one of the others.
+  /** Counts of an eye's images. After its end, each due image is in one of the other counts.
     *
-    * @param missed never asked for, since others were on their way
-    * @param lost of which nothing came: the call failed, recognition failed or was late, or a newer one came
-    *   first
+    * @param missed not requested, since others were on their way
+    * @param lost without a result: the call failed, recognition failed or was late, or a newer one was
+    *   received first
     * @param searched whether or not anything was found in them
     */
   final case class Counts(due: Long, missed: Long, lost: Long, searched: Long):
     def asked: Long = due - missed
 
-  /** A detection. */
   private final case class Seen(
       image: Stamped[Image],
       polar: PolarMeasurement,
@@ -197,7 +196,7 @@ private[skein] object CameraSensor:
   ):
     def measured = polar.seenFrom(image.validAt, image.value.positionNed, image.value.orientation)
 
-    /** As [[Eye.Columns]]. */
+    /** The estimate as a sensor's reading, with [[Eye.Columns]]. */
     def told(belief: Belief): Stamped[IArray[Double]] =
       import image.value.{orientation as turned, positionNed as camera}
       image

@@ -4,13 +4,13 @@ import scala.concurrent.Future
 import skein.port.{SteppedTime, VehiclePort}
 import skein.signal.ClockAlignment
 
-/** The vehicles of a flight, reached over a wire and at their starts.
+/** The vehicles of a flight, connected and at their starts.
   *
   * @param where the vehicles are, for a person
   * @param isOther see [[SimulatorWatchdog]]
-  * @param cameras what recognises in their cameras' images
+  * @param cameras with recognisers
   * @param films of their other cameras
-  * @param clocks the vehicles' clock against the controller's, where it is known already
+  * @param clocks the vehicles' clock against the controller's, if it is known already
   */
 private[flight] final case class ConnectedFleet(
     vehicles: Vector[VehiclePort],
@@ -23,5 +23,5 @@ private[flight] final case class ConnectedFleet(
     clocks: Option[ClockAlignment] = None
 )
 
-/** Why a flight cannot be flown, as a line for a person. */
+/** A flight cannot be started; the reason is a line for the user. */
 private[flight] final case class CannotFly(reason: String) extends RuntimeException(reason)

@@ -8,8 +8,8 @@ import skein.record.{Event, EventKind, Recorder}
 import skein.units.*
 import skein.units.Decimals.fixed
 
-/** Asks the simulator once a period what each vehicle has touched, and records it. It has a connection of its
-  * own, without the link: this is no part of the flight.
+/** Requests each vehicle's contacts from the simulator once a period, and records them. It uses a separate
+  * connection without the link, since this is not part of the flight.
   */
 private[flight] final class ContactWatch private (
     client: AirSimClient,
@@ -45,14 +45,13 @@ private[flight] final class ContactWatch private (
       note(touched)
       goOn())
 
-  /** Asks once more. */
   def close(): Future[Done] =
     closed = true
     ask().map(note).transformWith(_ => client.close())
 
 private[flight] object ContactWatch:
 
-  /** What was touched before counts for nothing. */
+  /** Starts the watch; contacts before its start do not count. */
   def start(
       client: AirSimClient,
       vehicles: Vector[VehicleClient],
@@ -67,7 +66,7 @@ private[flight] object ContactWatch:
       watch.goOn()
       watch
 
-  /** Whoever touches the same thing again within this has not left it. */
+  /** Contacts with an object within this time of each other count as one. */
   val Within: Span = Span.ofMillis(500)
 
   def isNew(contact: Collision, before: Option[Collision]): Boolean =

@@ -5,11 +5,11 @@ import scala.concurrent.{ExecutionContext, Future}
 import skein.airsim.{Multirotor, VehicleClient}
 import skein.link.Address
 
-/** Asks a simulator whether it still gives a flight its vehicles: under api control and in the air. It has a
-  * connection of its own, since this is no part of the flight.
+/** Checks with a simulator whether a flight still controls its vehicles: under API control and in the air. It
+  * uses a separate connection, since this is not part of the flight.
   *
   * @param vehicles of the flight
-  * @param isLanding whether the flight itself told a vehicle to land
+  * @param isLanding whether the flight itself commanded a vehicle to land
   */
 private[flight] final class Custody(
     vehicles: Vector[VehicleClient],
@@ -20,7 +20,9 @@ private[flight] final class Custody(
 
   private val known = AtomicReference(Known())
 
-  /** @return `Left` where it did not answer, else why the flight cannot go on, if it cannot
+  /** Requests the vehicles' states.
+    *
+    * @return `Left` if the simulator did not answer, else why the flight cannot go on, if it cannot
     */
   def ask(): Future[Either[String, Option[String]]] =
     Future
@@ -50,21 +52,23 @@ private[flight] final class Custody(
 
 private[flight] object Custody:
 
-  /** What a simulator answers for a vehicle.
+  /** The simulator's answer for a vehicle.
     *
-    * @param isControlled whether it is under api control
-    * @param flies absent where it need not
+    * @param isControlled whether it is under API control
+    * @param flies absent where it is not needed
     */
   final case class Held(vehicle: String, isControlled: Boolean, flies: Option[Boolean])
 
-  /** @param flown vehicles that were seen in the air: a simulator need not know of landings
+  /** The known states of the vehicles.
+    *
+    * @param flown vehicles that were observed in the air: a simulator need not report landings
     * @param landed those that stood on the ground at the last answer
     */
   final case class Known(flown: Set[String] = Set.empty, landed: Set[String] = Set.empty):
 
-    /** With the next answers.
+    /** Updates the states by the next answers.
       *
-      * @return and what the simulator does with a vehicle that is not the flight's any more
+      * @return the new states, and why the flight lost a vehicle, if it did
       */
     def heard(held: Vector[Held]): (Known, Option[String]) =
       val stands = held.filter(one => one.flies.contains(false) && flown(one.vehicle)).map(_.vehicle)

@@ -4,12 +4,14 @@ import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 import skein.units.Decimals.fixed
 
-/** Whether a vehicle can have flown from one reading to the next. One that cannot was put elsewhere: by
-  * another client's `reset` or pose, or because its answer was another vehicle's.
+/** Checks whether a vehicle can have moved from one reading to the next. One that cannot was placed
+  * elsewhere: by another client's `reset` or pose, or because the answer was another vehicle's.
   */
 private[flight] object Displacement:
 
-  /** @param to read later, of the same vehicle, by a clock that runs
+  /** Checks two readings.
+    *
+    * @param to a later reading of the vehicle, by a running clock
     * @return what is wrong, in a line for a person
     */
   def between(
@@ -26,10 +28,10 @@ private[flight] object Displacement:
       s"$vehicle is ${off.fixed(1)} m from where it can have flown in ${s.fixed(2)} s: the simulator was " +
         "started again, another client reset it or put it elsewhere, or its state is another vehicle's"
 
-  /** Three times gravity: AirSim's multirotor has less than two. */
+  /** Limit of the acceleration: three times gravity; AirSim's multirotor reaches less than two. */
   private val MostAccelerationMps2 = 30.0
 
-  /** What a collision may move a vehicle by at once, and what time stamps some milliseconds off make of 30
-    * m/s.
+  /** Tolerance of the distance: covers the jump of a collision, and time stamps that are off by some
+    * milliseconds at 30 m/s.
     */
   private val TouchM = 0.5

@@ -8,10 +8,10 @@ import skein.scenario.{Known, Scenario}
 import skein.signal.{ClockAlignment, Kinematics, Stamped}
 import skein.units.*
 
-/** Records as `recorder` does, and upon every decision asks the scenario whether the flight is over. What is
-  * known then is what was read and not yet overtaken.
+/** Passes records on to `recorder`, and evaluates at every decision whether the scenario is over. It knows
+  * the readings received by then, without overtaken ones.
   *
-  * @param isPaused whether time stands still while is decided: then nothing has an age
+  * @param isPaused whether time stands still during decisions: then ages are zero
   */
 private[flight] final class EndCondition(scenario: Scenario, isPaused: Boolean, recorder: Recorder)
     extends Recorder:
@@ -19,7 +19,6 @@ private[flight] final class EndCondition(scenario: Scenario, isPaused: Boolean, 
   private val heard = AtomicReference(EndCondition.Heard(Map.empty, None, None))
   private val over  = Promise[Unit]()
 
-  /** Completes when the scenario is over. */
   def isOver: Future[Unit] = over.future
 
   def offer(record: Recordable): Unit =
@@ -40,7 +39,9 @@ private[flight] final class EndCondition(scenario: Scenario, isPaused: Boolean, 
 
 private object EndCondition:
 
-  /** @param from the first decision
+  /** What was received so far.
+    *
+    * @param from time of the first decision
     */
   final case class Heard(
       states: Map[String, Stamped[Kinematics]],
@@ -57,7 +58,7 @@ private object EndCondition:
 
     def begun(at: Instant): Heard = if from.isDefined then this else copy(from = Some(at))
 
-    /** Absent until every vehicle was seen. */
+    /** The state at a time; absent until every vehicle was read. */
     def known(vehicles: Vector[String], now: Instant, isPaused: Boolean): Option[Known] =
       for
         begin <- from

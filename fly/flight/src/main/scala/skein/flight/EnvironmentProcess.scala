@@ -9,8 +9,8 @@ import skein.signal.Kinematics
 import skein.units.*
 import ujson.{Arr, Num, Obj, Value}
 
-/** An environment in another process, behind a Unix socket: that of Python's `skein_uav.simulators`. Lines of
-  * JSON go to and fro, a question and its answer:
+/** An environment in another process, behind a Unix socket: that of Python's `skein_uav.simulators`. Each
+  * request and each answer is a line of JSON:
   *
   * {{{
   * {}                                               begins an episode
@@ -18,6 +18,7 @@ import ujson.{Arr, Num, Obj, Value}
   * {"stepS": 0.1, "vehicles": {"Evader": {"body": [north, east, down, their velocities, heading], "reward": 0.5,
   *                                        "terminated": false, "truncated": false
   * }}}
+  *
   * {"error": "ValueError: …"} }}}
   *
   * It blocks, up to [[EnvironmentProcess.AnswerWithin]] a call. Not thread-safe.
@@ -29,11 +30,11 @@ final class EnvironmentProcess private (socket: ProcessSocket, names: Vector[Str
 
   /** Begins an episode.
     *
-    * @return or what was expected, and what came
+    * @return Left states what was expected and what was received
     */
   def reset(): Either[String, Moment] = ask(Obj())
 
-  /** One step, by velocities NED, m/s, in the order of the names. */
+  /** Simulates one step under velocities NED, m/s, in the order of the names. */
   def step(velocities: Vector[Vector3]): Either[String, Moment] = ask(Obj(
     "velocities" -> Obj.from(names.zip(velocities.map(v => Arr(v.x, v.y, v.z))))
   ))
@@ -72,20 +73,24 @@ final class EnvironmentProcess private (socket: ProcessSocket, names: Vector[Str
     String(bytes.array, 0, bytes.position(), UTF_8)
 
 object EnvironmentProcess:
-  /** @param stepS of one step
+  /** The state after a step.
+    *
+    * @param stepS duration of one step
     */
   final case class Moment(step: Span, agents: Vector[Agent])
 
-  /** @param reward of the step before
+  /** One vehicle's state.
+    *
+    * @param reward of the last step
     */
   final case class Agent(kinematics: Kinematics, reward: Double, terminated: Boolean, truncated: Boolean)
 
-  /** Enough for a first step that compiles. */
+  /** Time-out of an answer: enough for a first step that compiles. */
   val AnswerWithin: Span = Span.ofSeconds(10)
 
   private val LongestLine = 1 << 20
 
-  /** @return or why nobody is there */
+  /** Connects to the socket; Left states why that failed. */
   def connect(path: String, names: Vector[String]): Either[String, EnvironmentProcess] =
     try Right(EnvironmentProcess(ProcessSocket(path, AnswerWithin), names))
     catch

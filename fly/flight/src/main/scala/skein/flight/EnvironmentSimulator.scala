@@ -10,14 +10,14 @@ import skein.units.*
 import skein.vehicle.GoTo
 
 /** An environment of another framework as a simulator: paused, stepped, or run by the clock. It is stepped as
-  * late as possible: at each reading or command, by as many steps as have become due since the last one, each
-  * under the velocities that were commanded before it. So it needs no thread of its own, and flies in virtual
-  * time as live.
+  * late as possible: at each reading or command, by the number of steps that became due since the last one,
+  * each under the velocities commanded before it. So it needs no thread of its own, and works in virtual time
+  * and live.
   *
-  * A reading is of the last step. Every step's rewards and ends are recorded, as measurements of each vehicle
-  * by the sensor [[EnvironmentSimulator.Sensor]].
+  * A reading shows the state after the last step. Every step's rewards and ends are recorded, as measurements
+  * of each vehicle by the sensor [[EnvironmentSimulator.Sensor]].
   *
-  * @param on where the environment is asked, which blocks: one thread, in the order in which it is given work
+  * @param on executes the blocking calls: one thread, in the order of submission
   */
 final class EnvironmentSimulator private (
     process: EnvironmentProcess,
@@ -43,9 +43,7 @@ final class EnvironmentSimulator private (
   private var anchored   = Span.Zero
   private var anchoredAt = Option.empty[Instant]
 
-  /** The vehicles, in the order of their names. Their actions are velocities, places to come to, and to
-    * hover.
-    */
+  /** The vehicles, in the order of their names. They accept velocities, positions, and hover. */
   val vehicles: Vector[VehiclePort] = names.indices.toVector.map(Vehicle(_))
 
   def pause(): Future[Either[VehicleError, Unit]] = asked:
@@ -58,7 +56,7 @@ final class EnvironmentSimulator private (
       anchored = begun.step * steps
       anchoredAt = Some(clock.now())
 
-  /** The span has to be a multiple of the environment's step. */
+  /** Runs for this span, which must be a multiple of the environment's step. */
   def continueFor(span: Span): Future[Either[VehicleError, Unit]] =
     if span.toNanos % begun.step.toNanos == 0 then
       asked:
@@ -73,7 +71,7 @@ final class EnvironmentSimulator private (
     change
     failed.toLeft(())
 
-  /** Steps as far as the clock says. */
+  /** Steps the environment up to the clock's time. */
   private def catchUp(): Unit =
     val from = anchoredAt.getOrElse(clock.now())
     if !paused then anchoredAt = Some(from)
@@ -148,14 +146,14 @@ final class EnvironmentSimulator private (
 object EnvironmentSimulator:
   private type Answer = Either[VehicleError, Boolean]
 
-  /** As which a recording's measurements name it, and what they are: 1 for true. */
+  /** Name and columns of its measurements in a recording; 1 stands for true. */
   val Sensor                  = "environment"
   val Columns: Vector[String] = Vector("reward", "terminated", "truncated")
 
   /** Begins an episode; blocks until it has begun.
     *
     * @param names of the vehicles
-    * @return or why there is none
+    * @return Left states why there is none
     */
   def start(
       process: EnvironmentProcess,

@@ -5,17 +5,17 @@ import skein.port.{Sensor, VehiclePort}
 import skein.scenario.{Equipment, Scenario}
 import skein.signal.Stamped
 
-/** A vehicle with more sensors than its own. */
+/** A vehicle with sensors in addition to its own. */
 private[skein] final class Equipped(vehicle: VehiclePort, more: Map[String, Sensor]) extends VehiclePort:
   export vehicle.{act, hover, read}
   override val sensors: Map[String, Sensor] = vehicle.sensors ++ more
 
 private[skein] object Equipped:
 
-  /** With what it carries by a scenario.
+  /** A vehicle with its equipment in a scenario.
     *
-    * @param seen what its eyes make of its cameras, by name
-    * @param scanned is shown each scan of a lidar, with its name
+    * @param seen sensors from its cameras, by name
+    * @param scanned called with each scan of a lidar, with its name
     */
   def by(
       scenario: Scenario,

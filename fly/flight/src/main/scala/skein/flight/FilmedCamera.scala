@@ -13,11 +13,11 @@ import skein.rpc.RpcError
 import skein.signal.Stamped
 import skein.units.*
 
-/** A camera whose images nobody decides by: they are taken beside the loop, which waits for none of them.
-  * What is missed is counted, and told once a second.
+/** A camera whose images are not used by decisions: they are taken beside the loop, which does not wait for
+  * them. Missed images are counted, and reported once a second.
   *
-  * @param seen each image, newer than all before; must not wait for anything
-  * @param imageless told why, when it is closed and no image has come
+  * @param seen called with each image that is newer than all before; must not block
+  * @param imageless called with the reason, if it is closed and no image was received
   */
 private[skein] final class FilmedCamera(
     camera: String,
@@ -38,7 +38,7 @@ private[skein] final class FilmedCamera(
   @volatile private var hasSeen = false
   @volatile private var lastWhy = ""
 
-  /** Films until it is closed. */
+  /** Films periodically until it is closed. */
   def run(): Unit =
     val ticks = Source.fromGraph(Metronome(clock.now(), every, clock)).via(stop.flow)
     val end   = Frames

@@ -21,19 +21,19 @@ import skein.simulator.{MavlinkSettings, SimulatorServer, SimulatorSettings}
 import skein.units.*
 import skein.units.Decimals.brief
 
-/** Puts flights together.
+/** Assembles flights from settings and plans.
   *
-  * @param simulator the address of a simulator that runs already; without one, each flight has a built-in
-  *   simulator of its own
-  * @param workers what a flight that plans searches with
-  * @param tell called with a line for a person as soon as something goes wrong in flight
-  * @param learnsOn threads for policies that learn during the flight; without it, each has a thread of its
-  *   own that gives way to all others
-  * @param solvers the links to solvers, for flights that are not decided for here
-  * @param calledOff why a flight, by its name, goes no further while its vehicles are brought to their starts
-  * @param isWatched whether its records are shown, so that images and clouds are offered that are not
-  *   recorded
-  * @param isMavlinkByTcp whether `simulator` is reached by TCP where it speaks MAVLink, and not by datagrams
+  * @param simulator the address of a running simulator; without one, each flight has its own built-in
+  *   simulator
+  * @param workers search on behalf of flights that plan
+  * @param tell called with a line for the user when something goes wrong in flight
+  * @param learnsOn threads for policies that learn during the flight; without it, each has its own thread of
+  *   low priority
+  * @param solvers the links to solvers, for flights that another process decides for
+  * @param calledOff why a flight, by its name, must not go on while its vehicles move to their starts
+  * @param isWatched whether its records are shown, so that images and clouds that are not recorded are still
+  *   offered
+  * @param isMavlinkByTcp whether `simulator`, if it speaks MAVLink, is reached by TCP instead of datagrams
   */
 final class FlightAssembler(
     transport: Transport,
@@ -50,12 +50,12 @@ final class FlightAssembler(
 )(using system: ActorSystem):
   import system.dispatcher
 
-  /** Whether a record is kept, and not only shown. */
+  /** Whether a record is kept in the recording, and not only shown. */
   private[flight] def keeps(record: Recordable): Boolean = record match
     case row: Record => ImagingSensor.of(row).forall(settings.recordedImaging)
     case _           => true
 
-  /** Whether others may command the vehicles, too. */
+  /** Whether other clients may command the vehicles too. */
   private val isShared = simulator.isDefined && settings.wire == Wire.AirSim
 
   private val airSim = AirSimFleet(
@@ -68,10 +68,10 @@ final class FlightAssembler(
     tell
   )
 
-  /** Vehicles, starts and roles, alike in all flights; the policies are the plan's. */
+  /** Vehicles, starts and roles, equal in all flights; the policies are the plan's. */
   private val fleet: Fleet = settings.fleet
 
-  /** What a recording of this flight begins with. */
+  /** The header of this flight's recording. */
   def heading(plan: FlightPlan, clockKind: String): RecordingHeader = RecordingHeader(
     FlightRow(
       plan.id,
@@ -94,10 +94,10 @@ final class FlightAssembler(
     )
   )
 
-  /** Prepares and starts a flight. What was opened for a flight that cannot start is closed again.
+  /** Prepares and starts a flight. If it cannot start, everything opened for it is closed again.
     *
-    * @param on what its loop runs on: see [[Flight.start]]
-    * @return or why it cannot be flown
+    * @param on the materializer of its loop: see [[Flight.start]]
+    * @return Left states why it cannot start
     */
   def start(
       plan: FlightPlan,
@@ -176,7 +176,7 @@ final class FlightAssembler(
       .recoverWith { case error => opened.close().transformWith(_ => Future.failed(error)) }
       .recover { case error: (TransportError | CannotFly | SolverClient.NoSolver) => Left(error.getMessage) }
 
-  /** Who decides in this process' place, when it has welcomed the flight. */
+  /** The remote solver of the flight, after it has accepted the flight. */
   private def solverOf(
       plan: FlightPlan,
       opened: Opened,
@@ -214,7 +214,7 @@ final class FlightAssembler(
                 if plan.loop == LoopKind.Plan then how.warning.foreach(text => tell(s"${plan.id}: $text"))
                 Some(client)
 
-  /** Who flies, with a policy that may learn. */
+  /** The fleet with policies that may learn during the flight. */
   private def learning(
       plan: FlightPlan,
       chosen: ChosenPolicy,
@@ -239,7 +239,9 @@ final class FlightAssembler(
           Future.successful(Done)
         taught(lessons, explore)
 
-  /** By a connection of bytes to a simulator of its own, to any other by datagrams unless told otherwise. */
+  /** Connects over MAVLink: to the flight's own simulator by a byte stream, to any other by datagrams unless
+    * configured otherwise.
+    */
   private def overMavlink(
       plan: FlightPlan,
       server: Option[SimulatorServer],
@@ -299,14 +301,14 @@ final class FlightAssembler(
         .map(Some(_))
 
 object FlightAssembler:
-  /** Threads to plan on, no more than there are cores. */
+  /** Planning threads, no more than there are cores. */
   def threads(planning: PlanSettings): PlanWorkers =
     new ThreadedPlanWorkers(
       planning.searches.min(Runtime.getRuntime.availableProcessors),
       planThreads("skein-plan")
     )
 
-  /** Begins threads that plan and give way to those of control. */
+  /** Starts low-priority planning threads, which yield to those of control. */
   private[skein] def planThreads(name: String): (() => Boolean) => PlanThread =
     val (factory, usual) = (BackgroundThread.factory(name), BackgroundThread.usual(name))
     slice => asPlanThread(BackgroundThread(factory, usual)(slice))
@@ -315,13 +317,13 @@ object FlightAssembler:
     def wake(): Unit  = thread.wake()
     def close(): Unit = thread.close()
 
-  /** The same in virtual time, where slices are counted. */
+  /** Planning in virtual time, where a search has a fixed number of slices. */
   def counted(planning: PlanSettings): PlanWorkers = CountedPlanWorkers(planning.searches, planning.slices)
 
   private val noSteps =
     "paused needs a simulator whose time passes in steps, which MAVLink's vehicles have not"
 
-  /** What of a solver's events a person is told at once. */
+  /** The events of a solver that are reported to the user immediately. */
   private val told = Set(EventKind.Disconnected, EventKind.Reconnected, EventKind.Refused)
 
   private val anyPort = Address("127.0.0.1", 0)

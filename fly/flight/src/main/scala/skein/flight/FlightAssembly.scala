@@ -10,7 +10,7 @@ import skein.settings.FlightPlan
 import skein.solver.SolverClient
 import skein.units.*
 
-/** One flight put together: simulator, link, client, vehicles at their starts, loop. */
+/** An assembled flight: simulator, link, client, vehicles at their starts, loop. */
 final class FlightAssembly private[skein] (
     val plan: FlightPlan,
     val flight: Flight,
@@ -24,25 +24,24 @@ final class FlightAssembly private[skein] (
     solver: Option[SolverClient]
 )(using ExecutionContext):
 
-  /** Ends it now; why is recorded. */
+  /** Ends the flight immediately; the reason is recorded. */
   def stop(why: String): Unit =
     monitor.offer(Event(clock.now(), EventKind.Aborted, None, why))
     flight.stop()
 
-  /** Its vehicles hover and nobody decides, until it continues or ends; its time runs on. Who did it is
-    * recorded.
+  /** Pauses decisions: its vehicles hover until it continues or ends; its time runs on. The user is recorded.
     */
   def pause(who: String): Unit =
     if hold.hold() then monitor.offer(Event(clock.now(), EventKind.Paused, None, who))
 
-  /** Lets it go on where it is paused. Who did it is recorded. */
+  /** Continues a paused flight. The user is recorded. */
   def continue(who: String): Unit =
     if hold.isHeld then
       // Before the first decision that it lets be made.
       monitor.offer(Event(clock.now(), EventKind.Continued, None, who))
       hold.release(): Unit
 
-  /** How far it is: in the controller's time, and where time passes in steps, in the simulator's. */
+  /** Its progress: in the controller's time, and where time passes in steps, also in the simulator's. */
   def progress: FlightProgress =
     val now = clock.now()
     FlightProgress(
@@ -56,10 +55,10 @@ final class FlightAssembly private[skein] (
 
   private def isPaused = plan.loop == LoopKind.Paused
 
-  /** While time stands still, nobody is late. */
+  /** Late control threads do not matter where time stands still. */
   private def starved: Option[String] = if isPaused then None else watchdog.starved
 
-  /** Completes when the flight has ended, everything is closed, and all that was recorded is written. */
+  /** Completes when the flight has ended, everything is closed, and all records are written. */
   val landed: Future[FlightResult] =
     for
       flown   <- flight.outcome
@@ -78,9 +77,9 @@ private object FlightAssembly:
     case FlightOutcome.Stopped        => Ending(at, EndingKind.Stopped, Some("it was stopped from outside"))
     case FlightOutcome.Failed(reason) => Ending(at, EndingKind.Failed, Some(reason))
 
-/** How a flight ended, and what is on record.
+/** The end of a flight, with its recording.
   *
-  * @param solverTrips the latest round trips to the solver, if one decided
+  * @param solverTrips the latest round trips to the solver, if there is one
   */
 final case class FlightResult(
     plan: FlightPlan,

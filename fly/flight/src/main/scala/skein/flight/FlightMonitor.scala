@@ -7,12 +7,12 @@ import skein.record.*
 import skein.signal.{Kinematics, Stamped, TimeAxis}
 import skein.units.*
 
-/** Records as `recorder` does, and remembers what is newest for whoever watches the flight.
+/** Passes records on to `recorder`, and keeps the newest ones for progress displays.
   *
   * @param isStepped whether the simulator stands still between steps, so that its clock is not compared with
   *   the controller's
-  * @param isShared whether other clients may move the vehicles, so that it is watched whether they can have
-  *   flown where they are
+  * @param isShared whether other clients may move the vehicles, so that implausible displacements are
+  *   detected
   */
 final class FlightMonitor(recorder: Recorder, isStepped: Boolean = false, isShared: Boolean = false)
     extends Recorder:
@@ -60,30 +60,30 @@ final class FlightMonitor(recorder: Recorder, isStepped: Boolean = false, isShar
         why  <- Displacement.between(vehicle, last, state)
       do displaced.compareAndSet(None, Some(why)): Unit
 
-  /** Why the flight can have no result, as far as its readings tell. */
+  /** Why the flight cannot have a result, judged by its readings. */
   def unsound: Option[Unsound] =
     clocks.get.fault.map(Unsound(EventKind.ClockBroken, _)).orElse(
       displaced.get.map(Unsound(EventKind.VehicleTaken, _))
     )
 
-  /** That the simulator's clock does not keep pace now. */
+  /** Why the simulator's clock does not keep pace at present, if it does not. */
   def wandering: Option[String] = clocks.get.wandering
 
-  /** Whether a vehicle was told to land last. */
+  /** Whether a vehicle's last command was to land. */
   def isLanding(vehicle: String): Boolean = landing.get.contains(vehicle)
 
-  /** Time that has passed on the simulator's clock since the first reading. */
+  /** Time elapsed on the simulator's clock since the first reading. */
   def simulated: Span =
     if lastAt.get < firstAt.get then Span.Zero else Span.ofNanos(lastAt.get - firstAt.get)
 
-  /** When the newest reading came, by the controller's clock. */
+  /** When the newest reading was received, by the controller's clock. */
   def heardAt: Option[Instant] = Some(heard.get).filter(_ != Long.MinValue).map(Instant.ofNanos)
 
-  /** When and why a connection was lost last, or could not be opened. */
+  /** The last event of a connection that was lost or could not be opened. */
   def broken: Option[Event] = lastBroken
 
-  /** Distance between a vehicle and its opponent at the newest decision, unless that regards others, too; and
-    * how old the newest reading is now.
+  /** Distance between a vehicle and its opponent at the newest decision, unless the policy considers others
+    * too; and the present age of the newest reading.
     */
   def lastSeen(now: Instant): Option[LastSeen] =
     for
@@ -96,11 +96,11 @@ final class FlightMonitor(recorder: Recorder, isStepped: Boolean = false, isShar
         decision.own.state.value.positionNed.horizontalDistance(decision.opponent.state.value.positionNed)
       LastSeen(Option.unless(isOfTeams)(Metres(apart)), now.since(heard) + underWay)
 
-/** Why a flight can have no result.
+/** Why a flight cannot have a result.
   *
-  * @param kind of the event that tells it
+  * @param kind of the event that shows it
   */
 final case class Unsound(kind: EventKind, why: String)
 
-/** What is known of a flight, in two numbers. */
+/** The state of a flight in two numbers, for progress displays. */
 final case class LastSeen(distance: Option[Metres], age: Span)

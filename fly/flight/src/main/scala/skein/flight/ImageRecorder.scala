@@ -9,9 +9,9 @@ import skein.rpc.RpcError
 import skein.signal.Stamped
 import skein.units.*
 
-/** Records what a vehicle's cameras and lidars see. From any thread; never waits.
+/** Records images and scans of a vehicle's cameras and lidars. Thread-safe and non-blocking.
   *
-  * @param isWanted whether anybody wants to have it
+  * @param isWanted whether they are used by anyone
   */
 private[skein] final class ImageRecorder(
     vehicle: VehicleClient,
@@ -22,7 +22,7 @@ private[skein] final class ImageRecorder(
   private val fovs   = ConcurrentHashMap[String, Radians]()
   private val missed = ConcurrentHashMap.newKeySet[String]()
 
-  /** Asks for the camera's field of view; where no answer comes, again with the camera's next image. */
+  /** Requests the camera's field of view; without an answer, again at the camera's next image. */
   def ask(camera: String): Unit =
     vehicle.eyes.fov(camera).foreach {
       case Right(known) => fovs.put(camera, known): Unit
@@ -31,7 +31,7 @@ private[skein] final class ImageRecorder(
       case Left(_) => ()
     }(using ExecutionContext.parasitic)
 
-  /** An image came. */
+  /** Records an image, unless it repeats the previous one. */
   def image(frame: Stamped[Image]): Unit =
     val image = frame.value
     val shot  = image.shot
@@ -63,7 +63,7 @@ private[skein] final class ImageRecorder(
           Blob.of(bytes)
         ))
 
-  /** A scan came. */
+  /** Records a scan, unless it repeats the previous one. */
   def scan(lidar: String, frame: Stamped[Scan]): Unit =
     val sensor = ImagingSensor(vehicle.name, lidar, isLidar = true)
     if isWanted(sensor) then
@@ -81,9 +81,7 @@ private[skein] final class ImageRecorder(
           Blob.of(ImageRecorder.bytes(frame.value.points))
         ))
 
-  /** The number of what came; absent where it is what came before: a sensor that has nothing new repeats
-    * itself.
-    */
+  /** The number of a frame; absent if it repeats the previous one, as a sensor without new data does. */
   private def next(sensor: ImagingSensor, validAt: Instant): Option[Long] =
     val now = counts.compute(
       sensor,

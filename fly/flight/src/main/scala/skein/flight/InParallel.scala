@@ -2,20 +2,20 @@ package skein.flight
 
 import java.util.concurrent.{Callable, ExecutionException, ExecutorCompletionService, Executors, Future}
 
-/** Work on threads of its own. What one of them throws is thrown here, and nothing more is begun. Blocks.
-  * What is shared out in pieces of microseconds is shared out otherwise; it says why there.
+/** Runs work on separate threads. An exception of one is thrown to the caller, and no further work is begun.
+  * Blocks. Work in pieces of microseconds is distributed in another way; the code there states why.
   */
 private[skein] object InParallel:
 
-  /** What each comes to, in their order; at most so many threads at once. */
+  /** Ordered parallel map on at most `threads` threads. */
   def map[A, B](all: Seq[A], threads: Int)(one: A => B): Vector[B] =
     val pool = Executors.newFixedThreadPool(threads.min(all.size).max(1))
     try all.toVector.map(each => pool.submit(() => one(each))).map(result)
     finally
       val _ = pool.shutdownNow()
 
-  /** Tells what each comes to, as it comes, on the calling thread. `all` may be without end: the next is
-    * taken when one has ended.
+  /** Parallel map that passes each result to `use` on the calling thread as soon as it is ready. `all` may be
+    * infinite: the next is taken when one has ended.
     */
   def asTheyCome[A, B](all: Iterator[A], threads: Int)(one: A => B)(use: B => Unit): Unit =
     val pool                  = Executors.newFixedThreadPool(threads)

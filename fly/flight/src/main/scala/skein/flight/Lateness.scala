@@ -3,8 +3,8 @@ package skein.flight
 import skein.units.*
 import skein.units.Decimals.fixed
 
-/** How late the threads of control ran, by ticks of a timer of theirs: a machine that is too busy lets them
-  * wait for a processor, and a flight then shows the machine and not its loop.
+/** The lateness of the control threads, measured by a timer: on a machine that is too busy they wait for a
+  * processor, and a flight then shows the machine and not its loop.
   *
   * @param ticks so far
   * @param late of them, by more than [[Lateness.Allowed]]
@@ -13,14 +13,14 @@ import skein.units.Decimals.fixed
 private[flight] final case class Lateness(ticks: Int = 0, late: Int = 0, most: Span = Span.Zero):
   import Lateness.*
 
-  /** One more tick.
+  /** Adds a tick.
     *
-    * @param by how long after its time it ran
+    * @param by time by which it ran late
     */
   def ticked(by: Span): Lateness =
     Lateness(ticks + 1, if by > Allowed then late + 1 else late, most.max(by))
 
-  /** That too many ticks were late for the flight to be compared, in a line for a person. */
+  /** Why the flight is not comparable: too many ticks were late. In a line for a person. */
   def starved: Option[String] = Option.when(ticks >= LeastTicks && late > ticks * MostLate):
     s"the machine was too busy: ${(100.0 * late / ticks).fixed(0)} % of $ticks ticks came more than " +
       s"${Allowed.toMillis.fixed(0)} ms late, one ${most.toMillis.fixed(0)} ms"
@@ -29,8 +29,8 @@ private[flight] object Lateness:
   /** Two ticks of the scheduler. A vehicle at 10 m/s flies 0.2 m in it. */
   val Allowed: Span = Span.ofMillis(20)
 
-  /** The share of late ticks that a flight may have. */
+  /** Largest share of late ticks in a comparable flight. */
   val MostLate = 0.05
 
-  /** Fewer tell nothing. */
+  /** Least number of ticks for a judgement. */
   private val LeastTicks = 20

@@ -8,8 +8,8 @@ import skein.port.{Sensor, VehicleError, VehiclePort}
 import skein.signal.{Kinematics, LatencyProfile, LatencySampler, Stamped}
 import skein.units.*
 
-/** A vehicle behind an emulated link, where its adapter has no bytes to delay: each call, and each answer,
-  * comes as late as the link's latency says, and none overtakes another.
+/** A vehicle behind an emulated link, for adapters without bytes to delay: each call and each answer is
+  * delayed by the link's latency, in order.
   *
   * @param line the vehicle's number among those behind this link
   */
@@ -50,7 +50,6 @@ final class LinkedVehicle(
     private val sampler = LatencySampler(latency, seed, seed * 1_000_003 + number)
     private var newest  = begun
 
-    /** Completes when what is sent now arrives. */
     def pass: Future[Unit] =
       val in = synchronized:
         val now = clock.now()

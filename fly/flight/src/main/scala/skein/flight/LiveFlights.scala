@@ -11,31 +11,31 @@ import skein.loop.RunningGraph
 import skein.record.{DuckDbRecorder, ObservedRecorder, Recordable, RecordingHeader, RowSink}
 import skein.settings.FlightPlan
 
-/** Flights in real time, side by side, each with a recording of its own in `folder`. */
+/** Flights in real time, side by side, each with its own recording in `folder`. */
 final class LiveFlights private (assembler: Vector[FlightAssembly])(using system: ActorSystem):
   import system.dispatcher
 
   /** Completes when all have ended and their recordings are closed. */
   val landed: Future[Vector[FlightResult]] = Future.sequence(assembler.map(_.landed))
 
-  /** Ends all flights now; vehicles hover. */
+  /** Ends all flights immediately; vehicles hover. */
   def stop(): Unit = assembler.foreach(_.flight.stop())
 
-  /** Ends one flight now; its vehicles hover.
+  /** Ends one flight immediately; its vehicles hover.
     *
-    * @param why as it is recorded
+    * @param why the recorded reason
     */
   def stop(id: String, why: String): Unit = of(id).foreach(_.stop(why))
 
-  /** One flight's vehicles hover and nobody decides, until it continues or ends; its time runs on.
+  /** Pauses one flight's decisions: its vehicles hover until it continues or ends; its time runs on.
     *
-    * @param who as it is recorded
+    * @param who the recorded user
     */
   def pause(id: String, who: String): Unit = of(id).foreach(_.pause(who))
 
-  /** Lets one flight go on that is paused.
+  /** Continues a paused flight.
     *
-    * @param who as it is recorded
+    * @param who the recorded user
     */
   def continue(id: String, who: String): Unit = of(id).foreach(_.continue(who))
 
@@ -43,7 +43,7 @@ final class LiveFlights private (assembler: Vector[FlightAssembly])(using system
 
   private def of(id: String) = assembler.find(_.plan.id == id)
 
-  /** The graphs as they run, by the flights' names. */
+  /** The running graphs, by the flights' names. */
   def graphs: Vector[(id: String, graph: RunningGraph)] =
     assembler.map(assembly => (assembly.plan.id, assembly.graph))
 
@@ -53,10 +53,9 @@ object LiveFlights:
 
   /** Starts all flights, or none.
     *
-    * @param observe is shown every record of a flight that begins with a heading; it must not wait for
-    *   anything
-    * @param beside what takes a flight's rows besides its recording, or why it cannot
-    * @return or why they cannot be flown; those that had started were stopped again
+    * @param observe called with every record of a flight that begins with a heading; it must not block
+    * @param beside receives a flight's rows in addition to its recording, or why it cannot
+    * @return Left states why they cannot start; those that had started were stopped again
     */
   def start(
       assembler: FlightAssembler,
@@ -116,9 +115,7 @@ object LiveFlights:
                 for assembly <- started do assembly.landed.onComplete(_ => own.shutdown())
                 Future.successful(started)
 
-  /** Takes away the recording of a flight that was not flown, which would be in the way when it is tried
-    * again.
-    */
+  /** Deletes the recording of a flight that did not start: it would prevent the next attempt. */
   private def unmade(file: Path): Unit =
     for name <- Seq(file.getFileName.toString, s"${file.getFileName}.wal") do
       val _ = Try(Files.deleteIfExists(file.resolveSibling(name)))

@@ -11,10 +11,10 @@ import skein.policy.Fleet
 import skein.port.VehicleError
 import skein.units.*
 
-/** A scenario's vehicles over MAVLink, system 1 being its first.
+/** A scenario's vehicles over MAVLink, the first with system id 1.
   *
-  * @param isDatagrams whether `connect` gives datagrams, and not pieces of a stream
-  * @param calledOff why vehicles that fly to their starts go no further
+  * @param isDatagrams whether `connect` provides datagrams, and not pieces of a stream
+  * @param calledOff why vehicles must not go on to their starts
   */
 private[flight] final class MavlinkFleet(
     fleet: Fleet,
@@ -31,7 +31,7 @@ private[flight] final class MavlinkFleet(
   private val settings =
     OffboardSettings(highestM = (fleet.agents.map(agent => -agent.startPositionNed.z).max + AboveM).max(120))
 
-  /** Brings all to their starts, over a connection of its own: this is not part of the flight. */
+  /** Brings all to their starts, over a separate connection: this is not part of the flight. */
   def prepare(): Future[Either[String, Done]] =
     MavlinkLink.open(connect(), systems, clock, origin, settings, isDatagrams = isDatagrams).flatMap:
       case Left(error) => Future.successful(Left(error.message))
@@ -49,9 +49,9 @@ private[flight] final class MavlinkFleet(
           .recover { case StartPositioning.NotReady(reason) => Left(reason) }
           .flatMap(result => link.close().map(_ => result))
 
-  /** Opens the connection that is flown over, and aligns the clocks over it before anything is decided.
+  /** Opens the connection of the flight, and aligns the clocks over it before any decision.
     *
-    * @param isStream whether what stands between makes a stream of it
+    * @param isStream whether the link in between makes it a byte stream
     */
   def open(
       flow: Flow[ByteString, ByteString, ?],
@@ -87,13 +87,13 @@ private[flight] final class MavlinkFleet(
     answer.map(_.fold(error => throw StartPositioning.NotReady(error.message), identity))
 
 private object MavlinkFleet:
-  /** Of the geofence above the highest start, m: vehicles climb to their layers first. */
+  /** Height of the geofence above the highest start, m: vehicles climb to their layers first. */
   private val AboveM = 100.0
 
-  /** TIMESYNCs before the first decision: 3 s of them. */
+  /** Number of TIMESYNCs before the first decision: 3 s of them. */
   private val Exchanges = 300
 
-  /** So far off the ground a vehicle flies, m. */
+  /** Altitude above the ground from which a vehicle counts as flying, m. */
   private val RisenM = 1.0
 
   private val LookEvery = Span.ofMillis(100)

@@ -4,18 +4,16 @@ import java.util.concurrent.atomic.AtomicReference
 import org.apache.pekko.Done
 import scala.concurrent.{ExecutionContext, Future}
 
-/** What was opened, to be closed in the opposite order. */
+/** Holds resources that were opened, and closes them in the opposite order. */
 private[skein] final class Opened(using ExecutionContext):
   private val closers = AtomicReference(List.empty[() => Future[Done]])
 
-  /** Keeps in mind how `resource` is closed. */
+  /** Registers how `resource` is closed, and returns it. */
   def closing[A](resource: A)(close: A => Future[Done]): A =
     val _ = closers.updateAndGet((() => close(resource)) :: _)
     resource
 
-  /** Closes everything, each when the one before has ended, also where one fails; fails with the first
-    * failure.
-    */
+  /** Closes all in turn, even if one fails; fails with the first failure. */
   def close(): Future[Done] =
     closers.getAndSet(Nil).foldLeft(Future.successful[Done](Done)): (before, close) =>
       before.transformWith(ended => close().transform(closed => ended.flatMap(_ => closed)))

@@ -2,9 +2,9 @@ package skein.flight
 
 import scala.collection.immutable.VectorMap
 
-/** What is asked of flights from outside, from any thread, whether they fly already or not. What is asked of
-  * a flight that does not fly yet holds from its first decision on; one that is asked to end while its
-  * vehicles are brought to their starts goes no further.
+/** Users' requests to flights, from any thread, before and during the flights. A request to a flight that has
+  * not begun takes effect at its first decision; a request to end it while its vehicles move to their starts
+  * cancels it.
   */
 final class OutsideRequests:
   import OutsideRequests.*
@@ -12,26 +12,23 @@ final class OutsideRequests:
   private var ended   = Option.empty[String]
   private var waiting = VectorMap.empty[String, Waiting]
 
-  /** Ends one flight; its vehicles hover. */
   def stop(id: String, why: String): Unit =
     asked(id)(_.stop(_, why), waiting => waiting.copy(stopped = waiting.stopped.orElse(Some(why))))
 
-  /** One flight's vehicles hover and nobody decides. */
+  /** Pauses one flight's decisions: its vehicles hover until it continues. */
   def pause(id: String, who: String): Unit = asked(id)(_.pause(_, who), _.copy(paused = Some(who)))
 
-  /** Lets one flight go on that is paused. */
   def continue(id: String, who: String): Unit = asked(id)(_.continue(_, who), _.copy(paused = None))
 
-  /** Ends those that fly, and all that would. */
   def stopAll(why: String): Unit = synchronized:
     ended = ended.orElse(Some(why))
     flown.foreach(_.stop())
 
-  /** Why a flight that does not fly yet must not be begun, if it must not. */
+  /** Why a flight that has not begun must not begin, if so. */
   def calledOff(id: String): Option[String] = synchronized:
     waiting.get(id).flatMap(_.stopped).orElse(ended)
 
-  /** These fly from now on. */
+  /** Passes later requests to these flights. */
   def flying(flights: LiveFlights): Unit = synchronized:
     flown = Some(flights)
     for (id, asked) <- waiting if flights.has(id) do

@@ -10,18 +10,18 @@ import skein.scenario.Scenario
 import skein.settings.{PredictionModel, RecordedPlan, ScenarioSettings}
 import skein.units.*
 
-/** One flight of a loop with vehicles of any kind that have a [[VehiclePort]], live or in virtual time. The
-  * vehicles must be at their starts already.
+/** One flight of a loop with vehicles that have a [[VehiclePort]], live or in virtual time. The vehicles must
+  * be at their starts already.
   *
   * @param id its name in tables and figures
-  * @param loop one of ours, or a user's own graph
+  * @param loop one of Skein's, or a user's own graph
   * @param scenario vehicles, policies and measures
   * @param link name of the network between loop and vehicles, for the report
   * @param simulator name of the vehicles' simulator, for the report
   * @param clockKind real or virtual time; [[clock]] reads it
-  * @param predictor of all vehicles, in the place of `settings.model`. The recording keeps it, so that
-  *   `replay` repeats what was planned by it
-  * @throws IllegalArgumentException if its loop plans, and the vehicles' models cannot be planned by
+  * @param predictor of all vehicles, instead of `settings.model`. The recording keeps it, so that `replay`
+  *   repeats plans made with it
+  * @throws IllegalArgumentException if its loop plans, and planning does not support the vehicles' models
   */
 final case class PortFlight(
     id: String,
@@ -37,7 +37,8 @@ final case class PortFlight(
 ):
   private val plans = loop == LoopKind.Plan
 
-  /** How its loop is run: with its predictor, and plans that keep the scenario's limits. [[Replay]] takes it.
+  /** The settings of its loop: with its predictor, and plans that keep the scenario's limits. [[Replay]]
+    * needs them.
     */
   val loopSettings: LoopSettings =
     val agents = scenario.fleet.agents
@@ -49,7 +50,6 @@ final case class PortFlight(
     val able = Planning.told(scenario.fleet).flatMap(_ => JointPlanning.of(scenario.fleet, loopSettings))
     for reason <- able.left do throw IllegalArgumentException(reason)
 
-  /** What its recording begins with. */
   def heading: RecordingHeader = RecordingHeader(
     FlightRow(
       id,
@@ -70,11 +70,11 @@ final case class PortFlight(
       (if plans then RecordedPlan.parameters(settings.planning, predictor) else Nil)
   )
 
-  /** Starts it. The recorder gets everything down to the last row, and is closed.
+  /** Starts it. The recorder receives every record to the last, and is then closed.
     *
     * @param vehicles one for each agent of the scenario, in its order
     * @param time of a simulator that can be stopped and stepped: `paused` needs it
-    * @return the flight under way. Its `landed` completes when the vehicles hover and everything is written
+    * @return the running flight. Its `landed` completes when the vehicles hover and everything is written
     */
   def start(vehicles: Vector[VehiclePort], recorder: Recorder, time: Option[SteppedTime] = None)(using
       system: ActorSystem
@@ -100,7 +100,9 @@ final case class PortFlight(
     else FlightAssembler.threads(settings.planning)
 
 object PortFlight:
-  /** @param landed how it ended, and what is on record
+  /** A running flight.
+    *
+    * @param landed its end, with its recording
     */
   final case class UnderWay(
       flight: Flight,

@@ -13,7 +13,7 @@ import skein.vehicle.CarControls
 /** Brings a scenario's vehicles to their starts: at rest, hovering, under api control. Altitudes of a
   * scenario are above the place where each vehicle's own frame has its origin.
   *
-  * @param calledOff why vehicles that fly to their starts go no further
+  * @param calledOff why vehicles must not go on to their starts
   */
 final class Preparation(
     client: AirSimClient,
@@ -26,7 +26,7 @@ final class Preparation(
   import Preparation.*
   import system.dispatcher
 
-  /** Lets the vehicles hover there at once, which the built-in simulator alone can do. */
+  /** Places the vehicles hovering at their starts, which only the built-in simulator supports. */
   def place(fleet: Fleet): Future[Either[String, Vector[VehicleClient]]] = prepared:
     everyVehicle(fleet): (vehicle, agent) =>
       vehicle match
@@ -38,11 +38,11 @@ final class Preparation(
             _ <- call(multirotor.hoverAt(VehiclePose(agent.startPositionNed, Quaternion.Identity)))
           yield vehicle
 
-  /** Flies there by [[StartPositioning]]; cars brake and are put there. For any simulator, in whatever state
-    * it is found: what a vehicle has is not taken again, since a vehicle that flies in AirSim falls if api
-    * control is taken anew. Those on the ground take off.
+  /** Flies to the starts by [[StartPositioning]]; cars brake and are placed there. Works in any simulator, in
+    * any state: API control that a vehicle already has is not requested again, since a flying vehicle falls
+    * in AirSim if it is. Vehicles on the ground take off.
     *
-    * @param at where it is
+    * @param at its address
     */
   def climb(fleet: Fleet, at: Address): Future[Either[String, Vector[VehicleClient]]] = prepared:
     for
@@ -60,7 +60,8 @@ final class Preparation(
       })
     yield vehicles.map(_._1)
 
-  /** Takes the car over, brakes it and puts it to its start: a car cannot drive there by every way. */
+  /** Takes control of the car, brakes it and places it at its start: a car cannot drive there on every route.
+    */
   private def park(car: Car, agent: Agent): Future[VehicleClient] =
     def stand(looks: Int): Future[Unit] = call(car.status()).flatMap: status =>
       if math.abs(status.value.speed.value) <= StillMps then Future.unit
@@ -103,9 +104,9 @@ final class Preparation(
     case Left(error)  => throw NotReady(AirSimError.Call(error).message)
 
 object Preparation:
-  /** What AirSim still takes for no speed, m/s. */
+  /** Speed below which AirSim's car counts as standing, m/s. */
   private val StillMps = 0.05
 
-  /** How often it is looked whether a car stands, and how many times. */
+  /** Interval and number of the checks whether a car stands. */
   private val Every = Span.ofMillis(100)
   private val Looks = 200

@@ -5,13 +5,13 @@ import me.tongfei.progressbar.{ProgressBar, ProgressBarBuilder, ProgressBarStyle
 import skein.units.*
 import skein.units.Decimals.fixed
 
-/** How far a flight is.
+/** The progress of a flight.
   *
-  * @param silentFor how long nothing was heard of the simulator, where it is silent
+  * @param silentFor time without an answer of the simulator, if it is silent
   * @param flown by the controller's clock
-  * @param hasEnded whether it flies no more, while others still do
-  * @param stepped flown by the simulator's clock, where that passes in steps: what the flight's duration is
-  *   counted in then
+  * @param hasEnded whether it has ended, while others still run
+  * @param stepped time by the simulator's clock, where that passes in steps: then the flight's duration
+  *   counts in it
   */
 final case class FlightProgress(
     id: String,
@@ -21,7 +21,7 @@ final case class FlightProgress(
     hasEnded: Boolean = false,
     stepped: Option[Span] = None
 ):
-  /** Of the flight's duration. */
+  /** Elapsed part of the flight's duration. */
   def done: Span = stepped.getOrElse(flown)
 
   def text: String =
@@ -33,7 +33,6 @@ final case class FlightProgress(
 
 /** Shows the progress of flights side by side: a bar each on a terminal, else a line for all every 10 s. */
 trait ProgressBoard extends AutoCloseable:
-  /** To be called about twice a second. */
   def show(progress: Seq[FlightProgress]): Unit
 
 object ProgressBoard:

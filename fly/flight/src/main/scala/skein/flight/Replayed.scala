@@ -8,12 +8,13 @@ import skein.scenario.Scenarios
 import skein.settings.RecordedPlan
 import skein.units.Expect
 
-/** What came of replaying a recording.
+/** The result of replaying a recording.
   *
-  * @param decisions that the recording holds
-  * @param decidedAgain the first difference when the recorded readings and moves are decided upon again
+  * @param decisions in the recording
+  * @param decidedAgain the first difference when the decisions are repeated on the recorded readings and
+  *   moves
   * @param flownAgain for a flight in virtual time, of a loop that the program knows and with the built-in
-  *   simulator: what came of flying it again, physics, network and all
+  *   simulator: the result of repeating it, physics, network and all
   */
 final case class Replayed(
     id: String,
@@ -23,14 +24,16 @@ final case class Replayed(
 ):
   def isSame: Boolean = decidedAgain.isEmpty && flownAgain.forall(_.isSame)
 
-/** @param inDecisions the first decision that differs
+/** A repeated flight in virtual time.
+  *
+  * @param inDecisions the first decision that differs
   */
 final case class FlownAgain(recorded: Digest, again: Digest, inDecisions: Option[Difference]):
   def isSame: Boolean = recorded == again
 
 object Replayed:
 
-  /** Replays a recording, live or virtual. Blocks. */
+  /** Replays a recording, live or virtual. Blocks until it is done. */
   def of(file: Path)(using Scenarios): Either[String, Replayed] =
     for
       recording <- RecordingReader.read(file).left.map(_.message)
@@ -51,14 +54,14 @@ object Replayed:
         case Some(result) => result.map(Some(_))
     yield Replayed(flight.id, recording.decisions.size, decided, again)
 
-  /** Its loop's graph is not on record, so it is decided again and not flown again. */
+  /** Replays a flight of an unknown loop: its graph is not on record, so only its decisions are repeated. */
   private def ofUnknown(recording: Recording)(using Scenarios): Either[String, Replayed] =
     for scenario <- RecordedScenario.of(recording)
     yield
       val decided = Replay(scenario.fleet, recording).firstDifference
       Replayed(recording.flight.id, recording.decisions.size, decided, None)
 
-  /** Formats up to 5 did not record where plans lead. */
+  /** Removes the plans' tracks, which formats up to 5 did not record. */
   private def withoutCourse(record: Record): Record = record match
     case planned: Planned => planned.copy(course = None)
     case other            => other

@@ -2,16 +2,18 @@ package skein.flight
 
 import skein.units.*
 
-/** Whether a simulator that is asked all the time answers.
+/** Whether a periodically read simulator answers.
   *
-  * @param silentSince when the last answer came, while it is silent
+  * @param silentSince time of the last answer, while it is silent
   */
 private[flight] final case class SignsOfLife(silentSince: Option[Instant] = None):
   import SignsOfLife.*
 
-  /** @param heardAt when the newest answer came
-    * @param within which an answer is to come
-    * @return and what is to be told
+  /** Updates the state.
+    *
+    * @param heardAt time of the newest answer
+    * @param within time-out of an answer
+    * @return the new state, and what to report
     */
   def look(heardAt: Instant, now: Instant, within: Span): (SignsOfLife, Option[Sign]) = silentSince match
     case None if now.since(heardAt) > within =>
@@ -21,8 +23,8 @@ private[flight] final case class SignsOfLife(silentSince: Option[Instant] = None
 
 private[flight] object SignsOfLife:
   enum Sign:
-    /** Nothing has come for so long. */
+    /** No answer was received for this time. */
     case Silent(lasts: Span)
 
-    /** It was silent for so long, and answers again. */
+    /** It answers again after this time of silence. */
     case Back(after: Span)

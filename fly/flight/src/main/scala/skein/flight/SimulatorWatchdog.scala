@@ -8,18 +8,20 @@ import skein.record.{Event, EventKind}
 import skein.units.*
 import skein.units.Decimals.fixed
 
-/** Watches over a flight whose simulator may fall silent: that is told and recorded within a second, and so
-  * is its return. After [[SimulatorWatchdog.GivesUp]] the flight ends. It ends, too, where the simulator that
-  * answers after a broken connection or a silence is not the one that the flight began with, where its clock
-  * is no time axis ([[skein.signal.TimeAxis]]), or where another client has the vehicles: such a flight has
-  * no result. That a clock does not keep pace is told. It also measures how late control's threads run.
+/** Supervises a flight whose simulator may fall silent: silence is reported and recorded within a second, and
+  * so is its end. After [[SimulatorWatchdog.GivesUp]] the flight ends. It also ends if the simulator that
+  * answers after a broken connection or a silence is not the original one, if its clock is no time axis
+  * ([[skein.signal.TimeAxis]]), or if another client has taken the vehicles: such a flight has no result. A
+  * clock that does not keep pace is reported. The lateness of control's threads is measured too.
   *
-  * @param isOther asks the simulator that; `Left` where that was not answered, else why it is, if it is
-  * @param isShared whether other clients may take the vehicles: then the simulator is asked every
+  * @param isOther checks whether the simulator is another one; `Left` if it did not answer, else the
+  *   evidence, if any
+  * @param isShared whether other clients may take the vehicles: then it is checked every
   *   [[SimulatorWatchdog.AskEvery]]
-  * @param within which an answer is to come
-  * @param deciding whose policy the loop waits for, and since when: then nobody asks the simulator
-  * @param tell a line for a person
+  * @param within time-out of an answer
+  * @param deciding the vehicle whose policy the loop waits for, and since when: then the simulator receives
+  *   no requests
+  * @param tell shows a line to the user
   */
 private[flight] final class SimulatorWatchdog(
     monitor: FlightMonitor,
@@ -46,18 +48,18 @@ private[flight] final class SimulatorWatchdog(
   @volatile private var wanders         = false
   @volatile private var lateness        = Lateness()
 
-  /** How long nothing has come, while the simulator is silent. */
+  /** Time since the last answer, while the simulator is silent. */
   def silentFor: Option[Span] = life.silentSince.map(clock.now().since(_))
 
-  /** How the flight has ended when its time is over. */
+  /** The outcome of the flight when its time is over. */
   def onTime: FlightOutcome = silentFor.fold(FlightOutcome.Completed)(lasts =>
     FlightOutcome.Failed(silence(clock.now(), s"the last ${seconds(lasts)}"))
   )
 
-  /** That the machine was too busy for the flight, as far as it was watched. */
+  /** Why the machine was too busy for the flight, if it was. */
   def starved: Option[String] = lateness.starved
 
-  /** How a flight has ended that was flown to its end: what nobody has looked at yet is. */
+  /** The outcome of a flight at its end, after the checks that are still due. */
   def last(): Future[FlightOutcome] =
     val asked =
       if !isShared || monitor.unsound.isDefined then Future.successful(Right(None))
@@ -103,21 +105,21 @@ private[flight] final class SimulatorWatchdog(
   private def end(flight: Flight, found: Unsound): Unit =
     if !flight.ending.isCompleted then flight.fail(isUnsound(found).reason)
 
-  /** Records that a flight has no result. */
+  /** Records why a flight has no result. */
   private def isUnsound(found: Unsound): FlightOutcome.Failed =
     if !isTold then
       isTold = true
       monitor.offer(Event(clock.now(), found.kind, None, found.why))
     FlightOutcome.Failed(found.why)
 
-  /** Once each time that it stops to keep pace. */
+  /** Reports each time that the clock stops keeping pace. */
   private def pace(now: Instant): Unit =
     val wandering = monitor.wandering
     if !wanders then wandering.foreach(note(now, EventKind.ClockDrift, _))
     wanders = wandering.isDefined
 
-  /** A connection may break without a silence: a simulator can be back before its silence is noticed. And
-    * another client needs no broken connection to take vehicles away.
+  /** Checks the simulator's identity and custody. A connection may break without a silence: a simulator can
+    * be back before its silence is noticed. And another client needs no broken connection to take vehicles.
     */
   private def recognise(flight: Flight, now: Instant): Unit =
     val brokenAt = monitor.broken.fold(startedAt)(_.at)
@@ -141,27 +143,26 @@ private[flight] final class SimulatorWatchdog(
     tell(line)
 
 private[flight] object SimulatorWatchdog:
-  /** After so long without an answer a flight ends. */
+  /** Time without an answer after which a flight ends. */
   val GivesUp: Span = Span.ofSeconds(10)
 
-  /** So that silence is told within a second of the last answer, where decisions are made ten times a second.
-    */
+  /** Silence is reported within a second of the last answer, where there are ten decisions a second. */
   private val ToldAfter = Span.ofMillis(700)
   private val LookEvery = Span.ofMillis(100)
 
-  /** Whether the vehicles are still the flight's. */
+  /** Interval of checks whether the flight still has its vehicles. */
   val AskEvery: Span = Span.ofSeconds(1)
 
-  /** So long a policy decides that keeps the loop from asking. */
+  /** Duration of a policy's decision from which it is named as the reason why the loop sends no requests. */
   private val Slow = Span.ofMillis(200)
 
-  /** From the start of a flight to the first look: at no tick of it. */
+  /** From the start of a flight to the first check: coincides with no tick of it. */
   private val Offset = Span.ofMillis(137)
 
-  /** Which an answer is to come: where a flight asks rarely, two questions may be lost. */
+  /** Time-out of an answer: with a long period, two requests may be lost. */
   def within(period: Span, askTimeout: Span): Span = ToldAfter.max(period * 2 + askTimeout)
 
-  /** What is told of a silence: a loop that waits for a policy asks no simulator. */
+  /** The report of a silence: a loop that waits for a policy sends no requests. */
   def silence(
       simulator: String,
       lasts: String,

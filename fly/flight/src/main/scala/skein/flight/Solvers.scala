@@ -7,10 +7,10 @@ import skein.units.*
 
 /** How flights reach solvers.
   *
-  * @param build of this program; the solver's must be the same
-  * @param link to a solver, or why it cannot be had
-  * @param patience for how long a flight waits before its start until a solver welcomes it
-  * @param toldAfter from when on a person is told that it waits
+  * @param build of this program; the solver's must be equal
+  * @param link to a solver, or why there is none
+  * @param patience longest time before its start for which a flight waits until a solver accepts it
+  * @param toldAfter time after which the user is informed that it waits
   */
 final case class Solvers(
     build: String,
@@ -19,10 +19,10 @@ final case class Solvers(
     toldAfter: Span = Span.ofSeconds(2)
 ):
 
-  /** A number for a flight that no other has. */
+  /** A number that identifies a flight uniquely. */
   private[flight] def number(plan: FlightPlan, clock: Clock): Long =
     SplitMix64.seedOf(SplitMix64.seedOf(plan.seed, plan.id.hashCode), clock.now().toNanos)
 
 object Solvers:
-  /** For flights whose decisions are made here. */
+  /** No solvers: for flights whose decisions are made in this process. */
   val none: Solvers = Solvers("none", _ => Left("nobody can be asked elsewhere"))

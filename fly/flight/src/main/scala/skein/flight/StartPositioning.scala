@@ -3,24 +3,24 @@ package skein.flight
 import scala.concurrent.{ExecutionContext, Future}
 import skein.units.Vector3
 
-/** Flies vehicles to their starts, all at once, so that no way crosses another at one altitude: from wherever
-  * they are, each first climbs straight to a layer of its own, above all starts, and crosses over in it when
-  * all have come to theirs; when all have crossed over, they go down.
+/** Moves vehicles to their starts, all simultaneously, without crossing paths at one altitude: each first
+  * climbs vertically to its own layer, above all starts, and crosses over in it when all are in theirs; when
+  * all have crossed over, they descend.
   */
 private[flight] object StartPositioning:
   /** A vehicle on its way to its start, world NED.
     *
-    * @param leaveGround takes off where it stands, and says where it is then; fails with [[NotReady]]
+    * @param leaveGround takes off vertically, and returns the position reached; fails with [[NotReady]]
     */
   final case class Starting(startNed: Vector3, approach: Approach, leaveGround: () => Future[Vector3])
 
   /** Carries an expected error out of a chain of calls. */
   final case class NotReady(reason: String) extends RuntimeException(reason)
 
-  /** From one vehicle's layer to the next, m: more than a vehicle passes its goal by. */
+  /** Distance between two vehicles' layers, m: more than a vehicle's overshoot. */
   private val LayerM = 5.0
 
-  /** Until all are at rest and look north; fails with [[NotReady]]. */
+  /** Moves the vehicles until all are at rest and look north; fails with [[NotReady]]. */
   def fly(vehicles: Vector[Starting])(using ExecutionContext): Future[Unit] =
     val highest = vehicles.map(_.startNed.z).min
     val layered = vehicles.zipWithIndex.map((vehicle, index) => (vehicle, highest - (index + 1) * LayerM))

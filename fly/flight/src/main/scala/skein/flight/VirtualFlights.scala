@@ -17,15 +17,15 @@ import skein.solver.{FlightDeciders, SolverDesk, SolverServer, TcpLink}
 import skein.units.*
 import skein.vtime.{Problem, RunLimits, VirtualTime, VirtualTimeException}
 
-/** Flights in virtual time: the same simulator, link, client and loop as live, with the clock, the scheduler
-  * and the sockets replaced. Equal settings and plans give equal recordings, byte for byte.
+/** Flights in virtual time: the simulator, link, client and loop of live flights, with the clock, the
+  * scheduler and the sockets replaced. Equal settings and plans give equal recordings, byte for byte.
   */
 object VirtualFlights:
 
-  /** Flies all, as many at once as there are cores, and writes a recording of each into `folder`. Blocks.
+  /** Simulates all flights, in parallel on all cores, and writes a recording of each into `folder`. Blocks.
     *
-    * @param onLanded called with each flight as it has ended, and with the digest of its recording
-    * @return or which of them could not be flown, and why; the recordings of the others are written
+    * @param onLanded called with each flight when it has ended, and with the digest of its recording
+    * @return Left states which of them failed, and why; the recordings of the others are written
     */
   def fly(settings: FlySettings, plans: Vector[FlightPlan], folder: Path)(
       onLanded: (FlightResult, Digest) => Unit
@@ -37,7 +37,7 @@ object VirtualFlights:
     .partitionMap(identity)
     Either.cond(missing.isEmpty, landed, NotFlown.message(missing, plans.size))
 
-  /** Flies all, as many at once as there are cores, and keeps of each what `use` makes of it. Blocks.
+  /** Simulates all flights, in parallel on all cores, and keeps the result of `use` for each. Blocks.
     *
     * @return one for each plan, in their order
     */
@@ -46,7 +46,8 @@ object VirtualFlights:
   ): Vector[Either[NotFlown, A]] =
     eachInParallel(plans)(plan => fly(settings, plan).map(use))
 
-  /** Whatever ends one flight, it is told with that flight's seed, and the others are flown. */
+  /** Runs the flights in parallel. A failure is reported with that flight's seed, and the others still run.
+    */
   private[skein] def eachInParallel[A](plans: Vector[FlightPlan])(
       fly: FlightPlan => Either[String, A]
   ): Vector[Either[NotFlown, A]] =
@@ -57,14 +58,17 @@ object VirtualFlights:
       result.left.map(NotFlown(plan, _))
     InParallel.map(plans, Runtime.getRuntime.availableProcessors)(flown)
 
-  /** Flies on the calling thread, to the end.
+  /** Simulates a flight on the calling thread, to its end.
     *
-    * @return how it ended and what was recorded, or why it could not be flown
+    * @return the result with the recording, or why the flight failed
     */
   def fly(settings: FlySettings, plan: FlightPlan): Either[String, VirtualFlightResult] =
     fly(settings, plan, RunLimits())
 
-  /** @param limits of a flight in which time goes on */
+  /** Simulates a flight.
+    *
+    * @param limits of a flight whose time advances
+    */
   private[flight] def fly(
       settings: FlySettings,
       plan: FlightPlan,
@@ -103,7 +107,9 @@ object VirtualFlights:
               assembly.landed.map(landed => Right(VirtualFlightResult(landed, recorder)))
       .value
 
-  /** A paused flight without delays passes in one instant: as much more may run in it as it flies longer. */
+  /** Limits of a flight. A paused flight without delays passes in one instant, so its number of tasks grows
+    * with its duration.
+    */
   private[skein] def limitsOf(loop: AnyLoop, duration: Span, limits: RunLimits = RunLimits()): RunLimits =
     if loop != LoopKind.Paused then limits
     else
@@ -113,15 +119,16 @@ object VirtualFlights:
         processorPerInstant = limits.processorPerInstant + ProcessorPerSecond * seconds
       )
 
-  /** A team of 64 that is asked and commanded ten times a second has a tenth of this. */
+  /** Limit of the tasks a second. A team of 64 with ten readings and commands a second has a tenth of this.
+    */
   private val TasksPerSecond = 100_000L
 
   private val ProcessorPerSecond = 10.seconds
 
-  /** What one flight of a scenario comes to, by itself. Flies on the calling thread.
+  /** Simulates one flight of a scenario on the calling thread.
     *
     * @param duration at most; 0 for the scenario's own
-    * @return or why it could not be flown to its end, or its vehicles were not all seen
+    * @return Left states why it failed, or which vehicles were not read
     */
   def result(
       scenario: Scenario,
@@ -134,7 +141,7 @@ object VirtualFlights:
     val most = if duration == Span.Zero then scenario.duration else duration
     result(FlySettings(List(loop), List(link), most, period, seed, scenario))
 
-  /** What the last flight of these settings comes to, likewise. */
+  /** The result of the last flight of these settings, simulated on the calling thread. */
   def result(settings: FlySettings): Either[String, Result] =
     for
       flown <- fly(settings, settings.plans.last.copy(seed = settings.seed))
@@ -158,22 +165,22 @@ object VirtualFlights:
   private val There    = "solver"
   private val SolverAt = Address(There, 7400)
 
-/** A flight in virtual time and all that was recorded of it. */
+/** A flight in virtual time with its whole recording. */
 final case class VirtualFlightResult(landed: FlightResult, recorder: MemoryRecorder)
 
-/** A flight in virtual time that could not be flown to its end, or not be used. */
+/** A flight in virtual time that failed or has no usable result. */
 final case class NotFlown(plan: FlightPlan, reason: String):
   def message: String = s"${plan.id}, seed ${plan.seed}: $reason"
 
 object NotFlown:
   private val TraceLines = 30
 
-  /** For a person, the last thing to be said. */
+  /** The final message to the user about failed flights. */
   def message(missing: Seq[NotFlown], planned: Int): String =
     (s"${missing.size} of $planned flights could not be flown:" +: missing.map(_.message)).mkString("\n")
 
-  /** What the user can mend, in words: code of the user's own failed, or the program was started without
-    * virtual time's agent, as development environments start it.
+  /** What the user can fix, in words: code of the user's own failed, or the program was started without
+    * virtual time's agent, as development environments do.
     */
   private[skein] def mendable(error: Throwable): Option[String] =
     OwnFailure.behind(error).map(_.getMessage).orElse:
@@ -181,7 +188,7 @@ object NotFlown:
         case stopped: VirtualTimeException if stopped.problem.isInstanceOf[Problem.NoAgent] =>
           stopped.getMessage
 
-  /** What was thrown and where, and what caused it; what the user can mend in words alone. */
+  /** The exception with its stack and causes; for what the user can fix, the words alone. */
   private[skein] def trace(error: Throwable): String = mendable(error) match
     case Some(reason) => reason
     case None         =>

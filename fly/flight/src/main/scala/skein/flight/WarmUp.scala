@@ -10,32 +10,32 @@ import skein.settings.{FlySettings, OutsidePolicy, SolverChoice, Wire}
 import skein.signal.LatencyProfile
 import skein.units.*
 
-/** Flies the flights in advance, so that the code on the way of a decision is compiled before the first one
-  * counts: in virtual time, over the same links, and then over real sockets. At ten decisions a second a
-  * flight of a minute would end before it is compiled: cold, a decision takes many times as long from the
-  * reading to the command (`skein.bench.FrameworkLatency`).
+/** Simulates the flights in advance, so that the code of a decision is compiled before the first one counts:
+  * in virtual time, over equal links, and then over real sockets. At ten decisions a second a flight of a
+  * minute would end before it is compiled: cold, a decision takes many times as long from the reading to the
+  * command (`skein.bench.FrameworkLatency`).
   */
 object WarmUp:
-  /** How many virtual flights it takes. */
+  /** Number of virtual flights for a warm-up. */
   val Flights = 20
 
-  /** After which these are enough, of real time, for large teams and for loops that plan. */
+  /** Real time after which the warm-up ends early, for large teams and for loops that plan. */
   val AtMost: Span = Span.ofSeconds(3)
 
-  /** Of each virtual flight: short, so that every loop and link has its turn. */
+  /** Duration of each virtual flight: short, so that every loop and link has its turn. */
   private val Flown = Span.ofSeconds(5)
 
-  /** Of the rehearsal, of real time: with its period and its vehicles, as many decisions as a duel makes in
-    * two minutes.
+  /** Duration, period and vehicles of the rehearsal, in real time: as many decisions as a duel makes in two
+    * minutes.
     */
   private val Rehearsed         = Span.ofSeconds(3)
   private val RehearsalPeriod   = Span.ofMillis(20)
   private val RehearsalVehicles = 20
 
-  /** Flies the plans of `settings` in turn in virtual time; blocks.
+  /** Simulates the plans of `settings` in turn in virtual time; blocks.
     *
-    * @param flights after which it ends, or with the first flight that ends later than [[AtMost]]
-    * @return how many were flown, or why one could not be
+    * @param flights number after which it ends, or with the first flight that ends later than [[AtMost]]
+    * @return number of flights, or why one failed
     */
   def fly(settings: FlySettings, flights: Int, clock: Clock): Either[String, Int] =
     val short = settings.copy(
@@ -61,12 +61,12 @@ object WarmUp:
 
     next(0)
 
-  /** Flies every loop of `settings` side by side, in real time if `transport` and `clock` are, without a
-    * link, against built-in simulators, with more vehicles and more often: what virtual time replaces,
-    * sockets and threads, is warm then too. Afterwards the compiler gives way to what is flown, and
-    * [[skein.link.ControlThreads]] go first.
+  /** Flies every loop of `settings` side by side, in real time if `transport` and `clock` are real, without a
+    * link, against built-in simulators, with more vehicles and a shorter period: this warms up the sockets
+    * and threads that virtual time replaces. Afterwards the JIT compiler's priority is below that of the
+    * flight, and [[skein.link.ControlThreads]] have the highest.
     *
-    * @return how many decisions were made, or why a loop could not be started
+    * @return number of decisions, or why a loop could not start
     */
   def rehearse(settings: FlySettings, transport: Transport, clock: Clock)(using
       system: ActorSystem

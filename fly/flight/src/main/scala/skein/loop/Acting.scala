@@ -4,11 +4,11 @@ import skein.policy.{Action, Fleet}
 import skein.units.*
 import skein.vehicle.{Guidance, Setpoint}
 
-/** What the flight controller makes of an action. */
+/** Converts actions to headings, speeds and model setpoints. */
 private object Acting:
   import PositionGuidance.turned
 
-  /** The command as a model of the vehicle takes it, for a prediction. */
+  /** The command of an action for a vehicle model's prediction. */
   def guidance(action: Action): Guidance = action match
     case Action.Velocity(velocity, yaw) =>
       turned(Setpoint.velocity(velocity.x, velocity.y, velocity.z), yaw, velocity)
@@ -22,7 +22,7 @@ private object Acting:
     case Action.Hover => Setpoint.velocity(0, 0, 0)
     case Action.Land  => Setpoint.velocity(0, 0, LandingMps)
 
-  /** A move that was sent, as a model of the vehicle takes it. */
+  /** The command of a sent move for a vehicle model's prediction. */
   def guidance(fleet: Fleet, move: SentCommand): Guidance =
     val agent = fleet.agents(move.vehicle)
     move.action.fold {
@@ -30,7 +30,7 @@ private object Acting:
       Setpoint.velocityZ(velocity.x, velocity.y, agent.startPositionNed.z)
     }(guidance)
 
-  /** What a vehicle is told: the action, or for a heading the velocity along it, at the altitude of the
+  /** The action to command: the decided one, or for a heading the velocity along it, at the altitude of the
     * start.
     */
   def action(fleet: Fleet, decision: Decision): Action =
@@ -39,5 +39,5 @@ private object Acting:
       val velocity = agent.velocityNed(decision.heading.value, decision.speed)
       Action.VelocityAt(velocity.x, velocity.y, Metres(agent.startPositionNed.z))
 
-  /** AirSim's. */
+  /** AirSim's speed of descent while landing, m/s. */
   private val LandingMps = 0.2

@@ -4,24 +4,23 @@ import skein.policy.{Agent, Policy, HoldPosition, KeepHeading, PolicyFamily}
 import skein.scenario.Scenarios
 import skein.units.Span
 
-/** By when a policy must have decided, and what is done where it has not. The policy then runs beside the
-  * loop, on threads of its own, and what it decides too late is not used.
+/** The time-out of a policy's decision, and the fallback. The policy then runs beside the loop, on its own
+  * threads, and late decisions are discarded.
   */
 final case class Deadline(within: Span, otherwise: Fallback):
   require(within > Span.Zero, "a deadline must be positive")
 
-/** What is done instead of a decision that came too late. */
+/** The replacement for a decision that is late. */
 enum Fallback:
-  /** Nothing is sent: the vehicle flies on under its last move, for as long as that lasts. */
+  /** Nothing is sent: the vehicle continues its last move until that ends. */
   case Hold
 
-  /** The last decision, once more. */
   case Repeat
 
-  /** The vehicle is told to stay where it is. */
+  /** The vehicle is commanded to hold its position. */
   case Hover
 
-  /** A policy of the family, where it is meant for the vehicle's role; for others as [[Repeat]]. */
+  /** A policy of the family, if it is meant for the vehicle's role; for others like [[Repeat]]. */
   case Decides(family: PolicyFamily)
 
   def label: String = this match
@@ -30,7 +29,7 @@ enum Fallback:
     case Hover           => "hover"
     case Decides(family) => family.name
 
-  /** Who decides for an agent; absent where nobody does. */
+  /** The policy that decides for an agent; absent if none does. */
   def policy(agent: Agent): Option[Policy] = this match
     case Hold                                                 => None
     case Hover                                                => Some(HoldPosition)
@@ -39,7 +38,7 @@ enum Fallback:
 
 object Fallback:
 
-  /** `hold`, `repeat`, `hover` or a family's name. */
+  /** Reads `hold`, `repeat`, `hover` or a family's name. */
   def parse(text: String)(using scenarios: Scenarios): Either[String, Fallback] = text match
     case "hold"   => Right(Hold)
     case "repeat" => Right(Repeat)

@@ -4,15 +4,15 @@ import skein.policy.{Action, Fleet, HeadingPolicy, Observation, Policy, Seen, Se
 import skein.signal.Stamped
 import skein.units.*
 
-/** What one vehicle's decisions depend on apart from the view.
+/** State of one vehicle's decisions, in addition to the view.
   *
-  * @param held what the policy remembers; of its own type
+  * @param held the policy's memory, of its own type
   */
 final case class Memory(headingRad: Double, decidedAt: Option[Instant], decisions: Long, held: Any = ())
 
 /** Decisions for one vehicle of a scenario: the pure core of every loop.
   *
-  * @param policy the agent's own, or one in its place
+  * @param policy the agent's own, or one instead of it
   */
 final class Decider(fleet: Fleet, self: Int, policy: Policy):
   private val agent = fleet.agents(self)
@@ -23,9 +23,8 @@ final class Decider(fleet: Fleet, self: Int, policy: Policy):
 
   /** Decides from a complete view.
     *
-    * @throws skein.units.OwnFailure if the policy throws, or answers with nothing that a vehicle could be
-    *   told
-    * @param now on the clock that the readings' `receivedAt` and the moves' `sentAt` were read from
+    * @throws skein.units.OwnFailure if the policy throws, or its answer cannot be commanded
+    * @param now on the clock of the readings' `receivedAt` and of the moves' `sentAt`
     */
   def decide(memory: Memory, view: TeamView, now: Instant): (Memory, Decision) =
     val seen             = observation(memory, view, now)
@@ -38,7 +37,7 @@ final class Decider(fleet: Fleet, self: Int, policy: Policy):
       case other => Some(other.byVelocity)
     (next.copy(held = held), decision.copy(action = told))
 
-  /** What the policy answers, and what it is to remember.
+  /** The policy's action and next memory.
     *
     * @throws skein.units.OwnFailure as [[decide]]
     */
@@ -52,16 +51,14 @@ final class Decider(fleet: Fleet, self: Int, policy: Policy):
     PolicyAnswer.expectAction(agent, action)
     (action, held)
 
-  /** Decides once in the place of another policy, of which the memory is, and leaves that policy's own part
-    * as it was.
-    */
+  /** Decides once instead of the policy that owns the memory, and leaves that policy's own part unchanged. */
   def decideInstead(memory: Memory, view: TeamView, now: Instant): (Memory, Decision) =
     val (next, decision) = decide(memory.copy(held = PolicyAnswer.first(agent)(policy.start)), view, now)
     (next.copy(held = memory.held), decision)
 
   def regardsTeam: Boolean = !policy.isAgainstOne
 
-  /** What the vehicle's policy decides upon. */
+  /** The observation for the vehicle's policy. */
   def observation(memory: Memory, view: TeamView, now: Instant): Observation =
     val places = fleet.agents.indices.toVector
     Observation(
@@ -100,10 +97,10 @@ final class Decider(fleet: Fleet, self: Int, policy: Policy):
   private def opponentIn(view: TeamView): Int =
     fleet.opponentOf(self, view.kinematics(_).positionNed)
 
-  /** The decision for a course that was chosen, however that was done.
+  /** The decision for a chosen course.
     *
     * @param speed absent where the vehicle commands its own
-    * @throws ArithmeticException if heading or speed is no finite number: no vehicle is told such a thing
+    * @throws ArithmeticException if heading or speed is not finite: no vehicle may receive it
     */
   def decided(
       memory: Memory,

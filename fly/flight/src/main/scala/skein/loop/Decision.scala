@@ -3,17 +3,16 @@ package skein.loop
 import skein.policy.Action
 import skein.units.*
 
-/** What was decided for one vehicle, and what from.
+/** A decision for one vehicle, with its inputs.
   *
   * @param sequence counts the decisions for this vehicle
-  * @param view what the controller knew
-  * @param opponent whom it was decided against
-  * @param headingBefore commanded last to this vehicle
+  * @param view the controller's knowledge
+  * @param opponent against which it was decided
+  * @param headingBefore last commanded to this vehicle
   * @param elapsed since this vehicle's last decision; zero at the first
-  * @param heading the one chosen
-  * @param speed the one chosen; absent where the vehicle always commands its own
-  * @param action what was decided to do; absent where it is told by heading and speed at the altitude of the
-  *   start
+  * @param heading the chosen one
+  * @param speed the chosen one; absent where the vehicle always commands its own
+  * @param action the chosen one; absent where heading and speed at the altitude of the start define it
   */
 final case class Decision(
     vehicle: Int,
@@ -27,6 +26,6 @@ final case class Decision(
     speed: Option[MetresPerSecond],
     action: Option[Action] = None
 ):
-  /** As the other vehicles' policies see it, once it was sent. */
+  /** The sent command as other vehicles' policies observe it. */
   def move(sentAt: Instant): SentCommand =
     SentCommand(vehicle, sequence, heading.value, sentAt, speed, action)

@@ -4,26 +4,24 @@ import skein.loop.planning.PlanStage
 import skein.planning.{JointPlanner, PlanProblem}
 import skein.units.Instant
 
-/** What one vehicle's decisions are made by when they are made again, with its memory. Immutable. */
+/** The state for repeating one vehicle's decisions, with its memory. Immutable. */
 private final class DecisionState(decider: Decider, memory: Memory):
-  /** Whether decisions depend on more vehicles than this one and its opponent. */
+  /** Whether decisions depend on other vehicles than this one and its opponent. */
   def regardsTeam: Boolean = decider.regardsTeam
 
   def decide(view: TeamView, now: Instant): (DecisionState, Decision) =
     val (next, decision) = decider.decide(memory, view, now)
     (DecisionState(decider, next), decision)
 
-  /** As another would in its place, this once. */
+  /** Decides once by another decider. */
   def decideBy(one: Decider, view: TeamView, now: Instant): (DecisionState, Decision) =
     val (next, decision) = one.decideInstead(memory, view, now)
     (DecisionState(decider, next), decision)
 
-  /** With what the policy remembers as it was before the first decision. */
+  /** With the policy's memory as before the first decision. */
   def begunAnew: DecisionState = DecisionState(decider, memory.copy(held = decider.start.held))
 
-/** What the decisions of vehicles that plan together are made by when they are made again. Immutable but for
-  * scratch memory.
-  */
+/** The state for repeating decisions of vehicles that plan together. Immutable except for scratch memory. */
 private final class JointDecisionState private (
     val planning: JointPlanning,
     planner: JointPlanner,
@@ -32,7 +30,9 @@ private final class JointDecisionState private (
 ):
   def this(planning: JointPlanning, memories: Vector[Memory]) = this(planning, JointPlanner(), memories, None)
 
-  /** @param views by vehicle
+  /** Repeats a joint decision.
+    *
+    * @param views by vehicle
     * @param slices of each search
     */
   def decide(
@@ -47,7 +47,7 @@ private final class JointDecisionState private (
     val (next, planned) = planning.decide(memories, views, now, problem.parts, answer)
     (JointDecisionState(planning, planner, next, Some(answer)), planned.map(_.decision))
 
-  /** As others would in the planner's place, this once. */
+  /** Decides once by others instead of the planner. */
   def decideBy(
       others: Vector[Decider],
       views: Vector[TeamView],
@@ -56,5 +56,5 @@ private final class JointDecisionState private (
     val (next, made) = others.lazyZip(memories).lazyZip(views).map(_.decideInstead(_, _, now)).unzip
     (JointDecisionState(planning, planner, next, last), made)
 
-  /** With no plan to go on from. */
+  /** The state without an earlier plan to start from. */
   def begunAnew: JointDecisionState = JointDecisionState(planning, planner, memories, None)

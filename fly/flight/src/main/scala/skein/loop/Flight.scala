@@ -12,21 +12,19 @@ import skein.units.*
 // Recordings name it, too, and so it is theirs.
 export skein.record.LoopKind
 
-/** How a flight ended. */
+/** The end of a flight: completed, stopped or failed. */
 enum FlightOutcome:
-  /** It flew its whole time, or its scenario was over. */
   case Completed
 
-  /** Somebody stopped it. */
   case Stopped
 
-  /** It could not go on; the vehicles were told to hover. */
+  /** It could not go on; the vehicles were commanded to hover. */
   case Failed(reason: String)
 
-/** A flight under way. Whatever ends it, the vehicles are told to hover and every call has ended when
+/** A running flight. However it ends, the vehicles are commanded to hover, and every call has ended when
   * `outcome` completes.
   *
-  * @param streams what its graph runs on, as soon as it does
+  * @param streams the materializer of its graph, once it runs
   */
 final class Flight private (
     stopping: Promise[FlightOutcome],
@@ -34,31 +32,30 @@ final class Flight private (
     private[skein] val streams: Future[Materializer]
 ):
 
-  /** How it ends, as soon as that is decided: before the vehicles hover. */
+  /** The outcome as soon as it is decided, before the vehicles hover. */
   def ending: Future[FlightOutcome] = stopping.future
 
-  /** Ends the flight now, because it cannot go on. */
+  /** Ends the flight immediately, because it cannot go on. */
   def fail(reason: String): Unit =
     val _ = stopping.trySuccess(FlightOutcome.Failed(reason))
 
-  /** Ends the flight now, since there is nothing more to fly. */
+  /** Ends the flight immediately, because it is complete. */
   def complete(): Unit =
     val _ = stopping.trySuccess(FlightOutcome.Completed)
 
-  /** Ends the flight now. */
   def stop(): Unit =
     val _ = stopping.trySuccess(FlightOutcome.Stopped)
 
 object Flight:
 
-  /** Flies a loop for `duration`; for `paused`, of the simulator's time. A failure of the recorder ends the
+  /** Runs a loop for `duration`; for `paused`, of the simulator's time. A failure of the recorder ends the
     * flight.
     *
-    * @param loop one of ours, or a user's own
-    * @param time what lets the simulator's time pass; only `paused` needs it
-    * @param onTime how it has ended when its time is over
-    * @param on what one of our loops runs on, else what the system's other streams do. Its own can be asked
-    *   for the graph, whatever the others do: one that ends before it answers keeps the answers of all
+    * @param loop one of Skein's, or a user's own
+    * @param time advances the simulator; only `paused` needs it
+    * @param onTime the outcome when its time is over
+    * @param on the materializer of one of Skein's loops, else the system's. A separate one can report the
+    *   graph independently: a stream that ends before it answers delays the report of all on its materializer
     */
   def start(
       loop: AnyLoop,
@@ -103,15 +100,15 @@ object Flight:
       hovering.transformWith(_ => stopping.future)
     Flight(stopping, landed.map(recorded(recorder, _)), streams)
 
-  /** The last answers come after the flight's time is over; where they could not be kept, it has failed all
-    * the same.
+  /** The outcome after the last records. These follow the end of the flight's time; if the recorder failed,
+    * so has the flight.
     */
   private def recorded(recorder: Recorder, outcome: FlightOutcome): FlightOutcome =
     recorder.failure.value.flatMap(_.toOption) match
       case Some(error) if !outcome.isInstanceOf[FlightOutcome.Failed] => FlightOutcome.Failed(error.message)
       case _                                                          => outcome
 
-  /** Nothing says that a user's graph minds the switch: one that does not is broken off. */
+  /** Runs a user's graph. It may ignore the kill switch: then it is aborted after a time. */
   private def runOwn(
       own: OwnLoop,
       team: Team,
@@ -135,7 +132,7 @@ object Flight:
       ended.onComplete(_ => breakingOff.cancel())
     (ended.andThen(_ => system.stop(streams)), started.future)
 
-  /** Its streams end with it. */
+  /** An actor whose streams end with it. */
   private final class Streams(started: Promise[Materializer]) extends Actor:
     started.success(Materializer(context))
     def receive: Receive = Actor.emptyBehavior

@@ -5,24 +5,26 @@ import skein.policy.Agent
 import skein.vehicle.*
 import scala.util.Try
 
-/** How plans foresee one vehicle: by the plant that its readings are carried forward by.
+/** A plan's prediction of one vehicle: by the plant that predicts its readings.
   *
   * @param carriesS see [[PredictedVehicle.carriesS]]
   */
 private final class ForeseenVehicle(val plant: ObservedPlant[?], carriesS: Double):
 
-  /** The vehicle as a view has it. */
+  /** The vehicle's state in a view. */
   def at(view: TeamView, vehicle: Int): PredictedVehicle[?] =
     val state = view.estimates.fold(Vector.empty)(_(vehicle).state)
     PredictedVehicle.of(plant, PlantModel.readingOf(view.kinematics(vehicle)), carriesS, state)
 
 private object ForeseenVehicle:
-  /** For speeds of 0, m/s. */
+  /** Replaces speeds of 0, m/s, to avoid a division by zero. */
   private val LeastMps = 0.1
 
-  /** @param model by which its readings are carried forward. Of one without a plant of velocities, plans take
-    *   AirSim's quadrotor at the vehicle's altitude
-    * @return or why nobody plans by it
+  /** Chooses the plant for a vehicle.
+    *
+    * @param model that predicts its readings. For a model without a plant of velocities, plans use AirSim's
+    *   quadrotor at the vehicle's altitude
+    * @return Left states why planning does not support it
     */
   def of(agent: Agent, model: VehicleModel[?], settings: PlanSettings): Either[String, ForeseenVehicle] =
     val plant = model match

@@ -7,9 +7,9 @@ import scala.concurrent.{ExecutionContext, Future}
 import skein.record.EventKind
 import skein.units.*
 
-/** The paper's model 3: every period one future per vehicle, which reads all vehicles one after the other,
-  * decides for its own and commands it. Futures may overlap; what each decides takes effect in the order in
-  * which they finish.
+/** The paper's model 3: every period one future per vehicle, which reads all vehicles in sequence, decides
+  * for its own and commands it. Futures may overlap; their decisions take effect in the order in which they
+  * finish.
   */
 object FuturesLoop:
 

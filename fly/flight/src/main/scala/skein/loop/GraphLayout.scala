@@ -1,14 +1,14 @@
 package skein.loop
 
-/** Where a part of a graph is drawn.
+/** The position of a part in a graph's drawing.
   *
   * @param column from 0, from left to right
   * @param row from 0, from top to bottom; halves occur, since columns are centred
   */
 final case class Spot(column: Int, row: Double)
 
-/** A column for each part: one behind the last of those that lead to it, where nothing turns back. Within a
-  * column, parts stand as those do that lead to them; what turns back stands below.
+/** Lays out a graph in columns: each part is one column after the last of its predecessors, without back
+  * edges. Within a column, parts follow the order of their predecessors; back edges are drawn below.
   */
 object GraphLayout:
 
@@ -31,7 +31,7 @@ object GraphLayout:
         name -> Spot(at, row + (tallest - names.size) / 2.0)
       )
 
-  /** The edges but for those that close a circle, as one finds them who follows them from the sources. */
+  /** The edges without back edges (depth-first from the sources). */
   private def withoutTurns(graph: LoopGraph): Vector[(from: String, to: String)] =
     val leads = graph.edges.groupBy(_.from).withDefaultValue(Vector.empty)
     type Found = (closed: Set[String], forward: Vector[(from: String, to: String)])

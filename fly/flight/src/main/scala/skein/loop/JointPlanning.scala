@@ -5,29 +5,29 @@ import skein.planning.{Part, PlannerSettings}
 import skein.policy.{Fleet, Goal}
 import skein.units.*
 
-/** Plans for all vehicles of a scenario that plan, together: the pure core of the `plan` loop, which its
-  * replay uses too.
+/** Joint plans for all vehicles of a scenario that plan: the pure core of the `plan` loop, which its replay
+  * uses too.
   *
-  * Where nothing was searched for a vehicle for half a horizon, its own policy decides.
+  * If no search finished for a vehicle during half a horizon, its own policy decides.
   *
   * @param vehicles by their places in the scenario, at least one
   */
 final class JointPlanning private (val vehicles: Vector[Int], plannings: Vector[Planning]):
   val planner: PlannerSettings = plannings.head.planner
 
-  /** How long after its arrival a command begins to act on a vehicle. */
+  /** Time from a command's arrival until it takes effect on a vehicle. */
   val deadTime: Span = plannings.map(_.deadTime).max
 
   def regardsTeam(vehicle: Int): Boolean = plannings(vehicles.indexOf(vehicle)).regardsTeam
 
-  /** What is planned for, by vehicle.
+  /** The planning problems, by vehicle.
     *
-    * @param views with the estimates of when the commands will act
+    * @param views with the estimates for the time at which the commands take effect
     */
   def pose(memories: Vector[Memory], views: Vector[TeamView], now: Instant): Vector[Part] =
     plannings.indices.toVector.map(index => plannings(index).pose(memories(index), views(index), now))
 
-  /** The decisions for what was found, by vehicle. */
+  /** The decisions for the plans found, by vehicle. */
   def decide(
       memories: Vector[Memory],
       views: Vector[TeamView],
@@ -49,9 +49,9 @@ final class JointPlanning private (val vehicles: Vector[Int], plannings: Vector[
 
 object JointPlanning:
 
-  /** Absent where nobody plans.
+  /** Joint planning for a fleet; None if no vehicle plans.
     *
-    * @return or why the vehicles that plan, or their opponents, cannot be planned by their models
+    * @return Left states why planning does not support the models of vehicles or opponents
     */
   def of(fleet: Fleet, settings: LoopSettings): Either[String, Option[JointPlanning]] =
     import settings.{planning, seed}

@@ -2,25 +2,23 @@ package skein.loop
 
 import skein.forecast.ForecastEvent
 
-/** An event that the view takes in. */
+/** An event that updates a loop's view of the team. */
 enum LoopEvent:
-  /** Readings of different vehicles, and the vehicles to decide upon them. */
+  /** Readings of different vehicles, and the vehicles that must decide on them. */
   case Seen(readings: Vector[Reading], deciders: Set[Int])
 
-  /** A reading that nobody decides upon at once. */
+  /** A reading without an immediate decision. */
   case Read(reading: Reading)
 
-  /** What a sensor said. */
   case Measured(reading: SensorReading)
 
-  /** The vehicles to decide upon what is known. */
+  /** The vehicles that must decide on the present view. */
   case Due(deciders: Set[Int])
 
-  /** A command that was sent. */
   case Moved(move: SentCommand)
 
-  /** A further event for the forecast. */
+  /** A further event that updates the forecast. */
   case Heard(event: ForecastEvent)
 
-/** A view and the vehicles to decide upon it. */
+/** A view with the vehicles that must decide on it. */
 final case class DecisionRequest(view: TeamView, deciders: Set[Int])

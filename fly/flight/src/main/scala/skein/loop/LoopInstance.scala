@@ -9,8 +9,8 @@ import skein.record.{Recordable, RecordError, Recorder, Written}
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 
-/** The graph of a loop without a flight: it is started for vehicles that never say where they are, its
-  * interpreter is asked of its parts, and it is ended.
+/** The graph of a loop without a flight: starts it for vehicles that never answer, requests its parts from
+  * the interpreter, and ends it.
   */
 object LoopInstance:
 

@@ -8,23 +8,23 @@ import skein.vehicle.{QuadrotorModel, VehicleModel}
 /** How a loop is run.
   *
   * @param period between decisions for one vehicle
-  * @param window questions to one vehicle that may be unanswered at once
-  * @param moveDuration of every move command; the vehicle holds its position when it hears nothing for so
-  *   long
-  * @param minCommandInterval the rate cap for one vehicle, whatever the loop does
-  * @param paceInterval that `stream` keeps at least between two decisions (or commands) for one vehicle; the
-  *   ticks keep the period
-  * @param movesInFlight moves of one vehicle that may be unanswered: see [[skein.flow.Steer]]
-  * @param patience how long `stream` waits for the readings of the other vehicles when one has come
+  * @param window limit of unanswered requests to one vehicle
+  * @param moveDuration of every move command; a vehicle without further commands then holds its position
+  * @param minCommandInterval the rate cap for one vehicle, for all loops
+  * @param paceInterval least time of `stream` between two decisions (or commands) for one vehicle; the ticks
+  *   keep the period
+  * @param movesInFlight limit of unanswered moves of one vehicle: see [[skein.flow.Steer]]
+  * @param patience longest time for which `stream` waits for the readings of the other vehicles after the
+  *   first
   * @param spread over which the ticks of the vehicles are spread
-  * @param early what `stream` does with a reading that comes before an older one of the same vehicle
+  * @param early how `stream` treats a reading that arrives before an older one of its vehicle
   * @param decideThenPace `stream` decides at every view and paces the commands, instead of pacing first and
-  *   deciding with the newest view
-  * @param model by which `predictive` and `plan` carry the readings of a vehicle forward
-  * @param planning how `plan` plans
+  *   deciding on the newest view
+  * @param model by which `predictive` and `plan` predict a vehicle from its readings
+  * @param planning settings of `plan`
   * @param seed of its searches
-  * @param deadline of every decision; without one a policy decides on the loop's own thread and is waited
-  *   for. `paused` has none: its time stands still
+  * @param deadline of every decision; without one a policy decides on the loop's own thread, which waits for
+  *   it. `paused` has none: its time stands still
   */
 final case class LoopSettings(
     period: Span = Span.ofMillis(100),
@@ -47,8 +47,8 @@ final case class LoopSettings(
   for wrong <- Moves.mistake(movesInFlight) do
     throw IllegalArgumentException(s"moves in flight: $wrong")
 
-  /** As the published code does: it asks the vehicles in turn, spread over the period, waits for every answer
-    * in order, decides at each, and paces the commands.
+  /** Settings of the published code: it reads the vehicles in turn, spread over the period, waits for every
+    * answer in order, decides at each, and paces the commands.
     */
   def asPublished: LoopSettings =
     copy(
@@ -61,6 +61,6 @@ final case class LoopSettings(
 
 object LoopSettings:
 
-  /** Settings for a period: half of it between two decisions at least, and all of it as patience. */
+  /** Settings for a period: at least half of it between two decisions, and all of it as patience. */
   def every(period: Span): LoopSettings =
     LoopSettings(period = period, paceInterval = period / 2, patience = period)

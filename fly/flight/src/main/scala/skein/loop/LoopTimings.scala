@@ -5,7 +5,7 @@ import skein.forward.{Asking, LoopTiming, Steering}
 import skein.port.Moves
 import skein.units.*
 
-/** The live loops' timing as forward simulation has it. */
+/** The timing of the live loops, for forward simulation. */
 object LoopTimings:
   /** Absent for `plan`, whose decisions are themselves forward simulations. */
   def of(kind: LoopKind, settings: LoopSettings): Option[LoopTiming] =

@@ -4,8 +4,8 @@ import org.apache.pekko.NotUsed
 import org.apache.pekko.stream.scaladsl.*
 import org.apache.pekko.stream.{FlowShape, Graph, SharedKillSwitch}
 
-/** What [[PredictiveLoop]] and [[PlanLoop]] begin with: every vehicle is sensed, what is told of commands
-  * comes back in, and once a period there is a request of it all.
+/** The common first part of [[PredictiveLoop]] and [[PlanLoop]]: senses every vehicle, feeds command events
+  * back, and requests decisions once a period.
   *
   * {{{
   * sense(0) ─┐

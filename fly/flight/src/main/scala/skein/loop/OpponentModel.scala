@@ -3,19 +3,19 @@ package skein.loop
 import skein.planning.Planner
 import skein.policy.{Agent, Fleet, HeadingPolicy}
 
-/** How plans foresee the opponent of a vehicle that plays against one. */
+/** A plan's model of the opponent of a vehicle that plays against one. */
 object OpponentModel:
 
-  /** By which policy it is taken to decide, or why it is taken to fly straight on. */
+  /** The assumed policy of an opponent, or why it is assumed to fly straight on. */
   private[loop] def of(opponent: Agent): Either[String, HeadingPolicy] = opponent.policy match
     case policy: HeadingPolicy => Planner.refusal(policy).toLeft(policy)
     case _                     => Left("it plays against more than one vehicle")
 
-  /** Whose decisions plans may foresee, by their places. */
+  /** The vehicles whose decisions plans may predict, by their places. */
   private[loop] def known(fleet: Fleet): Vector[Int] =
     fleet.agents.indices.toVector.filter(vehicle => of(fleet.agents(vehicle)).isRight)
 
-  /** Who is taken to fly straight on, and why, in a line each for the user. */
+  /** The vehicles that are assumed to fly straight on, with the reason, in a line each for the user. */
   def missing(fleet: Fleet): Vector[String] =
     val duellists =
       fleet.agents.filter(agent => Planning.plans(agent) && agent.policy.isAgainstOne)

@@ -9,16 +9,14 @@ import skein.record.LoopKind
 import skein.scenario.{NamedLoop, Scenarios}
 import skein.units.Span
 
-/** A loop that flies: one of ours, or a user's own. */
+/** The loop of a flight: one of Skein's, or a user's own. */
 type AnyLoop = LoopKind | OwnLoop
 
 object AnyLoop:
-  /** Of ours, and of the program's own. */
   def names(using scenarios: Scenarios): Vector[String] =
     LoopKind.values.toVector.map(_.label) ++ scenarios.loops.map(_.name)
 
-  /** @return the loop of this name, or what was expected and came
-    */
+  /** The loop of this name; Left states what was expected and what was given. */
   def parse(name: String)(using scenarios: Scenarios): Either[String, AnyLoop] =
     scenarios.loops
       .collectFirst { case own: OwnLoop if own.name == name => own }
@@ -29,12 +27,12 @@ object AnyLoop:
         val several = if name.contains(',') then "; several as --loop ONE --loop OTHER" else ""
         s"no loop '$name': expected one of ${names.mkString(", ")}$several"
 
-/** A control loop of a user's own: a graph of a [[Team]]'s operators. It is recorded, reported, flown in
-  * virtual time and replayed as ours are; [[StreamLoop]] is written with the same operators and shows how.
+/** A control loop of a user's own: a graph of a [[Team]]'s operators. It is recorded, reported, run in
+  * virtual time and replayed like Skein's; [[StreamLoop]] uses these operators and is an example.
   *
-  * @param name in recordings, tables and pictures; none of ours
+  * @param name in recordings, tables and pictures; not one of Skein's
   * @param graph ends its sources when the switch is shut down, and completes its future when every command
-  *   has ended; after [[OwnLoop.Grace]] it is broken off. Whatever it does, the vehicles are told to hover
+  *   has ended; after [[OwnLoop.Grace]] it is aborted. In any case the vehicles are commanded to hover
   *   afterwards
   */
 final class OwnLoop(
@@ -48,17 +46,16 @@ final class OwnLoop(
   require(LoopKind.parse(name).isLeft, s"a loop's name: expected none of Skein's own, came '$name'")
 
 object OwnLoop:
-  /** How long a graph may take to end after its switch was shut down; then it is broken off. More than a
-    * vehicle takes to answer a command or to miss its time.
+  /** Time after the switch was shut down in which a graph must end before it is aborted. More than a command
+    * takes to be answered or to time out.
     */
   val Grace: Span = Span.ofSeconds(30)
 
-  /** The graph of this name had not ended [[Grace]] after its switch was shut down. */
+  /** The graph of this name had not ended within [[Grace]] after its switch was shut down. */
   final class BrokenOff(name: String)
       extends RuntimeException(s"the loop $name had not ended ${Grace.toSeconds.round} s after its flight")
 
   extension (loop: AnyLoop)
-    /** What recordings call it. */
     def label: String = loop match
       case kind: LoopKind => kind.label
       case own: OwnLoop   => own.name

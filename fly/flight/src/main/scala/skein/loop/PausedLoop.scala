@@ -15,12 +15,12 @@ import skein.units.*
 /** The paper's model 1, the ground truth: the simulator stands still while every vehicle is read, decided for
   * and commanded; then it runs exactly one period. Time is the simulator's: no reading has an age.
   *
-  * While time stands still nothing gets old, so this loop waits: what is not answered in time is asked again
-  * for up to [[PausedLoop.Patience]], and a step whose answer is lost is made again only if the simulator's
-  * clock shows that it was not made. Then the flight ends, since a truth with gaps is none. The length of
-  * each step is verified against the simulator's clock; one that took no time, or several periods, ends the
-  * flight. However it ends, the simulator is let run again and the vehicles are told to hover; both are tried
-  * up to [[UntilCertain.Attempts]] times. While the team is held, no step begins: nothing moves.
+  * While time stands still readings do not age, so this loop waits: a request without an answer is repeated
+  * for up to [[PausedLoop.Patience]], and a step whose answer is lost is repeated only if the simulator's
+  * clock shows that it was not made. After that time the flight ends, since a truth with gaps is none. The
+  * length of each step is verified against the simulator's clock; one that took no time, or several periods,
+  * ends the flight. However it ends, the simulator runs again and the vehicles are commanded to hover; both
+  * are tried up to [[UntilCertain.Attempts]] times. While the team is held, no step begins: nothing moves.
   */
 object PausedLoop:
 
@@ -33,19 +33,20 @@ object PausedLoop:
       .toMat(Sink.ignore)(Keep.right)
       .mapMaterializedValue(flight.landed)
 
-  /** How long a step is tried for by the controller's clock, before an error ends the flight: as long as a
-    * simulator may be silent.
+  /** Time for which a step is retried by the controller's clock, before an error ends the flight: the longest
+    * silence allowed to a simulator.
     */
   val Patience: Span = Span.ofSeconds(9)
 
-  /** When all of one step was read: one instant, unless the simulator was started again meanwhile and runs.
+  /** The valid time of all readings of a step: a single instant, unless the simulator was restarted meanwhile
+    * and runs.
     */
   private[loop] def newest(states: Vector[Stamped[?]]): Instant = states.map(_.validAt).max
 
-  /** What the readings of a step show that must not be, a line each: time that passed while they were read,
-    * and a step that took other than its time.
+  /** Inconsistencies in the readings of a step, a line each: time that passed during reading, and a step with
+    * a wrong duration.
     *
-    * @param before what was read of the step before; empty where there is none
+    * @param before the readings of the previous step; empty if there is none
     */
   private[loop] def drift(
       step: Long,
@@ -65,13 +66,15 @@ object PausedLoop:
       )
     ).flatten
 
-  /** While the simulator stands still, no time passes between question and answer. */
+  /** The reading with equal times of request and answer: while the simulator stands still, no time passes
+    * between them.
+    */
   private[loop] def timeless[A](read: Stamped[A]): Stamped[A] =
     read.copy(sentAt = read.validAt, receivedAt = read.validAt)
 
 private final case class PausedStep(number: Long, memories: Vector[Memory], view: TeamView)
 
-/** One flight of [[PausedLoop]]. */
+/** The state of one flight of [[PausedLoop]]. */
 private final class PausedFlight(
     team: Team,
     stepper: SteppedTime,
@@ -97,9 +100,9 @@ private final class PausedFlight(
       yield next
     else fly(step)
 
-  /** After the last step or an error. The simulator runs before the vehicles are told to hover: while it
-    * stands still, moves that missed their cancellation never end, and those of four vehicles hold every
-    * worker it has.
+  /** Ends the flight after the last step or an error. The simulator is resumed before the vehicles are
+    * commanded to hover: while it stands still, moves that missed their cancellation never end, and those of
+    * four vehicles occupy all of its workers.
     */
   def landed(flown: Future[Done]): Future[Done] =
     flown.transformWith: ended =>
@@ -145,9 +148,9 @@ private final class PausedFlight(
       team.log.sent(decision, clock.now())
       team.move(decision).andThen(result => team.log.ended(decision, clock.now(), result))
 
-  /** Runs the simulator for a period from `from` on, which is when it stands still.
+  /** Runs the simulator for a period from `from`, its present time.
     *
-    * @param since when that was begun, by the controller's clock
+    * @param since when that began, by the controller's clock
     */
   private def advance(from: Instant, since: Instant): Future[Unit] =
     stepper.continueFor(team.settings.period).flatMap:
@@ -160,7 +163,7 @@ private final class PausedFlight(
           done <- if at.since(from) >= team.settings.period / 2 then Future.unit else advance(from, since)
         yield done
 
-  /** At what time the simulator stands still, as two looks in a row show it. */
+  /** The time at which the simulator stands still, as two readings in a row show it. */
   private def standing(before: Option[Instant]): Future[Instant] =
     for
       _     <- after(PausedFlight.LookEvery)(Future.unit)
@@ -168,7 +171,7 @@ private final class PausedFlight(
       still <- if before.contains(at) then Future.successful(at) else standing(Some(at))
     yield still
 
-  /** Asks again until the answer is there, or it is in vain. */
+  /** Repeats a call until it is answered, or a retry is useless. */
   private def patiently[A](
       call: => Future[Either[VehicleError, A]],
       since: Instant = clock.now()
@@ -178,7 +181,7 @@ private final class PausedFlight(
       case Left(error) if isInVain(error, since) => failed(error)
       case Left(_)                               => after(PausedFlight.LookEvery)(patiently(call, since))
 
-  /** Whether asking again cannot help, or was tried for long enough. */
+  /** Whether a retry cannot help, or the time for retries is over. */
   private def isInVain(error: VehicleError, since: Instant): Boolean = error match
     case VehicleError.Refused(_) | VehicleError.Malformed(_) | VehicleError.Unsupported(_) |
         VehicleError.Cancelled(_) => true
@@ -186,7 +189,7 @@ private final class PausedFlight(
 
   private def failed(error: VehicleError) = Future.failed(LoopFailed(error.message))
 
-  /** Fails where the simulator's clock cannot be flown by. */
+  /** Fails if the simulator's clock is no time axis for a flight. */
   private def verifyStep(step: PausedStep, readings: Vector[Reading]): Unit =
     val (before, read) = (step.view.readings.flatten.map(_.state), readings.map(_.state))
     PausedLoop
@@ -213,8 +216,8 @@ private final class PausedFlight(
     s"the simulator could not be let run again and stands still: ${error.message}"
 
 private object PausedFlight:
-  /** Whether the team is still held. */
+  /** Interval of checks whether the team is still held. */
   private val LookEvery = 100.millis
 
-/** Why a loop cannot go on. */
+/** A loop cannot go on; the message states why. */
 final class LoopFailed(message: String) extends RuntimeException(message)

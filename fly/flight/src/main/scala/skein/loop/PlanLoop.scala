@@ -6,10 +6,10 @@ import org.apache.pekko.stream.scaladsl.*
 import org.apache.pekko.{Done, NotUsed}
 import scala.concurrent.Future
 
-/** [[PredictiveLoop]] that plans: for the vehicles of a [[JointPlanning]], thousands of manoeuvres are flown
-  * forward from the estimates of each tick until the deadline, each vehicle's against the plans of all
-  * others, and the first actions of the best ones are commanded. Estimates are of the moment at which those
-  * commands will act. All other vehicles decide as in [[PredictiveLoop]].
+/** [[PredictiveLoop]] with planning: for the vehicles of a [[JointPlanning]], thousands of manoeuvres are
+  * simulated from the estimates of each tick until the deadline, each vehicle's against the plans of all
+  * others, and the first actions of the best ones are commanded. Estimates are for the moment at which those
+  * commands take effect. All other vehicles decide as in [[PredictiveLoop]].
   */
 object PlanLoop:
 

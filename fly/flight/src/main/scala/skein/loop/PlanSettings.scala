@@ -6,18 +6,18 @@ import skein.planning.*
 import skein.scenario.{Fence, Kept, Scenario}
 import skein.units.*
 
-/** How `plan` plans.
+/** Settings of the loop `plan`.
   *
-  * @param deadline from the tick until the command leaves, whatever was found by then
+  * @param deadline from the tick until the command is sent, with the best plan found by then
   * @param horizonSteps of `step` each
   * @param method `cross-entropy` or `path-integral`
-  * @param behaviours of the opponent, against which every candidate is flown
-  * @param searches side by side: as many threads as that in real time
+  * @param behaviours of the opponent, against which every candidate is simulated
+  * @param searches side by side: the number of threads in real time
   * @param slices of each search in virtual time, where the clock does not end it; several vehicles share
-  *   them, and get one each at least
-  * @param blocksPerSlice 128 candidates each; between two slices a search looks whether its time is over
+  *   them, and each gets at least one
+  * @param blocksPerSlice 128 candidates each; between two slices a search checks its time
   * @param turningRadiusM of a vehicle at the speed that it commands
-  * @param slowestShare of its speed that a vehicle may be commanded; 1: only its heading is planned
+  * @param slowestShare least commanded speed, as a share of the vehicle's; 1: only its heading is planned
   * @param separationM to be kept from vehicles that are not the opponent; 0: none
   * @param geofenceM to be kept to north and south, east and west of the origin; 0: none
   * @param kept of the scenario's limits, with a margin of [[PlanSettings.Doubt]], of speeds
@@ -38,7 +38,7 @@ final case class PlanSettings(
     geofenceM: Double = 0,
     kept: Vector[Kept] = Vector.empty
 ):
-  /** What cannot be flown. */
+  /** The settings with invalid values, one line each. */
   def mistakes: Seq[String] =
     def check(name: String, value: Any, isRight: Boolean, expected: String) =
       Option.when(!isRight)(s"$name: expected $expected, came $value")
@@ -90,13 +90,13 @@ final case class PlanSettings(
     ))).toVector ++
       kept.collect { case Kept.Inside(fence) => Geofence(fence, PlanSettings.Doubt) }
 
-  /** The same, that keep a scenario's limits, but for those of quantities of its own. */
+  /** These settings with a scenario's limits, except those of custom quantities. */
   def keeping(scenario: Scenario): PlanSettings = copy(kept = scenario.limits.flatMap(_.kept))
 
-  /** What the scenario says that any two vehicles keep between them, opponents too, m; 0: nothing. */
+  /** The separation of any two vehicles in the scenario's limits, opponents included, m; 0: none. */
   def apartM: Double = kept.collect { case Kept.Apart(leastM) => leastM }.maxOption.getOrElse(0)
 
-  /** The fastest that a vehicle is commanded which would be commanded so much, m/s. */
+  /** A vehicle's speed limited by the scenario's limits, m/s. */
   def speedMps(ownMps: Double): Double =
     kept.collect { case Kept.NoFaster(mostMps) => mostMps * (1 - PlanSettings.SpeedDoubt) }.foldLeft(ownMps)(
       _ min _
@@ -110,7 +110,6 @@ final case class PlanSettings(
       case (Some(least), Some(most)) if least > most => (least + most) / 2
       case _ => ownM.max(leastM.getOrElse(ownM)).min(mostM.getOrElse(Double.PositiveInfinity))
 
-  /** As [[PlanSettings.parse]] reads it back. */
   def text: String = PlanSettings.words
     .zip(productIterator)
     .flatMap { case ((field, word), value) => word.text(value).map(text => s"${word.name(field)}=$text") }
@@ -120,16 +119,15 @@ object PlanSettings:
   val CrossEntropy = "cross-entropy"
   val PathIntegral = "path-integral"
 
-  /** How long a search for a plan may last: what it started from is farther behind then than any loop's data.
-    */
+  /** Longest search for a plan: the data of its start are older then than those of any other loop. */
   val MostDeadline: Span = Span.ofSeconds(2)
 
-  /** On top of what is set, since vehicles do not follow their models exactly and commands come at other
+  /** Margin added to the separation, since vehicles deviate from their models and commands arrive at other
     * times than expected, m.
     */
   val Doubt = 1.0
 
-  /** The same of speeds, as a share: vehicles swing past what they are commanded. */
+  /** Margin of speed limits, as a share: vehicles overshoot commanded speeds. */
   val SpeedDoubt = 0.1
 
   private val methods = Map(
@@ -137,10 +135,10 @@ object PlanSettings:
     PathIntegral -> PlanMethod.PathIntegral(temperature = 0.1)
   )
 
-  /** Work for a tenth of a millisecond with lanes, for two without. */
+  /** Blocks for a tenth of a millisecond with SIMD, for two without. */
   val defaultBlocks: Int = if Planner.isFast then 4 else 1
 
-  /** A setting as a word of the text, if it is one. */
+  /** The text form of a setting, if it is one word. */
   private final class Word[A](
       suffix: String,
       val text: A => Option[String],

@@ -8,7 +8,7 @@ import skein.vehicle.{PlaneReading, VehicleKind}
 
 /** Plans for one vehicle of a scenario: the pure core of the `plan` loop, which its replay uses too.
   *
-  * @param foreseen how the vehicle is
+  * @param foreseen the prediction of the vehicle
   */
 private abstract class Planning(
     fleet: Fleet,
@@ -20,30 +20,30 @@ private abstract class Planning(
   protected val decider: Decider = Decider(fleet, self)
   private val startM             = -agent.startPositionNed.z
 
-  /** At which it flies: its start's, as far as the limits let it. */
+  /** Altitude of the plan: that of the vehicle's start, within the limits. */
   protected val altitudeM: Double = settings.altitudeM(startM)
 
   final val planner: PlannerSettings = settings.planner
 
-  /** How long after its arrival a command begins to act on the vehicle. */
+  /** Time from a command's arrival until it takes effect on the vehicle. */
   final val deadTime: Span = Span.ofSeconds(foreseen.plant.deadTimeS)
 
-  /** Whether plans depend on more vehicles than this one and its opponent. */
+  /** Whether plans depend on other vehicles than this one and its opponent. */
   def regardsTeam: Boolean
 
-  /** What is planned upon, from a view with the estimates of when the command will act. */
+  /** The planning problem, from a view with the estimates for the time at which the command takes effect. */
   def pose(memory: Memory, view: TeamView, now: Instant): Part
 
-  /** What the vehicle's policy does in the plan's place. */
+  /** The decision of the vehicle's policy instead of the plan. */
   protected def byPolicy(memory: Memory, view: TeamView, now: Instant, part: Part): PlannedMove
 
   /** Whether speeds are planned too. */
   protected def choosesSpeed: Boolean
 
-  /** The decision for what was found.
+  /** The decision for the plan found.
     *
-    * @param part in whose situation it keeps apart from the planned ways of others too
-    * @param isOld whether the vehicle's policy decides in the plan's place
+    * @param part whose situation includes the planned tracks of the others
+    * @param isOld whether the vehicle's policy decides instead of the plan
     */
   final def decide(
       memory: Memory,
@@ -62,7 +62,7 @@ private abstract class Planning(
       decider.decided(memory, view, now, memory.headingRad + action.turned, speed)
     (next, PlannedDecision(atAltitude(decision), action, plan, isOld, chosen.map(course(part, _))))
 
-  /** Where the plan leads. */
+  /** The path along which a manoeuvre leads. */
   private def course(part: Part, manoeuvre: Manoeuvre): PlannedPath =
     val track = ManoeuvreRollout(part.situation, part.objective, planner.dtS).track(manoeuvre)
     val steps = Vector.range(0, track.steps)
@@ -74,16 +74,16 @@ private abstract class Planning(
       val velocity = agent.velocityNed(decision.heading.value, decision.speed)
       decision.copy(action = Some(skein.policy.Action.VelocityAt(velocity.x, velocity.y, Metres(-altitudeM))))
 
-  /** The plan's manoeuvre where it costs clearly less than every one suggested. */
+  /** The plan's manoeuvre if it costs clearly less than every suggested one. */
   private def begun(part: Part, plan: Plan): Manoeuvre =
     val rollout = ManoeuvreRollout(part.situation, part.objective, planner.dtS)
     val enough  = rollout.fly(plan.manoeuvre).cost + Planning.ClearGain
     part.situation.suggested.find(rollout.fly(_).cost < enough).getOrElse(plan.manoeuvre)
 
-/** A decision that was planned, and how.
+/** A planned decision, with the plan's data.
   *
-  * @param byPolicy whether the last plan was too old to go on with
-  * @param course where the plan leads; absent where the policy decides in its place
+  * @param byPolicy whether the last plan was too old to continue
+  * @param course the planned path; absent where the policy decides instead
   */
 final case class PlannedDecision(
     decision: Decision,
@@ -92,7 +92,9 @@ final case class PlannedDecision(
     byPolicy: Boolean,
     course: Option[PlannedPath] = None
 ):
-  /** @param slices that each search has finished
+  /** The report of a planned decision.
+    *
+    * @param slices that each search has finished
     */
   def report(slices: Vector[Int]): PlanReport = PlanReport(
     plan.candidates,
@@ -105,15 +107,15 @@ final case class PlannedDecision(
     course
   )
 
-/** What is on record of how a decision was planned.
+/** The recorded data of a planned decision.
   *
-  * @param candidates flown by all searches together
+  * @param candidates simulated by all searches together
   * @param slices that each search has finished
   * @param cost of the plan; absent where none was tried
   * @param isSearched whether any search finished a slice for this vehicle
-  * @param byPolicy whether the last plan was too old to go on with
+  * @param byPolicy whether the last plan was too old to continue
   * @param breaches of hard limits within the plan's horizon, of which `breach` is the first
-  * @param course where the plan leads; absent where the policy decides in its place
+  * @param course the planned path; absent where the policy decides instead
   */
 final case class PlanReport(
     candidates: Long,
@@ -129,7 +131,7 @@ final case class PlanReport(
 /** Which vehicles plan, and how their plans begin. */
 object Planning:
 
-  /** Whether a vehicle's decisions are planned; else its policy decides. Plans are a multirotor's: they turn
+  /** Whether a vehicle's decisions are planned; else its policy decides. Plans are for multirotors: they turn
     * on the spot.
     */
   private[loop] def plans(agent: Agent): Boolean =
@@ -138,9 +140,9 @@ object Planning:
       case _: HeadingPolicy => agent.role == Role.Pursuer
       case _                => false)
 
-  /** Which vehicles plan and which do not, in a line for the user.
+  /** The vehicles that plan and those that do not, in a line for the user.
     *
-    * @return or that none would: the flight would be that of `predictive` under another name
+    * @return Left states that none would: the flight would be that of `predictive` under another name
     */
   def told(fleet: Fleet): Either[String, String] =
     val (planned, others)            = fleet.agents.partition(plans)
@@ -161,22 +163,22 @@ object Planning:
 
   private val MostNamed = 8
 
-  /** By which a plan must cost less than what the policy would do, to be begun with. A search that has the
-    * time to find every small gain follows the simple model, and guesses of other vehicles, where they are
-    * wrong, too; the policy does not. Vehicles that are where they want to be fly by it, and by plans where
-    * these save some 0.1 m for a second.
+  /** Cost by which a plan must be better than the policy's manoeuvre to be followed. A long search exploits
+    * every small gain of the simple model and of guesses about other vehicles, also where these are wrong;
+    * the policy does not. Vehicles at their goals follow the policy, and plans only where these save some 0.1
+    * m for a second.
     */
   private val ClearGain = 0.1
 
-  /** After a longer pause a vehicle turns no further at once than in this time, s. */
+  /** After a longer pause, a vehicle's first turn is limited to that of this time, s. */
   private val LongestTurnS = 0.5
 
-  /** The random numbers of a vehicle's next plan. */
+  /** The random stream of a vehicle's next plan. */
   private[loop] def stream(seed: Long, self: Int, memory: Memory): Long =
     (seed * 1_000_003 + self) * 1_000_003 + memory.decisions
 
-  /** How long the vehicle may turn at once, s. Where a solver decided last, its clock, as far as it is known,
-    * may be ahead.
+  /** Time for which the vehicle may turn in its first step, s. The clock of a solver that decided last may be
+    * ahead within its error.
     */
   private[loop] def sinceDecisionS(memory: Memory, now: Instant): Double =
     memory.decidedAt.fold(0.0)(at => now.since(at).toSeconds.max(0).min(LongestTurnS))
@@ -184,6 +186,6 @@ object Planning:
   private[loop] def straight(motion: PlaneReading, planner: PlannerSettings): PredictedTrack =
     PredictedTrack.straight(motion, planner.steps, planner.dtS)
 
-  /** The vehicles of which nothing is planned, but for one. */
+  /** The vehicles that are not planned, except one. */
   private[loop] def unplanned(fleet: Fleet, but: Int): Vector[Int] =
     fleet.agents.indices.toVector.filter(other => other != but && !plans(fleet.agents(other)))

@@ -3,21 +3,24 @@ package skein.loop
 import skein.policy.Agent
 import skein.units.OwnFailure
 
-/** What a vehicle's policy answers. */
+/** Evaluates a vehicle's policy and checks its answer. */
 private object PolicyAnswer:
 
-  /** What it remembers before its first decision.
+  /** The policy's initial memory.
     *
     * @throws OwnFailure if the policy throws
     */
   def first[A](agent: Agent)(memory: => A): A = OwnFailure.told(whose(agent))(memory)
 
-  /** @throws OwnFailure if the policy throws, or answers null
+  /** The policy's answer.
+    *
+    * @throws OwnFailure if the policy throws, or answers null
     */
   def of[A](agent: Agent)(answer: => A): A =
     Option(OwnFailure.told(whose(agent))(answer)).getOrElse(throw OwnFailure(whose(agent), "answered null"))
 
-  /** @param action or a place
+  /** Checks an action or a position.
+    *
     * @throws OwnFailure if there is none, or a number in it is not finite
     */
   def expectAction(agent: Agent, action: Any): Unit =

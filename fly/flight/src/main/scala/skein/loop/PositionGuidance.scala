@@ -5,9 +5,9 @@ import skein.signal.Kinematics
 import skein.units.*
 import skein.vehicle.{Guidance, PathFollowing, Setpoint}
 
-/** [[skein.policy.Action.Position]] as AirSim flies it, for a prediction: along the straight line from where
-  * the vehicle is. AirSim's line begins where the command arrived; the two differ by what a vehicle has
-  * strayed since.
+/** [[skein.policy.Action.Position]] as AirSim executes it, for a prediction: along the straight line from the
+  * vehicle's position. AirSim's line begins where the command arrived; the two differ by the vehicle's
+  * deviation since.
   */
 final private[loop] case class PositionGuidance(positionNed: Vector3, speed: MetresPerSecond, yaw: Yaw)
     extends Guidance:
@@ -25,7 +25,7 @@ final private[loop] case class PositionGuidance(positionNed: Vector3, speed: Met
 
 private[loop] object PositionGuidance:
 
-  /** With the yaw that AirSim makes of it for a vehicle that flies along `travelNed` (`adjustYaw`). */
+  /** Adds the yaw that AirSim commands for a vehicle that moves along `travelNed` (`adjustYaw`). */
   def turned(setpoint: Setpoint, yaw: Yaw, travelNed: Vector3): Setpoint = yaw match
     case Yaw.Towards(heading)                                            => setpoint.withYaw(heading.value)
     case Yaw.Turning(rate)                                               => setpoint.withYawRate(rate)

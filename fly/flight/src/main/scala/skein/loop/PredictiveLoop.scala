@@ -7,9 +7,9 @@ import scala.concurrent.Future
 import skein.flow.Newest
 import skein.record.EventKind
 
-/** [[StreamLoop]] that decides upon the future: each observation is carried forward to the moment at which
-  * the command will act, by simulating every vehicle under the commands on their way to it. What the answers
-  * to commands tell is fed back besides the commands themselves.
+/** [[StreamLoop]] with prediction: each observation is predicted for the moment at which the command takes
+  * effect, by simulating every vehicle under the commands on their way to it. Command answers are fed back in
+  * addition to the commands.
   */
 object PredictiveLoop:
 
@@ -34,7 +34,7 @@ object PredictiveLoop:
       ClosedShape
     })
 
-  /** A prediction is made for the moment of its decision: when the command can leave. */
+  /** The newest request. A prediction is made at the moment of its decision, when the command can be sent. */
   private[loop] def newest(
       team: Team,
       vehicle: Option[Int]

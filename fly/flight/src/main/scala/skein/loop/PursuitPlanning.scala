@@ -8,11 +8,11 @@ import skein.vehicle.PlantModel
 /** Plans for a pursuer of the paper's game: to be as close to its evader as it can, on the average and at the
   * end of the horizon, and to capture it.
   *
-  * Its turn rate stays below speed / turning radius. The opponent is taken to fly by its policy, as if it
-  * remembered nothing, where that plays against one vehicle and is a formula ([[OpponentModel]]); else
-  * straight on. Of all others, those that plan fly by their plans, the rest straight on.
+  * Its turn rate stays below speed / turning radius. The opponent is assumed to follow its policy with its
+  * initial memory, if that plays against one vehicle and is a formula ([[OpponentModel]]); else to fly
+  * straight on. Other vehicles that plan follow their plans, and the rest fly straight on.
   *
-  * In its place the vehicle's own policy decides within the turn limit.
+  * If the plan is too old, the vehicle's own policy decides within the turn limit.
   */
 private final class PursuitPlanning(
     fleet: Fleet,
@@ -76,7 +76,7 @@ private final class PursuitPlanning(
     PlannedMove(math.min(math.max(turned, -most), most), speed, Vector.empty)
 
 private object PursuitPlanning:
-  /** Weights of [[skein.planning.PlanCost]]; see there. */
+  /** Weights of the pursuit's cost; see [[skein.planning.PlanCost]]. */
   val Carried = 0.0
   val Closest = 1.0
   val Capture = 3.0

@@ -2,15 +2,15 @@ package skein.loop
 
 import skein.signal.{Kinematics, Stamped}
 
-/** Where a vehicle was and how it moved, as it told.
+/** The position and motion that a vehicle reported.
   *
-  * @param sequence counts the readings of this vehicle in the order in which they were asked for
+  * @param sequence counts the readings of this vehicle in the order of the requests
   */
 final case class Reading(vehicle: Int, sequence: Long, state: Stamped[Kinematics])
 
-/** What a sensor of a vehicle said.
+/** The values that a sensor of a vehicle reported.
   *
-  * @param sequence counts the answers asked of this sensor, in the order in which they were asked for
+  * @param sequence counts the readings of this sensor in the order of the requests
   * @param columns names of the values, with units
   */
 final case class SensorReading(

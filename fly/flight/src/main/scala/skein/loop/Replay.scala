@@ -9,14 +9,14 @@ import skein.units.*
 /** Repeats the decisions of a recorded flight, live or virtual, with the pure core of every loop: without
   * streams, without a clock.
   *
-  * Taken from the recording: all readings, all moves, when each decision was made, which of the readings and
+  * Taken from the recording: all readings, all moves, the time of each decision, which of the readings and
   * moves the controller knew then, the estimate of the clocks' offset, and, for a loop that predicts, its
-  * predictions and whom they are of; for one that plans, how far each search had come. Decided again, and
-  * compared to the last bit: everything else in a decision, above all whom it was made against and the
-  * heading chosen. The memory from decision to decision is the replay's own.
+  * predictions with their vehicles; for one that plans, the slices that each search had finished. Repeated,
+  * and compared to the last bit: everything else in a decision, above all its opponent and the chosen
+  * heading. The memory from decision to decision is the replay's own.
   *
-  * @param settings that the flight had; of a loop that does not plan, none of them count
-  * @throws IllegalArgumentException if it planned by models that cannot be planned by here
+  * @param settings of the flight; a loop that does not plan needs none of them
+  * @throws IllegalArgumentException if planning does not support the recorded models here
   */
 final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = LoopSettings())(using
     scenarios: Scenarios = Scenarios.ours
@@ -71,7 +71,7 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
       .mapValues(_.map(decision => decision.vehicle -> decision).toMap)
       .toMap
 
-  /** The first decision that comes out differently. */
+  /** The first decision whose repetition differs from the recording. */
   def firstDifference: Option[Difference] =
     val states = fleet.agents.indices.toVector.map: self =>
       val decider = Decider(fleet, self)
@@ -85,7 +85,7 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
           case Right((states, decision)) => (states, Difference.between(recorded, decision))
       .collectFirst { case (_, Some(difference)) => difference }
 
-  /** All decisions, but for those made together last of which a recording that broke off has not got all. */
+  /** All decisions except an incomplete final joint decision of a truncated recording. */
   private def whole: Vector[DecisionRow] =
     val cut = together.maxByOption(_._1).filter(_._2.size < planners.size).map(_._1)
     recording.decisions.filterNot(decision =>
@@ -150,7 +150,7 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
       case (Vector(), found) => Right(found)
       case (missing, _)      => Left(missing.head)
 
-  /** What a decision was made from. */
+  /** The view on which a decision was made. */
   private def view(recorded: DecisionRow, self: Int, regardsTeam: Boolean): Either[Difference, TeamView] =
     for
       other    <- vehicle(recorded, "opponentVehicle", recorded.opponent.vehicle)
@@ -174,7 +174,7 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
         .find(view => fleet.opponentOf(self, view.kinematics(_).positionNed) == other)
         .getOrElse(possible.head)
 
-  /** What the vehicle's sensors had said. */
+  /** The sensor readings known at a decision. */
   private def sensed(of: DecisionRow, self: Int): Either[Difference, Map[String, SensorReading]] =
     collected(sensings.getOrElse((of.vehicle, of.sequence), Vector.empty)): sensing =>
       measured
@@ -188,18 +188,18 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
         )
     .map(_.toMap)
 
-  /** How far each search of a decision went. */
+  /** The number of slices in each search of a decision. */
   private def searched(of: DecisionRow): Either[Difference, Vector[Int]] =
     planned
       .get((of.vehicle, of.sequence))
       .map(_.slices.map(_.toInt))
       .toRight(Difference(where(of), "slices", "absent", "expected in the table of plans"))
 
-  /** Who decided where a deadline was missed. */
+  /** The decider of the fallback after a missed deadline. */
   private def instead(self: Int): Decider =
     fallback.policy(fleet.agents(self)).fold(Decider(fleet, self))(Decider(fleet, self, _))
 
-  /** The readings of the rest of the team, where the policy regards it: every vehicle has one. */
+  /** The readings of the rest of the team, if the policy considers it: every vehicle has one. */
   private def othersSeen(of: DecisionRow, self: Int, opponent: Int): Either[Difference, Map[Int, Reading]] =
     val rest = fleet.agents.indices.filter(index => index != self && index != opponent)
     rest.foldLeft[Either[Difference, Map[Int, Reading]]](Right(Map.empty)): (soFar, vehicle) =>
@@ -218,8 +218,8 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
   private def sightingOf(of: DecisionRow, vehicle: String): Option[Sighting] =
     sighted.getOrElse((of.vehicle, of.sequence), Vector.empty).find(_.vehicle == vehicle)
 
-  /** The view with what was known of the vehicles that the decision was not made from. It was drawn at some
-    * moment after the readings used had come, so there is one for each reading that came since.
+  /** The candidate views with readings of vehicles that the decision did not use. The view was drawn at some
+    * moment after the used readings were received, so there is one for each reading received since.
     */
   private def views(known: TeamView, recorded: DecisionRow): Vector[TeamView] =
     val earliest = recorded.own.state.receivedAt.max(recorded.opponent.state.receivedAt)
@@ -256,12 +256,11 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
   private def moved(read: Kinematics, positionNed: Vector3, velocityNed: Vector3): Kinematics =
     read.copy(positionNed = positionNed, velocityNed = velocityNed)
 
-  /** Bounds whose middle and half width are the estimate recorded. */
+  /** Bounds whose middle and half width are the recorded estimate. */
   private def alignment(age: TrueAge): ClockAlignment =
     val (least, most) = (age.clockOffset - age.uncertainty, age.clockOffset + age.uncertainty)
     ClockAlignment.of(Stamped((), Instant.Epoch, Instant.Epoch + least, Instant.Epoch + most))
 
-  /** Of a vehicle that the fleet has. */
   private def message(read: ReadingRow): Reading = Reading(indexOf(read.vehicle), read.sequence, read.state)
 
   private def vehicle(of: DecisionRow, column: String, name: String): Either[Difference, Int] =
@@ -289,7 +288,9 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
           .map(Some(_))
           .toRight(Difference(where(of), column, span.toMillis.toString, "no command was sent then"))
 
-  /** While the simulator stands still, moves are sent at the moment of their decision, on its clock. */
+  /** The sent moves. While the simulator stands still, they are sent at the moment of their decision, on its
+    * clock.
+    */
   private def sentMoves: Vector[SentCommand] =
     val decided = recording.decisions.map(decision => (decision.vehicle, decision.sequence) -> decision).toMap
     for
@@ -309,8 +310,10 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
   private def where(decision: DecisionRow): String = s"decision ${decision.sequence} of ${decision.vehicle}"
 
 object Replay:
-  /** @param jointly where some plan
-    * @param decided together last, by vehicle and number
+  /** State of the repeated decisions.
+    *
+    * @param jointly for vehicles that plan
+    * @param decided last joint decision, by vehicle and number
     */
   private final case class Minds(
       single: Vector[DecisionState],
@@ -318,23 +321,23 @@ object Replay:
       decided: Map[(String, Long), DecisionRow]
   )
 
-  /** The parameter that names what was done where deadlines were missed. */
+  /** The parameter that names the fallback for missed deadlines. */
   val Fallback: String = "fallback"
 
-  /** What was predicted of vehicles that a decision was not made against is not recorded. */
+  /** A distant position: predictions of vehicles that are not the decision's opponent are not recorded. */
   private val OutOfSight = Vector3(Double.PositiveInfinity, 0, 0)
 
-  /** What was heard of one vehicle, ready to be asked for any moment. */
+  /** The readings of one vehicle, indexed by time of receipt. */
   private final class Heard(readings: Vector[Reading]):
     private val byArrival = readings.sortBy(_.state.receivedAt)
     private val arrivals  = byArrival.map(_.state.receivedAt)
     private val newest    = byArrival.drop(1).scanLeft(byArrival.headOption): (newest, reading) =>
       newest.filter(_.state.validAt >= reading.state.validAt).orElse(Some(reading))
 
-    /** The newest reading that had come by then. */
+    /** The newest reading received by a moment. */
     def newestAt(moment: Instant): Option[Reading] = newest.take(arrivedBy(moment)).lastOption.flatten
 
-    /** When readings came, after one moment and up to another. */
+    /** Times of receipt after one moment and up to another. */
     def between(after: Instant, until: Instant): Vector[Instant] =
       arrivals.slice(arrivedBy(after), arrivedBy(until))
 

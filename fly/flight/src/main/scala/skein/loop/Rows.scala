@@ -16,7 +16,7 @@ import skein.record.{
 }
 import skein.units.*
 
-/** The edge between a loop and its recorder: messages as rows. */
+/** Converts a loop's messages to rows for its recorder. */
 private final class Rows(fleet: Fleet):
 
   def name(vehicle: Int): String = fleet.agents(vehicle).name
@@ -90,9 +90,7 @@ private final class Rows(fleet: Fleet):
       action = decision.action
     )
 
-  /** The other vehicles that a decision was made from besides its opponent, where the whole team was
-    * regarded.
-    */
+  /** The other vehicles that a decision used besides its opponent, if it considered the whole team. */
   def sighted(decision: Decision): Vector[Int] =
     fleet.agents.indices.filter(other => other != decision.vehicle && other != decision.opponent).toVector
 
@@ -106,13 +104,13 @@ private final class Rows(fleet: Fleet):
       PredictedMotion(expected.positionNed, expected.velocityNed)
   )
 
-  /** The states of the plants that a decision was planned from, where kinematics do not tell them. */
+  /** The plants' states from which a decision was planned, if kinematics do not contain them. */
   def plannedStates(decision: Decision): Option[PlannedStates] =
     decision.view.estimates
       .map(estimates => PlannedStates(estimates(decision.vehicle).state, estimates(decision.opponent).state))
       .filter(states => states.own.nonEmpty || states.opponent.nonEmpty)
 
-  /** The sensors that a decision was made from. */
+  /** The sensors that a decision used, by name. */
   def sensed(decision: Decision): Vector[String] =
     decision.view.sensed(decision.vehicle).keys.toVector.sorted
 
@@ -120,7 +118,7 @@ private final class Rows(fleet: Fleet):
     val reading = decision.view.sensed(decision.vehicle)(sensor)
     Sensing(name(decision.vehicle), decision.sequence, sensor, reading.sequence)
 
-  /** A decision as the command that it went on its way as. */
+  /** The row of a decision that was sent as a command. */
   def command(decision: Decision, at: Instant): CommandRow =
     val agent    = fleet.agents(decision.vehicle)
     val velocity = agent.velocityNed(decision.heading.value, decision.speed)

@@ -4,7 +4,7 @@ import org.apache.pekko.stream.Materializer
 import org.apache.pekko.stream.snapshot.{MaterializerState, RunningInterpreter}
 import scala.concurrent.{ExecutionContext, Future}
 
-/** The parts of a graph and what leads from one to another, both by names.
+/** The parts of a graph and its edges, both by names.
   *
   * @param stages their names
   */
@@ -12,8 +12,8 @@ final case class LoopGraph(stages: Vector[String], edges: Vector[(from: String, 
 
 object LoopGraph:
 
-  /** Operators by number, and what leads from operator to operator: those of one name are one part, and those
-    * without a name are left out; what leads through them leads on.
+  /** The graph of numbered operators and their connections: operators of one name form one part, and those
+    * without a name are skipped, with edges through them joined.
     */
   def of(names: Vector[Option[String]], connections: Vector[(from: Int, to: Int)]): LoopGraph =
     val next                            = connections.groupMap(_.from)(_.to).withDefaultValue(Vector.empty)
@@ -34,13 +34,13 @@ object LoopGraph:
     // The interpreter has no order of its own.
     LoopGraph(names.flatten.distinct.sorted, edges.distinct.sortBy(edge => (edge.from, edge.to)))
 
-/** The graph of a loop under way, as its interpreter runs it: the parts that bear one of these meters.
+/** The graph of a running loop, as its interpreter reports it: the parts with one of these meters.
   *
-  * @param streams what it runs on, as soon as it does
+  * @param streams its materializer, once it runs
   */
 final class RunningGraph(val meters: StageMeters, streams: Future[Materializer])(using ExecutionContext):
 
-  /** Asks the interpreter. Absent while the graph does not run. */
+  /** Requests the graph from the interpreter. Absent while it does not run. */
   def shape(): Future[Option[LoopGraph]] =
     streams
       .flatMap(MaterializerState.streamSnapshots)

@@ -8,8 +8,7 @@ import org.apache.pekko.stream.scaladsl.{RunnableGraph, Source}
 import scala.concurrent.Future
 import skein.units.*
 
-/** The paper's model 2: read every vehicle one after the other, decide for all, command all, wait one period.
-  */
+/** The paper's model 2: reads every vehicle in sequence, decides for all, commands all, waits one period. */
 object SequentialLoop:
 
   def apply(team: Team, stop: SharedKillSwitch)(using system: ActorSystem): RunnableGraph[Future[Done]] =

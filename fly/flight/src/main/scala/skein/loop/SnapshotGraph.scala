@@ -5,8 +5,8 @@ import org.apache.pekko.stream.{ClosedShape, SharedKillSwitch}
 import org.apache.pekko.stream.scaladsl.*
 import scala.concurrent.Future
 
-/** What `sequential` and `futures` share, and a user's loop may: each snapshot that comes is decided upon at
-  * once.
+/** The common part of `sequential` and `futures`, also for users' loops: decides on each snapshot
+  * immediately.
   *
   * @param snapshots end with the switch
   */

@@ -4,18 +4,18 @@ import scala.concurrent.Future
 import skein.policy.Action
 import skein.units.*
 
-/** Decides for the vehicles of a team in the place of their policies here: in another process. */
+/** Decides for the vehicles of a team instead of their policies: in another process. */
 trait Solver:
 
-  /** Asks for one vehicle, or for those that plan together. A question leaves every older one for the same
-    * without an answer.
+  /** Requests decisions for one vehicle, or for those that plan together. A request leaves every older one
+    * for these vehicles without an answer.
     *
-    * @param deciders always the same together, and no vehicle among others
-    * @param remembered the answer that was used last, which tells the solver what it remembers of these
-    *   vehicles; absent before the first
-    * @param askedAt on the controller's clock, as `until`, from which on no answer is used
-    * @param searching for how long the solver is to look for its answer: not counted in [[delay]]
-    * @return fails where no answer can come; never completes where none comes in time
+    * @param deciders a constant group, and no vehicle in two groups
+    * @param remembered the last answer that was used, which tells the solver its memory of these vehicles;
+    *   absent before the first
+    * @param askedAt on the controller's clock, like `until`, after which an answer is discarded
+    * @param searching time that the solver has for its search: not counted in [[delay]]
+    * @return fails if no answer can be received; never completes if none is received in time
     */
   def ask(
       deciders: Vector[(vehicle: Int, memory: Memory)],
@@ -26,28 +26,28 @@ trait Solver:
       searching: Span = Span.Zero
   ): Future[Solved]
 
-  /** From a question to its answer, as it was of late, without what was meant for searching: commands leave
-    * so much later.
+  /** Recent time from a request to its answer, without that meant for searching: commands are sent later by
+    * this.
     */
   def delay: Span
 
 object Solver:
-  /** An answer, by the start of the solver and the question. */
+  /** Identifies an answer, by the start of the solver and the request. */
   final case class Remembered(solver: Long, question: Long)
 
-/** What was decided elsewhere, and when.
+/** A solver's decisions, with their times.
   *
-  * @param solver names the start of it
-  * @param question counts the questions for this vehicle
-  * @param askedAt on the controller's clock, as the other instants
-  * @param decidedAt by what is known of the solver's clock; before that is known, when it was asked
-  * @param receivedAt when the answer came
-  * @param thinking from the question's coming there to the answer's leaving
-  * @param clock the controller's clock minus the solver's, as estimated when it was asked, and the bound of
-  *   the error
-  * @param begunAnew whether the solver did not remember these vehicles any more, so that it decided as for
-  *   the first time
-  * @param chosen for each vehicle that was asked for
+  * @param solver identifies its start
+  * @param question counts the requests for this vehicle
+  * @param askedAt on the controller's clock, like the other instants
+  * @param decidedAt by the estimate of the solver's clock; before there is one, the time of the request
+  * @param receivedAt time of receipt
+  * @param thinking from receipt of the request to sending of the answer
+  * @param clock the controller's clock minus the solver's, as estimated at the request, with the bound of the
+  *   error
+  * @param begunAnew whether the solver had lost its memory of these vehicles, so that it decided as for the
+  *   first time
+  * @param chosen for each requested vehicle
   */
 final case class Solved(
     solver: Long,
@@ -61,11 +61,11 @@ final case class Solved(
     chosen: Vector[Chosen]
 )
 
-/** What one vehicle is to do.
+/** The decision for one vehicle.
   *
   * @param speed absent where the vehicle commands its own
-  * @param action absent where heading and speed say it
-  * @param plan how that was planned; absent where a policy decided
+  * @param action absent where heading and speed define it
+  * @param plan its data; absent where a policy decided
   */
 final case class Chosen(
     headingRad: Double,

@@ -6,10 +6,10 @@ import org.apache.pekko.stream.Attributes
 import scala.jdk.CollectionConverters.*
 import skein.units.*
 
-/** What has passed a named part of a loop's graph. As an attribute of the operators that the part consists
-  * of, it names them in the running graph ([[RunningGraph]]). One thread counts, any reads.
+/** Counts the elements of a named part of a loop's graph. As an attribute of the part's operators, it names
+  * them in the running graph ([[RunningGraph]]). One thread counts, any thread may read.
   *
-  * @param of the meters of the same graph
+  * @param of the meters of this graph
   */
 final class StageMeter private[loop] (val name: String, private[loop] val of: StageMeters)
     extends Attributes.Attribute:
@@ -18,17 +18,16 @@ final class StageMeter private[loop] (val name: String, private[loop] val of: St
   @volatile private var aged     = false
   @volatile private var ageNanos = 0L
 
-  /** Elements that left the part. */
   def passed: Long = count.get
 
-  /** Elements that came to the part. */
+  /** Number of elements that entered the part. */
   def entered: Long = entries.get
 
-  /** Calls of the part that are unanswered: questions asked, moves sent. */
+  /** Number of unanswered calls of the part: requests and moves. */
   def unanswered: Long = waits.get
 
-  /** How old the oldest reading was that the newest element was made from, when it left; absent where none
-    * was.
+  /** Age of the oldest reading behind the newest element, when that left the part; absent if it used no
+    * reading.
     */
   def age: Option[Span] = Option.when(aged)(Span.ofNanos(ageNanos))
 

@@ -5,9 +5,9 @@ import org.apache.pekko.stream.*
 import org.apache.pekko.stream.scaladsl.*
 import scala.concurrent.Future
 
-/** The paper's model 4: every operation its own stage. Locations are sensed independently and in order, the
-  * latest are joined, each vehicle decides at its own pace on the newest view and is commanded; what was
-  * commanded is fed back. Nothing waits for anything else.
+/** The paper's model 4: every operation is a stage of its own. Locations are sensed independently and in
+  * order, the latest are joined, each vehicle decides at its own pace on the newest view and is commanded;
+  * commands are fed back. No stage waits for another.
   */
 object StreamLoop:
 

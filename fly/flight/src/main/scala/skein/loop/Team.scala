@@ -9,10 +9,9 @@ import skein.record.Recorder
 import skein.signal.ClockAlignment
 import skein.units.*
 
-/** A scenario and the vehicles that fly it: the operators that every loop is built from, with recording in
-  * them.
+/** A scenario with its vehicles: the operators from which every loop is built, with recording.
   *
-  * @param solver decides in the policies' place; the settings then have a deadline
+  * @param solver decides instead of the policies; the settings then have a deadline
   * @param clocks the vehicles' clock against the controller's, as far as known before the first reading
   */
 final class Team(
@@ -33,7 +32,7 @@ final class Team(
   private val deciders = vehicles.map(Decider(fleet, _))
   val log: TeamLog     = TeamLog(fleet, deciders, clock, recorder)
 
-  /** While it is held, all vehicles hover and nobody decides; they are still asked where they are. */
+  /** While it is held, all vehicles hover without decisions; they are still read. */
   val hold: Hold = Hold()
 
   private val parts    = TeamParts(fleet)
@@ -65,7 +64,7 @@ final class Team(
 
 object Team:
 
-  /** A sensor that a policy asks for and its vehicle has not got, as a line for a person. */
+  /** A sensor that a policy requests and its vehicle lacks, as a line for the user. */
   private[skein] def missingSensor(fleet: Fleet, vehicles: Vector[VehiclePort]): Option[String] =
     fleet.agents.lazyZip(vehicles).flatMap((agent, vehicle) =>
       agent.policy.sensors.toVector.sorted.filterNot(vehicle.sensors.contains).map: name =>

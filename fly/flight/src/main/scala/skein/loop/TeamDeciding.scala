@@ -10,11 +10,11 @@ import skein.loop.planning.{PlanStage, PlanWorkers}
 import skein.policy.{Policy, Fleet}
 import skein.units.*
 
-/** Carries a team's requests forward to when its commands act, decides or plans upon them, and records the
-  * decisions.
+/** Predicts a team's requests for the time at which their commands take effect, decides or plans on them, and
+  * records the decisions.
   *
   * @param deciders by vehicle
-  * @param solver decides in the policies' place
+  * @param solver decides instead of the policies
   */
 private final class TeamDeciding(
     fleet: Fleet,
@@ -27,7 +27,7 @@ private final class TeamDeciding(
     parts: TeamParts,
     log: TeamLog
 )(using ExecutionContext):
-  /** What is to be decided upon, and when it was asked. */
+  /** A view for a decision, with the time of the request. */
   private type Seen = (TeamView, Instant)
 
   /** The plan is absent where a fallback decided. */
@@ -35,12 +35,12 @@ private final class TeamDeciding(
 
   @volatile private var underWay = Option.empty[(vehicle: Int, at: Instant)]
 
-  /** For whom a policy is asked, which its loop waits for, and since when. */
+  /** The vehicle whose policy the loop waits for, and since when. */
   def underDecision: Option[(vehicle: String, since: Instant)] =
     underWay.map(now => (fleet.agents(now.vehicle).name, now.at))
 
-  /** Carries the requests that are meant for one vehicle forward to when its command will act, and records
-    * how earlier predictions turned out.
+  /** Predicts the requests for one vehicle to the time at which its command takes effect, and records the
+    * errors of earlier predictions.
     */
   def predict(vehicle: Int): Flow[DecisionRequest, DecisionRequest, NotUsed] =
     Flow[DecisionRequest]
@@ -48,10 +48,10 @@ private final class TeamDeciding(
       .via(predicted(Vector(vehicle), delay, parts.meter("predict", vehicle)))
       .addAttributes(parts.named("predict", vehicle))
 
-  /** Carries requests forward to when the commands of some vehicles will act, and records how earlier
-    * predictions turned out.
+  /** Predicts requests to the time at which the commands of some vehicles take effect, and records the errors
+    * of earlier predictions.
     *
-    * @param lead how much later that is because of what is done with the request, here or at a solver
+    * @param lead additional time for planning, here or at a solver
     */
   def predict(deciders: Vector[Int], lead: Span): Flow[DecisionRequest, DecisionRequest, NotUsed] =
     predicted(deciders, lead + delay, parts.meter("predict")).addAttributes(parts.named("predict"))
@@ -75,8 +75,7 @@ private final class TeamDeciding(
         meter.pass(sensing.ageOf(request.view))
         request.copy(view = request.view.copy(estimates = Some(estimates)))
 
-  /** Decides for one vehicle on the requests that are meant for it, within the deadline if there is one, and
-    * records the decision.
+  /** Decides for one vehicle on its requests, within the deadline if there is one, and records the decision.
     */
   def decide(vehicle: Int): Flow[DecisionRequest, Decision, NotUsed] =
     decideInTime(vehicle).addAttributes(parts.named("decide", vehicle))
@@ -105,9 +104,9 @@ private final class TeamDeciding(
         made.head
       .via(decided(vehicle))
 
-  /** Asks a solver for vehicles that are decided for together. Missed deadlines are recorded.
+  /** Requests joint decisions from a solver. Missed deadlines are recorded.
     *
-    * @return with the decisions the answer; without one, they are the fallback's
+    * @return the decisions with the answer; without one, they are the fallback's
     */
   private def askElsewhere(vehicles: Vector[Int], deadline: Deadline, solver: Solver, searching: Span)(using
       ActorSystem
@@ -153,12 +152,11 @@ private final class TeamDeciding(
       deciding.pass(sensing.ageOf(decision.view))
       log.decided(decision)
 
-  /** Decides by a policy that takes its time. A deadline missed is recorded.
+  /** Decides by a slow policy. A missed deadline is recorded.
     *
     * @param instead decides where the deadline is missed ([[skein.policy.KeepHeading]] repeats the last
-    *   decision); without it nothing is sent then, and the vehicle flies on under its last move for as long
-    *   as that lasts
-    * @param policy from memory, view and the time of asking
+    *   decision); without it nothing is sent then, and the vehicle continues its last move until that ends
+    * @param policy from memory, view and the time of the request
     */
   def decideWithin(
       vehicle: Int,
@@ -175,10 +173,10 @@ private final class TeamDeciding(
       .map((made, _) => made.head)
       .via(decided(vehicle))
 
-  /** Decisions for vehicles that are decided for together, with what came with them; without that, they are
-    * the fallback's. Missed deadlines are recorded.
+  /** Joint decisions within a deadline, with the policy's additional result; without that, they are the
+    * fallback's. Missed deadlines are recorded.
     *
-    * @param instead the fallback, by vehicle; without one nothing is decided where a deadline is missed
+    * @param instead the fallback, by vehicle; without one there is no decision where a deadline is missed
     * @param asksAgain see [[Decide.within]]
     */
   private def inTime[A](
@@ -212,15 +210,14 @@ private final class TeamDeciding(
           (made, None)
       .collect { case made if made._1.nonEmpty => made }
 
-  /** How the decisions of those vehicles are planned that plan.
+  /** The planning of the vehicles that plan.
     *
-    * @throws IllegalArgumentException where their models cannot be planned by
+    * @throws IllegalArgumentException if it does not support their models
     */
   lazy val planning: Option[JointPlanning] =
     JointPlanning.of(fleet, settings).fold(reason => throw IllegalArgumentException(reason), identity)
 
-  /** Plans upon each request for all vehicles that plan, and records the decisions and how they were planned.
-    */
+  /** Plans on each request for all vehicles that plan, and records the decisions with their plans. */
   def plan(planning: JointPlanning)(using ActorSystem): Flow[DecisionRequest, Vector[Decision], NotUsed] =
     val meter = parts.meter("plan")
     Flow[DecisionRequest]
@@ -262,10 +259,10 @@ private final class TeamDeciding(
 
   def start(vehicle: Int): Memory = deciders(vehicle).start
 
-  /** The pure decision, for loops that keep their own time. */
+  /** A pure decision, for loops that keep their own time. */
   def decideAt(vehicle: Int, memory: Memory, view: TeamView, now: Instant): (Memory, Decision) =
     deciders(vehicle).decide(memory, view, now)
 
-  /** Whose predictions are held against readings by a decider: where each of a team predicts all, its own. */
+  /** Whose predictions a decider compares with readings: if each of a team predicts all, only its own. */
   private def verified(decider: Int): Int => Boolean =
     if fleet.agents(decider).policy.isAgainstOne then _ => true else _ == decider

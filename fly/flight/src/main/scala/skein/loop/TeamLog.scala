@@ -20,16 +20,16 @@ import skein.record.{
 }
 import skein.units.*
 
-/** Tells a recorder what happens to a team in flight. */
+/** Records the events of a team in flight. */
 final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, recorder: Recorder):
   private val rows = Rows(fleet)
 
   def note(kind: EventKind, vehicle: Option[Int], detail: String): Unit =
     recorder.offer(Event(clock.now(), kind, vehicle.map(name), detail))
 
-  /** A policy did not decide in time.
+  /** A policy missed its deadline.
     *
-    * @param instead the sequence of the decision that the fallback made, if it made one
+    * @param instead the sequence of the fallback's decision, if it made one
     */
   def missed(vehicle: Int, miss: Overrun, instead: Option[Long]): Unit =
     val done = instead.fold("nothing decided")(sequence => s"decision $sequence by the fallback")
@@ -37,7 +37,7 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
       Event(clock.now(), EventKind.DeadlineMissed, Some(name(vehicle)), s"$done: $miss", instead)
     )
 
-  /** A decision came from elsewhere in time. */
+  /** A solver's decision was received in time. */
   def solved(decision: Decision, by: Solved): Unit =
     val vehicle = name(decision.vehicle)
     if by.begunAnew then
@@ -67,9 +67,9 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
   def failed(vehicle: Int, what: String, error: VehicleError): Unit =
     failed(vehicle, what, error, None)
 
-  /** A question where a vehicle is was not answered.
+  /** A request for a vehicle's position was not answered.
     *
-    * @param sequence of the question
+    * @param sequence of the request
     */
   def unread(vehicle: Int, sequence: Long, error: VehicleError): Unit =
     failed(vehicle, s"reading $sequence", error, Some(EventSubject.Reading))
@@ -78,12 +78,12 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
     val kind = TeamLog.kindOf(error)
     recorder.offer(Event(clock.now(), kind, Some(name(vehicle)), s"$what: ${error.message}", about = about))
 
-  /** A vehicle told where it is. */
+  /** A vehicle's reading was received. */
   def read(reading: Reading): Unit = recorder.offer(rows.reading(reading))
 
   def sensed(reading: SensorReading): Unit = recorder.offer(rows.measurement(reading))
 
-  /** How a prediction turned out that one vehicle's controller made. */
+  /** The error of a prediction by one vehicle's controller. */
   def predicted(decider: Int, verified: Verified): Unit =
     recorder.offer(
       Prediction(
@@ -97,10 +97,9 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
       )
     )
 
-  /** A decision and what it was made from. */
   def decided(decision: Decision): Unit = decided(decision, deciders(decision.vehicle).regardsTeam)
 
-  /** A planned decision, how it was planned, and what from. */
+  /** A planned decision, with its plan and inputs. */
   def planned(decision: Decision, plan: PlanReport, regardsTeam: Boolean): Unit =
     import decision.vehicle
     decided(decision, regardsTeam)
@@ -123,7 +122,7 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
     for breach <- plan.breach do
       note(EventKind.LimitBroken, Some(vehicle), s"in the plan of decision ${decision.sequence}: $breach")
 
-  /** A decision of a vehicle that plans, and what it was made from. */
+  /** A decision of a vehicle that plans, with its inputs. */
   def decided(decision: Decision, regardsTeam: Boolean): Unit =
     val others = if regardsTeam then rows.sighted(decision) else Vector.empty
     recorder.offer(LaterDecision(
@@ -140,10 +139,8 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
     case Steered.Sent(decision, at)          => sent(decision, at)
     case Steered.Ended(decision, at, result) => ended(decision, at, result)
 
-  /** A decision went on its way as a command. */
   def sent(decision: Decision, at: Instant): Unit = recorder.offer(rows.command(decision, at))
 
-  /** What became of a command. */
   def ended(decision: Decision, at: Instant, result: Try[Either[VehicleError, Boolean]]): Unit =
     val outcome = result match
       case Success(Right(true))  => CommandOutcome.Done

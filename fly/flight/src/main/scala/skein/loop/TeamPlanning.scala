@@ -5,10 +5,10 @@ import skein.policy.{Fleet, Goal, Observation}
 import skein.units.*
 import skein.vehicle.PlantModel
 
-/** Plans for one vehicle of a team: to be where its policy wants to be, and to keep the set separation from
-  * all others. Those that plan fly by their plans, the rest are taken to fly straight on.
+/** Plans for one vehicle of a team: to reach its policy's goal, and to keep the configured separation from
+  * all others. Those that plan are assumed to follow their plans, the rest to fly straight on.
   *
-  * The separation planned for is wider than the set one by [[PlanSettings.Doubt]].
+  * The planned separation is wider than the configured one by [[PlanSettings.Doubt]].
   */
 private final class TeamPlanning(
     fleet: Fleet,
@@ -67,19 +67,19 @@ private final class TeamPlanning(
     PolicyAnswer.expectAction(agent, place)
     place
 
-  /** After a longer pause the first turn is no sharper. */
+  /** Limits of the first turn, which is no sharper after a longer pause. */
   private def turningAtOnce(sinceDecisionS: Double): CommandLimits =
     val most =
       if sinceDecisionS > 0 then TeamPlanning.MostTurnRad / sinceDecisionS else Double.PositiveInfinity
     objective.limits.copy(maxTurnRate = objective.limits.maxTurnRate.min(most))
 
-  /** From a track's first place to its last, m/s. */
+  /** Mean speed from a track's first point to its last, m/s. */
   private def speed(track: PredictedTrack): Double =
     val last = track.steps - 1
     StrictMath.hypot(track.x(last) - track.x(0), track.y(last) - track.y(0)) / (last.max(1) * planner.dtS)
 
-  /** What the policy would do, unless it avoids others: it would not know their plans, and a search is better
-    * at it.
+  /** The manoeuvre of the policy, unless it avoids others: it does not know their plans, and a search is
+    * better at it.
     */
   private def suggested(
       request: Observation,
@@ -101,7 +101,7 @@ private final class TeamPlanning(
     PlannedMove(turn, settings.speedMps(action.speed.value), Vector.empty)
 
 private object TeamPlanning:
-  /** Of a multirotor that turns on the spot, in a step. What is less than its policy turns keeps a vehicle
-    * from turning back in time.
+  /** Limit of a turn in a step, of a multirotor that turns on the spot. With less than its policy turns, a
+    * vehicle could not turn back in time.
     */
   val MostTurnRad = 1.0

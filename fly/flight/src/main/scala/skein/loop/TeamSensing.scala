@@ -11,7 +11,7 @@ import skein.record.EventKind
 import skein.signal.{ClockAlignment, Stamped}
 import skein.units.*
 
-/** Asks a team's vehicles and their sensors, and records what they answer. */
+/** Reads a team's vehicles and their sensors, and records the answers. */
 private final class TeamSensing(
     fleet: Fleet,
     ports: Vector[VehiclePort],
@@ -29,12 +29,12 @@ private final class TeamSensing(
   // Known as answers come, before anything is made of them.
   private val clocks = AtomicReference(clocksBefore)
 
-  /** Asks a vehicle where it is; the answer, or the error, is recorded, and that the clocks contradict each
-    * other. From any thread.
-    */
+  /** Reads a vehicle; records the answer or the error, and contradictions between the clocks. Thread-safe. */
   def read(vehicle: Int): Future[Either[VehicleError, Reading]] = read(vehicle, isRunning = true)
 
-  /** @param isRunning whether the simulator's clock runs by itself
+  /** Reads a vehicle.
+    *
+    * @param isRunning whether the simulator's clock runs by itself
     */
   private def read(vehicle: Int, isRunning: Boolean): Future[Either[VehicleError, Reading]] =
     val sequence = asked.getAndIncrement(vehicle)
@@ -59,13 +59,13 @@ private final class TeamSensing(
           log.unread(vehicle, sequence, error)
           Left(error)
 
-  /** Whether one answer tells of a later moment than another, by all that the team's vehicles have told. */
+  /** Whether one answer was sampled later than another, judged by all readings of the team. */
   def isNewer(one: Stamped[?], other: Stamped[?]): Boolean =
     clocks.get.getOrElse(ClockAlignment.of(one)).isNewer(one, other)
 
-  /** Asks one vehicle where it is, once a period from a start on; emits answers in order, never an older one
-    * after a newer. All vehicles are asked in phase, as far as the settings do not spread them; a phase of
-    * chance between them would make the data of one older than that of the other.
+  /** Reads one vehicle once a period from a start on; emits answers in order, never an older one after a
+    * newer. All vehicles are read in phase, unless the settings spread them; a random phase between them
+    * would make the data of one older than that of the other.
     */
   def sense(vehicle: Int, start: Instant): Source[Reading, NotUsed] =
     val offset = settings.spread * vehicle.toLong / ports.size.toLong
@@ -84,8 +84,8 @@ private final class TeamSensing(
       )
       .addAttributes(parts.named("sense", vehicle))
 
-  /** Joins the newest readings of all vehicles, each with its vehicle; emits when one is new, for all to
-    * decide upon.
+  /** Joins the newest readings of all vehicles, each with its vehicle; emits when one is new, for decisions
+    * of all.
     */
   def joinLatest: Flow[(Int, Reading), LoopEvent, NotUsed] =
     val everyone = ports.indices.toSet
@@ -104,8 +104,8 @@ private final class TeamSensing(
     fleet.agents(vehicle).policy.sensors.toVector.sorted.map: name =>
       TeamSensor(vehicle, name, ports(vehicle).sensors(name), log)
 
-  /** Answers of the policies' sensors: a periodic source for each, which nobody waits for. The vehicles are
-    * asked a quarter of a period after they were asked where they are.
+  /** Readings of the policies' sensors: a periodic source for each, which blocks nothing. Sensors are read a
+    * quarter of a period after the vehicles.
     */
   def sensed(start: Instant): Vector[Source[LoopEvent, NotUsed]] = sensors.map: sensor =>
     Sense
@@ -130,7 +130,7 @@ private final class TeamSensing(
       )
       .map(LoopEvent.Measured(_))
 
-  /** Asks every sensor that a policy reads, one after the other; ends at the first error. */
+  /** Reads every sensor that a policy uses, in sequence; ends at the first error. */
   def senseAll(): Future[Either[VehicleError, Vector[SensorReading]]] =
     sensors.foldLeft(Future.successful[Either[VehicleError, Vector[SensorReading]]](Right(Vector.empty))):
       (soFar, sensor) =>
@@ -138,8 +138,7 @@ private final class TeamSensing(
           case Right(readings) => sensor.read().map(_.map(readings :+ _))
           case error           => Future.successful(error)
 
-  /** Asks all vehicles of a simulator that stands still, one after the other, in the scenario's order; ends
-    * at the first error.
+  /** Reads all vehicles of a simulator that stands still, in the scenario's order; ends at the first error.
     */
   def readAll(): Future[Either[VehicleError, Vector[Reading]]] =
     ports.indices.foldLeft(Future.successful[Either[VehicleError, Vector[Reading]]](Right(Vector.empty))):
@@ -148,17 +147,17 @@ private final class TeamSensing(
           case Right(readings) => read(vehicle, isRunning = false).map(_.map(readings :+ _))
           case error           => Future.successful(error)
 
-  /** Once a period from an instant on: how many ticks were due since the last. */
+  /** Emits once a period from an instant on: the number of ticks due since the last. */
   def ticks(first: Instant): Source[Int, NotUsed] =
     Source.fromGraph(Metronome(first, settings.period, clock))
 
-  /** How old a moment of the vehicles' clock is now; absent as long as nothing is known of that clock. */
+  /** The present age of a moment on the vehicles' clock; absent as long as nothing is known of that clock. */
   def ageOf(validAt: Option[Instant]): Option[Span] =
     clocks.get
       .zip(validAt)
       .map((known, valid) => clock.now().since(known.toController(valid)))
       .filter(_ >= Span.Zero)
 
-  /** How old the oldest reading of a view is now. */
+  /** The present age of the oldest reading of a view. */
   def ageOf(view: TeamView): Option[Span] =
     ageOf(view.readings.flatten.map(_.state.validAt).minOption)

@@ -4,15 +4,15 @@ import java.util.concurrent.atomic.AtomicLong
 import scala.concurrent.{ExecutionContext, Future}
 import skein.port.{Sensor, VehicleError}
 
-/** A sensor of a vehicle that the vehicle's policy reads. */
+/** A sensor of a vehicle, as far as the vehicle's policy reads it. */
 private final class TeamSensor(val vehicle: Int, val name: String, sensor: Sensor, log: TeamLog)(using
     ExecutionContext
 ):
   private val asked   = AtomicLong()
   private val columns = sensor.columns
 
-  /** Asks it; the answer, or the error, is recorded. An answer that is not as many finite numbers as there
-    * are columns is an error.
+  /** Reads it; records the answer or the error. An answer with another count of numbers than columns, or with
+    * infinite ones, is an error.
     */
   def read(): Future[Either[VehicleError, SensorReading]] =
     val sequence = asked.getAndIncrement()

@@ -14,7 +14,7 @@ import skein.port.{VehicleError, VehiclePort}
 import skein.record.EventKind
 import skein.units.*
 
-/** Commands a team's vehicles, records what became of it, and tells the loop. */
+/** Commands a team's vehicles, records the results, and feeds them back into the loop. */
 private final class TeamSteering(
     fleet: Fleet,
     ports: Vector[VehiclePort],
@@ -28,7 +28,7 @@ private final class TeamSteering(
   // The newest moves of each vehicle, oldest first: as many as may be unanswered.
   private val moves = AtomicReferenceArray(Array.fill(ports.size)(Vector.empty[Future[Any]]))
 
-  /** Paces one vehicle: the newest element, at least an interval after the last. */
+  /** Paces one vehicle: emits the newest element, at least an interval after the last. */
   def pace[A](vehicle: Int): Flow[A, A, NotUsed] =
     Flow.fromGraph(Pace[A](settings.paceInterval, clock)(_ =>
       log.note(EventKind.Dropped, Some(vehicle), "replaced before its turn")
@@ -40,11 +40,11 @@ private final class TeamSteering(
       log.note(EventKind.Dropped, Some(vehicle), s"command ${decision.sequence} replaced before it was sent")
     ).addAttributes(parts.named("newest", vehicle))
 
-  /** Commands one vehicle; emits what is sent and how it ended.
+  /** Commands one vehicle; emits the sent commands and their ends.
     *
     * '''Emits when''' a command is sent or has ended. '''Backpressures when''' [[Steer]] does. '''Completes
-    * when''' upstream has completed, the vehicle was told to hover, and every command has ended. '''Cancels
-    * when''' downstream cancels.
+    * when''' upstream has completed, the vehicle was commanded to hover, and every command has ended.
+    * '''Cancels when''' downstream cancels.
     */
   def steer(vehicle: Int): Flow[Decision, SteeringEvent, NotUsed] =
     val meter = parts.meter("steer", vehicle)
@@ -83,10 +83,9 @@ private final class TeamSteering(
         steering.answered()
         steering.pass()
 
-  /** Takes down every command and how it ended. Never backpressures. */
+  /** Records every command and its end. Never backpressures. */
   def record: Sink[SteeringEvent, ?] = Sink.foreach(log.steered).addAttributes(parts.named("record"))
 
-  /** The moves sent. */
   def sent: Flow[SteeringEvent, SentCommand, NotUsed] =
     val meter = parts.meter("sent")
     Flow[SteeringEvent]
@@ -96,7 +95,7 @@ private final class TeamSteering(
           decision.move(at)
       .addAttributes(parts.named("sent"))
 
-  /** What a forecast can tell by commands: the moves sent, and those of which the end is news. */
+  /** Forecast events: commands sent, and command endings that change a prediction. */
   def told: Flow[SteeringEvent, LoopEvent, NotUsed] = Flow[SteeringEvent].collect(Function.unlift:
     case SteeringEvent(_, Steered.Sent(decision, at)) => Some(LoopEvent.Moved(decision.move(at)))
     case SteeringEvent(vehicle, Steered.Ended(decision, at, Success(Right(false)))) =>
@@ -105,7 +104,7 @@ private final class TeamSteering(
     case SteeringEvent(vehicle, Steered.Ended(decision, _, _))       =>
       Some(LoopEvent.Heard(ForecastEvent.Failed(vehicle, decision.sequence))))
 
-  /** Carries the newest move of each vehicle back into the view. */
+  /** Feeds the newest move of each vehicle back into the view. */
   def feedBack: Flow[SentCommand, LoopEvent, NotUsed] =
     Flow[SentCommand]
       .map(move => (move.vehicle, move))
@@ -113,7 +112,7 @@ private final class TeamSteering(
       .map((_, move) => LoopEvent.Moved(move))
       .addAttributes(parts.named("feed back"))
 
-  /** Carries events back into the view, the newest of each vehicle and kind. */
+  /** Feeds events back into the view, the newest of each vehicle and kind. */
   def feedBackAll: Flow[LoopEvent, LoopEvent, NotUsed] =
     Flow[LoopEvent]
       .map:
@@ -124,15 +123,15 @@ private final class TeamSteering(
       .map(_._2)
       .addAttributes(parts.named("feed back"))
 
-  /** Sends what was decided; the answer comes when the move ends. */
+  /** Sends a decision as a move; completes when the move ends. */
   def move(decision: Decision): Future[Either[VehicleError, Boolean]] =
     import decision.vehicle
     val answer = ports(vehicle).act(Acting.action(fleet, decision), settings.moveDuration)
     val _ = moves.updateAndGet(vehicle, sent => (sent :+ answer).takeRight(settings.movesInFlight.max(2)))
     answer
 
-  /** Tells every vehicle to hover, up to [[UntilCertain.Attempts]] times, once nothing else commands it; one
-    * that never says that it does is noted. Ends when every move has been answered, too.
+  /** Commands every vehicle to hover, up to [[UntilCertain.Attempts]] times, once no other command is
+    * pending; records a vehicle that never confirms it. Completes after every move has been answered, too.
     */
   def hoverAll()(using ActorSystem): Future[Unit] =
     Future.traverse(ports.indices.toVector)(hover).map(_ => ())
@@ -153,20 +152,19 @@ private final class TeamSteering(
   private def allEnded(calls: Vector[Future[Any]]): Future[Unit] =
     Future.traverse(calls)(_.transform(_ => Success(()))).map(_ => ())
 
-  /** The outcomes of all vehicles' commands. */
   def steered: Graph[UniformFanInShape[SteeringEvent, SteeringEvent], NotUsed] =
     Merge[SteeringEvent](ports.size).addAttributes(parts.named("steered"))
 
-  /** To the recording, back into the loop, and to its end. */
+  /** Broadcasts to the recording, back into the loop, and to its end. */
   def fan: Graph[UniformFanOutShape[SteeringEvent, SteeringEvent], NotUsed] =
     Broadcast[SteeringEvent](3).addAttributes(parts.named("fan"))
 
 private object TeamSteering:
 
-  /** Whether a call's result says that the call neither runs nor is on its way. */
+  /** Whether a call's result means that the call neither runs nor is on its way. */
   private def isCertain(result: Either[VehicleError, Boolean]): Boolean = result.fold(_.isCertain, _ => true)
 
-  /** Whether a vehicle took the command to hover, or refused it. */
+  /** Whether a vehicle has accepted the command to hover, or refused it. */
   private def isHovering(result: Either[VehicleError, Boolean]): Boolean = result match
     case Right(_) | Left(_: VehicleError.Refused) => true
     case Left(_)                                  => false

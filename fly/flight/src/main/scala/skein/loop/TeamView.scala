@@ -5,10 +5,10 @@ import skein.forecast.{Estimate, ForecastEvent, Forecast}
 import skein.signal.{ClockAlignment, Kinematics}
 import skein.units.*
 
-/** A command that was sent to a vehicle, as the other vehicles' policies see it.
+/** A command that was sent to a vehicle, as other vehicles' policies observe it.
   *
   * @param speed absent where the vehicle always commands its own
-  * @param action absent where it is told by heading and speed
+  * @param action absent where heading and speed define it
   */
 final case class SentCommand(
     vehicle: Int,
@@ -19,13 +19,13 @@ final case class SentCommand(
     action: Option[Action] = None
 )
 
-/** What the controller knows of the team: the newest reading and the last move of each vehicle, by index, and
-  * how the two clocks relate.
+/** The controller's knowledge of the team: the newest reading and the last move of each vehicle, by index,
+  * and the relation of the two clocks.
   *
-  * @param sensed the newest of each sensor that is read, by vehicle
+  * @param sensed the newest reading of each sensor in use, by vehicle
   * @param forecast present where the loop predicts
-  * @param estimates of every vehicle when a command decided upon this view will act; absent where none are
-  *   made
+  * @param estimates of every vehicle for the time at which a command decided on this view takes effect;
+  *   absent where none are made
   */
 final case class TeamView(
     readings: Vector[Option[Reading]],
@@ -41,7 +41,7 @@ final case class TeamView(
       alignment = Some(aligned(reading))
     ).withEvent(ForecastEvent.Seen(reading.vehicle, reading.state))
 
-  /** Nothing changes where a newer one is held already. */
+  /** The view with this reading, unless it holds a newer one. */
   def withSensorReading(reading: SensorReading): TeamView =
     val held   = sensed(reading.vehicle)
     val clocks = alignment.getOrElse(ClockAlignment.of(reading.values))
@@ -52,11 +52,11 @@ final case class TeamView(
 
   def withEvent(event: ForecastEvent): TeamView = copy(forecast = forecast.map(_.withEvent(event)))
 
-  /** Where a vehicle is taken to be: as estimated, or else as read. */
+  /** A vehicle's state: as estimated, or else as read. */
   def kinematics(vehicle: Int): Kinematics =
     estimates.fold(readings(vehicle).get.state.value)(_(vehicle).kinematics)
 
-  /** Commanded last to a vehicle, as far as known; before the first command that of the start. */
+  /** The last heading commanded to a vehicle, as far as known; before the first command that of the start. */
   def headingRad(vehicle: Int, fleet: Fleet): Double =
     moves(vehicle).fold(fleet.agents(vehicle).startHeading.value)(_.headingRad)
 
@@ -67,7 +67,7 @@ final case class TeamView(
   private def aligned(reading: Reading): ClockAlignment =
     alignment.fold(ClockAlignment.of(reading.state))(_.updated(reading.state))
 
-  /** Whether every vehicle was seen at least once; only then can be decided. */
+  /** Whether every vehicle was read at least once; before that there are no decisions. */
   def isComplete: Boolean = readings.forall(_.isDefined)
 
 object TeamView:

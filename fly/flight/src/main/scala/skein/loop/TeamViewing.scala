@@ -10,7 +10,7 @@ import skein.record.EventKind
 import skein.signal.ClockAlignment
 import skein.units.*
 
-/** Joins what a loop is told to views of the team, and says who shall decide upon them. */
+/** Folds loop events into team views and emits decision requests. */
 private final class TeamViewing(
     fleet: Fleet,
     settings: LoopSettings,
@@ -22,19 +22,18 @@ private final class TeamViewing(
 ):
   private val vehicles = fleet.agents.indices
 
-  /** Events of several sources; before them what was commanded, which ends the loop where it ends. */
+  /** Merges events of several sources, with priority for fed-back commands, whose end also ends the loop. */
   def events(sources: Int): Graph[MergePreferred.MergePreferredShape[LoopEvent], NotUsed] =
     MergePreferred[LoopEvent](sources, eagerComplete = true).addAttributes(parts.named("events"))
 
-  /** Gives every request to all that decide. */
   def cast(deciders: Int =
     vehicles.size): Graph[UniformFanOutShape[DecisionRequest, DecisionRequest], NotUsed] =
     Broadcast[DecisionRequest](deciders).addAttributes(parts.named("cast"))
 
-  /** Joins events to views; emits those on which somebody shall decide. */
+  /** Folds events into views; emits those that need a decision. */
   def view: Flow[LoopEvent, DecisionRequest, NotUsed] = viewFrom(nothingSeen)
 
-  /** The same, with all that a forecast needs. */
+  /** [[view]] with all data that a forecast needs. */
   def viewWithForecast: Flow[LoopEvent, DecisionRequest, NotUsed] =
     viewFrom(
       nothingSeen.copy(forecast = Some(Forecast(vehicles.map(settings.model).toVector)))
@@ -75,7 +74,7 @@ private final class TeamViewing(
   private def request(view: TeamView, deciders: Set[Int]) =
     Option.when(view.isComplete && !hold.isHeld)(DecisionRequest(view, deciders))
 
-  /** Once a period, in the middle between two questions, everybody is due to decide. */
+  /** Emits once a period, half-way between two requests, that all vehicles are due to decide. */
   def due(start: Instant): Source[LoopEvent, NotUsed] =
     sensing.ticks(
       start + settings.period / 2

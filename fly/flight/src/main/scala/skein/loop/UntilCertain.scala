@@ -5,18 +5,16 @@ import org.apache.pekko.pattern.after
 import scala.concurrent.Future
 import skein.units.*
 
-/** Tells somebody at the end of a flight what must not get lost: again, after a pause, until the answer is
-  * certain.
-  */
+/** Repeats a final command of a flight that must not get lost, with pauses, until its answer is certain. */
 private[loop] object UntilCertain:
 
-  /** How often they are told, at most. */
+  /** Limit of the attempts, the first one included. */
   val Attempts = 20
 
-  /** Pause before they are told again. */
+  /** Pause between two attempts, by the actor system's clock. */
   val Pause: Span = Span.ofMillis(500)
 
-  /** What the last attempt came to; one that fails is not certain. */
+  /** The result of the last attempt; one that fails is not certain. */
   def apply[A](
       attempt: => Future[A],
       attempts: Int = Attempts,

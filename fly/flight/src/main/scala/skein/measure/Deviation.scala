@@ -1,17 +1,17 @@
 package skein.measure
 
-/** How far the flights of one loop over one link, live or virtual, ended from the paused truth: what stands
-  * for them ([[FlightSummary.headline]]) as a share of the truth's, less one, over the flights.
+/** The deviation of the flights of one loop over one link, live or virtual, from the paused truth: their
+  * headline measure ([[FlightSummary.headline]]) as a share of the truth's, less one, over the flights.
   *
   * @param name the loop's, with the policy where it is not the paper's
-  * @param share 0.02 is 2 % further apart
+  * @param share 0.02 means 2 % more
   */
 final case class Deviation(loop: String, name: String, link: String, clock: String, share: Distribution)
 
 object Deviation:
 
-  /** In the order of the flights, scenario by scenario: each against its [[Truth]]. Empty without a paused
-    * flight.
+  /** The deviations in the order of the flights, scenario by scenario: each against its [[Truth]]. Empty
+    * without a paused flight.
     */
   def of(flights: Seq[FlightSummary]): Vector[Deviation] =
     def key(one: FlightSummary) = (one.scenario, one.name, one.flight.link, one.flight.clock)

@@ -5,14 +5,14 @@ import skein.units.*
 
 /** The horizontal distance between two vehicles at equal instants of the simulator's clock.
   *
-  * @param points seconds since both were first seen, every 20 ms, and metres; never empty
+  * @param points seconds since both were first read, every 20 ms, and metres; never empty
   */
 final case class DistanceCurve private (points: Vector[(Double, Double)]):
 
   /** When they were closest, s, and how close, m. */
   val closest: (Double, Double) = points.minBy(_._2)
 
-  /** Distances over the last 10 s, evenly spaced in time, m; absent for a curve that has not as much. */
+  /** Distances over the last 10 s, evenly spaced in time, m; absent for a shorter curve. */
   val lastTenSeconds: Option[Distribution] =
     Window.Last(10).of(points.indices, DistanceCurve.step.toSeconds).flatMap(instants =>
       Distribution.of(instants.map(points(_)._2))
@@ -21,7 +21,7 @@ final case class DistanceCurve private (points: Vector[(Double, Double)]):
 object DistanceCurve:
   private val step = Span.ofMillis(20)
 
-  /** Over the time for which both tracks run; none if there is no such time. */
+  /** The curve over the time that both tracks cover; None if there is no such time. */
   def between(one: Track, other: Track): Option[DistanceCurve] =
     val from = one.from.max(other.from)
     val to   = one.to.min(other.to)

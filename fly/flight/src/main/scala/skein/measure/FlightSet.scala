@@ -2,10 +2,10 @@ package skein.measure
 
 import skein.record.LoopKind
 
-/** Flights that are reported together; in the order of the paper: by link, then by loop.
+/** Flights that are reported together, in the order of the paper: by link, then by loop.
   *
   * @param flights without the virtual twins of live flights
-  * @param twins live flights beside their virtual twins
+  * @param twins live flights with their virtual twins
   */
 final case class FlightSet private (flights: Vector[FlightSummary], twins: Vector[Twin]):
 
@@ -13,30 +13,27 @@ final case class FlightSet private (flights: Vector[FlightSummary], twins: Vecto
 
   def over(link: String): Vector[FlightSummary] = flights.filter(_.flight.link == link)
 
-  /** The paused flight that figures show beside the others. What each is measured against, [[Truth]] says. */
+  /** The paused flight that figures show beside the others. [[Truth]] decides with which flight each is
+    * compared.
+    */
   val truth: Option[FlightSummary] =
     flights.find(summary => summary.flight.isPaused && summary.policy.isEmpty)
 
-  /** Those of one kind of scenario. */
   def ofKind(name: String): FlightSet =
     new FlightSet(
       flights.filter(_.flight.nameOfScenario == name),
       twins.filter(_.live.flight.nameOfScenario == name)
     )
 
-  /** By scenario. */
   val scenarios: Vector[ScenarioFlights] = ScenarioFlights.of(flights)
 
-  /** Twins' virtual flights included. */
   def all: Vector[FlightSummary] = flights ++ twins.flatMap(_.virtual).distinct
 
-  /** By loop, link and clock. */
   def deviations: Vector[Deviation] = Deviation.of(all)
 
-  /** By loop and link. */
   def predictions: Vector[PredictionGroup] = PredictionGroup.of(flights)
 
-  /** What a flight comes to against its [[Truth]]. */
+  /** A flight's deviation from its [[Truth]]. */
   def deviation(flight: FlightSummary): Option[Double] = truths.deviation(flight)
 
   private lazy val truths = Truth.among(all)

@@ -6,27 +6,26 @@ import skein.scenario.{Measure, Result, Scenario, Scenarios, Track, Tracks}
 import skein.units.*
 import skein.units.Decimals.fixed
 
-/** What one recording comes to.
+/** The summary of one recording.
   *
-  * @param simulator which it was, by what wire if not AirSim's, and of what bodies: for people
-  * @param tracks none where the flight has no result: there is no clock, or no vehicle, to measure by
+  * @param simulator its name, its wire protocol if not AirSim's, and its bodies: for people
+  * @param tracks empty where the flight has no result: no clock, or no vehicle, to measure by
   * @param roles evaders first, as in the paper
-  * @param roundTripsMs of the link's own samples where there are any, else of the readings
-  * @param scenario absent where it is not known here
+  * @param roundTripsMs of the link's own samples if there are any, else of the readings
+  * @param scenario absent if it is not known here
   * @param cutShort why it ended before its time, if it did
-  * @param policy short name of the policy that was flown in the place of the paper's; the flight's scenario
-  *   says more
-  * @param planning absent where nothing was planned
-  * @param predictions absent where nothing was predicted
-  * @param paused for how long its vehicles were told to hover: that lies within all times and distances of
-  *   the flight
-  * @param seeing of each eye of its scenario, also of one that found nothing
-  * @param solver absent where the flight's own process decided
+  * @param policy short name of the policy that replaced the paper's; the flight's scenario says more
+  * @param planning absent if nothing was planned
+  * @param predictions absent if nothing was predicted
+  * @param paused time for which its vehicles hovered on request: included in all times and distances of the
+  *   flight
+  * @param seeing of each eye of its scenario, also of one without detections
+  * @param solver absent if the flight's own process decided
   * @param noResult why the flight has no result, if it has none
-  * @param starved how late control ran on a machine that was too busy, if it was
-  * @param commandAgesMs of commands that carry out a decision: from when the vehicle's own physics was
-  *   sampled to the command's sending
-  * @param imageless its cameras of which images were wanted and none came, and why: a line each
+  * @param starved lateness of control on a machine that was too busy, if it was
+  * @param commandAgesMs of commands that carry out a decision: from the sampling of the vehicle's own physics
+  *   to the sending of the command
+  * @param imageless its cameras without any of the requested images, each with the reason in a line
   */
 final case class FlightSummary(
     flight: FlightRow,
@@ -52,8 +51,8 @@ final case class FlightSummary(
     imageless: Vector[String]
 ):
 
-  /** Between the first pursuer and the first evader, where all fly against one opponent each; absent if they
-    * were not both seen.
+  /** The distance between the first pursuer and the first evader, where all play against one opponent each;
+    * absent if they were not both read.
     */
   val distance: Option[DistanceCurve] =
     for
@@ -62,40 +61,39 @@ final case class FlightSummary(
       curve   <- DistanceCurve.between(pursuer, evader)
     yield curve
 
-  /** Absent where the scenario is not known, or the vehicles were not all seen. */
+  /** Absent if the scenario is not known, or some vehicle was not read. */
   val result: Option[Result] =
     for
       known <- scenario if tracks.map(_.vehicle) == known.agents.map(_.name)
       flown <- Tracks.of(tracks)
     yield Result.of(known, flown)
 
-  /** The loop, the policy where it is not the paper's, whether a solver decided, and what stands in the way
-    * of comparing it: that it has no result, was cut short or paused, or that the machine was too busy.
+  /** The loop, the policy if it is not the paper's, whether a solver decided, and what prevents a comparison:
+    * that it has no result, was cut short or paused, or that the machine was too busy.
     */
   def name: String = flownAs + starved.filter(_ => noResult.isEmpty).fold("")(_ => ", starved")
 
-  /** The same on whatever machine. */
+  /** The name without the remark on a busy machine. */
   private[measure] def flownAs: String =
     val ended = noResult.map(none => s", no result: ${none.what}").orElse(cutShort.map(_ => ", cut short"))
     flight.loop + solver.fold("")(_ => ", solver") + policy.fold("")(policy => s", $policy") +
       ended.getOrElse("") + paused.fold("")(_ => ", paused")
 
-  /** Whether it can be held against other flights. */
+  /** Whether it can be compared with other flights. */
   def isComparable: Boolean = cutShort.isEmpty && paused.isEmpty && noResult.isEmpty && starved.isEmpty
 
-  /** Time flown on the simulator's clock, s. */
   def flownS: Double =
     distance.map(_.points.last._1).orElse(result.map(_.tracks.lastS)).getOrElse(0.0)
 
-  /** The measure that stands for the flight when it is compared with others: its scenario's first. */
+  /** The measure by which the flight is compared with others: its scenario's first. */
   def headlineOf: Option[Measure] = scenario.flatMap(_.measures.headOption)
 
-  /** What it comes to. Nothing, where it cannot be compared ([[isComparable]]). */
+  /** The value of the headline measure. None if it cannot be compared ([[isComparable]]). */
   def headline: Option[Double] =
     result.filter(_ => isComparable).flatMap(_.measured.headOption).flatMap(_.value)
 
-  /** The paper's flight of this loop over this link, if this is of the paper's game, as long and with as long
-    * a period. No flight that cannot be compared stands beside it.
+  /** The paper's flight of this loop over this link, if this is of the paper's game, with equal duration and
+    * period. None if this flight cannot be compared.
     */
   def published: Option[Published.Flight] =
     val isAlike = scenario.exists(_.isPapersGame) && flight.period == Published.Period &&
@@ -108,9 +106,9 @@ final case class FlightSummary(
 
 /** The decisions for all vehicles of one role.
   *
-  * @param opponentTrueAgeMs absent, as what is observed of an opponent, where the role's policies regard the
-  *   team instead
-  * @param ownTrueAgeMs from when physics was sampled to the decision
+  * @param opponentTrueAgeMs absent, like other observations of an opponent, if the role's policies consider
+  *   the team instead
+  * @param ownTrueAgeMs from the sampling of physics to the decision
   */
 final case class RoleSummary(
     role: String,
@@ -121,7 +119,7 @@ final case class RoleSummary(
   def hasOpponent: Boolean = observedMs.keys.exists(_.isOfOpponent)
 
 object FlightSummary:
-  /** Those that stand in tables; what is of an opponent, where anybody has one. */
+  /** The observations that tables show; those of an opponent only if some vehicle has one. */
   def observations(flights: Seq[FlightSummary]): Vector[TimingObservation] =
     TimingObservation.values.toVector.filter(one =>
       !one.isOfOpponent || flights.exists(_.roles.exists(_.hasOpponent))
@@ -156,7 +154,7 @@ object FlightSummary:
       imageless(recording)
     )
 
-  /** Its cameras of which images were to be recorded and none came, and why. */
+  /** Its cameras without any of the images to be recorded, with the reasons. */
   private def imageless(recording: Recording): Vector[String] =
     for
       event <- recording.events
@@ -173,14 +171,16 @@ object FlightSummary:
         age      <- decision.trueAge if isAge(age.own)
       yield (age.own + command.sentAt.since(decision.decidedAt)).toMillis
 
-  /** Readings from the future are none: recordings of earlier versions have such ages where the simulator's
-    * clock was set anew.
+  /** Whether an age is valid: recordings of earlier versions have negative ages where the simulator's clock
+    * was reset.
     */
   private def isAge(age: Span) = age >= Span.Zero
 
   private def isOfDuels(scenario: Scenario) = scenario.agents.forall(_.policy.isAgainstOne)
 
-  /** By what is on record of its end, and else by how long its vehicles were seen. */
+  /** Why the flight was cut short: by the record of its end, and else by the time for which its vehicles were
+    * read.
+    */
   private def cutShort(recording: Recording, tracks: Vector[Track]): Option[String] = recording.ending match
     case Some(Ending(_, EndingKind.Completed, _)) => None
     case Some(Ending(_, how, reason))             =>
@@ -203,10 +203,12 @@ object FlightSummary:
       to.since(from)
     }.reduce(_ + _))
 
-  /** What may be missing at both ends of a flight between its time and its readings. */
+  /** Tolerance at both ends of a flight between its duration and its readings. */
   private val Margin = Span.ofSeconds(2)
 
-  /** @param hasAges whether there is a clock that true ages could be of
+  /** The summaries by role.
+    *
+    * @param hasAges whether there is a clock for true ages
     */
   private def roles(recording: Recording, scenario: Option[Scenario], hasAges: Boolean): Vector[RoleSummary] =
     val isOther                 = recording.heading.parameter("policy").isDefined

@@ -5,15 +5,16 @@ import skein.record.*
 import skein.signal.OneWayDelays
 import skein.units.*
 
-/** What a recording tells of how its vehicles answered to their commands. */
+/** Extracts from a recording how its vehicles responded to their commands. */
 object FlownVehicles:
 
-  /** One per vehicle with commands. All times are the simulator's, from the recording's first reading.
+  /** The history of each commanded vehicle. All times are the simulator's, from the recording's first
+    * reading.
     *
-    * When a command arrived is known while the simulator stood still (`paused`). Otherwise it is estimated
-    * from the mean delays of the readings around it, and, where the command before was answered as
+    * The arrival time of a command is known while the simulator stood still (`paused`). Otherwise it is
+    * estimated from the mean delays of the readings around it, and, if the previous command was answered as
     * superseded, from that answer's round trip ([[skein.signal.OneWayDelays.arrivalGiven]]). Commands whose
-    * calls failed count only where such an answer shows that they arrived.
+    * calls failed count only if such an answer shows that they arrived.
     */
   def of(recording: Recording): Vector[TimeHistory] =
     val start = recording.readings.map(_.state.validAt).minOption.getOrElse(Instant.Epoch)
@@ -38,7 +39,8 @@ object FlownVehicles:
         .takeWhile(_.atS <= arrivals.last.atS)
       TimeHistory(s"${recording.flight.id}, ${vehicle.name}", samples, arrivals, commands.last.down.value)
 
-  /** Commands that arrived, and when, on the simulator's clock; none before one that was sent earlier. */
+  /** Commands that arrived, with their times on the simulator's clock; none before one that was sent earlier.
+    */
   private def arrivalsOf(
       recording: Recording,
       vehicle: String,
@@ -74,7 +76,7 @@ object FlownVehicles:
       if timed.isEmpty then timed
       else timed.map(_._1).zip(timed.map(_._2).scanLeft(timed.head._2)(_.max(_)).drop(1))
 
-  /** The mean delays as they were known when each reading had come. */
+  /** The mean delays as they were known when each reading was received. */
   private final class Delays(recording: Recording):
     private val byArrival = recording.readings.map(_.state).sortBy(_.receivedAt)
     private val times     = byArrival.map(_.receivedAt)

@@ -1,6 +1,6 @@
 package skein.measure
 
-/** How far two samples of one quantity are from having one distribution. */
+/** Compares the distributions of two samples of one quantity. */
 object KolmogorovSmirnov:
 
   /** The largest difference between the shares of samples up to a value, over all values: 0 for equal
@@ -12,7 +12,6 @@ object KolmogorovSmirnov:
   def distance(one: Distribution, other: Distribution, within: Double = 0): Double =
     ahead(one, other, within).max(ahead(other, one, within))
 
-  /** By how much the first sample's share exceeds the second's at most, or 0. */
   private def ahead(first: Distribution, second: Distribution, within: Double): Double =
     val (_, largest) = first.sorted.zipWithIndex.foldLeft((0, 0.0)):
       case ((reached, most), (value, index)) =>

@@ -3,7 +3,7 @@ package skein.measure
 import skein.record.{EventKind, Recording}
 import skein.signal.TimeAxis
 
-/** Why a flight has no result, though it was flown: what it would be measured by is wrong.
+/** Why a complete flight has no result: its basis of measurement is wrong.
   *
   * @param what in two or three words
   * @param why in a line
@@ -12,7 +12,7 @@ final case class NoResult(what: String, why: String)
 
 object NoResult:
 
-  /** By what was noted in flight, and else by the clock that the readings show. */
+  /** The reason recorded in flight, or else shown by the readings' clock. */
   def of(recording: Recording): Option[NoResult] =
     val noted = recording.events.collectFirst:
       case event if named.contains(event.kind) => NoResult(named(event.kind), event.detail)
@@ -25,7 +25,9 @@ object NoResult:
     if recording.flight.isPaused then stepped(recording)
     else TimeAxis.fault(recording.readings.iterator.map(one => (one.vehicle, one.state)))
 
-  /** A vehicle is read once in a step, or more often while the simulator stands still. */
+  /** The fault of a stepped simulator's clock. A vehicle is read once in a step, or more often while the
+    * simulator stands still.
+    */
   private def stepped(recording: Recording): Option[String] =
     val period = recording.flight.period
     recording.readings.groupBy(_.vehicle).valuesIterator.flatMap { readings =>

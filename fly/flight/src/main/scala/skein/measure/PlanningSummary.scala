@@ -2,12 +2,12 @@ package skein.measure
 
 import skein.record.Recording
 
-/** How a flight's decisions were planned.
+/** Statistics of a flight's plans.
   *
   * @param candidates per plan
-  * @param slices of all vehicles that were planned for together
-  * @param tookMs from asking until the decision was there
-  * @param missed deadlines at which nothing was ready
+  * @param slices of all vehicles that were planned together
+  * @param tookMs from the request to the decision
+  * @param missed deadlines without any result
   * @param breached plans that could not keep within a hard limit
   */
 final case class PlanningSummary(
@@ -20,7 +20,6 @@ final case class PlanningSummary(
 
 object PlanningSummary:
 
-  /** Absent where nothing was planned. */
   def of(recording: Recording): Option[PlanningSummary] =
     val plans = recording.planned
     for

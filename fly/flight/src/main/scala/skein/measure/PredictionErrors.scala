@@ -2,11 +2,11 @@ package skein.measure
 
 import skein.record.Recording
 
-/** How far predictions of one kind of vehicle were off, by how far they were carried.
+/** Errors of predictions of one kind of vehicle, by their age.
   *
-  * @param made predictions made; of those that are no `samples` the moment was never read, or read with too
-  *   wide a gap around it
-  * @param samples of those verified: age, from the reading to the moment predicted for, ms, and error, m
+  * @param made number of predictions; those without a sample concern a moment that was never read, or read
+  *   with too wide a gap around it
+  * @param samples of verified predictions: age, from the reading to the predicted moment, ms, and error, m
   */
 final case class PredictionErrors(made: Int, samples: Vector[(Double, Double)]):
   def unverified: Int = made - samples.size
@@ -31,7 +31,7 @@ final case class PredictionErrors(made: Int, samples: Vector[(Double, Double)]):
         Distribution.of(errors).filter(_.count >= PredictionErrors.Fewest).map(age -> _)
       )
 
-  /** [[byAge]], apart where ages between are left out. */
+  /** [[byAge]] in stretches without gaps between the ages. */
   def stretches: Vector[Vector[(Int, Distribution)]] =
     byAge.foldLeft(Vector.empty[Vector[(Int, Distribution)]]): (found, next) =>
       found.lastOption match
@@ -41,14 +41,14 @@ final case class PredictionErrors(made: Int, samples: Vector[(Double, Double)]):
 object PredictionErrors:
   val BinMs: Int = 20
 
-  /** For a 95 % quantile that a few outliers do not move: of 40, two lie above it. */
+  /** Least number of samples for a 95 % quantile that a few outliers do not move: of 40, two lie above it. */
   val Fewest: Int = 40
 
   private def bin(ageMs: Double): Int = (ageMs / BinMs).round.toInt * BinMs
 
-  /** Of the deciding vehicles themselves, and of others; absent where nothing was predicted.
+  /** Errors for the deciding vehicles themselves, and for others; absent if nothing was predicted.
     *
-    * @param isDuel whether all fly against one opponent each
+    * @param isDuel whether all play against one opponent each
     */
   def of(recording: Recording, isDuel: Boolean): Option[(own: PredictionErrors, others: PredictionErrors)] =
     val predicted = recording.decisions.filter(_.predicted.nonEmpty)

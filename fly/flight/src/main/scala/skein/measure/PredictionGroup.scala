@@ -5,7 +5,6 @@ final case class PredictionGroup(name: String, link: String, own: PredictionErro
 
 object PredictionGroup:
 
-  /** In the order of the flights. */
   def of(flights: Seq[FlightSummary]): Vector[PredictionGroup] =
     val predicted = flights.toVector.filter(_.predictions.nonEmpty)
     for

@@ -29,13 +29,13 @@ object Published:
       closestAtS: Option[Double]
   )
 
-  /** The paper's flight of this loop over this link. Its `paused` flew over the direct link but waits for
-    * every answer, so it stands beside ours over any link.
+  /** The paper's flight of this loop over this link. Its `paused` used the direct link but waits for every
+    * answer, so it is comparable over any link.
     */
   def flight(loop: LoopKind, link: String): Option[Flight] =
     flights.find(flight => flight.loop == loop && (flight.link == link || loop == LoopKind.Paused))
 
-  /** Between two decisions for a vehicle, and of a flight. */
+  /** Period between two decisions for a vehicle, and duration of a flight. */
   val Period: Span   = Span.ofMillis(100)
   val Duration: Span = Span.ofSeconds(60)
 

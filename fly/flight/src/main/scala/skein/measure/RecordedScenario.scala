@@ -3,9 +3,8 @@ package skein.measure
 import skein.record.Recording
 import skein.scenario.{Scenario, Scenarios}
 
-/** The scenario that a recording says was flown. */
+/** The scenario of a recorded flight. */
 object RecordedScenario:
-  /** @return or why it is not known here */
   def of(recording: Recording)(using scenarios: Scenarios): Either[String, Scenario] =
     scenarios.ofRecording(
       recording.flight.nameOfScenario,

@@ -6,10 +6,12 @@ import skein.scene.Placement
 import skein.scenario.{Equipment, Scenarios}
 import skein.units.*
 
-/** What a recording tells of its scenario's eyes, beside the truth: by the readings of who was looked for. */
+/** Extracts the detections of the scenario's eyes from a recording, with the truth from the target's own
+  * readings.
+  */
 object RecordedSeeing:
 
-  /** One for each eye that saw anything through a camera of its scenario's. */
+  /** One result for each eye with a detection through a camera of its scenario. */
   def of(recording: Recording)(using Scenarios): Vector[Seeing] =
     val summary = FlightSummary.of(recording)
     for

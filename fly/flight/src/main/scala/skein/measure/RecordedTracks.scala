@@ -3,10 +3,10 @@ package skein.measure
 import skein.record.Recording
 import skein.scenario.Track
 
-/** Where a recording says its vehicles were. */
+/** Extracts the vehicles' tracks from a recording. */
 object RecordedTracks:
 
-  /** The track of every vehicle that was seen: from the recorded truth, if there is any, else from the
+  /** The track of every vehicle that was read: from the recorded truth, if there is any, else from the
     * readings.
     */
   def of(recording: Recording): Vector[Track] =

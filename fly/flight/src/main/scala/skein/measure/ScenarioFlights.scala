@@ -2,9 +2,9 @@ package skein.measure
 
 import skein.scenario.{Result, Scenario}
 
-/** Flights of one scenario with the same settings.
+/** Flights of one scenario with equal settings.
   *
-  * @param withoutResult flights of it that have none
+  * @param withoutResult its flights without a result
   */
 final case class ScenarioFlights(
     scenario: Scenario,
@@ -12,15 +12,17 @@ final case class ScenarioFlights(
     withoutResult: Vector[FlightSummary]
 ):
 
-  /** The paused flight that figures show beside the others. What each is measured against, [[Truth]] says. */
+  /** The paused flight that figures show beside the others. [[Truth]] decides with which flight each is
+    * compared.
+    */
   val truth: Option[ScenarioFlights.Flown] = flights.find(_.summary.flight.isPaused)
 
-  /** The first measure against that of the flight's [[Truth]]. */
+  /** The deviation of the first measure from that of the flight's [[Truth]]. */
   def deviation(flight: ScenarioFlights.Flown): Option[Double] = truths.deviation(flight.summary)
 
   private lazy val truths = Truth.among(flights.map(_.summary))
 
-  /** Root mean square distance from the places of its [[Truth]] at the same time, m; absent for the truth
+  /** Root mean square distance from the positions of its [[Truth]] at equal times, m; absent for the truth
     * itself, and where the machine was too busy.
     */
   def offTruthM(flight: ScenarioFlights.Flown): Option[Double] =
@@ -33,7 +35,7 @@ object ScenarioFlights:
 
   final case class Flown(summary: FlightSummary, result: Result)
 
-  /** By scenario, in the order of the flights; without flights of scenarios that are not known. */
+  /** Groups flights by scenario, in their order; omits those of unknown scenarios. */
   def of(flights: Vector[FlightSummary]): Vector[ScenarioFlights] =
     val flown = flights.flatMap(summary => summary.result.map(Flown(summary, _)))
     val none  = flights.filter(_.noResult.isDefined)

@@ -4,16 +4,15 @@ import skein.record.Recording
 import skein.scenario.{Eye, Track}
 import skein.units.*
 
-/** One detection, and what was believed upon it.
+/** One detection, with the estimate after it.
   *
   * @param at the exposure, on the simulator's clock
   * @param sinceStartS of the flight's readings
   * @param cameraNed m
   * @param orientation of the camera
-  * @param azimuthRad to the right of straight ahead, where it was seen; then above straight ahead, and how
-  *   far
-  * @param trueNed where it was, by its own readings, and how it was turned
-  * @param firstUsedMs how old it was when it was first decided upon, if it was
+  * @param azimuthRad measured, to the right of straight ahead; then above straight ahead, and the range
+  * @param trueNed the target's position and orientation, by its own readings
+  * @param firstUsedMs age at the first decision that used it, if any did
   */
 final case class Detection(
     at: Instant,
@@ -29,13 +28,12 @@ final case class Detection(
     trueOrientation: Quaternion,
     firstUsedMs: Option[Double]
 ):
-  /** In the plane. */
   def errorM: Double = believedNed.horizontalDistance(trueNed)
 
-/** What a vehicle saw by one of its scenario's eyes.
+/** The detections of one of a scenario's eyes.
   *
-  * @param images that were looked at until the last detection; absent where nothing was found
-  * @param agesMs of what decisions were made upon, since the exposure
+  * @param images number that was searched until the last detection; absent if nothing was found
+  * @param agesMs of the detections behind decisions, since the exposure
   */
 final case class SeeingSummary(
     eye: Eye,
@@ -46,8 +44,8 @@ final case class SeeingSummary(
   def tookMs: Option[Distribution]  = Distribution.of(detections.map(_.tookMs))
   def errorsM: Option[Distribution] = Distribution.of(detections.map(_.errorM))
 
-  /** Moments worth a look, each with its name: the first detection, the closest, the last before the eye had
-    * lost what it looks for the longest, and the next one.
+  /** Notable detections, each with its name: the first, the closest, the last before the longest gap, and the
+    * next one.
     */
   def decisive: Vector[(String, Detection)] =
     val gap = detections.zip(detections.drop(1)).maxByOption((before, next) => next.at.since(before.at))
@@ -60,7 +58,7 @@ final case class SeeingSummary(
 
 object SeeingSummary:
 
-  /** None where the target's own readings are missing. */
+  /** None if the target's own readings are missing. */
   def of(recording: Recording, eye: Eye, tracks: Vector[Track]): Option[SeeingSummary] =
     val told = recording.measurements
       .filter(row => row.vehicle == eye.vehicle && row.sensor == eye.sensor && row.quantities == Eye.Columns)
@@ -94,7 +92,7 @@ object SeeingSummary:
         Distribution.of(ages.values.flatten.toVector)
       )
 
-  /** Of decisions, by the exposure that they rest on. */
+  /** Ages of the estimates at decisions, by the exposure on which they are based. */
   private def agesMs(recording: Recording, eye: Eye): Map[Instant, Vector[Double]] =
     val validAt = recording.measurements
       .filter(row => row.vehicle == eye.vehicle && row.sensor == eye.sensor)

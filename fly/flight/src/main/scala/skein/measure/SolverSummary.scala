@@ -2,18 +2,18 @@ package skein.measure
 
 import skein.record.{EventKind, EventSubject, Recording, SolvedRow}
 
-/** What it came to that a flight's decisions were made in another process.
+/** Statistics of a flight whose decisions were made in another process.
   *
-  * @param at where the solver was
-  * @param roundTripsMs from question to answer, of answers that were used: what the way there and back adds
-  *   to the age of what is decided upon; absent where none was used
-  * @param thinkingMs of these, what the solver took
-  * @param missed decisions that had to be made without an answer
-  * @param late answers that came too late
-  * @param repeated messages that came more than once
-  * @param left questions that the solver left for newer ones
-  * @param lost how often the connection was lost
-  * @param restarted decisions for which the solver remembered nothing of those before
+  * @param at address of the solver
+  * @param roundTripsMs from request to answer, of used answers: the transport's part of the decisions' data
+  *   age; absent if none was used
+  * @param thinkingMs the solver's time for these
+  * @param missed decisions made without an answer
+  * @param late answers after their deadline
+  * @param repeated messages received more than once
+  * @param left requests that the solver skipped for newer ones
+  * @param lost number of times the connection was lost
+  * @param restarted decisions for which the solver had no memory of those before
   */
 final case class SolverSummary(
     at: String,
@@ -30,7 +30,7 @@ final case class SolverSummary(
 
 object SolverSummary:
 
-  /** Absent where the flight's own process decided. */
+  /** Absent if the flight's own process decided. */
   def of(recording: Recording): Option[SolverSummary] =
     for at <- recording.heading.parameter(Parameter)
     yield
@@ -52,5 +52,5 @@ object SolverSummary:
         count(EventKind.SolverRestarted)
       )
 
-  /** Under which a recording says where the solver was. */
+  /** The parameter of a recording that holds the solver's address. */
   val Parameter = "solver"

@@ -9,14 +9,14 @@ import skein.record.{EventKind, FlightRow, Simulator}
 import skein.scenario.{Scenario, Track}
 import skein.units.*
 
-/** A flight's summary as bytes, and back: every number to the bit. What follows from the rest (distance,
-  * result) is computed again, and the scenario is who reads' own.
+/** Encodes a flight's summary, every number to the bit. Derived values (distance, result) are computed anew,
+  * and the scenario is the reader's own.
   *
   * As [[Codec]] writes it, but numbers of one kind by their bytes, all first bytes first, since these repeat;
   * then deflated.
   */
 object SummaryBytes:
-  /** Of what is inflated. */
+  /** Limit of the inflated size, in bytes. */
   private val MostBytes = 256 << 20
 
   def write(summary: FlightSummary): ArraySeq[Byte] =
@@ -27,8 +27,10 @@ object SummaryBytes:
     ))
     ArraySeq.unsafeWrapArray(bytes.toByteArray)
 
-  /** @param scenario that was flown; absent where it is not known
-    * @return or why these bytes are none
+  /** Decodes a summary.
+    *
+    * @param scenario of the flight; absent if it is not known
+    * @return Left states why these bytes are no summary
     */
   def read(bytes: ArraySeq[Byte], scenario: Option[Scenario]): Either[String, FlightSummary] =
     try Right(Codecs(scenario).all.read(DataInputStream(ByteArrayInputStream(inflated(bytes.toArray)))))
@@ -90,7 +92,7 @@ object SummaryBytes:
     private given Codec[Detection]        = Codec.derived
     private given Codec[Option[Scenario]] = Codec.of[Option[Scenario]]((_, _) => ())(_ => scenario)
 
-    /** Of eyes that are not known here, nothing is. */
+    /** Omits the data of eyes that are not known here. */
     private given seeing: Codec[Vector[SeeingSummary]] = Codec
       .vector(using Codec.derived[(Int, Vector[Detection], Option[Int], Option[Distribution])])
       .imap(_.flatMap((eye, detections, images, ages) =>

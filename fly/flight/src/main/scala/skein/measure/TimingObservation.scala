@@ -10,10 +10,10 @@ enum TimingObservation(
     val isOfOpponent: Boolean = false
 ):
 
-  /** How long ago the reading of the vehicle itself arrived. */
+  /** Time since the reading of the vehicle itself was received. */
   case OwnAge extends TimingObservation("own location age", observed => Some(observed.ownAge))
 
-  /** How long ago the reading of its opponent arrived. */
+  /** Time since the reading of its opponent was received. */
   case OpponentAge
       extends TimingObservation(
         "opponent's location age",
@@ -21,12 +21,12 @@ enum TimingObservation(
         isOfOpponent = true
       )
 
-  /** How long ago the vehicle was last commanded. */
+  /** Time since the last command to the vehicle. */
   case SinceOwnMove extends TimingObservation("time since own last move", _.sinceOwnMove)
 
-  /** How long ago its opponent was last commanded. */
+  /** Time since the last command to its opponent. */
   case SinceOpponentMove
       extends TimingObservation("time since opponent's last move", _.sinceOpponentMove, isOfOpponent = true)
 
-  /** ms; absent before the first move. */
+  /** The value, ms; absent before the first move. */
   def ms(decision: DecisionRow): Option[Double] = of(decision.observations).map(_.toMillis)

@@ -3,7 +3,7 @@ package skein.measure
 import skein.scenario.Scenario
 import skein.units.Span
 
-/** The paused flights that others are held against, sought once for all of them: there may be 100,000. */
+/** The paused flights with which others are compared, indexed once for all of them: there may be 100,000. */
 final class Truth private (paused: Map[Truth.Kind, Vector[FlightSummary]]):
   import Truth.*
 
@@ -15,14 +15,14 @@ final class Truth private (paused: Map[Truth.Kind, Vector[FlightSummary]]):
   private val means        = paused.map((kind, flights) => kind -> mean(flights))
   private val meansOfClock = ofClock.map((kind, flights) => kind -> mean(flights))
 
-  /** Those of the same scenario and settings, policies, period and duration; of the flight's own clock where
-    * there are some. None for a paused flight.
+  /** The truths of a flight: equal in scenario and settings, policies, period and duration; with the flight's
+    * own clock if there are any. None for a paused flight.
     */
   def of(flight: FlightSummary): Vector[FlightSummary] =
     found(flight, ofClock, paused).getOrElse(Vector.empty)
 
-  /** What a flight comes to ([[FlightSummary.headline]]) against the mean of its truths, as a share of that:
-    * 0.02 is 2 % more. Absent for a truth itself, without one, and where that came to 0.
+  /** A flight's headline ([[FlightSummary.headline]]) relative to the mean of its truths: 0.02 is 2 % more.
+    * Absent for a truth itself, without a truth, and if the truth's value is 0.
     */
   def deviation(flight: FlightSummary): Option[Double] =
     for

@@ -2,13 +2,13 @@ package skein.measure
 
 import skein.units.Decimals.brief
 
-/** A live flight and its virtual twins: flights in virtual time of the same loop over the same link.
+/** A live flight and its virtual twins: flights in virtual time of an equal loop over an equal link.
   *
-  * @param virtual at least one; their samples are taken together
+  * @param virtual at least one; their samples are combined
   */
 final case class Twin(live: FlightSummary, virtual: Vector[FlightSummary]):
 
-  /** The compared quantities that both have. */
+  /** The compared quantities that both flights have. */
   def compared: Vector[Compared] =
     for
       role     <- live.roles
@@ -22,23 +22,22 @@ final case class Twin(live: FlightSummary, virtual: Vector[FlightSummary]):
   def find(role: String, quantity: String): Option[Compared] =
     compared.find(one => one.role == role && one.quantity == quantity)
 
-  /** What stands for the flights, (see [[FlightSummary.headline]]): live, and the twins' mean. */
+  /** The headline measure (see [[FlightSummary.headline]]) of the live flight, and the twins' mean. */
   def converged: Option[(Double, Double)] =
     for
       ours   <- live.headline
       theirs <- Distribution.of(virtual.flatMap(_.headline))
     yield (ours, theirs.mean)
 
-  /** How much further apart the live flight ended, as a share of the twins' distance. */
+  /** Deviation of the live flight's headline, as a share of the twins'. */
   def difference: Option[Double] = converged.map((ours, theirs) => ours / theirs - 1)
 
-  /** The seeds of the twins, for a table. */
   def seeds: String =
     virtual.map(_.flight.seed).distinct.sorted match
       case Vector(seed) => s"seed $seed"
       case several      => s"${several.size} seeds, ${several.head} … ${several.last}"
 
-  /** In what the twins were not flown as the live flight was; empty for true twins. */
+  /** Settings in which the twins differ from the live flight; empty for true twins. */
   def unlike: Vector[String] =
     def names[A](what: String, of: FlightSummary => A)(show: A => String) =
       val theirs = virtual.map(of).distinct
@@ -57,7 +56,7 @@ final case class Compared(role: String, quantity: String, live: Distribution, vi
   val distance: Double = KolmogorovSmirnov.distance(live, virtual, Compared.WithinMs)
 
 object Compared:
-  /** Times no further apart count as equal: a live loop's timers are not more exact. */
+  /** Tolerance within which times count as equal, ms: a live loop's timers are not more exact. */
   val WithinMs: Int = 1
 
 object Twin:
@@ -71,7 +70,7 @@ object Twin:
     Quantity(SinceMove, _.observedMs.get(TimingObservation.SinceOwnMove))
   )
 
-  /** Roles and quantities, in the order in which they are shown, and a short name of each. */
+  /** Roles and quantities, in the order of tables, with a short name of each. */
   def columns(twins: Vector[Twin]): Vector[(String, String, String)] =
     for
       (quantity, short) <- Vector(Age -> "age", SinceMove -> "move")

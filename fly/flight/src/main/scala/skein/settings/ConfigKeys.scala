@@ -11,20 +11,19 @@ import pureconfig.{ConfigFieldMapping, ConfigReader}
 import scala.annotation.nowarn
 import scala.deriving.Mirror
 
-/** The keys of the configuration: `moves-in-flight` for the field `movesInFlight`, in every locale
-  * (pureconfig's own mapping turns I into a dotless ı where the machine is Turkish).
+/** Maps field names to keys of the configuration: `moves-in-flight` for the field `movesInFlight`, in every
+  * locale (pureconfig's own mapping turns I into a dotless ı where the machine is Turkish).
   */
 private[skein] object ConfigKeys:
 
-  /** The key of a field. */
   def ofField(name: String): String = name.replaceAll("([A-Z])", "-$1").toLowerCase(Locale.ROOT)
 
-  /** A mistake that begins with a field's name, by its key. */
+  /** Replaces the field's name at the beginning of a mistake by its key. */
   def ofMistake(mistake: String): String =
     val (name, rest) = mistake.splitAt(mistake.indexOf(':'))
     ofField(name) + rest
 
-  /** The option that a value came from, if one did. */
+  /** The option from which a value comes, if any. */
   def optionOf(origin: ConfigOrigin): Option[String] =
     Some(origin.description).filter(_.startsWith("--"))
 

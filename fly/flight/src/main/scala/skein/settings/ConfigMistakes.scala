@@ -5,20 +5,20 @@ import pureconfig.error.*
 import scala.jdk.CollectionConverters.*
 import skein.scenario.{Nearest, Scenarios}
 
-/** What is wrong with a configuration, a line for each value: `FILE: LINE: PATH: expected …, came …`. What an
-  * option gave is told by the option's name.
+/** Describes mistakes in a configuration, a line for each value: `FILE: LINE: PATH: expected …, came …`. A
+  * value from an option is identified by the option's name.
   */
 private[skein] object ConfigMistakes:
 
-  /** Everything below `path` that cannot be read whatever it says: keys that `reference.conf` does not know,
-    * nulls, and settings, lists and single values in one another's places.
+  /** Mistakes of form below `path`, whatever the values: keys that `reference.conf` does not know, nulls, and
+    * settings, lists and single values in one another's places.
     *
-    * @return None if there is nothing of the kind
+    * @return None if there is none
     */
   def ofShape(config: Config, path: String)(using Scenarios): Option[String] =
     ofValue(config.getValue(path), known.getValue(path), path).reduceOption(_ + "\n" + _)
 
-  /** The keys of a file, of which nothing but `path` is read, that stand beside `path` or above. */
+  /** Keys of a file beside `path` or above, none of which is read. */
   def besideInFile(file: Config, path: String): Option[String] =
     path
       .split('.')
@@ -34,7 +34,7 @@ private[skein] object ConfigMistakes:
           case (key, value) if key != chain.last => unknown(value, (parent :+ key).mkString("."), Seq(path))
       .reduceOption(_ + "\n" + _)
 
-  /** What pureconfig could not read: options first, then a file's lines in turn. */
+  /** The values that pureconfig could not read: options first, then a file's lines in order. */
   def of(failures: ConfigReaderFailures, config: Config): String = failures.toList
     .sortBy(_.origin.fold(-1)(_.lineNumber))
     .map:
@@ -44,20 +44,19 @@ private[skein] object ConfigMistakes:
     .distinct
     .mkString("\n")
 
-  /** Where a value is from: the option that gave it, or file, line and path. Defaults have a path alone. */
+  /** The source of a value: its option, or file, line and path. Defaults have a path alone. */
   def at(path: String, origin: ConfigOrigin): String =
     ConfigKeys.optionOf(origin).getOrElse:
       if origin.description.startsWith(Ours) then path else s"${origin.description}: $path"
 
-  /** @return `at` of the value, or the path alone where nothing stands
-    */
+  /** The source of the value at a path, or the path alone if there is no value. */
   def at(path: String, config: Config): String =
     if config.hasPath(path) then at(path, config.getValue(path).origin) else path
 
-  /** A message that may have several lines, as a library's has, or one with a value that has. */
+  /** Joins the lines of a message, such as a library's. */
   def oneLine(text: String): String = text.linesIterator.map(_.trim).filter(_.nonEmpty).mkString(" ")
 
-  /** Runs what reads a configuration: what the library refuses is told in a line. */
+  /** Reads a configuration; converts an exception of the library to one line. */
   def guarded[A](path: String)(read: => Either[String, A]): Either[String, A] =
     try read
     catch
@@ -84,7 +83,7 @@ private[skein] object ConfigMistakes:
     case ConfigValueType.OBJECT  => "settings in braces"
     case ConfigValueType.NULL    => "null"
 
-  /** As a user wrote it. */
+  /** A value as the user wrote it. */
   def text(value: ConfigValue): String = value.valueType match
     case ConfigValueType.OBJECT => "settings in braces"
     case ConfigValueType.LIST   => "a list"
@@ -126,7 +125,7 @@ private[skein] object ConfigMistakes:
       case None      =>
         s"${value.origin.description}: no setting '$path'; the nearest is '${Nearest.to(key.take(MostLetters), known)}'"
 
-  /** Of a key that is compared with those that are known. */
+  /** Limit of a key's length for comparison with known keys. */
   private val MostLetters = 100
 
   private val renamed = Map(
@@ -138,7 +137,7 @@ private[skein] object ConfigMistakes:
 
   private lazy val ours = ConfigFactory.parseResources(getClass.getClassLoader, Ours).resolve()
 
-  /** Scenarios' settings stand under their names. */
+  /** The known keys, with the scenarios' settings under their names. */
   private def known(using scenarios: Scenarios): Config =
     scenarios.kinds.foldLeft(ours): (known, kind) =>
       kind.standard.settings.foldLeft(known):

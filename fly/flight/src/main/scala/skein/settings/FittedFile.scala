@@ -4,7 +4,7 @@ import com.typesafe.config.{Config, ConfigException, ConfigUtil}
 import skein.identify.Fitted
 import skein.units.Expect
 
-/** What files of fitted numbers share. */
+/** The common format of files with fitted numbers. */
 private object FittedFile:
 
   /** A parameter with its interval; a remark says where it is not identified. */
@@ -13,18 +13,17 @@ private object FittedFile:
     val remark = if parameter.atBound then s"  # $atBound" else ""
     s"$name { value = ${number(value)}, least = ${number(least)}, most = ${number(most)} }$remark"
 
-  /** Texts, a line each. */
   def list(name: String, texts: Vector[String]): String =
     texts.map(text => s"    ${ConfigUtil.quoteString(text)}").mkString(s"  $name = [\n", "\n", "\n  ]")
 
-  /** Six significant digits. */
+  /** Formats a number with six significant digits. */
   def number(value: Double): String =
     BigDecimal(value).round(java.math.MathContext(6)).bigDecimal.stripTrailingZeros.toPlainString
 
   /** Reads a file's section.
     *
-    * @param what the file is to be, in words
-    * @return or what is wrong
+    * @param what the expected kind of file, in words
+    * @return Left states what is wrong
     */
   def parse[A](text: String, path: String, section: String, what: String)(
       read: Config => Either[String, A]

@@ -16,22 +16,23 @@ import skein.signal.LatencyProfile
 import skein.units.*
 import skein.vehicle.VehicleKind
 
-/** What to fly: every loop over every link, and `paused`, the ground truth, once without a network. The
-  * configuration has a key for each field, and a recording a parameter, in this order ([[RecordedSetting]]).
+/** The flights of an experiment: every loop over every link, and `paused`, the ground truth, once without a
+  * network. The configuration has a key for each field, and a recording a parameter, in this order
+  * ([[RecordedSetting]]).
   *
-  * @param scene what stands in the built-in simulator's world; without one, what the scenario says
+  * @param scene the built-in simulator's world; by default the scenario's
   * @param predictor by which `predictive` predicts multirotors; cars are predicted by their own model
-  * @param movesInFlight moves of one vehicle that may be unanswered; more than 2 are for links that never
-  *   deliver several at once: see [[skein.flow.Steer]]
-  * @param plant what the built-in simulator's multirotors are
-  * @param wire what the vehicles are spoken to by
-  * @param solver by whom the flights are flown too, beside those that decide in this process; a decision then
-  *   has a deadline, the period where none is set
-  * @param images whose images and clouds are recorded
-  * @param deadline of every decision; without one, policies are waited for
-  * @param fallback what is done where the deadline is missed
-  * @param policies with which the scenario is flown too, beside its own
-  * @param onlyPolicies whether the scenario is flown with these policies alone, and not with its own beside
+  * @param movesInFlight limit of unanswered moves of one vehicle; more than 2 are for links that never
+  *   deliver several simultaneously: see [[skein.flow.Steer]]
+  * @param plant the built-in simulator's kind of multirotor
+  * @param wire protocol of the vehicles
+  * @param solver a remote solver for additional flights, beside those that decide in this process; a decision
+  *   then has a deadline, by default the period
+  * @param images sources of recorded images and clouds
+  * @param deadline of every decision; without one, the loop waits for its policies
+  * @param fallback the decision after a missed deadline
+  * @param policies for additional flights of the scenario, beside its own
+  * @param onlyPolicies whether flights with the scenario's own policies are omitted
   */
 final case class FlySettings(
     loops: List[AnyLoop],
@@ -54,28 +55,28 @@ final case class FlySettings(
     onlyPolicies: Boolean = false
 ):
 
-  /** The cameras and lidars whose images and clouds the flight has. */
+  /** The cameras and lidars from which the flight takes images and clouds. */
   def imagingSensors: Vector[ImagingSensor] = (seen ++ filmed.map((sensor, _) => sensor)).distinct
 
-  /** Those of which they are recorded. */
+  /** The sensors whose images and clouds are recorded. */
   lazy val recordedImaging: Set[ImagingSensor] =
     (if images.contains(ImageSource.Seen) then seen.toSet else Set.empty) ++ filmed.map((sensor, _) => sensor)
 
-  /** Those that its policies look through. */
+  /** The sensors that its policies use. */
   private def seen: Vector[ImagingSensor] =
     scenario.eyes.map(eye => ImagingSensor.camera(eye.vehicle, eye.camera, "Scene")) ++
       scenario.equipment.collect { case lidar: Equipment.Lidar =>
         ImagingSensor(lidar.vehicle, lidar.name, isLidar = true)
       }
 
-  /** Those that are looked through for the recording alone, and how often. */
+  /** The cameras that are used for the recording alone, with their periods. */
   def filmed: Vector[(sensor: ImagingSensor, every: Span)] =
     for
       agent <- fleet.agents
       case ImageSource.Camera(name, hz) <- images.toVector
     yield (ImagingSensor.camera(agent.name, name, "Scene"), Span.ofSeconds(1 / hz))
 
-  /** What stands in the world. */
+  /** The scene of the built-in simulator. */
   def world: NamedScene = scene.orElse(NamedScene.shipped(scenario.scene)).getOrElse(NamedScene.Empty)
 
   def fleet: Fleet = scenario.fleet
@@ -87,11 +88,11 @@ final case class FlySettings(
     val all = loopSettings.copy(seed = plan.seed)
     if plan.solver.isEmpty then all else all.copy(deadline = Some(Deadline(deadlineOf(plan).get, fallback)))
 
-  /** By when a flight's decisions must be there, if they must. */
+  /** The deadline of a flight's decisions, if there is one. */
   def deadlineOf(plan: FlightPlan): Option[Span] =
     if plan.solver.isEmpty then deadline else deadline.orElse(Some(period))
 
-  /** How the loops are run. Plans keep the scenario's limits. */
+  /** The settings of the loops. Plans keep the scenario's limits. */
   def loopSettings: LoopSettings =
     val agents = fleet.agents
     val timely = LoopSettings
@@ -105,8 +106,7 @@ final case class FlySettings(
     if scenario.isAsPublished then timely.asPublished else timely
 
   /** The flights, the truth first, then those with policies of files. The seeds of different loops and links
-    * differ, so that they do not meet the same delays; flights that differ in the policy alone have the same
-    * seed.
+    * differ, so that their delays differ; flights that differ in the policy alone have equal seeds.
     */
   def plans: Vector[FlightPlan] =
     val names = policies.zipWithIndex.map: (policy, index) =>
@@ -115,14 +115,14 @@ final case class FlySettings(
     val chosen = policies.zip(names).map((policy, name) => ChosenPolicy(name, policy))
     withSolver((if onlyPolicies then Vector.empty else papers) ++ chosen.flatMap(plansWith))
 
-  /** Flights that differ in where is decided alone have the same seed. */
+  /** Adds flights with the solver, whose seeds equal those without. */
   private def withSolver(plans: Vector[FlightPlan]): Vector[FlightPlan] =
     plans ++ solver.toVector.flatMap: choice =>
       plans
         .filter(plan => FlySettings.decidedElsewhere(plan.loop))
         .map(plan => plan.copy(id = s"${plan.id}-solver", solver = Some(choice)))
 
-  /** The same flights with a policy in the place of the scenario's. */
+  /** The flights with a policy instead of the scenario's. */
   def plansWith(policy: ChosenPolicy): Vector[FlightPlan] =
     papers.map(plan => plan.copy(id = s"${plan.id}-${policy.name}", policy = Some(policy)))
 
@@ -136,16 +136,16 @@ final case class FlySettings(
     (truth.toVector ++ others).distinct.zipWithIndex.map:
       case ((loop, link), index) => FlightPlan(s"${loop.label}-${link.name}", loop, link, seed + index)
 
-/** A policy that is flown in the place of the scenario's.
+/** A policy that replaces the scenario's.
   *
-  * @param name short, in tables; no two of an experiment share one
-  * @param learning where it learns while it flies; then the file is what it begins with, a network
+  * @param name short, in tables; unique within an experiment
+  * @param learning if it learns during the flight; then the file is its initial network
   */
 final case class ChosenPolicy(name: String, file: PolicyFile, learning: Option[Learning] = None):
 
   /** The scenario with this policy for all agents of its role, which learns by lessons.
     *
-    * @param note told of what is new, with the vehicle and the number of its next decision
+    * @param note called with each update, the vehicle and the number of its next decision
     */
   def learningIn(fleet: Fleet, lessons: Lessons, explore: Double, seed: Long)(
       note: (String, Long, LearnerUpdate) => Unit
@@ -160,8 +160,8 @@ final case class ChosenPolicy(name: String, file: PolicyFile, learning: Option[L
 
 /** One flight of an experiment.
   *
-  * @param policy without one, the scenario's fly
-  * @param solver who decides; without one, this process
+  * @param policy by default the scenario's
+  * @param solver that decides; by default this process
   */
 final case class FlightPlan(
     id: String,
@@ -171,14 +171,14 @@ final case class FlightPlan(
     policy: Option[ChosenPolicy] = None,
     solver: Option[SolverChoice] = None
 ):
-  /** Who flies, in the scenario of the settings. */
+  /** The agents of the flight, in the settings' scenario. */
   def fleet(settings: FlySettings): Fleet =
     policy.fold(settings.fleet)(_.file.flownIn(settings.fleet))
 
   def file(folder: Path): Path = folder.resolve(FlightPlan.fileName(id))
 
-  /** The same flight to be flown in virtual time beside a live one: `count` times, the first time with the
-    * same seed, then with the seeds that follow.
+  /** This flight in virtual time, beside the live one: `count` times, first with an equal seed, then with the
+    * following ones.
     */
   def twins(count: Int): Vector[FlightPlan] =
     Vector.tabulate(count): index =>
@@ -188,12 +188,13 @@ object FlightPlan:
   def fileName(id: String): String = id.replaceAll("[^A-Za-z0-9.-]", "_") + ".duckdb"
 
 object FlySettings:
-  /** The air of forward simulation and of the built-in simulator is that at the ground. */
+  /** Greatest altitude, m: forward simulation and the built-in simulator use the air density at the ground.
+    */
   val MostAltitudeM = 1000.0
 
   /** Reads `skein.fly`.
     *
-    * @return or every mistake, with its file, line, and what was expected
+    * @return Left lists every mistake, with its file, line, and what was expected
     */
   def read(config: Config)(using Scenarios): Either[String, FlySettings] =
     for
@@ -270,7 +271,9 @@ object FlySettings:
     val all = if mistakes.isEmpty then predictorMistake(settings).toSeq ++ planMistake(settings) else mistakes
     Either.cond(all.isEmpty, settings, all.map(placed(_, config)).mkString("\n"))
 
-  /** Of the two, the one is told that an option gave: the other may be the scenario's. */
+  /** The mistake of a flight that is too short for its period, at the value that an option gave: the other
+    * may be the scenario's.
+    */
   private def shortMistake(settings: FlySettings, config: Config): String =
     if optionAt("period", config).isDefined && optionAt("duration", config).isEmpty then
       s"period: expected half the duration (${(settings.duration / 2).toMillis} ms) or less, " +
@@ -279,20 +282,20 @@ object FlySettings:
       s"duration: expected two periods (${(settings.period * 2).toMillis} ms) or more, " +
         s"came ${settings.duration.toMillis} ms"
 
-  /** A mistake that begins with a key, told by where the key's value is from. */
+  /** Replaces the key at the beginning of a mistake by the source of its value. */
   private def placed(mistake: String, config: Config): String =
     val (key, said) = mistake.span(_ != ':')
     ConfigMistakes.oneLine(ConfigMistakes.at(s"skein.fly.$key", config) + said)
 
-  /** The option by which a key of `skein.fly` has its value, if one did. */
+  /** The option from which a key of `skein.fly` has its value, if any. */
   private def optionAt(key: String, config: Config): Option[String] =
     val path = s"skein.fly.$key"
     Option.when(config.hasPath(path))(config.getValue(path).origin).flatMap(ConfigKeys.optionOf)
 
-  /** `paused` waits with its simulator stopped. */
+  /** Whether a solver can decide for a loop: `paused` waits with its simulator stopped. */
   def decidedElsewhere(loop: AnyLoop): Boolean = loop != LoopKind.Paused
 
-  /** An answer has to come behind the search for it. */
+  /** The mistake of a deadline that leaves no time for the answer after the search. */
   private def lateMistake(settings: FlySettings): Option[String] =
     val searched = settings.planning.deadline
     val within   = settings.deadline.getOrElse(settings.period)
@@ -305,7 +308,7 @@ object FlySettings:
 
   private def isRightAltitude(altitudeM: Double) = altitudeM > 0 && altitudeM <= MostAltitudeM
 
-  /** Its opponent is the nearest of another role. */
+  /** Whether a policy can replace one in this fleet: its opponent is the nearest of another role. */
   private def isFlownIn(fleet: Fleet, file: PolicyFile) =
     fleet.agents.map(_.role).distinct.sizeIs > 1 && fleet.agents.exists(_.role == file.role)
 
@@ -344,7 +347,7 @@ object FlySettings:
     text => text.toDoubleOption.filter(_.isFinite).toRight(s"expected a finite number, came '$text'")
   )
 
-  /** `1e3` is a whole number, too. */
+  /** Reads a number exactly, so that `1e3` is a whole number too. */
   private def exactly[A](text: String)(number: java.math.BigDecimal => A): Option[A] =
     Try(number(java.math.BigDecimal(text))).toOption
 

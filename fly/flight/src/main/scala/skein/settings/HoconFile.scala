@@ -5,13 +5,15 @@ import com.typesafe.config.{Config, ConfigException, ConfigFactory, ConfigParseO
 /** HOCON files that users name: configurations, policies, models. */
 object HoconFile:
 
-  /** The file, not resolved.
+  /** Reads a file without resolving it.
     *
-    * @return or why it cannot be read, in a line
+    * @return Left states why it cannot be read, in a line
     */
   def read(path: String): Either[String, Config] = TextFile.read(path).flatMap(parse(_, path))
 
-  /** @param path of the file that the text is from
+  /** Parses a text.
+    *
+    * @param path of the text's file, for error messages
     */
   def parse(text: String, path: String): Either[String, Config] =
     try Right(ConfigFactory.parseString(text, ConfigParseOptions.defaults.setOriginDescription(path)))

@@ -1,17 +1,12 @@
 package skein.settings
 
-/** Whose images and clouds a flight records. */
+/** A source of images and clouds that a flight records. */
 enum ImageSource:
-  /** Of the cameras and lidars that its policies look through. */
+  /** The cameras and lidars that its policies use. */
   case Seen
 
-  /** Of a camera of every vehicle, for nobody but who looks at the flight.
-    *
-    * @param hz images a second
-    */
   case Camera(name: String, hz: Double)
 
-  /** As [[ImageSource.parse]] reads it. */
   def text: String = this match
     case Seen             => ImageSource.SeenWord
     case Camera(name, hz) => s"$name@$hz"
@@ -19,7 +14,7 @@ enum ImageSource:
 object ImageSource:
   private val SeenWord = "seen"
 
-  /** No camera of a simulator gives more. */
+  /** Limit of the rate, which no simulator's camera exceeds, Hz. */
   val MostHz = 240.0
 
   private val Form = """([^@\s]+)@([0-9]+(?:\.[0-9]+)?)""".r

@@ -7,13 +7,12 @@ import skein.scenario.Scenarios
 import skein.units.Expect
 import skein.vehicle.{ObservedPlant, ReducedModel}
 
-/** A fitted model as a HOCON file: `skein.model`, with every structure that was fitted, where from, and how
-  * well.
+/** A fitted model as a HOCON file: `skein.model`, with every fitted structure, its data and its errors.
   *
-  * @param use which of them to fly by
+  * @param use the structure to apply
   * @param models the values of each one's parameters
-  * @param altitudeM at which was flown what it was fitted to, where its plant holds there alone, as AirSim's
-  *   quadrotor does; files of older versions do not say
+  * @param altitudeM of the fitted flights, if its plant is only valid there, as AirSim's quadrotor is; files
+  *   of older versions lack it
   */
 final case class ModelFile(
     use: Structure,
@@ -21,20 +20,19 @@ final case class ModelFile(
     altitudeM: Option[Double] = None
 ):
 
-  /** To predict and simulate by. */
   val plant: ObservedPlant[?] = use.plant(models(use))
 
-  /** The three-parameter model, for what flies no other. */
+  /** The three-parameter model, for code that supports no other. */
   def reduced: Option[ReducedModel] =
     models.get(Structure.Lag).map(lag => ReducedModel.lag(lag(0), lag(1), lag(2)))
 
 object ModelFile:
   import FittedFile.{line, list, number}
 
-  /** Within a metre, a lag of AirSim's changes by 0.1 s. */
+  /** Tolerance of the altitude, m: within it, a lag of AirSim's changes by 0.1 s. */
   private val SameAltitudeM = 1.0
 
-  /** What is wrong with flying at an altitude by a model of another, if anything. */
+  /** Why a model of one altitude must not be used at another, if so. */
   def mistake(flownAtM: Option[Double], altitudeM: Double): Option[String] =
     flownAtM
       .filter(flown => math.abs(flown - altitudeM) > SameAltitudeM)
@@ -42,10 +40,10 @@ object ModelFile:
         s"expected a model of flights at ${number(altitudeM)} m altitude, since the vehicles' lag depends on it, came one of ${number(flown)} m"
       )
 
-  /** Where a fit came from.
+  /** The data of a fit.
     *
-    * @param altitudeM of all flights, if they had the same
-    * @param recordings files, each with what was flown
+    * @param altitudeM of all flights, if they share one
+    * @param recordings files, each with its flight
     */
   final case class Provenance(
       recordings: Vector[String],
@@ -55,7 +53,7 @@ object ModelFile:
       altitudeM: Option[Double] = None
   )
 
-  /** The text of a file. */
+  /** Renders the text of a model file. */
   def render(use: Structure, fits: Vector[Fit], from: Provenance): String =
     val sections = fits.map: fit =>
       val found      = fit.identification
@@ -100,7 +98,7 @@ object ModelFile:
 
   /** Reads a file.
     *
-    * @return or what is wrong, with the line
+    * @return Left states what is wrong, with the line
     */
   def read(path: String)(using Scenarios): Either[String, ModelFile] =
     TextFile.read(path).flatMap(parse(_, path))
@@ -131,11 +129,11 @@ object ModelFile:
 
   private def quoted(text: String): String = com.typesafe.config.ConfigUtil.quoteString(text)
 
-/** A fitted structure and how far it is off over the horizons.
+/** A fitted structure with its errors over the horizons.
   *
-  * @param againstQuadrotor against the built-in quadrotor under the same commands, where a structure of
-  *   Skein's is to be flown by
-  * @param againstReadings against the recordings themselves
+  * @param againstQuadrotor compared with the built-in quadrotor under equal commands, for a structure of
+  *   Skein's
+  * @param againstReadings compared with the recordings themselves
   */
 final case class Fit(
     identification: Identification,

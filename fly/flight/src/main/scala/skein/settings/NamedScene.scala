@@ -3,19 +3,17 @@ package skein.settings
 import skein.record.ParameterRow
 import skein.scene.{Scene, SceneFile}
 
-/** What stands in the world, and what it is called.
+/** A scene with its name.
   *
   * @param name of a scene that ships, or a file's path
   * @param text of the file; absent for a scene that ships
   */
 final case class NamedScene private (name: String, text: Option[String], scene: Scene):
-  /** Whether there is anything to touch. */
   def isEmpty: Boolean = scene.objects.isEmpty
 
 object NamedScene:
   val Empty: NamedScene = NamedScene("empty", None, Scene.Empty)
 
-  /** A scene that ships, or that of a file. */
   def read(name: String): Either[String, NamedScene] = shipped(name).map(Right(_)).getOrElse:
     for
       text <- TextFile.read(name).left.map(error =>
@@ -26,12 +24,14 @@ object NamedScene:
 
   def shipped(name: String): Option[NamedScene] = SceneFile.named(name).map(NamedScene(name, None, _))
 
-  /** As a recording keeps it: nothing of the empty one, and all of a file's. */
+  /** The parameters of a recording: none for the empty scene, and the whole text of a file's. */
   def recorded(flown: NamedScene): Seq[ParameterRow] =
     if flown.name == Empty.name then Nil
     else ParameterRow(Name, flown.name) +: flown.text.toSeq.map(ParameterRow(Text, _))
 
-  /** @param parameters of a recording, by name
+  /** Reads the scene of a recording.
+    *
+    * @param parameters by name
     */
   def ofRecording(parameters: Map[String, String]): Either[String, NamedScene] =
     (parameters.get(Name), parameters.get(Text)) match

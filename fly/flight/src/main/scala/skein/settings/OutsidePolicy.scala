@@ -8,18 +8,19 @@ import java.util.concurrent.{ExecutionException, FutureTask, TimeoutException}
 import skein.policy.*
 import skein.units.{OwnFailure, Span}
 
-/** A policy in a process of its own, asked over a Unix socket. It gets the observation of `skein.environment`
-  * ([[PlanarObservation.fromOwnHeading]]) and answers with a number from −1 to 1, how to turn; values beyond
-  * are clipped. So a policy that was trained there flies in every loop.
+/** A policy in another process, over a Unix socket. It receives the observation of `skein.environment`
+  * ([[PlanarObservation.fromOwnHeading]]) and answers with a number from −1 to 1, its share of the largest
+  * turn; values beyond are clipped. So a policy that was trained there runs in every loop.
   *
-  * A question is nine 32-bit floats, big-endian. An answer is a byte: 0, and a float; or 1, and why there is
-  * none: a length in bytes (32 bits) and UTF-8. One question is under way at a time, of all flights together.
-  * The clock of a flight in virtual time stands still meanwhile, so equal answers make equal flights.
+  * A request is nine 32-bit floats, big-endian. An answer is a byte: 0, and a float; or 1, and why there is
+  * none: a length in bytes (32 bits) and UTF-8. There is one unanswered request at a time, of all flights
+  * together. The clock of a flight in virtual time stands still meanwhile, so equal answers make equal
+  * flights.
   *
   * A decision fails if the policy reports an error, if the number is not finite, if anything but one answer
   * comes, or if none is complete within [[OutsidePolicy.AnswerWithin]] of real time. After the last two the
-  * policy is not asked again, and every later decision fails at once: a surplus answer would be taken for
-  * that to the next question, and all later answers would be late by one.
+  * policy receives no more requests, and every later decision fails immediately: a surplus answer would be
+  * taken for that to the next request, and all later answers would be off by one.
   *
   * @param mostTurnRadPerS of a pursuer
   */
@@ -27,7 +28,9 @@ final class OutsidePolicy private (connection: OutsidePolicy.Connection, role: R
     extends ObservingPolicy[Unit]:
   def initial: Unit = ()
 
-  /** @throws skein.units.OwnFailure if there is no answer
+  /** Requests a decision.
+    *
+    * @throws skein.units.OwnFailure if there is no answer
     */
   def decide(seen: PlanarObservation, memory: Unit): Decided[Unit] =
     val share = connection.ask(seen.fromOwnHeading.map(_.toFloat)).toDouble.max(-1).min(1)
@@ -37,18 +40,18 @@ final class OutsidePolicy private (connection: OutsidePolicy.Connection, role: R
 object OutsidePolicy:
   private val Name = "outside"
 
-  /** The most that a pursuer turns: the paper's. */
+  /** The largest turn rate of a pursuer: the paper's. */
   val MostTurnRadPerS = 1.0
 
-  /** Enough for a first answer that loads a network. */
+  /** Time-out of an answer: enough for a first one that loads a network. */
   val AnswerWithin: Span = Span.ofSeconds(10)
 
   private val MostText = 1 << 16
 
-  /** The policy of a process that answers now.
+  /** Connects to the policy of a running process.
     *
     * @param text `unix:ROLE:PATH`
-    * @return or what was expected, what came, and where
+    * @return Left states what was expected, what was given, and where
     */
   def reach(text: String, answerWithin: Span = AnswerWithin): Either[String, PolicyFile] = text match
     case s"unix:$role:$path" =>
@@ -60,7 +63,7 @@ object OutsidePolicy:
       yield PolicyFile.ofDefaults(known, family(known, connection))
     case _ => Left(s"expected unix:ROLE:PATH, came '$text'")
 
-  /** To connect blocks for as long as the other side's line of those who wait is full. */
+  /** Connects; blocks as long as the other side's queue of connections is full. */
   private def connected(path: String, within: Span): Either[String, Connection] =
     val connecting = FutureTask(() => Connection(path, within))
     Thread.ofPlatform.daemon.name("connect").start(connecting): Unit
@@ -69,7 +72,7 @@ object OutsidePolicy:
       case _: TimeoutException        => Left(s"it accepts nobody within ${within.toMillis.round} ms")
       case failed: ExecutionException => Left(failed.getCause.getMessage)
 
-  /** Whether another process decides. */
+  /** Whether another process decides for this policy. */
   def decides(file: PolicyFile): Boolean = file.family.name == Name
 
   private def family(role: Role, connection: Connection) = PolicyFamily(
@@ -80,7 +83,7 @@ object OutsidePolicy:
     parameters => OutsidePolicy(connection, role, parameters(0))
   )
 
-  /** Open until the process ends, or the other side does not keep to the protocol. */
+  /** A connection, open until the process ends or violates the protocol. */
   private final class Connection(path: String, answerWithin: Span):
     private val socket = ProcessSocket(path, answerWithin)
     private var broken = Option.empty[String]

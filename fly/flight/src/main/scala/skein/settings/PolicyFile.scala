@@ -11,8 +11,8 @@ import skein.scenario.Scenarios
 import skein.units.Decimals.significant
 import skein.units.Expect
 
-/** A policy as a file: the family's name and one value per parameter, in HOCON. What else stands there (the
-  * objective, how the policy was found) is for people. Or an ONNX file: [[skein.onnx.OnnxPolicy]].
+/** A policy as a file: the family's name and one value per parameter, in HOCON. Further entries (the
+  * objective, how the policy was found) are for people. Or an ONNX file: [[skein.onnx.OnnxPolicy]].
   *
   * @param parameters in the order of the family's axes
   */
@@ -23,27 +23,28 @@ final case class PolicyFile(role: Role, family: PolicyFamily, parameters: Vector
   def flownIn(fleet: Fleet): Fleet =
     Fleet(fleet.agents.map(agent => if agent.role == role then agent.copy(policy = policy) else agent))
 
-  /** In names of flights. */
   def name: String =
     if family.name.startsWith(OnnxPolicy.Prefix) then family.name.take(OnnxPolicy.Prefix.length + 8)
     else family.name
 
-  /** For tables and recordings: `paper-pursuer turnRateRadPerS=1.25`; [[PolicyFile.parse]] reads it back. */
+  /** The text for tables and recordings: `paper-pursuer turnRateRadPerS=1.25`; [[PolicyFile.parse]] reads it
+    * back.
+    */
   def text: String =
     (family.name +: family.space.axes.zip(parameters).map((axis, value) => s"${axis.name}=$value")).mkString(
       " "
     )
 
-  /** The same with fewer digits. */
+  /** [[text]] with numbers rounded for people. */
   def label: String =
     val shown = family.space.axes.zip(parameters).take(PolicyFile.MostShown).map: (axis, value) =>
       s"${axis.name}=${value.significant(4)}"
     val more = family.space.dimension - shown.size
     (name +: shown).mkString(" ") + (if more > 0 then s" and $more more" else "")
 
-  /** As a file, with remarks for people.
+  /** The text of a file, with remarks for people.
     *
-    * @param remarks HOCON to stand below
+    * @param remarks HOCON appended below
     */
   def hocon(remarks: String): String =
     val values = family.space.axes.zip(parameters).map((axis, value) => s"  ${axis.name} = $value")
@@ -60,7 +61,6 @@ object PolicyFile:
 
   def name(role: Role): String = role.toString.toLowerCase(Locale.ROOT)
 
-  /** A role of the duel. */
   def role(text: String): Either[String, Role] =
     Seq(Role.Pursuer, Role.Evader).find(name(_) == text).toRight(s"expected pursuer or evader, came '$text'")
 
@@ -70,9 +70,9 @@ object PolicyFile:
   /** The paper's policy of a role of the duel. */
   def paperOf(role: Role): PolicyFile = ofDefaults(role, PolicyFamily.paperOf(role))
 
-  /** The role that a family is for, if it is for one alone, or the role asked for.
+  /** The role of a family, if it has a single one, or the requested role.
     *
-    * @return or what was expected
+    * @return Left states what was expected
     */
   def roleOf(family: PolicyFamily, asked: Option[String]): Either[String, Role] = asked match
     case Some(text) =>
@@ -89,9 +89,9 @@ object PolicyFile:
               s"${several.map(name).mkString(" and ")}: expected one of them, came none"
           )
 
-  /** A policy for a role: of a file, or of a family with its defaults.
+  /** A policy for a role: from a file, or from a family with its defaults.
     *
-    * @return or what was expected and came
+    * @return Left states what was expected and what was given
     */
   def chosen(role: Role, text: String)(using Scenarios): Either[String, PolicyFile] =
     named(text, Some(role)).filterOrElse(
@@ -99,11 +99,11 @@ object PolicyFile:
       s"expected a policy for the ${name(role)}, came one for the other role: $text"
     )
 
-  /** A policy of a file, or of a family with its defaults.
+  /** A policy from a file, or from a family with its defaults.
     *
-    * @param asked whose it is where neither file nor family says so; without it, such a family is refused and
+    * @param asked its role if neither file nor family states one; without it, such a family is refused and
     *   such a file is a pursuer's
-    * @return or what was expected and came
+    * @return Left states what was expected and what was given
     */
   def named(text: String, asked: Option[Role])(using Scenarios): Either[String, PolicyFile] =
     summon[Scenarios].family(text) match
@@ -112,10 +112,10 @@ object PolicyFile:
         if text.exists("/.:\\".contains(_)) || Files.exists(Path.of(text)) then read(text, asked)
         else Left(s"$mistake; or a policy file")
 
-  /** Reads a file; `evader:FILE` says whose an ONNX file is that does not note it.
+  /** Reads a file; `evader:FILE` states the role of an ONNX file that does not note it.
     *
-    * @param asked whose it is then; without it, a pursuer's
-    * @return or what was expected, what came, and where
+    * @param asked its role in that case; by default a pursuer's
+    * @return Left states what was expected, what was found, and where
     */
   def read(path: String, asked: Option[Role] = None)(using Scenarios): Either[String, PolicyFile] =
     if path.endsWith(OnnxPolicy.Suffix) then
@@ -173,12 +173,13 @@ object PolicyFile:
       _ <- Try(chosen.policy).toEither.left.map(mistake => s"$path: ${told(family, mistake)}")
     yield chosen
 
-  /** What a family's code refuses is the file's mistake; all else that it throws is told as its own. */
+  /** The message of an exception: a rejection by a family's code is the file's mistake; any other exception
+    * is the family's own.
+    */
   private def told(family: PolicyFamily, mistake: Throwable): String = mistake.getCause match
     case refusal: IllegalArgumentException => s"family ${family.name}: ${Expect.refused(refusal)}"
     case _                                 => mistake.getMessage
 
-  /** Reads [[PolicyFile.text]] back. */
   def parse(role: Role, text: String)(using Scenarios): Either[String, PolicyFile] =
     val words = text.split(' ').toVector
     for

@@ -6,15 +6,15 @@ import skein.scenario.Scenarios
 import scala.util.Try
 import skein.vehicle.*
 
-/** By which model `predictive` carries the readings of a vehicle forward. */
+/** The model by which `predictive` predicts a vehicle from its readings. */
 enum PredictionModel:
-  /** One of [[VehicleChoice]]'s, as it flies at the altitude of a vehicle. */
+  /** One of [[VehicleChoice]]'s, at the altitude of a vehicle. */
   case Named(name: String)
 
   /** A first-order response, identified from flights.
     *
-    * @param flownAtM the altitude of these flights, where it is known: no other is flown by it, since
-    *   AirSim's lag depends on it
+    * @param flownAtM the altitude of these flights, if known: it is used at no other, since AirSim's lag
+    *   depends on it
     */
   case Fitted(model: ReducedModel, flownAtM: Option[Double] = None)
 
@@ -24,13 +24,10 @@ enum PredictionModel:
     */
   case Own(structure: Structure, values: Vector[Double])
 
-  /** Straight on, whatever was commanded. */
   case ConstantVelocity
 
-  /** Along an arc, whatever was commanded. */
   case ConstantTurn
 
-  /** Of a vehicle that keeps an altitude. */
   def at(altitudeM: Double): VehicleModel[?] = this match
     case Named(name)            => VehicleChoice.named(name, altitudeM).get.response.predictor
     case Fitted(model, _)       => PlantModel(model)
@@ -38,7 +35,6 @@ enum PredictionModel:
     case ConstantVelocity       => skein.vehicle.ConstantVelocity
     case ConstantTurn           => skein.vehicle.ConstantTurn
 
-  /** Of an agent's vehicle. */
   def forAgent(agent: Agent): VehicleModel[?] = agent.kind match
     case VehicleKind.Multirotor => at(-agent.startPositionNed.z)
     case VehicleKind.Car        => CarModel()
@@ -46,10 +42,10 @@ enum PredictionModel:
 object PredictionModel:
   val Quadrotor: PredictionModel = Named("quadrotor")
 
-  /** Of three parameters, at the altitude where it was identified. */
+  /** The model with three parameters, at the altitude where it was identified. */
   val AirSimReduced: PredictionModel = Named("reduced")
 
-  /** With drag, and the lag of the altitude. */
+  /** The model with drag, and the altitude's lag. */
   val AirSimDrag: PredictionModel = Named("drag")
 
   private val named = Vector(
@@ -64,7 +60,7 @@ object PredictionModel:
     s"${named.map(_._1).mkString(", ")}, a FILE of ./skein identify, " +
       "or reduced:FILE for its model of three parameters"
 
-  /** A name, or a model file of `skein identify`. */
+  /** Reads a name, or a model file of `skein identify`. */
   def parse(text: String)(using Scenarios): Either[String, PredictionModel] =
     named.collectFirst { case (`text`, model) => model } match
       case Some(model) => Right(model)
@@ -82,14 +78,14 @@ object PredictionModel:
     case model: ReducedModel => Fitted(model, file.altitudeM)
     case _                   => Own(file.use, file.models(file.use))
 
-  /** What is wrong with predicting vehicles of an altitude by it, if anything. */
+  /** Why it must not predict vehicles at an altitude, if so. */
   def mistake(model: PredictionModel, altitudeM: Double): Option[String] = model match
     case Named(name)         => VehicleChoice.named(name, altitudeM).flatMap(_.mistakeAt(altitudeM))
     case Fitted(_, flownAtM) => ModelFile.mistake(flownAtM, altitudeM)
     case _                   => None
 
-  /** As a recording keeps it: [[recorded]] reads it back. A double's shortest text reads back as the same
-    * double.
+  /** The text in a recording, which [[recorded]] reads back. A double's shortest text is read back as an
+    * equal double.
     */
   def text(model: PredictionModel): String = model match
     case Fitted(model, _) =>
@@ -115,6 +111,6 @@ object PredictionModel:
             Fitted(ReducedModel(gain, lag, deadTime, turnLag, drag))
       model.toOption
 
-  /** As recordings of older versions keep it, whose `reduced` has drag. */
+  /** Reads recordings of older versions, whose `reduced` has drag. */
   def recordedAsModel(text: String)(using Scenarios): Option[PredictionModel] =
     if text == "reduced" then Some(AirSimDrag) else recorded(text)

@@ -6,8 +6,8 @@ import java.nio.ByteBuffer
 import java.nio.channels.{SelectionKey, Selector, SocketChannel}
 import skein.units.{Clock, Instant, Span}
 
-/** A connection to another process, behind a Unix socket: questions, and an answer to each. Calls block; a
-  * question and its answer together for no longer than `answerWithin` of real time. Not thread-safe.
+/** A connection to another process, over a Unix socket: requests, and an answer to each. Calls block; a
+  * request and its answer together for no longer than `answerWithin` of real time. Not thread-safe.
   *
   * Every call throws an [[IOException]] where the process has ended or is too late.
   */
@@ -17,22 +17,22 @@ private[skein] final class ProcessSocket(path: String, answerWithin: Span) exten
   private val key            = channel.configureBlocking(false).register(selector, SelectionKey.OP_READ)
   private var until: Instant = Clock.system.now()
 
-  /** Whether something has come since the last answer that nobody asked for. */
+  /** Whether data without a request was received since the last answer. */
   def isAhead: Boolean = channel.read(ByteBuffer.allocate(1)) match
     case n if n < 0 => throw IOException(ProcessSocket.Ended)
     case n          => n > 0
 
-  /** Sends a question, all of it. */
+  /** Sends a request completely, and starts its time-out. */
   def ask(question: ByteBuffer): Unit =
     until = Clock.system.now() + answerWithin
     while question.hasRemaining do if channel.write(question) == 0 then await(SelectionKey.OP_WRITE)
 
-  /** Reads what has come of an answer, a byte at least. */
+  /** Reads the next bytes of an answer, at least one. */
   def read(into: ByteBuffer): Unit =
     await(SelectionKey.OP_READ)
     if channel.read(into) < 0 then throw IOException(ProcessSocket.Ended)
 
-  /** Reads so many bytes of an answer. */
+  /** Reads this number of bytes of an answer. */
   def read(bytes: Int): ByteBuffer =
     val buffer = ByteBuffer.allocate(bytes)
     while buffer.hasRemaining do read(buffer)
@@ -52,5 +52,5 @@ private[skein] final class ProcessSocket(path: String, answerWithin: Span) exten
 private[skein] object ProcessSocket:
   private val Ended = "its process has ended"
 
-  /** What another process says, on a line: it must not command a terminal. */
+  /** Another process's text on one line, without control characters: it must not command a terminal. */
   def plain(text: String): String = text.replaceAll("\\p{Cntrl}+", " ").trim

@@ -10,9 +10,9 @@ import skein.scenario.Scenarios
 import skein.signal.LatencyProfile
 import skein.units.*
 
-/** What a recording says was flown: enough to fly it again. */
+/** The settings and plan of a recorded flight: enough to repeat it. */
 final case class RecordedPlan(settings: FlySettings, plan: FlightPlan):
-  /** Who flew, and decides again. */
+  /** The agents of the flight, for repeated decisions. */
   def fleet: Fleet =
     val flown = plan.fleet(settings)
     plan.policy match
@@ -26,16 +26,18 @@ object RecordedPlan:
   private val Predictor = "predictor"
   private val Planning  = "planning"
 
-  /** The policy's short name; what it is stands under its role, for example `policy.pursuer`. */
+  /** The parameter for the policy's short name; the policy itself is under its role, for example
+    * `policy.pursuer`.
+    */
   val PolicyName = "policy"
 
-  /** How a policy tried out that learned in flight. */
+  /** The parameter for the exploration of a policy that learned in flight. */
   private val Explore = "learningExplore"
 
   /** The word before the number of a decision from which on a policy had other parameters. */
   private val Version = "version"
 
-  /** What is recorded of a policy that learns.
+  /** The record of a learning policy's update.
     *
     * @param decision the number of the next one
     */
@@ -45,7 +47,7 @@ object RecordedPlan:
     ).toSeq :+
       Event(at, EventKind.Learned, Some(vehicle), news.text, Some(decision))
 
-  /** What [[of]] needs besides the columns that every recording has. */
+  /** The parameters that [[of]] needs in addition to the columns of every recording. */
   def parameters(flown: FlySettings, plan: FlightPlan): Seq[ParameterRow] =
     val deadline = flown.deadlineOf(plan)
     val ofFlight =
@@ -57,16 +59,16 @@ object RecordedPlan:
       ) ++ chosen.learning.map(learning => ParameterRow(Explore, learning.explore.toString))
     settings.written(ofFlight).filter(_.name != Replay.Fallback || deadline.isDefined) ++ ofPolicy
 
-  /** The same of what a flight plans by.
+  /** The parameters of a flight's planning.
     *
-    * @param predictor absent where a recording cannot name it
+    * @param predictor absent if a recording cannot name it
     */
   def parameters(planning: PlanSettings, predictor: Option[PredictionModel]): Seq[ParameterRow] =
     RecordedSetting.written(Planning, planning) ++ RecordedSetting.written(Predictor, predictor)
 
-  /** Reads it back.
+  /** Reads the settings of a recording.
     *
-    * @return or what is missing, or is not what `skein fly` records
+    * @return Left states what is missing, or differs from what `skein fly` records
     */
   def of(recording: Recording)(using Scenarios): Either[String, RecordedPlan] =
     val flight     = recording.flight
@@ -92,7 +94,7 @@ object RecordedPlan:
       FlightPlan(flight.id, loop, link, flight.seed, policy, flown.solver)
     )
 
-  /** Versions' parameters belong to the last that was new before a decision. */
+  /** The recorded updates by decision; several before one decision are combined. */
   private def newsOf(recording: Recording): Either[String, Map[Long, Vector[LearnerUpdate]]] =
     val versions = recording.heading.parametersOf(Version)
     val said     = recording.events

@@ -8,19 +8,19 @@ import skein.scenario.{Scenario, Scenarios}
 import skein.signal.LatencyProfile
 import skein.units.{Expect, Span}
 
-/** How a recording keeps a setting: as parameters, under the name of its field. */
+/** How a recording stores a setting: as parameters, under the name of its field. */
 private[settings] trait RecordedSetting[A]:
   def written(name: String, value: A): Seq[ParameterRow]
 
-  /** What is on record; nothing in a recording of a version that did not keep it.
+  /** Reads the recorded value; None in a recording of a version that did not store it.
     *
-    * @return or what was expected, and what stands there
+    * @return Left states what was expected, and what was found
     */
   def read(name: String, parameters: Map[String, String])(using Scenarios): Either[String, Option[A]]
 
 private[settings] object RecordedSetting:
 
-  /** How a recording keeps the fields of a case class: by their types. */
+  /** How a recording stores the fields of a case class: by their types. */
   final class Fields[A <: Product](
       mirror: Mirror.ProductOf[A],
       fields: Vector[(String, RecordedSetting[Any])]
@@ -30,7 +30,7 @@ private[settings] object RecordedSetting:
         field.written(name, value)
       }
 
-    /** A field that is not on record is as in `otherwise`. */
+    /** Reads all fields; one that is not on record is taken from `otherwise`. */
     def read(parameters: Map[String, String], otherwise: A)(using Scenarios): Either[String, A] =
       Expect
         .each(fields.zip(otherwise.productIterator)) { case ((name, field), value) =>
@@ -99,7 +99,7 @@ private[settings] object RecordedSetting:
       if parameters.contains(name) then text.read(name, parameters)
       else model.read(OlderPredictor, parameters)
 
-  /** Under which recordings of older versions keep the predictor. */
+  /** The parameter of the predictor in recordings of older versions. */
   val OlderPredictor = "model"
 
   given RecordedSetting[NamedScene] with
@@ -134,9 +134,9 @@ private[settings] object RecordedSetting:
   given seeds: RecordedSetting[Long]                 = Elsewhere()
   given policies: RecordedSetting[List[PolicyFile]]  = Elsewhere()
 
-  /** One parameter.
+  /** A single parameter.
     *
-    * @param isUsual of what is not written
+    * @param isUsual whether a value is the default, which is not written
     */
   private final class Text[A](
       expected: Scenarios ?=> String,

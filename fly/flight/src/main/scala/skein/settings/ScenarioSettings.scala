@@ -5,14 +5,14 @@ import scala.jdk.CollectionConverters.*
 import skein.record.ParameterRow
 import skein.scenario.{Scenario, ScenarioKind, Scenarios}
 
-/** A scenario in configurations and recordings. `skein.fly.scenario` names it, and what is set of it stands
-  * under its name: `skein.fly { scenario = crossing, crossing { vehicles = 8, lane-m = 6 } }`.
+/** A scenario in configurations and recordings. `skein.fly.scenario` names it, and its settings are under its
+  * name: `skein.fly { scenario = crossing, crossing { vehicles = 8, lane-m = 6 } }`.
   */
 object ScenarioSettings:
 
-  /** Reads it from `skein.fly`. Where none is named, the first that is known is flown.
+  /** Reads it from `skein.fly`. The default is the first known scenario.
     *
-    * @return or every mistake: where it stands, what was expected, and what came
+    * @return Left lists every mistake: where it is, what was expected, and what was given
     */
   def read(config: Config)(using Scenarios): Either[String, Scenario] =
     for
@@ -28,12 +28,12 @@ object ScenarioSettings:
 
   /** A scenario of these settings, by their keys.
     *
-    * @return or every mistake
+    * @return Left lists every mistake
     */
   def ofKeys(kind: ScenarioKind[?], settings: Map[String, String]): Either[String, Scenario] =
     byKeys(kind, settings)(kind.read)
 
-  /** The same, as [[ScenarioKind.candidate]]. */
+  /** [[ofKeys]] by [[ScenarioKind.candidate]], without evaluating its definitions. */
   def candidate(kind: ScenarioKind[?], settings: Map[String, String]): Either[String, Scenario] =
     byKeys(kind, settings)(kind.candidate)
 
@@ -45,14 +45,12 @@ object ScenarioSettings:
       .left
       .map(_.map(ConfigKeys.ofMistake).mkString("; "))
 
-  /** Of which kind it is. */
   def kind(config: Config)(using scenarios: Scenarios): Either[String, ScenarioKind[?]] =
     val named = Option.when(config.hasPath(Name))(config.getString(Name)).getOrElse(scenarios.names.head)
     scenarios.kind(named).left.map(mistake =>
       ConfigMistakes.oneLine(s"${ConfigMistakes.at(Name, config)}: $mistake")
     )
 
-  /** As a recording keeps it. */
   def recorded(scenario: Scenario): Seq[ParameterRow] =
     scenario.settings.map((name, value) => ParameterRow(scenario.recordedAs(name), value))
 
@@ -68,7 +66,7 @@ object ScenarioSettings:
             s"${ConfigMistakes.at(path, other.origin)}: expected settings in braces, came ${ConfigMistakes.text(other)}"
           )
 
-  /** A mistake that begins with a key, told by where the key's value is from. */
+  /** Replaces the key at the beginning of a mistake by the source of its value. */
   private def placed(mistake: String, path: String, set: Map[String, ConfigValue]): String =
     val key  = mistake.takeWhile(_ != ':')
     val told = set.get(key).fold(s"$path.$mistake"): value =>

@@ -5,13 +5,13 @@ import skein.fusion.SensorModel
 import skein.identify.SensorFit
 import skein.signal.LatencyDistribution
 
-/** A fitted [[SensorModel]] as a HOCON file: `skein.sensor`, with where it is from. */
+/** A fitted [[SensorModel]] as a HOCON file: `skein.sensor`, with its data. */
 object SensorFile:
   import FittedFile.{line, list, number}
 
   /** The text of a file.
     *
-    * @param recordings it was fitted to
+    * @param recordings to which it was fitted
     */
   def render(fit: SensorFit, recordings: Vector[String]): String =
     import fit.model
@@ -33,10 +33,6 @@ object SensorFile:
        |}
        |""".stripMargin
 
-  /** Reads a file.
-    *
-    * @return or what is wrong
-    */
   def read(path: String): Either[String, SensorModel] = TextFile.read(path).flatMap(parse(_, path))
 
   private[skein] def parse(text: String, path: String): Either[String, SensorModel] =

@@ -5,7 +5,7 @@ import skein.hil.AutopilotInterface
 import skein.mujoco.{MujocoModel, MujocoRotorcraft}
 import skein.vehicle.RotorcraftKind
 
-/** What the multirotors of the built-in simulator are, as users name it.
+/** The bodies of the built-in simulator's multirotors, as users name them.
   *
   * @param text `airsim`, or `mujoco:FILE`
   */
@@ -14,10 +14,10 @@ final class SimulatedBody private (val text: String, read: => Either[String, Opt
 
   def isAirSim: Boolean = this == SimulatedBody.AirSim
 
-  /** For the simulator; None: its own. Or why it cannot be flown here. */
+  /** The kind for the simulator; None means its own. Left states why it cannot be simulated here. */
   def kind: Either[String, Option[RotorcraftKind]] = model.map(_.map(MujocoRotorcraft.kind))
 
-  /** Why no autopilot outside flies it. */
+  /** Why external autopilots cannot fly it, if so. */
   def refusesAutopilots: Option[String] = model match
     case Right(Some(body)) =>
       val steps = AutopilotInterface.Step.toSeconds / body.stepS
@@ -37,13 +37,12 @@ object SimulatedBody:
 
   val forms: String = s"${AirSim.text}, or mujoco:FILE"
 
-  /** @return or what was expected, or why the model cannot be flown
-    */
+  /** Reads the user's text; Left states what was expected, or why the model cannot be simulated. */
   def parse(text: String): Either[String, SimulatedBody] =
     val named = recorded(text)
     named.flatMap(_.model).flatMap(_ => named)
 
-  /** As a recording names it, whose file may be gone. */
+  /** Reads a recording's text, whose file may be gone. */
   def recorded(text: String): Either[String, SimulatedBody] = text match
     case AirSim.text     => Right(AirSim)
     case s"mujoco:$path" => Right(SimulatedBody(text, MujocoModel.read(Path.of(path)).map(Some(_))))

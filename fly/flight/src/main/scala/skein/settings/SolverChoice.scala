@@ -3,9 +3,9 @@ package skein.settings
 import skein.link.Address
 import skein.signal.LatencyProfile
 
-/** Where decisions are made that are not made in this process. */
+/** Where decisions are made, if not in this process. */
 enum SolverChoice:
-  /** A solver that listens. */
+  /** A solver that listens at an address. */
   case Tcp(at: Address)
 
   /** A solver behind a Kafka broker, over two topics whose names begin with `prefix`. */
@@ -22,7 +22,9 @@ enum SolverChoice:
 object SolverChoice:
   private val Expected = "tcp://HOST:PORT, kafka://HOST:PORT/PREFIX or link:PROFILE"
 
-  /** @param expected told where it is something else
+  /** Reads the user's text.
+    *
+    * @param expected the error's description of valid texts
     */
   def parse(text: String, expected: String = Expected): Either[String, SolverChoice] = text match
     case s"tcp://$at"               => address(at, text, expected).map(Tcp(_))

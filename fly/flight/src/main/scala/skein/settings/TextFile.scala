@@ -7,11 +7,11 @@ import java.nio.charset.StandardCharsets.UTF_8
 import java.nio.file.{AccessDeniedException, Files, Path}
 import scala.util.Using
 
-/** Text files that users name. */
+/** Reads text files that users name on the command line. */
 object TextFile:
   private val MostBytes = 64 << 20
 
-  /** Not from a configuration's folder, nor from that in which a flight was recorded. */
+  /** The file's path. Not relative to a configuration's folder, nor to that of a recorded flight. */
   private def sought(file: Path): String =
     if file.isAbsolute then "" else s", sought from ${Path.of("").toAbsolutePath}"
 

@@ -14,10 +14,10 @@ import skein.mujoco.{MujocoModel, MujocoResponse}
 import skein.units.Decimals.fixed
 import skein.vehicle.{DrivenCar, ReducedModel}
 
-/** Models of vehicles by the names that users give: one list for what flies (`--plant`) and, as far as they
-  * predict, for what carries readings forward (`--predictor`, [[PredictionModel]]).
+/** Models of vehicles by the names that users give: one list for simulated vehicles (`--plant`) and, as far
+  * as they predict, for predictions (`--predictor`, [[PredictionModel]]).
   *
-  * @param description one line that says what flies
+  * @param description one line about the vehicle
   */
 final case class VehicleChoice(name: String, description: String, response: VelocityResponse):
   /** Whether an episode costs as much as physics in steps of milliseconds. */
@@ -25,7 +25,7 @@ final case class VehicleChoice(name: String, description: String, response: Velo
     case _: (SteppedResponse | QuadrotorResponse) => true
     case _                                        => false
 
-  /** What is wrong with flying it at an altitude, m, if anything. */
+  /** Why it must not be used at an altitude, m, if so. */
   private[settings] def mistakeAt(altitudeM: Double): Option[String] =
     Option.when(response == VehicleChoice.reduced.response && altitudeM != ReducedModel.IdentifiedAtM):
       s"expected drag, quadrotor or a model file at $altitudeM m altitude: reduced holds at ${ReducedModel.IdentifiedAtM} m"
@@ -62,9 +62,9 @@ object VehicleChoice:
     PlantResponse(DrivenCar())
   )
 
-  /** Of these names, that of the vehicle itself without a file.
+  /** The vehicle of this name, without a file.
     *
-    * @param altitudeM at which it flies
+    * @param altitudeM of its flight
     */
   def named(name: String, altitudeM: Double): Option[VehicleChoice] = all(altitudeM).find(_.name == name)
 
@@ -74,11 +74,11 @@ object VehicleChoice:
     s"${all(ReducedModel.IdentifiedAtM).map(_.name).mkString(", ")}, " +
       "mujoco:FILE, a FILE of ./skein identify, or reduced:FILE"
 
-  /** One of the names, or a model file: then what the file says to use, or with `reduced:` before it the
-    * file's model of three parameters, which flies by lanes.
+  /** Reads one of the names, or a model file: then the structure that the file says to use, or after
+    * `reduced:` the file's model of three parameters, which SIMD supports.
     *
-    * @param altitudeM at which it will fly: the lag of AirSim's vehicles depends on it
-    * @return or what was expected
+    * @param altitudeM of its flight: the lag of AirSim's vehicles depends on it
+    * @return Left states what was expected
     */
   def parse(text: String, altitudeM: Double)(using
       Scenarios

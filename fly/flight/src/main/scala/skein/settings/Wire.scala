@@ -1,6 +1,6 @@
 package skein.settings
 
-/** What vehicles are spoken to by. */
+/** The wire protocol of the vehicles' simulator. */
 enum Wire(val label: String):
   case AirSim  extends Wire("airsim")
   case Mavlink extends Wire("mavlink")

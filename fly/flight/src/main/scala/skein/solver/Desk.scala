@@ -2,19 +2,19 @@ package skein.solver
 
 import skein.units.Instant
 
-/** A solver's side of one flight's questions: which is decided next, and from which memory. Immutable.
-  * Vehicles that are decided for together count as the first of them.
+/** The solver's side of one flight's requests: decides which is next, and from which memory. Immutable.
+  * Vehicles with joint decisions count as the first of them.
   *
-  * Of each vehicle one question is decided at a time. Of those that come meanwhile the newest waits; the
-  * others, and those that come behind a newer one, are left.
+  * Each vehicle has one decision in progress. Of requests received meanwhile the newest waits; the others,
+  * and those received after a newer one, are skipped.
   *
-  * @param overtaken questions that were left
-  * @param repeated questions that came more than once
+  * @param overtaken number of skipped requests
+  * @param repeated number of requests received more than once
   */
 final case class Desk private (vehicles: Vector[Desk.Vehicle], overtaken: Long, repeated: Long):
   import Desk.*
 
-  /** A question has come.
+  /** Adds a received request.
     *
     * @param at on the solver's clock
     */
@@ -31,7 +31,7 @@ final case class Desk private (vehicles: Vector[Desk.Vehicle], overtaken: Long, 
         )
       )
 
-  /** The question to be decided now for a vehicle, if nothing is being decided for it and one waits. */
+  /** The next request for a vehicle, if none is in progress and one waits. */
   def taken(vehicle: Int): (Desk, Option[Waiting]) =
     val known = vehicles(vehicle)
     if known.isBusy then (this, None)
@@ -39,15 +39,15 @@ final case class Desk private (vehicles: Vector[Desk.Vehicle], overtaken: Long, 
       val next = known.copy(waiting = None, isBusy = known.waiting.isDefined)
       (copy(vehicles = vehicles.updated(vehicle, next)), known.waiting)
 
-  /** What the policy remembers that a question goes on from; absent where that is not there (any more). */
+  /** The memory that a request continues; absent if it is not (or no longer) held. */
   def memory(question: Question, solver: Long): Option[Any] =
     question.remembered.filter(_.solver == solver).flatMap(used =>
       vehicles(question.vehicle).memories.get(used.question)
     )
 
-  /** A question was decided.
+  /** Marks a request as decided.
     *
-    * @param held what the policy remembers since, if that went well
+    * @param held the policy's memory after it, if it succeeded
     */
   def done(question: Question, held: Option[Any]): Desk =
     val known = vehicles(question.vehicle)
@@ -64,16 +64,20 @@ final case class Desk private (vehicles: Vector[Desk.Vehicle], overtaken: Long, 
     )
 
 object Desk:
-  /** Of answers of which it is not known yet whether they came in time. */
+  /** Limit of memories kept for answers that may or may not have been in time. */
   val MostMemories = 32
 
   def of(vehicles: Int): Desk = Desk(Vector.fill(vehicles)(Vehicle(-1, None, false, Map.empty)), 0, 0)
 
-  /** @param takenAt when it came, on the solver's clock
+  /** A waiting request.
+    *
+    * @param takenAt time of receipt, on the solver's clock
     */
   final case class Waiting(question: Question, takenAt: Instant)
 
-  /** @param newest number of the newest question that came
-    * @param memories by the question that they were there after
+  /** The state of one vehicle's requests.
+    *
+    * @param newest number of the newest request received
+    * @param memories by the request after which they were valid
     */
   final case class Vehicle(newest: Long, waiting: Option[Waiting], isBusy: Boolean, memories: Map[Long, Any])

@@ -3,18 +3,17 @@ package skein.solver
 import skein.signal.{ClockAlignment, Stamped}
 import skein.units.*
 
-/** A flight's side of its questions: which answer counts. Immutable. Vehicles that are decided for together
+/** The flight's side of its requests: decides which answer counts. Immutable. Vehicles with joint decisions
   * count as the first of them.
   *
-  * An answer counts if it is to the newest question for its vehicle, comes before that one's deadline, and
-  * comes for the first time. So nothing overtakes: an answer that was held up is not used once something
-  * newer was asked.
+  * An answer counts if it is to the newest request for its vehicle, is received before that one's deadline,
+  * and for the first time. So nothing overtakes: a delayed answer is not used after a newer request.
   *
-  * @param solver the start of the solver that was heard of last
-  * @param clocks how its clock stands to the controller's
-  * @param trips the latest round trips of answers that counted, without what was meant for searching, the
+  * @param solver the last known start of the solver
+  * @param clocks relation of its clock to the controller's
+  * @param trips the latest round trips of answers that counted, without the time meant for searching, the
   *   newest last
-  * @param told what that start of the solver has counted, as told last
+  * @param told the last counts reported by that start of the solver
   */
 final case class Exchange private (
     vehicles: Vector[Exchange.Vehicle],
@@ -26,21 +25,25 @@ final case class Exchange private (
 ):
   import Exchange.*
 
-  /** How the solver's clock is known to stand. */
+  /** The estimated offset of the solver's clock. */
   def solverClock: Option[(solver: Long, offset: Span)] =
     solver.zip(clocks).map((solver, known) => (solver = solver, offset = known.offset))
 
-  /** Expected from a question to its answer: the mean of late; zero before the first. */
+  /** Expected time from a request to its answer: the recent mean; zero before the first. */
   def delay: Span = if trips.isEmpty then Span.Zero else trips.reduce(_ + _) / trips.size.toLong
 
-  /** @param searching for how long the solver is to look for its answer
-    * @return with the question's number
+  /** Adds a request.
+    *
+    * @param searching time that the solver has for its search
+    * @return with the request's number
     */
   def asked(vehicle: Int, at: Instant, until: Instant, searching: Span = Span.Zero): (Exchange, Long) =
     val (next, number) = vehicles(vehicle).asked(at, until, searching)
     (copy(vehicles = vehicles.updated(vehicle, next), counts = counts.copy(asked = counts.asked + 1)), number)
 
-  /** @param at when the answer came
+  /** Judges an answer.
+    *
+    * @param at time of receipt
     */
   def heard(answer: Answer, at: Instant): (Exchange, Verdict) =
     val known = if answer.vehicle < vehicles.size then vehicles(answer.vehicle) else Vehicle.silent
@@ -58,7 +61,7 @@ final case class Exchange private (
           (heard.copy(trips = lately, counts = counts.copy(used = counts.used + 1)), Verdict.Counts(asked))
         else (heard.copy(counts = counts.copy(late = counts.late + 1)), Verdict.Late(at.since(asked)))
 
-  /** What the solver says more than before that it did not decide; asked when the answer was heard. */
+  /** Counts that the solver reports beyond its last report; to be called after the answer was judged. */
   def news(answer: Answer): (Exchange, Told) =
     if !solver.contains(answer.solver) then (this, Told(0, 0))
     else
@@ -70,7 +73,7 @@ final case class Exchange private (
       )
       (copy(told = now, counts = all), more)
 
-  /** Another start of a solver has another clock, and counts anew. */
+  /** Aligns the clocks. Another start of a solver has another clock, and begins new counts. */
   private def aligned(answer: Answer, asked: Instant, at: Instant): Exchange =
     val thinking = answer.answeredAt.since(answer.takenAt).max(Span.Zero)
     // As if it had taken no time: then both ways bound the offset.
@@ -80,41 +83,43 @@ final case class Exchange private (
     else copy(solver = Some(answer.solver), clocks = Some(ClockAlignment.of(seen)), told = Told(0, 0))
 
 object Exchange:
-  /** Round trips that the expected delay is made from: of some seconds. */
+  /** Number of round trips behind the expected delay: of some seconds. */
   val Remembered = 32
 
-  /** Questions of a vehicle whose answers are still told late from repeated. */
+  /** Limit of a vehicle's requests whose answers can still be classified as late or repeated. */
   val MostOpen = 64
 
   def of(vehicles: Int): Exchange =
     Exchange(Vector.fill(vehicles)(Vehicle.silent), None, None, Vector.empty, Told(0, 0), Counts())
 
-  /** What became of an answer. */
+  /** The classification of a received answer. */
   enum Verdict:
-    /** It is what is decided. */
+    /** The answer counts as the decision. */
     case Counts(askedAt: Instant)
 
-    /** It came after its deadline, or after something newer was asked. */
+    /** It was received after its deadline, or after a newer request. */
     case Late(after: Span)
 
-    /** It has come before. */
+    /** It was received before: a repetition. */
     case Repeated
 
-    /** Nobody asked that. */
+    /** It answers no known request. */
     case Foreign
 
-  /** @param overtaken questions that the solver left for newer ones
-    * @param repeated questions that came there more than once
+  /** The solver's counts.
+    *
+    * @param overtaken requests that the solver skipped for newer ones
+    * @param repeated requests that it received more than once
     */
   final case class Told(overtaken: Long, repeated: Long)
 
-  /** How often what has happened.
+  /** Counts of a flight's requests and answers.
     *
     * @param used answers that counted
-    * @param repeated answers that came more than once
-    * @param foreign answers to nothing that was asked
-    * @param overtaken questions that the solver left for newer ones
-    * @param repeatedThere questions that came to the solver more than once
+    * @param repeated answers received more than once
+    * @param foreign answers to no known request
+    * @param overtaken requests that the solver skipped for newer ones
+    * @param repeatedThere requests that the solver received more than once
     */
   final case class Counts(
       asked: Long = 0,
@@ -126,9 +131,11 @@ object Exchange:
       repeatedThere: Long = 0
   )
 
-  /** @param next number of the next question
-    * @param open those without an answer, the newest of them: when they were asked, until when an answer
-    *   counts, and how much of that is for searching
+  /** One vehicle's requests.
+    *
+    * @param next number of the next request
+    * @param open the newest of those without an answer: time of request, deadline, and the part of that time
+    *   for searching
     */
   final case class Vehicle(next: Long, open: Map[Long, (asked: Instant, until: Instant, searching: Span)]):
     private[Exchange] def asked(at: Instant, until: Instant, searching: Span): (Vehicle, Long) =

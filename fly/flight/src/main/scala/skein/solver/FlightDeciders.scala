@@ -9,25 +9,25 @@ import skein.policy.Fleet
 import skein.settings.RecordedPlan
 import skein.units.*
 
-/** Who decides for one flight elsewhere, as its own process would: the vehicles' policies, and, where its
-  * loop plans, a planner for those that plan.
+/** The deciders of one flight in another process: the vehicles' policies, and, if its loop plans, a planner
+  * for those that plan.
   *
-  * @param plans absent where nobody plans
+  * @param plans absent if no vehicle plans
   */
 final class FlightDeciders(val fleet: Fleet, plans: Option[FlightDeciders.Plans] = None):
 
   // Whoever plans is asked one question at a time.
   private val planner = JointPlanner()
 
-  /** Those with whom a vehicle is decided for, in their order; itself alone unless it plans. */
+  /** The vehicles whose decisions are joint with a vehicle's, in their order; only itself unless it plans. */
   def together(vehicle: Int): Vector[Int] =
     plans.map(_.planning.vehicles).filter(_.contains(vehicle)).getOrElse(Vector(vehicle))
 
   /** Decides on this thread, or plans until the deadline of plans.
     *
-    * @param held what is remembered of the answer that the question goes on from; absent where nothing is
+    * @param held the memory of the answer that the request continues; absent if there is none
     * @param now on the controller's clock
-    * @return for each vehicle that is asked for, with what is to be remembered
+    * @return a decision for each requested vehicle, and the new memory
     */
   def decide(question: Question, held: Option[Any], now: Instant)(using
       ActorSystem
@@ -61,19 +61,20 @@ final class FlightDeciders(val fleet: Fleet, plans: Option[FlightDeciders.Plans]
         (made.map(one => Chosen.of(one.decision, Some(one.report(answer.slices)))), answer)
       }(using ExecutionContext.parasitic)
 
-  /** Ends what it plans with. */
   def close(): Unit = plans.foreach(_.workers.close())
 
 object FlightDeciders:
 
-  /** @param deadline from a question until its plans are used, whatever was found by then
+  /** The planner of a flight.
+    *
+    * @param deadline from a request until the best plan found is used
     */
   final case class Plans(planning: JointPlanning, deadline: Span, workers: PlanWorkers)
 
-  /** Those of a flight.
+  /** The deciders of a flight.
     *
-    * @param workers what a flight that plans searches with
-    * @return or why it cannot be planned here
+    * @param workers that search for a flight that plans
+    * @return Left states why this process cannot plan it
     */
   def of(flown: RecordedPlan, workers: PlanSettings => PlanWorkers): Either[String, FlightDeciders] =
     val fleet = flown.plan.fleet(flown.settings)

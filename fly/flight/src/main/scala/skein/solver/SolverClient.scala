@@ -8,13 +8,13 @@ import skein.record.EventKind
 import skein.solver.Exchange.{Counts, Verdict}
 import skein.units.*
 
-/** A flight's side: asks a solver elsewhere over a link, and says hello again whenever that is lost or starts
-  * again.
+/** A flight's side: sends requests to a solver over a link, and says hello again whenever the link is lost or
+  * the solver restarts.
   *
-  * @param flight a number that no other flight has
-  * @param vehicles how many fly
-  * @param note told of what is to be recorded: what was late, repeated, left or lost, with the vehicle if it
-  *   concerns one, and with how many where it is not one
+  * @param flight a unique number of the flight
+  * @param vehicles number of vehicles
+  * @param note called with records of late, repeated, skipped or lost messages, with the vehicle if it
+  *   concerns one, and with their number if it is not one
   */
 final class SolverClient(
     link: MessageLink,
@@ -48,8 +48,8 @@ final class SolverClient(
   private val timer =
     system.scheduler.scheduleWithFixedDelay(GreetEvery.toDuration, GreetEvery.toDuration)(() => greet())
 
-  /** Completes when a solver has welcomed the flight, with how; fails with [[SolverClient.NoSolver]] where
-    * one refuses, or none answers within the patience. While one says that it prepares, it is waited for, for
+  /** Completes when a solver has accepted the flight, with its answer; fails with [[SolverClient.NoSolver]]
+    * if one refuses, or none answers within the patience. A solver that reports that it prepares has
     * [[SolverClient.MostPrepared]] at most.
     */
   def ready(patience: Span): Future[Welcomed] =
@@ -67,7 +67,7 @@ final class SolverClient(
     expect(begun + patience)
     started.future.andThen(_ => lock.synchronized(late).foreach(_.cancel()))
 
-  /** Why no solver has welcomed the flight, while none has. */
+  /** Why no solver has accepted the flight so far. */
   def whyNone: String = lock.synchronized(standing) match
     case Standing.Greeting(why) => why
     case Standing.Refused(why)  => why
@@ -75,10 +75,9 @@ final class SolverClient(
 
   def delay: Span = lock.synchronized(exchange.delay)
 
-  /** So far. */
   def counts: Counts = lock.synchronized(exchange.counts)
 
-  /** The latest. */
+  /** The latest round trips, of used answers. */
   def roundTrips: Vector[Span] = lock.synchronized(exchange.trips)
 
   def ask(
@@ -106,7 +105,6 @@ final class SolverClient(
             waiting = waiting.updated(vehicle, Waiting(number, deciders.size, known, answer))
             answer.future
 
-  /** Says goodbye. */
   def close(): Future[Done] =
     timer.cancel()
     val _ = open.send(SolverMessageCodec.bytes(SolverMessage.Goodbye(flight)))
@@ -226,7 +224,7 @@ final class SolverClient(
           "a solver is there again" +: how.warning.filter(_ => briefing.loop == LoopKind.Plan.label).toSeq
         noted(EventKind.Reconnected, again.mkString("; "))
 
-  /** Whether it greets once more, before the first question. */
+  /** Whether it greets once more, before the first request. */
   private def rehearses(): Boolean = lock.synchronized:
     val until = rehearsedUntil.getOrElse(clock.now() + RehearsedFor)
     val again = rehearsals > 0 && clock.now() < until
@@ -243,27 +241,27 @@ final class SolverClient(
 object SolverClient:
   private val GreetEvery = Span.ofMillis(500)
 
-  /** At most; a slow link's code need not be fast. */
+  /** Longest duration of the rehearsal; a slow link's code need not be fast. */
   private val RehearsedFor = Span.ofSeconds(3)
 
-  /** A solver that prepares is waited for so long at most. */
+  /** Longest wait for a solver that prepares. */
   val MostPrepared: Span = Span.ofSeconds(600)
 
   private val Silent         = "nobody has answered; is ./skein decide started?"
   private val StillPreparing = "the solver prepares for the flight, and has not finished"
 
-  /** By whom a flight is decided for.
+  /** The solver of a flight.
     *
     * @param byVectors whether its plans are searched by the JDK's vectors
     */
   final case class Welcomed(byVectors: Boolean):
-    /** For a flight that plans. */
+    /** A warning if a flight that plans has a slow solver. */
     def warning: Option[String] = Option.when(!byVectors)(
       "the solver runs without jdk.incubator.vector, so " +
         "candidates are flown one by one, some fifty times fewer"
     )
 
-  /** Nobody decides: why. */
+  /** No solver decides for the flight; the message states why. */
   final case class NoSolver(reason: String) extends RuntimeException(reason, null, false, false):
     override def toString: String = reason
 

@@ -7,16 +7,16 @@ import scala.util.{Failure, Success}
 import skein.planning.Planner
 import skein.units.*
 
-/** A solver: decides for every flight that it welcomes, whatever link its questions come over.
+/** A solver: decides for every flight that it accepts, over any link.
   *
-  * @param id names this start of it: another number each time
-  * @param build of this program, which a flight's must be, too
-  * @param decidersOf who decides by what is told of a flight, or why nobody does; may take its time, of which
-  *   the flight is told
-  * @param clock its own, whatever the controllers' are
-  * @param workers what is decided on
-  * @param takes by how much an answer is held up, for trials
-  * @param byVectors whether it searches plans by vectors, as it tells flights
+  * @param id unique number of this start
+  * @param build of this program; a flight's must be equal
+  * @param decidersOf the deciders for a flight's briefing, or why there are none; may be slow, which the
+  *   flight is informed of
+  * @param clock its own, independent of the controllers'
+  * @param workers execute decisions
+  * @param takes artificial delay of an answer, for trials
+  * @param byVectors whether it searches plans by SIMD, which flights are informed of
   */
 final class SolverDesk(
     id: Long,
@@ -38,14 +38,13 @@ final class SolverDesk(
   private var refused  = 0L
   private var garbled  = 0L
 
-  /** What it has done so far. */
   def stats: Stats = lock.synchronized(Stats(sessions.size, answered, refused, garbled))
 
-  /** Messages have come, in this order; nothing of them is decided before all are looked at.
+  /** Processes messages in this order; decisions begin after all are read.
     *
-    * @param reply sends to whom they came from; never waits
-    * @return whether any of them was of use: a flight that is, or will be, decided for said hello, or asked;
-    *   or what was no message
+    * @param reply sends to their sender; must not block
+    * @return whether any of them was useful: a hello or request of a flight that is, or will be, accepted;
+    *   Left describes what was no message
     */
   def received(messages: Seq[Array[Byte]], reply: Array[Byte] => Unit): Either[String, Boolean] =
     val (mistakes, known) = messages.map(SolverMessageCodec.message).partitionMap(identity)
@@ -73,7 +72,7 @@ final class SolverDesk(
           garbled += mistakes.size
         Left(mistake)
 
-  /** @return whether it is, or will be, decided for */
+  /** Handles a hello. Returns whether the flight is, or will be, accepted. */
   private def greeted(flight: Long, theirs: String, briefing: Briefing, reply: Array[Byte] => Unit): Boolean =
     val known = lock.synchronized(sessions.get(flight).exists(_.briefing == briefing))
     def answer(message: SolverMessage) = reply(SolverMessageCodec.bytes(message))
@@ -120,7 +119,9 @@ final class SolverDesk(
       if isPreparing then answer(SolverMessage.Preparing(flight))
       isPreparing
 
-  /** A flight says hello until it is answered; once is enough. */
+  /** Whether preparation for a flight must begin. A flight repeats its hello until it is answered; one
+    * preparation is enough.
+    */
   private def begins(flight: Long): Boolean = lock.synchronized:
     val isNew = !greeting(flight) && greeting.size < MostFlights
     if isNew then greeting += flight
@@ -143,7 +144,7 @@ final class SolverDesk(
       left
     left.foreach(_.deciders.close())
 
-  /** Decides for nobody any more, and ends what flights were planned with. */
+  /** Ends all flights' sessions and the planners of their decisions. */
   def close(): Unit =
     val left = lock.synchronized:
       val left = sessions.values
@@ -151,7 +152,7 @@ final class SolverDesk(
       left
     left.foreach(_.deciders.close())
 
-  /** @return where there may be something to decide now */
+  /** Adds a request. Returns the vehicle with a decision that may begin now, if any. */
   private def offered(question: Question, reply: Array[Byte] => Unit): Option[(Long, Int)] =
     lock.synchronized:
       sessions.get(question.flight) match
@@ -169,7 +170,7 @@ final class SolverDesk(
           )
           Some((question.flight, question.vehicle))
 
-  /** Whether it is asked for whoever decides together, of all who fly. */
+  /** Whether the request is for vehicles with joint decisions, and its view has all vehicles. */
   private def isOf(deciders: FlightDeciders, question: Question): Boolean =
     question.view.readings.size == deciders.fleet.agents.size &&
       deciders.together(question.vehicle) == question.deciders.map(_.vehicle)
@@ -233,13 +234,15 @@ final class SolverDesk(
     next(question.flight, question.vehicle)
 
 object SolverDesk:
-  /** Decided for at once; of more, the one longest silent is forgotten. */
+  /** Limit of simultaneous flights; beyond it, the one silent for the longest time is removed. */
   val MostFlights = 64
 
   private val MostReason = 4096
 
-  /** @param flights that are decided for
-    * @param garbled what came and was no message, or no question of its flight
+  /** The solver's counts.
+    *
+    * @param flights accepted ones
+    * @param garbled received data that was no message, or no request of its flight
     */
   final case class Stats(flights: Int, answered: Long, refused: Long, garbled: Long)
 

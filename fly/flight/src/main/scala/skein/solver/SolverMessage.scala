@@ -8,41 +8,40 @@ import skein.settings.{FlightPlan, FlySettings, RecordedPlan}
 import skein.signal.LatencyProfile
 import skein.units.*
 
-/** What crosses between a flight and a solver. Instants are the controller's, unless they say that they are
-  * the solver's. A flight is named by a number that no other flight at the same solver has, and so is each
-  * start of a solver.
+/** A message between a flight and a solver. Instants are the controller's, unless they are marked as the
+  * solver's. A flight is identified by a number that is unique at a solver, and so is each start of a solver.
   */
 enum SolverMessage:
-  /** A flight would like to be decided for. */
+  /** A flight requests a solver's decisions. */
   case Hello(flight: Long, build: String, briefing: Briefing)
 
-  /** The solver prepares to decide for the flight, and will welcome or refuse it. */
+  /** The solver prepares to decide for the flight, and will accept or refuse it. */
   case Preparing(flight: Long)
 
-  /** The flight is decided for from now on.
+  /** The solver decides for the flight from now on.
     *
-    * @param byVectors whether what it plans is searched by the JDK's vectors: else some fifty times fewer
+    * @param byVectors whether its plans are searched by the JDK's vectors: else some fifty times fewer
     *   candidates are tried
     */
   case Welcome(flight: Long, solver: Long, byVectors: Boolean)
 
-  /** It is not. */
+  /** The solver refuses the flight, and states why. */
   case Refused(flight: Long, reason: String)
 
-  /** A question came of a flight that this solver has not welcomed: it is to say hello. */
+  /** A request was received from a flight that this solver has not accepted: the flight must say hello. */
   case Unknown(flight: Long)
 
   case Ask(question: Question)
 
   case Tell(answer: Answer)
 
-  /** The flight has ended. */
+  /** The flight has ended; no further requests follow. */
   case Goodbye(flight: Long)
 
-/** What a solver is to know of a flight: what its recording begins with, as far as it concerns decisions.
+/** The data of a flight that a solver needs: the header of its recording, as far as it concerns decisions.
   *
-  * @param parameters as a recording has them
-  * @param agents who flies by which policy, a line each: two programs that mean the same write the same
+  * @param parameters as in a recording
+  * @param agents each vehicle and its policy, a line each: equal agents give equal lines in every program
   */
 final case class Briefing(
     scenario: String,
@@ -65,9 +64,9 @@ object Briefing:
     agents(plan.fleet(settings))
   )
 
-  /** What is flown, by the scenarios and policies of this program.
+  /** The flight's plan, by the scenarios and policies of this program.
     *
-    * @return or what of it is not known here
+    * @return Left states what is not known here
     */
   def plan(briefing: Briefing)(using Scenarios): Either[String, RecordedPlan] =
     val flight = FlightRow(
@@ -86,7 +85,7 @@ object Briefing:
     val parameters = briefing.parameters.map((name, value) => ParameterRow(name, value))
     RecordedPlan.of(Recording(RecordingHeader(flight, Nil, parameters)))
 
-  /** A line for each vehicle, without what two processes write differently. */
+  /** A line for each vehicle, without details that differ between processes. */
   def agents(fleet: Fleet): Vector[String] = fleet.agents.map: agent =>
     val start  = agent.startPositionNed
     val policy = s"${agent.policy}".replaceAll("@[0-9a-f]+", "")
@@ -97,15 +96,15 @@ object Briefing:
 
   private val MostShown = 400
 
-/** What is to be decided.
+/** A request for decisions.
   *
-  * @param deciders who is decided for, at least one: a vehicle by its place, and what its decisions depend
-  *   on; what the policy itself remembers is with the solver
-  * @param number counts the questions for these vehicles; a later one leaves all earlier ones
-  * @param solverClock of which start of a solver the clock is known, and the controller's clock minus that
-  * @param remembered the answer that was used last, by the solver's start and the question; absent before the
+  * @param deciders the vehicles to decide for, at least one: by their places, with the state that decisions
+  *   depend on; the policy's own memory is held by the solver
+  * @param number counts the requests for these vehicles; a later one replaces all earlier ones
+  * @param solverClock the start of a solver whose clock is known, and the controller's clock minus that
+  * @param remembered the last answer that was used, by the solver's start and the request; absent before the
   *   first
-  * @param view without its forecast, and of sensors with those of these vehicles alone
+  * @param view without its forecast, and with sensors of these vehicles only
   */
 final case class Question(
     flight: Long,
@@ -116,15 +115,17 @@ final case class Question(
     remembered: Option[(solver: Long, question: Long)],
     view: TeamView
 ):
-  /** The first of those who are decided for, as which they count. */
+  /** The first of its vehicles, which identifies the group. */
   def vehicle: Int = deciders.head.vehicle
 
-/** @param vehicle the first of those who were asked for
+/** An answer to a request.
+  *
+  * @param vehicle the first of the request's vehicles
   * @param solver this start of it
-  * @param takenAt when the question came, on the solver's clock
-  * @param answeredAt when the answer left, on the solver's clock
-  * @param overtaken questions of this flight so far that were left for a newer one
-  * @param repeated questions of this flight so far that came more than once
+  * @param takenAt when the request was received, on the solver's clock
+  * @param answeredAt when the answer was sent, on the solver's clock
+  * @param overtaken requests of this flight so far that were skipped for a newer one
+  * @param repeated requests of this flight so far that were received more than once
   * @param result the decision, or why there is none
   */
 final case class Answer(
@@ -139,9 +140,11 @@ final case class Answer(
     result: Either[String, Choice]
 )
 
-/** @param decidedAt what the policy took for now
-  * @param begunAnew whether what was remembered was not there
-  * @param chosen for each vehicle that was asked for
+/** A solver's decision.
+  *
+  * @param decidedAt the present time as the policy assumed it
+  * @param begunAnew whether the memory of earlier decisions was not available
+  * @param chosen for each requested vehicle
   */
 final case class Choice(
     decidedAt: Instant,

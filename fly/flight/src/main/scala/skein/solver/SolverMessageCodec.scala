@@ -11,22 +11,24 @@ import skein.units.*
 
 /** Messages as bytes: a byte for the version, then as [[Codec]] writes them. */
 object SolverMessageCodec:
-  /** Peers of another version are refused. */
+  /** Version of the encoding; other versions are refused. */
   val Version = 6
 
-  /** Of a message, in bytes: what a Kafka broker takes unless told otherwise, less its own share. */
+  /** Limit of a message, in bytes: a Kafka broker's default limit, less its own overhead. */
   val MostBytes = 900_000
 
   val MostVehicles = 1024
 
-  /** @throws IllegalArgumentException if it is longer than [[MostBytes]]
+  /** Encodes a message.
+    *
+    * @throws IllegalArgumentException if it is longer than [[MostBytes]]
     */
   def bytes(message: SolverMessage): Array[Byte] =
     val made = Version.toByte +: Codec.bytes(message)
     require(made.length <= MostBytes, s"a message has ${made.length} bytes, at most $MostBytes go")
     made
 
-  /** @return or what was expected, and what came */
+  /** Decodes a message; Left states what was expected and what was received. */
   def message(bytes: Array[Byte]): Either[String, SolverMessage] =
     if bytes.length > MostBytes then Left(s"expected $MostBytes bytes at most, came ${bytes.length}")
     else
@@ -78,7 +80,7 @@ object SolverMessageCodec:
       view.sensed.zipWithIndex.map((sensed, its) => if vehicles(its) then sensed else Map.empty)
     )
 
-  /** A view without its forecast, as it is written. */
+  /** The encoded form of a view, without its forecast. */
   private final case class Seen(
       readings: Vector[Option[Reading]],
       moves: Vector[Option[SentCommand]],

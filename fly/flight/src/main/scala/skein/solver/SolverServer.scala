@@ -11,35 +11,34 @@ import scala.util.Try
 import skein.link.{Address, Incoming, Listening, Seats, Transport}
 import skein.units.{Clock, Span}
 
-/** A solver that flights connect to; see [[TcpLink]]. Whoever sends what is no message, or says nothing at
-  * first, loses the connection, and nothing else happens. A connection that says nothing of use makes room
-  * for another when all places are taken; its flight, if there is one, connects again.
+/** A solver that flights connect to; see [[TcpLink]]. A peer that sends invalid messages, or none at first,
+  * loses its connection without further effect. If all places are taken, a connection without useful messages
+  * is closed for another one; its flight, if there is one, connects again.
   */
 final class SolverServer private (listening: Listening, switch: SharedKillSwitch, seats: Seats):
-  /** With the actual port. */
   def address: Address = listening.address
 
-  /** Connections that said nothing of use and made room for others. */
+  /** Number of connections without useful messages that were closed for others. */
   def displacedConnections: Long = seats.displacedConnections
 
-  /** Connections for which there was no place. */
+  /** Number of connections that were refused for lack of a place. */
   def refusedConnections: Long = seats.refusedConnections
 
-  /** Accepts no more and closes the open connections. */
+  /** Accepts no more connections and closes the open ones. */
   def close(): Future[Done] =
     switch.shutdown()
     listening.close()
 
 object SolverServer:
-  /** Open at the same time. */
+  /** Limit of simultaneously open connections. */
   val MostConnections = 64
 
-  /** A flight says hello as soon as it is connected. */
+  /** Time-out of the first message: a flight says hello as soon as it is connected. */
   private val FirstWithin = Span.ofSeconds(10)
 
-  /** Fails with a [[skein.link.TransportError]] where it cannot listen.
+  /** Starts a server. Fails with a [[skein.link.TransportError]] if it cannot listen.
     *
-    * @param clock tells how long connections have been silent
+    * @param clock measures how long connections have been silent
     */
   def start(at: Address, transport: Transport, desk: SolverDesk, clock: Clock)(using
       ActorSystem

@@ -13,15 +13,15 @@ import skein.link.{Address, Transport, TransportError}
 import skein.units.Decimals.brief
 import skein.units.Span
 
-/** Messages behind their length, 4 bytes, on one connection, which is opened again when it is lost: the same
-  * over sockets and in virtual time. Where one side does not trust the other, twice and before any message
-  * came, it is refused; so is an other side that takes the connection and says nothing, with certificates or
-  * without, for `answerWithin`.
+/** Messages with a prefix of 4 bytes for their length, on one connection, which is opened again when it is
+  * lost; over sockets and in virtual time. The link is refused if one side does not trust the other, twice
+  * and before any message; and if the other side accepts the connection and sends nothing, with or without
+  * certificates, for `answerWithin`.
   *
-  * @param whyClosed asked once, when the other side has ended a connection before any message came: why it
-  *   will always do so, if that is known, and then it is refused
-  * @param perhaps said beside what ended such a connection, where it is not known
-  * @param answerWithin for the first message of all
+  * @param whyClosed called once, when the other side has closed a connection before any message: why it will
+  *   always do so, if that is known; then the link is refused
+  * @param perhaps added to the error of such a connection, if the cause is unknown
+  * @param answerWithin time-out of the very first message
   */
 final class TcpLink(
     transport: Transport,
@@ -102,7 +102,7 @@ final class TcpLink(
       after(TryEvery.toDuration, system.scheduler)(Future.unit).foreach: _ =>
         if isClosing then closed.trySuccess(Done): Unit else connect()
 
-    /** Another thread may have done so. */
+    /** Completes the queue, unless another thread has done so. */
     private def completed(out: BoundedSourceQueue[ByteString]): Unit =
       val _ = Try(if !out.isCompleted then out.complete())
 
@@ -113,7 +113,7 @@ final class TcpLink(
           case QueueOfferResult.Enqueued => Right(())
           case _                         => Left(s"$MostWaiting messages to $to wait already")
 
-    /** What was sent is on its way first, if the other side takes it soon. */
+    /** Closes; messages already accepted are sent first, if the other side reads them soon. */
     def close(): Future[Done] =
       isClosing = true
       queue.getAndSet(None) match
@@ -125,17 +125,15 @@ final class TcpLink(
       closed.future
 
 object TcpLink:
-  /** Messages of one side that wait until they are sent. */
+  /** Limit of one side's messages that wait to be sent. */
   private[solver] val MostWaiting = 256
 
-  /** A solver says at once that it prepares. */
   val AnswerWithin: Span = Span.ofSeconds(10)
 
   private val TryEvery      = Span.ofMillis(200)
   private val CloseWithin   = Span.ofMillis(500)
   private val MostMistrusts = 2
 
-  /** A message behind its length. */
   private[solver] val framed: BidiFlow[ByteString, ByteString, ByteString, ByteString, NotUsed] =
     BidiFlow.fromFlows(
       Flow[ByteString].via(Framing.simpleFramingProtocolEncoder(SolverMessageCodec.MostBytes)),

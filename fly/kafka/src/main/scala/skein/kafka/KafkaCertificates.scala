@@ -2,13 +2,14 @@ package skein.kafka
 
 import java.nio.file.Path
 
-/** Certificates as Kafka's clients and brokers take them: TLS 1.3 alone, and the host that is connected to
-  * must be named in its certificate.
+/** Certificates for Kafka's clients and brokers: TLS 1.3 only, and a host must be named in its certificate.
   */
 object KafkaCertificates:
 
-  /** @param keyStore PKCS #12, with this side's key and certificate, which a broker may ask clients for
-    * @param trustStore PKCS #12, with the certificate of whoever signs
+  /** The TLS settings of a client or broker.
+    *
+    * @param keyStore PKCS #12, with this side's key and certificate, which a broker may request from clients
+    * @param trustStore PKCS #12, with the certificate of the authority
     * @param password of both, and of the key
     * @return `security.protocol` and `ssl.…` of Kafka's configuration
     */

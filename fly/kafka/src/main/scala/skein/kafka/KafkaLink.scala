@@ -7,12 +7,12 @@ import scala.util.{Failure, Success}
 import skein.solver.{LinkNews, MessageLink, OpenLink}
 import skein.units.Expect
 
-/** A flight's link to a solver behind a Kafka broker. All flights of a prefix share the topics; each takes
-  * what is its own.
+/** A flight's link to a solver behind a Kafka broker. All flights of a prefix share the topics; each reads
+  * only its own messages.
   *
-  * A broker keeps messages and gives some twice, and a client of it does not know whether anybody reads: so
-  * this link is up from the first message that it could place, and down only where one could not be written
-  * within half a second.
+  * A broker stores messages and may deliver one twice, and its client does not know whether there is a
+  * reader: so this link is up from the first message that was written, and down only if one could not be
+  * written within half a second.
   */
 final class KafkaLink(topics: KafkaTopics) extends MessageLink:
   private given ExecutionContext = ExecutionContext.parasitic

@@ -14,12 +14,12 @@ import scala.concurrent.{Future, Promise}
 import scala.jdk.CollectionConverters.*
 import scala.util.control.NonFatal
 
-/** One side of two topics: messages written to one, read from the other, each on a thread of its own, since
-  * Kafka's clients may block. What is read are messages from the moment of opening on.
+/** One side of two topics: writes messages to one, and reads from the other, each on its own thread, since
+  * Kafka's clients may block. Reads messages from the moment of opening on.
   *
-  * @param received told of what came at once, in its order
-  * @param lost told why a message was not written in time
-  * @param absent told why the broker cannot be used yet, whenever that is another reason
+  * @param received called with each batch of messages, in order
+  * @param lost called with the reason when a message was not written in time
+  * @param absent called with the reason why the broker cannot be used yet, whenever it changes
   */
 private[kafka] final class KafkaPipe(
     topics: KafkaTopics,
@@ -42,8 +42,8 @@ private[kafka] final class KafkaPipe(
   // Since a message was not written. A broker that is back may be a new one, without topics.
   @volatile private var isDoubtful = false
 
-  /** Completes when what is written from now on by others will be read; fails where the broker refuses, and
-    * is then not tried again.
+  /** Completes once messages that others write from now on will be read; fails if the broker refuses, without
+    * retries.
     */
   def ready: Future[Unit] = reading.future
 
@@ -51,7 +51,7 @@ private[kafka] final class KafkaPipe(
     thread("reads", read())
     thread("writes", write())
 
-  /** Whether it was taken; it is not where too much waits already. */
+  /** Queues a message; false if the queue is full. */
   def send(message: Array[Byte]): Boolean = outgoing.offer(message)
 
   def close(): Future[Unit] =
@@ -70,7 +70,7 @@ private[kafka] final class KafkaPipe(
     started.setDaemon(true)
     started.start()
 
-  /** Whether the broker can be used, once it is there. */
+  /** Whether the broker can be used; waits until it is reachable. */
   @tailrec
   private def isReached(told: String = ""): Boolean = !closing.get && (topics.made() match
     case Right(()) => true

@@ -3,9 +3,9 @@ package skein.kafka
 import scala.concurrent.Future
 import skein.solver.SolverDesk
 
-/** A solver behind a Kafka broker. One at a prefix: a second one would answer everything once more.
+/** A solver behind a Kafka broker. One per prefix: a second one would answer every request again.
   *
-  * @param told a line for a person, of why the broker cannot be used yet, or what could not be written
+  * @param told receives a line for the user: why the broker cannot be used yet, or what could not be written
   */
 final class KafkaSolver(topics: KafkaTopics, desk: SolverDesk, told: String => Unit):
   private val pipe: KafkaPipe = KafkaPipe(
@@ -21,8 +21,8 @@ final class KafkaSolver(topics: KafkaTopics, desk: SolverDesk, told: String => U
   private def taken(came: Seq[Array[Byte]]): Unit =
     desk.received(came, message => pipe.send(message): Unit): Unit
 
-  /** Completes when it takes questions; it waits for a broker that is not there yet, and fails where one
-    * refuses it.
+  /** Completes when it accepts requests; waits for a broker that is not reachable yet, and fails if the
+    * broker refuses it.
     */
   def start(): Future[Unit] =
     pipe.start()

@@ -14,8 +14,7 @@ import scala.util.Using
 import scala.util.control.NonFatal
 import skein.link.Address
 
-/** The two topics that flights and a solver speak over, one partition each, so that messages keep their
-  * order.
+/** The two topics between flights and a solver, one partition each, so that messages keep their order.
   *
   * @param prefix of their names
   * @param security Kafka's own settings of clients: `security.protocol`, `ssl.…`, `sasl.…`; passwords among
@@ -25,9 +24,9 @@ final case class KafkaTopics(broker: Address, prefix: String)(val security: Map[
   def questions: String = s"$prefix.questions"
   def answers: String   = s"$prefix.answers"
 
-  /** Makes what is not there. Blocks for some seconds at most.
+  /** Creates missing topics. Blocks for some seconds at most.
     *
-    * @return or why the broker cannot be used
+    * @return Left states why the broker cannot be used
     */
   private[kafka] def made(): Either[KafkaTopics.Absent, Unit] =
     val settings =
@@ -46,9 +45,9 @@ final case class KafkaTopics(broker: Address, prefix: String)(val security: Map[
 
 object KafkaTopics:
 
-  /** A broker that cannot be used.
+  /** A broker cannot be used.
     *
-    * @param isFinal whether it was there and refused, so that to try again helps nobody
+    * @param isFinal whether it was reachable and refused, so that retries do not help
     */
   private[kafka] final case class Absent(reason: String, isFinal: Boolean)
 
@@ -70,12 +69,11 @@ object KafkaTopics:
   private[kafka] def causes(error: Throwable): Iterator[Throwable] =
     Iterator.iterate(error)(_.getCause).takeWhile(_ != null)
 
-  /** The words of what began it. */
   private[kafka] def rootOf(error: Throwable): String =
     val root = causes(error).toVector.last
     Option(root.getMessage).getOrElse(root.toString)
 
-  /** Of a client: it comes back soon when a broker does. */
+  /** A client's settings: it reconnects soon after a broker is back. */
   private[kafka] def settings(topics: KafkaTopics)(own: (String, String)*): Properties =
     val settings = Properties()
     for

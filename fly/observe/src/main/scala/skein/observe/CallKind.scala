@@ -2,13 +2,10 @@ package skein.observe
 
 /** What a call of AirSim's interface is for, as far as a loop's timing is concerned. */
 enum CallKind(val label: String):
-  /** Reads a vehicle's pose or motion. */
   case State extends CallKind("state")
 
-  /** Reads another sensor. */
   case Sensor extends CallKind("sensors")
 
-  /** Takes images. */
   case Image extends CallKind("images")
 
   /** Commands a vehicle; answered when the move ends or a newer one replaces it. */
@@ -42,7 +39,6 @@ object CallKind:
   private val times  = Set("simPause", "simContinueForTime", "simContinueForFrames", "reset")
   private val moves  = Set("hover", "takeoff", "land", "goHome", "moveOnPath", "setCarControls")
 
-  /** By the method's name on the wire. */
   def of(method: String): CallKind =
     if states(method) then State
     else if sensors(method) then Sensor

@@ -5,7 +5,7 @@ import skein.rpc.{FrameLimits, Framed, Framer, MessageReader, Received, RpcMessa
 import skein.units.Instant
 import upack.{Msg, Str}
 
-/** Understands the bytes of one connection. Mutable; one thread at a time.
+/** Parses the bytes of one connection. Mutable; one thread at a time.
   *
   * Memory: 64 KiB of a message in each direction. The rest of a longer one, such as an image, is counted and
   * not kept.
@@ -15,14 +15,14 @@ final class Conversation(connection: Int):
 
   private val calls, answers = Side()
 
-  /** Bytes from the client, cut anywhere. */
+  /** Parses bytes from the client, split anywhere. */
   def fromClient(bytes: ByteString, at: Instant): Vector[Passed] = calls.read(bytes, at): frame =>
     RpcMessage.fromClient(frame) match
       case RpcMessage.Request(id, method, params) =>
         Some(Passed.Called(connection, id, method, vehicleOf(method, params), at))
       case _ => None
 
-  /** Bytes from the simulator, cut anywhere. */
+  /** Parses bytes from the simulator, split anywhere. */
   def fromSimulator(bytes: ByteString, at: Instant): Vector[Passed] = answers.read(bytes, at): frame =>
     RpcMessage.fromServerUnread(frame) match
       case RpcMessage.Reply(id, error, result) =>
@@ -30,7 +30,7 @@ final class Conversation(connection: Int):
         Some(Passed.Answered(connection, id, failed, stampOf(result), answers.length, at))
       case _ => None
 
-  /** One direction. */
+  /** The parser of one direction of the connection. */
   private final class Side:
     private val framer = new Framer(Listening, KeptBytes)
     private var isLost = false
@@ -54,10 +54,10 @@ final class Conversation(connection: Int):
 object Conversation:
   private val KeptBytes = 64 << 10
 
-  /** A listener holds [[KeptBytes]] of a message, however long it is. */
+  /** Limits of the framing: it keeps [[KeptBytes]] of a message, however long it is. */
   private val Listening = FrameLimits(frameBytes = Int.MaxValue, elements = Int.MaxValue)
 
-  /** The name is the last parameter, but where a flag or a camera's settings follow it. */
+  /** The vehicle's name: the last parameter, unless a flag or a camera's settings follow it. */
   private def vehicleOf(method: String, params: IndexedSeq[Msg]): String =
     val place = method match
       case "simGetImages"                                              => 1
@@ -66,7 +66,7 @@ object Conversation:
       case _                                                           => params.size - 1
     params.lift(place).collect { case Str(name) => name }.getOrElse("")
 
-  /** Of states it is called `timestamp`, of sensors `time_stamp`. */
+  /** The time stamp of an answer: `timestamp` in states, `time_stamp` in sensors. */
   private def stampOf(result: Msg | Received): Option[Instant] = result match
     case received: Received =>
       var stamp = Option.empty[Instant]

@@ -2,32 +2,31 @@ package skein.observe
 
 import skein.units.Decimals.{brief, counted, fixed}
 
-/** What is wrong with a loop's timing, and what to do.
+/** A fault of a loop's timing, with its remedy.
   *
-  * @param name the same for every loop, for scripts
-  * @param what was seen, with its figures
+  * @param name constant for all loops, for scripts
+  * @param what the observation, with its figures
   * @param remedy what to change
   */
 final case class Finding(name: String, what: String, remedy: String)
 
-/** Finds the usual faults of a loop's timing in what was observed. A pure function; the most costly come
+/** Diagnoses common faults of a loop's timing from observations. A pure function; the most costly fault is
   * first.
   */
 object Diagnosis:
 
-  /** A share of a period that is worth a word. */
+  /** Share of a period from which it is reported. */
   private val Notable = 0.2
 
-  /** More calls at once than AirSim is sure to answer: it keeps a worker for each unanswered move. */
+  /** More simultaneous calls than AirSim is sure to answer: it keeps a worker for each unanswered move. */
   private val MostMoves = 2
 
-  /** Images slow small calls by so much where a link is full of them. */
+  /** Factor by which images slow small calls on a link that they fill. */
   private val SlowedBy = 2.0
 
-  /** A physics step of AirSim: readings of one moment differ by as much. */
+  /** One physics step of AirSim: readings of one moment differ by up to this. */
   private val LeastSkewMs = 3.0
 
-  /** Clocks of one machine differ by less. */
   private val RateWithin = 0.02
 
   def of(observed: Observed): Vector[Finding] =
@@ -161,7 +160,7 @@ object Diagnosis:
         "see the simulator's answer"
       )
 
-  /** Commands that rest on no reading at all. */
+  /** Finds commands that are based on no reading at all. */
   private def blind(observed: Observed): Option[Finding] =
     observed.vehicles.find(vehicle => vehicle.commands > 0 && vehicle.ownAgeMs.isEmpty).map: vehicle =>
       Finding(
@@ -170,7 +169,7 @@ object Diagnosis:
         "nothing, if it decides by images or from a file"
       )
 
-  /** Of the commanded vehicle that is worst by a quantity, if that is above a limit. */
+  /** The commanded vehicle with the largest value of a quantity, if that exceeds a limit. */
   private def ofWorst(observed: Observed, above: Double)(by: ObservedVehicle => Double)(
       finding: (ObservedVehicle, Double) => Finding
   ): Option[Finding] =

@@ -4,12 +4,13 @@ import scala.collection.mutable
 import skein.signal.{ClockAlignment, Stamped}
 import skein.units.*
 
-/** Keeps account of a loop from what passes between its program and the simulator. Mutable; one thread at a
-  * time; messages in the order in which they passed.
+/** Analyses a loop from the messages between its program and the simulator. Mutable; one thread at a time;
+  * messages in the order in which they passed.
   *
-  * A command is taken to rest on the newest reading of each vehicle whose answer has passed before it. A
-  * reading's age counts from its time stamp, by the clocks' estimated offset ([[ClockAlignment]]); an answer
-  * without one is taken to have been sampled halfway between call and answer, which bounds its age as well.
+  * A command is assumed to be based on the newest reading of each vehicle whose answer has passed before it.
+  * A reading's age counts from its time stamp, by the clocks' estimated offset ([[ClockAlignment]]); an
+  * answer without one is assumed to have been sampled halfway between call and answer, which bounds its age
+  * as well.
   *
   * Memory: [[LoopAccount.MostPending]] unanswered calls a connection, [[LoopAccount.MostVehicles]] vehicles,
   * [[LoopAccount.MostMethods]] methods, a million samples of each quantity.
@@ -55,10 +56,10 @@ final class LoopAccount:
           if pending.kind == CallKind.Move then vehicle(pending.vehicle).foreach(_.leftRunning += 1)
           forget(pending)
 
-  /** Messages that passed and were not taken into account. */
+  /** Counts messages that passed without analysis. */
   def passedOver(count: Long): Unit = forgotten += count
 
-  /** Lets time pass: what the program waits for now has taken so long. */
+  /** Attributes the elapsed time to the call that the program waits for. */
   private def tick(at: Instant): Unit =
     if begunAt.isEmpty then begunAt = Some(at)
     else spentNs(phase) += at.since(lastAt).toNanos.max(0)
@@ -91,7 +92,7 @@ final class LoopAccount:
     pending.besideImages = outstanding(CallKind.Image.ordinal) > 0
     outstanding(kind.ordinal) += 1
 
-  /** Nothing waits for this call any more. */
+  /** Removes a call that is no longer awaited. */
   private def forget(pending: Pending): Unit =
     outstanding(pending.kind.ordinal) -= 1
     if pending.kind == CallKind.Move then
@@ -142,7 +143,9 @@ final class LoopAccount:
       else if answered.error.isEmpty then read(pending, answered)
       forget(pending)
 
-  /** @param isAlone whether its connection has sent nothing since
+  /** Handles the end of a move.
+    *
+    * @param isAlone whether its connection has sent nothing since
     * @param hasFlown whether the simulator did not refuse it
     */
   private def ended(pending: Pending, roundTrip: Span, isAlone: Boolean, hasFlown: Boolean): Unit =
@@ -198,17 +201,17 @@ final class LoopAccount:
         methods(name) = first
         first
 
-  /** To all vehicles. */
+  /** Number of commands to all vehicles. */
   private def commands: Long = vehicles.valuesIterator.map(_.commands).sum
 
-  /** In a few steps, however much was observed. */
+  /** The progress, at constant cost for any number of observations. */
   def progress: Progress = Progress(
     begunAt.fold(Span.Zero)(lastAt.since),
     commands,
     vehicles.valuesIterator.flatMap(_.ownAge.mean).maxOption
   )
 
-  /** All that is known now; sorts every sample. */
+  /** The complete observations so far; sorts every sample. */
   def observed: Observed =
     val periods = commands.toDouble / vehicles.valuesIterator.count(_.commands > 0).max(1) - 1
     Observed(
@@ -233,7 +236,7 @@ final class LoopAccount:
     )
 
 object LoopAccount:
-  /** What a program does between two commands, told apart by what it waits for. */
+  /** Activities of a program between two commands, distinguished by the awaited call. */
   val Phases: Vector[String] =
     Vector("images", "states", "sensors", "other calls", "the program itself, or waiting for moves")
 
@@ -243,13 +246,13 @@ object LoopAccount:
   private val MostStalls   = 1000
   private val MostLost     = 100
 
-  /** AirSim's: a command replaced within this was never acted on. */
+  /** AirSim's physics step: a command replaced within it never takes effect. */
   private val PhysicsStep = Span.ofMillis(3)
 
-  /** Larger answers occupy a link for a while. */
+  /** Limit of a small answer, bytes; larger ones occupy a link for a while. */
   private val SmallBytes = 16L << 10
 
-  /** A move that a program waits for lasts longer than the calls beside it. */
+  /** Duration from which a move counts as awaited by the program. */
   private val JoinedFor = Span.ofMillis(50)
 
   private val LeastStall  = Span.ofMillis(250)
@@ -262,7 +265,7 @@ object LoopAccount:
       val vehicle: String,
       val at: Instant
   ):
-    /** Whether an image was under way when it was sent. */
+    /** Whether an image call was unanswered when it was sent. */
     var besideImages = false
 
   private final class Open:
@@ -274,7 +277,9 @@ object LoopAccount:
 
   private final case class Stamps(first: (Instant, Instant), validAt: Instant, receivedAt: Instant)
 
-  /** @param sampledAt on the simulator's clock, where the answer says it
+  /** A reading that passed.
+    *
+    * @param sampledAt on the simulator's clock, if the answer has a time stamp
     */
   private final case class Reading(sentAt: Instant, receivedAt: Instant, sampledAt: Option[Instant]):
 
@@ -286,7 +291,7 @@ object LoopAccount:
       val sampled = for at <- sampledAt; known <- clock yield known.toController(at)
       now.since(sampled.getOrElse(receivedAt - receivedAt.since(sentAt) / 2))
 
-    /** The age lies within ± this. */
+    /** Half width of the age's uncertainty. */
     def bound(clock: Option[ClockAlignment]): Span =
       (for _ <- sampledAt; known <- clock yield known.uncertainty)
         .getOrElse(receivedAt.since(sentAt) / 2)
@@ -331,7 +336,6 @@ object LoopAccount:
     val roundTrips    = Samples()
     private var usual = (0L, 0.0)
 
-    /** The median, computed anew whenever the number of round trips has doubled. */
     def usualMs: Double =
       if roundTrips.added >= 2 * usual._1 then
         usual = (roundTrips.added, roundTrips.distribution.fold(0.0)(_.median))

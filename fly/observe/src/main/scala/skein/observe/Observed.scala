@@ -3,17 +3,17 @@ package skein.observe
 import skein.measure.Distribution
 import skein.units.Span
 
-/** What an observer knows of a loop. Ages are in milliseconds, at the moment at which a command passed.
+/** Observations of a loop. Ages are in milliseconds, at the moment at which a command passed.
   *
   * @param lasted from the first call to the last message
   * @param vehicles those that were read or commanded, in the order of their first call
   * @param methods in the order of their first call
   * @param periodMs how a period from command to command was spent, on average; empty before the second
   *   command
-  * @param clock of the simulator; absent where no answer had a time stamp
+  * @param clock of the simulator; absent if no answer had a time stamp
   * @param stalls in which calls waited for much longer than usual, the longest first
-  * @param smallCallMs round trips of small calls, while nobody transferred an image and while somebody did
-  * @param lost connections of which the bytes could not be read
+  * @param smallCallMs round trips of small calls, without and with a simultaneous transfer of an image
+  * @param lost connections whose bytes could not be parsed
   * @param notKept messages that passed while the observer had no room for them
   */
 final case class Observed(
@@ -33,17 +33,17 @@ final case class Observed(
 ):
   def commands: Long = vehicles.map(_.commands).sum
 
-/** How one vehicle was commanded.
+/** The commands to one vehicle.
   *
   * @param ownAgeMs of its newest reading, since physics was sampled
   * @param othersAgeMs of the newest reading of each other vehicle, the oldest of them
-  * @param boundMs the ages lie within ± this
+  * @param boundMs half width of the ages' uncertainty
   * @param everyMs from one command to the next
   * @param sinceOthersMs since any other vehicle was commanded
   * @param skewMs between the oldest and the newest reading of all vehicles
-  * @param superseded commands replaced by the next before a physics step could act on them
+  * @param superseded commands replaced by the next before a physics step could apply them
   * @param overtaken commands that reached the simulator after a later one
-  * @param mostInFlight commands unanswered at once
+  * @param mostInFlight largest number of simultaneously unanswered commands
   * @param joined commands during which their connection sent nothing else: the program waited for their ends
   * @param leftRunning commands unanswered when their connection closed
   */
@@ -78,21 +78,21 @@ final case class ObservedMethod(
     firstError: Option[String]
 )
 
-/** The simulator's clock as its time stamps show it.
+/** The simulator's clock by its time stamps.
   *
   * @param rate its seconds in a second of the observer's
-  * @param backwards how often it went back
-  * @param stoodStill in all, while nobody paused it
+  * @param backwards number of times it ran back
+  * @param stoodStill total time, except while it was paused by a client
   */
 final case class SimulatorClock(rate: Double, backwards: Long, stoodStill: Span)
 
-/** Calls that waited together.
+/** Calls that waited simultaneously.
   *
   * @param at its end, since the first call
   */
 final case class Stall(at: Span, length: Span, method: String)
 
-/** How far an observation is.
+/** The progress of an observation.
   *
   * @param ageMs mean age of the own data of the vehicle whose data is oldest; absent before the first command
   *   to a vehicle that was read

@@ -13,8 +13,8 @@ import scala.concurrent.{ExecutionContext, Future, Promise}
 import skein.link.*
 import skein.units.{Clock, Instant}
 
-/** Stands between clients and their simulator, and keeps account of their loop. It changes nothing: bytes
-  * pass in their order, none is added, held back or lost, whatever they mean.
+/** A proxy between clients and their simulator that analyses their loop. It changes nothing: bytes pass in
+  * their order, none is added, held back or lost, whatever they mean.
   *
   * What passes is looked at elsewhere, one piece after the other. That may lag behind by
   * [[ObservingProxy.MostWaiting]]; what comes beyond is passed on and not looked at, which is counted, and
@@ -27,16 +27,16 @@ final class ObservingProxy private (
 ):
   import ObservingProxy.*
 
-  /** Where clients connect to, with the actual port. */
+  /** The address that clients connect to, with the actual port. */
   def address: Address = listening.address
 
-  /** To be asked now and then, while it observes. */
+  /** Present progress; may be called repeatedly while it observes. */
   def progress: Progress = looking.progress
 
-  /** What is known now; what passes meanwhile is looked at after that. */
+  /** The observations so far; later messages are analysed after it. */
   def observed: Observed = looking.observed
 
-  /** Accepts no more, closes the open connections, and looks at what has passed until now. */
+  /** Accepts no more connections, closes the open ones, and analyses what has passed until now. */
   def close(): Future[Done] =
     given ExecutionContext = ExecutionContext.parasitic
     switch.shutdown()
@@ -46,7 +46,7 @@ final class ObservingProxy private (
       looked.future
 
 object ObservingProxy:
-  /** Bytes that have passed and were not looked at yet. */
+  /** Limit of bytes that have passed and wait for analysis. */
   val MostWaiting: Long = 256L << 20
 
   private val MostConnections = 1024
@@ -57,11 +57,12 @@ object ObservingProxy:
     case Closed(connection: Int, at: Instant)
     case End(looked: () => Unit)
 
-  /** Starts listening. Fails with a [[TransportError]] where that is not possible.
+  /** Starts listening. Fails with a [[TransportError]] if that is not possible.
     *
     * @param link emulated between the observer and the simulator
-    * @param reader runs what looks at the pieces; a thread of its own, where time is real
-    * @param unreachable told why, when an accepted connection cannot be continued to the simulator
+    * @param reader executes the analysis; a separate thread in real time
+    * @param unreachable called with the reason, if an accepted connection cannot be continued to the
+    *   simulator
     */
   def start(
       listenAt: Address,
@@ -113,11 +114,11 @@ object ObservingProxy:
       .run()
       .map(ObservingProxy(_, switch, looking))
 
-  /** Whether all of a connection was looked at. */
+  /** Whether all bytes of a connection were analysed. */
   private final class Whole:
     @volatile var is = true
 
-  /** Looks at pieces in their order, one at a time. Added to from any thread; never blocks. */
+  /** Analyses pieces in their order, one at a time. Thread-safe; adding never blocks. */
   private final class Looking(reader: Executor):
     private val pieces        = ConcurrentLinkedQueue[Piece]()
     private val count         = AtomicInteger()
@@ -132,8 +133,7 @@ object ObservingProxy:
       account.passedOver(missed.getAndSet(0))
       account.observed
 
-    /** @return false where too much waits; then it is left out
-      */
+    /** Adds a piece; false if the queue is full, and then the piece is skipped. */
     def offer(piece: Piece.Bytes): Boolean =
       val fits = waiting.addAndGet(piece.bytes.size) <= MostWaiting
       if fits then add(piece)

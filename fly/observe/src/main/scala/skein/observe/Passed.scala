@@ -2,8 +2,8 @@ package skein.observe
 
 import skein.units.Instant
 
-/** What passed between a client and its simulator, at the place of the observer. Instants are on the
-  * observer's clock.
+/** A message between a client and its simulator, as it passed the observer. Instants are on the observer's
+  * clock.
   */
 enum Passed:
   case Opened(connection: Int, at: Instant)
@@ -30,9 +30,7 @@ enum Passed:
       at: Instant
   )
 
-  /** Bytes that are no MessagePack-RPC: nothing more of this connection is understood. They pass all the
-    * same.
-    */
+  /** Bytes that are not MessagePack-RPC: the rest of this connection is not analysed, but still passes. */
   case Unreadable(connection: Int, reason: String, at: Instant)
 
   case Closed(connection: Int, at: Instant)

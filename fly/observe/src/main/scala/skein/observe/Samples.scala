@@ -14,7 +14,6 @@ private[observe] final class Samples:
     count += 1
     sum += sample
 
-  /** Of all that were added. */
   def mean: Option[Double] = Option.when(count > 0)(sum / count)
 
   def added: Long = count

@@ -6,10 +6,10 @@ import skein.record.{DecisionRow, EventSubject, Recording}
 import skein.units.*
 import skein.units.Decimals.fixed
 
-/** Judges a flight by its [[FlightTrace]]. */
+/** Judges a flight by its [[FlightTrace]], observed from outside. */
 object Checks:
 
-  /** Everything that must not be, a line each. */
+  /** All violations of a flight's guarantees, a line each. */
   def violations(seen: FlightTrace): Vector[String] =
     Vector(
       overtaken(seen),
@@ -27,7 +27,7 @@ object Checks:
       KnowledgeChecks.violations(seen)
     ).flatten
 
-  /** The moves that arrived must be among those sent, in the order in which they were sent. */
+  /** Moves must arrive in the order of sending. */
   private def overtaken(seen: FlightTrace): Vector[String] =
     for
       (vehicle, port) <- seen.vehicles.zip(seen.ports)
@@ -37,7 +37,7 @@ object Checks:
       )
     yield s"$vehicle: a command overtook a newer one: arrival $late came after one that was sent later"
 
-  /** The index of the first element of `arrived` that is not in `sent` behind its predecessor's place. */
+  /** Index of the first element of `arrived` that does not follow its predecessor in `sent`. */
   private[torture] def firstOutOfOrder[A](arrived: Vector[A], sent: Vector[A]): Option[Int] =
     var place = 0
     arrived.indices.find: index =>
@@ -49,7 +49,9 @@ object Checks:
     for (vehicle, port) <- seen.vehicles.zip(seen.ports) if port.commands.most > Moves.InFlight
     yield s"$vehicle: ${port.commands.most} commands were outstanding at once"
 
-  /** While the simulator stands still no time passes between commands. */
+  /** Commands must keep their least interval. While the simulator stands still no time passes between
+    * commands.
+    */
   private def tooFast(seen: FlightTrace): Vector[String] =
     for
       (vehicle, port) <- seen.vehicles.zip(seen.ports) if seen.faultPlan.loop != LoopKind.Paused
@@ -72,7 +74,7 @@ object Checks:
       seen.stats.pending != 0
     )(s"the client has ${seen.stats.pending} calls that never ended")
 
-  /** What began is what ended, in the client's books, the ports' and the recording. */
+  /** Counts of begun and ended calls must agree in the client, the ports and the recording. */
   private def unaccounted(seen: FlightTrace): Vector[String] =
     val called = seen.ports.map(port =>
       port.reads.begun + port.commands.begun + port.measurements.begun
@@ -94,7 +96,7 @@ object Checks:
       )
     ).flatten ++ (if isRecorded(seen) then unrecorded(seen) else Vector.empty)
 
-  /** Every image that was due is searched, or counted as what became of it. */
+  /** Every due image must be searched, or counted by its fate. */
   private def unseen(seen: FlightTrace): Vector[String] =
     for counts <- seen.images if counts.due != counts.missed + counts.lost + counts.searched
     yield s"of ${counts.due} images that were due ${counts.missed} were " +
@@ -123,7 +125,7 @@ object Checks:
         Option.when(decisions < commands)(s"$vehicle: $decisions decisions led to $commands commands")
       ).flatten
 
-  /** A recording that failed has the beginning alone. */
+  /** Whether the recording is complete: one that failed holds only the beginning. */
   private def isRecorded(seen: FlightTrace): Boolean = seen.outcome match
     case FlightOutcome.Failed(_) => false
     case _                       => true
@@ -150,8 +152,8 @@ object Checks:
       Option.when(rows > allowed)(s"$rows rows were recorded; ${allowed.fixed(0)} are many for this flight")
     ).flatten
 
-  /** Once nothing more goes wrong, every vehicle is soon commanded again, on what was read since, and that
-    * goes on. The paused truth does not: it ends at the first error.
+  /** After the last fault, every vehicle must soon be commanded again, on readings since then, and
+    * continuously. Except in the paused truth, which ends at the first error.
     */
   private def outOfControl(seen: FlightTrace): Vector[String] =
     val due = seen.calmFrom + FaultPlan.ResumesWithin
@@ -190,7 +192,9 @@ object Checks:
     yield s"$vehicle flies on after the end: ${drift.value.fixed(1)} m in " +
       s"${FlightTrace.Watched.toSeconds.fixed(0)} s (${seen.outcome})"
 
-  /** A flight that ended in trouble may have told the simulator in vain; it has tried for a while. */
+  /** The simulator must run after a flight. A flight that ended during faults may have failed to resume it;
+    * it has tried for a while.
+    */
   private def standingStill(seen: FlightTrace): Vector[String] =
     Option
       .when(seen.leftPaused && seen.endedAt >= seen.calmFrom + FaultPlan.ResumesWithin)(
@@ -198,8 +202,7 @@ object Checks:
       )
       .toVector
 
-  /** However a flight ends, to hover is the last that every vehicle is told; in calm the simulator hears of
-    * it.
+  /** However a flight ends, the last command to each vehicle must be to hover; without faults it must arrive.
     */
   private def notToldToHover(seen: FlightTrace): Vector[String] =
     val heeded = seen.endedAt >= seen.calmFrom + FaultPlan.ResumesWithin
@@ -213,7 +216,7 @@ object Checks:
         )
       ).flatten
 
-  /** What was offered to the recorder is what it has, and what is read back from its file, row by row. */
+  /** The recorder must hold what was offered to it, and the file must give it back, row by row. */
   private def notInTheFile(seen: FlightTrace): Vector[String] =
     val offered                                  = Recording(seen.recording.heading, seen.offered)
     def missing(where: String, found: Recording) = Option.when(found != offered)(
@@ -226,25 +229,25 @@ object Checks:
 
   private def ms(seen: FlightTrace, at: Instant): String = s"${at.since(seen.startedAt).toMillis.fixed(1)} ms"
 
-  /** Asked for when an answer is missed. */
+  /** Additional requests after a missed answer. */
   private val SignsOfLife = 1
 
-  /** Of each eye. */
   private val ImagesOnTheWay = 2
 
-  /** After a connection was lost, its last moves may be at the simulator still when those of the next one
-    * come.
+  /** Limit of unanswered moves. After a connection was lost, its last moves may still be at the simulator
+    * when those of the next one arrive.
     */
   private val MostUnanswered = 4
 
-  /** For each vehicle. As published, each decides at every reading of any, and drops most of what it decided.
+  /** Rows per second for each vehicle. As published, each decides at every reading of any vehicle, and drops
+    * most of its decisions.
     */
   private val RowsPerSecond = 300.0
 
   private val LongestGap = Span.ofSeconds(1.5)
 
-  /** After a flight in circles the simulated vehicle, yawed by then, circles around the place that it holds,
-    * some 5 m away; the slowest move would carry it 18 m.
+  /** Largest drift of a hovering vehicle. After a flight in circles the simulated vehicle, yawed by then,
+    * circles around the held position, some 5 m away; the slowest move would carry it 18 m.
     */
   private val Hovering = Metres(14)
 

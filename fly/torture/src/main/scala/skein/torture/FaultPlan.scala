@@ -7,16 +7,16 @@ import skein.settings.NamedScene
 import skein.signal.{LatencyProfile, SplitMix64}
 import skein.units.*
 
-/** What one flight has to go through; all of it follows from the seed. Times count from the flight's start.
+/** The faults of one flight, all derived from the seed. Times count from the flight's start.
   *
-  * @param calmFrom from here on nothing more goes wrong
+  * @param calmFrom end of the faults
   * @param faults of the link between controller and simulator
-  * @param messageFaults what a broken peer does to messages until `calmFrom`
-  * @param restarts of the simulator; afterwards an supervisor prepares the vehicles again
-  * @param stopAt when somebody ends the flight before its time
-  * @param clockAhead of the simulator against the controller, until it is started again
-  * @param scene what stands in the world
-  * @param looks whether the last vehicle looks for the first by a camera, beside what the scenario's eyes do
+  * @param messageFaults of a broken peer's messages until `calmFrom`
+  * @param restarts of the simulator; afterwards a supervisor prepares the vehicles again
+  * @param stopAt when a user ends the flight before its time
+  * @param clockAhead of the simulator against the controller, until a restart
+  * @param scene of the simulator's world
+  * @param looks whether the last vehicle detects the first by a camera, in addition to the scenario's eyes
   */
 final case class FaultPlan(
     seed: Long,
@@ -35,12 +35,12 @@ final case class FaultPlan(
     scene: NamedScene = NamedScene.Empty,
     looks: Boolean = false
 ):
-  /** Through which vehicles look. */
+  /** All eyes of the flight's vehicles. */
   def eyes: Vector[Eye] = scenario.eyes ++
     Option.when(looks)(FaultyEye(scenario.agents.last.name, scenario.agents.head.name, seed))
 
-  /** The same for another task. Loops that ask their vehicles in turn need a round trip for each, and to
-    * stand still costs the simulator a worker for each: with many vehicles `stream` flies in their place.
+  /** These faults for another task. Loops that read their vehicles in turn need a round trip for each, and
+    * standing still costs the simulator a worker for each: with many vehicles, `stream` replaces them.
     */
   def flying(task: Scenario): FaultPlan =
     val most = loop match
@@ -54,7 +54,6 @@ final case class FaultPlan(
     */
   def isFiled: Boolean = seed % 10 == 0
 
-  /** One line for a person. */
   override def toString: String =
     val what = Seq(
       Some(
@@ -77,15 +76,15 @@ final case class FaultPlan(
     )
     what.flatten.mkString("; ")
 
-/** How often a message meets each mischief, as a probability.
+/** Probabilities of faults per message.
   *
   * @param late an answer is held back for up to `lateBy`, and others overtake it
-  * @param doubled an answer comes twice
+  * @param doubled an answer arrives twice
   * @param nonsense an answer's result is of another type
-  * @param stray something is added that is no answer, or the answer to no call
-  * @param garbage something is added that is no MessagePack
-  * @param refused a move is asked for under a name that the simulator does not know
-  * @param lost an answer never comes, though its connection lives
+  * @param stray a message is added that is no answer, or the answer to no call
+  * @param garbage bytes are added that are no MessagePack
+  * @param refused a move is requested by a method name that the simulator does not know
+  * @param lost an answer never arrives, though its connection lives
   */
 final case class MessageFaults(
     late: Double = 0,
@@ -101,31 +100,30 @@ final case class MessageFaults(
 object MessageFaults:
   val None: MessageFaults = MessageFaults()
 
-/** The simulator ends at `at` and is there again after `lasts`, its clock then off by `clockJump`. */
+/** The simulator ends at `at` and restarts after `lasts`, with its clock off by `clockJump`. */
 final case class Restart(at: Span, lasts: Span, clockJump: Span)
 
-/** What happens to the recording. */
+/** A fault of the recording's disk: it blocks or fails. */
 enum Disk:
   case Sound
 
-  /** It writes nothing for a while; then what waits has to fit into the recorder's queue. */
+  /** It writes nothing for a while; meanwhile rows must fit into the recorder's queue. */
   case Blocks(at: Span, lasts: Span, capacity: Int)
 
   case Fails(at: Span)
 
 object FaultPlan:
-  /** In which control resumes once nothing more goes wrong: connecting again takes up to 2 s; an answer lost
-    * on a connection that lives holds control for 1.4 s at most (see [[skein.airsim.MoveQueue]]).
+  /** Time after the last fault within which control must resume: connecting again takes up to 2 s; an answer
+    * lost on a living connection blocks control for 1.4 s at most (see [[skein.airsim.MoveQueue]]).
     */
   val ResumesWithin: Span = Span.ofSeconds(3)
 
-  /** What each flight has at its end to show that control has resumed, and goes on. */
+  /** Time without faults at the end of each flight, in which control must resume and continue. */
   val Calm: Span = Span.ofSeconds(5)
 
-  /** Before this nothing goes wrong. */
+  /** Time before the first fault. */
   private val Start = Span.ofMillis(500)
 
-  /** The least that a flight can last. */
   val Shortest: Span = Start + Calm + Span.ofSeconds(1)
 
   def of(seed: Long, duration: Span): FaultPlan =
@@ -193,7 +191,7 @@ object FaultPlan:
         often(0.3)
       )
 
-    /** One in each of equal parts of the trouble, so that they do not overlap. */
+    /** One restart in each of equal parts of the faulty time, so that they do not overlap. */
     private def restarts(): Vector[Restart] =
       val count = 1 + random.nextInt((trouble.toSeconds / 4).toInt.max(1).min(5))
       val part  = trouble / count.toLong
@@ -216,5 +214,5 @@ object FaultPlan:
     private def upTo(most: Span): Span     = Span.ofNanos((random.nextDouble() * most.toNanos).toLong)
     private def pick[A](choices: A*): A    = choices(random.nextInt(choices.size))
 
-  /** That the supervisor needs before the next thing may go wrong. */
+  /** Time for the supervisor's preparation before the next fault. */
   private val Settling = Span.ofMillis(200)

@@ -6,8 +6,8 @@ import skein.scenario.{Eye, Recogniser}
 import skein.signal.{LatencyDistribution, LatencyProfile, SplitMix64}
 import skein.units.*
 
-/** An eye whose recogniser finds what is not there, finds nothing, refuses images, fails, and is late; nobody
-  * decides by it.
+/** An eye with a faulty recogniser: it invents, misses, refuses images, fails, and is late. No decision uses
+  * it.
   */
 private[torture] object FaultyEye:
   def apply(vehicle: String, target: String, seed: Long): Eye = Eye(

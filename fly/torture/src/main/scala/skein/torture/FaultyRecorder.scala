@@ -5,15 +5,15 @@ import scala.concurrent.{Future, Promise}
 import skein.record.*
 import skein.units.*
 
-/** Records as `recorder` does, onto a [[Disk]] that may block or fail: then rows wait in a bounded queue, and
-  * when that is full, the recording has failed.
+/** Passes records on to `recorder`, onto a [[Disk]] that may block or fail: then rows wait in a bounded
+  * queue, and when that is full, the recording has failed.
   */
 final class FaultyRecorder(recorder: Recorder, disk: Disk, clock: Clock, start: Instant) extends Recorder:
   private val failed  = Promise[RecordError]()
   private val taken   = mutable.ArrayBuffer.empty[Record]
   private var waiting = 0
 
-  /** What was offered, up to the first that could not be kept: what the recording must hold. */
+  /** The records offered up to the first that could not be kept: the recording must hold these. */
   def offered: Vector[Record] = taken.toVector
 
   def offer(record: Recordable): Unit = record.row match

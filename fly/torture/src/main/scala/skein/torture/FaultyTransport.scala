@@ -13,12 +13,11 @@ import skein.signal.SplitMix64
 import skein.units.*
 import upack.{Arr, Float64, Int32, Msg, Null, Str}
 
-/** A move as it came to the simulator: the velocity as it is on the wire. */
+/** A move as it arrived at the simulator: the velocity as on the wire. */
 final case class ReceivedMove(at: Instant, vehicle: String, north: Float, east: Float)
 
-/** The simulator's transport, with somebody in between who notes every move as it arrives, in the order of
-  * arrival, and until `calm` does to messages what the [[MessageFaults]] says. Connections from `spared` are
-  * left alone.
+/** The simulator's transport with an interceptor that records every move in the order of arrival, and until
+  * `calm` applies [[MessageFaults]] to messages. Connections from `spared` are not affected.
   */
 final class FaultyTransport(
     transport: Transport,
@@ -40,10 +39,10 @@ final class FaultyTransport(
 
   def arrivals: Vector[ReceivedMove] = arrived.toVector
 
-  /** When each vehicle was last told to hover. */
+  /** When each vehicle last received a command to hover. */
   def lastHovers: Map[String, Instant] = hovers.toMap
 
-  /** The most moves of one vehicle that the simulator had not answered at one time. */
+  /** The largest number of simultaneously unanswered moves of one vehicle. */
   def mostUnanswered: Int = most
 
   def connect(to: Address): Flow[ByteString, ByteString, Future[org.apache.pekko.Done]] =
@@ -119,7 +118,7 @@ final class FaultyTransport(
 private object FaultyTransport:
   private val ByVelocity = Set("moveByVelocityZ", "moveByVelocity")
 
-  /** What a vehicle is told, but for hovering. */
+  /** Methods that command a vehicle, except hovering. */
   private val Moves =
     ByVelocity ++ Set(
       "moveToPosition",
@@ -131,10 +130,10 @@ private object FaultyTransport:
 
   private val Hover = "hover"
 
-  /** Answers that one connection may hold back at once. */
+  /** Limit of answers that one connection may hold back simultaneously. */
   private val HeldBack = 1024
 
-  /** Cuts a stream of bytes into messages. */
+  /** Splits a stream of bytes into messages. */
   private def frames: Flow[ByteString, Array[Byte], NotUsed] =
     Flow[ByteString].statefulMap(() => new Framer())(
       (framer, bytes) =>
@@ -152,7 +151,7 @@ private object FaultyTransport:
       _ => None
     ).mapConcat(identity)
 
-  /** The same request with another last letter in its method's name. */
+  /** A request with another last letter in its method's name. */
   private def renamed(method: String, frame: Array[Byte]): ByteString =
     val at = frame.indexOfSlice(method.getBytes) + method.length - 1
     ByteString.fromArrayUnsafe(frame.updated(at, 'Q'.toByte))

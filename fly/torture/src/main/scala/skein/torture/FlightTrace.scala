@@ -6,21 +6,20 @@ import skein.record.{Record, RecordError, Recording}
 import skein.rpc.{RpcSettings, RpcStats}
 import skein.units.*
 
-/** What was seen of one flight from outside: enough to judge it.
+/** External observations of one flight: enough to judge it.
   *
   * @param ports by vehicle
   * @param arrivals at the simulator, in order, of all vehicles
-  * @param mostUnanswered moves of one vehicle that the simulator had not answered at one time
-  * @param mostPending calls that the client had not ended at one time
-  * @param lastHovers when, if ever, the simulator was last told that a vehicle is to hover
+  * @param mostUnanswered largest number of simultaneously unanswered moves of one vehicle
+  * @param mostPending largest number of simultaneously unfinished calls of the client
+  * @param lastHovers when, if ever, the simulator last received a command to hover for a vehicle
   * @param stats after the client was closed
   * @param offered to the recorder, in order, while it could keep it
-  * @param file what is read back from the recording's file, or why that is not possible, where a file was
-  *   written
+  * @param file the content of the recording's file, or why it cannot be read, if a file was written
   * @param runs of the simulator
-  * @param drifts how far each vehicle got within [[FlightTrace.Watched]], some time after the end
-  * @param steps calls that let the simulator's time run in steps
-  * @param callsBeside how often vehicles were asked for a sign of life
+  * @param drifts of each vehicle within [[FlightTrace.Watched]], some time after the end
+  * @param steps calls that advance the simulator's time in steps
+  * @param callsBeside number of requests for a sign of life
   * @param leftPaused whether the simulator stood still some time after the end
   * @param images of each eye, after it has ended
   */
@@ -54,5 +53,5 @@ final case class FlightTrace(
   def calmFrom: Instant = startedAt + faultPlan.calmFrom
 
 object FlightTrace:
-  /** How long the vehicles are watched after the end. */
+  /** Time for which the vehicles are observed after the end. */
   val Watched: Span = Span.ofSeconds(4)

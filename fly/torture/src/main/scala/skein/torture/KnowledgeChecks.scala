@@ -6,8 +6,8 @@ import skein.signal.Stamped
 import skein.units.*
 import skein.units.Decimals.fixed
 
-/** Judges what decisions were made from: whether it was the newest that the vehicles had told, and as old as
-  * was said.
+/** Judges the inputs of decisions: they must be the newest data that the vehicles reported, with correct
+  * ages.
   */
 private[torture] object KnowledgeChecks:
 
@@ -25,7 +25,7 @@ private[torture] object KnowledgeChecks:
       agesWrong(seen)
     ).flatten
 
-  /** What is on record of a vehicle is what it told, under the number of its question. */
+  /** Recorded states must equal the vehicle's reports, under the number of the request. */
   private def misquoted(seen: FlightTrace, told: Map[String, Vector[ReportedState]]): Vector[String] =
     val states = told.map((vehicle, answers) => vehicle -> answers.map(a => a.question -> a.state).toMap)
     seen.recording.readings
@@ -33,8 +33,8 @@ private[torture] object KnowledgeChecks:
       .map(reading => s"${reading.vehicle}: reading ${reading.sequence} is not what the vehicle answered")
       .toVector
 
-  /** No answer that the controller had is newer than the one decided upon, but for those that came within the
-    * time that a loop may take to join what belongs together.
+  /** A decision must use the newest answer received, except for those received within the time that a loop
+    * may take to join readings.
     */
   private def outdated(seen: FlightTrace, told: Map[String, Vector[ReportedState]]): Vector[String] =
     val joins = seen.faultPlan.loop match
@@ -49,7 +49,7 @@ private[torture] object KnowledgeChecks:
           s"used reading ${used.sequence} of ${used.vehicle} and had the newer ${newer.question} since " +
             s"${decision.decidedAt.since(newer.state.receivedAt).toMillis.fixed(1)} ms"
 
-  /** Nobody decides upon something older than what it has decided upon before. */
+  /** A decision must not use older data than an earlier one. */
   private def backwards(seen: FlightTrace): Vector[String] =
     val newest = scala.collection.mutable.Map.empty[(String, String), ReadingRow]
     firstOf(seen): (decision, used) =>
@@ -60,7 +60,7 @@ private[torture] object KnowledgeChecks:
           s"used reading ${used.sequence} of ${used.vehicle} after the newer ${reading.sequence}"
         )
 
-  /** What is read together is decided upon when the last of it comes. */
+  /** A decision on readings that belong together must be made when the last of them is received. */
   private def notAtOnce(seen: FlightTrace, told: Map[String, Vector[ReportedState]]): Vector[String] =
     val moments = told(seen.vehicles.last).map(_.state.receivedAt).toSet
     seen.recording.decisions
@@ -86,8 +86,8 @@ private[torture] object KnowledgeChecks:
       byArrival ++ trueAgesWrong(seen, decision)
     wrong.nextOption().toVector
 
-  /** Whether the simulator was started again since the step before was read: the readings of this one are of
-    * two clocks, or of a simulator that ran while they were asked for.
+  /** Whether the simulator was restarted since the previous step was read: this step's readings are of two
+    * clocks, or of a simulator that ran while they were requested.
     */
   private def ranWhileRead(seen: FlightTrace, decision: DecisionRow): Boolean =
     val answers =
@@ -114,9 +114,9 @@ private[torture] object KnowledgeChecks:
     yield s"${where(decision)}: $whose was ${old.toMillis.fixed(3)} ms old, told were " +
       s"${age.toMillis.fixed(3)} ms to within ${told.uncertainty.toMillis.fixed(3)} ms"
 
-  /** By how much the controller's clock was truly ahead of the simulator's. None while it cannot be known
-    * yet: all that a run before the simulator's present one has told must have gone by; and never, where the
-    * clock of a new run is so near to the one before that no answer shows the difference.
+  /** The true offset of the controller's clock from the simulator's. None while it cannot be known yet: until
+    * all reports of earlier runs have passed; and never, if a new run's clock is so near to the previous one
+    * that no answer shows the difference.
     */
   private def trueOffset(seen: FlightTrace, decision: DecisionRow): Option[Span] =
     if seen.faultPlan.loop == LoopKind.Paused then Some(Span.Zero)
@@ -148,8 +148,8 @@ private[torture] object KnowledgeChecks:
 
   private def where(decision: DecisionRow) = s"decision ${decision.sequence} of ${decision.vehicle}"
 
-  /** Whether one state was truly sampled after another, said without the loop's own word for it. Where the
-    * simulator was started again between them with nearly the same clock, only if what they tell shows it.
+  /** Whether one state was truly sampled after another, judged independently of the loop. If the simulator
+    * was restarted between them with nearly the same clock, only if the reports show it.
     */
   private[torture] def isNewer(runs: Vector[Run])(one: Stamped[?], other: Stamped[?]): Boolean =
     val offsets                               = clockOffset(runs, one).zip(clockOffset(runs, other))
@@ -158,18 +158,19 @@ private[torture] object KnowledgeChecks:
       (follows(one, other) && !follows(other, one))
     isShown && offsets.forall((mine, its) => one.validAt + mine > other.validAt + its)
 
-  /** Of the run of the simulator whose answer can have come from within the question's time. */
+  /** Clock offset of the run of the simulator whose answer can have been sampled within the request's time.
+    */
   private def clockOffset(runs: Vector[Run], state: Stamped[?]): Option[Span] =
     runs.map(_.clockOffset).find: offset =>
       val at = state.validAt + offset
       at >= state.sentAt && at <= state.receivedAt
 
-  /** What one vehicle told, in the order in which it came. */
+  /** The reports of one vehicle, in the order of receipt. */
   private final class History(answers: Vector[ReportedState]):
     private val arrivals = answers.map(_.state.receivedAt)
 
-    /** The first that came before `until`, and is newer than a reading. What is newer by much came lately:
-      * only the last [[Recent]] are looked at.
+    /** The first report received before `until` that is newer than a reading. Much newer ones were received
+      * lately: only the last [[Recent]] are searched.
       */
     def newerThan(
         used: ReadingRow,
@@ -181,11 +182,11 @@ private[torture] object KnowledgeChecks:
         answer.state.receivedAt < until && isNewer(answer.state, used.state)
       )
 
-  /** Answers of one vehicle within some 6 s. */
+  /** Number of answers of one vehicle within some 6 s. */
   private val Recent = 64
 
-  /** An answer that took longer has timed out, and what it belonged to is joined without it. */
+  /** Time after which an answer has timed out, and its view is joined without it. */
   private val Gone = Span.ofMillis(700)
 
-  /** A jump of the clock beyond the longest round trip contradicts what was known before. */
+  /** A clock jump beyond the longest round trip contradicts what was known before. */
   private val Noticed = Span.ofSeconds(1)

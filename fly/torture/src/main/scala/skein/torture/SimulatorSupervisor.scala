@@ -12,15 +12,15 @@ import skein.rpc.RpcClient
 import skein.simulator.{SimulatorServer, SimulatorSettings}
 import skein.units.*
 
-/** One run of the simulator, up to the next.
+/** One run of the simulator, until the next.
   *
   * @param from when it had started, on the controller's clock
   * @param clockOffset controller's clock minus simulator's, while it ran
   */
 final case class Run(from: Instant, clockOffset: Span)
 
-/** Runs the simulator, restarts it when the [[FaultPlan]] says so, and then brings the vehicles to their
-  * starts again. Has a connection of its own, without faults.
+/** Runs the simulator, restarts it according to the [[FaultPlan]], and then brings the vehicles to their
+  * starts again. It uses a separate connection without faults.
   */
 final class SimulatorSupervisor(
     scenario: Fleet,
@@ -34,7 +34,7 @@ final class SimulatorSupervisor(
   private var server = Option.empty[SimulatorServer]
   private var ran    = Vector.empty[Run]
 
-  /** One after the other, which clock the simulator had. */
+  /** The runs of the simulator so far, with their clocks. */
   def runs: Vector[Run] = ran
 
   /** Starts the simulator, its clock off by `clockJump`, and prepares the vehicles. */
@@ -54,7 +54,6 @@ final class SimulatorSupervisor(
       _ <- start(restart.clockJump)
     yield Done
 
-  /** Where every vehicle is, world NED. */
   def positions(vehicles: Vector[VehicleClient]): Future[Vector[Vector3]] =
     asking: client =>
       Future.sequence:

@@ -5,14 +5,14 @@ import skein.scenario.Scenario
 import skein.settings.NamedScene
 import skein.units.*
 
-/** What one flight through faults did wrong; nothing where it is clean. */
+/** The violations of one flight with faults; empty if there are none. */
 final case class FaultVerdict(faultPlan: FaultPlan, violations: Vector[String]):
   def isClean: Boolean = violations.isEmpty
 
 /** Seeded flights through faults, each checked from outside. */
 object Torture:
 
-  /** Flies the fault plan of one seed. A flight that cannot be flown to its end is a violation, too. */
+  /** Runs the fault plan of one seed. A flight that fails is a violation, too. */
   def of(
       seed: Long,
       duration: Span,
@@ -22,22 +22,24 @@ object Torture:
     val drawn = plan(seed, duration, scenario, scene)
     FaultVerdict(drawn, violations(Checks.violations(TortureFlight.fly(drawn))))
 
-  /** What happens to the flight of a seed. */
+  /** The fault plan of a seed's flight. */
   def plan(seed: Long, duration: Span, scenario: Option[Scenario], scene: Option[NamedScene]): FaultPlan =
     val drawn = FaultPlan.of(seed, duration)
     val flown = scenario.fold(drawn)(drawn.flying)
     scene.orElse(NamedScene.shipped(flown.scenario.scene)).fold(flown)(in => flown.copy(scene = in))
 
-  /** Whatever is thrown, stack overflow and want of memory included: no seed may be lost. */
+  /** Collects violations; any exception counts as one, stack overflow and lack of memory included: no seed
+    * may be lost.
+    */
   private[torture] def violations(found: => Vector[String]): Vector[String] =
     try found
     catch case error: Throwable => Vector(error.toString)
 
-  /** Flies many, as many at once as there are `threads`. Blocks.
+  /** Runs many seeds on `threads` threads. Blocks.
     *
-    * @param scenario that is flown; without one, duels
-    * @param scene what stands in the world; without one, what the scenario says
-    * @param onVerdict told of each as it comes, on the calling thread
+    * @param scenario of the flights; by default duels
+    * @param scene of the simulator's world; by default the scenario's
+    * @param onVerdict called with each result as soon as it is ready, on the calling thread
     */
   def all(
       seeds: Iterator[Long],

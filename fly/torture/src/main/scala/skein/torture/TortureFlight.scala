@@ -17,12 +17,11 @@ import skein.simulator.SimulatorSettings
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** Flies a team through an [[FaultPlan]] in virtual time. Client, link, server, simulator, loop and recorder
-  * are those of a live flight; what is watched or spoilt is wrapped around them.
+/** Runs a team through a [[FaultPlan]] in virtual time. Client, link, server, simulator, loop and recorder
+  * are those of a live flight; observers and faults are wrapped around them.
   */
 object TortureFlight:
 
-  /** Flies to the end on the calling thread. */
   def fly(faultPlan: FaultPlan): FlightTrace =
     VirtualTime
       .run(faultPlan.seed, VirtualFlights.limitsOf(faultPlan.loop, faultPlan.duration), silent)(system =>
@@ -38,7 +37,7 @@ object TortureFlight:
       Files.deleteIfExists(file): Unit
       Files.delete(folder)
 
-  /** Broken connections are what this is about; nobody needs to be warned of each. */
+  /** Suppresses warnings: broken connections are expected here. */
   private val silent: Config = ConfigFactory
     .parseString("pekko { loglevel = OFF, stdout-loglevel = OFF }")
     .withFallback(ConfigFactory.load())
@@ -175,9 +174,6 @@ object TortureFlight:
 
     private def samplePending(): Unit = mostPending = mostPending.max(rpc.stats.pending)
 
-    /** When the vehicles must hover: soon, or where the command to hover may not have come through, after the
-      * last move has lasted its time.
-      */
     private def restOf(endedAt: Instant): Span =
       val ended = endedAt.since(start)
       if ended > faultPlan.calmFrom + FaultPlan.ResumesWithin then ended + TortureFlight.ComesToRest
@@ -205,7 +201,7 @@ object TortureFlight:
 
   private val connectTimeout = Span.ofSeconds(1)
 
-  /** From 10 m/s to a hover. A move still under way would fly on for longer than this and
+  /** Time to stop from 10 m/s. A move that is still in effect would last longer than this and
     * [[FlightTrace.Watched]].
     */
   private val ComesToRest = Span.ofSeconds(5)

@@ -8,22 +8,21 @@ import skein.port.{Sensor, SteppedTime, VehicleError, VehiclePort}
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 
-/** A move as the loop sent it. What is no velocity is told apart by its place among the moves alone.
+/** A move as the loop sent it. One that is no velocity is identified only by its place among the moves.
   *
-  * @param north m/s; 0 where it is no velocity
+  * @param north m/s; 0 if it is no velocity
   */
 final case class Sending(at: Instant, north: Float, east: Float)
 
-/** Where a vehicle said that it is.
+/** A state that a vehicle reported.
   *
-  * @param question counts what the vehicle was asked
+  * @param question number of the vehicle's request
   */
 final case class ReportedState(question: Long, state: Stamped[Kinematics])
 
-/** A port that keeps account of every call: how it began, that it ended, what it told, how many were
-  * outstanding.
+/** A port that counts every call: its begin, its end, its report, and the number of unfinished calls.
   *
-  * @param eyes sensors besides, which keep account of their calls themselves
+  * @param eyes further sensors, which count their calls themselves
   */
 final class WatchedVehicle(port: VehiclePort, clock: Clock, eyes: Map[String, Sensor] = Map.empty)(using
     ExecutionContext
@@ -40,10 +39,9 @@ final class WatchedVehicle(port: VehiclePort, clock: Clock, eyes: Map[String, Se
 
   def sendings: Vector[Sending] = moves.toVector
 
-  /** In the order in which they came. */
+  /** The answers in the order of receipt. */
   def answers: Vector[ReportedState] = told.toVector
 
-  /** Whether the last command was to hover. */
   def toldToHover: Boolean = lastIsHover
 
   def read(): Future[Either[VehicleError, Stamped[Kinematics]]] =
@@ -66,12 +64,12 @@ final class WatchedVehicle(port: VehiclePort, clock: Clock, eyes: Map[String, Se
     lastIsHover = true
     commands.count(port.hover())
 
-/** A sensor that counts its calls. */
+/** A sensor that counts its calls, begun and ended. */
 private final class WatchedSensor(sensor: Sensor, calls: CallCount)(using ExecutionContext) extends Sensor:
   export sensor.columns
   def read(): Future[Either[VehicleError, Stamped[IArray[Double]]]] = calls.count(sensor.read())
 
-/** A stepper that counts its calls. */
+/** A stepper that counts its calls, begun and ended. */
 final class WatchedTime(stepper: SteppedTime)(using ExecutionContext) extends SteppedTime:
   val calls = CallCount()
 
@@ -79,7 +77,7 @@ final class WatchedTime(stepper: SteppedTime)(using ExecutionContext) extends St
   def resume(): Future[Either[VehicleError, Unit]]                = calls.count(stepper.resume())
   def continueFor(span: Span): Future[Either[VehicleError, Unit]] = calls.count(stepper.continueFor(span))
 
-/** Calls begun and ended. */
+/** Counts of calls that were begun and ended. */
 final class CallCount:
   var begun, ended, most = 0
 

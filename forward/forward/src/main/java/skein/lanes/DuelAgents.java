@@ -17,17 +17,16 @@ final class DuelAgents extends TimetableAgents {
   private final int self;
   private final LaneObservation observation;
 
-  /** Whether somebody outside looks at what it sees. */
+  /** Whether a caller outside the kernel reads its observations. */
   private final boolean isTold;
 
-  /** By which alone it knows of its opponent, or null. */
+  /** The camera that is its only knowledge of the opponent, or null. */
   private final TimetableEye eye;
 
-  /**
-   * @param self the vehicle's number, 0 or 1
-   * @param effort where the changes of the heading are added up
-   * @param isTold whether somebody outside looks at all that it sees
-   * @param eye by which alone it knows of its opponent; null for one that is told
+  /** @param self the vehicle's number, 0 or 1
+   * @param effort receives the sums of the heading's changes
+   * @param isTold whether a caller outside the kernel reads all of its observations
+   * @param eye the camera that is its only knowledge of the opponent; null if it reads the opponent's state
    */
   DuelAgents(
       int self,
@@ -58,7 +57,7 @@ final class DuelAgents extends TimetableAgents {
     Arrays.fill(effort, 0f);
   }
 
-  /** One world begins anew where its vehicle starts, commanded along a heading all the while. */
+  /** Restarts one world: its vehicle is at its start, commanded along a constant heading before. */
   void restart(int world, float headingRad) {
     vehicles.restart(world);
     policy.restart(world, headingRad);
@@ -98,7 +97,7 @@ final class DuelAgents extends TimetableAgents {
     policy.commit(effort);
   }
 
-  /** Looks at what a decision is made upon. */
+  /** Fills the observation of a decision. */
   void see(TimetableAgents[] all, int[] views, int view, float[] times, int number) {
     TimetableVehicles ours = vehicles, theirs = all[1 - self].vehicles;
     int ownSeen = views[view + self] * WORLDS,
@@ -116,7 +115,7 @@ final class DuelAgents extends TimetableAgents {
     }
   }
 
-  /** The same by what is believed. */
+  /** Fills the observation of a decision by the estimate of the camera. */
   private void believe(int ownSeen, float[] times, int number) {
     eye.look(vehicles, ownSeen, times[number + 2], times[number + 3]);
     observation.seeFromOwn(LaneObservation.X, eye.northM());

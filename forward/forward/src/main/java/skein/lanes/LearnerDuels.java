@@ -17,19 +17,17 @@ import skein.lanes.timetable.TimetableKernel;
 import skein.lanes.timetable.TimetableScores;
 import skein.policy.HeadingPolicy;
 
-/**
- * Duels in {@link #WORLDS} worlds side by side, by one timetable, that stop whenever somebody outside
- * is to decide: what {@link TimetableDuels} flies, for learners. The evader is vehicle 0. Nothing is
- * allocated after construction but where a timetable needs more places than any before.
+/** Simulates duels in {@link #WORLDS} worlds side by side, by one timetable, and stops whenever an external
+ * learner must decide: the duels of {@link TimetableDuels}, for learners. The evader is vehicle 0. Allocates
+ * nothing after construction, unless a timetable needs more places than any before.
  *
- * <p>Who decides from outside is a policy of a single number, which is told before each decision. So
- * a decision takes the same way as any policy's, to the same bits.
+ * <p>An external decision is represented by a policy of a single number, which is set before each decision.
+ * So a decision passes through the code of any policy, with identical bits.
  */
 public final class LearnerDuels implements TimetableScores {
-  /** Worlds flown together. */
   public static final int WORLDS = LanePolicy.WORLDS;
 
-  /** Numbers of an observation, in the order of {@link #observe}. */
+  /** Length of an observation, in the order of {@link #observe}. */
   public static final int FIELDS = 9;
 
   private static final int VEHICLES = 2;
@@ -43,7 +41,7 @@ public final class LearnerDuels implements TimetableScores {
   private final TimetableKernel kernel;
   private Timetable timetable;
 
-  /** The timetable's next operation, and up to which decisions are due. */
+  /** Index of the timetable's next operation, and end of the decisions that are due. */
   private int next, dueUntil;
 
   private float untilS;
@@ -51,10 +49,9 @@ public final class LearnerDuels implements TimetableScores {
   private static final int NEWEST = 0, SUM = 1, LEAST = 2;
   private final Scoreboard scores = Scoreboard.ofLearners();
 
-  /**
-   * @param duel start, speeds and duration
-   * @param evader of a single number where it decides from outside
-   * @param isOutside whether the evader, and whether the pursuer does
+  /** @param duel start, speeds and duration
+   * @param evader a policy of a single number if it decides externally
+   * @param isOutside whether the evader, and whether the pursuer, decides externally
    */
   public LearnerDuels(
       Duel duel, LaneDynamics model, HeadingPolicy evader, HeadingPolicy pursuer, boolean[] isOutside) {
@@ -73,17 +70,16 @@ public final class LearnerDuels implements TimetableScores {
     kernel = new TimetableKernel(agents, this);
   }
 
-  /** Why a policy does not fly so, for a person; nothing where it does. */
+  /** Why a policy cannot be simulated here, for a person; empty if it can. */
   public static Optional<String> refusal(HeadingPolicy policy) {
     return PolicyLanes.of(policy).fold(
         refused -> Optional.of("expected a policy that is a formula: " + refused.getMessage()),
         form -> Optional.empty());
   }
 
-  /**
-   * Every world is at the start of a timetable; where its vehicles are, {@link #restart} tells.
+  /** Sets every world to the start of a timetable; {@link #restart} sets the vehicles' positions.
    *
-   * @param untilS distances count up to this time
+   * @param untilS time of the last distance that counts
    */
   public void start(Timetable timetable, float untilS) {
     this.timetable = timetable;
@@ -93,10 +89,9 @@ public final class LearnerDuels implements TimetableScores {
     kernel.start(timetable, WORLDS);
   }
 
-  /**
-   * One world begins anew: its vehicles rest at their starts, so tell all readings, and so will those
-   * on their way; they were commanded along their headings all the while. Questions and commands stay
-   * under way as they are: the loop runs already.
+  /** Restarts one world: its vehicles rest at their starts, in all readings, also those on their way; they
+   * were commanded along their headings before. Requests and commands on their way stay unchanged: the loop
+   * runs already.
    *
    * @param vehicle 0 the evader, 1 the pursuer
    */
@@ -106,7 +101,7 @@ public final class LearnerDuels implements TimetableScores {
     agents[vehicle].restart(world, headingRad);
   }
 
-  /** Flies on until somebody outside is to decide; false at the end of the timetable. */
+  /** Simulates until an external decision is due; false at the end of the timetable. */
   public boolean flyOn() {
     int[] operations = timetable.operations();
     while (next < timetable.size() && !isDue(operations, next)) kernel.perform(next++);
@@ -133,7 +128,7 @@ public final class LearnerDuels implements TimetableScores {
     return false;
   }
 
-  /** Whether a vehicle is among those to decide for now. */
+  /** Whether a vehicle's external decision is due. */
   public boolean isDue(int vehicle) {
     return operationOf(vehicle) >= 0;
   }
@@ -144,11 +139,10 @@ public final class LearnerDuels implements TimetableScores {
     return -1;
   }
 
-  /**
-   * What a vehicle that is due sees in all worlds, {@link #FIELDS} rows of {@link #WORLDS} numbers:
-   * the opponent's place ahead and to the right, m; how fast it goes away ahead and to the right, m/s;
-   * cosine and sine of its heading from the own one; the time since the own last decision, the age of
-   * the own reading and of the opponent's, s. Ahead is where the own last command led.
+  /** The observation of a vehicle whose decision is due, in all worlds: {@link #FIELDS} rows of {@link
+   * #WORLDS} numbers: the opponent's position ahead and to the right, m; its relative velocity ahead and to
+   * the right, m/s; cosine and sine of its heading from the own one; the time since the own last decision,
+   * the age of the own reading and of the opponent's, s. Ahead is the direction of the own last command.
    */
   public void observe(int vehicle, float[] into) {
     int operation = operationOf(vehicle), field = operation * Timetable.Fields();
@@ -173,7 +167,7 @@ public final class LearnerDuels implements TimetableScores {
     System.arraycopy(observation.opponentAge, 0, into, 8 * WORLDS, WORLDS);
   }
 
-  /** North and east, as ahead and to the right of a direction. */
+  /** Rotates north and east components to ahead and right of a direction. */
   private static void turn(
       float[] x, float[] y, int from, Directions own, int at, float[] into, int to) {
     for (int i = 0; i < WORLDS; i += LANES) {
@@ -186,32 +180,30 @@ public final class LearnerDuels implements TimetableScores {
     }
   }
 
-  /** Tells the policy that decides for a vehicle from outside its number in one world. */
+  /** Sets the number of a vehicle's external decision in one world. */
   public void tell(int vehicle, int world, float number) {
     policies[vehicle].tell(world, number);
   }
 
-  /** Those that are due decide, by what they were told. */
+  /** Makes the due decisions, by the numbers that were set. */
   public void decide() {
     while (next < dueUntil) kernel.perform(next++);
   }
 
-  /** When the distances were scored last, since the timetable's start, s. */
+  /** Time of the last scored distance, since the timetable's start, s. */
   public float scoredAtS() {
     return scores.scoredAtS();
   }
 
-  /** The distance scored last, m. */
   public float distance(int world) {
     return scores.soFar(NEWEST, world);
   }
 
-  /** Of the distances scored since {@link #forgetScores} the sum, m. */
+  /** Sum of the distances scored since {@link #forgetScores}, m. */
   public float distanceSum(int world) {
     return scores.soFar(SUM, world);
   }
 
-  /** The same of the least. */
   public float distanceLeast(int world) {
     return scores.soFar(LEAST, world);
   }

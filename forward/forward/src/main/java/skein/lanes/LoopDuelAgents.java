@@ -26,18 +26,16 @@ final class LoopDuelAgents extends LaneAgents {
   private final LanePolicy policy;
   private final float startHeading;
 
-  /** The sum of the decided headings' changes, rad. */
+  /** Sums of the changes of the decided headings, rad. */
   private final float[] effort;
 
   private final LaneObservation observation = new LaneObservation(elapsedS);
   private final Directions known = new Directions(WORLDS);
 
-  /** By which alone it knows of its opponent, or null. */
+  /** The camera that is its only knowledge of the opponent, or null. */
   private LoopEye eye;
 
-  /**
-   * @param effort where the sums of the decided headings' changes go, rad
-   */
+  /** @param effort receives the sums of the changes of the decided headings, rad */
   LoopDuelAgents(
       int self, RolloutAgent agent, LoopLanes loop, LaneDynamics model, LanePolicy policy, float[] effort) {
     super(self, loop, model.deadTimeS(), model.flights(agent, loop));
@@ -47,7 +45,7 @@ final class LoopDuelAgents extends LaneAgents {
     loop.carryForward(self, agent, vehicles);
   }
 
-  /** From now on it knows of its opponent by this alone. */
+  /** Sets the camera that is its only knowledge of the opponent. */
   void seeBy(LoopEye eye) {
     this.eye = eye;
   }
@@ -88,7 +86,7 @@ final class LoopDuelAgents extends LaneAgents {
     else see(all[1 - self], offers, vectors, readAt);
   }
 
-  /** Decides upon what is believed. */
+  /** Decides by the camera's estimate of the opponent. */
   private void believe(LaneVectors vectors) {
     float[] own = seen();
     int from = seenFrom();
@@ -109,7 +107,7 @@ final class LoopDuelAgents extends LaneAgents {
     policy.decide(observation, decided, 0, eye.heading(), 0, decidedNow, 0);
   }
 
-  /** Decides upon what is read. */
+  /** Decides by the readings of both vehicles. */
   private void see(LaneAgents opponents, LaneOffers offers, LaneVectors vectors, int[][] readAt) {
     for (int what = 0; what < (policy.needsVelocity() ? LaneObservation.READ : LaneObservation.VX); what++) {
       int from = seenFrom() + what * WORLDS;

@@ -10,9 +10,7 @@ import jdk.incubator.vector.IntVector;
 import skein.simd.LaneMath;
 import skein.simd.LaneRandom;
 
-/**
- * Draws a block's candidates by SIMD, and weighs them. {@link ScalarBlock} is the scalar reference.
- */
+/** Draws a block's candidates by SIMD, and weights them. {@link ScalarBlock} is the scalar reference. */
 abstract class SampledBlock extends CandidateBlock {
   private static final float LEAST_EXPONENT = -80f, MOST_EXPONENT = 20f;
 
@@ -21,7 +19,9 @@ abstract class SampledBlock extends CandidateBlock {
   private static final int BYTES = 0x00ff00ff;
   private static final int LOWER = 0xffff;
 
-  /** The bits of 2²³, whose lowest ones count up from there: an integer becomes a float by them. */
+  /** The bits of the float 2²³: adding an integer below 2²³ to them, as an integer, gives 2²³ plus that
+   * number.
+   */
   private static final int FLOAT_BITS = 0x4b000000;
 
   private static final float FLOAT_BASE = 8388608f + 510f;

@@ -1,55 +1,53 @@
 package skein.simd;
 
-/**
- * A compiled formula: the same arithmetic in {@link #COUNT} worlds, several at a time. Made by {@link
- * LaneCompiler}. It keeps nothing between calls.
+/** A compiled formula: equal arithmetic in {@link #COUNT} worlds, by SIMD. {@link LaneCompiler} makes it.
+ * Stateless between calls.
  */
 public abstract class LaneFunction {
-  /** Worlds computed by one call: a multiple of every lane count, few enough for the first-level cache. */
+  /** Number of worlds of one call: a multiple of every lane count, small enough for the first-level cache. */
   public static final int COUNT = 128;
 
-  /**
-   * So many numbers at the begin of scratch and of parameters are unused. Else the index of the first would
-   * be the loop's counter with nothing added, which the JVM's compiler may take for the loop's end; then it
-   * peels the loop, for 14 s with some expressions.
+  /** Number of unused entries at the begin of scratch and of parameters. Otherwise the index of the first
+   * entry would be the loop's counter with nothing added, which the JIT compiler may mistake for the loop's
+   * end; then it peels the loop, for 14 s with some expressions.
    */
   static final int UNUSED = LaneMath.LANES;
 
-  /** How many numbers {@link #apply} needs to lay results by. */
+  /** Number of scratch floats that {@link #apply} needs. */
   public abstract int scratch();
 
-  /** Whether it is one pass: then its outputs may lie where its inputs do. */
+  /** Whether it is a single pass: then its outputs may overwrite its inputs. */
   public abstract boolean isOnePass();
 
-  /**
-   * Where a world's parameter stands among all: those of worlds that are computed together are one
-   * stretch, for a pass through many that are used once reads them as fast as memory comes.
+  /** Offset of a world's parameter among all: parameters of worlds that are computed together are contiguous,
+   * because a pass over many values that are used once then reads at memory speed.
    *
-   * @param count of parameters that each world has
+   * @param count of parameters per world
    */
   public static int place(int parameter, int world, int count) {
     int lane = world % LaneMath.LANES;
     return UNUSED + (world - lane) * count + parameter * LaneMath.LANES + lane;
   }
 
-  /** How many numbers hold the parameters of all worlds, of which each has so many. */
+  /** Number of floats for the parameters of all worlds. */
   public static int places(int count) {
     return UNUSED + COUNT * count;
   }
 
-  /**
-   * @param arrays of the inputs in their order, then of the outputs; unused ones may be null. An
-   *     output must not lie where an input does, unless the function {@link #isOnePass is one pass},
-   *     or nothing reads that input but the output itself and what it is computed of.
-   * @param offsets where in its array each begins
-   * @param parameters at their {@link #place places}; where all worlds have the same, one after the other
+  /** Evaluates the formula.
+   *
+   * @param arrays of the inputs in their order, then of the outputs; unused ones may be null. An output must
+   *   not overlap an input, unless the function {@link #isOnePass is one pass}, or only that output's
+   *   computation reads that input
+   * @param offsets of each in its array
+   * @param parameters at their {@link #place places}; consecutive where all worlds share them
    * @param scratch of {@link #scratch()} numbers
-   * @param worlds those that count are the first
+   * @param worlds number of worlds that count, from the first
    */
   public abstract void apply(
       float[][] arrays, int[] offsets, float[] parameters, float[] scratch, int worlds);
 
-  /** The same for all worlds. */
+  /** Evaluates the formula for all {@link #COUNT} worlds. */
   public final void apply(float[][] arrays, int[] offsets, float[] parameters, float[] scratch) {
     apply(arrays, offsets, parameters, scratch, COUNT);
   }

@@ -6,29 +6,24 @@ import jdk.incubator.vector.FloatVector;
 import jdk.incubator.vector.IntVector;
 import jdk.incubator.vector.VectorSpecies;
 
-/**
- * What passes over lanes of floats are written with: the lanes, and the exponential by polynomials,
- * with the same bits in every lane, on every machine and at every lane count. Error bounds are held by
- * {@code LaneMathSuite}.
+/** Primitives of SIMD passes over floats: the lanes, and the exponential by polynomials, with identical bits
+ * in every lane, on every machine and at every lane count. Error bounds are held by {@code LaneMathSuite}.
  *
- * <p>Kernels are written as passes over blocks of worlds. The compiler stops inlining methods of
- * ours once a compilation holds 18,000 nodes, some 60 vector operations, and a vector that crosses
- * a call is boxed, which costs a factor of ten; methods of the vector API itself it always inlines.
- * So a pass calls none of our methods; then it may be long. A constant vector is an object whose
- * lanes are read from memory in every round, since a pass's stores might have changed them: what a
- * loop needs is broadcast before it. A vector that a loop carries begins as a computed one; with a
- * constant it is boxed.
+ * <p>Kernels are written as passes over blocks of worlds. The compiler stops inlining methods of ours once a
+ * compilation holds 18,000 nodes, some 60 vector operations, and a vector that crosses a call is boxed, which
+ * costs a factor of ten; methods of the vector API itself it always inlines. So a pass calls none of our
+ * methods; then it may be long. A constant vector is an object whose lanes are read from memory in every
+ * round, since a pass's stores might have changed them: what a loop needs is broadcast before it. A vector
+ * that a loop carries begins as a computed one; with a constant it is boxed.
  */
 public final class LaneMath {
   private LaneMath() {}
 
-  /** As many lanes as the machine has. Results do not depend on it. */
+  /** The machine's preferred lanes. Results do not depend on their number. */
   public static final VectorSpecies<Float> SPECIES = FloatVector.SPECIES_PREFERRED;
 
-  /** As many lanes of integers as of floats. */
   public static final VectorSpecies<Integer> INTS = IntVector.SPECIES_PREFERRED;
 
-  /** Lanes of {@link #SPECIES}. */
   public static final int LANES = SPECIES.length();
 
   public static final FloatVector ZERO = constant(0f);

@@ -7,7 +7,9 @@ import static skein.simd.LaneMath.LANES;
 
 import jdk.incubator.vector.IntVector;
 
-/** {@link WorldRandom} of many worlds at a time. Apart from it, so that it runs without vectors. */
+/** {@link WorldRandom} for many worlds by SIMD. A separate class, so that the scalar one runs without
+ * vectors.
+ */
 public final class LaneRandom {
   private LaneRandom() {}
 

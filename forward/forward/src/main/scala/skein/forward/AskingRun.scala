@@ -1,23 +1,21 @@
 package skein.forward
 
-/** A loop that asks every vehicle periodically and goes by the newest reading of each. Mutable. */
+/** A loop that reads every vehicle periodically and uses the newest reading of each. Mutable. */
 private[skein] abstract class AskingRun(protected val world: RolloutWorld, periodS: Double, asking: Asking)
     extends LoopRun,
       PeriodicQuestions.Seen:
 
-  /** By vehicle. */
   protected val questions: Array[PeriodicQuestions] =
     Array.tabulate(world.count)(PeriodicQuestions(world, _, Nanos.of(periodS), asking, this))
 
-  /** Of the newest reading of each vehicle, ns. */
+  /** Times of the newest reading of each vehicle, ns. */
   protected val validAt, receivedAt = Array.ofDim[Long](world.count)
 
-  /** Which vehicles have been seen. */
   protected val known = Array.ofDim[Boolean](world.count)
 
   def start(): Unit = begin(0)
 
-  /** Begins at a question, when all before were answered and used, if there were any. */
+  /** Begins at a request, when all before were answered and used, if there were any. */
   protected def begin(question: Int): Unit =
     java.util.Arrays.fill(known, question > 0)
     java.util.Arrays.fill(validAt, Long.MinValue)
@@ -38,5 +36,5 @@ private[skein] abstract class AskingRun(protected val world: RolloutWorld, perio
       receivedAt(vehicle) = world.receivedAtNs(at)
       renewed(vehicle, question)
 
-  /** The answer to a question is newer than what was known of its vehicle. */
+  /** Called when an answer is newer than the previous reading of its vehicle. */
   protected def renewed(vehicle: Int, question: Int): Unit

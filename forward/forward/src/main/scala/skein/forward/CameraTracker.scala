@@ -4,10 +4,10 @@ import skein.fusion.{Exposure, Fusion, Measurement, SensorModel}
 import skein.policy.CameraPursuer
 import skein.units.*
 
-/** What a vehicle believes of its opponent by a [[SensorModel]] while it flies: what images show, and what
-  * came of them. Mutable; allocates.
+/** A vehicle's estimate of its opponent by a [[SensorModel]] during a simulated flight: takes images and
+  * evaluates them. Mutable; allocates.
   *
-  * @param opponent whom it looks for
+  * @param opponent to be detected
   */
 private[skein] final class CameraTracker(
     world: RolloutWorld,
@@ -51,7 +51,7 @@ private[skein] final class CameraTracker(
     world.observer.exposed(agent, number, world.nowNs, image)
     model.measured(Instant.ofNanos(world.nowNs), image)
 
-  /** While the world stands still, an image is waited for. */
+  /** The estimate; in a world that waits for the controller, the time of an image passes first. */
   def believed(aheadS: Option[Double]): (placeNed: Vector3, velocityNed: Vector3, ageS: Double) =
     if world.standsStill then
       waitedFor += 1

@@ -3,10 +3,10 @@ package skein.forward
 import skein.policy.*
 import skein.units.*
 
-/** Asks a policy of any kind for a horizontal velocity at the altitude of its vehicle's start: what forward
-  * simulation flies. Mutable: it holds what the policy remembers.
+/** Requests a horizontal velocity at the altitude of its vehicle's start from a policy of any kind, as
+  * forward simulation requires. Mutable: it holds the policy's memory.
   *
-  * @param regardsYaw whether the vehicle flies otherwise when it is told to turn
+  * @param regardsYaw whether the vehicle's motion depends on a commanded yaw
   */
 private[skein] final class Choosing(agent: RolloutAgent, regardsYaw: Boolean):
   import Choosing.Chosen
@@ -15,10 +15,11 @@ private[skein] final class Choosing(agent: RolloutAgent, regardsYaw: Boolean):
   private def whose       = OwnFailure.named("policy", policy)
   private def own         = memory.asInstanceOf[policy.Memory]
 
-  /** Before the first decision. */
   def start(): Unit = memory = OwnFailure.told(whose)(policy.start)
 
-  /** @throws OwnFailure if the policy throws, or decides for what forward simulation does not fly
+  /** Decides on an observation.
+    *
+    * @throws OwnFailure if the policy throws, or its action is not supported by forward simulation
     */
   def choose(seen: Observation): Chosen =
     val (action, next) = OwnFailure.told(whose)(policy.choose(seen, own))
@@ -38,5 +39,5 @@ private[skein] final class Choosing(agent: RolloutAgent, regardsYaw: Boolean):
         )
 
 private[skein] object Choosing:
-  /** A velocity, m/s, and the heading and speed that stand for it where others ask for them. */
+  /** A velocity, m/s, with the heading and speed that represent it for policies of headings. */
   final case class Chosen(headingRad: Double, speedMps: Double, northMps: Double, eastMps: Double)

@@ -11,8 +11,7 @@ import skein.policy.{
 import skein.signal.Kinematics
 import skein.units.{Instant, Metres, MetresPerSecond, OwnFailure, Radians, Span}
 
-/** What a decision is made from: a reading of each vehicle, and the headings sent to them until then.
-  * Mutable.
+/** The data for a decision: a reading of each vehicle, and the last headings sent to them. Mutable.
   *
   * @see `skein.loop.TeamView`, which the live loops hold
   */
@@ -28,15 +27,15 @@ private[skein] final class RolloutView(world: RolloutWorld) extends Grounds:
 
   val reading: Array[Int] = Array.ofDim[Int](count)
 
-  /** The step of the loop that each vehicle's reading belongs to; what a delay is drawn by. */
+  /** The step of the loop to which each vehicle's reading belongs; the index of its random delays. */
   val step: Array[Int] = Array.ofDim[Int](count)
 
   val validAtNs: Array[Long] = Array.ofDim[Long](count)
 
-  /** All that the readings tell, in worlds that keep it. */
+  /** The full readings, in worlds that keep them. */
   val kinematics: Array[Kinematics] = Array.ofDim[Kinematics](if keepsAll then count else 0)
 
-  /** What the readings are to be replaced by when it is decided. */
+  /** The forecast whose predictions replace the readings at the decision. */
   var forecast: Option[Forecast] = None
 
   def copyFrom(other: RolloutView): Unit =
@@ -58,17 +57,17 @@ private[skein] final class RolloutView(world: RolloutWorld) extends Grounds:
     reading(vehicle) = question
     validAtNs(vehicle) = world.validAtNs(slot)
 
-  /** Takes the headings sent to all vehicles until now. */
+  /** Copies the last headings sent to all vehicles. */
   def takeSent(controllers: Array[Controller]): Unit =
     for vehicle <- 0 until count do
       sent(vehicle) = controllers(vehicle).sentHeading
       sentDecision(vehicle) = controllers(vehicle).sentDecision
 
-/** Decides for one vehicle and commands it, as `skein.flow.Pace` and `skein.flow.Steer` let it: the newest
-  * observation, at least an interval after the last, whenever a command may be sent.
+/** Decides for one vehicle and commands it, with the timing of `skein.flow.Pace` and `skein.flow.Steer`: the
+  * newest observation, at least an interval after the last, whenever a command may be sent.
   *
   * @param intervalNs between two decisions, or between two commands if it `decidesFirst`
-  * @param decidesFirst decides at every observation; then what waits is the decision
+  * @param decidesFirst decides at every observation; then decisions wait, and not observations
   */
 private[skein] final class Controller(
     world: RolloutWorld,
@@ -97,32 +96,30 @@ private[skein] final class Controller(
   private var sentNumber    = 0
   private var made, unused  = 0
 
-  /** By which a policy decides that is no [[HeadingPolicy]]. */
+  /** Evaluates a policy that is not a [[HeadingPolicy]]. */
   private val choosing                = Choosing(world.agents(agent), world.regardsYaw)
   private var chosenNorth, chosenEast = 0.0
   private var isChosen                = false
 
-  /** What the policy remembers. */
   private var memory: Any = ()
 
-  /** What is decided upon, and how far away it shows another vehicle. */
+  /** The view of the present decision, and its distance to another vehicle. */
   private var upon                    = held
   private val distance: Int => Double =
     other => StrictMath.hypot(upon.x(agent) - upon.x(other), upon.y(agent) - upon.y(other))
   private var turned = 0.0
 
-  /** Rad. */
   def sentHeading: Double = sent
 
-  /** Which decision that was, from 1; 0 before any was sent. */
+  /** Number of the last sent decision, from 1; 0 before any was sent. */
   def sentDecision: Int = sentNumber
 
   def decisions: Int = made
 
-  /** The sum of all changes of the decided heading. */
+  /** Control effort: sum of all changes of the decided heading, rad. */
   def effortRad: Double = turned
 
-  /** Sights or decisions that a newer one replaced. */
+  /** Number of views or decisions that a newer one replaced. */
   def skipped: Int = unused
 
   def start(): Unit =
@@ -144,13 +141,13 @@ private[skein] final class Controller(
     if decidesFirst then decide(held)
     goOn()
 
-  /** A command was answered. */
+  /** Called when a command was answered. */
   def acknowledged(): Unit =
     outstanding -= 1
     if outstanding > 0 then mayCommandAt = math.max(mayCommandAt, world.nowNs + handoverNs)
     goOn()
 
-  /** Does what it is time for. */
+  /** Decides or sends whatever is due now. */
   def goOn(): Unit =
     if !mayCommand && outstanding < steering.mostOutstanding then
       if world.nowNs >= mayCommandAt then mayCommand = true
@@ -163,13 +160,10 @@ private[skein] final class Controller(
         send(held.step(agent))
       else world.schedule(turnAt, Wake, agent, 0)
 
-  /** What the policy decided last, rad. */
   def decidedHeading: Double = decided
 
-  /** And how fast it is to fly, m/s. */
   def decidedSpeed: Double = speed
 
-  /** And with which velocity, m/s. */
   def decidedNorth: Double = if isChosen then chosenNorth else speed * StrictMath.cos(decided)
   def decidedEast: Double  = if isChosen then chosenEast else speed * StrictMath.sin(decided)
 
@@ -193,7 +187,7 @@ private[skein] final class Controller(
     made += 1
     world.decided(agent, elapsed, observation)
 
-  /** What any policy decides upon, as `skein.loop.Decider` has it. */
+  /** The observation for a policy of any kind, as `skein.loop.Decider` builds it. */
   private def observed(observation: RolloutView, elapsedNs: Long): Observation =
     upon = observation
     val now = world.nowNs
@@ -246,7 +240,7 @@ private[skein] final class Controller(
           sinceS
         )
 
-  /** From now until a command acts that is sent now. */
+  /** Time from now until a command sent now takes effect, s. */
   private def actsInS(forecast: Forecast): Double = actsIn(forecast).toSeconds
 
   private def actsIn(forecast: Forecast): Span =
@@ -256,9 +250,7 @@ private[skein] final class Controller(
   private def ageS(observation: RolloutView, vehicle: Int) =
     (world.nowNs - observation.validAtNs(vehicle)) * 1e-9
 
-  /** What a policy chooses whose opponent is there, flies so, was told this heading, and was known so long
-    * ago.
-    */
+  /** The decision of a policy, given its opponent's position, velocity, last commanded heading, and age. */
   private def chosen(
       policy: HeadingPolicy,
       observation: RolloutView,
@@ -281,12 +273,14 @@ private[skein] final class Controller(
         answer.headingRad
       case _ => asked(policy.heading(dx, dy, dvx, dvy, decided, sentRad, elapsedS))
 
-  /** @throws OwnFailure if the policy throws
+  /** Evaluates the policy's code.
+    *
+    * @throws OwnFailure if the policy throws
     */
   private def asked[A](answer: => A): A =
     OwnFailure.told(OwnFailure.named("policy", policy))(answer)
 
-  /** Puts where the vehicles will be in the place of where they were read. */
+  /** Replaces the readings by predictions. */
   private def ahead(observation: RolloutView, forecast: Forecast): Unit =
     val estimates = forecast.whenActing(Instant.ofNanos(world.nowNs)).get
     for vehicle <- 0 until world.count do
@@ -295,7 +289,7 @@ private[skein] final class Controller(
       observation.x(vehicle) = kinematics.positionNed.x; observation.y(vehicle) = kinematics.positionNed.y
       observation.vx(vehicle) = kinematics.velocityNed.x; observation.vy(vehicle) = kinematics.velocityNed.y
 
-  /** Notes that a decision was sent without any message. */
+  /** Records a decision as sent without any message. */
   def sentNow(): Unit =
     sent = decided
     sentNumber = made
@@ -310,7 +304,7 @@ private[skein] final class Controller(
     goOn()
 
 private[skein] object Controller:
-  /** Is told of every command sent. */
+  /** Receives every command that a controller sends. */
   trait OnSent:
     def sent(agent: Int, number: Int, northMps: Double, eastMps: Double): Unit
 

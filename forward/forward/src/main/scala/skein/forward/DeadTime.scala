@@ -2,7 +2,7 @@ package skein.forward
 
 import java.util.Arrays.copyOf
 
-/** Commands that wait out a vehicle's dead time, at most [[DeadTime.Most]]. Mutable. */
+/** Holds commands for a vehicle's dead time, [[DeadTime.Most]] of them at most. Mutable. */
 private[forward] final class DeadTime(seconds: Double):
   import DeadTime.{Most, Room}
   private var atS, north, east = Array.ofDim[Double](Room)
@@ -11,7 +11,7 @@ private[forward] final class DeadTime(seconds: Double):
   def clear(): Unit =
     first = 0; afterLast = 0
 
-  /** A command that came at this time. */
+  /** Adds a command received at this time. */
   def put(nowS: Double, northMps: Double, eastMps: Double): Unit =
     if afterLast - first == atS.length then makeRoom()
     val slot = afterLast % atS.length
@@ -29,7 +29,7 @@ private[forward] final class DeadTime(seconds: Double):
     atS = inOrder(atS); north = inOrder(north); east = inOrder(east)
     first = 0; afterLast = count
 
-  /** Takes out what acts until a time, the first first. */
+  /** Removes the commands that take effect until a time, the earliest first. */
   inline def until(timeS: Double)(inline act: (Double, Double, Double) => Unit): Unit =
     while hasUntil(timeS) do
       val slot = take()

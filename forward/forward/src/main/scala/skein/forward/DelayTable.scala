@@ -17,8 +17,8 @@ final class DelayTable private (val delaysS: Array[Float]) extends TabledDelays:
 
   private[skein] def stretches(worldKey: Int): TableStretch = TableStretch.Only(this)
 
-  /** Puts all delays, in [[DelayTable.GrainNs]], into an array from a place on; all must be less than eight
-    * seconds.
+  /** Copies all delays, in units of [[DelayTable.GrainNs]], into an array from an index on; all must be less
+    * than eight seconds.
     */
   private[skein] def copyGrains(into: Array[Int], at: Int): Unit =
     for i <- delaysNs.indices do into(at + i) = Math.toIntExact(delaysNs(i) / DelayTable.GrainNs)
@@ -32,10 +32,10 @@ final class DelayTable private (val delaysS: Array[Float]) extends TabledDelays:
 object DelayTable:
   val Size = 1024
 
-  /** Delays are whole multiples of this, so that kernels count time exactly in 32 bits. */
+  /** Unit of delays, ns: they are whole multiples of it, so that kernels count time exactly in 32 bits. */
   private[skein] val GrainNs: Int = 4
 
-  /** Bits of a random number that are not used. */
+  /** Number of low bits of a random number that are not used. */
   val Drop: Int = 32 - Integer.numberOfTrailingZeros(Size)
 
   def of(roundTrip: LatencyDistribution): DelayTable =
@@ -45,27 +45,25 @@ object DelayTable:
   val direct: DelayTable = of(LatencyDistribution.Direct)
   val vpn: DelayTable    = of(LatencyDistribution.Vpn)
 
-/** Delays that come from a [[DelayTable]], always or for a while until another takes its place: what kernels
-  * know of links.
+/** Delays from a [[DelayTable]], either constant or replaced by another after a while: the links that kernels
+  * support.
   */
 trait TabledDelays extends Delays:
-  /** The longest, s. */
+  /** The longest one-way delay of the link, s. */
   def maxS: Float
 
-  /** The first stretch of a world's flight. */
   private[skein] def stretches(worldKey: Int): TableStretch
 
-/** A time in which a world's delays come from one table. Mutable: goes on to the next. */
+/** A stretch of time in which a world's delays come from one table. Mutable: moves to the next stretch. */
 private[skein] trait TableStretch:
   def table: DelayTable
 
-  /** What is sent from then on meets the next stretch's delays, ns since the flight's start. */
+  /** Messages sent from this time on use the next stretch's delays, ns since the flight's start. */
   def untilNs: Long
 
   def next(): Unit
 
 private[skein] object TableStretch:
-  /** One that does not end. */
   final case class Only(table: DelayTable) extends TableStretch:
     def untilNs: Long = Long.MaxValue
     def next(): Unit  = ()

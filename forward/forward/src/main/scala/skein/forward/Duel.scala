@@ -3,7 +3,9 @@ package skein.forward
 import skein.policy.{Fleet, Role}
 import skein.scenario.PaperDuel
 
-/** @param durationS of an episode
+/** A duel of one pursuer and one evader.
+  *
+  * @param durationS of an episode
   */
 final case class Duel(pursuer: RolloutAgent, evader: RolloutAgent, durationS: Double = 60.0)
 
@@ -27,9 +29,9 @@ object Duel:
   * @param captureS when the distance first was at most the capture radius; infinite if never
   * @param pursuerEffortRad control effort: the sum of all changes of the commanded heading, by the shorter
   *   way
-  * @param evaderEffortRad the same of the evader
+  * @param evaderEffortRad control effort of the evader
   * @param decisions of both agents
-  * @param skipped views on which an agent did not decide because a newer one came first
+  * @param skipped views that a newer one replaced before the agent decided on them
   */
 final case class DuelOutcome(
     minDistanceM: Double,

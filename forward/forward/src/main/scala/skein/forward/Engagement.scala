@@ -2,11 +2,11 @@ package skein.forward
 
 import skein.policy.{Assignment, Fleet, Role}
 
-/** Vehicles in one plane, as a rollout flies them: pursuers and evaders, 1 against 1 up to M against N, or a
-  * team without sides. Each plays against the rival that the assignment gives it, as seen at its decision, or
-  * regards the whole team, as its policy is. Whoever was captured flies on.
+/** Vehicles in one plane, as a rollout simulates them: pursuers and evaders, 1 against 1 up to M against N,
+  * or a team without sides. Depending on its policy, each considers the rival assigned to it at its decision,
+  * or the whole team. A captured vehicle continues to fly.
   *
-  * @param roles of the agents, in the order in which a loop asks them
+  * @param roles of the agents, in the order in which a loop reads them
   */
 final case class Engagement(
     agents: Vector[RolloutAgent],
@@ -32,20 +32,21 @@ final case class Engagement(
     s"expected pursuers and evaders, or neither, came ${roles.mkString(", ")}"
   )
 
-  /** Whose outcomes are told: the evaders; of a team without sides, everybody. */
+  /** The agents with outcomes: the evaders; in a team without sides, all. */
   val judged: Vector[Int] = if bothSides then evaders else agents.indices.toVector
 
-  /** To whom a judged one's distance is taken: the pursuers; in a team without sides, the others. */
+  /** The agents from which an agent's distance is measured: the pursuers; in a team without sides, the
+    * others.
+    */
   def against(one: Int): Vector[Int] = if bothSides then pursuers else judged.filter(_ != one)
 
 object Engagement:
-  /** Vehicles that one world holds. */
   val Most = 64
 
   /** The agents of a scenario, under its own assignment.
     *
-    * @throws IllegalArgumentException if a policy may do what forward simulation does not fly: something else
-    *   than a horizontal velocity at the altitude of the start
+    * @throws IllegalArgumentException if a policy may choose an action that forward simulation does not
+    *   support: anything but a horizontal velocity at the altitude of the start
     */
   def of(fleet: Fleet, durationS: Double = 60.0): Engagement =
     val agents = fleet.agents.map(RolloutAgent.of)
@@ -59,7 +60,7 @@ object Engagement:
       durationS
     )
 
-  /** A duel; the evader is asked first. */
+  /** The agents of a duel; the evader is read first. */
   def of(duel: Duel): Engagement =
     Engagement(
       Vector(duel.evader, duel.pursuer),

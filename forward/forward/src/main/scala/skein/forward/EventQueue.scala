@@ -1,8 +1,7 @@
 package skein.forward
 
-/** A bounded queue of events in the order of their times, ns; events of one time keep the order in which they
-  * were added. An event is a `Long` of the caller's. Allocates nothing but room for more events than waited
-  * at any time before.
+/** A bounded queue of events in the order of their times, ns; events of equal times keep the order of
+  * insertion. An event is a `Long` of the caller's. Allocates only when it must grow.
   */
 private[skein] final class EventQueue(capacity: Int):
   import java.util.Arrays.copyOf

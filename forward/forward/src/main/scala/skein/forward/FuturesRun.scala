@@ -1,6 +1,6 @@
 package skein.forward
 
-/** [[LoopTiming.Futures]]. */
+/** The loop [[LoopTiming.Futures]] in virtual time: one task per vehicle and period. */
 private[skein] final class FuturesRun(timing: LoopTiming.Futures, protected val world: RolloutWorld)
     extends LoopRun:
   private val periodNs               = Nanos.of(timing.periodS)
@@ -9,7 +9,7 @@ private[skein] final class FuturesRun(timing: LoopTiming.Futures, protected val 
   val controllers: Array[Controller] =
     Array.tabulate(world.count)(Controller(world, _, timing.steering, 0, decidesFirst = true, this))
 
-  /** The same task's question to the vehicle before, by its question to a vehicle. */
+  /** By request to a vehicle: the task's request to the previous vehicle. */
   private val before = Array.ofDim[Int](world.count * world.ring)
 
   // Whose task of the current step begins next (the number of vehicles: all have), and the step that waits
@@ -27,7 +27,7 @@ private[skein] final class FuturesRun(timing: LoopTiming.Futures, protected val 
     if waiting == FuturesRun.Nothing then waiting = number
     begin()
 
-  /** Begins as many tasks as may be under way. */
+  /** Begins tasks up to the limit of those that may be unfinished. */
   private def begin(): Unit =
     while underWay < most && (next < world.count || waiting != FuturesRun.Nothing) do
       if next == world.count then

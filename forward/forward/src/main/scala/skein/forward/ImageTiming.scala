@@ -3,8 +3,8 @@ package skein.forward
 import skein.fusion.SensorModel
 import skein.simd.WorldRandom
 
-/** When a vehicle's images are taken, and when it is known what they show, as `skein.flow.Frames` and
-  * `Recognise` have it. Nothing of that depends on where the vehicles are. Mutable.
+/** When a vehicle's images are taken, and when their results become known, as in `skein.flow.Frames` and
+  * `Recognise`. Independent of the vehicles' positions. Mutable.
   */
 private[skein] abstract class ImageTiming(world: RolloutWorld, agent: Int, model: SensorModel, link: Delays):
   import ImageTiming.*
@@ -16,21 +16,20 @@ private[skein] abstract class ImageTiming(world: RolloutWorld, agent: Int, model
   private var onTheWay, busy            = 0
   private var newest, waiting, reported = -1
 
-  /** Back to the start of an episode. Images are due from then on, unless the world waits for each. */
+  /** Resets to the start of an episode. Images are due from then on, unless the world waits for each. */
   def start(worldKey: Int): Unit =
     key = WorldRandom.key(worldKey, Stream, agent)
     onTheWay = 0; busy = 0; newest = -1; waiting = -1; reported = -1
     if !world.standsStill then world.schedule(0, RolloutWorld.Look, agent, 0)
 
-  /** An image is taken now. */
   protected def taken(number: Int): Unit
 
-  /** It is known now what an image shows; numbers grow. */
+  /** Called when an image's result becomes known; numbers ascend. */
   protected def known(number: Int): Unit
 
   /** Handles an event of an image.
     *
-    * @param kind of [[RolloutWorld]]
+    * @param kind of event, see [[RolloutWorld]]
     */
   final def handle(kind: Int, number: Int): Unit = kind match
     case RolloutWorld.Look          => look(number)
@@ -50,7 +49,7 @@ private[skein] abstract class ImageTiming(world: RolloutWorld, agent: Int, model
     val delay = link.delayNs(key, Delays.answer(0, agent), number, number, world.nowNs)
     world.schedule(world.nowNs + delay, RolloutWorld.ImageReceived, agent, number)
 
-  /** The newest image waits for whoever recognises. */
+  /** The newest image waits for a free recogniser. */
   private def received(number: Int): Unit =
     onTheWay -= 1
     if number > newest then
@@ -72,7 +71,7 @@ private[skein] abstract class ImageTiming(world: RolloutWorld, agent: Int, model
 
   private def takesNs(number: Int) = model.takes.quantile(even(number, Takes)).toNanos
 
-  /** Evenly drawn from 0 to 1 for an image.
+  /** A random number of an image, uniform in 0 to 1.
     *
     * @param what [[ImageTiming.Found]] and so on
     */
@@ -80,7 +79,7 @@ private[skein] abstract class ImageTiming(world: RolloutWorld, agent: Int, model
     WorldRandom.uniform(key, number * Delays.Lines + Delays.FirstCommand + what)
 
 private[skein] object ImageTiming:
-  /** Images of which anything is remembered. */
+  /** Number of images that are remembered at most. */
   val Ring = 64
 
   // What is drawn for each image: whether what is in view is found, the errors, how long recognition takes.
@@ -89,8 +88,8 @@ private[skein] object ImageTiming:
   val Range         = 2
   private val Takes = 3
 
-  /** As `skein.flight.CameraSensor` has them. */
+  /** Limit of images on their way, as in `skein.flight.CameraSensor`. */
   private val MostOnTheWay = 2
 
-  /** Apart from the sequence of all other delays. */
+  /** Separates this random sequence from that of all other delays. */
   private val Stream = 0x65796573L

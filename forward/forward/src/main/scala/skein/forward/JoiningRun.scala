@@ -1,6 +1,6 @@
 package skein.forward
 
-/** Joins the newest readings to views, as `skein.flow.JoinLatest` does, under [[LoopTiming.Stream]]. Mutable.
+/** Joins the newest readings into views, like `skein.flow.JoinLatest`, under [[LoopTiming.Stream]]. Mutable.
   */
 private[skein] abstract class JoiningRun(timing: LoopTiming.Stream, world: RolloutWorld)
     extends AskingRun(world, timing.periodS, timing.asking):
@@ -8,10 +8,9 @@ private[skein] abstract class JoiningRun(timing: LoopTiming.Stream, world: Rollo
 
   private val patienceNs = Nanos.of(timing.patienceS)
 
-  /** The view. */
   protected val observation: RolloutView = RolloutView(world)
 
-  /** Whose reading was not renewed since the view before. */
+  /** By vehicle: whether its reading was not renewed since the view before. */
   protected val waiting: Array[Boolean] = Array.ofDim(world.count)
 
   private var patienceEnds = NoEnd
@@ -37,7 +36,6 @@ private[skein] abstract class JoiningRun(timing: LoopTiming.Stream, world: Rollo
     java.util.Arrays.fill(waiting, true)
     patienceEnds = NoEnd
 
-  /** [[observation]] is the next view. */
   protected def joined(): Unit
 
 private[skein] object JoiningRun:

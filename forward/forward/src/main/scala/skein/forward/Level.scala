@@ -5,14 +5,14 @@ import skein.policy.{Policy, Assignment, PolicyFormula}
 import skein.simd.Forms
 import skein.units.Metres
 
-/** Which policies decide for nothing but horizontal velocities at the altitude of their vehicle's start:
-  * forward simulation flies no other. [[skein.policy.Policy.isPlanar]] promises it; of others it is seen in
-  * their formula.
+/** Finds the policies that choose only horizontal velocities at the altitude of their vehicle's start:
+  * forward simulation supports no others. [[skein.policy.Policy.isPlanar]] promises it; for others it is
+  * checked in their formula.
   */
 private object Level:
   private val known = ConcurrentHashMap[(Int, Assignment, Boolean), Forms[Policy, PolicyFormula]]()
 
-  /** Why a policy may do something else.
+  /** Why a policy may choose another action.
     *
     * @param self its place in a team
     */

@@ -3,15 +3,15 @@ package skein.forward
 import skein.signal.{LatencyDistribution, LatencyProfile}
 import skein.simd.WorldRandom
 
-/** The delays of links that are told by a profile. */
+/** Delays of links by their latency profiles, for forward simulation. */
 object LinkDelays:
 
-  /** The longest round trip that forward simulation flies, s. */
+  /** The longest round trip that forward simulation supports, s. */
   val LongestRoundTripS = 2.0
 
-  /** The delays of a link that forward simulation can fly.
+  /** The delays of a link, if forward simulation supports it.
     *
-    * @return or what was expected and came
+    * @return Left states what was expected and what was given
     */
   def checked(link: LatencyProfile): Either[String, Delays] = link match
     case steady: LatencyProfile.Steady           => bounded(steady, steady.roundTrip)
@@ -42,8 +42,8 @@ object LinkDelays:
   /** The paper's VPN over a long time: stretches of `vpn` and of `direct`. */
   val vpnMixed: Delays = of(LatencyProfile.vpnMixed)
 
-/** A link that is busy for a while and then quiet for a while; how long is exponentially distributed, and
-  * each world's own. A flight begins at a random moment.
+/** A link that is busy for a while and then quiet for a while; the durations are exponentially distributed,
+  * and independent in each world. A flight begins at a random moment.
   */
 final case class AlternatingDelays(
     busy: DelayTable,

@@ -1,6 +1,8 @@
 package skein.forward
 
-/** A loop while it flies: what it does when something happens. One case of [[LoopTiming]] each. Mutable. */
+/** A loop during simulation: its reactions to events. One implementation for each case of [[LoopTiming]].
+  * Mutable.
+  */
 private[skein] trait LoopRun extends Controller.OnSent:
   import RolloutWorld.*
 
@@ -10,7 +12,7 @@ private[skein] trait LoopRun extends Controller.OnSent:
 
   def start(): Unit
 
-  /** Handles an event of a question, or of the loop's own clock. */
+  /** Handles an event of a request, or of the loop's own clock. */
   final def handle(event: Long): Unit =
     val vehicle = vehicleOf(event)
     val number  = numberOf(event)
@@ -24,17 +26,17 @@ private[skein] trait LoopRun extends Controller.OnSent:
       case Patience => patienceOver()
       case Due      => due(number)
 
-  /** It is time for what was scheduled as `Tick`. */
+  /** Handles an event that was scheduled as `Tick`. */
   def tick(vehicle: Int, number: Int): Unit
 
   def answered(vehicle: Int, question: Int): Unit
 
   def timedOut(vehicle: Int, question: Int): Unit
 
-  /** It is time for what was scheduled as `Patience`. */
+  /** Handles an event that was scheduled as `Patience`. */
   def patienceOver(): Unit = ()
 
-  /** It is time for what was scheduled as `Due`. */
+  /** Handles an event that was scheduled as `Due`. */
   def due(number: Int): Unit = ()
 
   def sent(agent: Int, number: Int, northMps: Double, eastMps: Double): Unit = ()

@@ -5,19 +5,19 @@ import skein.units.Span
 import skein.vehicle.{QuadrotorModel, VehicleModel}
 
 /** The timing of a control loop as data: when an observation is taken, how old it is at the decision, when
-  * the command takes effect, what replaces what. [[Rollout]] derives its events from it; the kernels, the
-  * same events by lanes.
+  * the command takes effect, what replaces what. [[Rollout]] derives its events from it; the kernels derive
+  * equal events by SIMD.
   *
   * '''What all loops share''' (but `Paused`, where nothing takes time):
-  *   - A question, its answer, a command and the command's answer take a one-way delay each ([[Delays]]). A
-  *     reading shows the vehicle as it is when the question reaches it. Questions go over a pool of
-  *     connections and may overtake one another, so may their answers; commands to one vehicle keep their
-  *     order, so do their answers.
-  *   - A question not answered in time has failed ([[Asking]]).
-  *   - A command acts when it arrives; one that replaces another, the vehicle's own handover later
+  *   - A request, its answer, a command and the command's answer take a one-way delay each ([[Delays]]). A
+  *     reading shows the vehicle as it is when the request reaches it. Requests go over a pool of connections
+  *     and may overtake one another, so may their answers; commands to one vehicle keep their order, so do
+  *     their answers.
+  *   - A request not answered in time has failed ([[Asking]]).
+  *   - A command takes effect when it arrives; one that replaces another, the vehicle's own handover later
   *     ([[VelocityResponse.handoverS]]). The one replaced is answered at the arrival of its successor, the
   *     newest not at all.
-  *   - When a vehicle may be commanded, [[Steering]] says. What waits meanwhile is replaced by what comes
+  *   - [[Steering]] decides when a vehicle may be commanded. What waits meanwhile is replaced by anything
   *     newer.
   *   - A view holds a reading of each vehicle and the headings sent to both so far. A policy knows the
   *     opponent's heading from the view: what was sent to the opponent later it does not know.
@@ -26,16 +26,14 @@ import skein.vehicle.{QuadrotorModel, VehicleModel}
   * holds each case to its loop in virtual time.
   */
 enum LoopTiming:
-  /** Between decisions for one vehicle, s. */
   def periodS: Double
 
   /** The world stands still while all vehicles are read, decided for and commanded; then it runs one period.
     */
   case Paused(periodS: Double = 0.1)
 
-  /** Reads the vehicles one after the other, decides for all at the last answer and commands all; the next
-    * round begins one period after that answer, or after a question that failed. A decision waits for its
-    * turn to be sent.
+  /** Reads the vehicles in sequence, decides for all at the last answer and commands all; the next round
+    * begins one period after that answer, or after a failed request. A decision waits until it may be sent.
     */
   case Sequential(
       periodS: Double = 0.1,
@@ -43,11 +41,11 @@ enum LoopTiming:
       steering: Steering = Steering()
   )
 
-  /** Every period one task per vehicle: it reads all vehicles one after the other, decides for its own at the
-    * last answer and commands it. Tasks may overlap, `window` for each vehicle; what comes later waits, and
-    * further periods are missed. A decision waits for its turn to be sent. Where tasks of two vehicles end in
-    * the same nanosecond, which needs a link without jitter, the one asked first decides first; a flight's
-    * streams may choose otherwise.
+  /** Every period begins one task per vehicle: it reads all vehicles in sequence, decides for its own at the
+    * last answer and commands it. Tasks may overlap, `window` for each vehicle; a further one waits, and
+    * later periods are missed. A decision waits until it may be sent. If tasks of two vehicles end in one
+    * nanosecond, which needs a link without jitter, the one started first decides first; a flight's streams
+    * may choose otherwise.
     */
   case Futures(
       periodS: Double = 0.1,
@@ -55,12 +53,12 @@ enum LoopTiming:
       steering: Steering = Steering()
   )
 
-  /** Asks every vehicle once a period, while no more than `window` of its questions are under way; the newest
-    * readings are joined to a view when each vehicle's was renewed since the last view, or `patienceS` after
-    * the first of them was. A reading that an answer to a later question overtook, or that was sampled before
-    * the one held, is dropped. Each vehicle decides on the newest view once an interval of
-    * `periodS − toleranceS` is over since it last did and it may be commanded; a view that a newer one
-    * replaces before is skipped.
+  /** Reads every vehicle once a period, while no more than `window` of its requests are unanswered; the
+    * newest readings are joined to a view when each vehicle's was renewed since the last view, or `patienceS`
+    * after the first of them was. A reading that an answer to a later request overtook, or that was sampled
+    * before the one held, is dropped. Each vehicle decides on the newest view once an interval of `periodS −
+    * toleranceS` is over since it last did and it may be commanded; a view that a newer one replaces before
+    * is skipped.
     *
     * @param toleranceS how much less than a period may pass between two decisions; live loops take half a
     *   period
@@ -76,12 +74,12 @@ enum LoopTiming:
       steering: Steering = Steering()
   )
 
-  /** Asks as `Stream` does; readings, commands sent and answers to commands enter a
-    * [[skein.forecast.Forecast]] as they come. In the middle between two questions every vehicle is due to
-    * decide, on what is known then; it does so once it may be commanded, unless it is due anew before. It
-    * decides on where all vehicles will be, by the forecast, when a command sent at that moment acts.
+  /** Reads like `Stream`; readings, commands and their answers are added to a [[skein.forecast.Forecast]] as
+    * they arrive. Half-way between two requests every vehicle is due to decide on what is known then; it does
+    * so once it may be commanded, unless it is due anew before. It decides on the states of all vehicles
+    * predicted for the time at which a command sent at that moment takes effect.
     *
-    * @param predictor carries the readings of every vehicle forward
+    * @param predictor predicts each vehicle from its readings
     */
   case Predictive(
       periodS: Double = 0.1,
@@ -91,7 +89,7 @@ enum LoopTiming:
   )
 
 object LoopTiming:
-  /** The `stream` loop of a period as it is flown live: half of it between two decisions at least, and all of
+  /** The `stream` loop of a period as in live flights: at least half of it between two decisions, and all of
     * it as patience.
     */
   def stream(periodS: Double): LoopTiming.Stream =
@@ -111,14 +109,13 @@ object LoopTiming:
     case stream: LoopTiming.Stream         => stream.steering
     case predictive: LoopTiming.Predictive => predictive.steering
 
-/** How vehicles are asked.
+/** How vehicles are read.
   *
-  * @param window questions to one vehicle that may be under way; a question due meanwhile waits, a second one
-  *   is missed
-  * @param timeoutS after which a question has failed
-  * @param spreadS over which the questions to the vehicles are spread: of n, the i-th is asked i/n of it
-  *   later
-  * @param inOrder an answer waits until those to all older questions have come or failed
+  * @param window limit of unanswered requests to one vehicle; a request due meanwhile waits, a second one is
+  *   missed
+  * @param timeoutS after which a request has failed
+  * @param spreadS over which the requests to the vehicles are spread: of n, the i-th is sent i/n of it later
+  * @param inOrder an answer waits until those to all older requests were received or failed
   */
 final case class Asking(
     window: Int = 4,
@@ -129,12 +126,12 @@ final case class Asking(
   require(window > 0 && window <= 16, s"the window must be from 1 to 16, got $window")
 
 object Asking:
-  /** After this time a question to a simulator has failed; the paper's. */
+  /** Time after which a request to a simulator has failed; the paper's. */
   val Timeout: Span = Span.ofMillis(500)
 
 /** When a vehicle may be commanded, as `skein.flow.Steer` decides: while fewer than `mostOutstanding`
   * commands are unanswered, `minIntervalS` after the last one, and `handoverS` after an answer that leaves
-  * one under way. Once it may be, it may be until the next command.
+  * one under way. The permission lasts until the next command.
   */
 final case class Steering(
     minIntervalS: Double = Moves.LeastInterval.toSeconds,

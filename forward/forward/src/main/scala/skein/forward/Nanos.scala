@@ -1,5 +1,5 @@
 package skein.forward
 
-/** Seconds as whole nanoseconds. */
+/** Converts seconds to whole nanoseconds, rounded. */
 private[skein] object Nanos:
   def of(seconds: Double): Long = math.round(seconds * 1e9)

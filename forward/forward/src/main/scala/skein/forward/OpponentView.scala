@@ -2,13 +2,14 @@ package skein.forward
 
 import skein.units.Vector3
 
-/** What a vehicle knows of its opponent by something else than readings. */
+/** A vehicle's knowledge of its opponent from another source than readings. */
 private[skein] trait OpponentView:
-  /** Where the opponent is taken to be, m, how it moves, m/s, and how old what is known of it is.
+  /** The opponent's estimated position, m, velocity, m/s, and the age of the estimate.
     *
-    * @param aheadS until what is decided now acts, where the own place is predicted for that moment
+    * @param aheadS time until the present decision takes effect, if the own position is predicted for that
+    *   moment
     */
   def believed(aheadS: Option[Double]): (placeNed: Vector3, velocityNed: Vector3, ageS: Double)
 
-  /** The vehicle decides, and looks into this direction from now on. */
+  /** The vehicle decides, and its camera turns to this direction. */
   def turn(northM: Double, eastM: Double): Unit

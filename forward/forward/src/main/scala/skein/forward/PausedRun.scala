@@ -1,6 +1,6 @@
 package skein.forward
 
-/** [[LoopTiming.Paused]]. */
+/** The loop [[LoopTiming.Paused]] in virtual time: the world waits for the controller. */
 private[skein] final class PausedRun(timing: LoopTiming.Paused, protected val world: RolloutWorld)
     extends LoopRun:
   private val periodNs               = Nanos.of(timing.periodS)

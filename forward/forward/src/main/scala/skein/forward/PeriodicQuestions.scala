@@ -1,8 +1,8 @@
 package skein.forward
 
-/** Asks one vehicle once a period, as `skein.flow.Sense` does: a question due while the window is full waits,
-  * a second one is missed; an answer that comes after one to a later question is dropped, unless it tells of
-  * a later moment, or all wait for their turn.
+/** Reads one vehicle once a period, as `skein.flow.Sense` does: a request due while the window is full waits,
+  * a second one is missed; an answer received after one to a later request is dropped, unless it was sampled
+  * later or all are delivered in order.
   */
 private[skein] final class PeriodicQuestions(
     world: RolloutWorld,
@@ -23,13 +23,13 @@ private[skein] final class PeriodicQuestions(
   private var told     = -1
   private var oldest   = 0
 
-  /** Begins at a question, when all before have ended, if there were any. */
+  /** Begins at a request, when all before have ended, if there were any. */
   def begin(question: Int): Unit =
     waits = false; asked = question; underWay = 0; newest = question - 1; told = newest; oldest = question
     world.schedule(offsetNs + question * periodNs, RolloutWorld.Tick, vehicle, question)
 
-  /** Whether this question was told last, as the newest, none before it is under way, and so many were asked
-    * and none waits.
+  /** Whether this request's answer was the last delivered, as the newest, with none before it unanswered,
+    * none waiting, and this number sent.
     */
   def isUpTo(question: Int, asked: Int): Boolean =
     newest == question && told == question && underWay == asked - 1 - question &&
@@ -55,8 +55,7 @@ private[skein] final class PeriodicQuestions(
         seen.seen(vehicle, question)
     ask()
 
-  /** Whether an answer tells of a later moment than the one told last: questions, too, overtake each other.
-    */
+  /** Whether an answer was sampled later than the last delivered one: requests, too, overtake each other. */
   private def isNewer(question: Int): Boolean =
     val last = world.slot(vehicle, told)
     world.isNewer(world.slot(vehicle, question), world.validAtNs(last), world.receivedAtNs(last))
@@ -70,7 +69,7 @@ private[skein] final class PeriodicQuestions(
       asked += 1
 
 private[skein] object PeriodicQuestions:
-  /** Takes the readings, in the order of the questions. */
+  /** Receives the readings, in the order of the requests. */
   trait Seen:
     def seen(vehicle: Int, question: Int): Unit
 

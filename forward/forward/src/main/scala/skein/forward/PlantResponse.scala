@@ -3,9 +3,9 @@ package skein.forward
 import skein.signal.Kinematics
 import skein.vehicle.{ConstantVelocity, ObservedPlant, Plant, PlantFlight, PlantModel, VehicleModel}
 
-/** Forward simulation by a [[skein.vehicle.Plant]], exact between the times at which commands begin to act if
-  * its step is. Where that is an [[skein.vehicle.ObservedPlant]], the loop `predictive` predicts by it, else
-  * straight on.
+/** Forward simulation by a [[skein.vehicle.Plant]], exact between the times at which commands take effect if
+  * its step is exact. If it is an [[skein.vehicle.ObservedPlant]], the loop `predictive` predicts by it, else
+  * by constant velocity.
   */
 final case class PlantResponse(plant: Plant[?]) extends VelocityResponse:
   require(plant.stepS > 0, s"a plant's step must be positive, came ${plant.stepS} s")

@@ -5,7 +5,9 @@ import skein.signal.Stamped
 import skein.units.Instant
 import skein.vehicle.Setpoint
 
-/** [[LoopTiming.Predictive]]. The forecast is a value: this loop allocates. */
+/** The loop [[LoopTiming.Predictive]] in virtual time. The forecast is an immutable value: this loop
+  * allocates.
+  */
 private[skein] final class PredictiveRun(timing: LoopTiming.Predictive, world: RolloutWorld)
     extends AskingRun(world, timing.periodS, timing.asking):
 

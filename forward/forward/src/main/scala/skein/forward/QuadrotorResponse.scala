@@ -4,10 +4,10 @@ import skein.port.Moves
 import skein.units.{Quaternion, Vector3}
 import skein.vehicle.{Environment, Quadrotor, QuadrotorState, Rotorcraft, Setpoint}
 
-/** AirSim's quadrotor, commanded by `moveByVelocityZ` at its start altitude, as the built-in simulator flies
-  * it (`skein.simulator.SimulatedVehicle`): physics keeps a grid of whole steps, from when the vehicle was
-  * put to its start; a command acts from the first step after it on. What is commanded are 32-bit floats on
-  * AirSim's wire; what is read, [[SteppedVehicle]] says.
+/** AirSim's quadrotor, commanded by `moveByVelocityZ` at its start altitude, as in the built-in simulator
+  * (`skein.simulator.SimulatedVehicle`): physics advances in whole steps from the time at which the vehicle
+  * was placed at its start; a command takes effect at the first step after it. Commands are 32-bit floats on
+  * AirSim's wire; [[SteppedVehicle]] defines the readings.
   */
 private[skein] final class QuadrotorResponse(val quadrotor: Quadrotor, val hoveredS: Double)
     extends VelocityResponse:

@@ -1,13 +1,13 @@
 package skein.forward
 
-/** Flies engagements, above all duels, under a loop's real timing: the scalar reference, readable and in
-  * double. Events happen in the order of their times, in whole nanoseconds; between them the vehicles fly by
-  * themselves. Given the delays that a flight in virtual time met ([[RecordedDelays]]) it flies exactly as
-  * that did; `RolloutParitySimulation` compares the two. Mutable: one per thread; an episode allocates
-  * nothing but what the policies, what they see of a team, the quadrotor's setpoints and the `predictive`
-  * loop's forecast need.
+/** Simulates engagements, above all duels, under a loop's real timing: the scalar reference, readable and in
+  * double. Events happen in the order of their times, in whole nanoseconds; between them the vehicles move
+  * independently. Given the delays of a flight in virtual time ([[RecordedDelays]]) it reproduces that flight
+  * exactly; `RolloutParitySimulation` compares the two. Mutable: one per thread; an episode allocates nothing
+  * but what the policies, their observations of a team, the quadrotor's setpoints and the `predictive` loop's
+  * forecast need.
   *
-  * @param link delays of questions, answers, commands and acknowledgements; `Paused` ignores it
+  * @param link delays of requests, answers, commands and acknowledgements; `Paused` ignores it
   */
 final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, model: VelocityResponse):
   import RolloutWorld.*
@@ -40,7 +40,7 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
   private val last10s  = Rollout.last10sFromS(engagement.durationS, timing.periodS)
   private var tallies  = judged.map(_ => Score())
 
-  /** Flies one episode.
+  /** Simulates one episode.
     *
     * @param worldKey of [[WorldRandom]]: decides all delays
     */
@@ -53,7 +53,6 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
     while !isOver do handle(world.next())
     outcome
 
-  /** Begins an episode, as [[fly]] does. */
   private[skein] def start(
       worldKey: Int,
       captureRadiusM: Double,
@@ -76,9 +75,10 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
 
   private def isOver: Boolean = tallies(0).count >= scores
 
-  /** Of a team: of all evaders the least of the least distances, the means of the means, and when the last
-    * was captured; distances are to the nearest pursuer, efforts summed over a side. In a team without sides
-    * all are judged, by the distance to the nearest other, and the effort is that of the evaders.
+  /** The outcome of a team: of all evaders the least of the least distances, the means of the means, and the
+    * time of the last capture; distances are to the nearest pursuer, efforts are summed over a side. In a
+    * team without sides all are judged, by the distance to the nearest other, and the effort is that of the
+    * evaders.
     */
   private[skein] def outcome: DuelOutcome =
     val each    = evaderOutcomes
@@ -95,8 +95,8 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
       loop.controllers.map(_.skipped).sum
     )
 
-  /** How the last episode came out for each evader, in the engagement's order; in a team without sides, for
-    * everybody.
+  /** The outcomes of the last episode, one for each evader in the engagement's order; in a team without
+    * sides, one for each vehicle.
     */
   def evaderOutcomes: Vector[EvaderOutcome] = tallies.map(_.outcome).toVector
 
@@ -135,7 +135,7 @@ object Rollout:
 
   private[skein] val Never: Long = Long.MaxValue
 
-/** Adds up distances as they come. */
+/** Accumulates the distances of an episode into its outcome. */
 private[skein] final class Score(captureRadiusM: Double = 0.0, last10sFromS: Double = 0.0):
   var count                = 0
   private var least        = Double.PositiveInfinity

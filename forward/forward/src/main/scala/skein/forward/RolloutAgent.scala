@@ -3,15 +3,15 @@ package skein.forward
 import skein.fusion.SensorModel
 import skein.policy.{Agent, Policy}
 
-/** One vehicle of a duel or of a team, as a rollout flies it.
+/** One vehicle of a duel or of a team in a rollout.
   *
-  * @param speed of the velocity it commands, where its policy does not choose one, m/s
+  * @param speed of the commanded velocity, where its policy does not choose one, m/s
   * @param startX north, m
   * @param startY east, m
   * @param altitudeDownM z of the whole flight, world NED, m
-  * @param startHeadingRad which it is taken to have been commanded before its first decision, from north
-  * @param policy any that decides for horizontal velocities at that altitude; must be a pure function
-  * @param eye by which alone it knows of its one opponent, if it is not told
+  * @param startHeadingRad assumed command before its first decision, from north
+  * @param policy one that chooses horizontal velocities at that altitude; must be a pure function
+  * @param eye the camera that is its only knowledge of its one opponent, if any
   */
 final case class RolloutAgent(
     speed: Double,
@@ -26,7 +26,7 @@ final case class RolloutAgent(
 object RolloutAgent:
   /** An agent of a scenario.
     *
-    * @throws IllegalArgumentException if its policy reads sensors, which forward simulation has not
+    * @throws IllegalArgumentException if its policy reads sensors, which forward simulation does not have
     */
   def of(agent: Agent): RolloutAgent =
     require(

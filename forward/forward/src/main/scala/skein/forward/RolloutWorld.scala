@@ -3,11 +3,11 @@ package skein.forward
 import skein.policy.{Assignment, HeadingPolicy}
 import skein.signal.{Kinematics, Stamped}
 
-/** What a loop finds outside of itself: the vehicles of an engagement, the time, and the messages on their
-  * way to and from the vehicles. Mutable; allocates nothing while it flies but what the vehicles do.
+/** The environment of a simulated loop: the vehicles of an engagement, the time, and the messages on their
+  * way to and from the vehicles. Mutable; during a flight only the vehicles allocate.
   *
-  * @param keepsAll keeps all that readings tell, not just places and velocities
-  * @param standsStill while it is decided
+  * @param keepsAll keeps whole readings, not just positions and velocities
+  * @param standsStill during decisions
   * @param ring [[RolloutWorld.ringOf]]
   */
 private[skein] final class RolloutWorld(
@@ -24,13 +24,13 @@ private[skein] final class RolloutWorld(
   val agents: Array[RolloutAgent] = engagement.agents.toArray
   val assignment: Assignment      = engagement.assignment
 
-  /** By vehicle: whether its policy is asked as any is, and not by numbers alone. */
+  /** By vehicle: whether its policy decides on a full observation, and not on numbers alone. */
   val isAsked: Array[Boolean] = agents.map(!_.policy.isInstanceOf[HeadingPolicy])
 
-  /** Whether all that readings tell is kept. */
+  /** Whether readings are kept whole, with attitude and rates. */
   val keepsKinematics: Boolean = keepsAll || isAsked.contains(true)
 
-  /** Whether a vehicle flies otherwise when it is told to turn. */
+  /** Whether a vehicle's motion depends on a commanded yaw. */
   val regardsYaw: Boolean            = model.regardsYaw
   val count: Int                     = agents.length
   val vehicles: Array[Vehicle]       = Array.fill(count)(model.create())
@@ -55,9 +55,9 @@ private[skein] final class RolloutWorld(
   private val commanded        = Array.ofDim[Int](count)
   private val commandAt, ackAt = Array.ofDim[Long](count)
 
-  /** Back to the start of an episode.
+  /** Resets to the start of an episode.
     *
-    * @param firstQuestion the number of each vehicle's next question
+    * @param firstQuestion the number of each vehicle's next request
     */
   def start(worldKey: Int, listener: LoopObserver, firstQuestion: Int = 0): Unit =
     key = worldKey
@@ -68,40 +68,37 @@ private[skein] final class RolloutWorld(
       vehicles(vehicle).start(agents(vehicle).startX, agents(vehicle).startY, agents(vehicle).altitudeDownM)
       asked(vehicle) = firstQuestion; commanded(vehicle) = 0; commandAt(vehicle) = 0; ackAt(vehicle) = 0
 
-  /** Is told what happens. */
+  /** Receives the events of the episode, such as readings and commands. */
   def observer: LoopObserver = watching
 
-  /** By which each vehicle knows of its opponent that does not by readings. */
+  /** By vehicle: its source of knowledge of the opponent, if it is not readings. */
   val views: Array[Option[OpponentView]] = Array.fill(count)(None)
 
-  /** Since the flight's start, ns. */
+  /** Time since the flight's start, ns. */
   def nowNs: Long = time
 
   def nowS: Double = time * 1e-9
 
-  /** Lets an event happen at a time that is not past. Events of one time happen in the order of these calls.
-    */
+  /** Schedules an event at a time that is not past. Events of one time happen in the order of these calls. */
   def schedule(atNs: Long, kind: Int, vehicle: Int, number: Int): Unit =
     queue.add(atNs, (kind.toLong << 40) | (vehicle.toLong << 32) | number)
 
-  /** When the next event happens. */
   def nextNs: Long = queue.nextTime
 
-  /** Lets time pass up to the next event. */
   def next(): Long =
     time = queue.nextTime
     queue.take()
 
-  /** Of a question or command to a vehicle, in arrays of `count * ring`. */
+  /** Index of a request or command of a vehicle, in arrays of `count * ring`. */
   def slot(vehicle: Int, number: Int): Int = vehicle * ring + number % ring
 
   def stepOf(vehicle: Int, question: Int): Int      = steps(slot(vehicle, question))
   def askerOf(vehicle: Int, question: Int): Int     = askers(slot(vehicle, question))
   def seen(vehicle: Int, question: Int): Kinematics = kinematics(slot(vehicle, question))
 
-  /** Asks a vehicle where it is; [[Answered]] or [[TimedOut]] follows.
+  /** Requests a reading of a vehicle; [[Answered]] or [[TimedOut]] follows.
     *
-    * @return the question's number: they count for each vehicle, whoever asks
+    * @return the request's number: they count per vehicle, over all controllers
     */
   def ask(asker: Int, vehicle: Int, step: Int): Int =
     val number = asked(vehicle)
@@ -113,7 +110,6 @@ private[skein] final class RolloutWorld(
     else schedule(time + delay, Sampled, vehicle, number)
     number
 
-  /** The question has reached the vehicle. */
   def sampled(vehicle: Int, number: Int): Unit =
     val at = slot(vehicle, number)
     read(vehicle, number)
@@ -124,14 +120,12 @@ private[skein] final class RolloutWorld(
   private def timeOut(vehicle: Int, number: Int): Unit =
     schedule(sentAtNs(slot(vehicle, number)) + timeoutNs, TimedOut, vehicle, number)
 
-  /** The answer has come back. */
   def received(vehicle: Int, number: Int): Unit = receivedAtNs(slot(vehicle, number)) = time
 
   /** Whether a reading, by its [[slot]], is newer than one of these times. */
   def isNewer(slot: Int, thanValidAtNs: Long, thanReceivedAtNs: Long): Boolean =
     Stamped.isNewer(validAtNs(slot), sentAtNs(slot), thanValidAtNs, thanReceivedAtNs)
 
-  /** Reads a vehicle without any message. */
   def readNow(vehicle: Int, step: Int): Int =
     val number = asked(vehicle)
     asked(vehicle) += 1
@@ -171,7 +165,8 @@ private[skein] final class RolloutWorld(
     schedule(commandAt(agent), Arrived, agent, number)
     number
 
-  /** The command has reached the vehicle: it acts, now or after the handover, and the one before is answered.
+  /** The command has reached the vehicle: it takes effect, now or after the handover, and the one before is
+    * answered.
     */
   def arrived(agent: Int, number: Int): Unit =
     if number == 0 then acts(agent, number)
@@ -186,14 +181,12 @@ private[skein] final class RolloutWorld(
     observer.acts(agent, number, time)
     command(agent, norths(slot(agent, number)), easts(slot(agent, number)))
 
-  /** Commands a vehicle without any message. */
   def commandNow(agent: Int, headingRad: Double, speedMps: Double, northMps: Double, eastMps: Double): Unit =
     observer.commanded(agent, commanded(agent), time, headingRad, speedMps)
     observer.acts(agent, commanded(agent), time)
     commanded(agent) += 1
     command(agent, northMps, eastMps)
 
-  /** A decision was made. */
   def decided(agent: Int, elapsedS: Double, upon: Grounds): Unit =
     observer.decided(agent, time, elapsedS, upon)
 
@@ -223,15 +216,15 @@ private[skein] object RolloutWorld:
   def vehicleOf(event: Long): Int = (event >>> 32).toInt & 0xff
   def numberOf(event: Long): Int  = event.toInt
 
-  /** Questions and commands of one vehicle that may be under way where each vehicle is asked in turn: more
+  /** Limit of unanswered requests and commands of one vehicle where the vehicles are read in sequence: more
     * than any window allows.
     */
   val Ring = 64
 
-  /** How many of one vehicle's newest questions and commands must be kept. A task of `Futures` reads all
-    * vehicles one after the other, each within the time-out, and needs its first reading at the end, when
-    * each of the vehicles may have begun a task in every period since. Loops that ask every period compare an
-    * answer with the one told last, whose question may be as old again.
+  /** Number of the newest requests and commands of a vehicle that must be kept. A task of `Futures` reads all
+    * vehicles in sequence, each within the time-out, and needs its first reading at the end, when each of the
+    * vehicles may have begun a task in every period since. Loops that read every period compare an answer
+    * with the last delivered one, whose request may be as old again.
     */
   def ringOf(timing: LoopTiming, vehicles: Int): Int =
     val asking                 = LoopTiming.askingOf(timing)
@@ -248,5 +241,5 @@ private[skein] object RolloutWorld:
 
   private val MostRing = 1 << 16
 
-  /** Events of one vehicle that may be waiting. */
+  /** Limit of scheduled events of one vehicle. */
   private val MostWaiting = 512

@@ -1,6 +1,6 @@
 package skein.forward
 
-/** [[LoopTiming.Sequential]]. */
+/** The loop [[LoopTiming.Sequential]] in virtual time: vehicles are read in sequence. */
 private[skein] final class SequentialRun(timing: LoopTiming.Sequential, protected val world: RolloutWorld)
     extends LoopRun:
   private val periodNs               = Nanos.of(timing.periodS)

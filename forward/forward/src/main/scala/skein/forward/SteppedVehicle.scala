@@ -3,15 +3,13 @@ package skein.forward
 import skein.signal.Kinematics
 import skein.units.{Quaternion, Vector3}
 
-/** A vehicle whose state is known at the ends of whole steps. In between it is carried on at constant
-  * acceleration, as the built-in simulator does. What it tells are 32-bit floats, as on AirSim's wire, with
+/** A vehicle whose state is known at the ends of whole steps. In between it is extrapolated with constant
+  * acceleration, as the built-in simulator does. Its readings are 32-bit floats, as on AirSim's wire, with
   * positions in the frame whose origin is its start. Mutable.
   */
 private[skein] abstract class SteppedVehicle extends Vehicle:
-  /** Where it started: north and east, m. */
   protected var originX, originY = 0.0
 
-  /** Since the last step ended, s. */
   protected def sinceStepS: Double
 
   // Its state then, from where it started: m, m/s, m/s², rad/s.

@@ -2,50 +2,45 @@ package skein.forward
 
 import skein.units.{Quaternion, Vector3}
 
-/** A response of vehicles that many worlds step side by side, all by the same whole steps, sooner than each
-  * by itself. They fly as those that it creates one by one.
+/** A response whose vehicles many worlds step side by side, in equal whole steps, faster than one by one. The
+  * results equal those of vehicles created one by one.
   */
 trait SteppedResponse extends VelocityResponse:
-  /** s */
   def stepS: Double
 
-  /** How long they have hovered when a flight starts, s: where the grid of steps lies. */
+  /** Time for which they have hovered when a flight starts, s: decides the phase of the steps. */
   def hoveredS: Double
 
-  /** So many of them, for one thread. */
+  /** This number of vehicles, for use by one thread. */
   def together(vehicles: Int): SteppedVehicles
 
 /** Vehicles that are stepped together; places count from 0. World frame NED, positions from each vehicle's
   * start. Mutable.
   */
 trait SteppedVehicles:
-  /** Flies no more than the first ones from now on. */
+  /** Limits simulation to the first vehicles from now on. */
   def use(vehicles: Int): Unit
 
-  /** Lets it hover at its start, settled at `downM` (NED). */
+  /** Sets a vehicle to hover at its start, settled at `downM` (NED). */
   def hover(place: Int, downM: Double): Unit
 
-  /** `moveByVelocityZ`, m/s and m, from the next step on. */
+  /** Commands `moveByVelocityZ`, m/s and m, from the next step on. */
   def command(place: Int, northMps: Float, eastMps: Float, downM: Float): Unit
 
   def step(): Unit
 
-  /** m */
   def x(place: Int): Double
   def y(place: Int): Double
   def z(place: Int): Double
 
-  /** m/s */
   def vx(place: Int): Double
   def vy(place: Int): Double
   def vz(place: Int): Double
 
-  /** m/s² */
   def ax(place: Int): Double
   def ay(place: Int): Double
   def az(place: Int): Double
 
   def orientation(place: Int): Quaternion
 
-  /** rad/s */
   def angularVelocityFrd(place: Int): Vector3

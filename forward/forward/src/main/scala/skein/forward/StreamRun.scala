@@ -1,6 +1,6 @@
 package skein.forward
 
-/** [[LoopTiming.Stream]]. */
+/** The loop [[LoopTiming.Stream]] in virtual time: decisions follow joined readings. */
 private[skein] final class StreamRun(timing: LoopTiming.Stream, world: RolloutWorld)
     extends JoiningRun(timing, world):
 

@@ -8,27 +8,23 @@ import skein.vehicle.{QuadrotorModel, VehicleModel}
   * thread.
   */
 trait Vehicle:
-  /** Places it at rest, at time 0; world NED, m. */
+  /** Sets it to rest here, at time 0; world NED, m. */
   def start(x: Double, y: Double, z: Double): Unit
 
-  /** A command (m/s, north and east) that arrives now. It acts after the vehicle's dead time, and until
+  /** A command (m/s, north and east) that arrives now. It takes effect after the vehicle's dead time, until
     * another does.
     */
   def command(vx: Double, vy: Double): Unit
 
-  /** Flies until this time, s; never earlier than the call before. */
+  /** Simulates until this time, s; times must not decrease. */
   def advance(timeS: Double): Unit
 
-  /** Position north of the world's origin, m. */
   def x: Double
 
-  /** East, m. */
   def y: Double
 
-  /** Velocity north, m/s. */
   def vx: Double
 
-  /** East, m/s. */
   def vy: Double
 
   // The same as the vehicle tells it when it is asked.
@@ -37,23 +33,23 @@ trait Vehicle:
   def seenVx: Double = vx
   def seenVy: Double = vy
 
-  /** All that it tells. Where a vehicle knows no more than its horizontal motion: level, not turning, at z =
-    * 0.
-    */
+  /** Its reading. A model of horizontal motion alone reports a level vehicle without rotation at z = 0. */
   def seen: Kinematics = level(0)
 
   protected def level(downM: Double): Kinematics =
     Kinematics(Vector3(seenX, seenY, downM), Vector3(seenVx, seenVy, 0), Quaternion.Identity, Vector3.Zero)
 
-/** How a vehicle answers to commanded velocities. */
+/** How a vehicle responds to commanded velocities. */
 trait VelocityResponse:
   def create(): Vehicle
 
-  /** From the arrival of a command until it acts in the place of another, s. The first acts at once. */
+  /** From the arrival of a command until it replaces the one in effect, s. The first takes effect
+    * immediately.
+    */
   def handoverS: Double = 0.0
 
-  /** Whether it flies otherwise when it is told to turn. */
+  /** Whether its motion depends on a commanded yaw. */
   def regardsYaw: Boolean = true
 
-  /** What carries readings of such a vehicle forward best. */
+  /** The model that predicts such a vehicle best. */
   def predictor: VehicleModel[?] = QuadrotorModel.AirSim

@@ -2,10 +2,10 @@ package skein.forward
 
 import skein.vehicle.{Quadrotor, ReducedModel}
 
-/** Responses by name. */
+/** Makes responses of vehicles to commanded velocities, such as AirSim's quadrotor. */
 object VelocityResponses:
 
-  /** In the place of no lag, s: over before the next nanosecond. */
+  /** Stands for no lag, s: over before the next nanosecond. */
   private val NoLagS = 1e-12
 
   /** The kinematics of the differential game: the velocity is the command. */
@@ -21,7 +21,7 @@ object VelocityResponses:
 
   /** AirSim's quadrotor with its flight controller at 3 ms, behind AirSim's API: see [[QuadrotorResponse]].
     *
-    * @param hoveredS how long it has hovered when the flight starts
+    * @param hoveredS time for which it has hovered when the flight starts, s
     */
   def quadrotor(quadrotor: Quadrotor = Quadrotor.AirSim, hoveredS: Double = 0.0): VelocityResponse =
     QuadrotorResponse(quadrotor, hoveredS)

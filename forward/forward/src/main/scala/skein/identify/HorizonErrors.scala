@@ -3,13 +3,13 @@ package skein.identify
 import skein.units.Vector3
 import skein.vehicle.*
 
-/** How far predictions over one horizon were off.
+/** Errors of predictions over one horizon.
   *
-  * @param horizonS how far ahead was predicted, s
-  * @param predictions how many were compared
-  * @param positionP50M distance from the flown position, m: median
+  * @param horizonS length of the predictions, s
+  * @param predictions number that were compared
+  * @param positionP50M distance from the actual position, m: median
   * @param positionP95M its 95th percentile, m
-  * @param velocityP50Mps difference to the flown velocity, m/s: median
+  * @param velocityP50Mps difference to the actual velocity, m/s: median
   * @param velocityP95Mps its 95th percentile, m/s
   */
 final case class HorizonError(
@@ -21,13 +21,12 @@ final case class HorizonError(
     velocityP95Mps: Double
 )
 
-/** How far a fitted model's predictions are off after some seconds. */
+/** Errors of a fitted model's predictions over some seconds. */
 object HorizonErrors:
-  /** Seconds ahead. */
   val HorizonsS: Vector[Double] = Vector(1, 2, 5)
 
-  /** Of a model's predictions from a sample every half second, against the samples nearest to the horizons;
-    * horizons that no flight is long enough for are left out.
+  /** The errors of a model's predictions from a sample every half second, against the samples nearest to the
+    * horizons; omits horizons for which no flight is long enough.
     */
   def of[S](plant: ObservedPlant[S], flights: Vector[TimeHistory]): Vector[HorizonError] =
     val flight = PlantFlight(plant)
@@ -52,8 +51,8 @@ object HorizonErrors:
         quantile(velocity, 0.95)
       )
 
-  /** What the full quadrotor does when it is told the same at the same times, from hovering at the first
-    * sample: the truth that a reduced model stands for. Samples each 0.1 s, at the nearest whole step.
+  /** The response of the full quadrotor to equal commands at equal times, from hovering at the first sample:
+    * the truth that a reduced model approximates. Samples each 0.1 s, at the nearest whole step.
     */
   def reflown(flown: TimeHistory, quadrotor: Quadrotor = Quadrotor.AirSim): TimeHistory =
     if flown.samples.isEmpty then flown

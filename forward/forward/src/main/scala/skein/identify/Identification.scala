@@ -13,10 +13,10 @@ final case class Fitted(name: String, value: Double, least: Double, most: Double
 
 /** A plant fitted to flights.
   *
-  * @param predictions samples that were predicted, each from some earlier one
+  * @param predictions number of predicted samples, each from an earlier one
   * @param velocityRmsMps of one component's error over all predictions
-  * @param positionRmsM the same
-  * @param isConverged else the parameters are where the fit stopped, still improving
+  * @param positionRmsM likewise of the position
+  * @param isConverged if false, the parameters are where the fit stopped, still improving
   */
 final case class Identification(
     structure: Structure,
@@ -31,21 +31,20 @@ final case class Identification(
 
 /** Fits the plants of a [[skein.forecast.Structure]] to flights. From a sample every
   * [[Identification.StartEveryS]] all samples within the horizon are predicted; the parameters minimise the
-  * sum of squared errors of velocity (m/s) and position (m). What a sample does not tell of the plant's state
-  * is carried there from the samples before.
+  * sum of squared errors of velocity (m/s) and position (m). The part of the plant's state that a sample
+  * lacks is simulated from the samples before.
   *
-  * Errors of one stretch of flight hang together, so that the intervals come from the Jacobian with the
+  * Errors within one stretch of flight are correlated, so the intervals come from the Jacobian with the
   * sandwich estimator over blocks of [[Identification.BlockS]] of one vehicle (Liang, Zeger, Biometrika 73
-  * (1986)): the first-order form of a bootstrap over such blocks. They cover chance; not a bias of the
-  * arrivals' times, which goes into the dead time one to one.
+  * (1986)): the first-order form of a bootstrap over such blocks. They cover random errors, but not a bias of
+  * the arrival times, which is added to the dead time in full.
   */
 object Identification:
   val StartEveryS     = 0.5
   val BlockS          = 5.0
   val DefaultHorizonS = 2.0
 
-  /** @return or what is lacking
-    */
+  /** Fits a structure; Left states what the flights lack. */
   def of(
       flights: Vector[TimeHistory],
       structure: Structure,
@@ -69,7 +68,9 @@ object Identification:
   private def spanS(flown: TimeHistory): Double =
     if flown.samples.isEmpty then 0 else flown.samples.last.atS - flown.samples.head.atS
 
-  /** @param block flight and stretch: errors within one hang together
+  /** A stretch of flight within which samples are predicted.
+    *
+    * @param block flight and stretch: errors within one are correlated
     */
   private final case class Window(flown: TimeHistory, from: Int, horizonS: Double, block: (Int, Long)):
     val size: Int =
@@ -118,8 +119,8 @@ object Identification:
       .toRight(s"the flights do not tell the parameters of ${structure.label} apart")
       .map(fitted(structure, solution, _, blocks, samples))
 
-  /** A value so near to a bound, of the span between both, is at it: where the bound is the best value, steps
-    * end beside it.
+  /** A value this close to a bound, as a share of the range, counts as at the bound: steps end beside a bound
+    * that is the best value.
     */
   private val AtBound = 1e-6
 

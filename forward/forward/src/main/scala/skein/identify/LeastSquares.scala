@@ -6,9 +6,11 @@ package skein.identify
   */
 private[identify] object LeastSquares:
 
-  /** @param jacobian at the solution: by parameter, then by residual
-    * @param isConverged no step improved it, the last one was small, or it made hardly a difference; else
-    *   [[MostIterations]] were over
+  /** The result of a fit.
+    *
+    * @param jacobian at the solution: by parameter, then by residual
+    * @param isConverged whether no step improved it, or the last one was small or made hardly a difference;
+    *   else [[MostIterations]] were reached
     */
   final case class Solution(
       parameters: Array[Double],
@@ -22,10 +24,11 @@ private[identify] object LeastSquares:
   /** A step that changes no parameter by more than this share ends the search. */
   private val SmallStep = 1e-7
 
-  /** Of the sum of squares, in the last step. */
   private val SmallGain = 1e-6
 
-  /** @param residuals a pure function of the parameters; always of the same size, more than the parameters
+  /** Minimises the sum of squares.
+    *
+    * @param residuals a pure function of the parameters; always of one size, more than the parameters
     */
   def solve(start: Array[Double], least: Array[Double], most: Array[Double])(
       residuals: Array[Double] => Array[Double]
@@ -63,7 +66,6 @@ private[identify] object LeastSquares:
     val from = clamped(start)
     go(from, residuals(from), 1e-3, 1)
 
-  /** Central; one-sided at a bound. */
   private def differences(
       at: Array[Double],
       least: Array[Double],

@@ -1,6 +1,6 @@
 package skein.identify
 
-/** Small systems of linear equations. */
+/** Solves small dense systems of linear equations. */
 private[skein] object LinearSystem:
   /** Solves A x = b by Gaussian elimination with pivoting.
     *
@@ -26,7 +26,7 @@ private[skein] object LinearSystem:
       column += 1
     Option.unless(isSingular)(Array.tabulate(n)(i => m(i)(n) / m(i)(i)))
 
-  /** The columns of A⁻¹, each as [[solve]] has it; None if there is none. */
+  /** The columns of A⁻¹, each computed as in [[solve]]; None if there is no inverse. */
   def inverseColumns(matrix: Array[Array[Double]], least: Double = 0): Option[Array[Array[Double]]] =
     val n       = matrix.length
     val columns =

@@ -3,21 +3,21 @@ package skein.identify
 import skein.fusion.SensorModel
 import skein.signal.{LatencyDistribution, NormalQuantile}
 
-/** One detection beside the truth.
+/** One detection compared with the truth.
   *
   * @param bearingErrorRad measured less true azimuth
   * @param rangeM measured
   * @param trueRangeM from the camera
-  * @param tookMs recognition
+  * @param tookMs duration of recognition
   */
 final case class Detected(bearingErrorRad: Double, rangeM: Double, trueRangeM: Double, tookMs: Double)
 
-/** What an eye did in a flight.
+/** What a camera with its recogniser detected in a flight.
   *
-  * @param everyS between images, as asked for
+  * @param everyS requested time between images
   * @param fovRad horizontal
   * @param images that were searched
-  * @param inView share of the flight in which the target was in view, by where both truly were
+  * @param inView share of the flight in which the target was in view, by both true positions
   */
 final case class Seeing(
     everyS: Double,
@@ -29,19 +29,18 @@ final case class Seeing(
     detections: Vector[Detected]
 )
 
-/** A [[skein.fusion.SensorModel]] fitted to what a recogniser did: moments of its errors, the frequency of
-  * detection in view, and recognition's times as they were. Deviations and the frequency with their 95 %
-  * intervals, as if detections were independent; what of the error lasts, as a range that is wrong in the
-  * same way for as long as the same side is seen, they do not show.
+/** A [[skein.fusion.SensorModel]] fitted to a recogniser's detections: moments of its errors, the frequency
+  * of detection in view, and the measured durations of recognition. Deviations and the frequency have 95 %
+  * intervals that assume independent detections; persistent errors, such as a range that is wrong for as long
+  * as one side of the target is visible, are not covered.
   */
 final case class SensorFit(model: SensorModel, images: Int, detections: Int, fitted: Vector[Fitted])
 
 object SensorFit:
-  /** Fewer tell too little of deviations. */
+  /** Least number of detections from which deviations can be estimated. */
   val LeastDetections = 30
 
-  /** @return or what is lacking
-    */
+  /** Fits the model; Left states what the flights lack. */
   def of(seeing: Vector[Seeing]): Either[String, SensorFit] =
     val all = seeing.flatMap(_.detections)
     if all.sizeIs < LeastDetections then
@@ -92,7 +91,7 @@ object SensorFit:
       )
     )
 
-  /** At most so many quantiles are kept. */
+  /** Reduces durations to a limited number of quantiles. */
   private def takes(sorted: Vector[Double]): Vector[Double] =
     if sorted.sizeIs <= Quantiles then sorted
     else
@@ -102,7 +101,6 @@ object SensorFit:
 
   private def deg(rad: Double) = StrictMath.toDegrees(rad)
 
-  /** Wilson's interval of a frequency. */
   private def wilson(share: Double, n: Double): (Double, Double) =
     val z2     = NormalQuantile.TwoSided95 * NormalQuantile.TwoSided95
     val middle = (share + z2 / (2 * n)) / (1 + z2 / n)

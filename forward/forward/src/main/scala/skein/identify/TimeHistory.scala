@@ -2,14 +2,15 @@ package skein.identify
 
 import skein.vehicle.{ObservedPlant, PlaneReading, PlantFlight}
 
-/** Where a vehicle was and how fast, horizontally: s, m, m/s. */
+/** Horizontal position and velocity of a vehicle at a time: s, m, m/s. */
 final case class Sample(atS: Double, x: Double, y: Double, vx: Double, vy: Double):
   def reading: PlaneReading = PlaneReading(x, y, vx, vy)
 
-/** A commanded horizontal velocity and when it came to the vehicle: s, m/s. */
+/** A commanded horizontal velocity with the time of its arrival at the vehicle: s, m/s. */
 final case class ArrivedCommand(atS: Double, vx: Double, vy: Double)
 
-/** One vehicle's flight: what it was told and what it did, on one clock, both in the order of their times.
+/** One vehicle's flight: the commands that arrived and the samples of its motion, on one clock, both in the
+  * order of their times.
   *
   * @param downM the altitude that its commands keep, NED
   */
@@ -22,7 +23,7 @@ final case class TimeHistory(
 
   private val times = arrivals.map(_.atS).toArray
 
-  /** A plant's state at each sample: carried on from the sample before, and corrected by what was read. */
+  /** A plant's state at each sample: predicted from the sample before, and corrected by the reading. */
   def states[S](plant: ObservedPlant[S]): Vector[S] =
     val flight = PlantFlight(plant)
     val first  = samples.headOption.map(sample => plant.corrected(plant.initial, sample.reading))
@@ -34,7 +35,7 @@ final case class TimeHistory(
   /** Predicts from one sample over all later ones within a horizon.
     *
     * @param state at that sample
-    * @param each told of each later sample's index, when the flight is there
+    * @param each called with each later sample's index when the prediction has reached its time
     */
   def predict[S](flight: PlantFlight[S], state: S, from: Int, horizonS: Double)(each: Int => Unit): Unit =
     val deadTimeS = flight.plant.deadTimeS

@@ -3,15 +3,17 @@ package skein.lanes
 import skein.forward.{Delays, LoopTiming, VelocityResponse}
 import skein.lanes.timetable.Timetable
 
-/** Flies candidates through shared episodes in place of this machine's processors, as a GPU does. Outcomes
-  * are the same, to the bit.
+/** Simulates candidates through shared episodes in place of this machine's processors, as a GPU does.
+  * Outcomes are identical, to the bit.
   */
 trait Accelerator:
-  /** With as many candidates of some episodes as keep it busy. */
+  /** The engine, with the number of candidates of some episodes that keeps it busy. */
   def engine: Engine
 
-  /** @param threads that prepare flights
-    * @return or why it flies no such duels
+  /** Prepares duels.
+    *
+    * @param threads that prepare flights
+    * @return Left states why it does not support such duels
     */
   private[lanes] def duels(
       episodes: DuelEpisodes,
@@ -19,9 +21,11 @@ trait Accelerator:
       threads: Int
   ): Either[String, AcceleratedDuels]
 
-  /** @param threads that prepare flights
-    * @param timetable of an episode of teams of a form
-    * @return or why it flies no such teams
+  /** Prepares teams.
+    *
+    * @param threads that prepare flights
+    * @param timetable of an episode, for teams of a form
+    * @return Left states why it does not support such teams
     */
   private[lanes] def teams(
       timing: LoopTiming,
@@ -31,7 +35,7 @@ trait Accelerator:
   ): Either[String, AcceleratedTeams]
 
 private[lanes] object Accelerator:
-  /** What flies in place of lanes, or why it does not; none where no accelerator was asked for.
+  /** The engine that replaces SIMD, or why none does; None where no accelerator was requested.
     *
     * @param flights that it offers, or why none
     */
@@ -46,9 +50,9 @@ private[lanes] object Accelerator:
     yield offer.flatMap: _ =>
       Either.cond(together, by.engine, "the GPU flies candidates that share episodes")
 
-/** Of duels. One call at a time. */
+/** Duels on an accelerator; one call at a time, not thread-safe. */
 private[lanes] trait AcceleratedDuels:
-  /** Flies the candidates whose policies are formulas, unless it is cancelled.
+  /** Simulates the candidates whose policies are formulas, unless it is cancelled.
     *
     * @param worlds with [[Worlds.episodesOfEach]]
     */
@@ -60,9 +64,9 @@ private[lanes] trait AcceleratedDuels:
       isCancelled: () => Boolean
   ): Accelerated
 
-/** Of teams. One call at a time. */
+/** Teams on an accelerator; one call at a time, not thread-safe. */
 private[lanes] trait AcceleratedTeams:
-  /** Flies the candidates that are formulas, unless it is cancelled.
+  /** Simulates the candidates that are formulas, unless it is cancelled.
     *
     * @param worlds with [[Worlds.episodesOfEach]]
     * @param prepared a world's candidate
@@ -75,16 +79,16 @@ private[lanes] trait AcceleratedTeams:
       isCancelled: () => Boolean
   ): Accelerated
 
-/** What came of a call.
+/** The result of an accelerator's call.
   *
-  * @param flown how many worlds were
-  * @param left the worlds of candidates that are no formulas
+  * @param flown number of worlds that were simulated
+  * @param left the worlds of candidates that are not formulas
   */
 private[lanes] final case class Accelerated(flown: Int, left: Array[Int])
 
 private[lanes] object Accelerated:
-  /** What an accelerator flies of worlds before the processors do: nothing, unless they are candidates that
-    * fly through the same episodes.
+  /** Lets an accelerator simulate its worlds before the processors do: none, unless they are candidates that
+    * share their episodes.
     *
     * @param flights see [[Accelerator.instead]]
     */

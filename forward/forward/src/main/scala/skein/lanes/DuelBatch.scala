@@ -13,20 +13,20 @@ import skein.policy.HeadingPolicy
 import skein.simd.LaneMath
 import skein.units.Expect
 
-/** Flies many duels under one loop's timing, on all cores: the one front of forward simulation for searches
-  * and maps.
+/** Simulates many duels under one loop's timing, on all cores: the entry point of forward simulation for
+  * searches and maps.
   *
-  * Every policy that is a formula flies by lanes ([[PolicyLanes]]): worlds that share episodes by
-  * [[skein.lanes.timetable.TimetableKernel]], others by [[LoopDuelKernel]]. Other worlds' quadrotors fly by
-  * lanes under the scalar loops ([[SteppedRollouts]]). All else flies by the scalar reference ([[Rollout]]).
-  * `docs/engines.md` has the table. Which engine flies a world depends on the world and on `shareEpisodes`
-  * alone, so results do not depend on threads, on a call's other worlds or on their order. One call at a
-  * time.
+  * Every policy that is a formula runs on SIMD ([[PolicyLanes]]): worlds that share episodes by
+  * [[skein.lanes.timetable.TimetableKernel]], others by [[LoopDuelKernel]]. Quadrotors of other worlds are
+  * stepped by SIMD under the scalar loops ([[SteppedRollouts]]). All else runs on the scalar reference
+  * ([[Rollout]]). `docs/engines.md` has the table. The engine of a world depends on the world and on
+  * `shareEpisodes` alone, so results do not depend on threads, on a call's other worlds or on their order.
+  * One call at a time.
   *
   * @param duel start, speeds and duration; the policies come from the worlds
-  * @param accelerator flies the candidates of [[Worlds.episodesOfEach]] whose policies are formulas, where it
-  *   knows the loop and the vehicles
-  * @param isReference the scalar reference alone flies, to hold others to it
+  * @param accelerator simulates the candidates of [[Worlds.episodesOfEach]] whose policies are formulas, if
+  *   it supports the loop and the vehicles
+  * @param isReference uses the scalar reference alone, to compare others with it
   */
 final class DuelBatch(
     duel: Duel,
@@ -49,10 +49,10 @@ final class DuelBatch(
 
   private val eyes: Either[String, DuelEyes] = DuelEyes.of(duel)
 
-  /** Whether somebody knows of the other by a sensor alone. */
+  /** Whether some agent knows the other by a sensor alone. */
   private val sees = duel.pursuer.eye.isDefined || duel.evader.eye.isDefined
 
-  /** The episodes, if they fly by timetables. */
+  /** The episodes, if timetables support them. */
   private val lanes: Either[String, DuelEpisodes] =
     for
       _     <- plant
@@ -60,7 +60,7 @@ final class DuelBatch(
       lanes <- LaneDynamics.under(timing, model, duel)
     yield DuelEpisodes(duel, timing, lanes, eyes)
 
-  /** The vehicles and who sees, if they fly by lanes where every world has delays of its own. */
+  /** The vehicles and cameras, if SIMD supports them with separate delays in every world. */
   private val apart: Either[String, (LaneDynamics, DuelEyes)] =
     for
       plant <- plant
@@ -73,7 +73,6 @@ final class DuelBatch(
         "two that see one another by sensors fly by lanes where candidates share episodes"
     yield (plant, eyes)
 
-  /** One per thread. */
   private final class Worker:
     val scalar: DuelFlyer = ScalarFlyer(duel, timing, model)
     val alone: DuelFlyer  =
@@ -90,19 +89,20 @@ final class DuelBatch(
   private val accelerated: Option[Either[String, AcceleratedDuels]] =
     accelerator.map(each => lanes.flatMap(each.duels(_, model, threads)))
 
-  /** Where vehicles are flown side by side. */
+  /** The engine that steps vehicles side by side, if any. */
   private val stepped: Option[Engine] =
     SteppedRollouts.engine(model, vehicles).filterNot(_ => sees || isReference)
 
-  /** A world that waits meets no delays: all worlds share their episode, but for what somebody sees. */
+  /** Whether worlds share episodes. A world that waits for its controller has no delays: all worlds share
+    * their episode, except for what cameras detect.
+    */
   private def shares(asked: Boolean): Boolean = asked || timing.isInstanceOf[LoopTiming.Paused] && !sees
 
-  /** Which engine flies worlds of these policies.
+  /** The engine for worlds of these policies.
     *
-    * @param shareEpisodes see [[DuelWorlds.shareEpisodes]]; on a GPU, only worlds fly that tell
-    *   [[Worlds.episodesOfEach]] too
-    * @param links that the worlds fly over: where delays are long for the period, or are recorded ones, no
-    *   lanes know them
+    * @param shareEpisodes see [[DuelWorlds.shareEpisodes]]; on a GPU, only worlds with
+    *   [[Worlds.episodesOfEach]] run
+    * @param links of the worlds: SIMD does not support delays that are long for the period, or recorded
     */
   def engine(
       pursuer: HeadingPolicy,
@@ -119,7 +119,6 @@ final class DuelBatch(
       LaneMath.LANES
     )
 
-  /** Why no lanes fly over a link. */
   private def refusal(shareEpisodes: Boolean, link: Delays): Option[String] =
     if shareEpisodes && lanes.isRight then None
     else apart.fold(Some(_), (plant, _) => LoopSupport.refusal(timing, 2, link, plant))
@@ -144,12 +143,12 @@ final class DuelBatch(
       val worlds = if shareEpisodes then "candidates of an episode" else "worlds"
       s"${LaneMath.LANES} $worlds at a time"
 
-  /** Flies all worlds, unless it is cancelled.
+  /** Simulates all worlds, unless it is cancelled.
     *
-    * @param onProgress is told how many worlds are done, after each batch, by one thread at a time
-    * @param isCancelled asked before each batch and now and then, from any thread; batches that fly already
-    *   end, or are given up where vehicles are stepped side by side
-    * @throws InterruptedException if the caller is interrupted; the batches that fly already have ended then
+    * @param onProgress called with the number of worlds done, after each batch, by one thread at a time
+    * @param isCancelled polled before each batch and in between, from any thread; running batches finish, or
+    *   are abandoned where vehicles are stepped side by side
+    * @throws InterruptedException if the caller is interrupted; running batches have finished then
     */
   def fly(
       worlds: DuelWorlds,

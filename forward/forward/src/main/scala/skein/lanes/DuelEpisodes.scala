@@ -3,7 +3,7 @@ package skein.lanes
 import skein.forward.{Delays, Duel, LoopTiming}
 import skein.lanes.timetable.Timetable
 
-/** The episodes of duels that fly by timetables.
+/** The episodes of duels that timetables support.
   *
   * @param duel start, speeds and duration
   */
@@ -17,10 +17,10 @@ private[lanes] final class DuelEpisodes(
     self -> eye
   }.toMap
 
-  /** Whether all worlds meet the same: those that wait meet no delays. */
+  /** Whether all worlds have one episode: worlds that wait for their controller have no delays. */
   val areOne: Boolean = timing.isInstanceOf[LoopTiming.Paused] && eyes.isNobody
 
-  /** What tells an episode from others. */
+  /** The key by which an episode differs from others. */
   def of(link: Delays, key: Int): Any = if areOne then () else (link, key)
 
   def timetable(link: Delays, key: Int): Timetable =

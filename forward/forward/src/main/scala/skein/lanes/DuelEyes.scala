@@ -4,7 +4,7 @@ import skein.forward.Duel
 import skein.fusion.SensorModel
 import skein.lanes.policy.CameraTrackerLanes
 
-/** By which alone the two of a duel know of one another, where they are not told. */
+/** The cameras that are an agent's only knowledge of its opponent in a duel, if it has one. */
 private[lanes] final case class DuelEyes(
     evader: Option[CameraTrackerLanes.Forms],
     pursuer: Option[CameraTrackerLanes.Forms]
@@ -14,8 +14,7 @@ private[lanes] final case class DuelEyes(
 private[lanes] object DuelEyes:
   val Nobody: DuelEyes = DuelEyes(None, None)
 
-  /** @return or why they do not see by lanes
-    */
+  /** The compiled cameras; Left states why SIMD does not support them. */
   def of(duel: Duel): Either[String, DuelEyes] =
     def forms(eye: Option[SensorModel]) =
       eye.fold[Either[

@@ -7,14 +7,13 @@ import skein.lanes.policy.{LanePolicy, PolicyLanes}
 import skein.lanes.timetable.{Timetable, TimetableEye, Timetables}
 import skein.policy.HeadingPolicy
 
-/** Flies a batch of worlds on one thread. Mutable. */
+/** Simulates a batch of worlds on one thread. Mutable. */
 private trait DuelFlyer:
-  /** Most worlds of a batch. */
   def batch: Int
 
   def fly(worlds: DuelWorlds, numbers: Array[Int], captureRadiusM: Float, into: DuelOutcomes): Unit
 
-/** By the scalar reference. */
+/** Simulates the worlds of a batch one by one, by the scalar reference. */
 private final class ScalarFlyer(duel: Duel, timing: LoopTiming, model: VelocityResponse) extends DuelFlyer:
   val batch: Int      = 16
   private val rollout = KeptRollout(duel, timing, model)
@@ -23,9 +22,7 @@ private final class ScalarFlyer(duel: Duel, timing: LoopTiming, model: VelocityR
     for world <- numbers do
       into.set(world, rollout(worlds, world).fly(worlds.key(world), captureRadiusM))
 
-/** The rollout of the world flown last, which also flies the next if that has the same policies and link.
-  * Mutable.
-  */
+/** The rollout of the last world, reused for the next one if its policies and link are equal. Mutable. */
 private final class KeptRollout(duel: Duel, timing: LoopTiming, model: => VelocityResponse):
   private var last: (HeadingPolicy, HeadingPolicy, Delays) = (null, null, null)
   private var rollout: Rollout                             = null
@@ -39,7 +36,7 @@ private final class KeptRollout(duel: Duel, timing: LoopTiming, model: => Veloci
       rollout = Rollout(own, timing, link, model)
     rollout
 
-/** Vehicle by vehicle: their loops by the scalar reference. */
+/** Simulates vehicles side by side by SIMD, and their loops by the scalar reference. */
 private final class SteppedFlyer(duel: Duel, timing: LoopTiming, stepped: SteppedRollouts) extends DuelFlyer:
   val batch: Int   = stepped.worlds
   private val kept = Array.tabulate(batch)(lane => KeptRollout(duel, timing, stepped.vehiclesOf(lane)))
@@ -52,13 +49,13 @@ private final class SteppedFlyer(duel: Duel, timing: LoopTiming, stepped: Steppe
         rollouts(lane)
       for lane <- some.indices do into.set(some(lane), rollouts(lane).outcome)
 
-/** By lanes: worlds with one form of pursuer and one of evader fly side by side. Worlds that no lanes know
-  * are flown by another.
+/** Simulates a batch by SIMD: worlds with one form of pursuer and one of evader run side by side. Worlds that
+  * SIMD does not support go to another flyer.
   */
 private abstract class LaneFlyer(other: DuelFlyer) extends DuelFlyer:
   val batch: Int = DuelKernel.WORLDS
 
-  /** A kernel and its policies, and the worlds that will fly by it. */
+  /** A kernel with its policies, and the worlds assigned to its lanes. */
   protected abstract class Lanes(pursuer: HeadingPolicy, evader: HeadingPolicy, asked: Set[DuelNumber]):
     protected val pursuers: LanePolicy = LanePolicy.of(pursuer, asked(DuelNumber.PursuerEffort))
     protected val evaders: LanePolicy  = LanePolicy.of(evader, asked(DuelNumber.EvaderEffort))
@@ -70,13 +67,10 @@ private abstract class LaneFlyer(other: DuelFlyer) extends DuelFlyer:
 
     protected def kernel: DuelKernel
 
-    /** Worlds that the lanes were filled with. */
     protected def count: Int = filled
 
-    /** Flies them. */
     protected def fly(captureRadiusM: Float): Unit
 
-    /** Fills a lane besides its policies. */
     protected def fill(lane: Int, worlds: DuelWorlds, world: Int): Unit
 
     def add(worlds: DuelWorlds, world: Int): Unit =
@@ -92,7 +86,7 @@ private abstract class LaneFlyer(other: DuelFlyer) extends DuelFlyer:
       lastEvader = evader
       fill(lane, worlds, world)
 
-    /** Reads a policy's numbers, unless the lane before was filled with the very same. */
+    /** Reads a policy's numbers, unless the lane before was filled with an identical policy. */
     private def put(lane: Int, lanes: LanePolicy, policy: HeadingPolicy, before: HeadingPolicy): Unit =
       if lane > 0 && (policy eq before) then lanes.copy(lane - 1, lane) else lanes.put(lane, policy)
 
@@ -105,7 +99,6 @@ private abstract class LaneFlyer(other: DuelFlyer) extends DuelFlyer:
 
   protected def lanes(pursuer: HeadingPolicy, evader: HeadingPolicy, asked: Set[DuelNumber]): Lanes
 
-  /** Whether the lanes know a world's link. */
   protected def canFly(link: Delays): Boolean
 
   private type Form = Either[Untraceable, PolicyLanes]
@@ -140,7 +133,7 @@ private abstract class LaneFlyer(other: DuelFlyer) extends DuelFlyer:
     other.fly(worlds, unknown.result(), captureRadiusM, into)
     for chosen <- filled do chosen.fly(worlds, captureRadiusM, into)
 
-/** By [[LoopDuelKernel]], where a world's link allows. */
+/** Simulates by [[LoopDuelKernel]], where a world's link allows. */
 private final class LoopFlyer(
     duel: Duel,
     timing: LoopTiming,
@@ -167,8 +160,8 @@ private final class LoopFlyer(
 
       protected def fly(captureRadiusM: Float): Unit = kernel.fly(keys, links, captureRadiusM)
 
-/** By [[skein.lanes.timetable.TimetableKernel]]. All worlds of a batch have one key and one link, or meet no
-  * delays.
+/** Simulates by [[skein.lanes.timetable.TimetableKernel]]. All worlds of a batch have one key and one link,
+  * or no delays.
   */
 private final class TimetableFlyer(episodes: DuelEpisodes, timetables: Timetables, other: DuelFlyer)
     extends LaneFlyer(other):

@@ -5,9 +5,9 @@ import skein.lanes.policy.LanePolicy
 import skein.lanes.score.{OfMoment, Scoreboard}
 import skein.scenario.Reduction
 
-/** What kernels that fly duels tell of the worlds flown last. Mutable.
+/** Results of the worlds that a kernel of duels simulated last. Mutable.
   *
-  * @param asked what they are judged by
+  * @param asked the numbers to compute
   */
 private[lanes] abstract class DuelKernel(durationS: Double, periodS: Double, asked: Set[DuelNumber]):
   import DuelKernel.*
@@ -17,29 +17,29 @@ private[lanes] abstract class DuelKernel(durationS: Double, periodS: Double, ask
 
   protected val scores: Scoreboard = Scoreboard.ofDistance(judged.map(_._2)*)
 
-  /** A distance of at most this is a capture, m. */
+  /** Sets the distance up to which a capture counts, m. */
   protected def captureWithin(radiusM: Float): Unit =
     place.get(DuelNumber.Capture).foreach(scores.limit(_, radiusM))
 
   /** The sums of all changes of the commanded headings, by the shorter way, rad. */
   protected val pursuerEffortRad, evaderEffortRad: Array[Float] = Array.ofDim(WORLDS)
 
-  /** What each world came to. */
+  /** One number of the result, for each world. */
   def apply(number: DuelNumber): Array[Float] = number match
     case DuelNumber.PursuerEffort => pursuerEffortRad
     case DuelNumber.EvaderEffort  => evaderEffortRad
     case _                        => scores.values(place(number))
 
-  /** Tells what the first lanes' worlds came to. */
+  /** Copies the results of the first lanes' worlds. */
   def tell(worlds: Array[Int], count: Int, into: DuelOutcomes): Unit = for number <- asked do
     val (came, told) = (apply(number), into(number))
     for lane <- 0 until count do told(worlds(lane)) = came(lane)
 
 private[lanes] object DuelKernel:
-  /** Worlds flown together. */
+  /** Number of worlds simulated together. */
   val WORLDS: Int = LanePolicy.WORLDS
 
-  /** What the vehicles' distance comes to, of the numbers that are asked for. */
+  /** The reductions of the vehicles' distance that the requested numbers need. */
   def judged(
       durationS: Double,
       periodS: Double,

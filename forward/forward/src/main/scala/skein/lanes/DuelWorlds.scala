@@ -3,16 +3,16 @@ package skein.lanes
 import skein.forward.DuelOutcome
 import skein.policy.HeadingPolicy
 
-/** The worlds of one call of [[DuelBatch]]. */
+/** The worlds of one call of [[DuelBatch]]: two policies and a link each. */
 trait DuelWorlds extends Worlds:
-  /** What worlds are judged by. Nothing else is computed. */
+  /** The numbers to compute for each world. No others are computed. */
   def asked: Set[DuelNumber] = DuelNumber.all
 
   def pursuer(world: Int): HeadingPolicy
   def evader(world: Int): HeadingPolicy
 
-/** What duels may be judged by; see [[DuelOutcome]] for the meanings. An effort costs a twentieth of a
-  * flight: how far a direction is from the one before takes an arccosine.
+/** The numbers by which duels can be judged; see [[DuelOutcome]] for their meaning. An effort costs a
+  * twentieth of a flight: the angle between successive directions takes an arccosine.
   */
 enum DuelNumber(private[lanes] val of: DuelOutcome => Double):
   case MinDistance   extends DuelNumber(_.minDistanceM)
@@ -25,10 +25,10 @@ enum DuelNumber(private[lanes] val of: DuelOutcome => Double):
 object DuelNumber:
   val all: Set[DuelNumber] = values.toSet
 
-/** What each world came to. One number per world, in metres, seconds and radians; NaN where it was not
-  * [[DuelWorlds.asked asked for]].
+/** The results of each world. One number per world, in metres, seconds and radians; NaN where it was not
+  * [[DuelWorlds.asked requested]].
   *
-  * @param flown how many worlds were flown: all, unless the call was cancelled. The others' numbers are 0.
+  * @param flown number of simulated worlds: all, unless the call was cancelled. The others' numbers are 0.
   */
 final class DuelOutcomes private[skein] (size: Int, asked: Set[DuelNumber] = DuelNumber.all):
   private val came = DuelNumber.values.map: number =>

@@ -1,44 +1,43 @@
 package skein.lanes
 
-/** What flies worlds forward, and why nothing faster does. Chosen once, and shown as it is.
+/** The engine that simulates worlds, with the reason why no faster one does. Chosen once, and shown to the
+  * user.
   *
   * @param kind of the slowest, where links differ
   * @param text a line for the user
-  * @param sideBySide how many candidates that share episodes take no longer than one
+  * @param sideBySide number of candidates with shared episodes that take no longer than one
   */
 final case class Engine(kind: Engine.Kind, text: String, sideBySide: Int = 1):
 
-  /** Whether whole worlds fly by vectors. */
   def fliesByLanes: Boolean = kind == Engine.Kind.Lanes || kind == Engine.Kind.Gpu
 
-  /** Whether vehicles do, at least. */
   def isFast: Boolean = fliesByLanes || kind == Engine.Kind.Quadrotors
 
   override def toString: String = text
 
 object Engine:
   enum Kind:
-    /** Flights in virtual time, some a second. */
+    /** Flights in virtual time, a few per second. */
     case Flights
 
-    /** World by world. */
+    /** The scalar reference, one world at a time. */
     case Scalar
 
-    /** The loops as by `Scalar`, with bodies of MuJoCo side by side, or quadrotors by vectors. */
+    /** The loops as in `Scalar`, with MuJoCo's bodies side by side, or quadrotors by SIMD. */
     case Bodies, Quadrotors
 
-    /** Worlds by vectors, on processors or on a GPU. */
+    /** Whole worlds by SIMD, on processors or on a GPU. */
     case Lanes, Gpu
 
   def scalar(why: String): Engine = Engine(Kind.Scalar, s"scalar: $why")
 
-  /** Chooses among what flies worlds over links.
+  /** Chooses an engine for worlds over links.
     *
-    * @param lanes what flies by lanes over links that they know, or why nothing does
-    * @param refusals by link, why no lanes fly over it
-    * @param stepped what steps vehicles side by side, if anything does
-    * @param gpu what flies in place of lanes, or why it does not; none where nobody asked for it
-    * @param sideBySide see [[Engine]], by lanes
+    * @param lanes the SIMD engine over links that it supports, or why there is none
+    * @param refusals by link, why SIMD does not support it
+    * @param stepped the engine that steps vehicles side by side, if any
+    * @param gpu the engine that replaces SIMD, or why it does not; None where it was not requested
+    * @param sideBySide see [[Engine]], for SIMD
     */
   private[lanes] def of(
       lanes: Either[String, String],

@@ -23,27 +23,25 @@ import skein.lanes.timetable.{
 import skein.units.Expect
 import skein.vehicle.ReducedModel
 
-/** How a kind of vehicle flies by lanes: by [[skein.lanes.timetable.Timetable]]s and, if it [[fliesAlone]],
-  * where every world has delays of its own.
+/** How SIMD simulates a kind of vehicle: by [[skein.lanes.timetable.Timetable]]s and, if it [[fliesAlone]],
+  * with separate delays in every world.
   */
 private[skein] trait LaneDynamics extends TimetableDynamics:
-  /** How long one of its steps lasts at most, s. */
+  /** Longest duration of one of its steps, s. */
   def stepS: Double
 
-  /** Whether its flight is known in pieces, from which it can be read at any moment of the near past. */
+  /** Whether its flight consists of closed-form pieces, so that it can be read at any recent moment. */
   def fliesAlone: Boolean = true
 
-  /** All worlds' vehicles of one role, whose commands act at times of their own. */
+  /** All worlds' vehicles of one role, whose commands take effect at different times. */
   private[lanes] def flights(agent: RolloutAgent, loop: LoopLanes): LaneVehicles
 
 private[skein] object LaneDynamics:
-  /** @return or why this model does not fly by lanes
-    */
+  /** The dynamics of a model; Left states why SIMD does not support it. */
   def of(model: VelocityResponse, duel: Duel): Either[String, LaneDynamics] =
     of(model, Seq(duel.pursuer, duel.evader))
 
-  /** @return or why these do not fly by lanes with this model
-    */
+  /** The dynamics of these vehicles; Left states why SIMD does not support them with this model. */
   def of(model: VelocityResponse, vehicles: Seq[RolloutAgent]): Either[String, LaneDynamics] = model match
     case quadrotor: QuadrotorResponse =>
       val lowest = -vehicles.map(_.altitudeDownM).max
@@ -55,15 +53,14 @@ private[skein] object LaneDynamics:
     case PlantResponse(plant) => PlantLanes.of(plant).map(PlantDynamics(_))
     case _                    => Left("the lanes do not know the vehicle")
 
-  /** Vehicles of this model under a loop: if that predicts, what it predicts by flies by lanes too.
+  /** The dynamics of a model under a loop; if the loop predicts, SIMD must support its predictor too.
     *
-    * @return or why not
+    * @return Left states why SIMD does not support it
     */
   def under(timing: LoopTiming, model: VelocityResponse, duel: Duel): Either[String, LaneDynamics] =
     under(timing, model, Seq(duel.pursuer, duel.evader))
 
-  /** @return or why these do not fly by lanes under the loop with this model
-    */
+  /** The dynamics of these vehicles under a loop; Left states why SIMD does not support them. */
   def under(
       timing: LoopTiming,
       model: VelocityResponse,
@@ -75,10 +72,10 @@ private[skein] object LaneDynamics:
           LanePredictor.of(predictive.predictor).map(PredictedDynamics(vehicles, _))
         case _ => Right(vehicles)
 
-  /** AirSim's quadrotor loses height while it turns. */
+  /** Least altitude of the start, m: AirSim's quadrotor loses height while it turns. */
   private val LeastAltitudeM = 5.0
 
-/** Vehicles whose readings are carried forward. */
+/** Dynamics of vehicles whose states the loop predicts. */
 private final class PredictedDynamics(model: LaneDynamics, by: TimetablePredictor) extends LaneDynamics:
   export model.{clock, deadTimeS, flights, handoverS, stepS}
   override def fliesAlone: Boolean                     = model.fliesAlone
@@ -88,7 +85,7 @@ private final class PredictedDynamics(model: LaneDynamics, by: TimetablePredicto
     flown.predicted = by.vehicles(agent)
     flown
 
-/** By [[TimetablePlants]] and [[PlantFlights]]; a lag alone also by [[LagVehicles]]. */
+/** Dynamics by [[TimetablePlants]] and [[PlantFlights]]; a plain lag also by [[LagVehicles]]. */
 private final class PlantDynamics(lanes: PlantLanes) extends LaneDynamics:
   def stepS: Double                                    = lanes.plant.stepS
   def deadTimeS: Double                                = lanes.plant.deadTimeS
@@ -108,10 +105,12 @@ private final class PlantDynamics(lanes: PlantLanes) extends LaneDynamics:
       case _ => PlantFlights(agent, lanes, loop)
 
 private object PlantDynamics:
-  /** Below, too many periods' commands are under way for [[LagVehicles]]. */
+  /** Below this period, s, too many commands are on their way for [[LagVehicles]]. */
   private val LeastPeriodS = 0.02
 
-/** By [[TimetableQuadrotors]]: how many steps there are until then, and the time since the last. */
+/** Dynamics by [[TimetableQuadrotors]]: by the number of steps until an event, and the time since the last
+  * step.
+  */
 private final class QuadrotorDynamics(model: QuadrotorResponse, lanes: QuadrotorLanes) extends LaneDynamics:
   private val stepNs    = Nanos.of(model.quadrotor.stepS)
   private val hoveredNs = Nanos.of(model.hoveredS)

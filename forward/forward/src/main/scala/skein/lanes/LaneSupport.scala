@@ -2,9 +2,9 @@ package skein.lanes
 
 import skein.units.Expect
 
-/** Whether this Java can compute by lanes. */
+/** Whether this Java runtime has the vector module that SIMD needs. */
 private[skein] object LaneSupport:
-  /** A class with vectors is not touched where their module is missing. */
+  /** Right if the vector module is present; a class with vectors must not be loaded without it. */
   val present: Either[String, Unit] = Expect.that(
     ModuleLayer.boot().findModule("jdk.incubator.vector").isPresent
   ):

@@ -3,16 +3,18 @@ package skein.lanes
 import java.time.Duration
 import java.util.concurrent.atomic.{AtomicInteger, AtomicReference}
 
-/** Hands batches of worlds out to workers, each on a thread of its own: a worker keeps its arrays from batch
-  * to batch, and is asked between them whether to go on.
+/** Distributes batches of worlds to workers, each on its own thread: a worker reuses its arrays from batch to
+  * batch, and cancellation is checked between them.
   */
 private[lanes] object LaneThreads:
 
-  /** @param isCancelled asked before each batch, from any thread, and meanwhile by the caller: then who works
-    *   is interrupted, and a batch that throws for that is given up
-    * @param onProgress is told how many worlds are done, after each batch, by one thread at a time
-    * @return how many worlds were done
-    * @throws InterruptedException if the caller is interrupted; the batches handed out have ended then
+  /** Runs the workers until all batches are done.
+    *
+    * @param isCancelled polled before each batch, from any thread, and meanwhile by the caller: then working
+    *   threads are interrupted, and a batch that throws because of it is abandoned
+    * @param onProgress called with the number of worlds done, after each batch, by one thread at a time
+    * @return number of worlds done
+    * @throws InterruptedException if the caller is interrupted; running batches have finished then
     */
   def run[W](
       workers: Vector[W],

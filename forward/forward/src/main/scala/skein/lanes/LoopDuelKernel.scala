@@ -4,12 +4,12 @@ import skein.forward.{Duel, RolloutAgent, TabledDelays}
 import skein.lanes.loop.{LaneAgents, LoopEye, LoopKernel, LoopLanes}
 import skein.lanes.policy.{CameraTrackerLanes, LanePolicy}
 
-/** Duels by [[LoopKernel]].
+/** Simulates duels by [[LoopKernel]].
   *
   * @param duel start, speeds and duration; its policies are not used
   * @param model one that [[LoopSupport]] does not refuse
-  * @param pursuers take the parameters of each world's pursuer before it flies
-  * @param asked what they are judged by
+  * @param pursuers hold the parameters of each world's pursuer
+  * @param asked the numbers to compute
   * @param eyes of one of the two at most
   */
 private[lanes] final class LoopDuelKernel(
@@ -33,11 +33,11 @@ private[lanes] final class LoopDuelKernel(
 
   private val kernel = LoopKernel(loop, Array(evader, pursuer), scores)
 
-  /** Flies one episode in each of [[DuelKernel.WORLDS]] worlds.
+  /** Simulates one episode in each of [[DuelKernel.WORLDS]] worlds.
     *
     * @param keys [[skein.simd.WorldRandom.key]] of each world
     * @param links of each world; none may be slower than the loop was made for
-    * @param captureRadiusM a distance of at most this is a capture
+    * @param captureRadiusM greatest distance that counts as a capture
     */
   def fly(keys: Array[Int], links: Array[TabledDelays], captureRadiusM: Float): Unit =
     captureWithin(captureRadiusM)
@@ -45,6 +45,5 @@ private[lanes] final class LoopDuelKernel(
     kernel.fly(keys, links)
 
 private[lanes] object LoopDuelKernel:
-  /** Of an own and an opponent's agent, and of the agents that fly as they. */
   type NewEye =
     (CameraTrackerLanes.Forms, RolloutAgent, RolloutAgent, LoopLanes, LaneAgents, LaneAgents) => LoopEye

@@ -4,14 +4,14 @@ import skein.forward.{Asking, Delays, LoopTiming, TabledDelays}
 import skein.lanes.loop.{LaneAgents, LaneFlights, LanePredictor, LaneViews, LoopLanes}
 import skein.units.Expect
 
-/** Which loops fly by lanes where worlds have delays of their own. */
+/** The loops that SIMD supports with separate delays in every world. */
 private[lanes] object LoopSupport:
   import LoopLanes.{MostS, readingS}
 
-  /** Of all questions of a round or task, each taking as long as the link lets it. */
+  /** Longest time of all requests of a round or task, each as slow as the link allows, s. */
   private val MostInTurnS = 3.5
 
-  /** Why this loop does not fly over a link by lanes, for a person. */
+  /** Why SIMD does not support this loop over a link, for a person. */
   def refusal(timing: LoopTiming, vehicles: Int, link: Delays, model: LaneDynamics): Option[String] =
     link match
       case tabled: TabledDelays => refusal(timing, vehicles, tabled.maxS, model)

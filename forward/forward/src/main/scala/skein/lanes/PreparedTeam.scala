@@ -4,7 +4,7 @@ import skein.forward.RolloutAgent
 import skein.lanes.policy.TeamLanes
 import skein.lanes.score.ScoreLanes
 
-/** What teams have in common that fly side by side.
+/** What teams that are simulated side by side have in common.
   *
   * @param altitudesDownM of the vehicles
   */
@@ -14,12 +14,12 @@ private[lanes] final case class TeamForm(
     durationS: Double,
     altitudesDownM: Vector[Double]
 )(val vehicles: LaneDynamics):
-  /** Whether decisions are to be told more than readings and their own times. */
+  /** Whether decisions need more than readings and their own times. */
   def asksMore: Boolean = team.asksMore.contains(true)
 
-/** A candidate with the numbers that it differs by from others of its form.
+/** A candidate with the numbers by which it differs from others of its form.
   *
-  * @param form none if no lanes fly it
+  * @param form None if SIMD does not support it
   * @param steps whether its vehicles are stepped side by side instead
   */
 private[lanes] final class PreparedTeam(

@@ -4,7 +4,7 @@ import scala.collection.mutable.ArrayBuffer
 import skein.forward.{Delays, LoopObserver, LoopTiming, Rollout, VelocityResponse}
 import skein.scenario.{Positions, Quantity}
 
-/** The scalar reference for what a team is judged by. Mutable.
+/** The scalar reference for a team's results. Mutable.
   *
   * @param model of the vehicles of one rollout
   */
@@ -13,12 +13,11 @@ private[skein] final class ScalarTeam(timing: LoopTiming, model: => VelocityResp
   private var rollout: Rollout                             = null
   private var found: Vector[ArrayBuffer[(Double, Double)]] = Vector.empty
 
-  /** What one episode comes to, by what is judged. */
+  /** Simulates one episode; returns its values of the judged numbers. */
   def fly(candidate: TeamCandidate, link: Delays, key: Int): Vector[Double] =
     start(candidate, link, key).flyUntil(Rollout.Never): Unit
     values
 
-  /** Begins an episode. */
   private[lanes] def start(candidate: TeamCandidate, link: Delays, key: Int): Rollout =
     val asked = (candidate, link)
     if asked != last then
@@ -28,7 +27,7 @@ private[skein] final class ScalarTeam(timing: LoopTiming, model: => VelocityResp
     rollout.start(key, 0, Judging(candidate))
     rollout
 
-  /** What the episode came to that is over. */
+  /** The results of the finished episode, one per judged number. */
   private[lanes] def values: Vector[Double] =
     last._1.judged.zip(found).map((each, at) => each.of(at.toVector))
 
@@ -43,7 +42,7 @@ private[skein] final class ScalarTeam(timing: LoopTiming, model: => VelocityResp
         for (each, at) <- candidate.judged.zip(found) if each.counts(timeS) do
           at += ((timeS, Quantity.told(each.quantity, places)))
 
-/** Teams vehicle by vehicle: their loops by the scalar reference. Mutable. */
+/** Simulates a team's vehicles side by side, and their loops by the scalar reference. Mutable. */
 private final class SteppedTeams(timing: LoopTiming, stepped: SteppedRollouts):
   private val teams = Array.tabulate(stepped.worlds)(lane => ScalarTeam(timing, stepped.vehiclesOf(lane)))
 

@@ -5,13 +5,13 @@ import skein.lanes.plant.LaneQuadrotors
 import skein.simd.LaneMath
 import skein.units.{Quaternion, Vector3}
 
-/** Many worlds' vehicles fly side by side ([[skein.forward.SteppedVehicles]]), each world by its own
-  * [[Rollout]] and in its own time: before each step of physics every rollout handles the events that fall
-  * between the step before and this one. That is how one such vehicle meets them too, so that only the flight
-  * itself is another's; loops, delays and policies, of any kind, are the scalar reference's. Mutable.
+/** Many worlds' vehicles are stepped side by side ([[skein.forward.SteppedVehicles]]), each world by its own
+  * [[Rollout]] and in its own time: before each step of physics every rollout handles the events between the
+  * previous step and this one. A single such vehicle handles events in that order too, so only the stepping
+  * differs; loops, delays and policies are the scalar reference's. Mutable.
   *
-  * @param worlds flown together at most
-  * @param each so many vehicles
+  * @param worlds limit of worlds simulated together
+  * @param each number of vehicles per world
   */
 private final class SteppedRollouts private (
     model: VelocityResponse,
@@ -31,9 +31,9 @@ private final class SteppedRollouts private (
   /** The vehicles of one world, for one rollout. */
   def vehiclesOf(world: Int): VelocityResponse = Places(world)
 
-  /** Flies worlds to their end.
+  /** Simulates worlds to their end.
     *
-    * @param start begins the rollout of a world, which flies [[vehiclesOf]] it
+    * @param start begins the rollout of a world, with the vehicles [[vehiclesOf]] it
     * @throws InterruptedException if the thread is interrupted: a model may take many seconds for them
     */
   def fly(count: Int)(start: Int => Rollout): Unit =
@@ -63,7 +63,7 @@ private final class SteppedRollouts private (
       next += 1
       Flying(next - 1)
 
-  /** One of the vehicles, as the loops know it. */
+  /** One of the vehicles, as the loops use it. */
   private final class Flying(place: Int) extends SteppedVehicle:
     private var down         = 0f
     protected var sinceStepS = 0.0
@@ -91,7 +91,7 @@ private final class SteppedRollouts private (
     protected def angularVelocityFrd: Vector3 = vehicles.angularVelocityFrd(place)
 
 private object SteppedRollouts:
-  /** For worlds of these vehicles; none where they are not stepped side by side. */
+  /** Stepped rollouts of these vehicles; None if they cannot be stepped side by side. */
   def of(model: VelocityResponse, vehicles: Seq[RolloutAgent]): Option[SteppedRollouts] =
     val each = vehicles.size
     model match
@@ -113,7 +113,7 @@ private object SteppedRollouts:
         )
       case _ => None
 
-  /** What flies so; none where nothing does. */
+  /** The engine for such vehicles; None if they cannot be stepped side by side. */
   def engine(model: VelocityResponse, vehicles: Seq[RolloutAgent]): Option[Engine] =
     model match
       case _: SteppedResponse => Some(Engine(Engine.Kind.Bodies, s"vehicles side by side; $Loops"))
@@ -130,5 +130,4 @@ private object SteppedRollouts:
   private def fliesByLanes(model: QuadrotorResponse, vehicles: Seq[RolloutAgent]) =
     LaneSupport.present.isRight && LaneDynamics.of(model, vehicles).isRight
 
-  /** Whose state fits the nearest memory. */
   private val MostVehicles = 64

@@ -6,7 +6,7 @@ import skein.lanes.loop.{LaneAgents, LaneOffers, LaneVectors, LoopLanes}
 import skein.lanes.policy.{Directions, TeamLanes}
 import skein.lanes.timetable.{Timetable, TimetableAgents, ViewCall}
 
-/** What several vehicles of a team compute of one view, in many worlds. Mutable. */
+/** The values that several vehicles of a team compute from one view, in many worlds. Mutable. */
 private[lanes] final class TeamViews(val lanes: TeamLanes):
   private val worlds = TimetableAgents.WORLDS
   val call: ViewCall = ViewCall(lanes.shared, lanes.reading)
@@ -15,20 +15,20 @@ private[lanes] final class TeamViews(val lanes: TeamLanes):
   val values: Array[Float] = Array.ofDim(lanes.shared.outputs * worlds)
   for number <- 0 until lanes.shared.outputs do call.call.output(number, values, number * worlds)
 
-  /** Back to the start of an episode, of which the first worlds count. */
+  /** Resets to the start of an episode, of which the first worlds count. */
   def start(worlds: Int): Unit =
     call.call.use(worlds)
     last = TeamViews.Nothing
 
-  /** Computes [[values]] of a view, unless they stand there already. */
+  /** Computes [[values]] of a view, unless they were computed already. */
   def show(all: Array[TimetableAgents], views: Array[Int], view: Int): Unit =
     if isNew(view) then
       call.look(all, views, view)
       call.call.apply()
 
-  /** The same of what is read of all vehicles now, in the order of their numbers.
+  /** Computes the values from the present readings of all vehicles, in the order of their numbers.
     *
-    * @param beat counts the readings
+    * @param beat number of the readings
     */
   def show(beat: Int): Unit = if isNew(beat) then call.call.apply()
 
@@ -40,7 +40,7 @@ private[lanes] final class TeamViews(val lanes: TeamLanes):
 private object TeamViews:
   private val Nothing = -1
 
-/** How one vehicle of a team decides in many worlds, each with a start and a policy of its own. Mutable.
+/** The decisions of one vehicle of a team in many worlds, each with its own start and policy. Mutable.
   *
   * @param altitudesDownM of all vehicles
   */
@@ -65,17 +65,17 @@ private[lanes] final class TeamDecisions(self: Int, team: TeamViews, altitudesDo
   private var memory, newMemory = Array.ofDim[Float](memories * WORLDS)
   private val asksMemory        = Array.fill(memories)(Never)
 
-  /** By vehicle: how old its reading is, s; for those of which it is asked. */
+  /** By vehicle: age of its reading, s; filled only where it is needed. */
   val agesS: Array[Array[Float]] = Array.ofDim(lanes.count)
 
-  /** By vehicle: what is known of the heading that it was told last, where it is asked for. */
+  /** By vehicle: its last known commanded heading, where it is needed. */
   val known: Array[Directions]           = Array.ofDim(lanes.count)
   private val asksKnownCos, asksKnownSin = Array.fill(lanes.count)(Never)
 
-  /** Until the command acts, s; null where nobody asks. */
+  /** Time until the command takes effect, s; null if it is not needed. */
   var actsInS: Array[Float] = null
 
-  /** Reads what the vehicle decides upon. */
+  /** The call that reads the vehicle's observation. */
   val call: ViewCall = ViewCall(bound, lanes.reading)
 
   for (input, place) <- bound.inputs.zipWithIndex if lanes.reading(input).isEmpty do
@@ -101,7 +101,7 @@ private[lanes] final class TeamDecisions(self: Int, team: TeamViews, altitudesDo
   for vehicle <- known.indices if asksKnownCos(vehicle) >= 0 || asksKnownSin(vehicle) >= 0 do
     known(vehicle) = Directions(WORLDS)
 
-  /** Takes how a world's vehicle starts, and the numbers of its policy, which must be of the form. */
+  /** Sets a world's initial heading and policy parameters. The policy must be of this form. */
   def take(world: Int, agent: RolloutAgent, numbers: MemberNumbers): Unit =
     startCos(world) = StrictMath.cos(agent.startHeadingRad).toFloat
     startSin(world) = StrictMath.sin(agent.startHeadingRad).toFloat
@@ -111,7 +111,7 @@ private[lanes] final class TeamDecisions(self: Int, team: TeamViews, altitudesDo
     for number <- own.indices do parameters(number * WORLDS + world) = own(number).toFloat
     for number <- first.indices do initial(number * WORLDS + world) = first(number).toFloat
 
-  /** Back to the start of an episode, of which the first worlds count. */
+  /** Resets to the start of an episode, of which the first worlds count. */
   def start(worlds: Int): Unit =
     team.start(worlds)
     call.call.use(worlds)
@@ -119,16 +119,16 @@ private[lanes] final class TeamDecisions(self: Int, team: TeamViews, altitudesDo
     System.arraycopy(startSin, 0, sin, 0, WORLDS)
     System.arraycopy(initial, 0, memory, 0, initial.length)
 
-  /** Cosine and sine of the heading decided last, by world. */
+  /** Cosine and sine of the last decided heading, by world. */
   def direction: (Array[Float], Array[Float]) = (cos, sin)
 
-  /** Whether it asks what another vehicle was told. */
+  /** Whether it needs another vehicle's commanded heading. */
   def asksHeading(vehicle: Int): Boolean = known(vehicle) != null
 
-  /** Decides upon what [[call]] reads.
+  /** Decides on the observation that [[call]] reads.
     *
     * @param elapsedS since the own last decision, by world
-    * @param into where the velocities go, m/s, from a place on
+    * @param into receives the velocities, m/s, from an offset on
     */
   def decide(elapsedS: Array[Float], into: Directions, at: Int): Unit =
     if asksCos >= 0 then call.call.input(asksCos, cos, 0)
@@ -145,12 +145,12 @@ private[lanes] final class TeamDecisions(self: Int, team: TeamViews, altitudesDo
       number += 1
     call.call.apply()
 
-  /** What is known of another vehicle's heading stands here. */
+  /** Sets where another vehicle's known heading is stored. */
   def knows(vehicle: Int, headings: Directions, at: Int): Unit =
     if asksKnownCos(vehicle) >= 0 then call.call.input(asksKnownCos(vehicle), headings.cos, at)
     if asksKnownSin(vehicle) >= 0 then call.call.input(asksKnownSin(vehicle), headings.sin, at)
 
-  /** All worlds' decisions become commands. */
+  /** Makes the decisions of all worlds commands. */
   def commit(): Unit =
     val (oldCos, oldSin) = (cos, sin)
     cos = newCos; sin = newSin
@@ -160,7 +160,7 @@ private[lanes] final class TeamDecisions(self: Int, team: TeamViews, altitudesDo
       memory = newMemory
       newMemory = before
 
-  /** Those do whose time comes before another. */
+  /** Makes the decisions of those worlds commands whose time is earlier than another. */
   def commitBefore(times: Array[Int], before: Int): Unit =
     var world = 0
     while world < WORLDS do
@@ -176,19 +176,19 @@ private[lanes] final class TeamDecisions(self: Int, team: TeamViews, altitudesDo
 private object TeamDecisions:
   private val Never = -1
 
-/** What one vehicle's policy flies by in a world.
+/** The numbers of one vehicle's policy in a world.
   *
   * @param parameters of its form
   * @param memory before its first decision
   */
 private[lanes] final case class MemberNumbers(parameters: Array[Double], memory: Array[Double])
 
-/** One vehicle of a team in many worlds. */
+/** One vehicle of a team, simulated in many worlds. */
 private[lanes] trait TeamMember:
-  /** Takes where a world's vehicle starts, and the numbers of its policy, which must be of the form. */
+  /** Sets where a world's vehicle starts, and the numbers of its policy, which must be of this form. */
   def take(world: Int, agent: RolloutAgent, numbers: MemberNumbers): Unit
 
-/** One that meets the same delays in all worlds.
+/** A vehicle with equal delays in all worlds.
   *
   * @param altitudesDownM of all vehicles
   */
@@ -207,10 +207,10 @@ private[lanes] class TeamAgents(
   private val asksMore             = team.lanes.asksMore(self)
   private var timetable: Timetable = null
 
-  /** The headings of decisions, by their places; null where nobody asks. */
+  /** The headings of decisions, by their places; null if they are not needed. */
   private var told: Directions = null
 
-  /** From now on the headings that this vehicle was told are kept. */
+  /** Stores the headings commanded to this vehicle from now on. */
   private def keepHeadings(): Unit = if told == null then told = Directions(0)
 
   def take(world: Int, agent: RolloutAgent, numbers: MemberNumbers): Unit =
@@ -231,7 +231,7 @@ private[lanes] class TeamAgents(
     System.arraycopy(cos, 0, told.cos, at, WORLDS)
     System.arraycopy(sin, 0, told.sin, at, WORLDS)
 
-  /** Cosine and sine of the heading decided last, by world. */
+  /** Cosine and sine of the last decided heading, by world. */
   private[lanes] def direction: (Array[Float], Array[Float]) = decisions.direction
 
   override def needsVelocity: Boolean = team.lanes.needsVelocity
@@ -254,7 +254,7 @@ private[lanes] class TeamAgents(
     decisions.commit()
     if told != null then note(after)
 
-  /** Takes what the timetable tells of a decision besides. */
+  /** Copies further numbers of a decision from the timetable. */
   private def learn(all: Array[TimetableAgents], decision: Int): Unit =
     val more    = timetable.more
     var vehicle = 0
@@ -268,7 +268,6 @@ private[lanes] class TeamAgents(
     if decisions.actsInS != null then Arrays.fill(decisions.actsInS, more.actsInS(decision))
 
 private[lanes] object TeamAgents:
-  /** All of a team, by number. */
   def of(team: Vector[RolloutAgent], model: LaneDynamics, views: TeamViews): Array[TeamAgents] =
     val all = Array.tabulate(team.size): self =>
       TeamAgents(self, team(self), model, views, team.map(_.altitudeDownM))
@@ -276,7 +275,7 @@ private[lanes] object TeamAgents:
       all(other).keepHeadings()
     all
 
-/** One whose worlds have delays of their own. */
+/** A vehicle whose worlds have separate delays. */
 private[lanes] final class LoopTeamAgents private (
     self: Int,
     agent: RolloutAgent,
@@ -291,7 +290,7 @@ private[lanes] final class LoopTeamAgents private (
   private val asksMore  = team.lanes.asksMore(self)
   private val asksAges  = team.lanes.asksAges(self)
 
-  /** The headings that it was told last, and before; null where nobody asks. */
+  /** The last and the previous commanded headings; null if they are not needed. */
   private var told, toldBefore: Directions = null
 
   loop.carryForward(self, agent.copy(speed = 1), vehicles)
@@ -352,7 +351,6 @@ private[lanes] final class LoopTeamAgents private (
       tell(vectors, cos, sin, told, toldBefore)
 
 private[lanes] object LoopTeamAgents:
-  /** All of a team, by number. */
   def of(
       team: Vector[RolloutAgent],
       loop: LoopLanes,

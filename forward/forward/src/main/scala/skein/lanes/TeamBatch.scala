@@ -10,17 +10,17 @@ import skein.lanes.timetable.{Timetable, TimetableAgents, TimetableKernel, Timet
 import skein.simd.{LaneFunction, LaneMath}
 import skein.units.Expect
 
-/** Flies many candidates of a team under one loop's timing, on all cores. Candidates whose policies and
-  * quantities are formulas fly by lanes: worlds that share episodes by [[TimetableKernel]], all of an episode
-  * by one [[Timetable]], which is made once; others by [[LoopKernel]]. Other teams' quadrotors and bodies of
-  * MuJoCo are stepped side by side under the scalar loops ([[SteppedRollouts]]). All else flies by the scalar
-  * reference ([[skein.forward.Rollout]]), which is told. Which engine flies a world depends on its candidate,
-  * its link and `shareEpisodes` alone, so results do not depend on threads, on a call's other worlds or on
-  * their order. One call at a time.
+/** Simulates many candidates of a team under one loop's timing, on all cores. Candidates whose policies and
+  * quantities are formulas run on SIMD: worlds that share episodes by [[TimetableKernel]], all of an episode
+  * by one [[Timetable]], which is computed once; others by [[LoopKernel]]. Quadrotors and MuJoCo bodies of
+  * other teams are stepped side by side under the scalar loops ([[SteppedRollouts]]). All else runs on the
+  * scalar reference ([[skein.forward.Rollout]]), which the engine's text states. The engine of a world
+  * depends on its candidate, its link and `shareEpisodes` alone, so results do not depend on threads, on a
+  * call's other worlds or on their order. One call at a time.
   *
-  * @param accelerator flies the candidates of [[Worlds.episodesOfEach]] that are formulas, where it knows the
-  *   loop and the vehicles
-  * @param isReference the scalar reference alone flies, to hold others to it
+  * @param accelerator simulates the candidates of [[Worlds.episodesOfEach]] that are formulas, if it supports
+  *   the loop and the vehicles
+  * @param isReference uses the scalar reference alone, to compare others with it
   */
 final class TeamBatch(
     timing: LoopTiming,
@@ -40,11 +40,11 @@ final class TeamBatch(
   private def timetable(link: Delays, key: Int, form: TeamForm): Timetable =
     Timetable.of(form.team.count, form.durationS, timing, link, key, form.vehicles, tellsMore = form.asksMore)
 
-  /** Which engine flies such a team.
+  /** The engine for such a team.
     *
-    * @param shareEpisodes see [[TeamWorlds.shareEpisodes]]; on a GPU, only worlds fly that tell
-    *   [[Worlds.episodesOfEach]] too
-    * @param links that the worlds fly over
+    * @param shareEpisodes see [[TeamWorlds.shareEpisodes]]; on a GPU, only worlds with
+    *   [[Worlds.episodesOfEach]] run
+    * @param links of the worlds
     */
   def engine(candidate: TeamCandidate, shareEpisodes: Boolean, links: Seq[Delays]): Engine =
     val together = shares(shareEpisodes)
@@ -67,10 +67,11 @@ final class TeamBatch(
   private def steppedOf(candidate: TeamCandidate) =
     SteppedRollouts.engine(model, candidate.engagement.agents).filterNot(_ => isReference)
 
-  /** A world that waits meets no delays: all worlds share their episode. */
+  /** Whether worlds share episodes. A world that waits for its controller has no delays: all worlds share
+    * their episode.
+    */
   private def shares(asked: Boolean): Boolean = asked || timing.isInstanceOf[LoopTiming.Paused]
 
-  /** Why no lanes fly over a link. */
   private def refusal(form: TeamForm, share: Boolean, link: Delays): Option[String] =
     if share then None else LoopSupport.refusal(timing, form.team.count, link, form.vehicles)
 
@@ -105,12 +106,12 @@ final class TeamBatch(
       engagement.agents.map(_.altitudeDownM)
     )(vehicles)
 
-  /** Flies all worlds, unless it is cancelled.
+  /** Simulates all worlds, unless it is cancelled.
     *
-    * @param onProgress is told how many worlds are done, after each batch, by one thread at a time
-    * @param isCancelled asked before each batch and now and then, from any thread; batches that fly already
-    *   end, or are given up where vehicles are stepped side by side
-    * @throws InterruptedException if the caller is interrupted; the batches that fly already have ended then
+    * @param onProgress called with the number of worlds done, after each batch, by one thread at a time
+    * @param isCancelled polled before each batch and in between, from any thread; running batches finish, or
+    *   are abandoned where vehicles are stepped side by side
+    * @throws InterruptedException if the caller is interrupted; running batches have finished then
     */
   def fly(
       worlds: TeamWorlds,
@@ -138,7 +139,7 @@ final class TeamBatch(
         worker.fly(worlds, prepared, some, together, outcomes)
     outcomes
 
-  /** One per thread. Mutable. */
+  /** State of one thread, reused from batch to batch. Mutable. */
   private final class Worker:
     private val byForm  = mutable.HashMap.empty[(TeamForm, Boolean), Flight]
     private val stepped = mutable.HashMap.empty[Int, SteppedTeams]
@@ -176,9 +177,9 @@ final class TeamBatch(
     private def steppedTeams(first: TeamCandidate) =
       SteppedTeams(timing, SteppedRollouts.of(model, first.engagement.agents).get)
 
-  /** Candidates of one form, by lanes.
+  /** SIMD simulation of candidates of one form.
     *
-    * @param team that flies over these links, by lane
+    * @param team makes the team for links, by lane
     */
   private final class Flight(team: Array[Delays] => Team):
     private val worldOf = Array.ofDim[Int](TimetableKernel.WORLDS)
@@ -207,16 +208,19 @@ final class TeamBatch(
         into.values(number)(worldOf(lane)) = flying.scores.value(number, lane)
       filled = 0
 
-  /** A team in many worlds, and what judges it. */
+  /** A team in many worlds, with its scores. */
   private abstract class Team(form: TeamForm):
     val scores: Scoreboard         = Scoreboard(form.scores)
     protected val views: TeamViews = TeamViews(form.team)
     def members: Array[? <: TeamMember]
 
-    /** @param filled so many worlds count */
+    /** Simulates one episode in each world.
+      *
+      * @param filled number of worlds that count
+      */
     def fly(links: Array[Delays], keys: Array[Int], filled: Int): Unit
 
-  /** All worlds meet the same episode. */
+  /** A team whose worlds all have one episode. */
   private final class EpisodeTeam(form: TeamForm, first: TeamCandidate) extends Team(form):
     private val count              = form.team.count
     val members: Array[TeamAgents] = TeamAgents.of(first.engagement.agents, form.vehicles, views)
@@ -228,7 +232,7 @@ final class TeamBatch(
         timetables.getOrMake((link, key, count, form.durationS, form.asksMore))(timetable(link, key, form))
       kernel.fly(made, filled)
 
-  /** Each world has delays of its own. */
+  /** A team whose worlds have separate delays. */
   private final class LoopTeam(form: TeamForm, first: TeamCandidate, maxDelayS: Double) extends Team(form):
     private val loop                   = LoopLanes(timing, form.team.count, form.durationS, maxDelayS)
     val members: Array[LoopTeamAgents] =

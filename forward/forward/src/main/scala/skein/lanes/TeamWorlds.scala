@@ -3,33 +3,33 @@ package skein.lanes
 import skein.forward.Engagement
 import skein.lanes.score.Judged
 
-/** The worlds of one call of [[TeamBatch]]. */
+/** The worlds of one call of [[TeamBatch]]: a candidate and a link each. */
 trait TeamWorlds extends Worlds:
-  /** The same object for all worlds of a candidate. */
+  /** The candidate of a world: one object for all its worlds. */
   def candidate(world: Int): TeamCandidate
 
-/** A team as one candidate of a search has it.
+/** A team as a candidate of a search.
   *
-  * @param judged what its flights are judged by; as many for every candidate, and alike but for numbers in
+  * @param judged the numbers to compute; equal in count and form for every candidate, except for numbers in
   *   the quantities
   */
 final class TeamCandidate(val engagement: Engagement, val judged: Vector[Judged])
 
-/** What each world came to.
+/** The results of each world.
   *
-  * @param values by what is judged, then by world; no number where nothing counted
+  * @param values by judged number, then by world; NaN where no value counted
   */
 final class TeamOutcomes private[lanes] (val values: Vector[Array[Float]]):
   private var done = 0
 
-  /** How many worlds were flown: all, unless the call was cancelled. */
+  /** Number of simulated worlds: all, unless the call was cancelled. */
   def flown: Int = done
 
   private[lanes] def flown_=(worlds: Int): Unit = done = worlds
 
-  /** A sum of a world's numbers.
+  /** A weighted sum of a world's results.
     *
-    * @param weights by what is judged
+    * @param weights by judged number
     */
   def sum(weights: Vector[Double], world: Int): Double =
     weights.indices.map(number => weights(number) * values(number)(world)).sum

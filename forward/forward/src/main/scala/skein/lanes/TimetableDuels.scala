@@ -4,13 +4,14 @@ import skein.forward.{Duel, LoopTiming}
 import skein.lanes.policy.{LaneObservation, LanePolicy}
 import skein.lanes.timetable.{Timetable, TimetableEye, TimetableKernel}
 
-/** Duels by [[TimetableKernel]]: the evader is vehicle 0. Mutable.
+/** Simulates duels by [[TimetableKernel]]: the evader is vehicle 0. Mutable.
   *
   * @param duel start, speeds and duration; its policies are not used
-  * @param model the same as the timetables'
-  * @param pursuerPolicy takes the parameters of each candidate's pursuer before it flies
-  * @param asked what they are judged by
-  * @param pursuerEye by which alone the pursuer knows of the evader; null for one that is told
+  * @param model the one of the timetables
+  * @param pursuerPolicy holds the parameters of each candidate's pursuer
+  * @param asked the numbers to compute
+  * @param pursuerEye the camera that is the pursuer's only knowledge of the evader; null if it reads the
+  *   evader's state
   */
 private[lanes] final class TimetableDuels(
     duel: Duel,
@@ -39,10 +40,10 @@ private[lanes] final class TimetableDuels(
     scores
   )
 
-  /** Flies [[DuelKernel.WORLDS]] candidates through one episode, by the policies' parameters.
+  /** Simulates [[DuelKernel.WORLDS]] candidates in one episode, by the policies' parameters.
     *
-    * @param worlds those that count are the first
-    * @param captureRadiusM a distance of at most this is a capture
+    * @param worlds number of worlds that count, from the first
+    * @param captureRadiusM greatest distance that counts as a capture
     */
   def fly(timetable: Timetable, worlds: Int, captureRadiusM: Float): Unit =
     captureWithin(captureRadiusM)

@@ -1,10 +1,9 @@
 package skein.lanes
 
-/** Which worlds fly together. */
+/** Assignment of worlds to batches that are simulated together. */
 private[lanes] final class WorldBatches(order: Array[Int], starts: Array[Int]):
   def count: Int = starts.length
 
-  /** Numbers of the worlds. */
   def apply(batch: Int): Array[Int] =
     java.util.Arrays.copyOfRange(
       order,
@@ -16,9 +15,9 @@ private[lanes] object WorldBatches:
   def inOrder(numbers: Array[Int], most: Int): WorldBatches =
     WorldBatches(numbers, Array.range(0, numbers.length, most))
 
-  /** A batch has worlds of one key and one link.
+  /** Groups worlds into batches of one key and one link.
     *
-    * @param numbers of those worlds that are flown
+    * @param numbers of the worlds to simulate
     */
   def byEpisode(worlds: Worlds, numbers: Array[Int], most: Int): WorldBatches =
     val groups  = java.util.HashMap[(AnyRef, Int), Integer]()

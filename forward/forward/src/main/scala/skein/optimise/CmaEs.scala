@@ -36,7 +36,7 @@ final class CmaEs(dimension: Int, population: Int, seed: Long):
     val zeros = Vector.fill(n)(0.0)
     State(0, mean, size, Vector.tabulate(n, n)((i, j) => if i == j then 1.0 else 0.0), zeros, zeros)
 
-  /** The next generation; the same for equal states. */
+  /** The next generation; equal states give equal generations. */
   def sample(state: State): Vector[Vector[Double]] =
     val axes   = Axes(state)
     val source = SplitMix64(SplitMix64.seedOf(seed, state.generation))
@@ -46,7 +46,7 @@ final class CmaEs(dimension: Int, population: Int, seed: Long):
 
   /** The state after a generation.
     *
-    * @param samples what [[sample]] gave for `state`
+    * @param samples the result of [[sample]] for `state`
     * @param costs of each; small is good
     */
   def next(state: State, samples: Vector[Vector[Double]], costs: Vector[Double]): State =
@@ -87,10 +87,10 @@ final class CmaEs(dimension: Int, population: Int, seed: Long):
     sum
 
 object CmaEs:
-  /** The tutorial's λ for a dimension; noise asks for more. */
+  /** The tutorial's λ for a dimension; noisy objectives need more. */
   def defaultPopulation(dimension: Int): Int = 4 + (3 * StrictMath.log(dimension)).toInt
 
-  /** Where it stands, before a generation.
+  /** The state of the search before a generation.
     *
     * @param size σ
     * @param covariance C, row by row
@@ -114,13 +114,11 @@ object CmaEs:
     private val eigen   = SymmetricEigen.of(state.covariance.map(_.toArray).toArray)
     private val lengths = eigen.values.map(value => math.sqrt(value.max(1e-30)))
 
-    /** The i-th component of B·D·z. */
     def stretched(z: Array[Double], i: Int): Double =
       var sum = 0.0
       for k <- 0 until n do sum += eigen.vectors(i)(k) * lengths(k) * z(k)
       sum
 
-    /** C^−½^·y = B·D⁻¹·Bᵀ·y. */
     def whitened(y: Vector[Double]): Vector[Double] =
       val along = Array.tabulate(n)(k => (0 until n).map(i => eigen.vectors(i)(k) * y(i)).sum / lengths(k))
       Vector.tabulate(n)(i => (0 until n).map(k => eigen.vectors(i)(k) * along(k)).sum)

@@ -1,6 +1,6 @@
 package skein.optimise
 
-/** Where an objective is to go. */
+/** Whether a search minimises or maximises its objective. */
 enum Direction(val sign: Double):
   case Minimise extends Direction(1)
   case Maximise extends Direction(-1)

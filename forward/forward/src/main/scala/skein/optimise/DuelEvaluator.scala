@@ -5,12 +5,13 @@ import skein.lanes.{DuelBatch, DuelNumber, DuelWorlds}
 import skein.policy.{HeadingPolicy, PolicyFamily, Role}
 import skein.simd.WorldRandom
 
-/** Flies a family's candidates against one opponent in [[DuelBatch]].
+/** Evaluates a family's candidates against one opponent in [[DuelBatch]].
   *
   * @param role of the candidates
   * @param opponent of the other role
   * @param seed of the delays
-  * @param shareEpisodes see [[DuelWorlds.shareEpisodes]]: for many candidates; one alone flies faster without
+  * @param shareEpisodes see [[DuelWorlds.shareEpisodes]]: for many candidates; a single one runs faster
+  *   without
   */
 final class DuelEvaluator(
     batch: DuelBatch,
@@ -47,7 +48,7 @@ final class DuelEvaluator(
   private def evader(candidate: HeadingPolicy): HeadingPolicy =
     if role == Role.Evader then candidate else opponent
 
-  /** The candidate does not enter the key: all meet the same delays. */
+  /** Keys do not depend on the candidate: all candidates have equal delays. */
   private final class Worlds(policies: Array[HeadingPolicy], keys: Array[Int]) extends DuelWorlds:
     def size: Int                          = policies.length * keys.length
     override def shareEpisodes: Boolean    = DuelEvaluator.this.shareEpisodes

@@ -1,7 +1,7 @@
 package skein.optimise
 
-/** Judges candidates for a [[Search]]. All candidates meet the same episodes (common random numbers), so that
-  * their differences are their own.
+/** Evaluates candidates for a [[Search]]. All candidates use equal episodes (common random numbers), so that
+  * differences between them are their own.
   */
 trait Evaluator:
 
@@ -12,12 +12,12 @@ trait Evaluator:
     */
   def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[RunningStats]
 
-  /** So many candidates take no longer than one. */
+  /** Number of candidates that take no longer than one. */
   def sideBySide: Int = 1
 
-  /** The same, or none if it was cancelled.
+  /** The tallies, or None if it was cancelled.
     *
-    * @param isCancelled asked now and then, from any thread
+    * @param isCancelled polled repeatedly, from any thread
     */
   def talliesUnless(isCancelled: () => Boolean)(
       candidates: Vector[Vector[Double]],
@@ -26,14 +26,14 @@ trait Evaluator:
     val all = tallies(candidates, episodes)
     Option.when(!isCancelled())(all)
 
-/** An evaluator that tells single values, so that a candidate's episodes too can be parted among many: values
-  * put together again give the same tally, to the bit.
+/** An evaluator that returns single values, so that a candidate's episodes too can be distributed: combined
+  * values give an identical tally, to the bit.
   */
 trait ValueEvaluator extends Evaluator:
 
-  /** The objective's values of each candidate, by its episodes; or none if it was cancelled.
+  /** The objective's values of each candidate, by its episodes; or None if it was cancelled.
     *
-    * @param isCancelled asked now and then, from any thread
+    * @param isCancelled polled repeatedly, from any thread
     */
   def valuesUnless(isCancelled: () => Boolean)(
       candidates: Vector[Vector[Double]],

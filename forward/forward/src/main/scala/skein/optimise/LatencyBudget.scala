@@ -9,7 +9,7 @@ import skein.units.*
   * @param jittersMs of the round trip, p99 − p50, ascending
   * @param cells `cells(jitter)(mean)`; none where no log-normal link has such a mean and jitter
   * @param truth of the paused loop with the same vehicles
-  * @param per what deviations are told by: the truth's size, or 1 for deviations in the objective's own unit
+  * @param per the unit of deviations: the truth's size, or 1 for deviations in the objective's own unit
   */
 final case class LatencyBudget(
     meansMs: Vector[Double],
@@ -23,12 +23,13 @@ final case class LatencyBudget(
     s"the truth must be a number, and deviations by more than 0, got $truth, $per"
   )
 
-  /** How far a cell is off the truth: by the truth's size, 0.05 is 5 % more. */
+  /** Relative deviation of a cell from the truth: 0.05 is 5 % more. */
   def deviation(jitter: Int, mean: Int): Option[Double] =
     cells(jitter)(mean).map(tally => (tally.mean - truth) / per)
 
-  /** Up to which mean latency, at a jitter, the objective stays within a tolerance of the truth: straight
-    * lines between the cells' deviations. Where the objective comes to no number it does not hold.
+  /** The mean latency up to which, at a jitter, the objective stays within a tolerance of the truth, by
+    * linear interpolation between the cells' deviations. It does not hold where the objective has no finite
+    * value.
     *
     * @param tolerance of [[deviation]], for example 0.05
     */
@@ -44,17 +45,16 @@ final case class LatencyBudget(
         else LatencyBudget.Bound.At(fromMs + (toMs - fromMs) * (tolerance - fromOff) / (toOff - fromOff))
 
 object LatencyBudget:
-  /** The largest mean latency, ms, at which something holds. */
+  /** The largest mean latency, ms, at which the tolerance holds. */
   enum Bound:
     case At(meanMs: Double)
 
-    /** It holds as far as the map goes. */
+    /** It holds up to the largest latency of the map. */
     case Beyond(meanMs: Double)
 
     /** It does not hold even at the smallest latency. */
     case Below(meanMs: Double)
 
-    /** The map has no cell. */
     case Unknown
 
   /** The link of a cell: round trips are log-normal with this mean and jitter; constant without jitter.
@@ -79,7 +79,7 @@ object LatencyBudget:
   private def jitterOverMean(sigma: Double): Double =
     StrictMath.exp(-sigma * sigma / 2) * (StrictMath.exp(Z99 * sigma) - 1)
 
-  /** Beyond, a few round trips of seconds would make up the mean. */
+  /** Limit of σ: beyond it, a few round trips of seconds would make up the mean. */
   val MostSigma = 1.0
 
   private val Z99 = 2.3263478740408408

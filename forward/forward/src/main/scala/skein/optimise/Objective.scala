@@ -4,18 +4,15 @@ import skein.lanes.{DuelNumber, DuelOutcomes}
 import skein.policy.Role
 import skein.units.Expect
 
-/** A number that an episode comes to, by the name that users give. */
+/** A measure of an episode, by the name that users give. */
 enum DuelMeasure:
-  /** Mean distance over the last 10 s, m. */
   case Last10s
 
-  /** Mean distance over the episode, m. */
   case Mean
 
-  /** Smallest distance, m. */
   case Min
 
-  /** Sum of the changes of the commanded heading of the vehicle that is judged, rad. */
+  /** Sum of the changes of the judged vehicle's commanded heading, rad. */
   case Effort
 
   /** 1 if the distance was at most `radiusM` within the first `withinS` of the episode, else 0: its mean is
@@ -34,9 +31,9 @@ enum DuelMeasure:
     case Capture(radiusM, withinS) => s"capture($radiusM, $withinS)"
     case CaptureTime(radiusM)      => s"captureTime($radiusM)"
 
-  /** By what of an episode it is told.
+  /** The number of an episode's outcome that it needs.
     *
-    * @param role of the vehicle that is judged
+    * @param role of the judged vehicle
     */
   def number(role: Role): DuelNumber = this match
     case Last10s                        => DuelNumber.MeanLast10s
@@ -58,9 +55,9 @@ enum DuelMeasure:
     case CaptureTime(radiusM) => Some(radiusM)
     case _                    => None
 
-/** What a search makes small or large: a weighted sum of measures, averaged over episodes.
+/** The objective of a search: a weighted sum of measures, averaged over episodes.
   *
-  * @param terms weight and measure; all that speak of a capture speak of one radius
+  * @param terms weight and measure; all measures of captures have one radius
   */
 final case class Objective(terms: Vector[(Double, DuelMeasure)], direction: Direction):
   require(terms.nonEmpty, "an objective needs at least one term")
@@ -69,16 +66,16 @@ final case class Objective(terms: Vector[(Double, DuelMeasure)], direction: Dire
     "all capture measures of an objective must name the same radius"
   )
 
-  /** The radius within which an episode counts as a capture, m; 0 where no measure asks. */
+  /** The radius within which an episode counts as a capture, m; 0 if no measure needs one. */
   def captureRadiusM: Double = terms.flatMap((_, measure) => measure.captureRadiusM).headOption.getOrElse(0.0)
 
-  /** What must be known of an episode.
+  /** The numbers of an episode that it needs.
     *
     * @param role whose effort counts
     */
   def asked(role: Role): Set[DuelNumber] = terms.map((_, measure) => measure.number(role)).toSet
 
-  /** Of one episode.
+  /** The value in one episode.
     *
     * @param role whose effort counts
     */
@@ -94,22 +91,22 @@ final case class Objective(terms: Vector[(Double, DuelMeasure)], direction: Dire
       sum += weight * came
     sum
 
-  /** As [[Objective.parse]] reads it back, without the direction. */
+  /** The text that [[Objective.parse]] reads, without the direction. */
   def formula: String = WeightedSum.formula(terms)(_.text)
 
   def text: String = s"${direction.text} $formula"
 
-  /** Of the value, where all terms agree. */
+  /** Unit of the value, if all terms agree, else empty. */
   def unit: String = WeightedSum.unit(terms)(_.unit)
 
 object Objective:
   private val Forms =
     "last10s, mean, min, effort, capture(RADIUS_M, WITHIN_S), captureTime(RADIUS_M)"
 
-  /** Reads a measure's name, or a sum such as `0.7*last10s + 0.3*effort`, with `minimise` or `maximise`
-    * before it or not. Without, a sum is minimised, and a single measure goes where the role wants it.
+  /** Reads a measure's name, or a sum such as `0.7*last10s + 0.3*effort`, with an optional `minimise` or
+    * `maximise` before it. The default minimises a sum, and takes the role's direction for a single measure.
     *
-    * @return or what was expected, what came, and at which character
+    * @return Left states what was expected, what was given, and at which character
     */
   def parse(text: String, role: Role): Either[String, Objective] =
     for

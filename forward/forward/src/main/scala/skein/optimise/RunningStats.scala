@@ -2,11 +2,11 @@ package skein.optimise
 
 import skein.signal.NormalQuantile
 
-/** How many values were seen, their mean, and the sum of their squared deviations from it. */
+/** Count of values, their mean, and the sum of their squared deviations from it. */
 final case class RunningStats(count: Int, mean: Double, squares: Double):
 
-  /** Of both together (Chan, Golub, LeVeque, "Updating formulae and a pairwise algorithm for computing sample
-    * variances", 1979).
+  /** The statistics of both together (Chan, Golub, LeVeque, "Updating formulae and a pairwise algorithm for
+    * computing sample variances", 1979).
     */
   def +(other: RunningStats): RunningStats =
     if count == 0 then other
@@ -20,25 +20,25 @@ final case class RunningStats(count: Int, mean: Double, squares: Double):
         squares + other.squares + apart * apart * count * other.count / total
       )
 
-  /** Whether both are the same to the bit; NaN is the same as NaN. */
+  /** Whether both are bit-identical; NaN equals NaN. */
   def isSame(other: RunningStats): Boolean =
     count == other.count && mean.equals(other.mean) && squares.equals(other.squares)
 
   /** Standard deviation of the values; 0 for fewer than two. */
   def sd: Double = if count < 2 then 0.0 else math.sqrt(squares / (count - 1))
 
-  /** The true mean lies within so much of `mean` with 95 % confidence, by the normal approximation. */
+  /** Half width of the 95 % confidence interval of the mean, by the normal approximation. */
   def halfWidth95: Double =
     if count == 0 then Double.PositiveInfinity else NormalQuantile.TwoSided95 * sd / math.sqrt(count)
 
 object RunningStats:
-  /** Whether all are [[RunningStats.isSame the same]], one by one. */
+  /** Whether all pairs are [[RunningStats.isSame identical]]. */
   def areSame(some: Seq[RunningStats], others: Seq[RunningStats]): Boolean =
     some.corresponds(others)(_.isSame(_))
 
   val empty: RunningStats = RunningStats(0, 0, 0)
 
-  /** Of `count` values, by their number from 0. */
+  /** The statistics of `count` values, by their number from 0. */
   def of(count: Int)(value: Int => Double): RunningStats =
     var sum = 0.0
     var i   = 0

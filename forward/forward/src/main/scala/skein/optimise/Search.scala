@@ -3,10 +3,10 @@ package skein.optimise
 import skein.policy.SearchSpace
 import skein.signal.{NormalQuantile, SplitMix64}
 
-/** A candidate and what it came to. */
+/** A candidate with its tally of the objective. */
 final case class Scored(candidate: Vector[Double], tally: RunningStats)
 
-/** Where a search stands: a value, which can be written down and gone on from.
+/** The state of a search: a value that can be stored and resumed.
   *
   * @param results of the round's candidates so far, in their order
   * @param leaders the best so far, best first; at the end the standings of the play-off
@@ -21,35 +21,34 @@ final case class SearchState(
   def isDone: Boolean      = course == MethodState.Ended
   def best: Option[Scored] = leaders.headOption
 
-/** What a method has to remember between rounds. */
+/** The state of a method between rounds. */
 enum MethodState:
-  /** Grid and random: the number of the round's first candidate. */
+  /** Grid and random: number of the round's first candidate. */
   case Listed(next: Long)
 
-  /** Cross-entropy: the distribution that the generation is drawn from. */
+  /** Cross-entropy: the distribution from which the generation is drawn. */
   case Drawn(generation: Int, means: Vector[Double], deviations: Vector[Double])
 
-  /** CMA-ES. */
   case Adapted(state: CmaEs.State)
 
-  /** Racing: who is left with what they have flown; empty in the first round. */
+  /** Racing: the remaining candidates with their results; empty in the first round. */
   case Raced(round: Int, field: Vector[Scored])
 
-  /** The leaders, the distribution's centre and the defaults meet on fresh episodes: so many of them so far,
-    * with what each has come to.
+  /** The play-off of the leaders, the distribution's centre and the defaults on fresh episodes: their number
+    * so far, with each candidate's results.
     */
   case PlayOff(episodes: Int, field: Vector[Scored])
 
   case Ended
 
-/** Chooses the best of many candidates. All meet the same episodes, and the leaders meet again on fresh ones,
-  * since the best of many seen on a few episodes was partly lucky.
+/** Chooses the best of many candidates. All use equal episodes, and the leaders are compared again on fresh
+  * ones, since the best of many on a few episodes was partly lucky.
   *
-  * A state machine: [[step]] is a pure function, so that a search that was stopped and gone on with ends as
-  * one that never stopped. Of equal candidates the first wins.
+  * A state machine: [[step]] is a pure function, so that a search that was stopped and resumed ends like one
+  * that never stopped. Of equal candidates the first wins.
   *
   * @param seed of the candidates
-  * @param leastPlayOff episodes on which the leaders meet at the end, at least
+  * @param leastPlayOff least number of episodes in the play-off
   */
 final class Search(
     space: SearchSpace,
@@ -89,13 +88,12 @@ final class Search(
       case _: SearchMethod.Racing => MethodState.Raced(0, Vector.empty)
     SearchState(course, Vector.empty, Vector.empty, 0)
 
-  /** One step on.
+  /** Advances the search by one step.
     *
     * @param state not done
-    * @param atMost episodes that the step flies, about; more where candidates fly side by side. How a search
-    *   is cut into steps does not change how it ends.
-    * @param isCancelled asked now and then, from any thread; a step that is cancelled leaves the state as it
-    *   was
+    * @param atMost approximate number of episodes in the step; more where candidates are simulated side by
+    *   side. The division into steps does not change the result.
+    * @param isCancelled polled repeatedly, from any thread; a cancelled step leaves the state unchanged
     */
   def step(
       state: SearchState,
@@ -118,7 +116,7 @@ final class Search(
           after(state.course, state.leaders, candidates.zip(results).map(Scored(_, _)))
         SearchState(course, Vector.empty, leaders, flown)
 
-  /** The round's candidates, and the episodes that each flies. */
+  /** The round's candidates, and the episodes of each. */
   private def round(course: MethodState): (Vector[Vector[Double]], Range) = course match
     case MethodState.Listed(next) =>
       val numbers = Vector.range(next, (next + MostListed).min(listed))
@@ -194,8 +192,8 @@ final class Search(
         )
       case _ => (MethodState.Ended, before)
 
-  /** Neighbours share a place: leaders that differ by less than a hundredth of every axis were lucky on the
-    * same episodes, and would leave no room for others.
+  /** The cell of a candidate, shared by its neighbours: leaders that differ by less than a hundredth of every
+    * axis were lucky on equal episodes, and would leave no room for others.
     */
   private def place(candidate: Vector[Double]): Vector[Long] =
     space.shares(candidate).map(share => (share * 100).round)
@@ -204,7 +202,7 @@ final class Search(
     val candidates = (leaders.map(_.candidate) ++ centre :+ space.defaults).distinct
     MethodState.PlayOff(0, candidates.map(Scored(_, RunningStats.empty)))
 
-  /** Small is good; what is no number is worst. */
+  /** The cost to minimise; NaN is worst. */
   private def cost(scored: Scored): Double =
     val cost = direction.sign * scored.tally.mean
     if cost.isNaN then Double.PositiveInfinity else cost
@@ -225,10 +223,10 @@ final class Search(
         mean + deviation * NormalQuantile(source.nextDouble().max(1e-12).min(1 - 1e-12)))
 
 object Search:
-  /** Candidates that meet in the play-off, besides the distribution's centre and the defaults. */
+  /** Number of candidates in the play-off, besides the distribution's centre and the defaults. */
   val MostLeaders = 16
 
-  /** The play-off's episodes count from here; a search's own lie below. */
+  /** First episode of the play-off; a search's own are below it. */
   val PlayOffFrom: Int = 1 << 24
 
   // A tenth of the search's episodes, within these bounds.
@@ -238,7 +236,7 @@ object Search:
   private val MostListed   = 16384
   private val LeastSpread  = 1e-6
 
-  /** The whole search at once.
+  /** Runs a whole search.
     *
     * @return the standings of the play-off, best first
     */

@@ -2,13 +2,12 @@ package skein.optimise
 
 /** How a [[Search]] chooses its candidates.
   *
-  * @see the cases' parameters; `episodes` is what every candidate flies
+  * @see the cases' parameters; `episodes` is the number per candidate
   */
 enum SearchMethod:
-  /** Evenly spread candidates, both bounds of every axis included. */
+  /** Candidates on an even grid, both bounds of every axis included. */
   case Grid(perAxis: Int, episodes: Int)
 
-  /** Candidates drawn evenly from the space. */
   case Random(candidates: Int, episodes: Int)
 
   /** The cross-entropy method (Rubinstein, Kroese, 2004) with independent normal distributions, cut to the
@@ -30,7 +29,7 @@ enum SearchMethod:
     */
   case CmaEs(population: Int, generations: Int, episodes: Int, startSize: Double = 0.3)
 
-  /** Successive halving (Jamieson, Talwalkar, AISTATS 2016): random candidates fly a few episodes, the better
+  /** Successive halving (Jamieson, Talwalkar, AISTATS 2016): random candidates run a few episodes, the better
     * half as many again, and so on to the last, so that hopeless candidates stop early.
     *
     * @param episodes of the first round; the last candidate's are `candidates` times as many, about
@@ -39,20 +38,20 @@ enum SearchMethod:
 
   def episodes: Int
 
-  /** Candidates that are judged together; when racing, in the first round. */
+  /** Number of candidates that are judged together; when racing, in the first round. */
   def together(dimension: Int): Long = this match
     case CrossEntropy(population, _, _, _, _) => population
     case CmaEs(population, _, _, _)           => population
     case Racing(candidates, _)                => candidates
     case _: (Grid | Random)                   => evaluations(dimension) / episodes
 
-  /** Episodes that one candidate flies at most. */
+  /** Largest number of episodes of one candidate. */
   def mostOfOne: Long = this match
     case Racing(candidates, episodes) =>
       Math.multiplyExact(episodes.toLong, 1L << (SearchMethod.rounds(candidates) - 1))
     case _ => episodes
 
-  /** Episodes flown in all, if it does not end early. */
+  /** Number of episodes in all, if it does not end early. */
   def evaluations(dimension: Int): Long = this match
     case Grid(perAxis, episodes) =>
       (1 to dimension).foldLeft(episodes.toLong)((product, _) => Math.multiplyExact(product, perAxis.toLong))
@@ -68,6 +67,6 @@ enum SearchMethod:
         .sum
 
 object SearchMethod:
-  /** Rounds of a race between so many: until one is left. */
+  /** Number of rounds of a race, until one candidate is left. */
   private[skein] def rounds(candidates: Int): Int =
     Iterator.iterate(candidates)(field => (field + 1) / 2).takeWhile(_ > 1).size + 1

@@ -11,7 +11,7 @@ private[skein] object SymmetricEigen:
   private val MostSweeps = 64
 
   /** By cyclic Jacobi rotations (Golub, Van Loan, "Matrix Computations", 8.5): slow for large matrices, exact
-    * to rounding, and the same bits everywhere.
+    * to rounding, and bit-identical on all machines.
     *
     * @param matrix row by row; only its symmetric part counts
     */

@@ -4,14 +4,14 @@ import skein.forward.Delays
 import skein.lanes.{TeamBatch, TeamCandidate, TeamWorlds}
 import skein.simd.{LaneFunction, WorldRandom}
 
-/** Flies a team's candidates in [[TeamBatch]].
+/** Simulates a team's candidates in [[TeamBatch]].
   *
-  * @param candidate of its parameters; a pure function
-  * @param weights of what is judged, in its order: their sum is the objective
+  * @param candidate made from parameters; a pure function
+  * @param weights of the judged numbers, in their order: the weighted sum is the objective
   * @param seed of the delays
-  * @param shareEpisodes whether they meet the same episodes, each by one timetable: for many candidates; one
-  *   alone flies faster without
-  * @param usual parameters of a candidate as most are, by which to tell how many fly side by side
+  * @param shareEpisodes whether they share episodes, each by one timetable: for many candidates; a single one
+  *   runs faster without
+  * @param usual parameters of a typical candidate, from which the number that run side by side is derived
   */
 final class TeamEvaluator(
     batch: TeamBatch,

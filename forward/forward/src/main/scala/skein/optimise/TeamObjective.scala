@@ -5,9 +5,9 @@ import skein.lanes.score.Judged
 import skein.policy.Role
 import skein.scenario.{Measure, Scenario, Window}
 
-/** What flights of a scenario are judged by: a sum of its measures.
+/** The objective for flights of a scenario: a sum of its measures.
   *
-  * @param terms weights and measures; of a quantity, where forward simulation judges by them
+  * @param terms weights and measures; forward simulation supports those of a quantity
   */
 final case class TeamObjective(terms: Vector[(Double, Measure)], direction: Direction):
 
@@ -15,25 +15,23 @@ final case class TeamObjective(terms: Vector[(Double, Measure)], direction: Dire
   def text: String    = s"${direction.text} $formula"
   def unit: String    = WeightedSum.unit(terms)((measure: Measure) => measure.unit)
 
-  /** The terms' measures. */
   def measures: Vector[Measure] = terms.map((_, measure) => measure)
 
 object TeamObjective:
 
-  /** A scenario's measures that forward simulation can judge by, by their keys: those of a quantity, in their
+  /** A scenario's measures that forward simulation supports, by their keys: those of a quantity, in their
     * order.
     */
   def measures(scenario: Scenario): ListMap[String, Measure] =
     scenario.measures.filter(_.reduced.nonEmpty).map(measure => keyOf(measure) -> measure).to(ListMap)
 
-  /** `off ring` as `off-ring`. */
   def keyOf(measure: Measure): String = measure.name.replace(' ', '-')
 
-  /** Reads `off-ring + 0.1*gap`, with a direction before it or not: measures of a quantity, as [[judged]]
-    * wants them.
+  /** Reads `off-ring + 0.1*gap`, with an optional direction before it: measures of a quantity, as [[judged]]
+    * requires.
     *
-    * @param otherwise the direction where none stands there
-    * @return or what was expected, what came, and at which character
+    * @param otherwise the default direction
+    * @return Left states what was expected, what was given, and at which character
     */
   def parse(
       text: String,
@@ -41,7 +39,7 @@ object TeamObjective:
       otherwise: Direction = Direction.Minimise
   ): Either[String, TeamObjective] = read(text, measures(scenario), otherwise)(measureOf(scenario, _, _))
 
-  /** Reads the same of any measures of the scenario, small where no direction stands there. */
+  /** Reads a sum of any measures of the scenario; minimises by default. */
   def ofAll(text: String, scenario: Scenario): Either[String, TeamObjective] =
     val known = scenario.measures.map(measure => keyOf(measure) -> measure).to(ListMap)
     if known.isEmpty then Left(s"expected a scenario with measures; ${scenario.name} has none")
@@ -58,7 +56,7 @@ object TeamObjective:
       .parse(text, known.keys.mkString(", "), hyphened = true)(measureOf)
       .map(sum => TeamObjective(sum.terms, sum.stated.getOrElse(otherwise)))
 
-  /** What measures of a quantity judge an episode by. */
+  /** The numbers that measures of a quantity need of an episode. */
   def judged(measures: Vector[Measure], durationS: Double, periodS: Double): Vector[Judged] =
     measures.map(_.reduced.get).map(by =>
       Judged(
@@ -71,7 +69,7 @@ object TeamObjective:
       )
     )
 
-  /** Where nothing else is said, a pursuer wants little of what is measured, an evader much. */
+  /** The default direction: a pursuer minimises the measure, an evader maximises it. */
   def naturally(role: Role): Direction =
     if role == Role.Evader then Direction.Maximise else Direction.Minimise
 

@@ -2,11 +2,11 @@ package skein.optimise
 
 import skein.units.Expect
 
-/** What is made small or large, as users write it: `0.7*last10s + 0.3*effort`, with `minimise` or `maximise`
-  * before it or not.
+/** An objective as users write it: `0.7*last10s + 0.3*effort`, with an optional `minimise` or `maximise`
+  * before it.
   *
-  * @param terms weight and what it weighs
-  * @param stated the direction, where it stands there
+  * @param terms weights and terms
+  * @param stated the direction, if given
   */
 final case class WeightedSum[M](terms: Vector[(Double, M)], stated: Option[Direction])
 
@@ -19,10 +19,12 @@ object WeightedSum:
 
   private def term(name: String) = s"""\\s*([+-])?\\s*$Number($name)\\s*(?:\\(([^)]*)\\))?\\s*""".r
 
-  /** @param forms of measures, for mistakes
-    * @param hyphened whether names may have hyphens; a minus between two of them then stands between blanks
-    * @param measureOf a name, and what stands in brackets behind it
-    * @return or what was expected, what came, and at which character
+  /** Reads a sum.
+    *
+    * @param forms of measures, for error messages
+    * @param hyphened whether names may have hyphens; a minus between two of them then needs blanks around it
+    * @param measureOf reads a name, and the text in brackets after it
+    * @return Left states what was expected, what was given, and at which character
     */
   def parse[M](text: String, forms: String, hyphened: Boolean = false)(
       measureOf: (String, Option[String]) => Either[String, M]
@@ -64,14 +66,14 @@ object WeightedSum:
 
     terms(0, Vector.empty).map(WeightedSum(_, stated))
 
-  /** Of the sum, where all terms agree; else empty. */
+  /** Unit of the sum, if all terms agree; else empty. */
   def unit[M](terms: Vector[(Double, M)])(of: M => String): String =
     if terms.map((_, measure) => of(measure)).distinct.size == 1 then of(terms.head._2) else ""
 
-  /** What is measured, for the axis of a picture. */
+  /** The formula with its unit, for the axis of a picture. */
   def withUnit(formula: String, unit: String): String = if unit.isEmpty then formula else s"$formula, $unit"
 
-  /** As [[parse]] reads it back, without the direction. */
+  /** The text that [[parse]] reads, without the direction. */
   def formula[M](terms: Vector[(Double, M)])(text: M => String): String = terms.zipWithIndex
     .map:
       case ((1.0, measure), 0)    => text(measure)

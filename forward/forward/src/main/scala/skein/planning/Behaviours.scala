@@ -2,13 +2,12 @@ package skein.planning
 
 import skein.simd.WorldRandom
 
-/** Several ways in which a target may behave, against which every candidate is flown. */
+/** Several possible behaviours of a target, against which every candidate is simulated. */
 object Behaviours:
 
-  /** A target as it is taken to be, counting half, and others around it, drawn from a stream: elsewhere by
-    * about 0.2 m, and deciding by the policy that it may be taken for
-    * ([[skein.policy.HeadingPolicy.guessed]]). The same stream gives the same behaviours, so that all
-    * candidates of a tick meet the same.
+  /** The estimated target, with half of the weight, and variations of it, drawn from a stream: displaced by
+    * about 0.2 m, with a policy that an observer may assume ([[skein.policy.HeadingPolicy.guessed]]). A
+    * stream gives equal behaviours each time, so that all candidates of a tick are compared fairly.
     */
   def around(target: Target, count: Int, stream: Long): Vector[Behaviour] =
     require(count > 0, s"at least one behaviour is needed, came $count")

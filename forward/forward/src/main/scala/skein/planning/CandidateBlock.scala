@@ -1,12 +1,11 @@
 package skein.planning
 
-/** A block of candidate manoeuvres that are drawn, flown and priced together. Mutable; one per thread. Arrays
-  * hold step after step: the action of candidate i in step h is at h · SIZE + i.
+/** A block of candidate manoeuvres that are drawn, simulated and priced together. Mutable; one per thread.
+  * Arrays are ordered by step: the action of candidate i in step h is at h · SIZE + i.
   */
 private[planning] abstract class CandidateBlock(steps: Int):
   final val turnRates, speeds: Array[Float] = Array.ofDim(steps * CandidateBlock.Size)
 
-  /** Of each candidate, after [[fly]]. */
   final val costs: Array[Float] = Array.ofDim(CandidateBlock.Size)
 
   /** Weighted sums per step and place in the block. */
@@ -15,24 +14,22 @@ private[planning] abstract class CandidateBlock(steps: Int):
   /** Sums of the weights per place in the block. */
   final val weightSums: Array[Float] = Array.ofDim(CandidateBlock.Size)
 
-  /** What all manoeuvres from now on are flown in, and what they are to achieve. */
+  /** Sets the situation and the objective of all later manoeuvres. */
   def situate(situation: Situation, objective: PlanCost, dtS: Double): Unit
 
   /** Draws all candidates, within the limits.
     *
     * @param keys of each candidate's random stream ([[skein.simd.WorldRandom]])
-    * @param stepsPerKnot so many steps share one random number
+    * @param stepsPerKnot number of steps that share one random number
     */
   def draw(keys: Array[Int], from: SamplingDistribution, limits: CommandLimits, stepsPerKnot: Int): Unit
 
-  /** Flies all candidates. */
   def fly(): Unit
 
-  /** Forgets the sums. */
   final def forget(): Unit =
     for sums <- Seq(turnSums, speedSums, weightSums) do java.util.Arrays.fill(sums, 0f)
 
-  /** Adds the actions flown, each weighted by e^(−(cost − base) / temperature), to the sums. */
+  /** Adds the candidates' actions, each weighted by e^(−(cost − base) / temperature), to the sums. */
   def weigh(base: Float, temperature: Float): Unit
 
 private[planning] object CandidateBlock:

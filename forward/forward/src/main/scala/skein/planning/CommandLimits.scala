@@ -1,6 +1,6 @@
 package skein.planning
 
-/** What a vehicle may be commanded.
+/** The limits of a vehicle's commands.
   *
   * @param minSpeed m/s
   * @param maxSpeed m/s; where both are equal, only the heading is planned
@@ -18,7 +18,6 @@ final case class CommandLimits(
     s"limits must not be negative, the least speed not above the greatest: $this"
   )
 
-  /** 1 / m. */
   def curvature: Double = if turningRadius > 0 then 1 / turningRadius else 1e9
 
   def turnRateAt(speed: Double): Double = math.min(maxTurnRate, speed * curvature)

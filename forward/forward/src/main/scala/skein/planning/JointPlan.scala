@@ -1,25 +1,25 @@
 package skein.planning
 
-/** One vehicle's part in a plan that is made for several together.
+/** One vehicle's part in a joint plan for several.
   *
-  * @param situation in which `others` are only those of whom nothing is planned here
+  * @param situation in which `others` are only vehicles that are not planned here
   * @param stream of random numbers
   */
 final case class Part(objective: PlanCost, situation: Situation, stream: Long)
 
-/** What is planned for vehicles of one controller: a plan each, and each knows all others.
+/** A joint plan for vehicles of one controller: a plan each, and each considers all others.
   *
-  * @param tracks the ways that the plans lead
-  * @param turn which of them is improved next
+  * @param tracks predicted tracks of the plans
+  * @param turn index of the plan to improve next
   * @param slices searched so far, of all together
   */
 final case class JointPlan(plans: Vector[Plan], tracks: Vector[PredictedTrack], turn: Int, slices: Int):
 
-  /** One vehicle's situation, in which it keeps apart from the planned ways of the others too. */
+  /** One vehicle's situation, in which it also keeps apart from the planned tracks of the others. */
   def situation(self: Int, part: Part): Situation = meeting(part, tracks.indices.filter(_ != self))
 
-  /** The same with those alone whose planned ways come nearest to its own: at most [[JointPlan.Regarded]],
-    * and none that stays so far away that no manoeuvre of the horizon leads there.
+  /** [[situation]] restricted to the planned tracks that come nearest: at most [[JointPlan.Regarded]],
+    * without those too far for any manoeuvre of the horizon.
     */
   private[planning] def nearSituation(self: Int, part: Part): Situation =
     if !part.objective.separation.isKept then part.situation
@@ -37,7 +37,7 @@ final case class JointPlan(plans: Vector[Plan], tracks: Vector[PredictedTrack], 
     if !part.objective.separation.isKept then part.situation
     else part.situation.copy(others = part.situation.others ++ regarded.map(tracks))
 
-  /** What all of it costs together: each plan by its objective, where the others fly by theirs. */
+  /** Total cost: each plan by its objective, where the others follow theirs. */
   def cost(parts: Vector[Part], dtS: Double): Double =
     parts.indices
       .map: self =>
@@ -46,10 +46,10 @@ final case class JointPlan(plans: Vector[Plan], tracks: Vector[PredictedTrack], 
       .sum
 
 object JointPlan:
-  /** Other vehicles that a search regards. */
+  /** Limit of the other vehicles that a search considers. */
   val Regarded = 8
 
-  /** How far a manoeuvre may lead from the way planned so far, and the separation to be kept there, m. */
+  /** How far a manoeuvre may lead from the planned track, plus the separation there, m. */
   private val ReachM = 15.0
 
   private def nearestM(one: PredictedTrack, other: PredictedTrack): Double =

@@ -2,24 +2,22 @@ package skein.planning
 
 import scala.collection.mutable
 
-/** What is to be planned for several vehicles at one moment. */
+/** The input of a joint planner: several vehicles' parts at one moment. */
 final case class PlanProblem(settings: PlannerSettings, parts: Vector[Part]):
   require(parts.nonEmpty, "a plan is for one vehicle at least")
 
 object PlanProblem:
-  /** Searches side by side. */
   val MostSearches = 64
 
-/** Plans for several vehicles of one controller, any time: slice by slice the vehicles take turns, and each
-  * improves its plan against the newest plans of all others (best responses in turn, as in decentralised
-  * model predictive control; Richards and How, ''Robust distributed model predictive control'', Int. J.
-  * Control 80, 2007). So nobody's way is guessed, and two do not dodge to the same side: who comes second
-  * knows where the first will be.
+/** Plans for several vehicles of one controller, as an anytime algorithm: slice by slice the vehicles take
+  * turns, and each improves its plan against the newest plans of all others (best responses in turn, as in
+  * decentralised model predictive control; Richards and How, ''Robust distributed model predictive control'',
+  * Int. J. Control 80, 2007). So no track is guessed, and two vehicles do not dodge to one side: the second
+  * knows the first one's plan.
   *
   * A plan is only given up for a better one, and coming too near costs more than all else. So plans that keep
-  * apart from one another go on to do so when time passes and parts of them have been flown, even where a
-  * tick has no slice for some vehicle; the next tick begins with that one. How well depends on how well the
-  * vehicles follow [[Situation.own]].
+  * apart still do after part of them was executed, even where a tick has no slice for some vehicle; the next
+  * tick begins with that one. How well depends on how well the vehicles follow [[Situation.own]].
   *
   * Equal problems, plans and numbers of slices give equal plans, to the last bit. Holds the memory for blocks
   * of candidates: one per thread.
@@ -39,7 +37,7 @@ final class JointPlanner:
     planners((settings, objective)) = planner
     planner
 
-  /** The plan to begin with: what is left of the last, or straight on for all. */
+  /** The initial plan: the remainder of the last, or straight on for all. */
   def resumed(problem: PlanProblem, last: Option[JointPlan]): JointPlan =
     val plans = problem.parts.indices.toVector.map: self =>
       val part   = problem.parts(self)
@@ -50,7 +48,7 @@ final class JointPlanner:
 
   /** Searches one slice for the vehicle whose turn it is.
     *
-    * @param search its number: searches side by side meet other candidates
+    * @param search its number: parallel searches draw different candidates
     */
   def improved(problem: PlanProblem, plan: JointPlan, search: Int): JointPlan =
     val self = plan.turn
@@ -67,7 +65,7 @@ final class JointPlanner:
       plan.slices + 1
     )
 
-  /** What one search finds in so many slices. */
+  /** The plan after searching this number of slices. */
   def searched(problem: PlanProblem, warm: JointPlan, search: Int, slices: Int): JointPlan =
     Iterator.iterate(warm)(improved(problem, _, search)).drop(slices).next()
 
@@ -75,15 +73,13 @@ final class JointPlanner:
     ManoeuvreRollout(part.situation, part.objective, problem.settings.dtS).track(plan.manoeuvre)
 
 object JointPlanner:
-  /** Kept, by their steps; of more, all are made anew. */
+  /** Limit of the cached blocks, by their steps; beyond it, the cache is cleared. */
   private val MostBlocks = 8
 
-  /** Kept likewise, by their settings and objectives. */
+  /** Limit of the cached planners, by their settings and objectives. */
   private val MostPlanners = 64
 
-  /** The best of what several searches have found; of equals the first. Its plans count the candidates of
-    * all.
-    */
+  /** The best of several searches' plans; of equal ones the first. Its plans count the candidates of all. */
   def best(problem: PlanProblem, found: Vector[JointPlan]): JointPlan =
     val chosen =
       if found.size == 1 then found.head else found.minBy(_.cost(problem.parts, problem.settings.dtS))

@@ -6,9 +6,7 @@ final case class Manoeuvre(turnRates: IArray[Float], speeds: IArray[Float]):
 
   def steps: Int = turnRates.length
 
-  /** What is left of it when time has passed; its end is held. Steps are met in parts: actions are
-    * interpolated.
-    */
+  /** The remainder after some time; its last action is held. Actions are interpolated between steps. */
   def shifted(elapsedS: Double, dtS: Double): Manoeuvre =
     Manoeuvre(Manoeuvre.shifted(turnRates, elapsedS / dtS), Manoeuvre.shifted(speeds, elapsedS / dtS))
 

@@ -3,15 +3,15 @@ package skein.planning
 import skein.policy.{ObservingPolicy, PlanarObservation}
 import skein.vehicle.PlaneReading
 
-/** Flies one manoeuvre in a situation, in doubles: the reference for the kernel, the check of what is chosen,
-  * and how a plan is told to others.
+/** Simulates one manoeuvre in a situation, in doubles: the reference for the kernel, the check of the chosen
+  * plan, and the track that others use.
   *
-  * Vehicles follow their commands as their plants say; a command stands for a step. The heading has turned at
-  * the step's beginning.
+  * Vehicles follow their commands by their plants; a command lasts one step. The heading turns at the step's
+  * beginning.
   */
 final class ManoeuvreRollout(situation: Situation, objective: PlanCost, dtS: Double):
 
-  /** Where a manoeuvre leads. */
+  /** The track along which a manoeuvre leads. */
   def track(manoeuvre: Manoeuvre): PredictedTrack = track(flown(manoeuvre)._2)
 
   private def track(motions: Array[PlaneReading]): PredictedTrack =
@@ -21,7 +21,7 @@ final class ManoeuvreRollout(situation: Situation, objective: PlanCost, dtS: Dou
       ys(step) = motions(step + 1).eastM
     PredictedTrack(IArray.unsafeFromArray(xs), IArray.unsafeFromArray(ys))
 
-  /** What a manoeuvre comes to. */
+  /** Simulates a manoeuvre: its track, cost and breaches. */
   def fly(manoeuvre: Manoeuvre): FlownManoeuvre =
     val (commanded, motions) = flown(manoeuvre)
     val track                = this.track(motions)
@@ -56,7 +56,7 @@ final class ManoeuvreRollout(situation: Situation, objective: PlanCost, dtS: Dou
       )
     FlownManoeuvre(track, cost, breaches)
 
-  /** What is commanded and how the vehicle moves, at the beginning and at the end of each step. */
+  /** The commands and the vehicle's motion, at the beginning and at the end of each step. */
   private def flown(manoeuvre: Manoeuvre): (Array[Steered], Array[PlaneReading]) =
     val commanded                = Array.ofDim[Steered](manoeuvre.steps + 1)
     val motions                  = Array.ofDim[PlaneReading](manoeuvre.steps + 1)
@@ -73,7 +73,7 @@ final class ManoeuvreRollout(situation: Situation, objective: PlanCost, dtS: Dou
       motions(step + 1) = own.motion
     (commanded, motions)
 
-  /** How the target moves at the end of each step. */
+  /** The target's motion at the end of each step. */
   private def meeting(
       target: Target,
       commanded: Array[Steered],
@@ -105,7 +105,9 @@ final class ManoeuvreRollout(situation: Situation, objective: PlanCost, dtS: Dou
           now = now.flown(speed * StrictMath.cos(heading), speed * StrictMath.sin(heading), dtS)
           now.motion
 
-/** @param track of the vehicle itself
+/** A simulated manoeuvre with its cost.
+  *
+  * @param track of the vehicle itself
   * @param breaches of hard limits
   */
 final case class FlownManoeuvre(track: PredictedTrack, cost: Double, breaches: Vector[Breached])
@@ -114,10 +116,15 @@ final case class FlownManoeuvre(track: PredictedTrack, cost: Double, breaches: V
 enum Breached:
   def step: Int
 
-  /** @param metres outside
+  /** Outside of a geofence.
+    *
+    * @param metres by how far
     */
   case Fence(step: Int, metres: Double)
 
-  /** @param other which of the vehicles to keep apart from
+  /** Too near to another vehicle.
+    *
+    * @param other index of that vehicle
+    * @param metres missing to the least separation
     */
   case TooNear(step: Int, other: Int, metres: Double)

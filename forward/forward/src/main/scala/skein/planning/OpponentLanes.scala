@@ -13,7 +13,7 @@ private[planning] final class OpponentLanes(steps: Int):
   private var opponent = Option.empty[Target.Opponent]
   private var decision = Option.empty[Decision]
 
-  /** Takes whom to fly from now on; the policy must be a formula. */
+  /** Sets the opponent to simulate; the policy must be a formula. */
   def take(opponent: Target.Opponent): Unit = if !this.opponent.exists(_ eq opponent) then
     this.opponent = Some(opponent)
     val form = PolicyLanes.get(opponent.policy)
@@ -21,11 +21,11 @@ private[planning] final class OpponentLanes(steps: Int):
     made.take(opponent.policy)
     decision = Some(made)
 
-  /** Flies through all steps.
+  /** Simulates all steps.
     *
-    * @param own the candidates' way
+    * @param own the candidates' tracks
     * @param cos of the headings commanded to them before each step, and `sin`
-    * @param into the opponent's way
+    * @param into receives the opponent's tracks
     */
   def fly(
       own: VehicleLanes,
@@ -46,7 +46,7 @@ private[planning] final class OpponentLanes(steps: Int):
 private object OpponentLanes:
   private final val Size = CandidateBlock.Size
 
-  /** Decisions of policies of one form. What was decided is what the next one begins with. */
+  /** Decisions of policies of one form. Each begins with the previous decision. */
   private final class Decision(val form: PolicyLanes):
     import PolicyLanes.In
     private val function = form.functionOfOne

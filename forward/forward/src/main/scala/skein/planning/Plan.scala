@@ -1,8 +1,8 @@
 package skein.planning
 
-/** The best manoeuvre found so far, and where to look for better ones. Immutable.
+/** The best manoeuvre found so far, and the distribution of further candidates. Immutable.
   *
-  * @param cost infinite while the manoeuvre was not tried in this situation
+  * @param cost infinite if the manoeuvre was not evaluated in this situation
   * @param slices searched so far
   * @param candidates tried so far
   */

@@ -3,7 +3,7 @@ package skein.planning
 import skein.scenario.Fence
 import skein.vehicle.PlaneReading
 
-/** What is not left.
+/** The area that a plan must not leave.
   *
   * @param marginM kept inside of it
   */
@@ -11,19 +11,18 @@ final case class Geofence(fence: Fence, marginM: Double = 0):
   /** How far a place is outside, m; negative inside. */
   def beyond(x: Double, y: Double): Double = fence.beyondM(x, y) + marginM
 
-  /** The costs so far, with what it costs to be at a place at the end of a step. */
+  /** Adds the cost of a position at the end of a step to the costs so far. */
   private[planning] def added(cost: Double, x: Double, y: Double): Double =
     cost + PlanCost.breach(beyond(x, y))
 
-  /** The same, counted from another origin. */
+  /** The geofence relative to another origin. */
   private[planning] def from(x: Double, y: Double): Geofence = copy(fence.from(x, y))
 
-/** How far vehicles stay apart.
+/** The cost of coming near other vehicles.
   *
-  * @param minimum m, never to be gone below
+  * @param minimum m, a hard limit
   * @param margin m beyond it, within which coming nearer costs
-  * @param growth of the margin with the time looked ahead, m/s: what is predicted further ahead is known less
-  *   well
+  * @param growth of the margin with the time ahead, m/s: later predictions are less certain
   * @param price per second and per square metre missing
   */
 final case class SeparationCost(
@@ -34,27 +33,25 @@ final case class SeparationCost(
 ):
   require(minimum >= 0 && margin >= 0 && growth >= 0 && price >= 0, s"must not be negative: $this")
 
-  /** Whether there is anything to be kept. */
   def isKept: Boolean = minimum > 0
 
-  /** Within which coming nearer costs, m. */
+  /** Distance within which coming nearer costs, m. */
   def clearance(aheadS: Double): Double = minimum + margin + growth * aheadS
 
-/** What a manoeuvre costs; costs are in metres, so that weights compare. Of the distance to the target it
-  * takes the mean over the time flown times its length, the least, and, at the end of the horizon, the
-  * distance to which momentum would carry the two: with velocities that lag, a place is known only with the
-  * place that its velocity leads to.
+/** The cost of a manoeuvre, in metres, so that weights are comparable. It includes the distance to the
+  * target: the integral over time, the least, and, at the end of the horizon, the distance to which momentum
+  * would carry the two, because a position without its velocity says little about vehicles with lag.
   *
   * Leaving a geofence or going below the least separation costs more than anything else, once per step, and
   * the more the further.
   *
-  * Turning costs by the acceleration that it asks for, so that a vehicle which hardly moves may turn back at
-  * once.
+  * Turning costs by the acceleration that it asks for, so that a vehicle which hardly moves may turn back
+  * immediately.
   *
   * @param distance per second and metre
   * @param closest per metre of the least distance
   * @param carried per metre of the distance carried to
-  * @param capture taken off where the least distance is below the capture radius
+  * @param capture subtracted where the least distance is below the capture radius
   * @param captureRadius m
   * @param turning per second and (m/s²)², of turn rate times commanded speed
   * @param speedChange per second and (m/s)² off the cruise speed
@@ -82,7 +79,7 @@ final case class PlanCost(
 
   // Formulas: of doubles in ManoeuvreRollout, of a block's candidates in PlanKernel. They add to the costs so far.
 
-  /** What a step of a manoeuvre commands, and what it costs by itself: its effort.
+  /** The command of a step, with its own cost, the effort.
     *
     * @param headingRad commanded before
     * @param turnRate rad/s, for `turnS`
@@ -102,7 +99,7 @@ final case class PlanCost(
     val effort        = aside * aside * (turning * dtS) + slow * slow * (speedChange * dtS)
     Steered(cost + effort, heading, cos, sin, speed * cos, speed * sin)
 
-  /** What it costs to end a step so far from another vehicle.
+  /** The cost of ending a step at this distance from another vehicle.
     *
     * @param clearance within which coming nearer costs, m
     */
@@ -119,7 +116,7 @@ final case class PlanCost(
     val missing  = (clearance - distance).max(0)
     cost + missing * missing * (separation.price * dtS) + PlanCost.breach(separation.minimum - distance)
 
-  /** The distances to the target so far, with that at the end of a step. */
+  /** The distances to the target so far, including the end of a step. */
   private[planning] def approached(
       so: Approach,
       x: Double,
@@ -130,9 +127,9 @@ final case class PlanCost(
     val distance = softened(targetX - x, targetY - y)
     Approach(so.sum + distance, so.least.min(distance))
 
-  /** What these distances cost, where the horizon ends.
+  /** The cost of these distances at the end of the horizon.
     *
-    * @param carriesS for so long its last velocity carries the vehicle on
+    * @param carriesS time for which its last velocity carries the vehicle
     * @param weight of the behaviour
     */
   private[planning] def ended(
@@ -156,19 +153,21 @@ final case class PlanCost(
     math.sqrt(dx * dx + (dy * dy + softness * softness))
 
 object PlanCost:
-  /** What one step costs that breaks a hard limit. */
+  /** Cost of one step that breaches a hard limit. */
   val Breach = 1000.0
 
-  /** Within which hard limits count as broken already when candidates are priced, m: so that what floats find
-    * within them is so in doubles.
+  /** Distance to a hard limit that already counts as a breach when candidates are priced, m: so a candidate
+    * within the limits in floats is so in doubles.
     */
   val Guard = 0.01
 
-  /** What a step costs that ends so far beyond a hard limit, m. */
+  /** Cost of a step that ends this far beyond a hard limit, m. */
   private[planning] def breach(beyond: Double): Double =
     if beyond + Guard > 0 then Breach * (1 + (beyond + Guard)) else 0
 
-/** @param cost so far
+/** The command of a step.
+  *
+  * @param cost so far
   * @param headingRad commanded, with its cosine and sine
   * @param northMps the commanded velocity
   */
@@ -185,5 +184,5 @@ private[planning] final case class Steered(
 private[planning] final case class Approach(sum: Double, least: Double)
 
 private[planning] object Approach:
-  /** Before the first step: farther than anything is. */
+  /** Before the first step: farther than any distance. */
   val none: Approach = Approach(0, 1e9)

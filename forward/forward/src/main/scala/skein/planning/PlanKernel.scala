@@ -3,13 +3,13 @@ package skein.planning
 import java.util.Arrays
 import skein.simd.FixedFormula
 
-/** Flies many candidate manoeuvres of one vehicle at once and says what each costs, by the same formulas as
-  * [[ManoeuvreRollout]], its scalar reference, compiled; `PlanKernelSuite` holds the two together. The
-  * vehicle's own way does not depend on what its opponent does, so it is flown once and every behaviour of
-  * the opponent is flown against it.
+/** Simulates many candidate manoeuvres of one vehicle by SIMD and computes their costs, by the compiled
+  * formulas of [[ManoeuvreRollout]], its scalar reference; `PlanKernelSuite` compares the two. The vehicle's
+  * track does not depend on its opponent, so it is simulated once, and every behaviour of the opponent
+  * against it.
   *
-  * Positions are counted from where the vehicle starts, so that floats resolve them. Results do not depend on
-  * the lane count. One instance per thread.
+  * Positions are relative to the vehicle's start, so that floats resolve them. Results do not depend on the
+  * lane count. One instance per thread.
   */
 private[planning] final class PlanKernel(steps: Int) extends SampledBlock(steps):
   import PlanKernel.*
@@ -108,7 +108,6 @@ private[planning] final class PlanKernel(steps: Int) extends SampledBlock(steps)
         keep.everywhere(4, (other.y(step) - origin.eastM).toFloat)
         add(keep)
 
-  /** What the distance to the target costs. */
   private def score(
       objective: PlanCost,
       carriesS: Double,
@@ -130,7 +129,6 @@ private[planning] final class PlanKernel(steps: Int) extends SampledBlock(steps)
     end.everywhere(14, dtS.toFloat)
     add(end)
 
-  /** To the costs so far. */
   private def add(formula: FixedFormula.Call): Unit =
     formula.input(0, cost, 0)
     formula.output(0, nextCost, 0)
@@ -142,16 +140,15 @@ private[planning] final class PlanKernel(steps: Int) extends SampledBlock(steps)
 private object PlanKernel:
   private final val Size = CandidateBlock.Size
 
-  /** A method by lanes, for the object asked last.
+  /** A compiled method, bound to the last requested object.
     *
-    * @param alike so many of its last arguments are the same for all candidates
-    * @param bind tells a call where its numbers are
+    * @param alike number of its last arguments that are equal for all candidates
+    * @param bind sets the arrays of a call
     */
   private final class Compiled(method: String, alike: Int)(bind: FixedFormula.Call => Unit):
     private var known = Option.empty[(formula: FixedFormula, call: FixedFormula.Call)]
     private var last  = Option.empty[AnyRef]
 
-    /** At its first rows. */
     def of(target: AnyRef): FixedFormula.Call =
       if !last.exists(_ eq target) then
         known match

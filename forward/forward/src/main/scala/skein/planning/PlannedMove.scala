@@ -1,8 +1,8 @@
 package skein.planning
 
-/** What is to be commanded now.
+/** The next command of a plan.
   *
-  * @param turned from the heading commanded last, rad
+  * @param turned from the last commanded heading, rad
   * @param speed m/s
   * @param breaches of hard limits that the plan could not avoid within its horizon
   */
@@ -10,9 +10,9 @@ final case class PlannedMove(turned: Double, speed: Double, breaches: Vector[Bre
 
 object PlannedMove:
 
-  /** The first action of a plan, checked in doubles: speed and turn are held to the limits exactly, and the
-    * manoeuvre is flown against geofence and separation. A search that has found any manoeuvre within the
-    * limits never returns one beyond them, so a breach says that none was found.
+  /** The first action of a plan, checked in doubles: speed and turn are limited exactly, and the manoeuvre is
+    * simulated against geofence and separation. A search that has found any manoeuvre within the limits never
+    * returns one beyond them, so a breach means that none was found.
     */
   def of(plan: Plan, situation: Situation, objective: PlanCost, dtS: Double): PlannedMove =
     val limits   = objective.limits

@@ -6,7 +6,7 @@ import skein.policy.HeadingPolicy
 import skein.simd.WorldRandom
 import skein.vehicle.Plant
 
-/** How better manoeuvres are looked for. */
+/** The method by which a planner improves its manoeuvre. */
 enum PlanMethod:
   /** Model predictive path integral control (Williams et al., ICRA 2017): the mean of the search moves to the
     * mean of all candidates, each weighted by e^(−cost / temperature).
@@ -16,18 +16,19 @@ enum PlanMethod:
   /** The cross-entropy method (Rubinstein, 1999): mean and deviation of the search move towards those of the
     * best candidates.
     *
-    * @param elites how many of a slice are the best
+    * @param elites number of a slice's candidates that count as the best
     * @param smoothing share of the old mean and deviation that is kept
     */
   case CrossEntropy(elites: Int, smoothing: Double)
 
-/** @param steps of the horizon
+/** Settings of a planner.
+  *
+  * @param steps of the horizon
   * @param dtS length of a step
-  * @param blocksPerSlice a slice is what is searched between two looks at the clock; a block are 128
-  *   candidates
-  * @param stepsPerKnot so many steps turn alike, apart from what the search has found
-  * @param turnSd at first, rad/s
-  * @param speedSd at first, m/s
+  * @param blocksPerSlice a slice is searched between two checks of the clock; a block has 128 candidates
+  * @param stepsPerKnot number of steps that share one random turn
+  * @param turnSd initially, rad/s
+  * @param speedSd initially, m/s
   */
 final case class PlannerSettings(
     steps: Int = 20,
@@ -50,8 +51,8 @@ final case class PlannerSettings(
   def horizonS: Double     = steps * dtS
   def sliceCandidates: Int = blocksPerSlice * CandidateBlock.Size
 
-/** Plans manoeuvres, any time: a plan is improved slice by slice, and its manoeuvre is at every moment the
-  * best found. Equal plans, situations and streams give equal plans, to the last bit, on every machine.
+/** Plans manoeuvres by an anytime algorithm: a plan is improved slice by slice, and its manoeuvre is always
+  * the best found. Equal plans, situations and streams give equal plans, to the last bit, on every machine.
   *
   * Holds the memory for a block of candidates: one per thread.
   */
@@ -71,10 +72,10 @@ final class Planner private[planning] (
     case _                                  => Array.emptyFloatArray
   private val eliteTurns, eliteSpeeds = Array.ofDim[Float](eliteCosts.length * steps)
 
-  /** Before anything was planned: straight on. */
+  /** The initial plan: straight on, with the initial deviations. */
   def start: Plan = around(Manoeuvre.straight(cruise, steps))
 
-  /** The plan to begin with when time has passed: what is left of the last, to be tried anew. */
+  /** The initial plan after some time: the remainder of the last, to be evaluated anew. */
   def resumed(plan: Plan, elapsedS: Double): Plan = around(plan.manoeuvre.shifted(elapsedS, dtS))
 
   private def around(manoeuvre: Manoeuvre): Plan =
@@ -94,7 +95,7 @@ final class Planner private[planning] (
 
   /** Searches one slice.
     *
-    * @param stream of random numbers: a plan improved with another stream meets other candidates
+    * @param stream of random numbers: another stream draws other candidates
     */
   def improve(plan: Plan, situation: Situation, stream: Long): Plan =
     block.situate(situation, objective, dtS)
@@ -123,7 +124,7 @@ final class Planner private[planning] (
       case PlanMethod.CrossEntropy(_, smoothing) => eliteSearch(plan.search, smoothing.toFloat)
     Plan(best, bestCost, search, plan.slices + 1, plan.candidates + blocksPerSlice.toLong * size)
 
-  /** Courses that are always tried: the search's mean, the best, and what a pilot would think of first. */
+  /** Manoeuvres that are always tried: the search's mean, the best, and a pilot's first ideas. */
   private def known(plan: Plan): Vector[Manoeuvre] =
     val (speed, limit) = (plan.manoeuvre.speeds(0).toDouble, limits.turnRateAt(plan.manoeuvre.speeds(0)))
     Vector(
@@ -221,21 +222,21 @@ final class Planner private[planning] (
     total
 
 object Planner:
-  /** Of the search, by block: wide ones find other manoeuvres, narrow ones improve on what was found. With a
-    * wide one alone, a plan that is almost right is hardly ever improved.
+  /** Scales of the search's deviations, by block: wide ones find other manoeuvres, narrow ones improve known
+    * ones. With wide ones alone, a plan that is almost right is hardly ever improved.
     */
   private val widths = Vector(1f, 0.5f, 0.25f, 0.125f)
 
   def apply(settings: PlannerSettings, objective: PlanCost): Planner =
     new Planner(settings, objective, CandidateBlocks(settings.steps))
 
-  /** Whether candidates are flown by lanes; otherwise a deadline meets some fifty times fewer of them. */
+  /** Whether candidates are simulated by SIMD; otherwise a deadline allows some fifty times fewer of them. */
   def isFast: Boolean = CandidateBlocks.isFast
 
-  /** Why nobody plans against an opponent of this policy: by lanes, it must be a formula. */
+  /** Why plans against an opponent of this policy are not supported: for SIMD, it must be a formula. */
   def refusal(opponent: HeadingPolicy): Option[String] =
     if isFast then PolicyLanes.of(opponent).left.toOption.map(_.getMessage) else None
 
-  /** The same of vehicles that move by this plant. */
+  /** Why plans for vehicles that move by this plant are not supported. */
   def refusal(plant: Plant[?]): Option[String] =
     if isFast then PlantLanes.of(plant).left.toOption else None

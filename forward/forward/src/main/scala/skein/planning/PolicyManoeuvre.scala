@@ -4,15 +4,15 @@ import skein.policy.{Observation, Policy}
 import skein.units.{Radians, Span, Vector3}
 import skein.vehicle.PlaneReading
 
-/** What a vehicle's own policy would do, as a manoeuvre. */
+/** The decisions of a vehicle's own policy, as a manoeuvre for a search. */
 object PolicyManoeuvre:
 
-  /** The policy is asked before each step of the horizon, where the vehicle has then flown under its answers,
-    * and all others straight on. Its headings are met as fast as the limits allow.
+  /** Evaluates the policy before each step of the horizon, with the vehicle moved by its earlier decisions,
+    * and all others straight on. Its headings are followed as fast as the limits allow.
     *
     * @param memory the policy's own
     * @param observation at the beginning
-    * @param situation of the same vehicle at the same moment
+    * @param situation of this vehicle at this moment
     */
   def of(
       policy: Policy,
@@ -42,7 +42,7 @@ object PolicyManoeuvre:
       own = own.flown(speed * StrictMath.cos(heading), speed * StrictMath.sin(heading), dtS)
     Manoeuvre(IArray.unsafeFromArray(turns), IArray.unsafeFromArray(speeds))
 
-  /** What is seen once the own vehicle has come there and the others went straight on. */
+  /** The observation after the own vehicle has reached this state and the others went straight on. */
   private def later(
       seen: Observation,
       own: PlaneReading,

@@ -2,12 +2,12 @@ package skein.planning
 
 import skein.vehicle.{ObservedPlant, PlaneReading, Plant, PlantState, ReducedModel}
 
-/** A vehicle, and how it will move.
+/** A vehicle's state, with the plant that predicts it.
   *
   * @param plant by which it moves; its dead time has no effect here
-  * @param northM where its plant counts from, m, world NED
-  * @param carriesS for so long its last velocity carries it on, if nothing more is commanded, s: for a
-  *   first-order lag, the lag
+  * @param northM origin of its plant, m, world NED
+  * @param carriesS time for which its last velocity carries it without further commands, s: for a first-order
+  *   lag, the lag
   */
 final case class PredictedVehicle[S](
     plant: Plant[S],
@@ -16,16 +16,16 @@ final case class PredictedVehicle[S](
     eastM: Double,
     carriesS: Double
 ):
-  /** Where it is, and how fast: m and m/s, world NED. */
+  /** Its position and velocity: m and m/s, world NED. */
   def motion: PlaneReading =
     val read = plant.read(state)
     read.copy(northM = northM + read.northM, eastM = eastM + read.eastM)
 
-  /** The same elsewhere. */
+  /** The vehicle with another origin of its plant. */
   def moved(northM: Double, eastM: Double): PredictedVehicle[S] =
     copy(northM = this.northM + northM, eastM = this.eastM + eastM)
 
-  /** After a commanded velocity has stood for so long. */
+  /** The vehicle after a commanded velocity has lasted for this time. */
   def flown(northMps: Double, eastMps: Double, dtS: Double): PredictedVehicle[S] =
     val pieces = PredictedVehicle.pieces(plant, dtS)
     var now    = state
@@ -36,15 +36,15 @@ final case class PredictedVehicle[S](
     copy(state = now)
 
 object PredictedVehicle:
-  /** Within which a vehicle that is told to stand still is taken to do so, s. */
+  /** Time after which a vehicle with a command to stand still counts as standing, s. */
   private val StandsWithinS = 10.0
 
   def apply(model: ReducedModel, at: PlaneReading): PredictedVehicle[PlaneReading] =
     of(model, at, model.lagS)
 
-  /** A vehicle by what is read of it.
+  /** A vehicle from its reading.
     *
-    * @param state of its plant as numbers, where the reading does not tell all of it; else empty
+    * @param state of its plant as numbers, if the reading does not contain the whole state; else empty
     */
   def of[S](
       plant: ObservedPlant[S],
@@ -61,15 +61,13 @@ object PredictedVehicle:
       carriesS
     )
 
-  /** For how long a plant's velocity carries it on: the way that it goes once it is told to stand still, over
-    * its speed before, m/s.
-    */
+  /** Time for which a plant's velocity carries it: its stopping distance over its speed before, m/s. */
   def carriesS(plant: ObservedPlant[?], speedMps: Double): Double = plant match
     case model: ReducedModel => model.lagS
     case _                   =>
       val still = of(plant, PlaneReading(0, 0, speedMps, 0), 0).flown(0, 0, StandsWithinS).motion
       StrictMath.hypot(still.northM, still.eastM) / speedMps
 
-  /** Of a plan's step, none longer than the plant's. */
+  /** Number of the plant's steps within this time, none longer than its limit. */
   private[planning] def pieces(plant: Plant[?], dtS: Double): Int =
     math.ceil(dtS / plant.stepS - 1e-9).toInt.max(1)

@@ -1,6 +1,6 @@
 package skein.planning
 
-/** Where candidates are drawn: independent normal distributions of each step's actions.
+/** The distribution of candidates: independent normal distributions of each step's actions.
   *
   * @param turnSds standard deviations, rad/s
   * @param speedSds m/s
@@ -11,7 +11,6 @@ final case class SamplingDistribution(
     speedMeans: IArray[Float],
     speedSds: IArray[Float]
 ):
-  /** With a share of its deviations. */
   def narrowed(share: Float): SamplingDistribution =
     def narrow(sds: IArray[Float]) =
       val less = Array.ofDim[Float](sds.length)

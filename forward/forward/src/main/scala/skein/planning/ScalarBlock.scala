@@ -1,7 +1,7 @@
 package skein.planning
 
-/** A block of candidates flown one after the other, where the JVM has no vector module: the same candidates
-  * as the kernel's, some fifty times slower.
+/** A block whose candidates are simulated one by one, where the JVM has no vector module: the kernel's
+  * candidates, some fifty times slower.
   */
 private[planning] final class ScalarBlock(steps: Int) extends CandidateBlock(steps):
   private val size = CandidateBlock.Size

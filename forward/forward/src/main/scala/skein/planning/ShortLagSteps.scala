@@ -2,10 +2,10 @@ package skein.planning
 
 import skein.vehicle.{PlaneReading, Plant, ReducedModel}
 
-/** A [[ReducedModel]] with one lag, by steps that are short beside it. The formulas stand there; what remains
-  * of a velocity's error after a step, e^(−a), is 1 − a · (1 − a/2 + a²/6 − …), a being the rate at which it
-  * dies away times the step. The next term of the series is below 7e-6 for a up to 0.5. A search holds 1.2
-  * times as many candidates by it as by the exponential (`PlanBench`).
+/** A [[ReducedModel]] with one lag, with steps much shorter than the lag. It uses the model's formulas, but
+  * replaces the share of a velocity's error that remains after a step, e^(−a), by 1 − a · (1 − a/2 + a²/6 −
+  * …), with a the rate of decay times the step. The next term of the series is below 7e-6 for a up to 0.5. A
+  * search evaluates 1.2 times as many candidates as with the exponential (`PlanBench`).
   */
 private[planning] final case class ShortLagSteps(model: ReducedModel) extends Plant[PlaneReading]:
   import model.{dragPerM, gain, lagS}

@@ -3,7 +3,7 @@ package skein.planning
 import skein.policy.HeadingPolicy
 import skein.vehicle.PlaneReading
 
-/** Where somebody will be at the end of each step of the horizon, m, world NED: x north, y east. */
+/** Predicted positions of an object at the end of each step of the horizon, m, world NED: x north, y east. */
 final class PredictedTrack(xs: IArray[Double], ys: IArray[Double]):
   require(xs.length == ys.length, s"a track has as many x as y, came ${xs.length} and ${ys.length}")
 
@@ -11,7 +11,6 @@ final class PredictedTrack(xs: IArray[Double], ys: IArray[Double]):
   def x(step: Int): Double = xs(step)
   def y(step: Int): Double = ys(step)
 
-  /** Its velocity at its end, m/s. */
   def lastVx(dtS: Double): Double = last(xs) / dtS
   def lastVy(dtS: Double): Double = last(ys) / dtS
 
@@ -20,14 +19,14 @@ final class PredictedTrack(xs: IArray[Double], ys: IArray[Double]):
 
 object PredictedTrack:
 
-  /** Who goes on with the velocity that they have. */
+  /** The track of an object that keeps its velocity. */
   def straight(from: PlaneReading, steps: Int, dtS: Double): PredictedTrack =
     PredictedTrack(
       IArray.tabulate(steps)(step => from.northM + from.northMps * dtS * (step + 1)),
       IArray.tabulate(steps)(step => from.eastM + from.eastMps * dtS * (step + 1))
     )
 
-  /** Who keeps the speed and goes on turning.
+  /** The track of an object that keeps its speed and turn rate.
     *
     * @param turnRateRadPerS from north towards east
     */
@@ -48,35 +47,35 @@ object PredictedTrack:
   def standing(x: Double, y: Double, steps: Int): PredictedTrack =
     PredictedTrack(IArray.fill(steps)(x), IArray.fill(steps)(y))
 
-/** What a vehicle is to come close to.
+/** The target that a vehicle must approach.
   *
-  * @param carriesS for so long its last velocity carries it on ([[PredictedVehicle.carriesS]]); absent: as
-  *   long as the vehicle's own
+  * @param carriesS time for which its last velocity carries it ([[PredictedVehicle.carriesS]]); absent: that
+  *   of the vehicle itself
   */
 enum Target(val carriesS: Option[Double] = None):
-  /** Somebody who decides at each step by a policy, upon where both are then, on readings of that moment, and
-    * with the heading commanded to this vehicle before.
+  /** A vehicle that decides at each step by a policy, on present readings of both, and with the heading
+    * commanded to this vehicle before.
     *
     * @param speed that it commands, m/s
-    * @param headingRad commanded last to it
+    * @param headingRad last commanded to it
     */
   case Opponent(vehicle: PredictedVehicle[?], speed: Double, headingRad: Double, policy: HeadingPolicy)
       extends Target(Some(vehicle.carriesS))
 
-  /** Somebody or some place whose way does not depend on this vehicle. */
+  /** An object or a place whose track does not depend on this vehicle. */
   case Along(track: PredictedTrack) extends Target()
 
-/** One way in which the target may behave, and how much it counts. */
+/** One possible behaviour of the target, with its weight. */
 final case class Behaviour(target: Target, weight: Double = 1)
 
-/** What a plan is made upon: the joint state at the moment at which the planned command will act on the
-  * vehicle, its dead time over.
+/** The input of a plan: the joint state at the moment at which the planned command takes effect, after its
+  * dead time.
   *
-  * @param headingRad commanded last to this vehicle
-  * @param sinceDecisionS time since then: as long the first step's turn lasts
-  * @param behaviours of the target, the same for all candidates, which makes their costs comparable
+  * @param headingRad last commanded to this vehicle
+  * @param sinceDecisionS time since then, for which the first step's turn lasts
+  * @param behaviours of the target, equal for all candidates, which makes their costs comparable
   * @param others vehicles to keep apart from
-  * @param suggested manoeuvres that every slice tries besides its own, at most 16
+  * @param suggested further manoeuvres that every slice tries, at most 16
   */
 final case class Situation(
     own: PredictedVehicle[?],

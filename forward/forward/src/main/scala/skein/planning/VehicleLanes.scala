@@ -11,7 +11,6 @@ import skein.vehicle.{PlaneReading, Plant, PlantState, ReducedModel}
 private[planning] final class VehicleLanes(steps: Int):
   import VehicleLanes.*
 
-  /** Where they stand. */
   val way: Array[Float] = Array.ofDim((steps + 1) * Apart)
 
   private val known          = mutable.HashMap.empty[(Plant[?], Double), Flight]
@@ -19,9 +18,9 @@ private[planning] final class VehicleLanes(steps: Int):
   private var last           = Option.empty[(Plant[?], Double)]
   private val startX, startY = Array.ofDim[Float](Size)
 
-  /** Takes who flies, all from one place.
+  /** Sets the vehicle, in one initial state.
     *
-    * @param origin where positions are counted from
+    * @param origin of the positions
     */
   def take(vehicle: PredictedVehicle[?], origin: PlaneReading, dtS: Double): Unit =
     if known.size >= MostPlants then known.clear()
@@ -43,13 +42,12 @@ private[planning] final class VehicleLanes(steps: Int):
 
   private def fill(from: Int, value: Double): Unit = Arrays.fill(way, from, from + Size, value.toFloat)
 
-  /** Goes along a track. */
   def follow(track: PredictedTrack, origin: PlaneReading, dtS: Double): Unit =
     val (lastVx, lastVy) = (track.lastVx(dtS), track.lastVy(dtS))
     for step <- 0 until steps do
       fill(step + 1, track.x(step) - origin.northM, track.y(step) - origin.eastM, lastVx, lastVy)
 
-  /** Flies the next step.
+  /** Simulates the next step.
     *
     * @param north of each commanded velocity, over `speed`, m/s
     */
@@ -63,7 +61,7 @@ private[planning] final class VehicleLanes(steps: Int):
       case _                                                                    => plant
     Flight(flown, pieces, dtS / pieces)
 
-  /** How a plant is flown step by step. */
+  /** Simulates a plant in steps of equal length. */
   private final class Flight(plant: Plant[?], pieces: Int, pieceS: Double):
     private val lanes  = PlantLanes.of(plant).fold(why => throw IllegalArgumentException(why), identity)
     private val count  = lanes.count
@@ -100,14 +98,12 @@ private[planning] final class VehicleLanes(steps: Int):
 private[planning] object VehicleLanes:
   private final val Size = CandidateBlock.Size
 
-  /** Position and velocity, north and east. */
   private final val Numbers = 4
 
-  /** How far a step's rows are from the last one's. */
+  /** Distance between the rows of successive steps. */
   final val Apart = Numbers * Size
 
-  /** Kept; of more, all are compiled anew. */
   private val MostPlants = 64
 
-  /** Where a row begins: of north, east, velocity north, east. */
+  /** Offset of a row: of north, east, velocity north, east. */
   def row(step: Int, number: Int): Int = step * Apart + number * Size

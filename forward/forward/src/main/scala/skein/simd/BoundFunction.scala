@@ -5,8 +5,8 @@ import scala.collection.mutable
 import skein.formula.{Node, Op, Trace}
 import skein.simd.{LaneCompiler, LaneFunction}
 
-/** A compiled function, and which inputs of the expressions it was compiled from are its inputs. Expressions
-  * that are alike but for the numbers of their inputs share the code. Parameters are the same in all worlds.
+/** A compiled function and the mapping of its inputs to the expressions' inputs. Expressions that are equal
+  * except for the numbers of their inputs share the code. Parameters are equal in all worlds.
   *
   * @param inputs numbers in the expressions, in the order of the function's inputs
   * @param nodes the expressions with the numbers of the function's inputs
@@ -16,18 +16,19 @@ private[skein] final class BoundFunction private (
     val nodes: Vector[Node],
     val function: LaneFunction
 ):
-  /** The function's number of an input of the expressions. */
+  /** The function's index of an input of the expressions; −1 if it is unused. */
   def place(input: Int): Int = inputs.indexOf(input)
 
-  /** How many there are. */
   def outputs: Int = nodes.size
 
 private[skein] object BoundFunction:
   private type Key = (Vector[(Op, Vector[Int], Long)], Vector[Int], Vector[(Int, Int)])
   private val compiled = ConcurrentHashMap[Key, LaneFunction]()
 
-  /** @param rowOf the rows of inputs that stand in one array, by their numbers in the expressions; of all of
-    *   these, [[LaneCall.input]] takes the array and where its first row begins
+  /** Compiles expressions.
+    *
+    * @param rowOf rows of inputs that share an array, by their numbers in the expressions; for all of these,
+    *   [[LaneCall.input]] takes the array and the offset of its first row
     * @param areRows whether the outputs are the rows of one array
     */
   def of(
@@ -52,7 +53,7 @@ private[skein] object BoundFunction:
   private def leafOf(node: Node): Long =
     if node.isConst then java.lang.Double.doubleToRawLongBits(node.value) else node.index.toLong
 
-/** Calls a [[BoundFunction]] on arrays that are put in the places of its inputs and outputs. Mutable.
+/** A call of a [[BoundFunction]] with arrays for its inputs and outputs. Mutable.
   *
   * @param parameters read at each call
   */
@@ -65,10 +66,10 @@ private[skein] final class LaneCall(bound: BoundFunction, parameters: Array[Floa
   private val function = bound.function
   private var worlds   = LaneFunction.COUNT
 
-  /** From now on the first worlds alone count. */
+  /** From now on only the first worlds count. */
   def use(worlds: Int): Unit = this.worlds = worlds
 
-  /** Where an input's numbers begin, by the function's number of it. */
+  /** Sets the array and offset of an input, by the function's index of it. */
   def input(number: Int, array: Array[Float], offset: Int, stride: Int = 0): Unit =
     // Nearly always the same one: to store a reference costs the collector's bookkeeping.
     if arrays(number) ne array then arrays(number) = array
@@ -77,7 +78,7 @@ private[skein] final class LaneCall(bound: BoundFunction, parameters: Array[Floa
       starts(number) = offset
       strides(number) = stride
 
-  /** The same of an input that the function need not have: its number is −1 then. */
+  /** Sets the array of an input that the function may not have: its index is −1 then. */
   def inputIfAny(number: Int, array: Array[Float], offset: Int = 0, stride: Int = 0): Unit =
     if number >= 0 then input(number, array, offset, stride)
 
@@ -86,14 +87,14 @@ private[skein] final class LaneCall(bound: BoundFunction, parameters: Array[Floa
 
   def apply(): Unit = function.apply(arrays, offsets, parameters, scratch, worlds)
 
-  /** What goes on goes back to where it was put. */
+  /** Rewinds strided arguments to their first offsets. */
   def rewind(): Unit =
     var i = 0
     while i < offsets.length do
       if strides(i) > 0 then offsets(i) = starts(i)
       i += 1
 
-  /** Afterwards everything begins its stride further on, or, at the end of an array, at its start. */
+  /** Evaluates, and then advances every argument by its stride; at the end of an array, back to its start. */
   def next(): Unit =
     apply()
     var i = 0

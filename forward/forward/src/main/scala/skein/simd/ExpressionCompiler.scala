@@ -3,18 +3,18 @@ package skein.simd
 import scala.collection.mutable
 import skein.formula.{Node, Op, Untraceable}
 
-/** Writes the code that computes expressions, in whatever instructions a machine has. What decides the bits
-  * of a result stands here, for every machine: elementary functions are the polynomials of [[LaneMath]],
-  * written out; products are fused with sums; a limit is chosen by comparing. So machines whose single
-  * operations round as IEEE 754 says agree to the bit.
+/** Generates code for expressions, for any instruction set. Everything that decides the bits of a result is
+  * here: elementary functions are the polynomials of [[LaneMath]], inlined; products are fused with sums;
+  * minimum and maximum are comparisons. So machines whose single operations round as IEEE 754 says agree to
+  * the bit.
   *
-  * What an operation leaves is given by the number of its place: of a float, of a condition, or of the 32
-  * bits of a float. Mutable: for one stretch of code.
+  * The result of an operation is identified by the number of its register or variable: of a float, of a
+  * condition, or of the 32 bits of a float. Mutable: for one stretch of code.
   */
 private[skein] abstract class ExpressionCompiler:
   import ExpressionCompiler.Round
 
-  /** Where what is computed already stands. */
+  /** Slots of the nodes that are already computed. */
   protected final val slots   = mutable.HashMap.empty[Node, Int]
   private val sinesAndCosines = mutable.HashMap.empty[Node, (Int, Int)]
 
@@ -31,7 +31,7 @@ private[skein] abstract class ExpressionCompiler:
   protected def mul(a: Int, b: Int): Int
   protected def div(a: Int, b: Int): Int
 
-  /** a · b + c, rounded once. */
+  /** a · b + c, rounded once: a fused multiply-add. */
   protected def fma(a: Int, b: Int, c: Int): Int
   protected def choose(otherwise: Int, where: Int, condition: Int): Int
 
@@ -52,10 +52,10 @@ private[skein] abstract class ExpressionCompiler:
   protected def xorBits(a: Int, b: Int): Int
   protected def shiftLeft(a: Int, by: Int): Int
 
-  /** Whether the highest bit is set. */
+  /** Condition: whether the highest bit is set. */
   protected def isHighest(a: Int): Int
 
-  /** Where a node's number or condition is. */
+  /** Slot of a node's number or condition; generates its code first if needed. */
   protected final def of(node: Node): Int = node.op match
     case Op.Const => constant(node.value.toFloat)
     case _        => slots.getOrElseUpdate(node, computed(node))
@@ -182,7 +182,7 @@ private[skein] abstract class ExpressionCompiler:
     val angle  = choose(third, sub(constant(3.14159265f), third), isLess(x, constant(0f)))
     ofBits(orBits(bitsOf(angle), andBits(bitsOf(y), bitConstant(Int.MinValue))))
 
-  /** From −87 to 88: beyond, what it comes to is no float. */
+  /** The exponential, valid from −87 to 88: beyond, the result exceeds floats. */
   private def exp(x: Int): Int =
     val rounded = fma(x, constant(1.44269504f), constant(Round))
     val power   = sub(rounded, constant(Round))
@@ -205,8 +205,8 @@ private[skein] abstract class ExpressionCompiler:
     val power  = exp(add(inside, inside))
     div(sub(power, constant(1f)), add(power, constant(1f)))
 
-  /** √(1 − |x|) · polynomial: Abramowitz and Stegun, 4.4.46. What is above 1 by rounding counts as 1; beyond,
-    * the root is no number.
+  /** √(1 − |x|) · polynomial: Abramowitz and Stegun, 4.4.46. Arguments that exceed 1 by rounding count as 1;
+    * beyond, the root is NaN.
     */
   private def acos(of: Node): Int =
     val x     = this.of(of)
@@ -244,10 +244,10 @@ private[skein] abstract class ExpressionCompiler:
 
   private def signed(x: Int, sign: Int): Int = ofBits(xorBits(bitsOf(x), sign))
 
-  /** The limit where it is beyond the value: in two instructions, where a machine's own `min` and `max` take
-    * up to six. What is no number stays so: it is the value, if only one of the two may be none.
+  /** Limits a value by a comparison: two instructions, where a machine's own `min` and `max` take up to six.
+    * NaN stays NaN if only one of the two can be NaN, which is then the value.
     *
-    * @param isBeyond whether a limit is, of a limit and a value
+    * @param isBeyond compares a limit and a value
     */
   private def extreme(node: Node)(isBeyond: (Int, Int) => Int): Int =
     val Vector(a, b)   = node.args
@@ -259,7 +259,7 @@ private[skein] abstract class ExpressionCompiler:
 
   private val numbers = mutable.HashMap.empty[Node, Boolean]
 
-  /** Whether it is a number where the inputs are, and nothing is greater than floats hold. */
+  /** Whether it is a number if the inputs are, and no intermediate value overflows. */
   private def isNumber(node: Node): Boolean =
     // Expressions may be deeper than a stack of calls.
     val asked = mutable.Stack(node)

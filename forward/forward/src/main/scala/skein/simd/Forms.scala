@@ -4,19 +4,19 @@ import java.util.{Collections, WeakHashMap}
 import java.util.concurrent.CopyOnWriteArrayList
 import skein.formula.Untraceable
 
-/** What things of one kind were compiled to: each form once, for all threads.
+/** A cache of compiled forms of one kind of object, for all threads.
   *
-  * @param fits whether a thing is of a form
-  * @param mostRefused so many things are refused, and none accepted, before the next are refused unseen: to
-  *   compile takes milliseconds
-  * @param compile a thing's form, or why it has none
+  * @param fits whether an object is of a form
+  * @param mostRefused after this number of refusals of a class, and no success, further objects are refused
+  *   without an attempt: to compile takes milliseconds
+  * @param compile an object's form, or why it has none
   */
 private[skein] final class Forms[Of, Form](fits: (Form, Of) => Boolean, mostRefused: Int = Int.MaxValue)(
     compile: Of => Either[Untraceable, Form]
 ):
   private val known = CopyOnWriteArrayList[Form]()
 
-  /** Of what was refused, a form is not known: something else of the same class may be a formula. */
+  /** Refused objects: another object of such a class may still be a formula. */
   private val refused  = Collections.synchronizedMap(WeakHashMap[Of, Untraceable]())
   private var refusals = 0
   private var last     = Option.empty[Untraceable]

@@ -9,22 +9,24 @@ import skein.formula.Node
 
 /** Compiles expressions to a [[LaneFunction]]: straight passes over blocks of worlds, in which a number stays
   * in a register from where it is computed to where it is used. Elementary functions are the polynomials of
-  * [[LaneMath]], written out, so that every lane computes the same bits on every machine; products are fused
+  * [[LaneMath]], written out, so that every lane computes identical bits on every machine; products are fused
   * with sums.
   *
-  * A pass calls the vector API alone and is no longer than the JVM's compiler takes in at once without boxing
-  * vectors (see [[LaneMath]]). A longer expression becomes several passes; numbers that pass from one to
-  * another are laid by in scratch, which stays in the first-level cache.
+  * A pass calls the vector API alone and is no longer than the JIT compiler can compile in one piece without
+  * boxing vectors (see [[LaneMath]]). A longer expression becomes several passes; intermediate values are
+  * stored in scratch, which stays in the first-level cache.
   */
 object LaneCompiler:
 
-  /** @param inputs how many there are
-    * @param outputs what is computed
-    * @param differences so many of the first inputs are differences of two arrays' numbers; what is taken
-    *   away stands in the arrays behind those of the outputs
-    * @param parameters how many each world has; 0: all worlds have the same
-    * @param places of the inputs and then of the outputs, where several stand in one array, one after the
-    *   other: the array's number and the row in it; none: each has its own
+  /** Compiles expressions.
+    *
+    * @param inputs number of inputs
+    * @param outputs expressions to compute
+    * @param differences number of the first inputs that are differences of two arrays' numbers; the
+    *   subtrahends are in the arrays after those of the outputs
+    * @param parameters number per world; 0: all worlds share them
+    * @param places of the inputs and then of the outputs, where several share an array: the array's number
+    *   and the row in it; None: each has its own
     */
   def compile(
       inputs: Int,
@@ -102,7 +104,7 @@ object LaneCompiler:
             ): Unit
       )
 
-  /** Where numbers are laid by in scratch, by place. */
+  /** Offset in scratch of a stored number, by place. */
   private[simd] def laidBy(place: Int): Int = LaneFunction.UNUSED + place * LaneFunction.COUNT
 
 private object Names:
@@ -124,9 +126,9 @@ private object Names:
   val apply: MethodTypeDesc =
     MethodTypeDesc.of(ConstantDescs.CD_void, floats.arrayType, ints, floats, floats, ConstantDescs.CD_int)
 
-/** Writes the bytecode of one pass. A vector is a local variable, given by its number.
+/** Generates the bytecode of one pass. A vector is a local variable, given by its number.
   *
-  * @param subtrahends where the arrays begin whose numbers are taken away from the first inputs
+  * @param subtrahends offset of the arrays whose numbers are subtracted from the first inputs
   */
 private final class PassCompiler(
     code: CodeBuilder,
@@ -295,7 +297,7 @@ private final class PassCompiler(
     code.astore(place)
     place
 
-  /** From an array of the arguments, the worlds' numbers from an index on. */
+  /** Loads the worlds' numbers from an argument's array, from an index on. */
   private def loaded(argument: Int, from: Int): Int =
     code.getstatic(math, "SPECIES", species).aload(argument).iload(world).loadConstant(from).iadd()
     code.invokestatic(float, "fromArray", MethodTypeDesc.of(float, species, floats, ConstantDescs.CD_int))
@@ -323,7 +325,7 @@ private final class PassCompiler(
     code.invokestatic(float, "fromArray", MethodTypeDesc.of(float, species, floats, ConstantDescs.CD_int))
     stored()
 
-  /** The array of an input or output, and the index of the present worlds in it. */
+  /** Generates the array of an input or output, and the index of the present worlds in it. */
   private def locate(number: Int): Unit =
     val (of, row)       = places.applyOrElse(number, (own: Int) => (own, 0))
     val (array, offset) = arrays.getOrElseUpdate(of, (fresh(), fresh()))

@@ -5,7 +5,7 @@ import skein.formula.{Node, Op}
 
 /** One loop over the worlds.
   *
-  * @param computes in this order
+  * @param computes nodes, in this order
   * @param loads from scratch, by place
   * @param stores to scratch
   * @param outputs by the output's number
@@ -17,15 +17,15 @@ private final case class Pass(
     outputs: Vector[(Node, Int)]
 )
 
-/** Cuts a long expression into passes. */
+/** Splits a long expression into passes that the JIT compiler handles well. */
 private object Passes:
   // Chosen by measuring (`PolicyBenchmark`): with more of either, constants are fetched from memory in every
   // round.
 
-  /** Vector operations that one pass takes at most. */
+  /** Limit of the vector operations in one pass. */
   private val Most = 50
 
-  /** Constants that one pass takes at most, of 32 registers. */
+  /** Limit of the constants in one pass, of 32 registers. */
   private val MostConstants = 20
 
   // The same where inputs and outputs are rows of few arrays, whose addresses leave registers: a step with
@@ -38,7 +38,9 @@ private object Passes:
   private val PassCost  = 8.0
   private val FetchCost = 0.5
 
-  /** @param ofRows whether its inputs and outputs are rows of few arrays
+  /** Splits expressions.
+    *
+    * @param ofRows whether inputs and outputs are rows of few arrays
     */
   def of(outputs: Vector[Node], ofRows: Boolean): Vector[Pass] =
     val (most, mostConstants) = if ofRows then (MostOfRows, MostConstantsOfRows) else (Most, MostConstants)
@@ -72,9 +74,7 @@ private object Passes:
         outputs.zipWithIndex.filter((node, _) => passOf.getOrElse(node, 0) == pass)
       )
 
-  /** Those of the nodes that are conditions, and the conditions that they are made of, each once and behind
-    * these.
-    */
+  /** The conditions among the nodes, and those that they depend on, each once and arguments last. */
   private def conditionsOf(nodes: Vector[Node]): Vector[Node] =
     val found                  = mutable.LinkedHashSet.empty[Node]
     def find(node: Node): Unit = if node.op.isCondition && !found(node) then
@@ -83,7 +83,7 @@ private object Passes:
     nodes.foreach(find)
     found.toVector
 
-  /** Where passes end that lay by and fetch as few numbers as possible.
+  /** Ends of passes that minimise the numbers stored and loaded.
     *
     * @return places in the order, the last its end
     */
@@ -125,7 +125,7 @@ private object Passes:
             from(end) = first
     Iterator.iterate(count)(from(_)).takeWhile(_ > 0).toVector.reverse
 
-  /** Where numbers are laid by from their pass to their last use: a place is given again as soon as it is
+  /** Assigns scratch places to numbers from their pass to their last use: a place is reused as soon as it is
     * free, so that all stay in a near cache. A pass loads before it stores.
     */
   private def placed(
@@ -148,9 +148,9 @@ private object Passes:
             most - 1
     places.toMap
 
-/** What an operation costs by lanes. */
+/** Estimated costs of an operation in SIMD code. */
 private object LaneCosts:
-  /** About so many vector operations. */
+  /** Approximate number of vector operations. */
   def of(node: Node): Int = node.op match
     case Op.Sin | Op.Cos                   => 16
     case Op.Atan2 | Op.Atan                => 26
@@ -162,7 +162,7 @@ private object LaneCosts:
     case Op.Signum                         => 4
     case _                                 => 1
 
-  /** What must stand in a register for it. */
+  /** Constants that must be in registers for it. */
   def constantsOf(node: Node): Set[Any] =
     def named(op: Op, count: Int) = Set.tabulate[Any](count)(i => (op, i))
     val own                       = node.op match

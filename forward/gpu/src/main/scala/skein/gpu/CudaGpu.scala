@@ -5,9 +5,9 @@ import java.lang.foreign.{Arena, MemorySegment}
 import java.lang.invoke.MethodHandle
 import java.lang.ref.Cleaner
 
-/** An NVIDIA GPU, by its driver. What it holds for somebody is given back when nobody knows it any more.
+/** An NVIDIA GPU, by its driver. Memory is freed when its holder becomes unreachable.
   *
-  * @param name as the driver tells it
+  * @param name as reported by the driver
   */
 private final class CudaGpu private (cuda: Cuda, context: MemorySegment, val name: String) extends Gpu:
   import CudaGpu.*
@@ -83,7 +83,7 @@ private final class CudaGpu private (cuda: Cuda, context: MemorySegment, val nam
       cuda.call(cuda.eventElapsedTime, tookMs, begins, ends)
       ran += (tookMs.get(JAVA_FLOAT, 0) * 1e6).toLong
 
-  /** Lets the driver take something back when it is closed, or when nobody knows its holder any more. */
+  /** Frees a driver's resource when it is closed, or when its holder becomes unreachable. */
   private def givenBack(holder: AnyRef)(by: MethodHandle, what: Any): Cleaner.Cleanable =
     cleaner.register(
       holder,
@@ -100,7 +100,7 @@ private final class CudaGpu private (cuda: Cuda, context: MemorySegment, val nam
       body(arena)
     finally arena.close()
 
-/** NVIDIA's GPUs of this machine. */
+/** Finds NVIDIA's GPUs of this machine through the driver. */
 object CudaGpu:
   private val MostLog          = 8192L
   private val JitErrorLog      = 5
@@ -112,9 +112,9 @@ object CudaGpu:
   private val Capability      = (75, 76)
   private val LeastCapability = (7, 5)
 
-  /** The first GPU of this machine; the same object each time.
+  /** The first GPU of this machine; one object for all calls.
     *
-    * @return or why there is none
+    * @return Left states why there is none
     */
   def find(): Either[String, Gpu] = first
 

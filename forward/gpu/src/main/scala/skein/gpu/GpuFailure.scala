@@ -1,7 +1,7 @@
 package skein.gpu
 
-/** What a GPU's driver refuses.
+/** A GPU's driver has rejected a call.
   *
-  * @param reason as it tells it
+  * @param reason in the driver's words
   */
 final class GpuFailure(val reason: String) extends RuntimeException(s"the GPU: $reason")

@@ -3,9 +3,9 @@ package skein.gpu
 import java.util.HexFormat
 
 /** The text of one kernel in PTX, the instructions that NVIDIA's driver translates for whatever GPU is there
-  * (PTX ISA 6.4). Each operation takes registers by number and leaves its result in a new one, unless told to
-  * leave it in a variable. Floats are rounded to nearest and never flushed to zero or fused unasked, so that
-  * they are those of a CPU to the bit. Mutable.
+  * (PTX ISA 6.4). Each operation takes registers by number and returns its result in a new one, unless it
+  * assigns a variable. Floats are rounded to nearest and never flushed to zero or fused implicitly, so that
+  * they equal a CPU's to the bit. Mutable.
   *
   * @param parameters of the kernel, by name
   * @param localBytes memory of each thread's own
@@ -27,7 +27,6 @@ final class Ptx(name: String, parameters: Seq[(String, Ptx.Kind)], localBytes: I
 
   def place(label: String): Unit = text.append(label).append(":\n"): Unit
 
-  /** One instruction. */
   def apply(instruction: String): Unit = text.append('\t').append(instruction).append(";\n"): Unit
 
   // Floats.
@@ -59,22 +58,21 @@ final class Ptx(name: String, parameters: Seq[(String, Ptx.Kind)], localBytes: I
   def ofBits(a: Int): Int                             = result()(r => s"mov.b32 %f$r, %r$a")
   def special(register: String): Int                  = result()(r => s"mov.u32 %r$r, %$register")
 
-  /** The number of this thread among all. */
   def thread(): Int =
     val (block, size, own) = (special("ctaid.x"), special("ntid.x"), special("tid.x"))
     result()(r => s"mad.lo.s32 %r$r, %r$block, %r$size, %r$own")
 
   // Addresses.
 
-  /** The address of a number in an array of words of 4 bytes. */
+  /** Address of an element in an array of words of 4 bytes. */
   def address(base: Int, index: Int, words: Int = 1): Int =
     result()(r => s"mad.wide.s32 %rd$r, %r$index, ${4 * words}, %rd$base")
 
-  /** A whole number times a factor, as wide as an address. */
+  /** Product of a whole number and a factor, as wide as an address. */
   def wide(a: Int, factor: Int): Int = result()(r => s"mul.wide.s32 %rd$r, %r$a, $factor")
   def sum(a: Int, b: Int): Int       = result()(r => s"add.s64 %rd$r, %rd$a, %rd$b")
 
-  /** An address so many times so many bytes further on. */
+  /** `base + index * stride` bytes, as an address. */
   def advanced(from: Int, times: Int, bytes: Int): Int =
     val wide = result()(r => s"cvt.u64.u32 %rd$r, %r$times")
     result()(r => s"mad.lo.s64 %rd$r, %rd$wide, %rd$bytes, %rd$from")
@@ -102,7 +100,7 @@ final class Ptx(name: String, parameters: Seq[(String, Ptx.Kind)], localBytes: I
 
   private var base = None: Option[Int]
 
-  /** Must be called before any branch, if own memory is used. */
+  /** Address of the thread's own memory; must be called before any branch. */
   def ownBase(): Int =
     if base.isEmpty then base = Some(result()(r => s"mov.u64 %rd$r, own"))
     base.get
@@ -116,13 +114,13 @@ final class Ptx(name: String, parameters: Seq[(String, Ptx.Kind)], localBytes: I
   def goIf(condition: Int, to: String, holds: Boolean = true): Unit =
     this(s"@${if holds then "" else "!"}%p$condition bra $to")
 
-  /** To the label of this number: all threads of a block to the same. */
+  /** Jumps to the label of this number, which must be equal in all threads of a block. */
   def goTo(number: Int, labels: Seq[String]): Unit =
     val table = label()
     text.append(s"$table:\t.branchtargets ${labels.mkString(", ")};\n")
     this(s"brx.idx.uni %r$number, $table")
 
-  /** Does something so many times. */
+  /** Repeats a body this number of times. */
   def repeat(times: Int)(body: => Unit): Unit =
     val (again, over) = (label(), label())
     val left          = wholes("add.s32", times, "0")
@@ -137,7 +135,6 @@ final class Ptx(name: String, parameters: Seq[(String, Ptx.Kind)], localBytes: I
     this(instruction(into))
     into
 
-  /** The whole module. */
   def module: String =
     val arguments = parameters.map((name, kind) => s"\t${kind.declared(name)}").mkString(",\n")
     val own       = if localBytes > 0 then s"\t.local .align 16 .b8 own[$localBytes];\n" else ""
@@ -149,7 +146,7 @@ final class Ptx(name: String, parameters: Seq[(String, Ptx.Kind)], localBytes: I
   private def hex(bits: Int) = HexFormat.of.withUpperCase.toHexDigits(bits)
 
 object Ptx:
-  /** What a kernel takes. */
+  /** The type of a kernel's parameter. */
   enum Kind:
     case Address, Whole, Float
 

@@ -3,11 +3,11 @@ package skein.gpu
 import skein.formula.{Node, Op}
 import skein.simd.{ExpressionCompiler, Products}
 
-/** Expressions in a kernel: each thread computes them for itself. The bits are those that
-  * `skein.simd.LaneCompiler` computes.
+/** Expressions in a kernel: each thread computes them for itself. The bits equal those of
+  * `skein.simd.LaneCompiler`.
   *
-  * @param inputOf the register of an input; may write what fetches it
-  * @param parameterOf the same of a parameter
+  * @param inputOf the register of an input; may generate its load
+  * @param parameterOf the register of a parameter
   */
 private[skein] final class PtxExpressions private (code: Ptx, inputOf: Int => Int, parameterOf: Int => Int)
     extends ExpressionCompiler:
@@ -50,6 +50,6 @@ private[skein] final class PtxExpressions private (code: Ptx, inputOf: Int => In
   protected def isHighest(a: Int): Int          = code.compareWhole("lt", a, 0)
 
 private[skein] object PtxExpressions:
-  /** Writes what computes these, here, and answers with their registers. */
+  /** Generates code for expressions at this point, and returns their registers. */
   def write(code: Ptx, outputs: Vector[Node])(input: Int => Int, parameter: Int => Int): Vector[Int] =
     new PtxExpressions(code, input, parameter).write(outputs)

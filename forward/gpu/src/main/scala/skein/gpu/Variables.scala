@@ -2,17 +2,16 @@ package skein.gpu
 
 /** Floats of each thread that change while a kernel runs.
   *
-  * @param initial what they are after [[start]]
+  * @param initial values after [[start]]
   */
 private[skein] final class Variables(code: Ptx, initial: Seq[Float]):
   private val registers = initial.map(_ => code.fresh()).toArray
 
-  /** The register of one. */
   def apply(number: Int): Int = registers(number)
 
   def start(): Unit = for (value, i) <- initial.zipWithIndex do code.constant(value, registers(i))
 
-  /** The first ones take these values, all at once: one may be what another was. */
+  /** Assigns the first variables simultaneously: a new value may be another variable's old one. */
   def take(values: Seq[Int]): Unit =
     val kept = values.map: value =>
       if registers.contains(value) then

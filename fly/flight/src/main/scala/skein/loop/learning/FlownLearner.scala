@@ -1,10 +1,10 @@
 package skein.loop.learning
 
-/** What a policy saw, did, and came to by it. What is seen is
+/** One step of a policy, for learning: observation, action and result. Observations are
   * [[skein.policy.PlanarObservation.fromOwnHeading]].
   *
-  * @param share of the most that it turns, −1 to 1
-  * @param reached what was seen at the next decision
+  * @param share of the largest turn, −1 to 1
+  * @param reached the observation at the next decision
   * @param distanceM to the opponent then
   */
 final case class Transition(
@@ -14,13 +14,12 @@ final case class Transition(
     distanceM: Double
 )
 
-/** Learns from a flight, beside it. One thread at a time. What it throws ends the learning, not the flight.
-  */
+/** Learns from a flight, beside it. One thread at a time. An exception ends the learning, not the flight. */
 trait FlownLearner:
 
-  /** A lesson, or a part of a long one.
+  /** Learns one lesson, or a part of a long one.
     *
-    * @param transitions in the order in which they were flown
-    * @return parameters of the policy from now on, if it is to be another, in the order of its family's axes
+    * @param transitions in the order of the flight
+    * @return new parameters of the policy, if they change, in the order of its family's axes
     */
   def learn(transitions: Vector[Transition]): Option[Vector[Double]]

@@ -1,18 +1,18 @@
 package skein.loop.learning
 
-/** How a policy learns while it flies. */
+/** How a policy learns during a flight: anew, or by recorded versions. */
 enum Learning:
-  /** Of the noise by which it tries out: a share of the most that it turns. */
+  /** Standard deviation of the exploration noise, as a share of the largest turn. */
   def explore: Double
 
-  /** By a learner beside the flight.
+  /** Learns by a learner beside the flight.
     *
-    * @param learner a new one, for a flight of this seed
+    * @param learner makes one for a flight of this seed
     */
   case Beside(explore: Double, learner: Long => FlownLearner)
 
-  /** As it did before.
+  /** Repeats recorded learning.
     *
-    * @param news what was new before which decision
+    * @param news the updates, by the decision before which they took effect
     */
   case Again(explore: Double, news: Map[Long, Vector[LearnerUpdate]])

@@ -3,14 +3,14 @@ package skein.loop.learning
 import skein.policy.*
 import skein.signal.{NormalQuantile, SplitMix64}
 
-/** A network that changes while it flies, between two decisions and never in one. It tries out: normal noise
-  * is added to what it would do, drawn from the seed and the decision's number. Decided again from the
-  * recorded versions, a flight is the same.
+/** A network whose parameters change during a flight, between two decisions and never within one. It
+  * explores: normal noise is added to its output, drawn from the seed and the decision's number. A repetition
+  * with the recorded versions gives equal decisions.
   *
-  * @param first decides until there is news
-  * @param version what other parameters make
-  * @param explore the noise's deviation, as a share of the most that it turns
-  * @param note told of all news, with the number of the decision that comes next
+  * @param first decides until the first update
+  * @param version makes a policy of other parameters
+  * @param explore the noise's deviation, as a share of the largest turn
+  * @param note called with all updates, and the number of the next decision
   */
 final class LearningPolicy(
     first: LearnedPolicy,

@@ -8,31 +8,30 @@ import scala.concurrent.{ExecutionContext, Future}
 import scala.util.Try
 import skein.flow.Learn
 
-/** What a flight's policy hears of its learner, and tells it. */
+/** The connection of a flight's policy with its learner, in both directions. */
 trait Lessons:
 
-  /** What is new; asked once before each decision. Never blocks.
+  /** The updates since the last call; called once before each decision. Never blocks.
     *
     * @param decision its number
     */
   def news(decision: Long): Vector[LearnerUpdate]
 
-  /** Never blocks. */
   def flown(transition: Transition): Unit
 
   def close(): Unit = ()
 
-/** What is new of a learner.
+/** An update from a learner.
   *
   * @param text for a person
-  * @param parameters of the policy that decides from now on, if it is another
+  * @param parameters of the policy that decides from now on, if they change
   */
 final case class LearnerUpdate(text: String, parameters: Option[Vector[Double]] = None)
 
-/** Lessons by a learner that runs beside the flight: it may be slow, hang or fail, and no decision waits for
-  * it. Of versions between two decisions the last counts.
+/** Lessons by a learner beside the flight: it may be slow, hang or fail, and no decision waits for it. Of
+  * several versions between two decisions the last counts.
   *
-  * @param on what it learns on, slice by slice
+  * @param on executes the learner, slice by slice
   */
 final class LessonsBeside(learner: FlownLearner, on: ExecutionContext)(using ActorSystem) extends Lessons:
   import LessonsBeside.*
@@ -100,17 +99,19 @@ final class LessonsBeside(learner: FlownLearner, on: ExecutionContext)(using Act
     val _ = Try(queue.complete())
 
 object LessonsBeside:
-  /** Decisions: of a flight of one vehicle, almost two minutes at 10 Hz. */
+  /** Limit of queued transitions: for one vehicle, almost two minutes at 10 Hz. */
   val MostWaiting = 1024
 
-  /** Few: a thread that gives way and gets no time is replaced between two slices only. */
+  /** Transitions per slice. Few: a low-priority thread without processor time is replaced between two slices
+    * only.
+    */
   private val MostInSlice = 8
   private val MostSaid    = 16
 
-/** The same lessons again. One thread at a time.
+/** Repeats recorded lessons. One thread at a time.
   *
-  * @param recorded what was new before which decision; where that was made in the policy's place, it is new
-  *   before the next
+  * @param recorded the updates, by the decision before which they took effect; where a fallback made that
+  *   decision, before the next
   */
 final class LessonsAgain(recorded: Map[Long, Vector[LearnerUpdate]]) extends Lessons:
   private var left = recorded.toVector.sortBy(_._1)

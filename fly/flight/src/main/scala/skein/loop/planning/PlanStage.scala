@@ -8,24 +8,24 @@ import scala.concurrent.{ExecutionContext, Future}
 import skein.planning.{JointPlan, JointPlanner, Part, PlanProblem, PlannerSettings}
 import skein.units.Span
 
-/** Plans in the loop, at any time. */
+/** A stage that plans within a deadline, by an anytime search. */
 object PlanStage:
 
-  /** What a search came to by its deadline.
+  /** The result of a search at its deadline.
     *
-    * @param best of all searches; the plans begun with where none has finished a slice
+    * @param best of all searches; the initial plans where none has finished a slice
     * @param slices that each search has finished
     * @param unsearchedS by vehicle, time since any search finished a slice for it: 0 where one did now,
     *   infinite where none ever did
     */
   final case class Answer(best: JointPlan, slices: Vector[Int], unsearchedS: Vector[Double]):
-    /** Whether there is nothing for a vehicle but what was left of its last plan. */
+    /** Whether a vehicle has nothing but the remainder of its last plan. */
     def isMissed(vehicle: Int): Boolean = best.plans(vehicle).slices == 0
 
   object Answer:
-    /** The best of what several searches have found.
+    /** The best result of several searches.
       *
-      * @param last the answer before
+      * @param last the previous result
       */
     def of(found: Vector[JointPlan], problem: PlanProblem, last: Option[Answer]): Answer =
       val best        = JointPlanner.best(problem, found)
@@ -37,9 +37,9 @@ object PlanStage:
           )
       Answer(best, found.map(_.slices), unsearchedS)
 
-  /** Searches until the deadline from what is left of the last plans, by the workers.
+  /** Searches until the deadline from the remainder of the last plans, by the workers.
     *
-    * @param planner of whoever asks, who waits for one search before the next
+    * @param planner of the caller, who waits for one search before the next
     */
   def searched(
       problem: PlanProblem,
@@ -52,17 +52,16 @@ object PlanStage:
     val search = workers.begin(problem, planner.resumed(problem, last.map(_.best)))
     after(deadline.toDuration, system.scheduler)(Future(Answer.of(search.finish(), problem, last)))
 
-  /** Plans upon each element for several vehicles together, or for one: searches until the deadline from what
-    * is left of the last plans, and then decides with the best found. The search never runs on the stream's
+  /** Plans on each element for several vehicles jointly, or for one: searches until the deadline from the
+    * remainder of the last plans, and then decides by the best found. The search never runs on the stream's
     * thread, unless the workers are [[CountedPlanWorkers]].
     *
     * '''Emits when''' the deadline of an element is over. '''Backpressures when''' a search is under way, or
     * downstream backpressures. '''Completes when''' upstream completes and the last decision was emitted.
     * '''Cancels when''' downstream cancels.
     *
-    * @param pose what to plan for, from memory and element: always the same vehicles
-    * @param decide the next memory and the decision, from memory, element, what was planned for, and what was
-    *   found
+    * @param pose the planning problem, from memory and element: for a constant set of vehicles
+    * @param decide the next memory and the decision, from memory, element, problem and result
     */
   def within[M, O, D](
       deadline: Span,
@@ -83,6 +82,8 @@ object PlanStage:
           Turn(memory, Some(answer), Some(decision))
       .collect(Function.unlift(_.decision))
 
-  /** @param last answer; it and the decision are absent before the first
+  /** State between elements.
+    *
+    * @param last result; it and the decision are absent before the first
     */
   private final case class Turn[M, D](memory: M, last: Option[Answer], decision: Option[D])

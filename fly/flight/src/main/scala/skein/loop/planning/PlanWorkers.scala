@@ -6,37 +6,36 @@ import scala.util.control.NonFatal
 import scala.util.{Failure, Success, Try}
 import skein.planning.{JointPlan, JointPlanner, PlanProblem}
 
-/** Searches plans. A problem is searched by several searches side by side that know nothing of each other, so
-  * that what each finds depends on the number of its slices alone.
+/** Searches plans. A problem is searched by several searches side by side that are independent, so that each
+  * result depends on the number of its slices alone.
   */
 trait PlanWorkers extends AutoCloseable:
 
   /** Begins a search.
     *
-    * @param warm to begin with
+    * @param warm the initial plan
     */
   def begin(problem: PlanProblem, warm: JointPlan): PlanSearch
 
 object PlanWorkers:
-  /** For loops that do not plan. */
   val none: PlanWorkers = new PlanWorkers:
     def begin(problem: PlanProblem, warm: JointPlan): PlanSearch =
       throw IllegalStateException("this flight was given no workers to plan with")
     def close(): Unit = ()
 
-/** A search under way. */
+/** A running search for plans, until it is finished. */
 trait PlanSearch:
 
-  /** What each search has found so far. */
+  /** The present results, one for each search. */
   def found: Vector[JointPlan]
 
-  /** Ends it: what each search has found, the same from now on. */
+  /** Ends the search and returns the results, which are final. */
   def finish(): Vector[JointPlan]
 
-/** Searches at once, on the caller's thread, when its result is asked for: as many slices as are set,
-  * whatever the clock says. So virtual time is deterministic.
+/** Searches synchronously on the caller's thread when its result is requested: a configured number of slices,
+  * whatever the clock reads. So virtual time is deterministic.
   *
-  * @param slices of each search; for several vehicles as many more as they need to get equally many
+  * @param slices of each search; for several vehicles rounded up to an equal number for each
   */
 final class CountedPlanWorkers(searches: Int, slices: Int) extends PlanWorkers:
   require(searches > 0 && searches <= PlanProblem.MostSearches, s"1 to ${PlanProblem.MostSearches} searches")
@@ -53,17 +52,15 @@ final class CountedPlanWorkers(searches: Int, slices: Int) extends PlanWorkers:
 
   def close(): Unit = ()
 
-/** A thread that works slice by slice, and sleeps where there is nothing to do until it is woken. */
+/** A thread that works slice by slice, and sleeps without work until it is woken. */
 trait PlanThread extends AutoCloseable:
 
-  /** Never blocks. */
   def wake(): Unit
 
-/** Searches on threads of its own until it is asked for the result; several problems take turns, slice by
-  * slice.
+/** Searches on separate threads until its result is requested; several problems take turns, slice by slice.
   *
-  * @param threads and searches per problem
-  * @param begun a thread that works on slices; each says whether there was anything to do
+  * @param threads number of threads, and of searches per problem
+  * @param begun starts a thread for slices; each slice returns whether there was any work
   */
 final class ThreadedPlanWorkers(threads: Int, begun: (() => Boolean) => PlanThread) extends PlanWorkers:
   require(threads > 0 && threads <= PlanProblem.MostSearches, s"1 to ${PlanProblem.MostSearches} threads")
@@ -87,18 +84,19 @@ final class ThreadedPlanWorkers(threads: Int, begun: (() => Boolean) => PlanThre
       def found: Vector[JointPlan]    = searches.map(_.found)
       def finish(): Vector[JointPlan] = searches.map(_.finish())
 
-  /** Ends the threads; searches under way find nothing more. */
+  /** Ends the threads; running searches find nothing more. */
   def close(): Unit = workers.foreach(_.close())
 
 private object ThreadedPlanWorkers:
-  /** One search; worked on by one thread at a time. */
+  /** One search; used by one thread at a time. */
   final class Search(problem: PlanProblem, warm: JointPlan, number: Int):
     private val best  = AtomicReference(warm)
     private val ended = AtomicReference(Option.empty[Try[JointPlan]])
 
     def found: JointPlan = best.get
 
-    /** Searches one slice more. A failure ends the search; whoever asks for its result is told.
+    /** Searches one more slice. A failure ends the search, and is thrown to the caller that requests its
+      * result.
       *
       * @return whether more are wanted
       */
@@ -110,7 +108,7 @@ private object ThreadedPlanWorkers:
             val _ = ended.compareAndSet(None, Some(Failure(error)))
       ended.get.isEmpty
 
-    /** A slice that is searched now no longer counts. */
+    /** Ends the search; a slice that runs now does not count. */
     def finish(): JointPlan =
       val _ = ended.compareAndSet(None, Some(Success(best.get)))
       ended.get.get.get

@@ -15,33 +15,31 @@ import jdk.incubator.vector.IntVector;
 import jdk.incubator.vector.VectorMask;
 import skein.lanes.policy.LanePolicy;
 
-/**
- * Readings of one vehicle that arrived in a period, in many worlds, each with the mean delays known then. A
- * world may have several; those are left out that are not newer than all before. {@link #next} goes through
- * them: to each world's first, then to each world's second, and so on.
+/** Readings of one vehicle that arrived in a period, in many worlds, each with the mean delays known then. A
+ * world may have several; one that is not newer than all before is ignored. {@link #next} iterates: over each
+ * world's first, then each world's second, and so on.
  */
 final class ArrivedReadings {
   private static final int WORLDS = LanePolicy.WORLDS;
 
-  /** One of each world. */
   private static final class Readings {
     final int[] madeAt = new int[WORLDS], receivedAt = new int[WORLDS];
     final float[] toS = new float[WORLDS], fromS = new float[WORLDS];
   }
 
-  /** All worlds' first, second and so on. */
+  /** By rank: the first reading of all worlds, the second, and so on. */
   private final ArrayList<Readings> readings = new ArrayList<>();
 
-  /** How many of a world's have arrived in this period. */
+  /** Number of readings of each world in this period. */
   private final int[] counts = new int[WORLDS];
 
-  /** How many {@link #next} has gone to. */
+  /** Number of ranks that {@link #next} has visited. */
   private int gone;
 
-  /** When the newest reading was made, from the period's begin, in grains. */
+  /** When the newest reading was sampled, from the period's begin, in grains. */
   final int[] newestAt = new int[WORLDS];
 
-  /** 1 where a world has one of the readings gone to; in which vectors. */
+  /** 1 where a world has a reading of the current rank; and the vectors with one. */
   final int[] enters = new int[WORLDS];
 
   final LaneVectors vectors = new LaneVectors();
@@ -51,13 +49,12 @@ final class ArrivedReadings {
     gone = 0;
   }
 
-  /**
-   * Takes readings, where they are newer than the newest, and updates the mean delays by them.
+  /** Adds readings that are newer than the newest, and updates the mean delays by them.
    *
-   * @param whose of which vehicle each reading is
+   * @param whose the vehicle of each reading
    * @param vehicle this one
-   * @param asked when it was asked for, made and received, from the period's begin, in grains
-   * @param delays the means of all vehicles' readings
+   * @param asked when it was requested, sampled and received, from the period's begin, in grains
+   * @param delays the means over all vehicles' readings
    */
   void take(
       LaneVectors among,
@@ -111,11 +108,10 @@ final class ArrivedReadings {
     }
   }
 
-  /**
-   * Goes to the next reading of each world that has one more: {@link #enters}, {@link #vectors}, {@link
-   * #madeAt} and the others then tell of it.
+  /** Moves to the next reading of each world that has one more; {@link #enters}, {@link #vectors}, {@link
+   * #madeAt} and the others then refer to it.
    *
-   * @return false where no world has one more; all are forgotten then
+   * @return false if no world has one more; all readings are then discarded
    */
   boolean next() {
     vectors.count = 0;
@@ -133,17 +129,17 @@ final class ArrivedReadings {
     return readings.get(gone - 1);
   }
 
-  /** When the readings gone to were made, from the period's begin, in grains. */
+  /** When the current readings were sampled, from the period's begin, in grains. */
   int[] madeAt() {
     return here().madeAt;
   }
 
-  /** When they were received. */
+  /** When the current readings were received, likewise. */
   int[] receivedAt() {
     return here().receivedAt;
   }
 
-  /** The mean delays known then, to a vehicle and from it, s. */
+  /** The mean delays at the current readings, to a vehicle and from it, s. */
   float[] toS() {
     return here().toS;
   }

@@ -5,10 +5,7 @@ import static skein.simd.LaneMath.SPECIES;
 import jdk.incubator.vector.FloatVector;
 import skein.lanes.policy.LanePolicy;
 
-/**
- * Straight on as it was read, as {@code skein.vehicle.ConstantVelocity} does: of the way only its length
- * counts.
- */
+/** Predicts constant velocity, as {@code skein.vehicle.ConstantVelocity} does: only the time span matters. */
 final class ForecastCoasting implements ForecastVehicles {
   private static final int WORLDS = LanePolicy.WORLDS;
 

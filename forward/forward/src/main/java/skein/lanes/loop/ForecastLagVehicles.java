@@ -19,22 +19,19 @@ import jdk.incubator.vector.VectorMask;
 import jdk.incubator.vector.VectorOperators;
 import skein.lanes.policy.LanePolicy;
 
-/**
- * By a first-order lag, which is linear: each turn adds its change of the commanded velocity, times how far
- * that carries the vehicle in the time that is left, t − lag · (1 − e^(−t / lag)). {@link
- * PredictedLagVehicles} is the same where the times are those of all worlds.
+/** Predicts by a first-order lag, which is linear: each change of the commanded velocity contributes itself
+ * times the distance factor of the time left, t − lag · (1 − e^(−t / lag)). {@link PredictedLagVehicles} does
+ * so where times are equal in all worlds.
  */
 final class ForecastLagVehicles implements ForecastVehicles {
   private static final int WORLDS = LanePolicy.WORLDS;
 
-  /** In the place of less, s: no vehicle gets anywhere within. */
+  /** Least lag, s, for numerical reasons: no vehicle moves noticeably within it. */
   private static final double LEAST_LAG_S = 1e-9;
 
   private final float speedMps, lagS;
 
-  /**
-   * @param speedMps what commands come to in the end
-   */
+  /** @param speedMps speed that a vehicle reaches under a lasting command */
   ForecastLagVehicles(double speedMps, double lagS) {
     this.speedMps = (float) speedMps;
     this.lagS = (float) Math.max(lagS, LEAST_LAG_S);

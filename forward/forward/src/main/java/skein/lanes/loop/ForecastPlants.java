@@ -16,11 +16,10 @@ import skein.lanes.policy.LaneObservation;
 import skein.lanes.policy.LanePolicy;
 import skein.simd.FixedFormula;
 
-/**
- * By a plant: its steps begin at a reading, where a command arrives, with each turn, and after {@code stepS}.
- * What readings do not tell of its state is flown on from reading to reading. {@code PredictedPlants} is the
- * same where the times are those of all worlds. {@code skein.vehicle.PlantModel} begins a step more where a
- * command that acts is told again.
+/** Predicts by a plant: steps begin at a reading, when a command arrives, at each turn, and after {@code
+ * stepS}. The part of the state that readings lack is simulated from reading to reading. {@code
+ * PredictedPlants} does so where times are equal in all worlds. {@code skein.vehicle.PlantModel} begins an
+ * additional step where the command in effect is repeated.
  */
 final class ForecastPlants implements ForecastVehicles {
   private static final int WORLDS = LanePolicy.WORLDS;
@@ -29,23 +28,22 @@ final class ForecastPlants implements ForecastVehicles {
   private final PlantLanes lanes;
   private final FixedFormula.Call correct, step, look;
 
-  /** How many numbers a state is. */
+  /** Number of components of a state. */
   private final int count;
 
   private final boolean remembers;
 
-  /** The state at the newest reading, if readings do not tell it. */
+  /** The state at the newest reading, if readings do not contain all of it. */
   private final float[] held;
 
-  /** The state where a step begins, and where it ends. */
+  /** The state at the begin of a step, and at its end. */
   private final float[] from, to;
 
   private final float[] north = new float[WORLDS], east = new float[WORLDS], forS = new float[WORLDS];
 
-  /** How far the ways are flown, until when the commands stand, when the next step begins at the latest. */
+  /** Time simulated so far, end of the command in effect, and latest begin of the next step, s. */
   private final float[] flownS = new float[WORLDS], untilS = new float[WORLDS], stopS = new float[WORLDS];
 
-  /** Where it is flown on. */
   private final float[] goes = new float[WORLDS];
 
   ForecastPlants(PlantLanes lanes, PlantCorrection correction, double speedMps) {
@@ -101,14 +99,14 @@ final class ForecastPlants implements ForecastVehicles {
     look.apply();
   }
 
-  /** The state at a reading, of that before it. */
+  /** The simulated state corrected by a reading. */
   private void correct(float[] read, float[] into) {
     correct.inputs(count, LaneObservation.READ, read, LaneVehicles.SEEN_X);
     correct.outputs(count, into, 0);
     correct.apply();
   }
 
-  /** From the begin of the way to its end. */
+  /** Simulates from the begin of the track to its end. */
   private void fly(LaneVectors vectors, ForecastTrack way) {
     Arrays.fill(flownS, 0f);
     Arrays.fill(forS, stepS);
@@ -121,7 +119,7 @@ final class ForecastPlants implements ForecastVehicles {
     }
   }
 
-  /** The command from a turn on, and until when it stands. */
+  /** The command in effect from a turn on, and its end. */
   private void follow(LaneVectors vectors, ForecastTrack way, int turn) {
     float[] turnS = way.turnS, turnX = way.turn.cos, turnY = way.turn.sin;
     for (int k = 0; k < vectors.count; k++) {
@@ -136,7 +134,7 @@ final class ForecastPlants implements ForecastVehicles {
     }
   }
 
-  /** Whether some way goes on under the command, and for how long in one step. */
+  /** Whether some track continues under the command, and for how long in one step. */
   private boolean goesOn(LaneVectors vectors, ForecastTrack way, int turn) {
     float[] turnS = way.turnS;
     boolean any = false;

@@ -21,44 +21,40 @@ import skein.forecast.VehicleForecast;
 import skein.lanes.policy.Directions;
 import skein.lanes.policy.LanePolicy;
 
-/**
- * What is known of one vehicle in many worlds: when it was read last, the commands sent since, and which of
- * them it takes the vehicle to fly under. The scalar reference is {@link VehicleForecast} with a {@link
- * skein.vehicle.PlantModel}: of its past the commands count that wait out the dead time, and what {@link
- * ForecastVehicles} remember.
+/** The history of one vehicle in many worlds: its last reading, the commands sent since, and which of them
+ * are assumed to be in effect. The scalar reference is {@link VehicleForecast} with a {@link
+ * skein.vehicle.PlantModel}: the past matters by the commands within the dead time, and by the memory of
+ * {@link ForecastVehicles}.
  *
- * <p>{@link #lay} lays the way from the reading to a moment: turns, one after the other, at which the vehicle
- * begins to follow another direction. The first {@link #held} turns were found at readings and stand; what
- * comes after them is estimated anew each time. No time in it depends on where vehicles are, so seconds in
- * floats do.
+ * <p>{@link #lay} computes the track from the reading to a moment: a list of turns, at which the vehicle
+ * begins to follow another direction. The first {@link #held} turns were fixed at readings; later ones are
+ * estimated anew each time. No time in it depends on positions, so seconds in floats suffice.
  */
 final class ForecastTrack {
   private static final int WORLDS = LanePolicy.WORLDS, NONE = LaneOffers.NONE;
 
   private static final float GRACE_S = VehicleForecast.Grace() * 1e-9f;
 
-  /** Before all that is known, s. */
+  /** A time before all known events, s. */
   private static final float LONG_AGO_S = -1e9f;
 
-  /** Times further back than so many grains count as this far back. */
   private static final int FAR = 1 << 30;
 
-  /** Turns that may stand: those within a dead time before the reading, and the one before them. */
+  /** Limit of fixed turns: those within a dead time before the reading, and the one before them. */
   final int held;
 
-  /** From a command's arrival until the vehicle is taken to follow it, s. */
+  /** From a command's arrival until the vehicle is assumed to follow it, s. */
   final float deadS;
 
   private final int periodGrains, farRows;
   private final float periodS;
 
-  /**
-   * The row in which the newest reading became known, -1 before the first; when it was made, from that row's
-   * begin.
+  /** The row in which the newest reading became known, -1 before the first; when it was sampled, from that
+   * row's begin.
    */
   final int[] knownRow = new int[WORLDS], readAt = new int[WORLDS];
 
-  /** 1 where it became known in this period. */
+  /** 1 where the newest reading became known in this period. */
   final int[] fresh = new int[WORLDS];
 
   // The row of the oldest command held, which was in effect at the reading; the direction of the one before.
@@ -71,37 +67,36 @@ final class ForecastTrack {
   private int[] sentAt = new int[slots * WORLDS], answeredAt = new int[slots * WORLDS];
   private Directions sent = new Directions(slots * WORLDS);
 
-  /** The turns of the way laid: when, s from the reading, in order, and the directions from then on. */
+  /** The turns of the track: times, s from the reading, ascending, and the directions from then on. */
   float[] turnS;
 
   Directions turn;
 
-  /** {@link #turnS}, and the directions' numbers. */
+  /** Backing arrays of {@link #turnS} and of the directions. */
   private float[][] ofTurns;
 
-  /** By vector: the first turn that counts, those of {@link #held} before it do not; how many there are. */
+  /** By vector: index of the first valid turn (those of {@link #held} before it are unused), and the number
+   * of turns.
+   */
   final int[] heldFrom = new int[WORLDS / LANES], turnsOf = new int[WORLDS / LANES];
 
-  /** At most, of any vector. */
   int turns;
 
-  /** By vector, the row of the first command on the way laid. */
+  /** By vector, the row of the first command on the track. */
   private final int[] firstOf = new int[WORLDS / LANES];
 
-  /** Whether a command on the way laid may be taken for lost within a period. */
+  /** Whether a command on the track may be presumed lost within a period. */
   private boolean mayLose;
 
-  /** How long the way is, and the part of it until the command is sent: how old the reading is then, s. */
+  /** Length of the track, and its part until the command is sent, which is the age of the reading then, s. */
   final float[] endS = new float[WORLDS], ageS = new float[WORLDS];
 
-  /** 1 where a turn is that of a command of its own. */
+  /** 1 where a turn belongs to a command of its own. */
   private int[] counts;
 
   final ArrivedReadings arrived = new ArrivedReadings();
 
-  /**
-   * @param deadS from a command's arrival until the vehicle is taken to follow it
-   */
+  /** @param deadS from a command's arrival until the vehicle is assumed to follow it */
   ForecastTrack(double periodS, double deadS) {
     this.periodS = (float) periodS;
     this.deadS = (float) deadS;
@@ -132,7 +127,6 @@ final class ForecastTrack {
     oldest = 0;
   }
 
-  /** To a period; they are taken in turn. */
   void startRow(int row) {
     Arrays.fill(fresh, 0);
     IntVector here = IntVector.broadcast(INTS, row);
@@ -172,11 +166,10 @@ final class ForecastTrack {
       System.arraycopy(standing[i], 0, ofTurns[i], 0, held * WORLDS);
   }
 
-  /**
-   * Notes commands.
+  /** Records commands.
    *
    * @param times when each is sent, from the row's begin; {@link LaneOffers#NONE} where none is
-   * @param answers when it is known to have arrived, {@link LaneOffers#NONE} where that is never told
+   * @param answers when its arrival becomes known, {@link LaneOffers#NONE} where it never does
    */
   void send(int row, LaneVectors vectors, int[] times, int[] answers, Directions directions) {
     int slot = (row & slots - 1) * WORLDS;
@@ -189,9 +182,8 @@ final class ForecastTrack {
     }
   }
 
-  /**
-   * Lays the way to the readings that arrived in this period: of each world to the first, then to the second
-   * and so on, each of which is {@link #conclude concluded} before the next.
+  /** Computes the track to the readings that arrived in this period: of each world to the first, then to the
+   * second and so on; {@link #conclude} must follow each.
    *
    * @return whether some world has one more
    */
@@ -202,7 +194,7 @@ final class ForecastTrack {
     return true;
   }
 
-  /** Lets stand what is taken to have acted before these readings, by what was known then. */
+  /** Fixes the turns that took effect before these readings, by what was known then. */
   void conclude(int row) {
     settle(row);
     renew(row, arrived.madeAt());
@@ -222,7 +214,9 @@ final class ForecastTrack {
     }
   }
 
-  /** The way is as long as from the reading before until this one, if there was one before. */
+  /** Sets the track's length to the time between the previous reading and this one, if there was a previous
+   * one.
+   */
   private void aimAt(int row, int[] made) {
     FloatVector zero = FloatVector.broadcast(SPECIES, 0f);
     for (int k = 0; k < arrived.vectors.count; k++) {
@@ -231,7 +225,7 @@ final class ForecastTrack {
     }
   }
 
-  /** From the newest reading until a moment, from the row's begin in grains, s. */
+  /** From the newest reading until a moment, given from the row's begin in grains; s. */
   private FloatVector sinceReadingS(int row, int i, IntVector moment) {
     return ((FloatVector) moment.sub(IntVector.fromArray(INTS, readAt, i)).convertShape(I2F, SPECIES, 0))
         .mul(LaneViews.GRAIN_S)
@@ -243,7 +237,7 @@ final class ForecastTrack {
                 .mul(periodS));
   }
 
-  /** Where a reading enters that is not the first. */
+  /** The worlds in which a reading that is not the first is added. */
   private VectorMask<Float> flies(int i) {
     return IntVector.fromArray(INTS, knownRow, i)
         .compare(GE, 0)
@@ -251,7 +245,7 @@ final class ForecastTrack {
         .cast(SPECIES);
   }
 
-  /** Of the way laid, lets the turns stand whose commands are taken to have acted until readings. */
+  /** Fixes those turns of the track whose commands took effect before the readings. */
   private void settle(int row) {
     float[] turnS = this.turnS, turnX = turn.cos, turnY = turn.sin;
     float[] beforeX = before.cos, beforeY = before.sin, priorX = prior.cos, priorY = prior.sin;
@@ -350,13 +344,12 @@ final class ForecastTrack {
           "more than " + held + " commands act within a dead time of " + deadS + " s");
   }
 
-  /**
-   * Lays the way from the newest reading until a command acts that is sent at a moment, of the period from
-   * {@code known} on.
+  /** Computes the track from the newest reading until a command sent at a given moment takes effect.
    *
-   * @param known by world, until when what was answered is known, from the row's begin
-   * @param when the moments, from there too; {@link LaneOffers#NONE} where no way is asked for
-   * @param isFirst whether it is the first way since readings entered
+   * @param known by world, until when received answers are considered, from the row's begin
+   * @param when the moments of sending, from the row's begin; {@link LaneOffers#NONE} where no track is
+   *   needed
+   * @param isFirst whether it is the first track since readings were added
    */
   void lay(int row, LaneVectors vectors, int[] known, int[] when, MeanDelays delays, boolean isFirst) {
     // But for what is taken for lost meanwhile, the ways to all moments are one.
@@ -364,7 +357,6 @@ final class ForecastTrack {
     aim(row, vectors, known, when, delays.toS);
   }
 
-  /** How long the way is. */
   private void aim(int row, LaneVectors vectors, int[] known, int[] when, float[] toS) {
     IntVector none = IntVector.broadcast(INTS, NONE);
     FloatVector zero = FloatVector.broadcast(SPECIES, 0f);
@@ -378,7 +370,7 @@ final class ForecastTrack {
     }
   }
 
-  /** The turns of the way, by what is known at a moment and what is taken for lost at another. */
+  /** The turns of the track, by what is known at one moment and presumed lost at another. */
   private void lay(int row, LaneVectors vectors, int[] known, int[] when, float[] toS, float[] fromS) {
     float[] turnS = this.turnS, turnX = turn.cos, turnY = turn.sin;
     int mask = slots - 1, standing = (held - 1) * WORLDS;
@@ -465,10 +457,9 @@ final class ForecastTrack {
     }
   }
 
-  /**
-   * Tells when readings were made that are fresh.
+  /** Reports the sampling times of readings that are fresh.
    *
-   * @param joined becomes {@link LaneOffers#NONE} where the vehicle is not known yet
+   * @param joined set to {@link LaneOffers#NONE} where the vehicle was never read
    * @param into from the row's begin
    */
   void tell(int[] joined, int[] into) {

@@ -15,44 +15,40 @@ import skein.forward.Delays;
 import skein.forward.LoopTiming;
 import skein.forward.TabledDelays;
 
-/**
- * The tasks of the {@code futures} loop: each period one for each vehicle, which reads all one
- * after the other, and offers its own vehicle what was read. Tasks overlap and overtake; with the
- * window full they begin later, in turn, when a task has ended: no earlier than that one of all
- * which ends as the n-th from behind, where n may be under way.
+/** The tasks of the {@code futures} loop: in each period one for each vehicle, which reads all vehicles in
+ * sequence, and then offers the readings to its own vehicle. Tasks overlap and overtake. With the window of n
+ * tasks full, a new one waits until a task ends: until the n-th latest of all ends.
  */
 final class FuturesOffers extends LaneOffers {
   private static final int STEP = LaneDelays.placeOf(1);
 
-  /** Tasks last for longer and for shorter by about so much. */
   private static final double AHEAD_S = 0.2;
 
   private static final LaneVectors ALL = LaneVectors.all();
 
-  /** Long past. */
   private static final int PAST = -1_000_000_000;
 
   private final int periodGrains, timeoutGrains, ahead, most;
 
-  /** Steps kept: a power of two. */
+  /** Number of steps kept, always a power of two. */
   private final int ring;
 
   // Tasks by agent and slot, from their own step's begin: when they begin, and when they end with an offer.
   private final int[][][] beginAt, end;
 
-  /** The latest ends of all tasks before, the latest first, from the begin of the step known last. */
+  /** The latest ends of all earlier tasks, the latest first, from the begin of the last known step. */
   private final int[][] latest;
 
-  /** When the first task of the last step that was not missed began. */
+  /** When the first task began in the last step that was not missed. */
   private final int[] began = new int[WORLDS];
 
-  /** 1 where the step drawn last has no tasks. */
+  /** 1 where the last drawn step has no tasks. */
   private final int[] missed = new int[WORLDS];
 
-  /** By vehicle: the delays of a task's question and of the answer, in turn. */
+  /** By vehicle: the delay of a task's request, then of the answer. */
   private final int[][] drawn;
 
-  /** Steps that may have offers still, and the next to be drawn. */
+  /** The oldest step that may still have offers, and the next step to draw. */
   private int oldest, next;
 
   // By agent: the next offer, the one behind it, and of the next its step and when its task began.
@@ -65,12 +61,10 @@ final class FuturesOffers extends LaneOffers {
   private final int[] beatPlaces = new int[WORLDS];
   private int row;
 
-  /** In which some world was offered something in this beat. */
+  /** Vectors in which some world has an offer in this round. */
   private final LaneVectors taken = new LaneVectors();
 
-  /**
-   * @param maxDelayS the longest one-way delay of any link
-   */
+  /** @param maxDelayS the longest one-way delay of any link */
   FuturesOffers(LoopTiming.Futures timing, int vehicles, double maxDelayS) {
     super(vehicles, new LaneDelays(), false, (int) Math.ceil(AHEAD_S / timing.periodS()));
     double periodS = timing.periodS(),
@@ -105,7 +99,6 @@ final class FuturesOffers extends LaneOffers {
     while (next < ahead) draw();
   }
 
-  /** The tasks of one more step. */
   private void draw() {
     int step = next++, slot = step & ring - 1;
     IntVector period = IntVector.broadcast(INTS, step == 0 ? 0 : periodGrains),
@@ -123,7 +116,7 @@ final class FuturesOffers extends LaneOffers {
     }
   }
 
-  /** When an agent's tasks begin. */
+  /** The times at which an agent's tasks begin. */
   private void begin(int agent, int[] begins) {
     int[] lastOf = latest[most - 1];
     IntVector zero = IntVector.broadcast(INTS, 0);
@@ -140,7 +133,7 @@ final class FuturesOffers extends LaneOffers {
     }
   }
 
-  /** When they end, if they do with an offer. */
+  /** The times at which an agent's tasks end, if they end with an offer. */
   private void end(int[] begins, int[] ends) {
     IntVector none = IntVector.broadcast(INTS, NONE),
         past = IntVector.broadcast(INTS, PAST),
@@ -187,7 +180,9 @@ final class FuturesOffers extends LaneOffers {
     return true;
   }
 
-  /** Takes an agent's next offers where no other has one before; of one moment, the first agent's comes first. */
+  /** Takes an agent's next offers in worlds where no other agent has an earlier one; at equal times, the
+   * first agent's is first.
+   */
   private boolean take(int agent) {
     int[] own = soonest[agent];
     IntVector horizon = IntVector.broadcast(INTS, (1 + rowsAhead) * periodGrains),
@@ -216,7 +211,7 @@ final class FuturesOffers extends LaneOffers {
     return true;
   }
 
-  /** When an agent's tasks that offer something read each vehicle: their delays are drawn again. */
+  /** The times at which an agent's offering tasks read each vehicle; draws their delays again. */
   private void read(int agent) {
     delays.drawInTurn(taken, places, agent, (long) row * periodGrains, goesOn, drawn);
     for (int v = 0; v < vehicles; v++) {
@@ -230,9 +225,7 @@ final class FuturesOffers extends LaneOffers {
     }
   }
 
-  /**
-   * Which offers an agent has next, in vectors in which it took some, or may have more; what it took is over.
-   */
+  /** Finds an agent's next offers, in vectors in which it consumed some or may have more. */
   private void look(int agent) {
     int[][] begins = beginAt[agent], ends = end[agent];
     IntVector none = IntVector.broadcast(INTS, NONE), zero = IntVector.broadcast(INTS, 0);

@@ -21,24 +21,23 @@ import skein.lanes.policy.Directions;
 import skein.vehicle.FirstOrderLag;
 import skein.vehicle.ReducedModel;
 
-/**
- * The vehicles of one role in many worlds, with first-order lag, and the commands on their way to
- * them, which act at times of their own in each world. Positions are those at a row's begin;
- * readings show them at times of their own, through the commands that act before.
+/** The vehicles of one role in many worlds, with first-order lag, and the commands on their way to them,
+ * which take effect at different times in each world. Positions are those at a row's begin; readings are
+ * sampled at different times in each world, and include the commands in effect before.
  *
- * <p>The response to commanded velocities is linear: position and velocity are those without the
- * commands under way, plus each such command's change times its step response, s(t) = t − lag·(1 −
- * r(t)) and 1 − r(t), where r(t) = exp(−t / lag), from the time on at which it acts. With r(end − at)
- * = exp(−end / lag) · growth(at) one exponential serves all commands. What a world computes depends
- * on its own commands alone, to the bit: those of others only decide whether zeros are added.
+ * <p>The response to commanded velocities is linear: position and velocity are those without the commands
+ * under way, plus each such command's change times its step response, s(t) = t − lag·(1 − r(t)) and 1 − r(t),
+ * where r(t) = exp(−t / lag), from the time on at which it takes effect. With r(end − at) = exp(−end / lag) ·
+ * growth(at) one exponential serves all commands. A world's results depend on its own commands alone, to the
+ * bit: those of others only decide whether zeros are added.
  *
- * <p>{@link PlantFlights} flies the same vehicle under every loop. This second way exists for {@code
- * stream}, where it makes 100 million agent-steps a second and pieces 54.
+ * <p>{@link PlantFlights} simulates an equal vehicle under every loop. This second implementation exists for
+ * {@code stream}, where it reaches 100 million agent-steps a second, and pieces 54.
  */
 public final class LagVehicles extends LaneVehicles {
   private static final float FUTURE = 1e9f;
 
-  /** No reading is taken so long before its row's begin. */
+  /** No reading is sampled longer than this before its row's begin, s. */
   private final float earliestS;
 
   private final double periodS;
@@ -51,23 +50,22 @@ public final class LagVehicles extends LaneVehicles {
       LACK_X = OWN + 2 * WORLDS,
       LACK_Y = OWN + 3 * WORLDS;
 
-  /** When the readings are taken, and what remains of an error then. */
+  /** When the readings are sampled, and the share of an error that remains then. */
   private static final int END = OWN + 4 * WORLDS, DECAY = OWN + 5 * WORLDS;
 
-  /** The velocity commanded last, whether it acts yet or not. */
+  /** The last commanded velocity, in effect or not. */
   private static final int SENT_X = OWN + 6 * WORLDS, SENT_Y = OWN + 7 * WORLDS;
 
   private static final int NUMBERS = 8;
 
-  /** The row flown to. */
+  /** The row up to which it was simulated. */
   private int row;
 
   private static final int[] AT_BEGIN = new int[WORLDS];
   private static final LaneVectors ALL = LaneVectors.all();
 
-  /**
-   * By slot: when the command acts, from its own row's begin, s; e to that time over the lag; and by
-   * how much it changes the velocity asked for.
+  /** By slot: when the command takes effect, from its own row's begin, s; e to that time over the lag; and
+   * the change of the commanded velocity.
    */
   private float[] commands;
 
@@ -88,19 +86,18 @@ public final class LagVehicles extends LaneVehicles {
   private int[] nearFrom;
   private float[] nearAge, nearYounger, nearAged;
 
-  /** So many rows in seconds, and what remains of an error after them. */
+  /** By number of rows: their time in seconds, and the share of an error that remains after them. */
   private final float[] rowsS, remains;
 
-  /** Whether powers of e hold what is under way for so long. */
+  /** Whether powers of e stay within floats for commands on their way for this time. */
   public static boolean canFly(ReducedModel model, double longestS) {
     return longestS <= MOST_LAGS * model.lagS();
   }
 
   private static final double MOST_LAGS = 80;
 
-  /**
-   * @param longestS how long a command is under way at most
-   * @param earliestS no reading is taken so long before its row's begin
+  /** @param longestS the longest time for which a command is on its way
+   * @param earliestS no reading is sampled longer than this before its row's begin
    */
   public LagVehicles(
       RolloutAgent agent, ReducedModel model, double periodS, double longestS, double earliestS) {
@@ -215,7 +212,7 @@ public final class LagVehicles extends LaneVehicles {
     if (this.row < row) flyTo(row, ALL, AT_BEGIN);
   }
 
-  /** Flies on from the row before, if the vehicles are there, and reads them. */
+  /** Simulates from the previous row, unless already done, and reads the vehicles. */
   private void flyTo(int row, LaneVectors vectors, int[] sampledAt) {
     boolean fliesOn = this.row < row;
     findNear(row, latestS(sampledAt), fliesOn);
@@ -229,7 +226,6 @@ public final class LagVehicles extends LaneVehicles {
     this.row = row;
   }
 
-  /** Not before the last of these. */
   private static float latestS(int[] sampledAt) {
     IntVector latest = IntVector.broadcast(INTS, 0);
     for (int i = 0; i < WORLDS; i += LANES)
@@ -256,7 +252,7 @@ public final class LagVehicles extends LaneVehicles {
     }
   }
 
-  /** Flies for so long, with the commands that begin to act in this time, and reads the vehicles. */
+  /** Simulates this time span, with the commands that take effect in it, and reads the vehicles. */
   private void fly(LaneVectors vectors, float dtS, float gainS, float keepShare, int[] sampledAt) {
     float[] state = this.state, commands = this.commands;
     FloatVector dt = FloatVector.broadcast(SPECIES, dtS),
@@ -331,7 +327,7 @@ public final class LagVehicles extends LaneVehicles {
     }
   }
 
-  /** How fast the vehicles fly where they were read. */
+  /** The vehicles' velocities at the readings. */
   void readVelocities(LaneVectors vectors) {
     for (int n = 0; n < vectors.count; n++) {
       int i = vectors.first[n];
@@ -360,7 +356,7 @@ public final class LagVehicles extends LaneVehicles {
     }
   }
 
-  /** Of readings that were taken before the row's begin. */
+  /** Corrects readings that were sampled before the row's begin. */
   private void lookBack(int[] at, int[] fresh) {
     for (int i = 0; i < WORLDS; i += LANES) {
       long early = IntVector.fromArray(INTS, at, i).compare(LT, 0).toLong();
@@ -371,7 +367,7 @@ public final class LagVehicles extends LaneVehicles {
     }
   }
 
-  /** Takes commands back that had not acted when an early reading of a world was taken. */
+  /** Removes commands that were not yet in effect at an early reading of a world. */
   private void lookBack(int world, int sampledAt) {
     float end = sampledAt * LaneViews.GRAIN_S;
     for (int number = next - 1; number >= oldest; number--) {

@@ -22,71 +22,66 @@ import skein.lanes.policy.Directions;
 import skein.lanes.policy.LanePolicy;
 import skein.simd.WorldRandom;
 
-/**
- * One vehicle in many worlds, and its controllers, as {@code skein.flow.Pace} and {@code
- * skein.flow.Steer} let them: when each decides upon what it was offered, and when its command acts. A
- * kind of agents says what is decided. Times are told in grains of 4 ns from the period's begin, and kept
- * from the episode's begin, modulo 2³²: what is long past is drawn near again before it would be taken for
- * the future.
+/** One vehicle in many worlds, with its controllers, which follow {@code skein.flow.Pace} and {@code
+ * skein.flow.Steer}: when each decides on its offer, and when its command takes effect. Subclasses make the
+ * decisions. Times are passed in grains of 4 ns from the period's begin, and stored from the episode's begin,
+ * modulo 2³²; a stored time that is long past is moved closer before it could be mistaken for the future.
  */
 public abstract class LaneAgents {
   private static final int WORLDS = LanePolicy.WORLDS, NONE = LaneOffers.NONE;
 
-  /** A second or so, in grains: 2 to a power. */
   private static final int LONG = 28;
 
   private static final float LONG_S = (1 << LONG) * LaneViews.GRAIN_S;
 
-  /** In the place of how long ago it decided: never. */
+  /** Stands for the time since the last decision of one that never decided. */
   private static final int NEVER = 1 << 20;
 
-  /** A command is answered when the next one replaces it: no fewer may be under way. */
+  /** A command is answered when the next one replaces it, so the limit of unanswered commands is at least
+   * this.
+   */
   public static final int LEAST_UNDER_WAY = 2;
 
-  /** The vehicle's number. */
   public final int self;
 
   public final LaneVehicles vehicles;
   private final int line, periodGrains, intervalGrains, leastGrains, handoverGrains, deadGrains;
   private final boolean decidesFirst;
 
-  /** Whether all are offered the same at the same time: then all that was sent was sent before. */
+  /** Whether all vehicles receive equal offers at equal times: then all sent commands were sent before. */
   public final boolean together;
 
   // When it may be commanded again, and when the last command reaches it.
   private final int[] ready = new int[WORLDS], reaches = new int[WORLDS];
 
-  /**
-   * When commands before are answered, the latest first: as many as may be under way beside the last two. The
-   * one before the last is answered by then, or awaited.
+  /** When earlier commands are answered, the latest first: as many as may be unanswered besides the last two.
+   * The one before the last is answered by then, or awaited.
    */
   private final int[][] answered;
 
-  /** When the last command was sent; not kept where all are offered the same {@link #together}. */
+  /** When the last command was sent; not maintained if all offers are {@link #together}. */
   public final int[] sentAt = new int[WORLDS];
 
   /** When it decides, from the period's begin; {@link LaneOffers#NONE} where it does not. */
   public final int[] decides = new int[WORLDS];
 
-  /**
-   * 1 where it goes before what it is offered in the moment in which it may be commanded again: by a {@link
-   * #forecast} offers are scheduled a period before, and this was known before that.
+  /** 1 where it decides before it considers an offer of the moment in which it may send again: with a {@link
+   * #forecast}, offers are scheduled a period before, and the permission was known before that.
    */
   private final int[] goesFirst = new int[WORLDS];
 
   // When it sends, or NONE, when the command acts, and when it is known to have arrived: the first never is.
   private final int[] sends = new int[WORLDS], acts = new int[WORLDS], answers = new int[WORLDS];
 
-  /** What readings are carried forward by; null where decisions go by the readings themselves. */
+  /** The forecast by which readings are predicted; null where decisions use the readings themselves. */
   public final LaneForecast forecast;
 
-  /** From the own last decision to this one, s. */
+  /** Time from the own last decision to this one, s. */
   public final float[] elapsedS = new float[WORLDS];
 
-  /** When it decided last; and how often {@link #LONG} passed besides, or {@link #NEVER}. */
+  /** When it decided last; and the number of {@link #LONG} spans to add, or {@link #NEVER}. */
   private final int[] decidedAt = new int[WORLDS], decidedLong = new int[WORLDS];
 
-  /** When the period began. */
   public int now;
 
   private final int[] drawn = new int[2 * LANES];
@@ -98,15 +93,13 @@ public abstract class LaneAgents {
       back = new int[WORLDS],
       arrives = new int[WORLDS];
 
-  /** Directions commanded, or velocities over the vehicles' speed: what was sent last, and before that. */
+  /** Commanded directions, or velocities over the vehicles' speed: the last and the previous command. */
   public final Directions sent = new Directions(WORLDS), sentBefore = new Directions(WORLDS);
 
-  /** What was decided last: that which is sent, unless what waits is the decision; and what is now. */
+  /** The last decision, which equals the last command unless a decision waits; and the present decision. */
   public final Directions decided, decidedNow = new Directions(WORLDS);
 
-  /**
-   * @param deadTimeS from a command's arrival until the vehicle follows it
-   */
+  /** @param deadTimeS from a command's arrival until the vehicle follows it */
   public LaneAgents(int self, LoopLanes loop, double deadTimeS, LaneVehicles vehicles) {
     this.self = self;
     this.vehicles = vehicles;
@@ -124,7 +117,7 @@ public abstract class LaneAgents {
     deadGrains = LaneViews.grains(deadTimeS);
   }
 
-  /** Back to the start of an episode; what was sent and decided before it, the kind of agents fills in. */
+  /** Resets to the start of an episode; the subclass fills in the commands and decisions before it. */
   public void start() {
     now = 0;
     for (int[] zero : new int[][] {ready, reaches, decidedAt}) Arrays.fill(zero, 0);
@@ -135,44 +128,39 @@ public abstract class LaneAgents {
     vehicles.start();
   }
 
-  /** Whether decisions look at velocities. */
   public abstract boolean needsVelocity();
 
-  /** Whether decisions ask how old readings are. */
+  /** Whether decisions depend on the ages of readings. */
   public boolean needsAges() {
     return false;
   }
 
-  /**
-   * Whether it takes images until it decides, of what the others fly that were offered the same: {@link
-   * #choose} waits until they have commanded.
+  /** Whether it takes images until it decides, which show other vehicles with equal offers: its {@link
+   * #choose} must run after they have commanded.
    */
   public boolean sees() {
     return false;
   }
 
-  /**
-   * Decides, in all worlds: {@link #decidedNow}.
+  /** Decides, in all worlds: fills {@link #decidedNow}.
    *
-   * @param all by the vehicle's number, with what is read of their vehicles
-   * @param readAt by vehicle, when the readings held were taken; for those that {@link #needsAges ask}
+   * @param all by the vehicle's number, with the readings of their vehicles
+   * @param readAt by vehicle, when the held readings were sampled; only if {@link #needsAges}
    */
   public abstract void choose(LaneAgents[] all, LaneOffers offers, LaneVectors vectors, int[][] readAt);
 
-  /**
-   * What was chosen is remembered where {@link #decides} is a time.
+  /** Stores the decisions where {@link #decides} is a time.
    *
    * @param endGrains of the episode
    */
   public abstract void remember(LaneVectors vectors, int endGrains);
 
-  /** To a period; they are taken in turn. */
   public void startRow(int row) {
     now = row * periodGrains;
     if (row % Math.max(1, (1 << LONG) / periodGrains) == 0) drawNear();
   }
 
-  /** What is long past, nearer. */
+  /** Moves times that are long past closer to the present. */
   private void drawNear() {
     IntVector begin = IntVector.broadcast(INTS, now), past = IntVector.broadcast(INTS, -1);
     for (int i = 0; i < WORLDS; i += LANES) {
@@ -189,16 +177,15 @@ public abstract class LaneAgents {
     IntVector.fromArray(INTS, times, i).sub(begin).max(past).add(begin).intoArray(times, i);
   }
 
-  /** Decide where it is their turn, as {@link #choose}; but those who {@link #sees see}. */
+  /** Decides by {@link #choose} wherever it is due; agents that {@link #sees} run last. */
   public final void decide(LaneAgents[] all, LaneOffers offers, LaneVectors vectors, int[][] readAt) {
     look(vectors, offers.joinedAt, offers.nextAt);
     if (forecast != null) forecast.predict(vectors, decides);
     if (!sees()) choose(all, offers, vectors, readAt);
   }
 
-  /**
-   * What decisions go by of this vehicle: {@code LaneObservation.X} and so on, from {@link #seenFrom} on. Of
-   * what is predicted that is of the agents who decide.
+  /** The numbers of this vehicle for decisions: {@code LaneObservation.X} and so on, from {@link #seenFrom}
+   * on. A prediction is valid for the deciding agents only.
    */
   public final float[] seen() {
     return forecast == null ? vehicles.state : forecast.predicted(self);
@@ -208,7 +195,6 @@ public abstract class LaneAgents {
     return forecast == null ? LaneVehicles.SEEN_X : 0;
   }
 
-  /** When each decides and sends. */
   private void look(LaneVectors vectors, int[] joinedAt, int[] nextAt) {
     IntVector none = IntVector.broadcast(INTS, NONE),
         begin = IntVector.broadcast(INTS, now),
@@ -240,8 +226,7 @@ public abstract class LaneAgents {
     }
   }
 
-  /**
-   * Command what was decided.
+  /** Sends the decisions as commands.
    *
    * @param endGrains of the episode
    */
@@ -255,7 +240,7 @@ public abstract class LaneAgents {
     vehicles.act(row, vectors, acts, sent);
   }
 
-  /** How long commands and their answers are under way, over links whose tables change. */
+  /** Draws the delays of commands and their answers, over links whose tables change. */
   private void draw(int row, LaneDelays delays, int[] places, LaneVectors vectors) {
     long begin = (long) row * periodGrains;
     IntVector step = IntVector.broadcast(INTS, LaneDelays.placeOf(row)),
@@ -277,7 +262,9 @@ public abstract class LaneAgents {
     delays.draw(vectors, drawnAt, line + 1, begin, arrives, back);
   }
 
-  /** Draws its delays in the same pass: a look into a table takes as long as a dozen other operations. */
+  /** Sends commands, and draws their delays in that pass: a table look-up takes as long as a dozen other
+   * operations.
+   */
   private void send(int place, LaneDelays delays, int[] places, LaneVectors vectors) {
     boolean isSteady = delays.isSteady, manyUnderWay = answered.length > 0;
     int[] keys = delays.keysOf(line), tableOf = delays.tableOf, table = delays.delays, drawn = this.drawn;
@@ -362,11 +349,10 @@ public abstract class LaneAgents {
     }
   }
 
-  /**
-   * Keeps when a command is answered, no earlier than those before.
+  /** Records when a command is answered, no earlier than those before.
    *
-   * @param answer or a time that has passed, where none is answered
-   * @return when so many are answered that the next may go: the earliest of those kept until now
+   * @param answer a time that has passed where no command is answered
+   * @return when the next command may be sent: the earliest pending answer
    */
   private IntVector keep(int i, IntVector answer, VectorMask<Integer> goes, IntVector begin) {
     IntVector later = answer;
@@ -378,9 +364,8 @@ public abstract class LaneAgents {
     return later;
   }
 
-  /**
-   * When the vehicle may be commanded again, but for the loop's interval: the handover counts from each answer
-   * that comes before.
+  /** When the vehicle may be commanded again, without the loop's interval: each earlier answer is followed by
+   * the handover time.
    */
   private IntVector whenFree(int i, IntVector sent, IntVector awaited, IntVector begin) {
     IntVector free = sent.add(leastGrains);
@@ -393,7 +378,7 @@ public abstract class LaneAgents {
     return free;
   }
 
-  /** What was told last, by cosine and sine, as far as it was known when something was joined. */
+  /** The last commands as cosine and sine, as far as they were known at a joined view. */
   public final void knownAt(
       LaneVectors vectors, int[] joinedAt, Directions told, Directions toldBefore, Directions into) {
     for (int k = 0; k < vectors.count; k++) {
@@ -412,7 +397,7 @@ public abstract class LaneAgents {
     }
   }
 
-  /** Where something is sent now, it is what was told last. */
+  /** Replaces the last command where a new one is sent. */
   protected final void tell(
       LaneVectors vectors, float[] cos, float[] sin, Directions told, Directions toldBefore) {
     IntVector none = IntVector.broadcast(INTS, NONE);
@@ -428,7 +413,7 @@ public abstract class LaneAgents {
     }
   }
 
-  /** How old a vehicle's reading is when it is decided upon, s. */
+  /** Age of a vehicle's reading at the decision, s. */
   protected final void age(int vehicle, int[][] readAt, float[] into) {
     if (forecast != null) System.arraycopy(forecast.age(vehicle), 0, into, 0, WORLDS);
     else
@@ -441,7 +426,7 @@ public abstract class LaneAgents {
             .intoArray(into, i);
   }
 
-  /** Nobody decides in the other vectors. */
+  /** Clears the decisions in the other vectors. */
   private void forget(LaneVectors vectors) {
     int next = 0;
     for (int i = 0; i < WORLDS; i += LANES)

@@ -13,40 +13,38 @@ import skein.forward.TabledDelays;
 import skein.lanes.policy.LanePolicy;
 import skein.simd.WorldRandom;
 
-/**
- * The delays of many worlds' links, as {@link DelayTable} has them, in {@link DelayTable#GrainNs}.
- * Passes draw from them by {@link WorldRandom}'s hash: a look into a table takes as long as a dozen
- * other operations, which go on meanwhile. Where a link's table changes ({@link TabledDelays}), it
- * depends on when a message is sent; such worlds are looked after one by one.
+/** The delays of many worlds' links, as {@link DelayTable} has them, in {@link DelayTable#GrainNs}. Passes
+ * draw them by {@link WorldRandom}'s hash: a table look-up takes as long as a dozen other operations, which
+ * overlap with it. Where a link's table changes ({@link TabledDelays}), it depends on the time of sending;
+ * such worlds are processed one by one.
  */
 final class LaneDelays {
   private static final int WORLDS = LanePolicy.WORLDS;
-  /** Of a hash but for its last step, which does not change the upper bits, these are left out. */
+  /** Bits that are dropped from a hash without its last step, which does not change the upper bits. */
   static final int DROP = DelayTable.Drop();
 
   private static final LaneVectors ALL = LaneVectors.all();
 
-  /** {@link WorldRandom#key} of each world. */
   private int[] keys;
 
-  /** By {@link Delays#Lines}, and for which start they hold: the keys of further pairs of vehicles. */
+  /** Keys of further pairs of vehicles, by {@link Delays#Lines}, and the start for which they are valid. */
   private int[][] pairKeys = new int[1][];
 
   private int[] madeAt = new int[1];
   private int starts = 0;
 
-  /** The delays of all links, one table after the other. */
+  /** The delay tables of all links, concatenated. */
   int[] delays = new int[DelayTable.Size()];
 
   private DelayTable[] tables = new DelayTable[1];
   private int tableCount = 0;
 
-  /** Whether no link's table changes: then where each world's begins. */
+  /** Whether no link's table changes; and if so, where each world's table begins. */
   boolean isSteady;
 
   final int[] tableOf = new int[WORLDS];
 
-  /** By world: the links' tables in turn, where some change. */
+  /** By world: the sequence of its link's tables, where some change. */
   private final TableCourse[] courses = new TableCourse[WORLDS];
 
   private final int[] sentAt = new int[WORLDS];
@@ -67,7 +65,7 @@ final class LaneDelays {
       }
   }
 
-  /** Where a table begins, which becomes the last if it is none of those. */
+  /** Where a table begins; adds it at the end if it is new. */
   private int beginOf(DelayTable table) {
     int size = DelayTable.Size();
     for (int known = tableCount - 1; known >= 0; known--) if (tables[known] == table) return known * size;
@@ -81,7 +79,7 @@ final class LaneDelays {
     return begin;
   }
 
-  /** By world, the key of the sequence that a line's delays come from, as {@link Delays#keyOf}. */
+  /** By world, the key of the random sequence of a line's delays, as {@link Delays#keyOf}. */
   int[] keysOf(int line) {
     int pair = line / Delays.Lines();
     if (pair == 0) return keys;
@@ -97,20 +95,19 @@ final class LaneDelays {
     return pairKeys[pair];
   }
 
-  /** Where a line's random numbers are in those of a step. */
+  /** Offset of a line's random numbers within those of a step. */
   static int placeOfLine(int line) {
     return line % Delays.Lines() * WorldRandom.STRIDE;
   }
 
-  /** Where the random numbers of a step begin. */
+  /** Offset of the random numbers of a step. */
   static int placeOf(int step) {
     return step * Delays.Lines() * WorldRandom.STRIDE;
   }
 
-  /**
-   * The delays of a line at places of each world's own.
+  /** Draws a line's delays at different places in each world.
    *
-   * @param begin what times count from, since the episode's begin, in grains
+   * @param begin origin of the times, since the episode's begin, in grains
    * @param sentAt when each message is sent; any time where none is
    */
   void draw(LaneVectors vectors, int[] places, int line, long begin, int[] sentAt, int[] into) {
@@ -126,7 +123,7 @@ final class LaneDelays {
     look(vectors, begin, sentAt, into);
   }
 
-  /** The delays of a line at one place of all worlds. */
+  /** Draws a line's delays at one place in all worlds. */
   void draw(int place, int line, long begin, int[] sentAt, int[] into) {
     int[] keys = keysOf(line);
     IntVector there = IntVector.broadcast(INTS, place + placeOfLine(line));
@@ -135,12 +132,11 @@ final class LaneDelays {
     look(ALL, begin, sentAt, into);
   }
 
-  /**
-   * The delays of an asker's questions to all vehicles, one asked when the one before is answered, and of
-   * the answers.
+  /** Draws the delays of an agent's requests to all vehicles, each sent when the one before is answered, and
+   * of the answers.
    *
-   * @param askedAt when the first is asked
-   * @param into the delays of a vehicle's question and of the answer, in turn
+   * @param askedAt when the first is sent
+   * @param into the delays of a vehicle's request and of the answer, in turn
    */
   void drawInTurn(LaneVectors vectors, int[] places, int asker, long begin, int[] askedAt, int[][] into) {
     if (!isSteady) System.arraycopy(askedAt, 0, sentAt, 0, WORLDS);
@@ -150,7 +146,6 @@ final class LaneDelays {
     }
   }
 
-  /** Adds spans to times, or to other spans. */
   static void add(LaneVectors vectors, int[] spans, int[] times) {
     for (int k = 0; k < vectors.count; k++) {
       int i = vectors.first[k];
@@ -158,7 +153,7 @@ final class LaneDelays {
     }
   }
 
-  /** Hashes, and looks the delays up. */
+  /** Hashes the places, and looks up the delays. */
   private void look(LaneVectors vectors, long begin, int[] sentAt, int[] values) {
     if (!isSteady) chooseTables(vectors, begin, sentAt);
     IntVector multiplier1 = IntVector.broadcast(INTS, WorldRandom.MULTIPLIER_1),
@@ -176,7 +171,7 @@ final class LaneDelays {
     }
   }
 
-  /** {@link #tableOf} for what is sent at these times. */
+  /** Sets {@link #tableOf} for messages sent at these times. */
   private void chooseTables(LaneVectors vectors, long begin, int[] sentAt) {
     for (int k = 0; k < vectors.count; k++)
       for (int i = vectors.first[k], end = i + LANES; i < end; i++)

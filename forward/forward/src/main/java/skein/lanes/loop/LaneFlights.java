@@ -15,36 +15,31 @@ import jdk.incubator.vector.VectorOperators;
 import skein.forward.RolloutAgent;
 import skein.lanes.policy.Directions;
 
-/**
- * The vehicles of one role in many worlds, whose commands act at times of their own in each. They fly
- * in pieces, each known from its begin on; the pieces of the near past are kept, so that a vehicle can
- * be read at any moment of it. A piece ends a time after its begin, if no command ends it before; then
- * another begins under the same command. A slot holds the piece that was the newest in each world when
- * it was filled. Times are in grains since the episode's begin, modulo 2³²: no two that are compared lie
- * as far apart.
+/** The vehicles of one role in many worlds, whose commands take effect at different times in each. They move
+ * in pieces, each a closed form from its begin; recent pieces are kept, so that a vehicle can be read at any
+ * recent moment. A piece has a maximum length; if no command ends it before, another begins under that
+ * command. A slot holds the piece that was the newest in each world when it was filled. Times are in grains
+ * since the episode's begin, modulo 2³²; two compared times never differ by half of that.
  */
 public abstract class LaneFlights extends LaneVehicles {
-  /**
-   * Where the numbers of a piece stand: the command's direction, north, then east; what follows, the kind
-   * of vehicle says.
-   */
+  /** Offsets of a piece's numbers: the command's direction, north, then east; the subclass adds others. */
   static final int ALONG_X = 0, ALONG_Y = WORLDS;
 
-  /** The longest a piece may last, s: far less than times are told apart by. */
+  /** Longest duration of a piece, s: far less than the range in which times are compared. */
   public static final double MOST_PIECE_S = 1;
 
   private final int size, keptRows, periodGrains, pieceGrains;
 
-  /** A power of two. */
+  /** Number of slots for pieces, always a power of two. */
   private int slots = 16;
 
   private int[] begins, rowOf;
   float[] pieces;
 
-  /** How many slots were filled; the newest is one less. */
+  /** Number of slots filled so far; the newest is one less. */
   private int filled;
 
-  /** The times asked for; the pieces in which they lie, and how long after the begin of these, s. */
+  /** The requested times; the pieces in which they lie, and the time from their begin, s. */
   private final int[] until = new int[WORLDS];
 
   final float[] chosen, sinceS = new float[WORLDS];
@@ -56,9 +51,8 @@ public abstract class LaneFlights extends LaneVehicles {
 
   private static final LaneVectors ALL = LaneVectors.all();
 
-  /**
-   * @param numbers that a piece has
-   * @param pieceS how long a piece lasts at most, no longer than {@link #MOST_PIECE_S}
+  /** @param numbers count per piece
+   * @param pieceS longest duration of a piece, at most {@link #MOST_PIECE_S}
    */
   LaneFlights(RolloutAgent agent, int numbers, double pieceS, LoopLanes loop) {
     super(agent, 0);
@@ -82,24 +76,21 @@ public abstract class LaneFlights extends LaneVehicles {
     filled = 1;
   }
 
-  /** Fills in a piece at rest where {@link #state} tells, from index 0 on. */
+  /** Fills in a piece at rest at the position in {@link #state}, from index 0 on. */
   abstract void rest(float[] pieces);
 
-  /**
-   * Flies {@link #chosen} pieces for {@link #sinceS}.
+  /** Simulates the {@link #chosen} pieces for {@link #sinceS}.
    *
-   * @param at where in an array the positions go, north, then east, and behind them the velocities
+   * @param at offset of the resulting positions, north, then east, followed by the velocities
    */
   abstract void fly(float[] into, int at, boolean withVelocity);
 
-  /** The same to where others {@link #begin}. */
   abstract void flyOn();
 
-  /**
-   * New pieces begin where {@link #chosen} ones were {@link #flyOn flown} to, under commands, in worlds where
-   * {@code acts} is less than {@link LaneOffers#NONE}; elsewhere the chosen ones go on.
+  /** Begins new pieces where the {@link #chosen} ones end after {@link #flyOn}, under commands, in worlds
+   * where {@code acts} is less than {@link LaneOffers#NONE}; elsewhere copies the chosen ones.
    *
-   * @param at where in {@link #pieces} they go
+   * @param at their offset in {@link #pieces}
    */
   abstract void begin(LaneVectors vectors, int at, int[] acts, Directions commanded);
 
@@ -134,9 +125,8 @@ public abstract class LaneFlights extends LaneVehicles {
     begin(vectors, fill(row, vectors, until), acts, commanded);
   }
 
-  /**
-   * Asks for times from a row's begin where a number is at least {@code least} and below {@link
-   * LaneOffers#NONE}, and elsewhere for the begin of the newest piece.
+  /** Requests times from a row's begin where a number is at least {@code least} and below {@link
+   * LaneOffers#NONE}, and elsewhere the begin of the newest piece.
    */
   private void ask(int row, LaneVectors vectors, int[] times, int[] numbers, int least) {
     int newest = (filled - 1 & slots - 1) * WORLDS;
@@ -153,7 +143,7 @@ public abstract class LaneFlights extends LaneVehicles {
     }
   }
 
-  /** Lets pieces that end before the times asked for be followed by others. */
+  /** Appends pieces until none ends before the requested times. */
   private void goOn(int row, LaneVectors vectors) {
     while (findOver(vectors)) {
       copyNewest(over);
@@ -164,7 +154,7 @@ public abstract class LaneFlights extends LaneVehicles {
     }
   }
 
-  /** Whether newest pieces end before the times asked for: where, when, and how long they last. */
+  /** Finds newest pieces that end before the requested times: where, when, and how long they last. */
   private boolean findOver(LaneVectors vectors) {
     int newest = (filled - 1 & slots - 1) * WORLDS;
     float pieceS = pieceGrains * LaneViews.GRAIN_S;
@@ -184,7 +174,7 @@ public abstract class LaneFlights extends LaneVehicles {
     return over.count > 0;
   }
 
-  /** Takes a slot for pieces that begin at these times; in other vectors, it holds what the newest does. */
+  /** Takes a slot for pieces that begin at these times; other vectors copy the newest pieces. */
   private int fill(int row, LaneVectors vectors, int[] times) {
     if (filled >= slots && rowOf[filled + 1 & slots - 1] >= row - keptRows) makeRoom();
     int newest = filled - 1 & slots - 1, slot = filled++ & slots - 1;
@@ -216,7 +206,7 @@ public abstract class LaneFlights extends LaneVehicles {
     }
   }
 
-  /** The newest pieces, and how long after their begin the times asked for are. */
+  /** Chooses the newest pieces, with the time from their begin to the requested times. */
   private void chooseNewest(LaneVectors vectors) {
     int newest = (filled - 1 & slots - 1) * WORLDS;
     FloatVector grainS = FloatVector.broadcast(SPECIES, LaneViews.GRAIN_S);
@@ -238,7 +228,6 @@ public abstract class LaneFlights extends LaneVehicles {
     }
   }
 
-  /** The pieces in which the times asked for lie, and how long after their begin. */
   private void choose(LaneVectors vectors) {
     copyNewest(vectors);
     int[] begins = this.begins, until = this.until;

@@ -6,9 +6,8 @@ import skein.lanes.policy.Directions;
 import skein.lanes.policy.LaneObservation;
 import skein.lanes.policy.LanePolicy;
 
-/**
- * What is known of vehicles in many worlds from their readings and from the commands sent to them, and where
- * they will be. The scalar reference is {@link Forecast}, whose clocks are one here.
+/** What is known of vehicles in many worlds from their readings and commands, and predictions of their
+ * states. The scalar reference is {@link Forecast}, with a single clock here.
  */
 public final class LaneForecast {
   private static final int WORLDS = LanePolicy.WORLDS;
@@ -20,23 +19,21 @@ public final class LaneForecast {
   private final ForecastVehicles[] vehicles;
   private final LaneVehicles[] read;
 
-  /** By vehicle, for the decider asked for last: as {@link ForecastVehicles#predict} puts it. */
+  /** By vehicle, predictions for the last requested decision, as {@link ForecastVehicles#predict} lays them
+   * out.
+   */
   private final float[][] predicted;
 
-  /** Now, and in which ways were laid. */
   private int row, laidRow;
 
-  /** The moments asked for last. */
   private final int[] predictedFor = new int[WORLDS];
 
-  /** What came until then is known in a period's decisions, from its begin. */
+  /** Deadline, from a period's begin, of messages that its decisions consider. */
   final int dueGrains;
 
   private final int[] due = new int[WORLDS];
 
-  /**
-   * @param deadTimeS from a command's arrival until a vehicle is taken to follow it
-   */
+  /** @param deadTimeS from a command's arrival until a vehicle is assumed to follow it */
   LaneForecast(double periodS, int count, double deadTimeS) {
     dueGrains = LaneViews.grains(periodS) / 2;
     Arrays.fill(due, dueGrains);
@@ -47,7 +44,7 @@ public final class LaneForecast {
     predicted = new float[count][LaneObservation.READ * WORLDS];
   }
 
-  /** By what a vehicle is carried forward, and what is read of it. */
+  /** Sets the model that predicts a vehicle, and the source of its readings. */
   void follow(int vehicle, ForecastVehicles by, LaneVehicles read) {
     vehicles[vehicle] = by;
     this.read[vehicle] = read;
@@ -64,28 +61,27 @@ public final class LaneForecast {
     for (ForecastVehicles each : vehicles) each.start();
   }
 
-  /** To a period; they are taken in turn. */
+  /** Moves to a period; periods are processed in order. */
   void startRow(int number) {
     row = number;
     for (ForecastTrack track : tracks) track.startRow(row);
   }
 
-  /**
-   * Takes what was read: of each world one reading at most, received no earlier than the one before.
+  /** Adds readings: one per world at most, received no earlier than those before.
    *
    * @param whose the number of the vehicle, or -1 for none
-   * @param asked when it was asked for, made and received, from the row's begin
+   * @param asked when it was requested, sampled and received, from the row's begin
    */
   void enter(LaneVectors vectors, int[] whose, int[] asked, int[] made, int[] received) {
     for (int v = 0; v < tracks.length; v++)
       tracks[v].arrived.take(vectors, whose, v, asked, made, received, delays);
   }
 
-  /**
-   * Tells where all vehicles are known, when everything has entered that is known in a period's decisions.
+  /** Reports the worlds in which all vehicles are known, after adding everything that a period's decisions
+   * consider.
    *
-   * @param joinedAt becomes {@link #dueGrains} where they are, elsewhere {@link LaneOffers#NONE}
-   * @param madeAt by vehicle, when a reading that is fresh was made, from the row's begin
+   * @param joinedAt set to {@link #dueGrains} in those worlds, elsewhere to {@link LaneOffers#NONE}
+   * @param madeAt by vehicle, when a fresh reading was sampled, from the row's begin
    */
   void tell(int[] joinedAt, int[][] madeAt) {
     Arrays.fill(joinedAt, dueGrains);
@@ -104,10 +100,9 @@ public final class LaneForecast {
     by.enter(arrived.vectors, track, arrived.enters, read.state);
   }
 
-  /**
-   * Carries the newest readings to where the vehicles will be when a command acts that is sent at a moment.
+  /** Predicts the vehicles' states for the time at which a command sent at a moment takes effect.
    *
-   * @param when by world, from the row's begin; {@link LaneOffers#NONE} where it is not decided
+   * @param when by world, from the row's begin; {@link LaneOffers#NONE} where there is no decision
    */
   void predict(LaneVectors vectors, int[] when) {
     boolean isFirst = laidRow < row;
@@ -120,26 +115,25 @@ public final class LaneForecast {
     }
   }
 
-  /** What was predicted last of a vehicle: {@link LaneObservation#X} and so on, by world. */
+  /** The last prediction of a vehicle: {@link LaneObservation#X} and so on, by world. */
   float[] predicted(int vehicle) {
     return predicted[vehicle];
   }
 
-  /** How old its reading is at the moment that was predicted for, s. */
+  /** Age of its reading at the predicted moment, s. */
   public float[] age(int vehicle) {
     return tracks[vehicle].ageS;
   }
 
-  /** How long it takes until a command acts, s. */
+  /** Time until a command takes effect, s. */
   public float[] actsS() {
     return delays.toS;
   }
 
-  /**
-   * Notes the commands of a period.
+  /** Records the commands of a period.
    *
    * @param times when each is sent, from the row's begin; {@link LaneOffers#NONE} where none is
-   * @param answers when it is known to have arrived
+   * @param answers when its arrival becomes known
    */
   void send(int vehicle, LaneVectors vectors, int[] times, int[] answers, Directions directions) {
     tracks[vehicle].send(row, vectors, times, answers, directions);

@@ -9,51 +9,46 @@ import skein.forward.DelayTable;
 import skein.forward.TabledDelays;
 import skein.lanes.policy.LanePolicy;
 
-/**
- * What the controllers of vehicles are offered to decide upon, in many worlds: under each loop
- * another order of the same messages. Nothing of it depends on what is decided, so it is told ahead.
- * The reference are the loops of {@code Rollout}.
+/** The offers to the vehicles' controllers in many worlds: views of the readings, on which they may decide.
+ * Each loop has another order of messages. Offers do not depend on decisions, so they are computed ahead. The
+ * reference are the loops of {@code Rollout}.
  *
- * <p>Worlds go through the flight period by period, together. Offers come in beats: of each world and
- * agent at most one, none of which is earlier than one of a beat before. While some world has an offer
- * in the period, others may have their next ones of {@link #rowsAhead} periods more: with that, nearly
- * all worlds have one in every beat. Times are in {@link DelayTable#GrainNs} from the period's begin.
+ * <p>Worlds advance through the flight period by period, together. Each period has rounds ("beats") of
+ * offers: of each world and agent at most one, none earlier than one of an earlier round. While some world
+ * has an offer in the period, others may already have theirs of {@link #rowsAhead} later periods, so that
+ * nearly all worlds have one in every round. Times are in {@link DelayTable#GrainNs} from the period's begin.
  */
 public abstract class LaneOffers {
   static final int WORLDS = LanePolicy.WORLDS;
 
-  /** In the place of a vehicle: everyone. */
   static final int ALL = -1;
 
-  /** In the place of a time: none. */
   public static final int NONE = LaneViews.NONE;
 
   final LaneDelays delays;
 
   final int vehicles;
 
-  /** Whether every offer is made to all. */
+  /** Whether every offer is made to all vehicles. */
   final boolean together;
 
-  /** So many periods behind the present one, a beat may have offers of. */
+  /** Number of later periods whose offers a round may contain. */
   final int rowsAhead;
 
-  /** How many beats there were. */
   public int beat;
 
-  /** Whose beat it is. */
   int whose = ALL;
 
-  /** The beat's offers: when each is made ({@link #NONE} in worlds without), and when the next one is. */
+  /** The offers of the round: when each is made ({@link #NONE} in worlds without), and when the next one is.
+   */
   public int[] joinedAt, nextAt;
 
-  /** By vehicle: when it was read. */
   final int[][] sampledAt;
 
-  /** By vehicle: 1 where the reading is another than before; null where they all are. */
+  /** By vehicle: 1 where the reading differs from the one before; null where all do. */
   final int[][] fresh;
 
-  /** By agent: the step that its command belongs to, in places of the random sequence from the period's. */
+  /** By agent: the step to which its command belongs, as places of the random sequence from the period's. */
   final int[][] place;
 
   LaneOffers(int vehicles, LaneDelays delays, boolean together, int rowsAhead) {
@@ -66,8 +61,7 @@ public abstract class LaneOffers {
     this.delays = delays;
   }
 
-  /**
-   * Makes arrays for the beat's offers, for loops in which all offers of a world belong to one step.
+  /** Makes arrays for the offers of a round, for loops in which all offers of a world belong to one step.
    *
    * @param places for {@link #place}
    */
@@ -85,10 +79,10 @@ public abstract class LaneOffers {
   /** To a period; they are taken in turn, from 0. */
   abstract void startRow(int row);
 
-  /** To the next beat of the period, if it has one. */
+  /** Moves to the next round of the period, if it has one. */
   abstract boolean nextBeat();
 
-  /** Whether the beat's offers are made to a vehicle's controller. */
+  /** Whether the offers of the round are made to a vehicle's controller. */
   final boolean isFor(int vehicle) {
     return whose == ALL || whose == vehicle;
   }

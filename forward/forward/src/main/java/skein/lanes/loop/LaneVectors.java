@@ -7,16 +7,14 @@ import static skein.simd.LaneMath.LANES;
 import jdk.incubator.vector.IntVector;
 import skein.lanes.policy.LanePolicy;
 
-/** Which vectors of a block of worlds a pass goes over: those in which something happens. Mutable. */
+/** The vectors of a block of worlds that a pass processes: those in which something happens. Mutable. */
 public final class LaneVectors {
   private static final int WORLDS = LanePolicy.WORLDS;
 
-  /** The first worlds of these vectors. */
   public final int[] first = new int[WORLDS / LANES];
 
   public int count;
 
-  /** All vectors. */
   public static LaneVectors all() {
     LaneVectors all = new LaneVectors();
     all.takeAll();
@@ -28,10 +26,9 @@ public final class LaneVectors {
     for (int i = 0; i < WORLDS; i += LANES) first[count++] = i;
   }
 
-  /**
-   * Those in which some world has a time.
+  /** Selects the vectors in which some world has a time.
    *
-   * @param noneAt in the place of a time, above all
+   * @param noneAt stands for no time, above all
    */
   public void take(int[] times, int noneAt) {
     IntVector none = IntVector.broadcast(INTS, noneAt);

@@ -13,18 +13,16 @@ import skein.forward.RolloutAgent;
 import skein.lanes.policy.Directions;
 import skein.lanes.policy.LanePolicy;
 
-/**
- * The vehicles of one role in many worlds, whose commands act at times of their own in each. Times
- * count from the begin of a period; periods are taken in turn. {@link LagVehicles} and {@link
- * LaneFlights} are the two ways to keep what has not acted yet.
+/** The vehicles of one role in many worlds, whose commands take effect at different times in each. Times
+ * count from the begin of a period; periods are processed in order. {@link LagVehicles} and {@link
+ * LaneFlights} are the two representations of commands not yet in effect.
  */
 public abstract class LaneVehicles {
   static final int WORLDS = LanePolicy.WORLDS;
 
-  /**
-   * Where each world's numbers begin in {@link #state}: position at the period's begin, m; position and
-   * velocity as read last, m and m/s; north, then east. The kind of vehicle may keep more from {@link
-   * #OWN} on: passes over many arrays spend their time on their addresses.
+  /** Offsets of each world's numbers in {@link #state}: position at the period's begin, m; position and
+   * velocity of the last reading, m and m/s; north, then east. Subclasses may keep more from {@link #OWN} on.
+   * A single array, because passes over many arrays spend their time on addresses.
    */
   static final int X = 0,
       Y = WORLDS,
@@ -39,15 +37,13 @@ public abstract class LaneVehicles {
   private final float[] kept = new float[4 * WORLDS];
   private final float[] startX = new float[WORLDS], startY = new float[WORLDS];
 
-  /**
-   * @param own numbers of each world that the kind of vehicle keeps from {@link #OWN} on
-   */
+  /** @param own count of numbers per world that the subclass keeps from {@link #OWN} on */
   LaneVehicles(RolloutAgent agent, int own) {
     state = new float[OWN + own * WORLDS];
     for (int world = 0; world < WORLDS; world++) place(world, agent);
   }
 
-  /** Takes where a world's vehicle starts from now on. */
+  /** Sets where a world's vehicle starts from now on. */
   public final void place(int world, RolloutAgent agent) {
     startX[world] = (float) agent.startX();
     startY[world] = (float) agent.startY();
@@ -60,36 +56,32 @@ public abstract class LaneVehicles {
     for (int y : new int[] {Y, SEEN_Y}) System.arraycopy(startY, 0, state, y, WORLDS);
   }
 
-  /**
-   * Reads the vehicles where {@code fresh} is 1, or wherever something was joined.
+  /** Reads the vehicles where {@code fresh} is 1, or wherever a view was joined.
    *
    * @param vectors in which some world is read
-   * @param joined less than {@link LaneOffers#NONE} where something was
+   * @param joined less than {@link LaneOffers#NONE} where a view was joined
    * @param at when they are read, from the row's begin, in grains
    */
   abstract void read(
       int row, LaneVectors vectors, int[] joined, int[] at, int[] fresh, boolean withVelocity);
 
-  /**
-   * Flies to a row's begin.
+  /** Simulates up to a row's begin.
    *
-   * @param isLookedAt whether somebody looks at where they are then
+   * @param isLookedAt whether their positions then are used
    */
   abstract void flyToRow(int row, boolean isLookedAt);
 
-  /**
-   * Lets commands act, none earlier than the one before.
+  /** Lets commands take effect, none earlier than the one before.
    *
    * @param vectors in which some command does
    * @param acts when, from the row's begin, in grains; {@link LaneOffers#NONE} where none does
    */
   abstract void act(int row, LaneVectors vectors, int[] acts, Directions commanded);
 
-  /**
-   * Tells where the vehicles were at moments of the near past, and leaves what was read last as it is.
+  /** Returns the vehicles' positions at recent moments, without changing the last readings.
    *
-   * @param vectors in which somebody asks
-   * @param at when, from the row's begin, in grains; {@link LaneOffers#NONE} where nobody asks
+   * @param vectors with a requested moment
+   * @param at when, from the row's begin, in grains; {@link LaneOffers#NONE} where none is requested
    * @param north and {@code east}: positions, m
    */
   final void look(int row, LaneVectors vectors, int[] at, float[] north, float[] east) {
@@ -100,12 +92,11 @@ public abstract class LaneVehicles {
     System.arraycopy(kept, 0, state, SEEN_X, kept.length);
   }
 
-  /** Keeps what was read before. */
   final void remember() {
     System.arraycopy(state, SEEN_X, kept, 0, kept.length);
   }
 
-  /** Puts back what was {@link #remember remembered} where nothing is fresh. */
+  /** Restores the {@link #remember remembered} readings where nothing is fresh. */
   final void keep(int[] fresh) {
     for (int i = 0; i < WORLDS; i += LANES) {
       VectorMask<Float> isOld = IntVector.fromArray(INTS, fresh, i).compare(EQ, 0).cast(SPECIES);

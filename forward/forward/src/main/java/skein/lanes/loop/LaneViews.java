@@ -19,14 +19,13 @@ import skein.forward.TabledDelays;
 import skein.lanes.policy.LanePolicy;
 import skein.simd.WorldRandom;
 
-/**
- * The views of many worlds under the {@code stream} loop, row by row: row m has the view of
- * questions m. Nearly always all are answered before anything of the next row, which is looked
- * after here by lanes; where it is not so, the world's views come one by one from a {@link
- * ViewSource} until it is so again. Then a row may have no view of a world, or several: so a
- * row has one or more beats, with at most one view each.
+/** The views of many worlds under the {@code stream} loop, row by row: row m has the view of request m.
+ * Nearly always all its answers arrive before anything of the next row, which SIMD code handles here; where
+ * it is otherwise, a {@link ViewSource} computes the world's views one by one until the regular case returns.
+ * Then a row may have no view of a world, or several: so a row has one or more rounds, with at most one view
+ * each.
  *
- * <p>Times are in grains of 4 ns ({@link DelayTable#GrainNs}) from the row's tick, and the same as in
+ * <p>Times are in grains of 4 ns ({@link DelayTable#GrainNs}) from the row's tick, and equal to those of
  * {@link Rollout} to the nanosecond.
  */
 public final class LaneViews {
@@ -38,38 +37,36 @@ public final class LaneViews {
   /** {@link DelayTable#GrainNs} in seconds. */
   public static final float GRAIN_S = GRAIN_NS * 1e-9f;
 
-  /** In the place of a time: no view. */
   public static final int NONE = Integer.MAX_VALUE;
 
-  /** As late as a time counts. */
+  /** Limit of a time, to which later ones are clipped. */
   private static final int LATEST = 2_000_000_000;
 
   private static final int[] AT_ONCE = new int[WORLDS];
   private static final LaneVectors ALL = LaneVectors.all();
 
-  /** Rows kept: more than are looked ahead. */
+  /** Number of rows kept: more than are computed ahead. */
   private static final int ROWS = 8;
 
-  /**
-   * Rows within which questions are answered where all is regular, at most: no question of a later
-   * row can be answered before, and the window is never full.
+  /** In the regular case, requests are answered within this number of rows: no request of a later row can be
+   * answered before, and the window is never full.
    */
   private static final int MOST_AHEAD = 4;
 
-  /** So many rows before its own a view may be told. */
+  /** A view may be known this number of rows before its own. */
   static final int ROWS_EARLY = 1;
 
   private final int ahead;
 
   private final long periodNs;
 
-  /** Off, all views are told one by one. */
+  /** If false, all views are computed one by one. */
   private final boolean shortCut;
 
   private final int periodGrains;
   private final int patienceGrains, latestGrains;
 
-  /** By world, made when some view of it is to come one by one. */
+  /** By world; made when a view must be computed one by one. */
   private final ViewSource[] sources = new ViewSource[WORLDS];
 
   private final Supplier<ViewSource> newSource;
@@ -97,7 +94,7 @@ public final class LaneViews {
   private final int[] irregular = new int[WORLDS];
   private int irregularCount;
 
-  /** Whether a world's source tells a view that has not had its beat. */
+  /** Whether a world's source has a view whose round is still to come. */
   private final boolean[] hasNext = new boolean[WORLDS];
 
   // The beat's views: when each is joined, when the world's next one is; what its readings were
@@ -106,18 +103,18 @@ public final class LaneViews {
   final int[][] place;
   int[][] sampledAt;
 
-  /** Whether a world has no view in this beat, or one with an old reading. */
+  /** Whether a world has no view in this round, or one with an old reading. */
   boolean hasOld;
 
-  /** Whether some reading was asked as another than the row's. */
+  /** Whether some reading was requested in another row than the present one. */
   private boolean hasOther;
 
-  /** 1 where the beat's view has a reading of the vehicle that the view before had not. */
+  /** 1 where the round's view has a reading of the vehicle that the view before lacked. */
   final int[][] isFresh;
 
   private int row;
 
-  /** Steps that were looked at for what is irregular. */
+  /** Number of steps that were checked for irregularities. */
   private int lookedAt;
 
   private boolean more;
@@ -146,7 +143,7 @@ public final class LaneViews {
     return Nanos.of(seconds) % GRAIN_NS == 0;
   }
 
-  /** Back to the start of an episode. */
+  /** Resets to the start of an episode with these worlds. */
   void start(int[] worldKeys, TabledDelays[] worldLinks) {
     keys = worldKeys;
     links = worldLinks;
@@ -159,11 +156,9 @@ public final class LaneViews {
     for (int step = 0; step < ahead; step++) ask(step);
   }
 
-  /**
-   * When question {@code step} reaches the vehicles, and when it is answered. With that, looks for
-   * worlds whose view of the step before is not simply that of that step's questions. An answer of
-   * this step may have come before views of the steps before, but not before the one of the row
-   * now.
+  /** Computes when request {@code step} reaches the vehicles, and when it is answered. Also finds the worlds
+   * whose view of the step before does not simply consist of that step's answers. An answer of this step may
+   * be received before views of the steps before, but not before the present row's.
    */
   private void ask(int step) {
     for (int vehicle = 0; vehicle < vehicles; vehicle += 2) answer(vehicle, step);
@@ -177,9 +172,8 @@ public final class LaneViews {
     }
   }
 
-  /**
-   * The same of a vehicle and the next one, if there is one: delays of a pair come from one sequence, and a
-   * look into a table takes as long as a dozen other operations, which go on meanwhile.
+  /** Does so for a vehicle and the next one, if there is one: delays of a pair come from one sequence, and a
+   * table look-up takes as long as a dozen other operations, which overlap with it.
    */
   private void answer(int vehicle, int step) {
     int place = LaneDelays.placeOf(step), slot = step % ROWS, slotBefore = (step + ROWS - 1) % ROWS;
@@ -256,7 +250,9 @@ public final class LaneViews {
     }
   }
 
-  /** When a step's question reaches a vehicle, and when it is answered, over links whose tables change. */
+  /** Computes when a step's request reaches a vehicle, and when it is answered, over links whose tables
+   * change.
+   */
   private void draw(int vehicle, int step, int[] to, int[] roundTrip) {
     int place = LaneDelays.placeOf(step), line = Delays.question(0, vehicle);
     long begin = (long) step * periodGrains;
@@ -282,7 +278,7 @@ public final class LaneViews {
     irregularUpTo[world] = Integer.MAX_VALUE;
   }
 
-  /** To the next view of a world whose views come one by one. */
+  /** Moves to the next view of a world whose views are computed one by one. */
   private void goOn(int world) {
     ViewSource source = sources[world];
     source.next();
@@ -294,7 +290,7 @@ public final class LaneViews {
     else stayIrregular(world);
   }
 
-  /** Whether {@link #ask} found nothing irregular, in one world. */
+  /** Whether {@link #ask} found nothing irregular in one world. */
   private boolean isRegular(int world, int step) {
     int[][] to = reached[step % ROWS], nextTo = reached[(step + 1) % ROWS];
     int end = last[step % ROWS][world];
@@ -305,7 +301,7 @@ public final class LaneViews {
         && end <= latestGrains;
   }
 
-  /** To the first beat of a row; rows are taken in turn, from 0. */
+  /** Moves to the first round of a row; rows are taken in turn, from 0. */
   void startRow(int number) {
     row = number;
     ask(row + ahead);
@@ -323,7 +319,7 @@ public final class LaneViews {
     }
   }
 
-  /** To the next beat of the row, if it has one. */
+  /** Moves to the next round of the row, if it has one. */
   boolean nextBeat() {
     if (!more) return false;
     Arrays.fill(joinedAt, NONE);
@@ -332,9 +328,8 @@ public final class LaneViews {
     return irregularBeat(false);
   }
 
-  /**
-   * Puts the beat's views of irregular worlds where the others' are; whether there were any. A world without
-   * one in a row may have several in the next. Then the first is told now: a beat more costs all worlds.
+  /** Inserts the round's views of irregular worlds; returns whether there were any. A world without one in a
+   * row may have several in the next. Then the first is inserted now: an additional round costs all worlds.
    */
   private boolean irregularBeat(boolean isFirst) {
     more = false;

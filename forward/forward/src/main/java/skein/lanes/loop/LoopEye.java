@@ -18,10 +18,9 @@ import skein.lanes.policy.CameraTrackerLanes;
 import skein.lanes.policy.LanePolicy;
 import skein.lanes.timetable.ImageSource;
 
-/**
- * An eye in many worlds, whose images are taken and known at times of their own in each, which {@link
- * ImageSource}s tell. They are taken when the vehicles' flight until then is known: with the next decision,
- * or some time later. Until a decision the camera looks to where it did after the one before.
+/** A camera in many worlds, whose images are taken and become known at different times in each, as {@link
+ * ImageSource}s compute them. Images are simulated once the vehicles' flight until then is known: with the
+ * next decision, or some time later. Until a decision the camera keeps its direction.
  */
 public class LoopEye extends CameraTrackerLanes {
   private static final int WORLDS = LanePolicy.WORLDS, NONE = LaneOffers.NONE;
@@ -29,14 +28,14 @@ public class LoopEye extends CameraTrackerLanes {
   private static final int RING = ImageTiming.Ring(), GRAIN_NS = DelayTable.GrainNs();
   private static final LaneVectors ALL = LaneVectors.all();
 
-  /** In one go a world's images are taken, and known, so many times at most. */
+  /** Limit of a world's images taken, and of those becoming known, in one pass. */
   private static final int MOST = 8;
 
   private final ImageSource[] sources = new ImageSource[WORLDS];
   private final LaneVehicles ours, theirs;
   private final long periodNs;
 
-  /** When the period begins. */
+  /** The begin of the period, since the episode's begin. */
   private long beginNs;
 
   private int row;
@@ -53,10 +52,9 @@ public class LoopEye extends CameraTrackerLanes {
   private final int[] knows = new int[WORLDS];
   private final int[][] known = new int[MOST][WORLDS], newer = new int[MOST][WORLDS];
 
-  /** What each world's images showed, by the image modulo {@link #RING}, and when they were taken, s. */
+  /** Results of each world's images, by the image modulo {@link #RING}, and when they were taken, s. */
   private final float[] images = new float[RING * IMAGE * WORLDS], imagesS = new float[RING * WORLDS];
 
-  /** In which vectors something happens. */
   private final LaneVectors some = new LaneVectors();
 
   // Images that are taken together: when, where both vehicles are, what is shown.
@@ -75,12 +73,11 @@ public class LoopEye extends CameraTrackerLanes {
       reached = new float[BELIEF * WORLDS],
       replayed = new float[BELIEF * WORLDS];
 
-  /** So long before a period's begin, all images are taken. */
+  /** All images earlier than this before a period's begin have been taken. */
   private final int[] longAgo = new int[WORLDS];
 
-  /**
-   * @param own has an eye
-   * @param ours who fly as it, in all worlds
+  /** @param own the agent with the camera
+   * @param ours the vehicles of that agent, in all worlds
    */
   public LoopEye(
       CameraTrackerLanes.Forms forms,
@@ -98,7 +95,7 @@ public class LoopEye extends CameraTrackerLanes {
     Arrays.fill(longAgo, -LaneViews.grains(Math.min(loop.periodS(), LaneFlights.MOST_PIECE_S)));
   }
 
-  /** Back to the start of an episode. */
+  /** Resets to the start of an episode with these worlds. */
   public void start(int[] worldKeys, TabledDelays[] links) {
     forget();
     row = 0;
@@ -106,19 +103,20 @@ public class LoopEye extends CameraTrackerLanes {
     for (int world = 0; world < WORLDS; world++) sources[world].begin(worldKeys[world], links[world]);
   }
 
-  /** To a period; they are taken in turn. Images wait for decisions only as long as flights are remembered. */
+  /** Moves to a period; they are processed in order. Images wait for decisions only as long as flights are
+   * kept.
+   */
   public void startRow(int number) {
     row = number;
     beginNs = row * periodNs;
     see(ALL, longAgo);
   }
 
-  /**
-   * Tells what is decided upon, and turns the camera there where it is decided.
+  /** Fills the estimates for decisions, and points the camera at them where a decision is made.
    *
-   * @param decides when, from the period's begin; {@link LaneOffers#NONE} where it is not
-   * @param own where the own vehicles are taken to be: north from {@code x} on, east from {@code y} on
-   * @param actsS how long until what is decided acts, where {@code own} is for that moment; else null
+   * @param decides when, from the period's begin; {@link LaneOffers#NONE} where there is none
+   * @param own estimated positions of the own vehicles: north from {@code x} on, east from {@code y} on
+   * @param actsS time until the decision takes effect, if {@code own} is for that moment; else null
    */
   public void look(LaneVectors vectors, int[] decides, float[] own, int x, int y, float[] actsS) {
     see(vectors, decides);
@@ -143,11 +141,10 @@ public class LoopEye extends CameraTrackerLanes {
     return (float) (ns * 1e-9);
   }
 
-  /**
-   * Takes images, and what they show, until moments. Until a decision the camera does not turn, so that all are
-   * taken before any is known.
+  /** Takes images, and evaluates them, up to given moments. The camera does not turn between decisions, so
+   * all images are taken before any is evaluated.
    *
-   * @param until from the period's begin; {@link LaneOffers#NONE} in worlds that are left as they are
+   * @param until from the period's begin; {@link LaneOffers#NONE} in worlds that stay unchanged
    */
   private void see(LaneVectors vectors, int[] until) {
     boolean more = true;
@@ -158,7 +155,7 @@ public class LoopEye extends CameraTrackerLanes {
     }
   }
 
-  /** What happens to the images in one go; whether there may be more. */
+  /** Collects the events of images of one pass; returns whether there may be more. */
   private boolean gather(LaneVectors vectors, int[] until) {
     boolean more = false;
     for (int k = 0; k < vectors.count; k++)
@@ -188,7 +185,7 @@ public class LoopEye extends CameraTrackerLanes {
     return more;
   }
 
-  /** In which vectors some world has more than so many; whether any has. */
+  /** Selects the vectors in which some world's count exceeds a number; returns whether any has one. */
   private boolean find(LaneVectors vectors, int[] counts, int n) {
     some.count = 0;
     for (int k = 0; k < vectors.count; k++) {
@@ -198,7 +195,7 @@ public class LoopEye extends CameraTrackerLanes {
     return some.count > 0;
   }
 
-  /** Takes each world's n-th image of this go. */
+  /** Takes each world's n-th image of this pass. */
   private void take(int n) {
     for (int k = 0; k < some.count; k++)
       for (int i = some.first[k], end = i + LANES; i < end; i++)
@@ -212,7 +209,7 @@ public class LoopEye extends CameraTrackerLanes {
       for (int i = some.first[k], end = i + LANES; i < end; i++) if (takes[i] > n) keep(n, i);
   }
 
-  /** Keeps what a world's n-th image of this go shows. */
+  /** Stores the result of a world's n-th image of this pass. */
   public void keep(int n, int world) {
     int image = taken[n][world], to = image * IMAGE * WORLDS + world;
     for (int number = 0; number < IMAGE * WORLDS; number += WORLDS) images[to + number] = shown[world + number];
@@ -220,7 +217,7 @@ public class LoopEye extends CameraTrackerLanes {
     imagesS[image * WORLDS + world] = seconds(takenNs[n][world]);
   }
 
-  /** Each world's n-th image of this go that becomes known enters the belief. */
+  /** Updates the estimate by each world's n-th image that becomes known in this pass. */
   private void join(int n) {
     float[] takenS = takenS();
     boolean anyOlder = false;
@@ -248,7 +245,7 @@ public class LoopEye extends CameraTrackerLanes {
     intoS[world] = imagesS[image * WORLDS + world];
   }
 
-  /** One belief, and another where an older image enters. */
+  /** Merges one estimate with another where an older image is added. */
   private void blend(float[] belief, float[] whereOlder, float[] into) {
     for (int k = 0; k < some.count; k++) {
       int i = some.first[k];

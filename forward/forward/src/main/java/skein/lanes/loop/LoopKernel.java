@@ -11,13 +11,12 @@ import skein.forward.TabledDelays;
 import skein.lanes.policy.LanePolicy;
 import skein.lanes.score.Scoreboard;
 
-/**
- * Flies many worlds at a time, each with delays of its own, under a loop's full event timing: duels and
- * teams, with vehicles whose flight is known in pieces. A loop tells what is offered when ({@link
- * LaneOffers}), {@link LaneAgents} decide upon it and send, {@link LaneVehicles} fly. {@code Rollout} is
- * the scalar reference: both draw the same delays from a world's key, and every event happens at the same
- * nanosecond in both. Nothing is allocated after construction but where links need more room than any
- * before; one instance per thread.
+/** Simulates many worlds in parallel, each with its own delays, under a loop's full event timing: duels and
+ * teams, with vehicles that move in closed-form pieces. A loop computes the offers ({@link LaneOffers}),
+ * {@link LaneAgents} decide on them and send commands, {@link LaneVehicles} move. {@code Rollout} is the
+ * scalar reference: both draw equal delays from a world's key, and every event happens at an equal nanosecond
+ * in both. Allocates nothing after construction, unless links need more room than any before; one instance
+ * per thread.
  */
 public final class LoopKernel {
   public static final int WORLDS = LanePolicy.WORLDS;
@@ -27,23 +26,22 @@ public final class LoopKernel {
   private final LaneOffers offers;
   private final LaneAgents[] agents;
 
-  /** The same; those who see come last. */
+  /** The agents in the order of their decisions: those with cameras are last. */
   private final LaneAgents[] turns;
   private final Scoreboard scores;
   private final boolean withVelocity, withAges;
 
-  /** Whether readings are carried forward: then one counts before all vehicles are known. */
+  /** Whether readings are predicted: then one is added before all vehicles are known. */
   private final boolean isForecast;
 
   private static final LaneVectors ALL = LaneVectors.all();
   private final int[][] readAt;
 
-  /** In which somebody is offered something in a beat. */
+  /** Vectors with an offer in the round. */
   private final LaneVectors vectors = new LaneVectors();
 
-  /**
-   * @param agents by the vehicle's number, made with the same loop
-   * @param scores by which they are judged
+  /** @param agents by the vehicle's number, made with this loop
+   * @param scores receives the distances
    */
   public LoopKernel(LoopLanes loop, LaneAgents[] agents, Scoreboard scores) {
     this.agents = agents;
@@ -66,8 +64,7 @@ public final class LoopKernel {
     withAges = needsAges;
   }
 
-  /**
-   * Flies one episode in each of {@link #WORLDS} worlds, by the policies' parameters.
+  /** Simulates one episode in each of {@link #WORLDS} worlds, by the policies' parameters.
    *
    * @param worldKeys {@link skein.simd.WorldRandom#key} of each world
    * @param links of each world; none may be slower than the loop was made for
@@ -127,7 +124,7 @@ public final class LoopKernel {
     if (counts) scores.score(timeS);
   }
 
-  /** From a row's begin to the end of the episode, as far as integers count. */
+  /** From a row's begin to the end of the episode, limited to the range of integers. */
   private int grainsToEnd(int row) {
     double seconds = (steps - row) * periodS;
     return seconds < 7 ? LaneViews.grains(seconds) : Integer.MAX_VALUE;

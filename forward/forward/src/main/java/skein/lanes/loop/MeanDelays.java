@@ -23,10 +23,9 @@ final class MeanDelays {
     for (float[] each : new float[][] {toS, fromS, readings}) Arrays.fill(each, 0);
   }
 
-  /**
-   * Takes readings where {@code enters} is 1.
+  /** Adds readings where {@code enters} is 1.
    *
-   * @param asked when each was asked for, made and received, in grains
+   * @param asked when each was requested, sampled and received, in grains
    */
   void take(LaneVectors vectors, int[] enters, int[] asked, int[] made, int[] received) {
     FloatVector grainS = FloatVector.broadcast(SPECIES, LaneViews.GRAIN_S),

@@ -16,9 +16,8 @@ import skein.simd.BoundFunction;
 import skein.simd.LaneCall;
 import skein.vehicle.Plant;
 
-/**
- * Vehicles that move by a {@link Plant}, whose commands act at times of their own in each world. A
- * piece is a step, of which {@link PlantPieces} tells what is kept; before the first command there is
+/** Vehicles that move by a {@link Plant}, whose commands take effect at different times in each world. A
+ * piece is one step, whose stored numbers {@link PlantPieces} defines; before the first command there is
  * none, and the vehicle rests. The scalar reference is {@code skein.forward.PlantVehicle}.
  */
 public final class PlantFlights extends LaneFlights {
@@ -28,7 +27,7 @@ public final class PlantFlights extends LaneFlights {
   private final int[] starts;
   private final LaneCall flown, position, look;
 
-  /** The state flown to. */
+  /** The state at the end of the simulated pieces. */
   private final float[] reached;
 
   public PlantFlights(RolloutAgent agent, PlantLanes lanes, LoopLanes loop) {

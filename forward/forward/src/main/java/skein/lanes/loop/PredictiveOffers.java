@@ -17,18 +17,17 @@ import skein.forward.Delays;
 import skein.forward.LoopTiming;
 import skein.forward.TabledDelays;
 
-/**
- * The {@code predictive} loop: every vehicle is asked once a period, and in the middle between two questions
- * all are offered what is known then. Answers enter a {@link LaneForecast} in the order in which they come.
+/** The {@code predictive} loop: every vehicle is read once a period, and half-way between two requests all
+ * vehicles are offered what is known then. Answers enter a {@link LaneForecast} in the order of their
+ * arrival.
  *
- * <p>With the window full a question waits until one under way has ended: no earlier than that one of all
- * which ends as the n-th from behind, where n may be under way. One due meanwhile is missed. Of what happens
- * in the same nanosecond, what was known first is first, as in {@code Rollout}.
+ * <p>With the window of n requests full, a request waits until one ends: until the n-th latest of all ends. A
+ * request that becomes due meanwhile is missed. Of events in one nanosecond, those known first are first, as
+ * in {@code Rollout}.
  */
 final class PredictiveOffers extends LaneOffers {
   private static final int STEP = LaneDelays.placeOf(1);
 
-  /** Long past. */
   private static final int PAST = -1_000_000_000;
 
   private static final LaneVectors ALL = LaneVectors.all();
@@ -36,10 +35,10 @@ final class PredictiveOffers extends LaneOffers {
   private final LaneForecast forecast;
   private final int periodGrains, timeoutGrains, due, window;
 
-  /** Rows kept, a power of two: those within which a question waits and fails. */
+  /** Number of rows kept, a power of two: covers the time for which a request waits and fails. */
   private final int ring;
 
-  /** Whether on some link questions may have to wait. */
+  /** Whether requests may have to wait on some link. */
   private boolean mayWait;
 
   // By vehicle: places of the next question's random numbers, when the last one began, and the latest ends
@@ -54,7 +53,7 @@ final class PredictiveOffers extends LaneOffers {
 
   private final int[] there = new int[WORLDS], back = new int[WORLDS];
 
-  /** The oldest row to which answers may be missing. */
+  /** The oldest row whose answers may be pending. */
   private int oldest;
 
   private int row;
@@ -66,14 +65,12 @@ final class PredictiveOffers extends LaneOffers {
       madeAt = new int[WORLDS],
       receivedAt = new int[WORLDS];
 
-  /** In which some world may have answers to take. */
+  /** Vectors in which some world may have pending answers. */
   private final LaneVectors searching = new LaneVectors();
 
   private boolean more;
 
-  /**
-   * @param maxDelayS the longest one-way delay of any link
-   */
+  /** @param maxDelayS the longest one-way delay of any link */
   PredictiveOffers(LoopTiming.Predictive timing, int vehicles, double maxDelayS, LaneForecast forecast) {
     super(vehicles, new LaneDelays(), true, 0);
     this.forecast = forecast;
@@ -130,7 +127,6 @@ final class PredictiveOffers extends LaneOffers {
     return first;
   }
 
-  /** The row's question to a vehicle. */
   private void ask(int vehicle) {
     int slot = row & ring - 1, line = Delays.question(0, vehicle);
     int[] asks = asked[vehicle][slot], reads = read[vehicle][slot], answers = answered[vehicle][slot];
@@ -157,7 +153,7 @@ final class PredictiveOffers extends LaneOffers {
     }
   }
 
-  /** When the question is asked; one that is missed has no answer. */
+  /** Computes when the request is sent; one that is missed has no answer. */
   private void await(int vehicle, int[] asked, int[] answers) {
     int[] begun = began[vehicle], lastOf = latest[vehicle][window - 1];
     IntVector none = IntVector.broadcast(INTS, NONE),
@@ -176,7 +172,7 @@ final class PredictiveOffers extends LaneOffers {
     }
   }
 
-  /** What comes after the question, where it is asked. */
+  /** Computes the events after the request, where it is sent. */
   private void goOn(int vehicle, int[] asked, int[] answers) {
     int[] places = this.places[vehicle];
     IntVector none = IntVector.broadcast(INTS, NONE),
@@ -202,7 +198,7 @@ final class PredictiveOffers extends LaneOffers {
     }
   }
 
-  /** Takes each world's next answer that is known when it is decided; whether there was any. */
+  /** Takes each world's next answer that is known at its decision; returns whether there was any. */
   private boolean take() {
     IntVector none = IntVector.broadcast(INTS, NONE),
         known = IntVector.broadcast(INTS, due),

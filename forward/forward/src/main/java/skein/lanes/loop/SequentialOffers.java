@@ -14,17 +14,16 @@ import skein.forward.Delays;
 import skein.forward.LoopTiming;
 import skein.forward.TabledDelays;
 
-/**
- * The rounds of the {@code sequential} loop: one vehicle is asked after the other, all are offered
- * what was read at the last answer. A round whose question failed offers nothing.
+/** The rounds of the {@code sequential} loop: the vehicles are read in sequence, and at the last answer all
+ * are offered the readings. A round with a failed request offers nothing.
  */
 final class SequentialOffers extends LaneOffers {
   private static final int STEP = LaneDelays.placeOf(1);
 
-  /** Rounds last for longer and for shorter by so much until worlds are apart. */
+  /** By this much, worlds may differ in the progress of their rounds, s. */
   private static final double AHEAD_S = 0.5;
 
-  /** As far as rounds are looked ahead for one that succeeds. */
+  /** Limit of the search for a round that succeeds. */
   private static final int HORIZON = LaneViews.grains(4);
 
   private final int periodGrains, timeoutGrains;
@@ -37,13 +36,13 @@ final class SequentialOffers extends LaneOffers {
   private final int[][] read, laterRead;
   private final int[] places = new int[WORLDS], laterPlaces = new int[WORLDS];
 
-  /** By vehicle: the delays of its question and of the answer, in turn. */
+  /** By vehicle: the delay of its request, then of the answer. */
   private final int[][] drawn;
 
   private final int[] beatPlaces = new int[WORLDS];
   private int row;
 
-  /** In which some world looks for its next round. */
+  /** Vectors in which some world needs its next round. */
   private final LaneVectors searching = new LaneVectors();
 
   SequentialOffers(LoopTiming.Sequential timing, int vehicles) {
@@ -104,7 +103,7 @@ final class SequentialOffers extends LaneOffers {
     return true;
   }
 
-  /** Fills up what each world knows of its next two rounds. */
+  /** Computes the next two rounds of each world. */
   private void find() {
     while (shift()) {
       delays.drawInTurn(searching, tickPlace, 0, (long) row * periodGrains, tick, drawn);
@@ -112,7 +111,7 @@ final class SequentialOffers extends LaneOffers {
     }
   }
 
-  /** Takes the later round for the next where that is over; whether some world has to look for one. */
+  /** Makes the later round the next where that is over; returns whether some world needs another. */
   private boolean shift() {
     IntVector none = IntVector.broadcast(INTS, NONE), horizon = IntVector.broadcast(INTS, HORIZON);
     searching.count = 0;
@@ -138,7 +137,7 @@ final class SequentialOffers extends LaneOffers {
     return searching.count > 0;
   }
 
-  /** One more round, in worlds that look for one. */
+  /** Simulates one more round, in worlds that need one. */
   private void flyRound() {
     IntVector none = IntVector.broadcast(INTS, NONE),
         horizon = IntVector.broadcast(INTS, HORIZON),

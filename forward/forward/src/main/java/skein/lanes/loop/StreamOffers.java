@@ -3,14 +3,12 @@ package skein.lanes.loop;
 import skein.forward.LoopTiming;
 import skein.forward.TabledDelays;
 
-/** The views of the {@code stream} loop, offered to all vehicles at once. */
+/** The views of the {@code stream} loop, offered to all vehicles simultaneously. */
 final class StreamOffers extends LaneOffers {
   private final LaneViews views;
   private boolean isFirst;
 
-  /**
-   * @param maxDelayS the longest one-way delay of any link
-   */
+  /** @param maxDelayS the longest one-way delay of any link */
   StreamOffers(
       LoopTiming.Stream timing, int vehicles, double durationS, double maxDelayS, boolean shortCut) {
     this(new LaneViews(timing, vehicles, durationS, maxDelayS, shortCut));

@@ -5,11 +5,10 @@ import java.util.function.ToIntFunction;
 import skein.forward.DelayTable;
 import skein.forward.TableStretch;
 
-/** Which table of delays a world's link has at which time of a flight. Mutable. */
+/** The delay table of a world's link over the time of a flight. Mutable. */
 final class TableCourse {
   private final ToIntFunction<DelayTable> beginOf;
 
-  /** The link, as far as it is known. */
   private TableStretch stretch;
 
   // Of each stretch: where its table begins, and until when it holds, since the flight's begin, in grains.
@@ -18,17 +17,14 @@ final class TableCourse {
   private long[] ends = new long[4];
   private int count;
 
-  /** That of the time asked for last: most times lie near one another. */
+  /** The table of the last requested time: most times lie near one another. */
   private int at;
 
-  /**
-   * @param beginOf where a table begins in {@link LaneDelays#delays}
-   */
+  /** @param beginOf where a table begins in {@link LaneDelays#delays} */
   TableCourse(ToIntFunction<DelayTable> beginOf) {
     this.beginOf = beginOf;
   }
 
-  /** Back to the start of a flight. */
   void start(TableStretch first) {
     stretch = first;
     count = 0;
@@ -36,7 +32,7 @@ final class TableCourse {
     know();
   }
 
-  /** Where the table of a message begins that is sent at this time, since the flight's begin, in grains. */
+  /** Where the table begins for a message sent at this time, since the flight's begin, in grains. */
   int tableAt(long sentAt) {
     while (sentAt >= ends[at]) {
       if (at + 1 == count) {

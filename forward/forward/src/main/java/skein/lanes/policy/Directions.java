@@ -11,7 +11,7 @@ public final class Directions {
     sin = new float[count];
   }
 
-  /** Makes room for at least so many; forgets all if it has to grow. */
+  /** Ensures this capacity; discards all directions if it must grow. */
   public void reserve(int count) {
     if (cos.length < count) {
       cos = new float[count];

@@ -7,17 +7,15 @@ import java.util.Arrays;
 import jdk.incubator.vector.FloatVector;
 import skein.simd.LaneFunction;
 
-/**
- * What the policies of many worlds see at a decision: see {@code skein.policy.HeadingPolicy}. Of the two
- * vehicles' readings it says where they stand: policies take the one from the other in their own pass.
+/** The observations of many worlds' policies at a decision: see {@code skein.policy.HeadingPolicy}. Refers to
+ * the two vehicles' readings by their offsets; policies subtract one from the other in their own pass.
  */
 public final class LaneObservation {
-  /** Worlds that decide together: few enough for the first-level cache. A multiple of every lane count. */
+  /** Number of worlds that decide together: fits the first-level cache. A multiple of every lane count. */
   public static final int WORLDS = LaneFunction.COUNT;
 
-  /**
-   * Of a reading: position, m, and velocity, m/s, north and east; velocities are told only to policies that
-   * use them.
+  /** Rows of a reading: position, m, and velocity, m/s, north and east; velocities are only filled for
+   * policies that use them.
    */
   public static final int X = 0, Y = 1, VX = 2, VY = 3;
 
@@ -25,24 +23,21 @@ public final class LaneObservation {
 
   private static final float[] ZEROS = new float[WORLDS];
 
-  /** Where the readings of the opponent and the own ones begin, by what they tell. */
+  /** Offsets of the opponent's readings and of the own ones, by row. */
   public final float[][] opponent = new float[READ][], own = new float[READ][];
 
   public final int[] opponentAt = new int[READ], ownAt = new int[READ];
 
-  /** Since the own last decision, s. */
   public final float[] elapsed;
 
-  /** How old the readings are, s; kept only for policies that ask for it. */
+  /** Ages of the readings, s; filled only for policies that use them. */
   public final float[] ownAge = new float[WORLDS], opponentAge = new float[WORLDS];
 
   public LaneObservation() {
     this(new float[WORLDS]);
   }
 
-  /**
-   * @param elapsed kept by who observes
-   */
+  /** @param elapsed maintained by the caller */
   public LaneObservation(float[] elapsed) {
     this.elapsed = elapsed;
     Arrays.fill(opponent, ZEROS);
@@ -57,7 +52,7 @@ public final class LaneObservation {
     this.ownAt[what] = ownAt;
   }
 
-  /** What is known of the opponent from the own vehicle. */
+  /** The opponent's state relative to the own vehicle. */
   public void seeFromOwn(int what, float[] difference) {
     see(what, difference, 0, ZEROS, 0);
   }

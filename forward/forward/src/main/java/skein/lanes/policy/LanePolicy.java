@@ -8,45 +8,39 @@ import jdk.incubator.vector.FloatVector;
 import skein.policy.HeadingPolicy;
 import skein.simd.LaneFunction;
 
-/**
- * Policies of one form in many worlds, each with parameters of its own, compiled from the policy
- * itself ({@link PolicyLanes}); {@code LanePolicySimulation} holds them to it. Mutable: one per kernel
- * and role.
+/** Policies of one form in many worlds, each with its own parameters, compiled from the policy itself ({@link
+ * PolicyLanes}); {@code LanePolicySimulation} compares them with it. Mutable: one per kernel and role.
  */
 public class LanePolicy {
-  /** Worlds that decide together. */
   public static final int WORLDS = LaneObservation.WORLDS;
 
   private final PolicyLanes form;
   private final LaneFunction function;
   private final float[] parameters, scratch;
 
-  /** What the function reads and writes: the inputs, the outputs, the own readings. */
+  /** Arguments of the compiled function: the inputs, the outputs, the own readings. */
   public final float[][] arrays;
 
   public final int[] offsets;
 
-  /** What each world's policy remembers, by number, then by world: at first, now, and after the decision. */
+  /** The memory of each world's policy, by number, then by world: initially, now, and after the decision. */
   private final float[] initial, memory, newMemory;
 
-  /**
-   * How far each world's decided heading is from the one before, by the shorter way, rad; 0 without efforts.
+  /** Change of each world's decided heading from the one before, by the shorter way, rad; 0 without efforts.
    */
   public final float[] turned = new float[WORLDS];
 
-  /** The heading commanded last, rad, for policies that turn from it, and the one decided. */
+  /** The last commanded heading, rad, for policies that turn from it, and the decided one. */
   public final float[] heading = new float[WORLDS], newHeading = new float[WORLDS];
 
   private final boolean withEffort;
 
   private int worlds = WORLDS;
 
-  /** So many directions and changes of the heading are decided, before what is remembered. */
+  /** Number of outputs for directions and changes of heading, which precede the memory. */
   private final int decided;
 
-  /**
-   * @param withEffort whether {@link #turned} is asked for
-   */
+  /** @param withEffort whether {@link #turned} is needed */
   public LanePolicy(PolicyLanes form, boolean withEffort) {
     this.form = form;
     this.withEffort = withEffort;
@@ -67,7 +61,7 @@ public class LanePolicy {
     this(form, true);
   }
 
-  /** Lanes that fly policies of this policy's form, which must be a formula. */
+  /** Makes lanes for policies of this policy's form, which must be a formula. */
   public static LanePolicy of(HeadingPolicy policy) {
     return of(policy, true);
   }
@@ -76,13 +70,13 @@ public class LanePolicy {
     return new LanePolicy(PolicyLanes.get(policy), withEffort);
   }
 
-  /** Takes the parameters that a world flies by from now on; the policy must be of this form. */
+  /** Sets a world's policy parameters; the policy must be of this form. */
   public void take(int world, HeadingPolicy policy) {
     if (!form.fits(policy)) throw new IllegalArgumentException(policy + " is of another form");
     put(world, policy);
   }
 
-  /** The same of a policy that is known to be of this form. */
+  /** Sets a world's parameters of a policy that is known to be of this form. */
   public void put(int world, HeadingPolicy policy) {
     double[] values = form.parametersOf(policy);
     for (int i = 0; i < values.length; i++) parameters[place(i, world)] = (float) values[i];
@@ -95,26 +89,25 @@ public class LanePolicy {
     return LaneFunction.place(parameter, world, form.parameters());
   }
 
-  /** A world flies by the policy that another does. */
+  /** Copies a world's policy parameters to another world. */
   public void copy(int from, int to) {
     for (int i = 0; i < form.parameters(); i++) parameters[place(i, to)] = parameters[place(i, from)];
     for (int i = 0; i < initial.length; i += WORLDS) initial[i + to] = initial[i + from];
   }
 
-  /** Whether it looks at the velocities of the observation. */
+  /** Whether its policies use the velocities of the observation. */
   public boolean needsVelocity() {
     return form.needsVelocity();
   }
 
-  /** Whether it asks how old the observation's readings are. */
+  /** Whether its policies use the ages of the observation's readings. */
   public boolean needsAges() {
     return form.needsAges();
   }
 
-  /**
-   * Decides in all worlds. {@code own} are the directions commanded last, {@code known} those of the
-   * opponent; the decided ones go to {@code into}. Each begins at its offset. {@link #turned} is
-   * what they differ by from the own.
+  /** Decides in all worlds. {@code own} are the last commanded directions, {@code known} those of the
+   * opponent; the decided ones are stored in {@code into}. Each begins at its offset. {@link #turned}
+   * receives the change from the own direction.
    */
   public void decide(
       LaneObservation observation,
@@ -155,28 +148,26 @@ public class LanePolicy {
     offsets[place] = offset;
   }
 
-  /** Back to the start of an episode, of which the first worlds count. */
+  /** Resets to the start of an episode, of which the first worlds count. */
   public void start(float headingRad, int worlds) {
     this.worlds = worlds;
     Arrays.fill(heading, headingRad);
     System.arraycopy(initial, 0, memory, 0, initial.length);
   }
 
-  /** One world's policy begins anew. */
   public void restart(int world, float headingRad) {
     heading[world] = headingRad;
     for (int i = world; i < memory.length; i += WORLDS) memory[i] = initial[i];
   }
 
-  /** Tells one world's policy of a single number that number. */
+  /** Sets the single parameter of one world's external policy. */
   public void tell(int world, float number) {
     parameters[place(0, world)] = number;
   }
 
-  /**
-   * All worlds' decisions become commands.
+  /** Makes all worlds' decisions commands.
    *
-   * @param effort where the changes of the heading are added up
+   * @param effort receives the sums of the heading's changes
    */
   public void commit(float[] effort) {
     if (form.keepsHeading()) System.arraycopy(newHeading, 0, heading, 0, WORLDS);
@@ -188,7 +179,7 @@ public class LanePolicy {
           .intoArray(effort, i);
   }
 
-  /** What was decided is remembered in the worlds whose time, from a place on, comes before another. */
+  /** Stores the decisions of worlds whose time, from an offset on, is earlier than another. */
   public void rememberBefore(int[] times, int from, int before) {
     for (int i = 0; i < memory.length; i++)
       if (times[from + i % WORLDS] < before) memory[i] = newMemory[i];

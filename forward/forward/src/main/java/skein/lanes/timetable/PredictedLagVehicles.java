@@ -8,18 +8,15 @@ import jdk.incubator.vector.FloatVector;
 import skein.lanes.policy.Directions;
 import skein.vehicle.PlantModel;
 
-/**
- * Predicts by a first-order lag, which is linear: a prediction is the reading's position, its
- * velocity times a number of the timetable, and each command on the way times one of its own. The
- * scalar reference is {@link PlantModel} without drag.
+/** Predicts by a first-order lag, which is linear: a prediction is the reading's position, plus its velocity
+ * times a factor of the timetable, plus each command on its way times its own factor. The scalar reference is
+ * {@link PlantModel} without drag.
  */
 public final class PredictedLagVehicles extends PredictedVehicles {
   private final float speed;
   private int worlds = WORLDS;
 
-  /**
-   * @param speedMps what commands come to in the end
-   */
+  /** @param speedMps speed that a vehicle reaches under a lasting command */
   public PredictedLagVehicles(double speedMps) {
     speed = (float) speedMps;
   }

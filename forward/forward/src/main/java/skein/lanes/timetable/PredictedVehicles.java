@@ -3,28 +3,25 @@ package skein.lanes.timetable;
 import skein.lanes.policy.Directions;
 import skein.lanes.policy.LanePolicy;
 
-/**
- * Carries readings of the vehicles of one role forward in many worlds, by a {@link Timetable}: to
- * which moment, and through which commands, is the same in all worlds. The scalar reference is a
- * {@code skein.vehicle.VehicleModel} in a {@code skein.forecast.Forecast}.
+/** Predicts the vehicles of one role in many worlds from their readings, by a {@link Timetable}: the
+ * predicted moments and the commands in effect are equal in all worlds. The scalar reference is a {@code
+ * skein.vehicle.VehicleModel} in a {@code skein.forecast.Forecast}.
  */
 public abstract class PredictedVehicles {
   static final int WORLDS = LanePolicy.WORLDS;
 
-  /** Back to the start of an episode. */
   void start(int worlds) {}
 
-  /** All readings of one world's vehicle have become those of its start, at rest. */
+  /** Sets all readings of one world's vehicle to its start, at rest. */
   void restart(int world, float[] seenX, float[] seenY, float[] seenVx, float[] seenVy) {}
 
-  /**
-   * Takes a reading that enters a forecast, where it does not tell all that is known of a vehicle.
+  /** Adds a reading to the forecast, if the state holds more than a reading.
    *
    * @param seenX positions and velocities that were read, north and east, by place
    * @param sent the commands, by place
-   * @param from the index of the first world of the reading that entered before; negative if none did
-   * @param reading the same of this one
-   * @param propagation the way to it
+   * @param from the index, for the first world, of the previous reading; negative if there is none
+   * @param reading the index, for the first world, of this reading
+   * @param propagation the steps from the one to the other
    */
   void enter(
       float[] seenX,
@@ -36,15 +33,14 @@ public abstract class PredictedVehicles {
       int reading,
       Propagation propagation) {}
 
-  /**
-   * Carries a reading forward.
+  /** Predicts from a reading.
    *
-   * @param seenX positions and velocities that were read, north and east, by place; what is predicted
-   *     is put beside them
+   * @param seenX positions and velocities that were read, north and east, by place; the prediction is stored
+   *   among them
    * @param sent the commands, by place
-   * @param reading the index of the reading's first world
-   * @param into the same of what is predicted
-   * @param propagation the way there
+   * @param reading the index of the reading, for the first world
+   * @param into the index of the prediction, for the first world
+   * @param propagation the steps of the prediction
    * @param withVelocity whether velocities are predicted too
    */
   abstract void predict(

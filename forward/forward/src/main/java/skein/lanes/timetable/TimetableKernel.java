@@ -2,20 +2,17 @@ package skein.lanes.timetable;
 
 import skein.lanes.policy.LanePolicy;
 
-/**
- * Flies many candidates through one episode, by its {@link Timetable}: teams of any size under any
- * loop's timing, with any vehicles that fly by timetables. {@code Rollout} with the same delays and
- * the same model is its scalar reference.
+/** Simulates many candidates in one episode, by its {@link Timetable}: teams of any size under any loop's
+ * timing, with any vehicles that support timetables. {@code Rollout} with equal delays and an equal model is
+ * its scalar reference.
  *
- * <p>What happens when is the same in all lanes, so that everything about time is a number of the
- * timetable. Nothing is allocated after construction but where a timetable needs more places than
- * any before; one instance per thread.
+ * <p>Events have equal times in all lanes, so every time is a constant of the timetable. Allocates nothing
+ * after construction, unless a timetable needs more places than any before; one instance per thread.
  */
 public final class TimetableKernel {
-  /** Candidates flown together. */
   public static final int WORLDS = LanePolicy.WORLDS;
 
-  /** Kinds of a timetable's operations. */
+  /** Kinds of operations in a timetable. */
   public static final int LOOK = 0, DECIDE = 1, ACT = 2, SCORE = 3, PREDICT = 4, EXPOSE = 5, JOIN = 6,
       ENTER = 7;
 
@@ -30,9 +27,7 @@ public final class TimetableKernel {
   private Propagation[] propagations;
   private boolean readsVelocity;
 
-  /**
-   * @param agents by the vehicle's number in the timetable
-   */
+  /** @param agents by the vehicle's number in the timetable */
   public TimetableKernel(TimetableAgents[] agents, TimetableScores scores) {
     this.agents = agents;
     this.scores = scores;
@@ -41,18 +36,16 @@ public final class TimetableKernel {
     withVelocity = needsVelocity;
   }
 
-  /**
-   * Flies {@link #WORLDS} candidates through one episode, by the policies' parameters.
+  /** Simulates {@link #WORLDS} candidates in one episode, by the policies' parameters.
    *
-   * @param timetable of as many vehicles
-   * @param worlds those that count are the first
+   * @param timetable of an equal number of vehicles
+   * @param worlds number of worlds that count, from the first
    */
   public void fly(Timetable timetable, int worlds) {
     start(timetable, worlds);
     for (int i = 0; i < timetable.size(); i++) perform(i);
   }
 
-  /** Back to the start of an episode. */
   public void start(Timetable timetable, int worlds) {
     if (timetable.vehicles() != agents.length)
       throw new IllegalArgumentException(
@@ -68,7 +61,7 @@ public final class TimetableKernel {
     readsVelocity = withVelocity || propagations.length > 0;
   }
 
-  /** Does the timetable's next operation. */
+  /** Executes one operation of the timetable. */
   public void perform(int operation) {
     int field = operation * Timetable.Fields(), number = operation * numbers;
     TimetableAgents agent = agents[operations[field + 1]];

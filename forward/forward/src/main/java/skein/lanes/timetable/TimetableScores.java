@@ -1,19 +1,17 @@
 package skein.lanes.timetable;
 
-/** Adds up what many worlds come to, once a period. */
+/** Accumulates the scores of many worlds, once a period. */
 public interface TimetableScores {
-  /**
-   * Back to the start of an episode.
+  /** Resets to the start of an episode.
    *
-   * @param worlds those that count are the first
+   * @param worlds number of worlds that count, from the first
    */
   void start(int worlds);
 
-  /**
-   * Where all vehicles are now.
+  /** Scores the present positions of all vehicles.
    *
    * @param agents by the vehicle's number
-   * @param views of the timetable; that which is scored begins at {@code view}
+   * @param views of the timetable; the scored one begins at {@code view}
    */
   void score(TimetableAgents[] agents, int[] views, int view, float timeS);
 }

@@ -4,38 +4,36 @@ import skein.forward.RolloutAgent;
 import skein.lanes.policy.Directions;
 import skein.lanes.policy.LanePolicy;
 
-/**
- * The vehicles of one role in many worlds, flown by a {@link Timetable}: what happens to them
- * happens in all worlds at once, so that all that depends on time alone is a number of the
- * timetable, told by a {@link EventClock} of the same kind.
+/** The vehicles of one role in many worlds, simulated by a {@link Timetable}: events happen simultaneously in
+ * all worlds, so all that depends on time alone is a constant of the timetable, computed by a corresponding
+ * {@link EventClock}.
  */
 public abstract class TimetableVehicles {
   public static final int WORLDS = LanePolicy.WORLDS;
 
-  /** How the vehicles answered, by place: positions, m, and velocities, m/s, north and east. */
+  /** The vehicles' readings, by place: positions, m, and velocities, m/s, north and east. */
   public float[] seenX = {}, seenY = {}, seenVx = {}, seenVy = {};
 
-  /** Carries their readings forward, in loops that predict; else null. */
+  /** Predicts from their readings, in loops that predict; else null. */
   public PredictedVehicles predicted;
 
-  /** Where each world's vehicle starts, north and east, m. */
+  /** Start of each world's vehicle, north and east, m. */
   public final float[] startX = new float[WORLDS], startY = new float[WORLDS];
 
   public TimetableVehicles(RolloutAgent agent) {
     for (int world = 0; world < WORLDS; world++) place(world, agent);
   }
 
-  /** A world's vehicle starts where this one does. */
+  /** Sets the start of a world's vehicle to this agent's. */
   public final void place(int world, RolloutAgent agent) {
     startX[world] = (float) agent.startX();
     startY[world] = (float) agent.startY();
   }
 
-  /**
-   * Back to the start of an episode.
+  /** Resets to the start of an episode.
    *
-   * @param readings places that its timetable needs
-   * @param worlds those that count are the first
+   * @param readings number of places that its timetable needs
+   * @param worlds number of worlds that count, from the first
    */
   public final void start(int readings, int worlds) {
     if (seenX.length < readings * WORLDS) {
@@ -50,7 +48,7 @@ public abstract class TimetableVehicles {
 
   public abstract void start(int worlds);
 
-  /** One world's vehicle is at its start, at rest, and so tell all its readings. */
+  /** Restarts one world: sets its vehicle, and all its readings, to its start at rest. */
   public final void restart(int world) {
     for (int i = world; i < seenX.length; i += WORLDS) {
       seenX[i] = startX[world];
@@ -62,22 +60,20 @@ public abstract class TimetableVehicles {
     rest(world);
   }
 
-  /** Puts one world's vehicle to its start, at rest. */
+  /** Sets one world's vehicle to its start, at rest. */
   abstract void rest(int world);
 
-  /**
-   * Reads the vehicles.
+  /** Reads the vehicles.
    *
-   * @param times from {@code at} on, what the clock tells of this moment
-   * @param into the index of the reading's first world
+   * @param times from {@code at} on, the clock's numbers of this moment
+   * @param into the index, for the first world, of the reading
    * @param withVelocity whether velocities are read too
    */
   public abstract void look(float[] times, int at, int into, boolean withVelocity);
 
-  /**
-   * Lets commands act from this moment on.
+  /** Lets commands take effect from this moment on.
    *
-   * @param from the index of the first world's commanded direction
+   * @param from the index, for the first world, of the commanded direction
    */
   abstract void act(float[] times, int at, Directions commanded, int from);
 }

@@ -14,14 +14,13 @@ import skein.lanes.timetable.{
 }
 import skein.vehicle.{ConstantVelocity, FirstOrderLag, ReducedModel, PlantModel, VehicleModel}
 
-/** A kind of model that carries readings forward by lanes. */
+/** A kind of model that SIMD supports for predictions. */
 private[skein] trait LanePredictor extends TimetablePredictor:
-  /** All worlds' predictions of one vehicle where every world has delays of its own. */
+  /** All worlds' predictions of one vehicle, with separate delays in every world. */
   def alone(agent: RolloutAgent): ForecastVehicles
 
 private[skein] object LanePredictor:
-  /** @return or why this model does not predict by lanes
-    */
+  /** The predictor of a model; Left states why SIMD does not support it. */
   def of(model: VehicleModel[?]): Either[String, LanePredictor] = model match
     case PlantModel(lag: ReducedModel) if lag.isLag => Right(LagPredictor(lag))
     case PlantModel(plant)                          =>
@@ -32,7 +31,7 @@ private[skein] object LanePredictor:
     case ConstantVelocity => Right(CoastPredictor)
     case _                => Left("the lanes predict by plants and by constant velocity")
 
-/** By [[PredictedLagVehicles]]: a reading's velocity carries the vehicle all the time. */
+/** Predicts by [[PredictedLagVehicles]]: constant velocity. */
 private[lanes] object CoastPredictor extends LanePredictor, Propagator:
   def vehicles(agent: RolloutAgent): PredictedVehicles     = PredictedLagVehicles(0)
   def alone(agent: RolloutAgent): ForecastVehicles         = ForecastCoasting()
@@ -42,8 +41,9 @@ private[lanes] object CoastPredictor extends LanePredictor, Propagator:
   def predicted(legs: Vector[Propagator.Leg]): Propagation =
     Propagation(Array.empty, Array.empty, legs.iterator.map(_.span.toSeconds).sum.toFloat, 1)
 
-/** By [[PredictedLagVehicles]]: for how long a reading's velocity carries the vehicle, and what is left of
-  * it; of each command, how long it carries the vehicle, and how much of its velocity is reached.
+/** Predicts by [[PredictedLagVehicles]], whose factors it computes: for how long a reading's velocity moves
+  * the vehicle, and what remains of it; for each command, for how long it moves the vehicle, and what share
+  * of its velocity is reached.
   */
 private[lanes] final class LagPredictor(val model: ReducedModel) extends LanePredictor:
   def deadTimeS: Double                                = model.deadTimeS
@@ -60,7 +60,7 @@ private[lanes] final class LagPredictor(val model: ReducedModel) extends LanePre
       into(at) = ((left - carriedLeft) - (after - carriedAfter)).toFloat
       into(at + 1) = (carriedLeft / model.lagS - carriedAfter / model.lagS).toFloat
 
-/** By [[PredictedPlants]]. */
+/** Predicts by [[PredictedPlants]], which compiles the plant's own step. */
 private[lanes] final class PlantPredictor(val lanes: PlantLanes, val correction: PlantCorrection)
     extends LanePredictor:
   private val tell = lanes.stages.tell(lanes.plant)

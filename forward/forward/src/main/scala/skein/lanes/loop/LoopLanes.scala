@@ -3,14 +3,14 @@ package skein.lanes.loop
 import scala.collection.mutable
 import skein.forward.{Delays, RolloutAgent, LoopTiming, Steering, TabledDelays}
 
-/** A loop for worlds with delays of their own: what it offers to whom, how it lets commands go, and for how
-  * long vehicles have to remember. Mutable as its offers are: one per kernel.
+/** A loop for worlds with separate delays: its offers, its pacing of commands, and how long vehicles must
+  * keep their history. Mutable as its offers are: one per kernel.
   *
-  * @param vehicles how many are asked
-  * @param maxDelayS the longest one-way delay of any link flown over
-  * @param sees whether images are taken, for which vehicles are looked at whenever it is
-  * @param shortCut whether regular stretches of `stream` are told by lanes; without, the same is told world
-  *   by world
+  * @param vehicles number of vehicles that are read
+  * @param maxDelayS the longest one-way delay of any link
+  * @param sees whether images are taken, which need the vehicles' positions at any time
+  * @param shortCut whether SIMD computes regular stretches of `stream`; if false, each world is computed
+  *   separately, with equal results
   */
 private[lanes] final class LoopLanes(
     val timing: LoopTiming,
@@ -20,16 +20,16 @@ private[lanes] final class LoopLanes(
     val sees: Boolean = false,
     shortCut: Boolean = true
 ):
-  /** How the vehicles' readings are carried forward, if they are. */
+  /** The model that predicts the vehicles, if the loop predicts. */
   private val predictor: Option[LanePredictor] = timing match
     case predictive: LoopTiming.Predictive => LanePredictor.of(predictive.predictor).toOption
     case _                                 => None
 
-  /** Null where decisions go by the readings themselves. */
+  /** Null where decisions use the readings themselves. */
   val forecast: LaneForecast =
     predictor.fold(null)(by => LaneForecast(timing.periodS, vehicles, by.deadTimeS))
 
-  /** From now on a vehicle's readings are carried forward, if the loop does. */
+  /** Sets the model and source of readings of a vehicle, if the loop predicts. */
   def carryForward(vehicle: Int, agent: RolloutAgent, read: LaneVehicles): Unit =
     for by <- predictor do forecast.follow(vehicle, by.alone(agent), read)
 
@@ -43,46 +43,46 @@ private[lanes] final class LoopLanes(
   def periodS: Double    = timing.periodS
   val steering: Steering = LoopTiming.steeringOf(timing)
 
-  /** Between two decisions, or between two commands if it decides first, s. */
+  /** Least time between two decisions, or between two commands if it decides first, s. */
   val intervalS: Double = timing match
     case stream: LoopTiming.Stream => stream.periodS - stream.toleranceS
     case _                         => 0
 
-  /** Whether a vehicle decides at every offer, and what waits is the decision. */
+  /** Whether a vehicle decides at every offer, and decisions wait instead of offers. */
   val decidesFirst: Boolean = timing match
     case stream: LoopTiming.Stream => stream.decideThenPace
     case _: LoopTiming.Predictive  => false
     case _                         => true
 
-  /** A command is under way for so long at most, s. */
+  /** Longest time for which a command is on its way, s. */
   def longestS: Double = 2 * LoopLanes.MostS
 
-  /** Periods before, of which a reading or an image may ask for the flight: those from a reading to its
-    * decision, and from the decision before that to when its command acts.
+  /** Number of earlier periods whose flight a reading or an image may need: those from a reading to its
+    * decision, and from the decision before that until its command takes effect.
     */
   val keptRows: Int =
     val kept = LoopLanes.readingS(timing, vehicles, maxDelayS) + 3 * maxDelayS + 2 * periodS + 0.5
     offers.rowsAhead + 2 + (kept / periodS).ceil.toInt
 
 private[lanes] object LoopLanes:
-  /** Times stay within what integers of grains can hold. */
+  /** Longest time, s, that stays within the range of integers in grains. */
   val MostS = 3.5
 
-  /** From the first reading of a view to its decision. */
+  /** Longest time from the first reading of a view to its decision, s. */
   def readingS(timing: LoopTiming, vehicles: Int, maxDelayS: Double): Double =
     val inTurn = timing match
       case _: (LoopTiming.Stream | LoopTiming.Predictive) => 2
       case _                                              => vehicles
     inTurn * LoopTiming.askingOf(timing).timeoutS.min(2 * maxDelayS)
 
-/** One of a kind for links about as slow: how far a loop is looked ahead depends on it, and no result does.
+/** Caches an object made for links of about equal delay: how far a loop is computed ahead depends on it, and
+  * no result does.
   *
-  * @param make for a longest one-way delay, s
+  * @param make makes one for a longest one-way delay, s
   */
 private[lanes] final class BySlowest[K](make: Double => K):
   private val made = mutable.HashMap.empty[Double, K]
 
-  /** That for the slowest of these. */
   def apply(links: Array[? <: Delays]): K =
     val slowestS = links.iterator.collect { case link: TabledDelays => link.maxS }.max
     val about    = Iterator.iterate(BySlowest.FastestS)(_ * 1.4).find(_ >= slowestS).get

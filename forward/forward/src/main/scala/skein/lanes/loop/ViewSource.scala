@@ -3,12 +3,12 @@ package skein.lanes.loop
 import skein.forward.*
 import skein.lanes.timetable.StandingStill
 
-/** The views of one world under the `stream` loop, one after the other, with all that can happen to
-  * questions: overtaken, late, failed, held back by a full window. No view depends on what is decided, so the
-  * loop's own joining tells them ahead. [[LaneViews]] tells views in which nothing of this happens, many
-  * worlds at a time, and asks here for the others. Mutable.
+/** The views of one world under the `stream` loop, in order, including requests that are overtaken, late,
+  * failed, or held back by a full window. Views do not depend on decisions, so the loop's own joining
+  * computes them ahead. [[LaneViews]] computes the regular views of many worlds by SIMD, and uses this class
+  * for the others. Mutable.
   *
-  * @param ahead rows within which the questions of a regular view are answered
+  * @param ahead rows within which the requests of a regular view are answered
   */
 private[lanes] final class ViewSource private (
     timing: LoopTiming.Stream,
@@ -23,25 +23,25 @@ private[lanes] final class ViewSource private (
   private val endNs    = Nanos.of(durationS)
   private var isJoined = false
 
-  /** When the view told last was joined, ns; [[ViewSource.Never]] if the flight ends before. */
+  /** When the present view was joined, ns; [[ViewSource.Never]] if the flight ends before. */
   var joinedAt = Never
 
-  /** Whether the view told last is that of its row's questions, and nothing older is left behind it. */
+  /** Whether the present view consists of its row's requests, and nothing older is still pending. */
   var isRegular = false
 
-  /** The latest of the ticks at which the view's questions were asked, or that of the view before. */
+  /** The latest tick at which a request of the view, or of the view before, was sent. */
   var row = 0
 
-  /** By vehicle: whether the view before had another reading. */
+  /** By vehicle: whether its reading differs from that of the view before. */
   val isFresh: Array[Boolean] = Array.ofDim(world.count)
 
-  /** By vehicle: the view's question, and when it reached the vehicle, ns. */
+  /** By vehicle: the view's request, and when it reached the vehicle, ns. */
   def question: Array[Int]   = observation.reading
   def sampledAt: Array[Long] = observation.validAtNs
 
   def controllers: Array[Controller] = Array.empty
 
-  /** Begins at a question when all questions before are answered and joined, if there were any. */
+  /** Begins at a request when all requests before are answered and joined, if there were any. */
   def begin(worldKey: Int, worldLink: TabledDelays, first: Int): Unit =
     link.delays = worldLink
     world.start(worldKey, LoopObserver.Nobody, first)
@@ -51,7 +51,7 @@ private[lanes] final class ViewSource private (
     java.util.Arrays.fill(sampledAt, Long.MinValue)
     begin(first)
 
-  /** Goes on to the next view. */
+  /** Moves to the next view, or to the flight's end. */
   def next(): Unit =
     isJoined = false
     while !isJoined && world.nextNs <= endNs do handle(world.next())
@@ -77,20 +77,23 @@ private[lanes] final class ViewSource private (
         areInTime(vehicle, ticks)
       vehicle += 1
 
-  /** Whether none of the questions behind the view's had to wait. */
+  /** Whether none of the requests after the view's had to wait. */
   private def areInTime(vehicle: Int, ticks: Int): Boolean =
     var next = row + 1
     while next < ticks && world.sentAtNs(world.slot(vehicle, next)) == next * periodNs do next += 1
     next >= ticks
 
-  /** At which the view's question to a vehicle was asked. */
+  /** The tick at which the view's request to a vehicle was sent. */
   private def tickOf(vehicle: Int): Int =
     (world.sentAtNs(world.slot(vehicle, question(vehicle))) / periodNs).toInt
 
 private[lanes] object ViewSource:
   val Never: Long = Long.MaxValue
 
-  /** @param maxDelayS the longest one-way delay of any link */
+  /** Makes the source.
+    *
+    * @param maxDelayS the longest one-way delay of any link
+    */
   def apply(
       timing: LoopTiming.Stream,
       vehicles: Int,

@@ -22,12 +22,11 @@ private[skein] final class LaneQuadrotors private[lanes] (lanes: QuadrotorLanes)
   private var heldNed                 = Vector3.Zero
   private var holding: Vector[Double] = lanes.numbersOf(lanes.quadrotor.hovering(heldNed))
 
-  /** Of the vehicles now, row by row. */
   def state: Array[Float] = if isOther then other else one
 
   private def rowOf(name: String) = lanes.row(name) * VEHICLES
 
-  /** Where in [[state]] numbers of the first vehicle are: world NED, m, m/s and m/s². */
+  /** Indices in [[state]] of the first vehicle's numbers: world NED, m, m/s and m/s². */
   val X: Int  = rowOf("x")
   val Y: Int  = rowOf("y")
   val Z: Int  = rowOf("z")
@@ -43,7 +42,7 @@ private[skein] final class LaneQuadrotors private[lanes] (lanes: QuadrotorLanes)
 
   def use(vehicles: Int): Unit = steps.foreach(_.use(vehicles))
 
-  /** Lets it hover, settled, told to hold this place. */
+  /** Sets a vehicle to hover, settled, under the command to hold this position. */
   def hover(place: Int, goalNed: Vector3): Unit =
     if goalNed != heldNed then
       heldNed = goalNed
@@ -53,7 +52,7 @@ private[skein] final class LaneQuadrotors private[lanes] (lanes: QuadrotorLanes)
 
   def hover(place: Int, downM: Double): Unit = hover(place, holdingAt(downM))
 
-  /** What a vehicle above its start is to hold, to settle at this altitude. */
+  /** The position to hold, for a vehicle above its start, so that it settles at this altitude. */
   def holdingAt(downM: Double): Vector3 = lanes.holdingAt(downM)
 
   def command(place: Int, northMps: Float, eastMps: Float, downM: Float): Unit =
@@ -61,7 +60,6 @@ private[skein] final class LaneQuadrotors private[lanes] (lanes: QuadrotorLanes)
     goal(VEHICLES + place) = eastMps
     goal(2 * VEHICLES + place) = downM
 
-  /** Commands all, along directions. */
   def command(commanded: Directions, from: Int, speedMps: Float, downM: Float): Unit =
     var place = 0
     while place < VEHICLES do
@@ -70,7 +68,6 @@ private[skein] final class LaneQuadrotors private[lanes] (lanes: QuadrotorLanes)
 
   def step(): Unit = fly(1)
 
-  /** Flies whole steps. */
   def fly(count: Int): Unit =
     var left = count
     while left > 0 do
@@ -100,9 +97,9 @@ private[skein] final class LaneQuadrotors private[lanes] (lanes: QuadrotorLanes)
     Vector3(front, right, down)
 
 private[skein] object LaneQuadrotors:
-  /** Vehicles flown together. */
+  /** Number of vehicles simulated together. */
   val VEHICLES: Int = LaneFunction.COUNT
 
-  /** @return or why such quadrotors do not fly by lanes */
+  /** The lanes of such quadrotors; Left states why SIMD does not support them. */
   def of(quadrotor: Quadrotor): Either[String, LaneQuadrotors] =
     QuadrotorLanes.of(quadrotor).map(new LaneQuadrotors(_))

@@ -5,15 +5,15 @@ import skein.lanes.policy.LaneObservation
 import skein.simd.FixedFormula
 import skein.vehicle.ObservedPlant
 
-/** How readings set a plant's state right in many worlds at once, compiled from [[ObservedPlant.corrected]]:
-  * of the state's numbers, then position and velocity.
+/** Corrects a plant's state by readings in many worlds by SIMD, compiled from [[ObservedPlant.corrected]]:
+  * inputs are the state's numbers, then position and velocity.
   *
-  * @param count how many numbers the state is
+  * @param count of numbers in the state
   */
 private[lanes] final class PlantCorrection private (formula: FixedFormula, count: Int):
   import formula.bound
 
-  /** Whether a reading tells all of the state. */
+  /** Whether a reading contains the whole state. */
   val isTold: Boolean = bound.inputs.forall(_ >= count)
 
   /** Whether the state is the reading itself, number for number. */
@@ -24,8 +24,7 @@ private[lanes] final class PlantCorrection private (formula: FixedFormula, count
   def call: FixedFormula.Call = formula.call
 
 private[lanes] object PlantCorrection:
-  /** @return or why readings do not set the state right by lanes
-    */
+  /** The compiled correction; Left states why SIMD does not support it. */
   def of(plant: ObservedPlant[?], count: Int): Either[String, PlantCorrection] =
     FixedFormula
       .of(plant, "corrected", alike = 0)

@@ -3,14 +3,14 @@ package skein.lanes.plant
 import skein.formula.{Angles, Evaluation, Formula, Node, Trace}
 import skein.vehicle.Plant
 
-/** A plant's step, and what is read of it at its end, as expressions. Their parameters are the speed of a
-  * command of length 1, then the plant's own numbers.
+/** A plant's step, and the reading at its end, as expressions. Their parameters are the speed of a command of
+  * length 1, then the plant's own numbers.
   *
   * @param first the first parameter's number
-  * @param state its numbers as the step begins
+  * @param state its numbers at the begin of the step
   * @param north of the command, over the speed
-  * @param spanS how long it is flown
-  * @param taken what counts of the state at the end
+  * @param spanS duration of the step
+  * @param taken which numbers of the final state are used
   */
 private[lanes] final class PlantExpressions(
     trace: Trace,
@@ -27,7 +27,6 @@ private[lanes] final class PlantExpressions(
   private val speed   = trace.param(first)
   private val stepOwn = angles(stepping, first + 1, leafOfStep)
 
-  /** The state at the end. */
   val stepped: Vector[Node] = taken(stepping.outputs.map((_, node) => stepOwn.convert(node)))
 
   private val readOwn = angles(reading, first + 1 + stepOwn.derived.size, stepped)
@@ -35,11 +34,10 @@ private[lanes] final class PlantExpressions(
   /** Position and velocity at the end, north and east. */
   val seen: Vector[Node] = reading.outputs.map((_, node) => readOwn.convert(node))
 
-  /** The same where the position counts from a start. */
+  /** Position and velocity at the end, with the position relative to a start. */
   def seenFrom(startX: Node, startY: Node): Vector[Node] =
     Vector(trace.add(seen(0), startX), trace.add(seen(1), startY)) ++ seen.drop(2)
 
-  /** How many parameters there are. */
   val parameters: Int = 1 + stepOwn.derived.size + readOwn.derived.size
 
   private def angles(formula: Formula, from: Int, leaf: Int => Node) =

@@ -6,16 +6,15 @@ import skein.formula.{Formula, Untraceable}
 import skein.simd.{FixedFormula, Forms, LaneFunction}
 import skein.vehicle.{PlaneReading, Plant, PlantState}
 
-/** How a [[skein.vehicle.Plant]] flies in many worlds at once, compiled from its methods. */
+/** SIMD simulation of a [[skein.vehicle.Plant]] in many worlds, compiled from its methods. */
 private[skein] final class PlantLanes private (val plant: Plant[?], form: PlantForm):
-  /** How many numbers its state is. */
   def count: Int = form.count
 
-  /** What it begins with. */
+  /** The plant's initial state, number by number. */
   val initial: Array[Float] = PlantState.numbers(plant.initial).map(_.toFloat).toArray
   if initial.length != count then throw Untraceable(s"a state of $count doubles was expected")
 
-  /** What is read of it at rest, from where it starts. */
+  /** The reading at rest, relative to its start. */
   val resting: PlaneReading                 = readingOf(plant)
   private def readingOf[S](plant: Plant[S]) = plant.read(plant.initial)
 
@@ -25,22 +24,22 @@ private[skein] final class PlantLanes private (val plant: Plant[?], form: PlantF
     for i <- 0 until count do
       Arrays.fill(array, from + i * worlds, from + (i + 1) * worlds, initial(i))
 
-  /** The next state: of the state's numbers, then the commanded velocity and the time. */
+  /** The function for the next state: inputs are the state's numbers, then the commanded velocity and the
+    * time.
+    */
   def step: FixedFormula = form.step.of(plant)
 
-  /** Position and velocity, of the state's numbers. */
+  /** The function for position and velocity: inputs are the state's numbers. */
   def read: FixedFormula = form.read.of(plant)
 
-  /** Its steps where all are equally long. */
   def steps: PlantSteps = form.steps
 
-  /** Its step in parts. */
   def stages: PlantStages = form.stages
 
-  /** The same where steps begin at times of their own in each world. */
+  /** Steps that begin at different times in each world. */
   def pieces: PlantPieces = form.pieces
 
-/** What plants of one form are compiled to. */
+/** The compiled code that plants of one form share. */
 private final class PlantForm(plant: Plant[?], stepping: Formula, reading: Formula):
   val count: Int = stepping.outputs.size
   if reading.inputs.size != count then throw Untraceable(s"a state of $count doubles was expected")
@@ -49,7 +48,7 @@ private final class PlantForm(plant: Plant[?], stepping: Formula, reading: Formu
 
   val stages: PlantStages = PlantStages(stepping, reading)
 
-  /** Searches, whose worlds share delays, do not wait for these to be compiled. */
+  /** Compiled lazily, because searches, whose worlds share delays, do not need them. */
   lazy val step: FixedFormula  = FixedFormula(stepping, plant)
   lazy val read: FixedFormula  = FixedFormula(reading, plant)
   lazy val steps: PlantSteps   = PlantSteps(stepping, reading, stages.places)
@@ -58,9 +57,9 @@ private final class PlantForm(plant: Plant[?], stepping: Formula, reading: Formu
 private[skein] object PlantLanes:
   private val known = ConcurrentHashMap[Class[?], Forms[Plant[?], PlantForm]]()
 
-  /** Plants of one form share what is compiled.
+  /** The lanes of a plant; plants of one form share compiled code.
     *
-    * @return or why such plants do not fly by lanes
+    * @return Left states why SIMD does not support such plants
     */
   def of(plant: Plant[?]): Either[String, PlantLanes] =
     val forms = known.computeIfAbsent(plant.getClass, _ => Forms[Plant[?], PlantForm](_.fits(_))(traced))

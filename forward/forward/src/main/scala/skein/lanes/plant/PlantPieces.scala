@@ -4,12 +4,13 @@ import skein.formula.{Formula, Node, Trace}
 import skein.simd.BoundFunction
 import skein.vehicle.Plant
 
-/** A plant's flight through one step, in worlds whose steps begin at times of their own. Compiled once for
-  * all plants of a form. Kept of a step are the command, north and east over the speed, then the state as it
-  * begins, and then, unless that tells it, where the vehicle started. A vehicle rests under a command that is
-  * no number.
+/** A plant's motion during one step, in worlds whose steps begin at different times. Compiled once for all
+  * plants of a form. Stored for a step are the command, north and east over the speed, then the state at its
+  * begin, and then, unless the state contains it, the vehicle's start. A vehicle rests under a command that
+  * is NaN.
   *
-  * @param places the state's numbers that begin where the vehicle starts, north and east, if there are such
+  * @param places the state's numbers that initially equal the vehicle's start, north and east, if there are
+  *   such
   */
 private[lanes] final class PlantPieces(stepping: Formula, reading: Formula, places: Option[Vector[Int]]):
   import PlantPieces.*
@@ -34,23 +35,21 @@ private[lanes] final class PlantPieces(stepping: Formula, reading: Formula, plac
       _.zipWithIndex.map((node, number) => trace.where(flies, node, trace.input(State + number)))
     )
 
-  /** How many numbers are kept of a step. */
   val kept: Int = State + count + (if places.isDefined then 0 else 2)
 
-  /** The rows that begin where the vehicle starts, north and east. */
+  /** The rows that initially equal the vehicle's start, north and east. */
   val starts: Array[Int] = places.getOrElse(Vector(count, count + 1)).map(State + _).toArray
 
   private val seen =
     if places.isDefined then expressions.seen
     else expressions.seenFrom(trace.input(starts(0)), trace.input(starts(1)))
 
-  /** The state a time after the step began, row by row. */
+  /** The function for the state at a time after the begin of the step, row by row. */
   val flown: BoundFunction = bound(expressions.stepped)
 
-  /** The position then. */
   val position: BoundFunction = bound(seen.take(2))
 
-  /** Position and velocity then. */
+  /** The function for position and velocity at that time. */
   val look: BoundFunction = bound(seen)
 
   private def bound(of: Vector[Node]) =
@@ -60,7 +59,7 @@ private[lanes] final class PlantPieces(stepping: Formula, reading: Formula, plac
     (plant.stepS +: expressions.parametersOf(plant, speedMps)).map(_.toFloat)
 
 private[lanes] object PlantPieces:
-  /** What the expressions' inputs are: what is kept, by row, and how long ago the step began, s. */
+  /** Inputs of the expressions: the stored numbers, by row, and the time since the begin of the step, s. */
   val North: Int = 0
   val East: Int  = 1
   val State: Int = 2

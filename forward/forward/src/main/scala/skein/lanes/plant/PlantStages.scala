@@ -5,10 +5,10 @@ import skein.formula.{Evaluation, Formula, Node, Op, Trace}
 import skein.simd.BoundFunction
 import skein.vehicle.Plant
 
-/** A plant's step, cut by when its numbers are known, for worlds whose steps begin and end together. What
-  * comes of the state and the command alone is computed as a step begins and kept; what comes of the time
-  * alone is the same in all worlds, and told; only the rest is computed at each moment. Compiled once for all
-  * plants of a form.
+/** A plant's step, split by when its inputs are known, for worlds whose steps begin and end together. Values
+  * of the state and the command alone are computed at the begin of a step and stored; values of the time
+  * alone are equal in all worlds and passed in; only the rest is computed at each moment. Compiled once for
+  * all plants of a form.
   *
   * Parameters of all functions are the speed of a command of length 1, then the plant's own numbers, then
   * those of the time.
@@ -30,8 +30,8 @@ private[lanes] final class PlantStages(stepping: Formula, reading: Formula):
   )
   import expressions.{seen, stepped}
 
-  /** The state's numbers that are where the vehicle is, north and east, if nothing else comes of them. They
-    * begin where it starts, then; otherwise the start is added to what is seen.
+  /** Indices of the state's numbers that equal the vehicle's position, north and east, if nothing else
+    * depends on them. Then they begin at the start; otherwise the start is added to the readings.
     */
   val places: Option[Vector[Int]] =
     val found = Vector(0, 1).flatMap(placeOf)
@@ -61,7 +61,7 @@ private[lanes] final class PlantStages(stepping: Formula, reading: Formula):
   private val (ofTime, late) = cut(timed, _.index == Time, i => trace.param(firstOfTime + i))
   private val timesOf        = Evaluation(ofTime)
 
-  /** What comes of some inputs alone, and the rest of these expressions, by it. */
+  /** Splits expressions into the values that depend on some inputs alone, and the rest. */
   private def cut(of: Vector[Node], isKnown: Node => Boolean, by: Int => Node): (Vector[Node], Vector[Node]) =
     val early = Trace.earliest(of)(node => node.op == Op.Input && isKnown(node))
     val place = early.zipWithIndex.toMap
@@ -69,7 +69,9 @@ private[lanes] final class PlantStages(stepping: Formula, reading: Formula):
 
   private val command = Vector(trace.input(North), trace.input(East))
 
-  /** What comes of the command alone, by where it is kept: it stays if the next step comes of itself. */
+  /** Values that depend on the command alone, by where they are stored: unchanged if the next step follows
+    * without a new command.
+    */
   private val staying: Map[Node, Node] =
     ofState.zipWithIndex
       .filter((node, _) =>
@@ -78,67 +80,67 @@ private[lanes] final class PlantStages(stepping: Formula, reading: Formula):
       .map((node, i) => node -> trace.input(Kept + i))
       .toMap
 
-  /** So does the command itself, if more comes of it. */
+  /** Stored numbers, including the command itself if anything else depends on it. */
   private val keeps =
     val again = Trace.replaced(ofState, trace)(staying.get)
     ofState ++ (if Trace.needed(again).exists(command.contains) then command else Vector.empty)
 
-  /** How many numbers are kept. */
   val kept: Int = keeps.size
 
-  /** How many numbers tell a time. */
+  /** Number of values by which a time is passed in. */
   val times: Int = ofTime.size
 
-  /** What is kept, of the state, the command and, if what is kept tells the position, the start. */
+  /** The function for the stored numbers from the state, the command and, if they contain the position, the
+    * start.
+    */
   val begin: BoundFunction =
     val states = places.toVector.flatten.map(number => trace.input(State + number))
     keeping(Trace.replaced(keeps, trace): node =>
       Option.when(states.contains(node))(trace.add(node, trace.input(StartX + states.indexOf(node)))))
 
-  /** What is kept of the next step, of what is kept of this one, its time and a new command. */
+  /** The function for the stored numbers of the next step, from those of this one, its time and a new
+    * command.
+    */
   val act: BoundFunction = next(Map.empty)
 
-  /** The same under the same command. */
+  /** [[act]] without a new command: the next step under the present one. */
   val goOn: BoundFunction =
     next(command.zipWithIndex.map((node, i) => node -> trace.input(Kept + ofState.size + i)).toMap ++ staying)
 
-  /** @param known what is kept already
-    */
   private def next(known: Map[Node, Node]) = keeping(Trace.replaced(keeps, trace)(node =>
     known
       .get(node)
       .orElse(Option.when(node.op == Op.Input && node.index >= State)(late(node.index - State)))
   ))
 
-  /** Whether what is kept of the next step may take the place of what is kept of this one. */
+  /** Whether the stored numbers of the next step may overwrite those of this one. */
   def isKeptInPlace: Boolean = act.function.isOnePass && goOn.function.isOnePass
 
   private def keeping(of: Vector[Node]) = BoundFunction.of(of, rowOf, areRows = true)
 
-  /** Position, of what is kept, the time and, unless it is kept, the start. */
+  /** The function for the position, from the stored numbers, the time and, unless it is stored, the start. */
   val position: BoundFunction = BoundFunction.of(late.slice(count, count + 2), rowOf)
 
-  /** Position and velocity, of the same. */
+  /** The function for position and velocity, with equal inputs. */
   val look: BoundFunction = BoundFunction.of(late.drop(count), rowOf)
 
-  /** The state's numbers, of the same. */
+  /** The function for the state's numbers, with equal inputs. */
   lazy val end: BoundFunction = BoundFunction.of(late.take(count), rowOf, areRows = true)
 
-  /** The functions' parameters, but for the time. */
+  /** The functions' parameters, without those of the time. */
   def parametersOf(plant: Plant[?], speedMps: Double): Array[Float] =
     expressions.parametersOf(plant, speedMps).map(_.toFloat) ++ Array.ofDim[Float](times)
 
-  /** Where the time's begin. */
   def firstOfTime: Int = expressions.parameters
 
-  /** Tells times by the numbers that come of them. */
+  /** Converts times to the values by which they are passed in. */
   def tell(plant: Plant[?]): Double => Array[Double] =
     val own = expressions.parametersOf(plant, 0)
     dtS => timesOf(Array(dtS), own)
 
 private[lanes] object PlantStages:
-  /** What the expressions' inputs are: the time, the command over the speed, where it starts, the state's
-    * numbers, what is kept.
+  /** Inputs of the expressions: the time, the command over the speed, the start, the state's numbers, the
+    * stored numbers.
     */
   val Time: Int   = 0
   val StartX: Int = 1
@@ -148,7 +150,7 @@ private[lanes] object PlantStages:
   val State: Int  = 5
   val Kept: Int   = 1 << 16
 
-  /** The state's numbers stand in one array, and so does what is kept. */
+  /** Rows of inputs: the state's numbers share one array, and so do the stored numbers. */
   private val rowOf: PartialFunction[Int, Int] =
     case kept if kept >= Kept    => kept - Kept
     case state if state >= State => state - State

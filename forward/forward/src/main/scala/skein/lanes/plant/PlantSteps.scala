@@ -4,10 +4,11 @@ import skein.formula.{Formula, Node, Trace}
 import skein.simd.{BoundFunction, LaneCall}
 import skein.vehicle.Plant
 
-/** A plant's steps, all equally long, in worlds whose steps begin together, and what is read after each.
-  * Compiled once for all plants of a form.
+/** A plant's steps of equal length, in worlds whose steps begin together, with a reading after each. Compiled
+  * once for all plants of a form.
   *
-  * @param places the state's numbers that begin where the vehicle starts, north and east, if there are such
+  * @param places the state's numbers that initially equal the vehicle's start, north and east, if there are
+  *   such
   */
 private[skein] final class PlantSteps private[lanes] (
     stepping: Formula,
@@ -30,7 +31,7 @@ private[skein] final class PlantSteps private[lanes] (
     if places.isDefined then expressions.seen
     else expressions.seenFrom(trace.input(count + 2), trace.input(count + 3))
 
-  /** Whether the state is what is read, number for number. */
+  /** Whether the state equals the reading, number for number. */
   val isRead: Boolean = seen == expressions.stepped
 
   private lazy val ofState   = bound(expressions.stepped)
@@ -39,44 +40,42 @@ private[skein] final class PlantSteps private[lanes] (
   private def bound(of: Vector[Node]) =
     BoundFunction.of(of, { case number if number < count => number }, areRows = true)
 
-  /** @param spanS how long each step is
-    * @param reads whether position and velocity, north and east, are rows behind the state's
+  /** Prepares a call.
+    *
+    * @param spanS duration of each step
+    * @param reads whether position and velocity, north and east, are rows after the state's
     */
   def call(plant: Plant[?], spanS: Double, reads: Boolean): PlantSteps.Call =
     val parameters = (spanS +: expressions.parametersOf(plant, 0)).map(_.toFloat)
     PlantSteps.Call(if reads then ofReading else ofState, parameters, count)
 
 private[skein] object PlantSteps:
-  /** Mutable. */
   final class Call private[lanes] (stepped: BoundFunction, parameters: Array[Float], count: Int):
     private val call  = LaneCall(stepped, parameters)
     private val state = stepped.inputs.indexWhere(_ < count)
     private val north = stepped.place(count)
     private val east  = stepped.place(count + 1)
 
-    /** Where the rows of the state begin as a step begins.
+    /** Sets the rows of the state at the begin of a step.
       *
-      * @param apart how far those of each step are from the last one's; after the last in the array come the
+      * @param apart distance between the rows of successive steps; after the last in the array follow the
       *   first
       */
     def rows(array: Array[Float], from: Int, apart: Int): Unit = call.inputIfAny(state, array, from, apart)
 
-    /** Where those of its end begin. */
+    /** Sets the rows of the state at its end. */
     def outputRows(array: Array[Float], from: Int, apart: Int): Unit = call.output(0, array, from, apart)
 
-    /** Where each vehicle started. */
     def starts(north: Array[Float], east: Array[Float]): Unit =
       call.inputIfAny(stepped.place(count + 2), north)
       call.inputIfAny(stepped.place(count + 3), east)
 
-    /** What is commanded from now on, over the speed, m/s. */
+    /** Sets the command in effect from now on, over the speed, m/s. */
     def command(north: Array[Float], east: Array[Float], speed: Float): Unit =
       parameters(1) = speed
       call.inputIfAny(this.north, north)
       call.inputIfAny(this.east, east)
 
-    /** Flies a step. */
     def next(): Unit = call.next()
 
-    /** Goes back to the first rows. */
     def rewind(): Unit = call.rewind()

@@ -5,8 +5,8 @@ import skein.simd.{FixedFormula, Forms, LaneCall, LaneFunction}
 import skein.units.Vector3
 import skein.vehicle.{Environment, Quadrotor, QuadrotorState, Setpoint, VerticalMode}
 
-/** How quadrotors of one form fly many at a time: [[Quadrotor.stepInAir]] itself, compiled, for
-  * `moveByVelocityZ` with the yaw held, in calm air.
+/** SIMD simulation of quadrotors of one form: [[Quadrotor.stepInAir]] itself, compiled, for `moveByVelocityZ`
+  * with the yaw held, in calm air.
   */
 private[lanes] final class QuadrotorLanes private (
     val quadrotor: Quadrotor,
@@ -19,7 +19,7 @@ private[lanes] final class QuadrotorLanes private (
 
   def row(name: String): Int = rows.indexOf(name)
 
-  /** Which numbers these are of a state. */
+  /** The numbers of a state in the order of the rows. */
   def numbersOf(state: QuadrotorState): Vector[Double] = fields.map(_.getDouble(state))
 
   private lazy val fields = rows.map: name =>
@@ -27,14 +27,15 @@ private[lanes] final class QuadrotorLanes private (
     field.setAccessible(true)
     field
 
-  /** What a vehicle above its start is to hold, to settle at this altitude. */
+  /** The position to hold, for a vehicle above its start, so that it settles at this altitude. */
   def holdingAt(downM: Double): Vector3 =
     Vector3(0, 0, downM - quadrotor.hoverSagM(downM, Environment.Calm))
 
-  /** One step.
+  /** Simulates one step.
     *
-    * @param from rows of the states before it, and of those after it
-    * @param goal rows of what is commanded: velocity north and east, m/s, and down, m
+    * @param from rows of the states before it
+    * @param to rows of the states after it
+    * @param goal rows of the command: velocity north and east, m/s, and down, m
     */
   def step(from: Array[Float], to: Array[Float], goal: Array[Float]): LaneCall =
     val call = LaneCall(formula.bound, formula.parameters.map(_.toFloat))
@@ -47,7 +48,7 @@ private[lanes] final class QuadrotorLanes private (
 private[lanes] object QuadrotorLanes:
   private val State = "state."
 
-  /** @return or why such quadrotors do not fly by lanes */
+  /** The compiled quadrotor; Left states why SIMD does not support it. */
   def of(quadrotor: Quadrotor): Either[String, QuadrotorLanes] =
     val airborne = Airborne(quadrotor)
     forms(airborne).map(form => QuadrotorLanes(quadrotor, form.of(airborne))).left.map(_.getMessage)
@@ -61,7 +62,7 @@ private[lanes] object QuadrotorLanes:
       require(formula.inputs.map(_.stripPrefix(State)).startsWith(formula.outputs.map(_._1)), formula.inputs)
       FixedFormula(formula, of, rows = formula.outputs.size)
 
-  /** Of a state in the air under `moveByVelocityZ`, what is no number. */
+  /** Fields of a state in the air under `moveByVelocityZ` that are not numbers. */
   private def known: Map[String, Any] = Map(
     "grounded"      -> false,
     "contacts"      -> 0,
@@ -69,7 +70,7 @@ private[lanes] object QuadrotorLanes:
     "cascadeMemory" -> null
   ).map((name, value) => (State + name, value))
 
-  /** What is compiled. */
+  /** The method to compile: one step in the air. */
   private final class Airborne(quadrotor: Quadrotor):
     def step(state: QuadrotorState, northMps: Double, eastMps: Double, downM: Double): QuadrotorState =
       quadrotor.stepInAir(state, Setpoint.velocityZ(northMps, eastMps, downM), Environment.Calm)

@@ -7,7 +7,7 @@ import skein.simd.LaneFunction.COUNT as WORLDS
 /** Flights by the [[PlantStages]] of one plant, in many worlds whose steps begin and end together. Mutable.
   *
   * @param speedMps of a command of length 1
-  * @param startX where each world's begins, north and east, m
+  * @param startX start of each world's vehicle, north and east, m
   */
 private[lanes] final class StagedFlight(
     lanes: PlantLanes,
@@ -21,7 +21,7 @@ private[lanes] final class StagedFlight(
   private val (times, firstOfTime) = (stages.times, stages.firstOfTime)
   private val wholeStep            = stages.tell(lanes.plant)(lanes.plant.stepS).map(_.toFloat)
 
-  /** That it [[begin]]s with, number by number. */
+  /** The state with which it [[begin]]s, number by number. */
   val state: Array[Float] = Array.ofDim[Float](lanes.count * WORLDS)
 
   private val still         = Array.ofDim[Float](WORLDS)
@@ -38,12 +38,12 @@ private[lanes] final class StagedFlight(
 
   private var worlds = WORLDS
 
-  /** From now on the first worlds alone count. */
+  /** From now on only the first worlds count. */
   def use(worlds: Int): Unit =
     this.worlds = worlds
     for call <- Vector(beginning, resting) ++ moving.calls ++ other.calls do call.use(worlds)
 
-  /** By what is kept of a step in one place; what is kept of the next step goes to another, or to the same.
+  /** Moves from the stored numbers of a step; those of the next step go to another array, or overwrite them.
     */
   private final class Moving(val kept: Array[Float], to: Array[Float]):
     val position: LaneCall = bound(stages.position, kept)
@@ -64,12 +64,12 @@ private[lanes] final class StagedFlight(
     if to != null then call.output(0, to, 0)
     call
 
-  /** Puts one world's to its start, at rest; until its next command it is told to stand still. */
+  /** Sets one world's vehicle to its start, at rest; until its next command it stands still. */
   def rest(world: Int): Unit =
     resting()
     for at <- world until atRest.length by WORLDS do moving.kept(at) = atRest(at)
 
-  /** The first step begins, under a command.
+  /** Begins the first step, under a command.
     *
     * @param from the index of the first world's
     */
@@ -79,16 +79,17 @@ private[lanes] final class StagedFlight(
     beginning.inputIfAny(firstEast, commanded.sin, from)
     beginning()
 
-  /** The next step begins at the moment flown to, under a command. */
+  /** Begins the next step at the present moment, under a command. */
   def act(commanded: Directions, from: Int): Unit =
     moving.act.inputIfAny(north, commanded.cos, from)
     moving.act.inputIfAny(east, commanded.sin, from)
     moving.act()
     turnOver()
 
-  /** Flies on.
+  /** Simulates up to a time.
     *
-    * @param time from `at` on, how many steps end until then, and the numbers of the time after the last
+    * @param time from `at` on, the number of steps that end until then, and the values of the time after the
+    *   last
     */
   def flyTo(time: Array[Float], at: Int): Unit =
     var steps = time(at).toInt
@@ -110,7 +111,6 @@ private[lanes] final class StagedFlight(
     moving = other
     other = before
 
-  /** Where they are, and how fast. */
   def look(
       x: Array[Float],
       y: Array[Float],
@@ -127,7 +127,7 @@ private[lanes] final class StagedFlight(
       look.output(3, vy, into)
     look()
 
-  /** The state that they are in, number by number.
+  /** Writes the present state, number by number.
     *
     * @param at where the first one's begins
     */

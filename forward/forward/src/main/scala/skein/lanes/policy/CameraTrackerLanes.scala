@@ -6,10 +6,10 @@ import skein.forward.RolloutAgent
 import skein.fusion.{SensorFormulas, SensorModel}
 import skein.simd.FixedFormula
 
-/** What a vehicle believes of its opponent by a [[SensorModel]], in many worlds. Compiled from
-  * [[SensorFormulas]]; the scalar reference is `skein.forward.CameraTracker`. Which images are taken, and
-  * when they enter the belief, [[skein.lanes.timetable.TimetableEye]] knows where that is the same in all
-  * worlds, and [[skein.lanes.loop.LoopEye]] where it is not. Mutable.
+/** A vehicle's estimate of its opponent by a [[SensorModel]], in many worlds. Compiled from
+  * [[SensorFormulas]]; the scalar reference is `skein.forward.CameraTracker`. When images are taken and when
+  * they update the estimate is decided by [[skein.lanes.timetable.TimetableEye]] where that is equal in all
+  * worlds, and by [[skein.lanes.loop.LoopEye]] where it is not. Mutable.
   */
 private[lanes] abstract class CameraTrackerLanes(
     forms: CameraTrackerLanes.Forms,
@@ -28,22 +28,21 @@ private[lanes] abstract class CameraTrackerLanes(
   private val startAxis    =
     StrictMath.atan2(opponent.startY - own.startY, opponent.startX - own.startX).toFloat
 
-  /** The belief, and that before the newest image entered. */
+  /** The estimate, and the one before the newest image. */
   protected var newest, before: Array[Float] = Array.ofDim(Belief * WORLDS)
 
-  /** The errors of an image that is taken. */
   protected val bearing, range: Array[Float] = Array.ofDim[Float](WORLDS)
 
-  /** When an image was taken that enters the belief, s since the start. */
+  /** When the image was taken that updates the estimate, s since the start. */
   protected val takenS: Array[Float] = Array.ofDim[Float](WORLDS)
 
-  /** When it is decided, s since the start; and [[SensorFormulas.decidedUpon]]'s `aheadS`. */
+  /** Time of the decision, s since the start; and [[SensorFormulas.decidedUpon]]'s `aheadS`. */
   protected val nowS, aheadS: Array[Float] = Array.ofDim[Float](WORLDS)
 
-  /** Where the camera looks, rad, and where it would after a decision. */
+  /** Direction of the camera, rad, and its direction after a decision. */
   protected val axis, newAxis: Array[Float] = Array.ofDim[Float](WORLDS)
 
-  /** What is decided upon; velocities are the opponent's own. */
+  /** Inputs of the decision; velocities are the opponent's own. */
   val northM, eastM, northMps, eastMps, ageS: Array[Float] = Array.ofDim[Float](WORLDS)
   val heading: Directions                                  = Directions(WORLDS)
 
@@ -63,20 +62,19 @@ private[lanes] abstract class CameraTrackerLanes(
       Seq(northM, eastM, northMps, eastMps, heading.cos, heading.sin, ageS, newAxis).zipWithIndex
   do decided.output(output, array, 0)
 
-  /** From now on the first worlds alone count. */
+  /** From now on only the first worlds count. */
   protected def use(worlds: Int): Unit = for call <- Seq(detected, joined, decided) do call.use(worlds)
 
-  /** Nothing is known but where the opponent starts. */
+  /** Resets the estimate to the opponent's start. */
   protected def forget(): Unit =
     for state <- Seq(newest, before) do Arrays.fill(state, 0f)
     Arrays.fill(axis, startAxis)
 
-  /** What images show that are taken now, with the errors told, if the opponent is found wherever it is in
-    * view.
+  /** Results of images taken now, with the given errors, if the opponent is found wherever it is in view.
     *
-    * @param oursX the own vehicles' places, from `oursAt` on, m
-    * @param into [[CameraTrackerLanes.Detection]] numbers of each world; first whether the opponent is found,
-    *   1 or 0
+    * @param oursX positions of the own vehicles, from `oursAt` on, m
+    * @param into receives [[CameraTrackerLanes.Detection]] numbers of each world; first whether the opponent
+    *   is found, 1 or 0
     */
   protected final def detect(
       oursX: Array[Float],
@@ -94,16 +92,16 @@ private[lanes] abstract class CameraTrackerLanes(
     detected.outputs(Detection, into, 0)
     detected()
 
-  /** What is believed when images enter that were taken at [[takenS]]. */
+  /** The estimate after adding images that were taken at [[takenS]]. */
   protected final def join(belief: Array[Float], images: Array[Float], into: Array[Float]): Unit =
     joined.inputs(0, Belief, belief, 0)
     joined.inputs(Belief, Detection, images, 0)
     joined.outputs(Belief, into, 0)
     joined()
 
-  /** Tells [[northM]] and what follows, and [[newAxis]], at [[nowS]].
+  /** Fills [[northM]] and the following arrays, and [[newAxis]], at [[nowS]].
     *
-    * @param x where the own vehicles are, from `xAt` on, m
+    * @param x positions of the own vehicles, from `xAt` on, m
     */
   protected final def decideUpon(x: Array[Float], xAt: Int, y: Array[Float], yAt: Int): Unit =
     decided.inputs(0, Belief, newest, 0)
@@ -116,22 +114,20 @@ private[lanes] abstract class CameraTrackerLanes(
 private[lanes] object CameraTrackerLanes:
   private val WORLDS = LanePolicy.WORLDS
 
-  /** Numbers of a [[SensorFormulas.Believed]] and of a [[SensorFormulas.Detected]]. */
+  /** Sizes of a [[SensorFormulas.Believed]] and of a [[SensorFormulas.Detected]]. */
   val Belief    = 35
   val Detection = 13
 
-  /** Below, what floats leave of a covariance is no covariance. */
+  /** Least standard deviation of a measurement: below it, rounding of floats destroys a covariance. */
   private val LeastSd = 2e-4
 
-  /** Compiled. */
   final class Forms(
       val detected: FixedFormula,
       val joined: FixedFormula,
       val decidedUpon: FixedFormula
   )
 
-  /** @return or why this sensor does not fly by lanes
-    */
+  /** The compiled formulas of a sensor; Left states why SIMD does not support it. */
   def of(model: SensorModel): Either[String, Forms] =
     val formulas                        = SensorFormulas(model)
     def form(name: String, inputs: Int) = FixedFormula.of(formulas, name, alike = 0).map: formula =>

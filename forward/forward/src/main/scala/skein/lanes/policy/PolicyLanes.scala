@@ -5,7 +5,7 @@ import skein.formula.{Angles, Evaluation, Formula, Node, Op, Trace, Untraceable}
 import skein.policy.{ObservingPolicy, PlanarObservation, HeadingPolicy}
 import skein.simd.{Forms, LaneCompiler, LaneFunction}
 
-/** What policies of one form have in common: how they decide in many worlds at once, compiled from the method
+/** The decision of policies of one form in many worlds by SIMD, compiled from the method
   * [[HeadingPolicy.heading]], or [[ObservingPolicy.decide]], itself. Policies of one form differ in numbers
   * alone.
   */
@@ -16,7 +16,9 @@ private[skein] final class PolicyLanes private (formula: Formula):
   private val source = formula.trace
   private val own    = source.input(OwnHeading)
 
-  /** By how much it turns from its heading, where it says so; else it answers with a direction. */
+  /** The turn from the last heading, for a policy that decides by turning; otherwise its result is a
+    * direction.
+    */
   private lazy val turn: Option[Node] = turnOf(heading)
 
   private lazy val angles: Angles = Angles(
@@ -42,11 +44,10 @@ private[skein] final class PolicyLanes private (formula: Formula):
 
   private lazy val heading = angles.factored(formula.outputs(0)._2)
 
-  /** How many numbers a policy remembers. */
   val memories: Int = formula.outputs.size - 1
 
-  /** Cosine and sine of the decided heading, how far it is from the one before, what is remembered, and the
-    * heading itself if it is kept.
+  /** Cosine and sine of the decided heading, its change, the next memory, and the heading itself if it is
+    * kept.
     */
   val outputs: Vector[Node] =
     val remembered = formula.outputs.tail.map((_, node) => angles.convert(node))
@@ -60,52 +61,49 @@ private[skein] final class PolicyLanes private (formula: Formula):
         val (cos, sin) = angles.cosSin(heading)
         Vector(cos, sin, apart(cos, sin)) ++ remembered
 
-  /** Whether it turns from the heading commanded last, and so decides a heading besides its direction. */
+  /** Whether it turns from the last commanded heading, and so outputs a heading in addition to its direction.
+    */
   val keepsHeading: Boolean = turn.isDefined
 
-  /** How many of [[outputs]] come before what is remembered. */
+  /** Number of [[outputs]] before the memory. */
   val decided: Int = outputs.size - memories - (if keepsHeading then 1 else 0)
 
   private val needed = Trace.needed(outputs)
 
-  /** Whether it looks at velocities. */
   val needsVelocity: Boolean = looksAt(Dvx) || looksAt(Dvy)
 
-  /** Whether it asks how old readings are. */
   val needsAges: Boolean = looksAt(In.OwnAge) || looksAt(In.OpponentAge)
 
   private def looksAt(input: Int) = needed.exists(node => node.op == Op.Input && node.index == input)
 
   private val derived = angles.derived
 
-  /** How many numbers it differs by from another of its form. */
+  /** Number of parameters by which it differs from others of its form. */
   def parameters: Int = derived.size
 
-  /** How many numbers and conditions are computed at a decision. */
+  /** Number of values and conditions computed at a decision. */
   def operations: Int = needed.count(_.args.nonEmpty)
 
-  /** How many arrays it reads. */
+  /** Number of arrays that it reads. */
   def inputs: Int = In.Memory + memories
 
-  /** Computes [[outputs]] of what [[In]] lists, of which the first are told as the opponent's readings and
-    * the own ones.
+  /** Computes [[outputs]] from the inputs of [[In]], the first of which are passed as the opponent's readings
+    * and the own ones.
     */
   lazy val function: LaneFunction = LaneCompiler.compile(inputs, outputs, LaneObservation.READ, parameters)
 
   // But how far the decided heading is from the one before.
   private def course = outputs.patch(2, Nil, 1)
 
-  /** What is computed at a decision. */
   private[lanes] def nodes(withEffort: Boolean): Vector[Node] = if withEffort then outputs else course
 
-  /** The same but how far the decided heading is from the one before. */
+  /** [[function]] without the change of the decided heading. */
   lazy val functionWithoutEffort: LaneFunction =
     LaneCompiler.compile(inputs, course, LaneObservation.READ, parameters)
 
-  /** The same for worlds that all have one policy. */
+  /** [[function]] for worlds that all have one policy. */
   lazy val functionOfOne: LaneFunction = LaneCompiler.compile(inputs, course, LaneObservation.READ)
 
-  /** How many numbers these compute. */
   def courseOutputs: Int = course.size
 
   private val plain      = derived.forall(_.op == Op.Param)
@@ -117,7 +115,7 @@ private[skein] final class PolicyLanes private (formula: Formula):
     if plain then indices.map(own(_))
     else evaluation(Array.emptyDoubleArray, own)
 
-  /** The function's inputs for what one policy sees and remembers. */
+  /** The function's inputs for the observation and memory of one policy. */
   def inputsOf(seen: PlanarObservation, memory: Any): Array[Double] =
     val (own, known) = (seen.ownHeadingRad, seen.opponentHeadingRad)
     Array(
@@ -135,10 +133,9 @@ private[skein] final class PolicyLanes private (formula: Formula):
       seen.opponentAgeS
     ) ++ numbersOf(memory)
 
-  /** What a policy remembers before its first decision. */
+  /** A policy's initial memory, as numbers. */
   def initialOf(policy: HeadingPolicy): Array[Double] = numbersOf(ObservingPolicy.initialOf(policy)).toArray
 
-  /** Whether a policy is of this form. */
   def fits(policy: HeadingPolicy): Boolean = formula.fits(policy)
 
   private def turnOf(heading: Node): Option[Node] =
@@ -187,15 +184,12 @@ private[skein] object PolicyLanes:
     final val KnownCos = 7
     final val KnownSin = 8
 
-    /** Rad, commanded last. */
     final val Heading     = 9
     final val OwnAge      = 10
     final val OpponentAge = 11
 
-    /** The first of the numbers remembered. */
     final val Memory = 12
 
-  /** A memory's numbers in their order. */
   private def numbersOf(memory: Any): Vector[Double] = memory match
     case number: Double         => Vector(number)
     case several: Product       => several.productIterator.flatMap(numbersOf).toVector
@@ -204,10 +198,10 @@ private[skein] object PolicyLanes:
 
   private val known = ConcurrentHashMap[Class[?], Forms[HeadingPolicy, PolicyLanes]]()
 
-  /** Policies of a class that are no formulas, before all of it are taken for none. */
+  /** After this number of refused policies of a class, all of the class count as refused. */
   private val MostRefused = 16
 
-  /** How a policy flies by lanes, or why it does not. Compiled once for each form. */
+  /** The SIMD code of a policy, or why there is none. Compiled once for each form. */
   def of(policy: HeadingPolicy): Either[Untraceable, PolicyLanes] =
     known.computeIfAbsent(
       policy.getClass,
@@ -218,5 +212,5 @@ private[skein] object PolicyLanes:
     case observing: ObservingPolicy[?] => Formula.of(observing, "decide")
     case _ => Formula.of(policy, "heading", arguments = Some(Seq.fill(7)(classOf[Double])))
 
-  /** Of a policy that is known to be a formula. */
+  /** The SIMD code of a policy that is known to be a formula. */
   def get(policy: HeadingPolicy): PolicyLanes = of(policy).fold(throw _, identity)

@@ -9,22 +9,21 @@ import skein.policy.PolicyFormula.Motion
 import skein.simd.{BoundFunction, Forms}
 import skein.units.{Expect, Metres}
 
-/** How the policies of a team decide in many worlds at once, compiled from their own methods
-  * ([[PolicyFormula]]). Teams of one form differ in numbers alone.
+/** SIMD decisions of a team's policies in many worlds, compiled from their own methods ([[PolicyFormula]]).
+  * Teams of one form differ in numbers alone.
   *
-  * What several vehicles compute of one view is computed once for all of them: of the bearings that each
-  * pursuer wants to know, say.
+  * What several vehicles compute from one view is computed once for all of them: for example the bearings
+  * that each pursuer needs.
   */
 private[lanes] final class TeamLanes private (formulas: Vector[PolicyFormula], assignment: Assignment):
   import TeamLanes.*
 
-  /** How many vehicles fly. */
   val count: Int = formulas.size
 
   private val view  = 4 * count
   private val trace = Trace(MostOperations)
 
-  /** By vehicle, whose headings are asked for: the own one of before, or what is known of another's. */
+  /** By vehicle, the headings that it needs: its own previous one, or the known one of another vehicle. */
   private val headings = Vector.tabulate(count): self =>
     val formula = formulas(self)
     val nodes   = formula.memory ++ (formula.motion match
@@ -67,8 +66,8 @@ private[lanes] final class TeamLanes private (formulas: Vector[PolicyFormula], a
       number => own(Own.Parameters + number)
     )
 
-  /** By vehicle: the velocity commanded, north and east; cosine and sine of its heading, or anything where
-    * nobody asks; and what is remembered.
+  /** By vehicle: the commanded velocity, north and east; cosine and sine of its heading, or anything where it
+    * is not needed; and the next memory.
     */
   val outputs: Vector[Vector[Node]] = Vector.tabulate(count): self =>
     val by     = angles(self)
@@ -83,7 +82,7 @@ private[lanes] final class TeamLanes private (formulas: Vector[PolicyFormula], a
         Vector(north, east, cos, sin)
     course ++ formulas(self).memory.map(by.convert)
 
-  /** Of a velocity; where there is hardly one, that of before. */
+  /** Direction of a velocity; for a velocity near zero, the previous direction. */
   private def directionOf(self: Int, north: Node, east: Node): (Node, Node) =
     val speed  = trace.binary(Op.Hypot, north, east)
     val isSlow = trace.lt(speed, trace.const(Action.LeastMps))
@@ -98,43 +97,44 @@ private[lanes] final class TeamLanes private (formulas: Vector[PolicyFormula], a
 
   private val common = Common.of(outputs, view)
 
-  /** What is computed once of a view; there may be nothing. */
+  /** The function for what is computed once per view; may be empty. */
   val shared: BoundFunction = BoundFunction.of(common.nodes)
 
-  /** By vehicle: what it computes besides. */
+  /** By vehicle: the function for its own part of the decision. */
   val functions: Vector[BoundFunction] =
     outputs.map(each =>
       BoundFunction.of(common.without(trace, each, number => trace.input(sharedInput(number))))
     )
 
-  /** A vehicle and what of its reading an input is, 0 to 3: position north and east, velocity north and east.
+  /** The vehicle and the component of its reading that an input stands for, 0 to 3: position north and east,
+    * velocity north and east.
     */
   def reading(input: Int): Option[(Int, Int)] =
     Option.when(input < view)((input % count, input / count))
 
-  /** What another input is. */
   def source(input: Int): Source =
     if input >= FirstShared then Source.Shared(input - FirstShared)
     else Own.source((input - view) % Stride)
 
   private val sources = functions.map(_.inputs.toVector.filter(reading(_).isEmpty).map(source))
 
-  /** Whether anybody looks at velocities. */
   val needsVelocity: Boolean =
     (shared +: functions).exists(_.inputs.exists(reading(_).exists((_, field) => field >= 2)))
 
-  /** Whether a vehicle asks how old readings are, what others were told, or when its command acts. */
+  /** By vehicle: whether it needs ages of readings, commands of others, or the time until its command takes
+    * effect.
+    */
   val asksMore: Vector[Boolean] = sources.map(_.exists:
     case _: (Source.Age | Source.KnownCos | Source.KnownSin) | Source.ActsIn => true
     case _                                                                   => false)
 
-  /** Whether a vehicle asks how old readings are. */
+  /** By vehicle: whether it needs ages of readings. */
   val asksAges: Vector[Boolean] = sources.map(_.exists(_.isInstanceOf[Source.Age]))
 
-  /** Whether somebody looks at how high vehicles are. */
+  /** Whether some vehicle needs altitudes of vehicles. */
   val looksUp: Boolean = sources.exists(_.exists(_.isInstanceOf[Source.Altitude]))
 
-  /** Whether somebody may ask its vehicle to turn. */
+  /** Whether some policy may command its vehicle's yaw. */
   val turns: Boolean = formulas.exists(_.turns)
 
   /** Whether all decide by positions, velocities, time and the own heading alone. */
@@ -142,19 +142,19 @@ private[lanes] final class TeamLanes private (formulas: Vector[PolicyFormula], a
     case Source.Cos | Source.Sin | Source.Elapsed | _: (Source.Parameter | Source.Shared) => true
     case _                                                                                => false
 
-  /** How many numbers a vehicle's policy remembers. */
+  /** Number of values in the memory of a vehicle's policy. */
   def memories(self: Int): Int = formulas(self).memory.size
 
-  /** How many numbers a vehicle's policy differs by from another of its form. */
+  /** Number of parameters by which a vehicle's policy differs from others of its form. */
   def parameters(self: Int): Int = derived(self).size
 
   def parametersOf(self: Int, policy: Policy): Array[Double] =
     numbers(self)(Array.emptyDoubleArray, formulas(self).parametersOf(policy))
 
-  /** What a vehicle's policy remembers before its first decision. */
+  /** The initial memory of a vehicle's policy. */
   def startOf(self: Int, policy: Policy): Array[Double] = formulas(self).startOf(policy)
 
-  /** Why one of a team does not keep the altitude of its start. */
+  /** Why some agent of a team does not keep the altitude of its start. */
   def leaves(agents: Vector[RolloutAgent]): Option[String] =
     agents.indices.iterator
       .flatMap(self => formulas(self).leaves(agents(self).policy, Metres(agents(self).altitudeDownM)))
@@ -167,7 +167,7 @@ private[lanes] final class TeamLanes private (formulas: Vector[PolicyFormula], a
   private def ownInput(self: Int, number: Int) = view + self * Stride + number
 
 private[lanes] object TeamLanes:
-  /** Inputs that each vehicle has for itself; some of them for each other one. */
+  /** Inputs that each vehicle has for itself; some of them exist for each other vehicle. */
   private object Own:
     final val Cos        = 0
     final val Sin        = 1
@@ -198,14 +198,12 @@ private[lanes] object TeamLanes:
           case Cruise  => Source.Cruise
           case _       => Source.StartDown
 
-  /** Numbers that one policy may remember. */
   private final val MostMemories = 1024
 
-  /** More parameters than a policy of as many operations as a trace holds may have. */
+  /** More parameters than any policy within a trace's limit of operations can have. */
   private final val Stride      = 1 << 18
   private final val FirstShared = 1 << 30
 
-  /** Of all vehicles together. */
   private final val MostOperations = 2_000_000
 
   private def sharedInput(number: Int) = FirstShared + number
@@ -222,12 +220,11 @@ private[lanes] object TeamLanes:
 
   private final case class Team(policies: Vector[Policy], assignment: Assignment, isPredicted: Boolean)
 
-  /** By what is not in a policy. */
   private val known = ConcurrentHashMap[(Assignment, Boolean), Forms[Team, TeamLanes]]()
 
-  /** How a team flies by lanes, or why it does not. Compiled once for each form.
+  /** The SIMD code of a team, or why there is none. Compiled once for each form.
     *
-    * @param isPredicted whether readings are carried forward
+    * @param isPredicted whether readings are predicted
     */
   def of(
       policies: Vector[Policy],
@@ -251,19 +248,19 @@ private[lanes] object TeamLanes:
     )
     forms(Team(policies, assignment, isPredicted))
 
-/** What several expressions have in common, of all that depends on the first inputs alone.
+/** Subexpressions shared by several expressions, which depend on the first inputs alone.
   *
-  * @param nodes what is worth to be computed once
+  * @param nodes those that are worth computing once
   */
 private final class Common private (val nodes: Vector[Node]):
   private val numbers = nodes.zipWithIndex.toMap
 
-  /** The expressions with inputs in the place of what they have in common. */
+  /** The expressions with the shared subexpressions replaced by inputs. */
   def without(trace: Trace, outputs: Vector[Node], input: Int => Node): Vector[Node] =
     Trace.replaced(outputs, trace)(numbers.get(_).map(input))
 
 private object Common:
-  /** Fewer operations are done again sooner than fetched. */
+  /** Subexpressions with fewer operations are cheaper to recompute than to load. */
   private val LeastOperations = 4
 
   def of(expressions: Vector[Vector[Node]], inputs: Int): Common =

@@ -2,15 +2,15 @@ package skein.lanes.score
 
 import skein.scenario.{Quantity, Reduction}
 
-/** A number that a flight comes to.
+/** A number that is computed of a flight.
   *
   * @param reduction of the quantity's values, one a period
-  * @param fromS counted from here on
+  * @param fromS time of the first value that counts
   */
 final case class Judged(quantity: Quantity, reduction: Reduction | OfMoment, fromS: Double):
   private[lanes] def counts(timeS: Double): Boolean = Judged.counts(timeS, fromS)
 
-  /** What values come to that count, with their times; no number where nothing counted. */
+  /** Reduces those of the timed values that count; NaN where none counts. */
   private[lanes] def of(values: IndexedSeq[(Double, Double)]): Double = reduction match
     case OfMoment.FirstWithin(limit) =>
       values.collectFirst { case (timeS, value) if value <= limit => timeS }.getOrElse(
@@ -23,13 +23,14 @@ final case class Judged(quantity: Quantity, reduction: Reduction | OfMoment, fro
 object Judged:
   private[lanes] def counts(timeS: Double, fromS: Double): Boolean = timeS > afterS(fromS)
 
-  /** Times may be known as Floats alone, and the shortest period is a millisecond. */
+  /** Moves a time to just before itself: times may be stored as floats, and the shortest period is a
+    * millisecond.
+    */
   private[lanes] def afterS(fromS: Double): Double = fromS - 3e-4
 
-/** What the values of a quantity come to, where it is told of one moment. */
+/** Reductions of a quantity's values to one moment. */
 enum OfMoment:
-  /** When it first was at most this, s; infinite if it never was. */
+  /** First time at which the value was at most this, s; infinite if it never was. */
   case FirstWithin(limit: Double)
 
-  /** The last value. */
   case Newest

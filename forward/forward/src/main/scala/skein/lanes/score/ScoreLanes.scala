@@ -5,9 +5,9 @@ import skein.scenario.{Positions, Quantity, Reduction, Separation}
 import skein.simd.{BoundFunction, Forms}
 import skein.units.Expect
 
-/** What flights are judged by, in many worlds at once: the quantities, compiled from their methods
-  * [[Quantity.of]], and what they come to so far, in one function. Of each world some numbers are kept; the
-  * function computes their successors from them and from a view. Flights of one form differ in numbers alone.
+/** The scores of flights in many worlds by SIMD: the quantities, compiled from their methods [[Quantity.of]],
+  * and their reductions so far, in one function. Some numbers are kept per world; the function computes their
+  * successors from them and from a view. Flights of one form differ in numbers alone.
   */
 private[lanes] final class ScoreLanes private (
     formulas: Vector[Formula],
@@ -27,10 +27,10 @@ private[lanes] final class ScoreLanes private (
       parameter => trace.input(FirstParameter + number * Stride + parameter)
     )
 
-  /** What is kept at the start, by place. */
+  /** The initial values of the kept numbers, by place. */
   val initial: Vector[Float] = judged.flatMap(initially)
 
-  /** Where begins what is kept of each number that is judged, and where it all ends. */
+  /** By judged number, the offset of its kept numbers; last, their total count. */
   val places: Vector[Int] = judged.map(initially(_).size).scanLeft(0)(_ + _)
 
   private val successors: Vector[Vector[Node]] = judged.indices.toVector.map: number =>
@@ -40,7 +40,8 @@ private[lanes] final class ScoreLanes private (
       kept => trace.input(FirstKept + places(number) + kept)
     )
 
-  /** What is kept next. Each successor takes the place of what it is made of, which nothing else reads.
+  /** The successors of the kept numbers. Each overwrites the number from which it is computed, which nothing
+    * else reads.
     *
     * @param value now
     */
@@ -63,7 +64,7 @@ private[lanes] final class ScoreLanes private (
   private val derived = angles.map(_.derived)
   private val numbers = derived.map(Evaluation(_))
 
-  /** What is computed from a time on, until the next one's. */
+  /** The functions to compute from each time on, until the next one's. */
   val stages: Vector[Stage] = judged.map(_.fromS).distinct.sorted.map: fromS =>
     val numbers = judged.indices.filter(judged(_).fromS <= fromS).toVector
     Stage(
@@ -73,7 +74,7 @@ private[lanes] final class ScoreLanes private (
       BoundFunction.of(numbers.flatMap(successors))
     )
 
-  /** What an input of the functions is. */
+  /** The source of an input of the functions: a reading, a parameter or a kept number. */
   def source(input: Int): Source =
     if input < 2 * count then Source.Reading(input % count, input / count)
     else if input < FirstParameter then Source.Altitude(input - 2 * count)
@@ -81,16 +82,16 @@ private[lanes] final class ScoreLanes private (
       Source.Parameter((input - FirstParameter) / Stride, (input - FirstParameter) % Stride)
     else Source.Kept(input - FirstKept)
 
-  /** Whether a number needs the share of each value among all so far. */
+  /** Whether a number needs the weight of each value among all so far. */
   def hasShare(number: Int): Boolean = judged(number).reduction == Reduction.Sd
 
-  /** How many numbers a quantity differs by from another of its form. */
+  /** Number of parameters by which a quantity differs from others of its form. */
   def parameters(number: Int): Int = derived(number).size
 
   def parametersOf(number: Int, quantity: Quantity): Array[Double] =
     numbers(number)(Array.emptyDoubleArray, formulas(number).parametersOf(quantity))
 
-  /** Whether flights of so many vehicles that are judged so are of this form. */
+  /** Whether this number of vehicles with these judged numbers has this form. */
   def fits(by: Vector[Judged], vehicles: Int): Boolean =
     vehicles == count && by.size == judged.size && by.indices.forall: number =>
       val (own, other) = (judged(number), by(number))
@@ -101,24 +102,25 @@ private[lanes] object ScoreLanes:
   private final val Stride         = 1 << 18
   private final val FirstKept      = 1 << 30
 
-  /** Parameters, which all worlds have alike: the time, s; then one for each number that is judged: a limit,
-    * or the share of the value that is new among all so far.
+  /** Indices of the parameters that all worlds share: the time, s; then one for each judged number: a limit,
+    * or the weight of the new value among all so far.
     */
   final val Time                     = 0
   def ownParameter(number: Int): Int = 1 + number
 
   enum Source:
-    /** North by 0 and east by 1. */
     case Reading(vehicle: Int, field: Int)
     case Altitude(vehicle: Int)
     case Parameter(number: Int, parameter: Int)
     case Kept(place: Int)
 
-  /** @param judged numbers of what is judged now
-    * @param places of what the function computes, by its outputs
+  /** The functions in effect from a time on.
+    *
+    * @param judged indices of the numbers that count now
+    * @param places of the computed values, by outputs
     */
   final case class Stage(fromS: Double, judged: Vector[Int], places: Vector[Int], function: BoundFunction):
-    /** Times after this count: the last float that does not. */
+    /** Samples later than this are scored (exclusive bound). */
     def afterS: Float =
       val (exact, near) = (Judged.afterS(fromS), Judged.afterS(fromS).toFloat)
       if near > exact then Math.nextDown(near) else near
@@ -134,14 +136,15 @@ private[lanes] object ScoreLanes:
     (judged, vehicles) =>
       Expect.each(judged)(each => formulaOf(each.quantity, vehicles)).map(ScoreLanes(_, judged, vehicles))
 
-  /** How flights of so many vehicles are judged by lanes, or why they are not. Compiled once for each form.
+  /** The compiled scores of this number of vehicles; Left states why SIMD does not support them. Compiled
+    * once for each form.
     */
   def of(judged: Vector[Judged], vehicles: Int): Either[Untraceable, ScoreLanes] = known((judged, vehicles))
 
-  /** What a number comes to; no number where nothing counted.
+  /** The final value of a judged number; NaN where nothing counted.
     *
-    * @param kept last of it
-    * @param count how often it counted
+    * @param kept last kept number
+    * @param count of values that counted
     */
   def value(reduction: Reduction | OfMoment, kept: Float, count: Int): Float = reduction match
     case Reduction.Rms | Reduction.Sd                   => math.sqrt(kept / count).toFloat
@@ -149,9 +152,9 @@ private[lanes] object ScoreLanes:
     case Reduction.Least | Reduction.Most if count == 0 => Float.NaN
     case _                                              => kept
 
-  /** By the distance of two vehicles.
+  /** Scores of the distance between two vehicles.
     *
-    * @param by what its values come to, from a time on, s
+    * @param by reductions of its values, each from a time on, s
     */
   def ofDistance(by: (Reduction | OfMoment, Double)*): ScoreLanes =
     of(by.toVector.map(Judged(Separation, _, _)), 2).fold(throw _, identity)

@@ -5,7 +5,7 @@ import skein.forward.RolloutAgent
 import skein.lanes.timetable.{TimetableAgents, TimetableScores, ViewCall}
 import skein.scenario.Reduction
 
-/** Judges the flights of many worlds, once a period. Mutable. */
+/** Scores the flights of many worlds, once a period. Mutable. */
 private[lanes] final class Scoreboard(lanes: ScoreLanes) extends TimetableScores:
   import ScoreLanes.Source
 
@@ -42,13 +42,13 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes) extends TimetableScores
         case Source.Parameter(number, parameter) =>
           shown.call.input(place, parameters(number), parameter * worlds)
 
-  /** Takes the numbers of what a world is judged by. */
+  /** Sets the parameters of a world's quantities. */
   def take(world: Int, vehicles: Vector[RolloutAgent], numbers: Vector[Array[Double]]): Unit =
     for (vehicle, i) <- vehicles.zipWithIndex do altitudes(i * worlds + world) = vehicle.altitudeDownM.toFloat
     for (values, number) <- numbers.zipWithIndex; i <- values.indices do
       parameters(number)(i * worlds + world) = values(i).toFloat
 
-  /** From now on a quantity is waited for to be at most this. */
+  /** Sets the limit of a quantity that is awaited. */
   def limit(number: Int, most: Float): Unit = shared(ScoreLanes.ownParameter(number)) = most
 
   def start(worlds: Int): Unit =
@@ -56,7 +56,6 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes) extends TimetableScores
     shared(ScoreLanes.Time) = 0
     for number <- judged.indices do forget(number)
 
-  /** From now on a number counts anew. */
   def forget(number: Int): Unit =
     counts(number) = 0
     for place <- lanes.places(number) until lanes.places(number + 1) do
@@ -68,16 +67,15 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes) extends TimetableScores
       stage.shown.look(agents, views, view)
       add(stage, timeS)
 
-  /** Where a vehicle's positions stand from now on, one of each world: for scores without a view. */
+  /** Sets where a vehicle's positions are stored, one of each world: for scores without a view. */
   def place(vehicle: Int, north: Array[Float], northAt: Int, east: Array[Float], eastAt: Int): Unit =
     for stage <- stages do
       stage.shown.show(vehicle, 0, north, northAt)
       stage.shown.show(vehicle, 1, east, eastAt)
 
-  /** Whether anything counts at a time. */
   def counts(timeS: Float): Boolean = stageAt(timeS) != null
 
-  /** Where all vehicles are [[place placed]] now, at a time that [[counts]]. */
+  /** Scores the [[place placed]] positions of all vehicles, at a time that [[counts]]. */
   def score(timeS: Float): Unit = add(stageAt(timeS), timeS)
 
   private def stageAt(timeS: Float): Stage =
@@ -95,25 +93,24 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes) extends TimetableScores
       i += 1
     stage.shown.call.apply()
 
-  /** The time scored last, since the start, s. */
+  /** Time of the last score, since the start, s. */
   def scoredAtS: Float = shared(ScoreLanes.Time)
 
-  /** What is kept last of a number in a world: of a mean the sum, for example. */
   def soFar(number: Int, world: Int): Float = kept((ends(number) - 1) * worlds + world)
 
-  /** What a number came to, by world. */
+  /** The final values of a judged number, by world. */
   def values(number: Int): Array[Float] = Array.tabulate(worlds)(value(number, _))
 
-  /** The same of one world; no number where nothing counted. */
+  /** The final value in one world; NaN where nothing counted. */
   def value(number: Int, world: Int): Float =
     ScoreLanes.value(judged(number).reduction, soFar(number, world), counts(number))
 
 private[lanes] object Scoreboard:
-  /** By the distance of two vehicles.
+  /** Scores the distance between two vehicles.
     *
-    * @param by what its values come to, from a time on, s
+    * @param by reductions of its values, each from a time on, s
     */
   def ofDistance(by: (Reduction | OfMoment, Double)*): Scoreboard = Scoreboard(ScoreLanes.ofDistance(by*))
 
-  /** What learners are told: the newest distance, the sum and the least. */
+  /** The scores for learners: the newest distance, the sum and the least. */
   def ofLearners: Scoreboard = ofDistance((OfMoment.Newest, 0), (Reduction.Mean, 0), (Reduction.Least, 0))

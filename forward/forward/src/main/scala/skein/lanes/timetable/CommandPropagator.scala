@@ -2,10 +2,10 @@ package skein.lanes.timetable
 
 import skein.units.Span
 
-/** Which command acts when, as [[PlantModel]] takes it: each a dead time after it has come. A command that
-  * repeats the one before is a new one here, and nothing there: with drag a piece more begins.
+/** Computes which command takes effect when, as in [[PlantModel]]: each a dead time after its arrival. A
+  * command that equals the one before counts as new here, and is ignored there: with drag this adds a piece.
   *
-  * @param propagation of what is flown, and until when, s from the reading
+  * @param propagation made from the pieces and their end, s from the reading
   */
 private[lanes] final class CommandPropagator private (
     deadTime: Span,
@@ -41,10 +41,13 @@ private[lanes] object CommandPropagator:
   def apply(deadTimeS: Double, propagation: (Vector[Flown], Double) => Propagation): Propagator =
     new CommandPropagator(Span.ofSeconds(deadTimeS), propagation, Known(0, 0, Vector.empty))
 
-  /** Under which decision's command the model flies from when until when, s from the reading. */
+  /** A piece of a prediction under one decision's command, from and until s from the reading. */
   final case class Flown(decision: Int, fromS: Double, untilS: Double)
 
-  /** Of what is flown, with so many numbers of each part, which are put into an array from an index on. */
+  /** A propagation of these pieces, with `perPart` numbers each.
+    *
+    * @param tell writes the numbers of a piece into an array from an index on
+    */
   def told(flown: Vector[Flown], perPart: Int, first: Double = 0, second: Double = 0)(
       tell: (Flown, Array[Float], Int) => Unit
   ): Propagation =
@@ -52,12 +55,13 @@ private[lanes] object CommandPropagator:
     for (part, i) <- flown.zipWithIndex do tell(part, numbers, i * perPart)
     Propagation(flown.map(_.decision).toArray, numbers, first.toFloat, second.toFloat)
 
-  /** What [[PlantModel.Flying]] knows of commands, by their decisions.
+  /** The commands in [[PlantModel.Flying]], by their decisions.
     *
-    * @param coming and in how long each acts
+    * @param coming with the time until each takes effect
     */
   final case class Known(acting: Int, last: Int, coming: Vector[(Int, Span)]):
-    /** What acts within a leg, and in how long, and what is known behind it. Whoever came first acts first.
+    /** The commands that take effect within a leg, with the time until each does, and the state at its end.
+      * They take effect in the order of arrival.
       */
     def through(leg: Propagator.Leg, deadTime: Span): (Vector[(Int, Span)], Known) =
       val now            = if leg.decision == last then coming else coming :+ (leg.decision, deadTime)

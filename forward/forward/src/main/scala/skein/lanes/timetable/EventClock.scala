@@ -2,19 +2,19 @@ package skein.lanes.timetable
 
 import skein.lanes.plant.PlantLanes
 
-/** Tells when events are, as the vehicles of one kind need to know it. Mutable. */
+/** Computes the times of events in the form that one kind of vehicle needs. Mutable. */
 private[skein] trait EventClock:
-  /** How many numbers tell a time. */
+  /** Count of numbers that represent a time. */
   def numbers: Int
 
-  /** The [[numbers]] that tell this time, s; never earlier than the time before.
+  /** Writes the [[numbers]] that represent this time, s; times must not decrease.
     *
-    * @param acts whether a command begins to act
+    * @param acts whether a command takes effect then
     */
   def tell(atS: Double, acts: Boolean, into: Array[Float], at: Int): Unit
 
-/** How many steps end until then, and the numbers of the time since the last. A step begins with a command,
-  * or with the end of another.
+/** Represents a time by the number of steps that end until then, and by the numbers of the time since the
+  * last. A step begins with a command, or at the end of another.
   *
   * @param told [[skein.lanes.plant.PlantStages.tell]] of the plant
   * @param pieceS when the first begins, s
@@ -38,5 +38,5 @@ private[lanes] final class StepClock(
     if acts then pieceS = atS
 
 private[lanes] object StepClock:
-  /** How many numbers tell a time. */
+  /** Count of numbers that represent a time. */
   def numbers(lanes: PlantLanes): Int = 1 + lanes.stages.times

@@ -2,15 +2,15 @@ package skein.lanes.timetable
 
 import skein.forward.ImageTiming.Ring
 
-/** In which order a vehicle's images were taken of which it becomes known what they show. Mutable. */
+/** The order in which a vehicle's images were taken, as their results become known. Mutable. */
 private[lanes] final class ImageOrder:
   private val takenNs          = Array.ofDim[Long](Ring)
   private var newest, runnerUp = -1
 
-  /** The newest of those known before; −1 if there was none. */
+  /** The newest image among those known before; −1 if there was none. */
   var last = -1
 
-  /** Whether the image known now was taken before [[last]]. */
+  /** Whether the image that became known now was taken before [[last]]. */
   var isOlder = false
 
   def start(): Unit =
@@ -18,7 +18,6 @@ private[lanes] final class ImageOrder:
 
   def taken(image: Int, atNs: Long): Unit = takenNs(image % Ring) = atNs
 
-  /** It is known now what an image shows. */
   def known(image: Int): Unit =
     last = newest
     isOlder = whenNs(image) < whenNs(newest)

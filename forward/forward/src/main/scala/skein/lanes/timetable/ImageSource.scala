@@ -3,8 +3,8 @@ package skein.lanes.timetable
 import skein.forward.{Asking, RolloutWorld, ImageTiming, LoopObserver, TabledDelays}
 import skein.fusion.SensorModel
 
-/** What happens to the images of one world's vehicle, one thing after the other. Nothing of it depends on
-  * what is decided, so the scalar engine's own timing tells it ahead. Mutable.
+/** The events of one world's images, in order. They do not depend on decisions, so the scalar engine's own
+  * timing computes them ahead. Mutable.
   */
 private[lanes] final class ImageSource private (
     model: SensorModel,
@@ -14,23 +14,22 @@ private[lanes] final class ImageSource private (
 ) extends ImageTiming(world, agent, model, link):
   private var isTold = false
 
-  /** What is told: an image is taken, or what one shows is known. */
+  /** Kind of the present event: an image is taken, or its result becomes known. */
   var isTaken = false
 
-  /** The image, and when it happens, ns. */
   var image = 0
   var atNs  = 0L
 
-  /** Of an image that is taken, whether what is in view is found, and if so the errors of the bearing and of
-    * the range, as [[skein.fusion.SensorFormulas.detected]] takes them.
+  /** For an image that is taken: whether an opponent in view is found, and the errors of bearing and range,
+    * as [[skein.fusion.SensorFormulas.detected]] takes them.
     */
   var isFound        = false
   var bearing, range = 0f
 
-  /** Of what is known, which images were taken first. */
+  /** For a result that becomes known: the order in which images were taken. */
   val order: ImageOrder = ImageOrder()
 
-  /** Begins an episode, with what happens first. */
+  /** Begins an episode; its first event becomes the present one. */
   def begin(worldKey: Int, worldLink: TabledDelays): Unit =
     link.delays = worldLink
     world.start(worldKey, LoopObserver.Nobody)
@@ -38,7 +37,7 @@ private[lanes] final class ImageSource private (
     start(worldKey)
     next()
 
-  /** Goes on to what happens next. */
+  /** Moves to the next event, if there is one. */
   def next(): Unit =
     isTold = false
     while !isTold do
@@ -64,7 +63,10 @@ private[lanes] final class ImageSource private (
     order.known(number)
 
 private[lanes] object ImageSource:
-  /** @param agent the vehicle whose images are told of, in a duel */
+  /** Makes the source for one vehicle.
+    *
+    * @param agent the vehicle with the camera, in a duel
+    */
   def apply(model: SensorModel, agent: Int, durationS: Double): ImageSource =
     val link  = StandingStill.Link()
     val world = RolloutWorld(

@@ -1,40 +1,38 @@
 package skein.lanes.timetable
 
-/** Something that happens in an episode, as [[TimetableNotes]] notes it. Each vehicle's readings and
-  * decisions are numbered, and so are the views of all.
+/** An event of an episode, recorded by [[TimetableNotes]]. Each vehicle's readings and decisions are
+  * numbered, and so are the views of all vehicles.
   */
 private[lanes] sealed trait Note:
-  /** When, since the episode's begin, s; a decision's: not before. */
   def atS: Double
 
 private[lanes] object Note:
-  /** A vehicle is read, or looked at for a score or an image. */
+  /** A vehicle is read, or its position is taken for a score or an image. */
   final case class Look(vehicle: Int, atS: Double, reading: Int) extends Note
 
-  /** A reading is carried forward.
+  /** A reading is predicted.
     *
-    * @param reading what it becomes
-    * @param from the reading that is carried forward
+    * @param reading number of the prediction
+    * @param from the reading it starts from
     */
   final case class Predict(vehicle: Int, atS: Double, reading: Int, from: Int, way: Propagation) extends Note
 
-  /** A reading enters a forecast that keeps what readings do not tell.
+  /** A reading is added to a forecast whose state holds more than readings.
     *
-    * @param from the one that entered before; 0: none did
-    * @param way there
+    * @param from the reading added before; 0 for none
+    * @param way the steps from the one to the other
     */
   final case class Enter(vehicle: Int, atS: Double, reading: Int, from: Int, way: Propagation) extends Note
 
   /** A vehicle's controller decides.
     *
-    * @param before the number of its decision before; this one's is one more
+    * @param before number of its previous decision; this one's is one more
     * @param elapsedS since then
-    * @param opponent in a duel: the number of the opponent's decision that is known; else 0
-    * @param ownAgeS in a duel: of the own reading; else 0
-    * @param opponentAgeS the same of the opponent's
-    * @param aheadS of one who sees: for how long what is believed is carried on, or −1 where nothing is
-    *   predicted
-    * @param more of a team that asks for it
+    * @param opponent in a duel: number of the opponent's last known decision; else 0
+    * @param ownAgeS in a duel: age of the own reading; else 0
+    * @param opponentAgeS in a duel: age of the opponent's reading; else 0
+    * @param aheadS with a camera: time for which an estimate is predicted, or −1 without prediction
+    * @param more for a team that needs it
     */
   final case class Decide(
       vehicle: Int,
@@ -49,15 +47,15 @@ private[lanes] object Note:
       more: Option[More]
   ) extends Note
 
-  /** What a decision is told besides.
+  /** Further inputs of a decision.
     *
-    * @param known by vehicle, the number of the decision that was sent last
-    * @param agesS by vehicle, of its reading
-    * @param actsInS until the command acts; 0 where nothing is predicted
+    * @param known by vehicle, number of the last sent decision
+    * @param agesS by vehicle, age of its reading
+    * @param actsInS until the command takes effect; 0 without prediction
     */
   final class More(val known: Array[Int], val agesS: Array[Double], val actsInS: Double)
 
-  /** The command of a decision begins to act. */
+  /** The command of a decision takes effect. */
   final case class Act(vehicle: Int, atS: Double, decision: Int) extends Note
 
   final case class Score(atS: Double, view: Int) extends Note
@@ -65,8 +63,8 @@ private[lanes] object Note:
   /** A sensor takes an image.
     *
     * @param bearingError in standard deviations
-    * @param rangeError the same
-    * @param isFound whether what is in view is detected
+    * @param rangeError in standard deviations
+    * @param isFound whether an opponent in view is detected
     */
   final case class Expose(
       vehicle: Int,
@@ -78,9 +76,9 @@ private[lanes] object Note:
       isFound: Boolean
   ) extends Note
 
-  /** What an image shows is known.
+  /** An image's result becomes known.
     *
-    * @param isOlder than the one that joined before
-    * @param last the image that joined before
+    * @param isOlder whether it was taken before the previous one that joined
+    * @param last the previous image that joined
     */
   final case class Join(vehicle: Int, atS: Double, image: Int, isOlder: Boolean, last: Int) extends Note

@@ -1,7 +1,7 @@
 package skein.lanes.timetable
 
-/** What an operation of a [[Timetable]] does, for those outside this package, to whom the numbers of
-  * [[TimetableKernel]] are hidden.
+/** The operations of a [[Timetable]], for code outside this package, which cannot access the constants of
+  * [[TimetableKernel]].
   */
 private[lanes] object OperationKind:
   final val Look    = TimetableKernel.LOOK

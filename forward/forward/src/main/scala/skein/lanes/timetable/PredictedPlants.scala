@@ -4,11 +4,11 @@ import java.util.Arrays
 import skein.lanes.plant.{PlantCorrection, PlantLanes, StagedFlight}
 import skein.lanes.policy.Directions
 
-/** Predicts by a plant: of each command, how many steps end under it, and the numbers of the time after the
-  * last ([[skein.lanes.plant.PlantStages]]). What readings do not tell of its state is flown on from reading
-  * to reading. The scalar reference is [[skein.vehicle.PlantModel]].
+/** Predicts by a plant: for each command, the number of steps that end under it, and the numbers of the time
+  * after the last ([[skein.lanes.plant.PlantStages]]). The part of the state that readings lack is simulated
+  * from reading to reading. The scalar reference is [[skein.vehicle.PlantModel]].
   *
-  * @param correction what a reading tells of the state
+  * @param correction of the state by a reading
   * @param speedMps of a command of length 1
   */
 private[lanes] final class PredictedPlants(
@@ -23,7 +23,7 @@ private[lanes] final class PredictedPlants(
   private val correct = correction.call
   private val count   = lanes.count
 
-  /** By a reading's place, if readings do not tell all of it. */
+  /** States by a reading's place, if readings do not contain the whole state. */
   private var states = Array.emptyFloatArray
   private val before = Array.ofDim[Float](count * WORLDS)
   correct.inputs(0, count, before, 0)
@@ -80,7 +80,7 @@ private[lanes] final class PredictedPlants(
     else
       for seen <- Array(seenX, seenY, seenVx, seenVy) do System.arraycopy(seen, reading, seen, into, WORLDS)
 
-  /** The state at a reading, of the one before it. */
+  /** The simulated state corrected by a reading. */
   private def take(
       seenX: Array[Float],
       seenY: Array[Float],
@@ -97,7 +97,7 @@ private[lanes] final class PredictedPlants(
     correct.outputs(count, into, at)
     correct()
 
-  /** From the flight's state on; false where it takes no time. */
+  /** Simulates on from the flight's state; false if no time passes. */
   private def fly(sent: Directions, propagation: Propagation): Boolean =
     val (commands, perPart) = (propagation.commands, propagation.perPart)
     var i                   = 0

@@ -4,11 +4,11 @@ import skein.forward.{DelayTable, Delays, RolloutAgent, Engagement, TabledDelays
 import skein.fusion.SensorModel
 import skein.policy.{Assignment, KeepHeading, Role}
 
-/** Vehicles that stand still: by them a loop tells its times, which do not depend on where vehicles are. */
+/** Vehicles at rest, to compute a loop's times, which do not depend on positions. */
 private[lanes] object StandingStill:
-  /** So many vehicles; their roles and rivals decide no time.
+  /** This number of vehicles; roles and rivals do not affect times.
     *
-    * @param eyes of vehicles that see, in a duel
+    * @param eyes of vehicles with cameras, in a duel
     */
   def engagement(vehicles: Int, durationS: Double, eyes: Map[Int, SensorModel] = Map.empty): Engagement =
     Engagement(
@@ -18,7 +18,10 @@ private[lanes] object StandingStill:
       durationS
     )
 
-  /** @param handsOverS see [[VelocityResponse.handoverS]] */
+  /** The response of vehicles at rest.
+    *
+    * @param handsOverS see [[VelocityResponse.handoverS]]
+    */
   final class Response(handsOverS: Double = 0) extends VelocityResponse:
     override def handoverS: Double = handsOverS
     def create(): Vehicle          = new Vehicle:
@@ -30,7 +33,7 @@ private[lanes] object StandingStill:
       def vx: Double                                   = 0
       def vy: Double                                   = 0
 
-  /** The link of the flight whose times are told. Mutable. */
+  /** The link of the flight whose times are computed. Mutable. */
   final class Link extends Delays:
     var delays: TabledDelays = DelayTable.none
 

@@ -6,29 +6,27 @@ import skein.fusion.SensorModel
 import skein.lanes.policy.LaneObservation
 import skein.vehicle.ConstantVelocity
 
-/** When everything happens in one episode, compiled for [[TimetableKernel]]. No event's time depends on where
-  * the vehicles are, so all candidates that meet the same delays share one timetable, whatever their policies
-  * decide.
+/** The times of all events of one episode, compiled for [[TimetableKernel]]. No event's time depends on where
+  * the vehicles are, so all candidates with equal delays share one timetable, whatever their policies decide.
   *
-  * It is what [[Rollout]] does: an episode is flown once with vehicles that stand still, and an observer
-  * notes what happens: what is read, what is predicted from which reading through which commands, what is
-  * decided upon that, and when it acts.
+  * It is derived from [[Rollout]]: one episode is simulated with vehicles at rest, and an observer records
+  * the events: readings, predictions with their readings and commands, decisions, and when commands take
+  * effect.
   *
-  * @param vehicles how many fly
+  * @param vehicles number of vehicles
   * @param operations [[Timetable.Fields]] numbers each: the kind, of [[TimetableKernel]]; the vehicle; then
   *   places
-  * @param numbers how many `times` there are of each operation
-  * @param times of each operation: of what happens to a vehicle, what its [[EventClock]] tells; of a
+  * @param numbers count of `times` per operation
+  * @param times of each operation: of an event of a vehicle, the numbers of its [[EventClock]]; of a
   *   decision, the time since the one before, and in a duel the ages of the own and of the opponent's
-  *   reading; by who sees, the age of the own reading, the time, and until when a belief is carried
-  *   ([[TimetableEye.look]]); of an image what [[TimetableEye.expose]] takes; of a score, the time; s
-  * @param views what is decided and scored upon: the places of all vehicles' readings, one view after the
-  *   other
-  * @param propagations by which readings are carried forward, in loops that predict
-  * @param readings places that the readings of one vehicle need at a time
-  * @param headings the same for the headings of one vehicle
-  * @param more what decisions are told besides, if that was asked for; then a decision's third place is its
-  *   number there
+  *   reading; with a camera, the age of the own reading, the time, and the time for which an estimate is
+  *   predicted ([[TimetableEye.look]]); of an image the arguments of [[TimetableEye.expose]]; of a score, the
+  *   time; s
+  * @param views the inputs of decisions and scores: the places of all vehicles' readings, view by view
+  * @param propagations of predictions, in loops that predict
+  * @param readings number of places that the readings of one vehicle need simultaneously
+  * @param headings number of places for the headings of one vehicle
+  * @param more further inputs of decisions, if requested; then a decision's third place is its number there
   */
 private[skein] final class Timetable private[lanes] (
     val vehicles: Int,
@@ -43,7 +41,6 @@ private[skein] final class Timetable private[lanes] (
 ):
   def size: Int = operations.length / Timetable.Fields
 
-  /** About so much memory is held, bytes. */
   lazy val bytes: Long =
     more.bytes + 4L * (operations.length + times.length + views.length) + propagations.iterator.map(
       _.bytes
@@ -55,12 +52,12 @@ private[skein] object Timetable:
   /** Numbers of a reading: position and velocity, north and east. */
   private[lanes] val Read: Int = LaneObservation.READ
 
-  /** Of an operation, at least: some clocks tell more. */
+  /** Least count of times per operation: some clocks need more. */
   private[lanes] val LeastNumbers: Int = 4
 
-  /** The timetable of a world of this key, for so many vehicles of this kind.
+  /** The timetable of a world of this key, for this number of vehicles of this kind.
     *
-    * @param eyes of vehicles that see, in a duel
+    * @param eyes of vehicles with cameras, in a duel
     * @param tellsMore see [[Timetable.more]]; not in a duel by [[skein.lanes.DuelBatch]]
     */
   def of(
@@ -82,16 +79,16 @@ private[skein] object Timetable:
     ).fly(key, observer = notes): Unit
     TimetableCompiler(notes, vehicles, model).result
 
-  /** The same loop; what stands still is predicted at no cost. */
+  /** The loop with a trivial predictor: vehicles at rest are predicted at no cost. */
   private def unpredicted(timing: LoopTiming): LoopTiming = timing match
     case predictive: LoopTiming.Predictive => predictive.copy(predictor = ConstantVelocity)
     case other                             => other
 
-  /** What decisions are told of the vehicles, by number of the decision and of the vehicle.
+  /** Further inputs of decisions, by number of the decision and of the vehicle.
     *
-    * @param headings places of the headings that each was told last, as far as known
+    * @param headings places of each vehicle's last known commanded heading
     * @param agesS of the readings, s
-    * @param actsInS by decision: until its command acts, s
+    * @param actsInS by decision: until its command takes effect, s
     */
   final class More(vehicles: Int, headings: Array[Int], agesS: Array[Float], val actsInS: Array[Float]):
     def heading(decision: Int, vehicle: Int): Int = headings(decision * vehicles + vehicle)
@@ -101,8 +98,8 @@ private[skein] object Timetable:
   object More:
     val None: More = More(0, Array.emptyIntArray, Array.emptyFloatArray, Array.emptyFloatArray)
 
-/** Puts events in the order of their times, chooses places for readings and headings, each until its last
-  * use, and tells each vehicle when what happens to it.
+/** Sorts events by their times, assigns places to readings and headings until their last use, and encodes the
+  * times for each vehicle.
   */
 private final class TimetableCompiler(
     notes: TimetableNotes,
@@ -112,24 +109,23 @@ private final class TimetableCompiler(
   import Timetable.Fields
   import TimetableKernel.{ACT, DECIDE, ENTER, EXPOSE, JOIN, LOOK, PREDICT, SCORE}
 
-  /** By time, and events of one time as they were noted. Only commands act later than what was noted after
-    * them.
+  /** Events by time; those of equal times in the order of recording. Only commands take effect later than
+    * events recorded after them.
     */
   private val order = notes.all.toArray
   java.util.Arrays.sort(order, Comparator.comparingDouble[Note](_.atS))
 
-  /** Behind the last score. */
   private val end = order.lastIndexWhere(_.isInstanceOf[Note.Score]) + 1
 
   private val readings = Array.tabulate(vehicles)(vehicle => ReusedPlaces(notes.looks(vehicle) + 1))
   private val headings = Array.tabulate(vehicles)(vehicle => ReusedPlaces(notes.decisions(vehicle) + 1))
   private val clocks   = Array.fill(vehicles)(model.clock())
 
-  /** Readings that are decided upon; of others only places count. */
+  /** Readings used by decisions; the others are used by scores, which need positions alone. */
   private val decidedUpon =
     Array.tabulate(vehicles)(vehicle => Array.ofDim[Boolean](notes.looks(vehicle) + 1))
 
-  /** The number of each view among those that are told, or −1. */
+  /** Index of each view among those that are written, or −1. */
   private val told         = Array.fill(notes.views.size)(-1)
   private val propagations = Array.newBuilder[Propagation]
   private var placed       = 0
@@ -206,7 +202,7 @@ private final class TimetableCompiler(
     val seen = notes.views(view)
     for vehicle <- 0 until vehicles do readings(vehicle).release(seen(vehicle), at)
 
-  /** Its number in the timetable; its readings keep their places until it is used for the last time. */
+  /** Index of a view in the timetable; its readings keep their places until its last use. */
   private def tell(view: Int): Int =
     if told(view) < 0 then
       val seen = notes.views(view)
@@ -254,7 +250,10 @@ private final class TimetableCompiler(
       case None       => if vehicles == 2 then headings(1 - vehicle).release(note.opponent, at)
     headings(vehicle).release(before + 1, at)
 
-  /** @return the decision's number among those that are told more */
+  /** Writes the further inputs of a decision.
+    *
+    * @return its index among the decisions with such inputs
+    */
   private def tellMore(more: Note.More): Int =
     for each <- 0 until vehicles do
       knownHeadings += headings(each).place(more.known(each))
@@ -283,7 +282,7 @@ private final class TimetableCompiler(
     propagates(vehicle, note.way, at)
     for each <- Seq(from, reading) if each > 0 do readings(vehicle).release(each, at)
 
-  /** Ends an operation that carries a vehicle on. */
+  /** Ends an operation that predicts a vehicle. */
   private def propagates(vehicle: Int, way: Propagation, at: Int): Unit =
     propagations += way.placed(headings(vehicle).place)
     placed += 1
@@ -329,19 +328,19 @@ private final class TimetableCompiler(
     operations(at + 2) = a; operations(at + 3) = b; operations(at + 4) = c
     operations(at + 5) = d
 
-  /** Ends an operation that happens to a vehicle. */
+  /** Ends an operation of a vehicle's event. */
   private def happens(vehicle: Int, atS: Double, acts: Boolean): Unit =
     clocks(vehicle).tell(atS, acts, times, size * numbers)
     size += 1
 
-  /** Ends another operation, with these numbers. */
+  /** Ends any other operation, with these numbers. */
   private def took(first: Double, second: Double = 0, third: Double = 0, fourth: Double = 0): Unit =
     val at = size * numbers
     times(at) = first.toFloat; times(at + 1) = second.toFloat
     times(at + 2) = third.toFloat; times(at + 3) = fourth.toFloat
     size += 1
 
-/** Places for numbered things until their last use; as few as possible. */
+/** Assigns places to numbered items until their last use; as few places as possible. */
 private final class ReusedPlaces(numbers: Int):
   import ReusedPlaces.Released
   private val lastUse = Array.fill(numbers)(-1)
@@ -367,7 +366,7 @@ private final class ReusedPlaces(numbers: Int):
       most += 1
     placeOf(number)
 
-  /** Gives the place back if this was its last use. */
+  /** Frees the place if this was its last use. */
   def release(number: Int, at: Int): Unit =
     if lastUse(number) == at then
       unused(free) = placeOf(number)

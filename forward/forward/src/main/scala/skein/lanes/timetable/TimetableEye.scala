@@ -4,8 +4,7 @@ import java.util.Arrays
 import skein.forward.{RolloutAgent, ImageTiming}
 import skein.lanes.policy.CameraTrackerLanes
 
-/** An eye in many worlds that take the same images at the same times, which a [[Timetable]] tells. Mutable.
-  */
+/** A camera in many worlds with equal images at equal times, which a [[Timetable]] defines. Mutable. */
 private[lanes] class TimetableEye(forms: CameraTrackerLanes.Forms, own: RolloutAgent, opponent: RolloutAgent)
     extends CameraTrackerLanes(forms, own, opponent):
   import CameraTrackerLanes.{Belief, Detection}
@@ -18,15 +17,15 @@ private[lanes] class TimetableEye(forms: CameraTrackerLanes.Forms, own: RolloutA
   /** By world, whether an image shows the opponent: 1 or 0. */
   protected def found(image: Int): Array[Float] = Arrays.copyOf(images(image), WORLDS)
 
-  /** Back to the start of an episode, of which the first worlds count. */
+  /** Resets to the start of an episode, of which the first worlds count. */
   def start(worlds: Int): Unit =
     use(worlds)
     forget()
 
   /** Takes an image.
     *
-    * @param times from `at` on: when; the errors of the bearing and of the range; whether what is in view is
-    *   found
+    * @param times from `at` on: its time; the errors of the bearing and of the range; whether an opponent in
+    *   view is found
     */
   def expose(
       image: Int,
@@ -44,9 +43,9 @@ private[lanes] class TimetableEye(forms: CameraTrackerLanes.Forms, own: RolloutA
     detect(ours.seenX, ours.seenY, oursAt, theirs.seenX, theirs.seenY, theirsAt, images(image))
     if times(at + 3) == 0 then Arrays.fill(images(image), 0, WORLDS, 0f)
 
-  /** What an image showed enters the belief.
+  /** Updates the estimate by an image.
     *
-    * @param isOlder whether it was taken before the one that entered last
+    * @param isOlder whether it was taken before the previous one
     */
   def join(image: Int, isOlder: Boolean, last: Int): Unit =
     if isOlder then
@@ -65,7 +64,7 @@ private[lanes] class TimetableEye(forms: CameraTrackerLanes.Forms, own: RolloutA
     Arrays.fill(takenS, validS(image))
     join(from, images(image), into)
 
-  /** Tells what is decided upon, and turns the camera there.
+  /** Fills the estimate for a decision, and points the camera at it.
     *
     * @param nowS since the start
     * @param aheadS see [[skein.fusion.SensorFormulas.decidedUpon]]

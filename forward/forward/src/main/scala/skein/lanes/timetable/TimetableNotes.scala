@@ -7,8 +7,7 @@ import skein.forward.{Grounds, LoopObserver}
 import skein.fusion.{Exposure, SensorModel}
 import skein.units.Instant
 
-/** Notes what happens, in the order in which it does. Readings and decisions count from 1 for each vehicle.
-  */
+/** Records the events of an episode in their order. Readings and decisions count from 1 for each vehicle. */
 private[lanes] final class TimetableNotes(
     vehicles: Int,
     model: TimetableDynamics,
@@ -17,7 +16,7 @@ private[lanes] final class TimetableNotes(
 ) extends LoopObserver:
   val all: mutable.ArrayBuffer[Note] = mutable.ArrayBuffer.empty
 
-  /** By vehicle: the readings that entered the forecast. */
+  /** By vehicle: the readings that were added to the forecast. */
   private val entered = Array.fill(vehicles)(mutable.ArrayBuffer.empty[Entered])
 
   // What was predicted last: of which forecast, for a decision when, in which view.
@@ -25,10 +24,10 @@ private[lanes] final class TimetableNotes(
   private var predictedAtNs         = 0L
   private var predicted             = 0
 
-  /** By vehicle: how many there are, of what is predicted too. */
+  /** By vehicle: the number of readings, predictions included, and of decisions. */
   val looks, decisions: Array[Int] = Array.ofDim[Int](vehicles)
 
-  /** By view, then by vehicle: the readings' numbers. */
+  /** By view, then by vehicle: the numbers of the readings. */
   val views: mutable.ArrayBuffer[Array[Int]] = mutable.ArrayBuffer.empty
 
   private val readingOf  = Array.fill(vehicles)(mutable.ArrayBuffer.empty[Int])
@@ -40,7 +39,7 @@ private[lanes] final class TimetableNotes(
     all += Note.Look(vehicle, timeS, looks(vehicle))
     looks(vehicle)
 
-  /** Several decide upon one view, one after the other. */
+  /** The view's number: several vehicles may decide on one view in sequence. */
   private def viewOf(seen: Array[Int]): Int =
     if views.isEmpty || !Arrays.equals(views.last, seen) then views += seen
     views.size - 1
@@ -67,7 +66,6 @@ private[lanes] final class TimetableNotes(
         all += Note.Enter(vehicle, atNs * 1e-9, reading, before.fold(0)(_.reading), way)
       entered(vehicle) += Entered(reading, validAtNs, propagator)
 
-  /** The reading that a forecast starts from. */
   private def newest(vehicle: Int, forecast: Forecast): Entered =
     val validAt = forecast.tracks(vehicle).get.newest.validAt.toNanos
     entered(vehicle).findLast(_.validAtNs == validAt).get
@@ -75,7 +73,7 @@ private[lanes] final class TimetableNotes(
   private def plotted(vehicle: Int, leg: Leg): Propagator.Leg =
     Propagator.Leg(leg.command.fold(0)(sent => decisionOf(vehicle)(sent.sequence.toInt)), leg.span)
 
-  /** The view of where all vehicles will be when a command acts that is sent now. */
+  /** The view of all vehicles predicted for the time at which a command sent now takes effect. */
   private def predict(forecast: Forecast, atNs: Long): Int =
     if (forecast ne predictedOf) || atNs != predictedAtNs then
       predictedOf = forecast
@@ -113,7 +111,6 @@ private[lanes] final class TimetableNotes(
     )
     decisions(vehicle) += 1
 
-  /** Of each vehicle's images. */
   private val orders = Array.fill(vehicles)(ImageOrder())
 
   override def exposed(vehicle: Int, number: Int, atNs: Long, image: Exposure): Unit =
@@ -151,6 +148,6 @@ private[lanes] final class TimetableNotes(
 
 /** A reading in the forecast.
   *
-  * @param propagator for what is predicted from it
+  * @param propagator for predictions from it
   */
 private final case class Entered(reading: Int, validAtNs: Long, propagator: Propagator)

@@ -5,8 +5,8 @@ import skein.forward.RolloutAgent
 import skein.lanes.plant.{PlantLanes, StagedFlight}
 import skein.lanes.policy.Directions
 
-/** Vehicles that move by a [[skein.vehicle.Plant]]. Their clock tells how many steps end before a moment, and
-  * by the numbers of [[skein.lanes.plant.PlantStages]] how long it is after the last of these. The scalar
+/** Vehicles that move by a [[skein.vehicle.Plant]]. Their clock counts the steps that end before a moment,
+  * and represents the time after the last by the numbers of [[skein.lanes.plant.PlantStages]]. The scalar
   * reference is `skein.forward.PlantVehicle`.
   */
 private[lanes] final class TimetablePlants(agent: RolloutAgent, lanes: PlantLanes)

@@ -6,11 +6,10 @@ import skein.lanes.plant.LaneQuadrotors
 import skein.lanes.policy.Directions
 import skein.simd.{BoundFunction, LaneCall}
 
-/** Quadrotors with their flight controllers: they fly in whole steps, a command acts from the first step
-  * after it on, and between two steps a vehicle is carried on at constant acceleration. Their clock tells how
-  * many steps there are until a moment, and how long it is after the last of them. Positions are kept in
-  * frames with their origin at the start, where floats are finest. The scalar reference is
-  * `skein.forward.QuadrotorVehicle`.
+/** Quadrotors with their flight controllers: they move in whole steps, a command takes effect from the first
+  * step after it on, and between two steps a vehicle is extrapolated with constant acceleration. Their clock
+  * counts the steps until a moment, and the time after the last of them. Positions are relative to the start,
+  * where floats are finest. The scalar reference is `skein.forward.QuadrotorVehicle`.
   */
 private[lanes] final class TimetableQuadrotors(agent: RolloutAgent, flown: LaneQuadrotors)
     extends TimetableVehicles(agent):
@@ -62,12 +61,11 @@ private[lanes] object TimetableQuadrotors:
   private val trace = Trace()
   import trace.{add, input, mul, param}
 
-  /** Acceleration, velocity, place and start; parameters are the time since the last step and half its
-    * square.
+  /** Extrapolated position: of acceleration, velocity, position and start; parameters are the time since the
+    * last step and half its square.
     */
   val placed: BoundFunction = BoundFunction.of(
     Vector(add(add(add(mul(input(0), param(1)), mul(input(1), param(0))), input(2)), input(3)))
   )
 
-  /** Acceleration and velocity. */
   val moved: BoundFunction = BoundFunction.of(Vector(add(mul(input(0), param(0)), input(1))))

@@ -3,10 +3,10 @@ package skein.lanes.timetable
 import java.util.SplittableRandom
 import scala.collection.mutable
 
-/** Timetables that were made, for all threads. A search flies the same episodes again and again, one after
-  * the other: where there are more than have room, the oldest would go just before it is wanted. So any goes.
+/** A cache of timetables, for all threads. A search simulates its episodes again and again in order: where
+  * they do not all fit, the oldest would be evicted just before its use, so the evicted one is arbitrary.
   *
-  * @param mostBytes that they hold, about
+  * @param mostBytes limit of their size, approximately
   */
 private[lanes] final class Timetables(mostBytes: Long = Timetables.MostBytes):
   private val known  = mutable.HashMap.empty[Any, Timetable]
@@ -14,9 +14,9 @@ private[lanes] final class Timetables(mostBytes: Long = Timetables.MostBytes):
   private val random = SplittableRandom(1)
   private var bytes  = 0L
 
-  /** Two threads may make the same at once; they make it equal.
+  /** The timetable of a key. Two threads may make it simultaneously, with equal results.
     *
-    * @param of all that it depends on
+    * @param of everything on which it depends
     */
   def getOrMake(of: Any)(make: => Timetable): Timetable =
     known.synchronized(known.get(of)).getOrElse:
@@ -35,5 +35,7 @@ private[lanes] final class Timetables(mostBytes: Long = Timetables.MostBytes):
     kept.dropRightInPlace(1)
 
 private[lanes] object Timetables:
-  /** A minute of one vehicle is some 100 kB; of a team of twenty that predicts, 40 MB in all. */
+  /** Limit of the cache: a minute of one vehicle is some 100 kB; of a team of twenty that predicts, 40 MB in
+    * all.
+    */
   private val MostBytes = (256L << 20).max(Runtime.getRuntime.maxMemory / 8)

@@ -3,7 +3,7 @@ package skein.lanes.timetable
 import skein.lanes.policy.LaneObservation
 import skein.simd.{BoundFunction, LaneCall, LaneFunction}
 
-/** A function of what a view shows, and of other numbers that stay where they are.
+/** A call of a function of a view, with other inputs in fixed arrays.
   *
   * @param parameters read at each call
   */
@@ -20,12 +20,12 @@ private[lanes] final class ViewCall(
       .flatMap((input, place) => lanes(input).map((vehicle, field) => (place, vehicle, field)))
       .unzip3
 
-  /** What a vehicle shows of a field stands here from now on. */
+  /** Sets where a vehicle's values of a field are stored from now on. */
   def show(vehicle: Int, field: Int, array: Array[Float], from: Int): Unit =
     for i <- places.indices if vehicles(i) == vehicle && fields(i) == field do
       call.input(places(i), array, from)
 
-  /** The same of all fields, one behind the other. */
+  /** Sets where a vehicle's fields are stored, concatenated. */
   def show(vehicle: Int, array: Array[Float], from: Int): Unit =
     for field <- 0 until LaneObservation.READ do
       show(vehicle, field, array, from + field * LaneFunction.COUNT)

@@ -6,7 +6,7 @@ import skein.lanes.{AcceleratedDuels, AcceleratedTeams, Accelerator, DuelEpisode
 import skein.lanes.timetable.Timetable
 import skein.units.Expect
 
-/** A GPU as an [[skein.lanes.Accelerator]]: each thread flies one candidate through one episode. */
+/** A GPU as an [[skein.lanes.Accelerator]]: each thread simulates one candidate in one episode. */
 final class GpuAccelerator(gpu: Gpu) extends Accelerator:
   def engine: Engine =
     Engine(Engine.Kind.Gpu, s"GPU, ${gpu.name}: a thread a candidate", sideBySide = 1 << 14)

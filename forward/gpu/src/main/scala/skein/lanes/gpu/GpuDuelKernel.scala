@@ -35,11 +35,11 @@ private[lanes] final class GpuDuelKernel(
 
   protected val withVelocity: Boolean = forms.exists(_.needsVelocity)
 
-  /** What one policy flies by: its parameters, then what it remembers at first. */
+  /** The numbers of one policy: its parameters, then its initial memory. */
   def numbersOf(side: Int, policy: HeadingPolicy): Array[Float] =
     (forms(side).parametersOf(policy) ++ forms(side).initialOf(policy)).map(_.toFloat)
 
-  /** Where a number is among all that a world of an episode comes to, and what it tells. */
+  /** Index of a number among a world's results, and its conversion. */
   def outcome(number: DuelNumber, scoredAtS: Array[Float]): (Int, Float => Float) = number match
     case DuelNumber.EvaderEffort  => (scores.initial.size, identity)
     case DuelNumber.PursuerEffort => (outcomes - 1, identity)

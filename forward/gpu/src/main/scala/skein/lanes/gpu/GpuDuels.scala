@@ -7,8 +7,8 @@ import skein.lanes.{Accelerated, AcceleratedDuels, DuelEpisodes, DuelNumber, Due
 import skein.lanes.policy.PolicyLanes
 import skein.policy.HeadingPolicy
 
-/** Flies duels' candidates on a GPU, each through the same episodes, by [[GpuDuelKernel]]. Mutable; one call
-  * at a time.
+/** Simulates duels' candidates on a GPU, each in all episodes, by [[GpuDuelKernel]]. Mutable; one call at a
+  * time.
   *
   * @param threads that make timetables and read policies
   */
@@ -86,10 +86,10 @@ private[lanes] final class GpuDuels(
         candidate += 1
 
 private object GpuDuels:
-  /** Candidates whose policies a thread looks at at a time. */
+  /** Number of candidates whose policies a thread reads in one piece of work. */
   private val Chunk = 256
 
-  /** Who flies one side of many candidates. */
+  /** The policies of one side of many candidates. */
   private final class Side(candidates: Int, threads: Int, of: Int => HeadingPolicy):
     private val policies = Array.tabulate(candidates)(of)
     private val forms    = Array.ofDim[PolicyLanes](candidates)
@@ -99,10 +99,10 @@ private object GpuDuels:
         if i % Chunk > 0 && (policies(i) eq policies(i - 1)) then forms(i - 1)
         else PolicyLanes.of(policies(i)).getOrElse(null)
 
-    /** Null where it is no formula. */
+    /** Form of a candidate's policy; null if it is not a formula. */
     def formOf(candidate: Int): PolicyLanes = forms(candidate)
 
-    /** What these candidates fly by, each policy's numbers once, and which of them a candidate's are. */
+    /** The distinct numbers of these candidates' policies, and the index of each candidate's. */
     def numbersOf(some: Array[Int])(read: HeadingPolicy => Array[Float]): (Array[Float], Array[Int]) =
       val known    = IdentityHashMap[HeadingPolicy, Integer]()
       val used     = mutable.ArrayBuffer.empty[HeadingPolicy]

@@ -4,11 +4,11 @@ import skein.gpu.{Gpu, GpuBuffer}
 import skein.lanes.{LaneThreads, WorldBatches, Worlds}
 import skein.lanes.timetable.Timetable
 
-/** Episodes of so many vehicles, on a GPU. Mutable.
+/** Episodes for a number of vehicles, on a GPU. Mutable.
   *
   * @param shows see [[GpuLayout]]
   * @param threads that make timetables
-  * @param mostBytes that are held, unless one call needs more
+  * @param mostBytes limit of what is held, unless one call needs more
   */
 private[lanes] final class GpuEpisodes(
     gpu: Gpu,
@@ -22,14 +22,13 @@ private[lanes] final class GpuEpisodes(
   private var bytes = 0L
   private var now   = GpuLayout(vehicles, shows)
 
-  /** Of all that are held. */
   def layout: GpuLayout = now
 
-  /** Brings episodes to the GPU.
+  /** Uploads episodes to the GPU.
     *
-    * @param names of all that they depend on
-    * @param timetable of one of them, by its place; made by several threads at once
-    * @return none if it was cancelled
+    * @param names keys: everything on which they depend
+    * @param timetable of one of them, by its index; called by several threads simultaneously
+    * @return None if it was cancelled
     */
   def bring(
       names: Vector[Any],
@@ -37,7 +36,9 @@ private[lanes] final class GpuEpisodes(
   )(timetable: Int => Timetable): Option[Vector[Held]] =
     bring(names, isCancelled, timetable, Map.empty)
 
-  /** @param known timetables that are made already, by their episodes' names
+  /** Uploads episodes.
+    *
+    * @param known timetables that are made already, by their episodes' names
     */
   private def bring(
       names: Vector[Any],
@@ -67,7 +68,8 @@ private[lanes] final class GpuEpisodes(
           bytes += told.bytes
         Some(names.iterator.map(held.get).toVector)
 
-  /** Those used least lately, until no more than so many bytes are held; but not those that are needed now.
+  /** Evicts the least recently used episodes, until no more than this number of bytes is held, but none that
+    * is needed now.
     */
   private def forget(most: Long, needed: Set[Any]): Unit =
     val eldest = held.entrySet.iterator
@@ -79,7 +81,6 @@ private[lanes] final class GpuEpisodes(
         eldest.remove()
 
 private[lanes] object GpuEpisodes:
-  /** One. */
   final class Held(gpu: Gpu, timetable: GpuTimetable):
     val buffer: GpuBuffer       = gpu.buffer(timetable.words)
     val bytes: Long             = 4L * timetable.words.length
@@ -87,19 +88,19 @@ private[lanes] object GpuEpisodes:
     val stride: Int             = timetable.stride
     val scoredAtS: Array[Float] = timetable.scoredAtS
 
-  /** How many candidates these worlds have. */
+  /** Number of candidates in these worlds. */
   def candidatesOf(worlds: Worlds): Int =
     val each = worlds.episodesOfEach
     require(worlds.size % each == 0, s"${worlds.size} worlds are not $each episodes of every candidate")
     worlds.size / each
 
-  /** All worlds of some candidates. */
+  /** All worlds of these candidates, by number. */
   def worldsOf(candidates: Array[Int], each: Int): Array[Int] =
     candidates.flatMap(candidate => Array.range(candidate * each, (candidate + 1) * each))
 
-  /** Does something with each number below a count.
+  /** Runs work for each number below a count on several threads.
     *
-    * @param chunk so many by a thread at a time
+    * @param chunk numbers that a thread takes together
     * @return how many were done: all, unless it was cancelled
     */
   def inParallel(count: Int, chunk: Int, threads: Int, isCancelled: () => Boolean = () => false)(

@@ -4,13 +4,12 @@ import skein.gpu.{Gpu, GpuBuffer, GpuKernel, Ptx, PtxExpressions, Variables}
 import skein.lanes.score.ScoreLanes
 import skein.lanes.timetable.Timetable
 
-/** [[skein.lanes.timetable.TimetableKernel]] on a GPU: a thread flies one candidate through one episode, and
-  * the threads of a block fly candidates of the same. So no two threads of a block part ways. What is
-  * computed are the same expressions by the same single operations as on the CPU, and so the outcomes, to the
-  * bit.
+/** [[skein.lanes.timetable.TimetableKernel]] on a GPU: a thread simulates one candidate in one episode, and
+  * the threads of a block simulate candidates in one episode, so threads of a block do not diverge. The
+  * expressions and single operations are those of the CPU, and so are the outcomes, to the bit.
   *
-  * @param sides how many numbers tell who flies, of each side
-  * @param scores what the flights are judged by
+  * @param sides count of numbers that define the policies of each side
+  * @param scores of the flights
   */
 private[lanes] abstract class GpuFlightKernel(
     gpu: Gpu,
@@ -20,51 +19,49 @@ private[lanes] abstract class GpuFlightKernel(
 ):
   import GpuFlightKernel.*
 
-  /** What is special about those who fly. */
+  /** The part of the kernel that depends on the kind of flight. */
   protected trait Body:
     def vehicles: Vector[GpuVehicle]
 
-    /** What carries their readings forward, in loops that predict. */
+    /** The predictions from readings, in loops that predict. */
     def predictions: Vector[GpuPrediction]
 
-    /** Before the first operation. */
     def start(): Unit
 
-    /** What several vehicles compute of a view. */
     def show(now: GpuRecord): Unit
     def decide(self: Int, now: GpuRecord): Unit
     def altitude(vehicle: Int): Int
 
-    /** Of what a quantity differs by; see [[ScoreLanes.Source.Parameter]]. */
+    /** A parameter of a quantity; see [[ScoreLanes.Source.Parameter]]. */
     def quantity(number: Int, parameter: Int): Int
 
-    /** What a number that is waited for is to be at most. */
+    /** The limit of a judged number that is awaited. */
     def limit(number: Int): Int
 
-    /** Numbers that a world comes to besides its scores. */
+    /** Results of a world in addition to its scores. */
     def besides: Vector[Int]
 
-  /** @param numbers of each side, the register of a number
+  /** Makes the part of the kernel.
+    *
+    * @param numbers of each side, the register of a number
     */
   protected def body(code: Ptx, numbers: Vector[Int => Int]): Body
 
-  /** Whether decisions look at velocities. */
   protected def withVelocity: Boolean
 
-  /** Bytes of own memory behind the layout's. */
   protected def moreBytes: Int = 0
 
-  /** How many numbers a world comes to. */
+  /** Count of results per world. */
   def outcomes: Int
 
   private lazy val kernel: GpuKernel = gpu.kernel(text, Name)
 
-  /** Flies candidates through episodes.
+  /** Simulates candidates in episodes.
     *
-    * @param flownBy of each side the numbers that tell who flies, one set after the other, and which a
-    *   candidate flies by
+    * @param flownBy of each side the sets of numbers that define policies, concatenated, and the index of
+    *   each candidate's set
     * @param limitM see [[Body.limit]]
-    * @return what the worlds came to, number by number, then by episode, then by candidate
+    * @return results by number, then by episode, then by candidate
     */
   def fly(
       episodes: Vector[GpuEpisodes.Held],
@@ -88,9 +85,9 @@ private[lanes] abstract class GpuFlightKernel(
       into.floats()
     finally buffers.foreach(_.close())
 
-  /** Words for each block: the address of its episode's operations, in two, how many these are, and the words
-    * of each; the first world, how many, and the first one's candidate; one is unused, so that addresses lie
-    * where eight bytes begin.
+  /** Words for each block: the address of its episode's operations, in two, their count, and the words of
+    * each; the first world, the count of worlds, and the first one's candidate; one is unused, so that
+    * addresses are aligned to eight bytes.
     */
   private def blocksOf(episodes: Vector[GpuEpisodes.Held], candidates: Int): Array[Int] =
     val words = Array.newBuilder[Int]
@@ -105,7 +102,7 @@ private[lanes] abstract class GpuFlightKernel(
       words += 0
     words.result()
 
-  /** Sets of numbers side by side, so that neighbours read neighbours. */
+  /** Interleaves sets of numbers, so that neighbouring threads read neighbouring words. */
   private def tiled(numbers: Array[Float], count: Int): Array[Float] =
     val sets = if count == 0 then 0 else numbers.length / count
     val made = Array.ofDim[Float]((sets + Tile - 1) / Tile * Tile * count)
@@ -113,7 +110,6 @@ private[lanes] abstract class GpuFlightKernel(
       made((set / Tile * count + number) * Tile + set % Tile) = numbers(set * count + number)
     made
 
-  /** The kernel. */
   lazy val text: String = Writer().module
 
   private final class Writer:
@@ -189,7 +185,7 @@ private[lanes] abstract class GpuFlightKernel(
       body
       code.go(next)
 
-    /** Of what this thread's candidate flies by. Few numbers stay in registers. */
+    /** The numbers of this thread's candidate. Few of them stay in registers. */
     private def numbersOf(side: Int, candidate: Int): Int => Int =
       val set    = code.loadWhole(code.address(code.argument(s"flownBy$side"), candidate))
       val tile   = code.wholes("shr.s32", set, TileBits.toString)
@@ -268,18 +264,18 @@ private[lanes] abstract class GpuFlightKernel(
 private[lanes] object GpuFlightKernel:
   private val Name = "flights"
 
-  /** Worlds of a block: all of one episode. */
+  /** Number of worlds in a block, all of one episode. */
   private val BlockWorlds = 128
   private val BlockWords  = 8
   private val Tile        = 32
   private val TileBits    = 5
 
-  /** More of a side's numbers are read where they are needed. */
+  /** Limit of a side's numbers in registers; further ones are read where they are needed. */
   private val MostInRegisters = 16
 
-  /** Where a number of what is judged is among all that a world comes to, and what it tells.
+  /** Index of a judged number among a world's results, and its conversion.
     *
-    * @param count how often it counted
+    * @param count of values that counted
     */
   final class Outcome(scores: ScoreLanes, number: Int, scoredAtS: Array[Float]):
     private val of    = scores.judged(number)

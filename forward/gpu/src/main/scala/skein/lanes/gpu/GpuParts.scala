@@ -1,9 +1,9 @@
 package skein.lanes.gpu
 
-/** A call's candidates and episodes, in parts that a GPU flies at once, so that a call can be cancelled and
-  * fits in memory.
+/** A call's candidates and episodes, in parts that a GPU processes as one, so that a call can be cancelled
+  * and fits in memory.
   *
-  * @param candidates that fly
+  * @param candidates to simulate
   * @param each episodes of a candidate
   */
 private[lanes] final class GpuParts(
@@ -14,12 +14,12 @@ private[lanes] final class GpuParts(
 ):
   import GpuParts.*
 
-  /** Flies all, unless it is cancelled.
+  /** Simulates all, unless it is cancelled.
     *
     * @param formOf a candidate's
-    * @param decisions of one episode, of all vehicles together, about
-    * @param part flies candidates of a form through some of the episodes; whether it was not cancelled
-    * @return how many worlds were flown
+    * @param decisions of one episode, of all vehicles together, approximately
+    * @param part simulates candidates of a form in some of the episodes; false if it was cancelled
+    * @return number of simulated worlds
     */
   def fly[F](formOf: Int => F, decisions: F => Double)(part: (F, Array[Int], Array[Int]) => Boolean): Int =
     var done = 0
@@ -35,11 +35,12 @@ private[lanes] final class GpuParts(
     done
 
 private[lanes] object GpuParts:
-  /** In one part: some tenths of a second for a GPU, seconds where vehicles fly in steps. */
+  /** Limit of decisions in one part: some tenths of a second for a GPU, seconds where vehicles move in steps.
+    */
   private val MostDecisions = 2e9
 
-  /** An episode's operations take about half as much. */
+  /** Bytes per decision; an episode's operations take about half of them. */
   private val BytesOfDecision = 512
 
-  /** Of a batch's episodes on the GPU. */
+  /** Limit of a batch's episodes on the GPU, bytes. */
   val MostBytes: Long = 1L << 30

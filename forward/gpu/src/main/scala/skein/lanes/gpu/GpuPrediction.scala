@@ -6,32 +6,31 @@ import skein.lanes.loop.{CoastPredictor, LagPredictor, LanePredictor, PlantPredi
 import skein.lanes.plant.PlantLanes
 import skein.lanes.timetable.Propagation
 
-/** Carries readings of one vehicle forward in the world of each thread, command by command; see
-  * [[skein.lanes.timetable.PredictedVehicles]]. Position and velocity stand in variables meanwhile.
+/** Predicts one vehicle from its readings in the world of each thread, command by command; see
+  * [[skein.lanes.timetable.PredictedVehicles]]. Position and velocity are in variables meanwhile.
   */
 private[lanes] trait GpuPrediction:
-  /** From a reading.
+  /** Begins at a reading.
     *
     * @param reading position and velocity, north and east
     */
   def begin(now: GpuRecord, reading: Vector[Int]): Unit
 
-  /** Through one command.
+  /** Predicts under one command.
     *
-    * @param north what is commanded, over the vehicle's speed
+    * @param north of the command, over the vehicle's speed
     */
   def go(now: GpuRecord, north: Int, east: Int): Unit
 
-  /** @return position and velocity that are predicted
-    */
+  /** Ends the prediction; returns predicted position and velocity. */
   def end(now: GpuRecord): Vector[Int]
 
 private[lanes] object GpuPrediction:
   type Kind = (Ptx, RolloutAgent) => GpuPrediction
 
-  /** What a loop predicts by, if it does.
+  /** The predictor of a loop, if it has one.
     *
-    * @return or why no GPU knows it
+    * @return Left states why no GPU supports it
     */
   def of(timing: LoopTiming): Either[String, Option[Kind]] = timing match
     case predictive: LoopTiming.Predictive =>
@@ -43,29 +42,29 @@ private[lanes] object GpuPrediction:
         case _ => Left("the GPU does not know what the loop predicts by")
     case _ => Right(None)
 
-  /** How many numbers one of a propagation's records has at most. */
+  /** Largest count of numbers in one of a propagation's records. */
   def mostNumbers(of: Propagation): Int =
     2.max(2 * of.perPart)
 
-  /** Tells the numbers of a propagation's beginning. */
+  /** Writes the numbers of a propagation's beginning. */
   def tellBegin(of: Propagation, tell: (Int, Float) => Unit): Unit =
     tell(0, of.first)
     tell(1, of.second)
 
-  /** Those of a part, and of the time at which the part before ended: a plant goes on from there. */
+  /** Writes the numbers of a part, and of the end of the previous part: a plant continues from there. */
   def tellPart(of: Propagation, part: Int, tell: (Int, Float) => Unit): Unit =
     for i <- 0 until of.perPart do tell(i, of.numbers(part * of.perPart + i))
     if part > 0 then tellTime(of, part - 1, of.perPart, tell)
 
-  /** Those of the time at which the last part ends. */
+  /** Writes the numbers of the end of the last part. */
   def tellEnd(of: Propagation, tell: (Int, Float) => Unit): Unit =
     if of.commands.nonEmpty then tellTime(of, of.commands.length - 1, 0, tell)
 
-  /** Behind how many steps there are, a part has the numbers of its end. */
+  /** Writes the numbers of a part's end, which follow its number of steps. */
   private def tellTime(of: Propagation, part: Int, from: Int, tell: (Int, Float) => Unit): Unit =
     for i <- 1 until of.perPart do tell(from + i - 1, of.numbers(part * of.perPart + i))
 
-/** By [[skein.lanes.timetable.PredictedLagVehicles]]. */
+/** Predicts by the formulas of [[skein.lanes.timetable.PredictedLagVehicles]]. */
 private final class GpuLagPrediction(code: Ptx, agent: RolloutAgent, gain: Double) extends GpuPrediction:
   private val predicted = Variables(code, Seq.fill(4)(0f))
   private val speed     = code.constant((agent.speed * gain).toFloat)
@@ -87,7 +86,7 @@ private final class GpuLagPrediction(code: Ptx, agent: RolloutAgent, gain: Doubl
 
   def end(now: GpuRecord): Vector[Int] = Vector.tabulate(4)(predicted(_))
 
-/** By [[skein.lanes.timetable.PredictedPlants]], where the state is what is read. */
+/** Predicts as [[skein.lanes.timetable.PredictedPlants]], where the state equals the reading. */
 private final class GpuPlantPrediction(code: Ptx, agent: RolloutAgent, lanes: PlantLanes)
     extends GpuPrediction:
   private val zero    = code.constant(0f)

@@ -5,15 +5,15 @@ import skein.lanes.plant.QuadrotorLanes
 import skein.units.Vector3
 import skein.vehicle.Quadrotor
 
-/** [[skein.lanes.plant.LaneQuadrotors]] on a GPU: each thread flies one quadrotor with its flight controller
-  * under `moveByVelocityZ`, and ends with the same bits.
+/** [[skein.lanes.plant.LaneQuadrotors]] on a GPU: each thread simulates one quadrotor with its flight
+  * controller under `moveByVelocityZ`, with bit-identical results.
   */
 private[skein] final class GpuQuadrotors private (gpu: Gpu, lanes: QuadrotorLanes):
   private lazy val kernel: GpuKernel = gpu.kernel(GpuQuadrotors.text(lanes), GpuQuadrotors.Name)
 
-  /** Lets vehicles that hover, settled, fly so many steps under a command.
+  /** Simulates vehicles that hover, settled, for a number of steps under a command.
     *
-    * @param goalNed what each holds at first
+    * @param goalNed the initial hold of each
     * @param commanded velocity north and east, m/s, and down, m
     * @return positions, world NED, m
     */
@@ -42,7 +42,7 @@ private[skein] object GpuQuadrotors:
   private val Name          = "quadrotors"
   private val BlockVehicles = 128
 
-  /** @return or why such quadrotors do not fly by lanes */
+  /** Compiles the kernel; Left states why such quadrotors are not supported. */
   def of(gpu: Gpu, quadrotor: Quadrotor): Either[String, GpuQuadrotors] =
     QuadrotorLanes.of(quadrotor).map(new GpuQuadrotors(gpu, _))
 

@@ -25,21 +25,24 @@ private[lanes] final class GpuStages(
 
   def start(): Unit = kept.start()
 
-  /** The first step begins, under a command.
+  /** Begins the first step, under a command.
     *
     * @param state the registers of its numbers
     */
   def begin(north: Int, east: Int, state: Int => Int): Unit =
     kept.take(write(stages.begin, north, east, constantTime, state))
 
-  /** The next step begins under a command, so long after the one before as these numbers tell. */
+  /** Begins the next step under a command, after a time since the previous one that these numbers represent.
+    */
   def act(north: Int, east: Int, time: Int => Int): Unit = kept.take(write(stages.act, north, east, time))
 
-  /** So many whole steps under the same command. */
+  /** Simulates whole steps under the present command. */
   def goOn(steps: Int): Unit =
     code.repeat(steps)(kept.take(write(stages.goOn, Nowhere, Nowhere, constantTime)))
 
-  /** Position and, if asked for, velocity, so long after the step began as these numbers tell. */
+  /** Position and, if requested, velocity, at a time since the begin of the step that these numbers
+    * represent.
+    */
   def look(withVelocity: Boolean, time: Int => Int): Vector[Int] =
     write(if withVelocity then stages.look else stages.position, Nowhere, Nowhere, time)
 
@@ -66,5 +69,4 @@ private[lanes] final class GpuStages(
         if number < stages.firstOfTime then code.constant(own(number)) else time(number - stages.firstOfTime)
     )
 
-  /** No register: nothing is commanded. */
   private inline val Nowhere = -1

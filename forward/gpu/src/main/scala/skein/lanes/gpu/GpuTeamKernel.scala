@@ -6,10 +6,10 @@ import skein.lanes.policy.TeamLanes
 import skein.lanes.score.{OfMoment, ScoreLanes}
 import skein.simd.BoundFunction
 
-/** Teams on a GPU. One side: of each vehicle where it starts and the direction in which it heads, and what
-  * its policy flies by; then of each quantity what it differs by.
+/** Teams on a GPU. One side: of each vehicle the start and initial direction, and the numbers of its policy;
+  * then of each quantity its parameters.
   *
-  * @param vehicles one of the candidates': where they start and head is told by numbers
+  * @param vehicles of one candidate; starts and headings of others are numbers
   */
 private[lanes] final class GpuTeamKernel(
     gpu: Gpu,
@@ -93,20 +93,20 @@ private[lanes] final class GpuTeamKernel(
     def besides: Vector[Int] = Vector.empty
 
 private object GpuTeamKernel:
-  /** Of each vehicle: where it starts, north and east, m, and cosine and sine of its heading. */
+  /** Count of numbers of a vehicle's start: north and east, m, and cosine and sine of its heading. */
   private val Starts = 4
 
-  /** Where each vehicle's numbers begin, and behind them the quantities'. */
+  /** Offsets of each vehicle's numbers, and last of the quantities'. */
   private def firstOf(team: TeamLanes): Vector[Int] =
     Vector.range(0, team.count).scanLeft(0)((first, self) => first + Starts + team.parameters(self))
 
   private def numbers(team: TeamLanes, scores: ScoreLanes): Int =
     firstOf(team).last + scores.judged.indices.map(scores.parameters).sum
 
-  /** Of one candidate.
+  /** The numbers of one candidate.
     *
     * @param ofPolicies by vehicle
-    * @param ofQuantities by what is judged
+    * @param ofQuantities by judged number
     */
   def numbersOf(
       vehicles: Vector[RolloutAgent],

@@ -6,8 +6,8 @@ import skein.gpu.Gpu
 import skein.lanes.{Accelerated, AcceleratedTeams, PreparedTeam, TeamForm, TeamOutcomes, TeamWorlds}
 import skein.lanes.timetable.Timetable
 
-/** Flies teams' candidates on a GPU, each through the same episodes, by [[GpuTeamKernel]]. Mutable; one call
-  * at a time.
+/** Simulates teams' candidates on a GPU, each in all episodes, by [[GpuTeamKernel]]. Mutable; one call at a
+  * time.
   *
   * @param threads that make timetables
   */

@@ -2,11 +2,11 @@ package skein.lanes.gpu
 
 import skein.lanes.timetable.{OperationKind, Propagation, Timetable}
 
-/** Where a thread of a GPU keeps what its vehicles' readings and commands are: bytes of its own memory.
+/** Layout of a GPU thread's own memory for its vehicles' readings and commands, in bytes.
   *
   * @param readings places of one vehicle
-  * @param headings the same
-  * @param shows whether several vehicles compute something of a view together
+  * @param headings places of one vehicle
+  * @param shows whether several vehicles share computations on a view
   */
 private[lanes] final case class GpuLayout(
     vehicles: Int,
@@ -17,23 +17,22 @@ private[lanes] final case class GpuLayout(
   import Timetable.Read
   private val firstHeading = 4 * Read * vehicles * readings
 
-  /** Behind it is room for whatever a kernel keeps besides. */
+  /** Size of the layout; the kernel's further data follow it. */
   val bytes: Int = firstHeading + 8 * vehicles * headings
 
-  /** Where a reading begins. */
   def reading(vehicle: Int, place: Int): Int = 4 * Read * (vehicle * readings + place)
 
-  /** Where a heading's cosine and sine are, or a commanded velocity. */
+  /** Address of a heading's cosine and sine, or of a commanded velocity. */
   def heading(vehicle: Int, place: Int): Int = firstHeading + 8 * (vehicle * headings + place)
 
-  /** One with room for an episode, too. */
+  /** A layout that also has room for an episode. */
   def holding(timetable: Timetable): GpuLayout =
     def doubled(now: Int, needed: Int) = if needed <= now then now else Integer.highestOneBit(needed * 2 - 1)
     copy(readings = doubled(readings, timetable.readings), headings = doubled(headings, timetable.headings))
 
-/** A [[Timetable]] as [[GpuFlightKernel]] reads it: of each operation [[stride]] words, which are the number
-  * of its label, where in own memory are what it takes and leaves, and its times; then the views, of each
-  * where the readings of all vehicles are.
+/** A [[Timetable]] as [[GpuFlightKernel]] reads it: for each operation [[stride]] words, which are the number
+  * of its label, the addresses of its inputs and outputs in own memory, and its times; then the views, each
+  * with the addresses of all vehicles' readings.
   */
 private[lanes] final class GpuTimetable(timetable: Timetable, layout: GpuLayout):
   import GpuTimetable.*
@@ -62,7 +61,6 @@ private[lanes] final class GpuTimetable(timetable: Timetable, layout: GpuLayout)
       all(records * stride + i) = layout.reading(i % count, timetable.views(i))
     all
 
-  /** When it is scored, s. */
   val scoredAtS: Array[Float] =
     Array
       .range(0, timetable.size)
@@ -135,10 +133,9 @@ private[lanes] final class GpuTimetable(timetable: Timetable, layout: GpuLayout)
     GpuPrediction.tellEnd(propagation, time)
 
 private[lanes] object GpuTimetable:
-  /** No view. */
   private val Nothing = -1
 
-  /** Numbers of what a kernel does at an operation. */
+  /** Numbers of the kernel's labels for operations. */
   final class Labels(vehicles: Int):
     def look(vehicle: Int, withVelocity: Boolean): Int = if withVelocity then vehicles + vehicle else vehicle
     def act(vehicle: Int): Int                         = 2 * vehicles + vehicle
@@ -146,7 +143,7 @@ private[lanes] object GpuTimetable:
     def score: Int                                     = 4 * vehicles
     def show: Int                                      = score + 1
 
-    /** A prediction begins, goes on under a command, and ends. */
+    /** Labels for the begin of a prediction, its continuation under a command, and its end. */
     def predict(vehicle: Int): Int   = show + 1 + vehicle
     def carry(vehicle: Int): Int     = predict(vehicles + vehicle)
     def predicted(vehicle: Int): Int = carry(vehicles + vehicle)

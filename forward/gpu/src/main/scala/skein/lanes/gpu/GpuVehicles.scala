@@ -11,28 +11,27 @@ import skein.lanes.plant.{PlantLanes, QuadrotorLanes}
 import skein.lanes.timetable.TimetableQuadrotors
 import skein.simd.BoundFunction
 
-/** One vehicle of a team in the world of each thread. Its state stands in variables. */
+/** One vehicle of a team in the world of each thread. Its state is in variables. */
 private[lanes] trait GpuVehicle:
-  /** Begins where the vehicle starts, at rest. */
+  /** Begins at the vehicle's start, at rest. */
   def start(): Unit
 
-  /** @return position north and east, m, and, if asked for, velocity, m/s
-    */
+  /** Reads position north and east, m, and, if requested, velocity, m/s. */
   def look(record: GpuRecord, withVelocity: Boolean): Vector[Int]
 
-  /** Lets a command act, over the vehicle's speed. */
+  /** Lets a command take effect, over the vehicle's speed. */
   def act(record: GpuRecord, north: Int, east: Int): Unit
 
 private[lanes] object GpuVehicle:
   /** Makes a vehicle in a kernel.
     *
-    * Takes the registers of where it starts, north and east, m.
+    * Takes the registers of its start, north and east, m.
     */
   type Kind = (Ptx, RolloutAgent, Int, Int) => GpuVehicle
 
-  /** Those that respond so.
+  /** The vehicles of a response.
     *
-    * @return or why none flies on a GPU
+    * @return Left states why no GPU supports them
     */
   def of(response: VelocityResponse): Either[String, Kind] = response match
     case PlantResponse(plant)         => PlantLanes.of(plant).map(lanes => GpuPlant(_, _, _, _, lanes))
@@ -40,7 +39,7 @@ private[lanes] object GpuVehicle:
       QuadrotorLanes.of(quadrotor.quadrotor).map(lanes => GpuQuadrotor(_, _, _, _, lanes))
     case _ => Left("the GPU does not know the vehicle")
 
-/** By [[PlantStages]]. */
+/** A vehicle of a plant, which moves by [[PlantStages]]. */
 private[lanes] final class GpuPlant(
     code: Ptx,
     agent: RolloutAgent,
@@ -87,7 +86,7 @@ private[lanes] final class GpuPlant(
 
   private def timed(record: GpuRecord)(number: Int) = record.time(1 + number)
 
-/** By the steps of [[QuadrotorLanes]], as [[TimetableQuadrotors]] are. */
+/** A vehicle that moves by the steps of [[QuadrotorLanes]], like [[TimetableQuadrotors]]. */
 private[lanes] final class GpuQuadrotor(
     code: Ptx,
     agent: RolloutAgent,

@@ -3,10 +3,12 @@ package skein.lanes.gpu
 import skein.gpu.{Ptx, PtxExpressions, Variables}
 import skein.lanes.plant.QuadrotorLanes
 
-/** A quadrotor's step in a kernel, as [[QuadrotorLanes]] has it compiled. */
+/** A quadrotor's step in a kernel, equal to that compiled by [[QuadrotorLanes]]. */
 private[gpu] object QuadrotorExpressions:
-  /** @param state the numbers of [[QuadrotorLanes.rows]]
-    * @param goal what is commanded: velocity north and east, m/s, and down, m
+  /** Generates one step.
+    *
+    * @param state the numbers of [[QuadrotorLanes.rows]]
+    * @param goal the command: velocity north and east, m/s, and down, m
     */
   def step(code: Ptx, lanes: QuadrotorLanes, state: Variables, goal: Variables): Unit =
     import lanes.{formula, rows}
