@@ -10,7 +10,7 @@ import skein.testing.{Optimised, TemporaryFolders}
 class SearchEnginesSuite extends munit.FunSuite, TemporaryFolders, Optimised:
   private given Scenarios = Scenarios.ours
 
-  private def setup(loop: String, link: String, eye: Option[String]): SearchSetup =
+  private def setup(loop: String, link: String, eye: Option[String], candidates: Int = 256): SearchSetup =
     SearchQuestion(
       family = "lead-pursuit",
       role = "pursuer",
@@ -19,7 +19,7 @@ class SearchEnginesSuite extends munit.FunSuite, TemporaryFolders, Optimised:
       conditions = Conditions(loop, "reduced", 100, 12, eye = eye),
       link = link,
       opponent = "paper-evader turningRadiusM=8.0",
-      candidates = 8,
+      candidates = candidates,
       episodes = 1,
       population = 4,
       seed = 1
@@ -50,6 +50,11 @@ class SearchEnginesSuite extends munit.FunSuite, TemporaryFolders, Optimised:
       val told = engines(loop, link, eye)
       assert(told.matches("SIMD, .*; fresh episodes: SIMD, .*"), s"$loop, $link, $eye: $told")
 
+  test("few candidates have delays of their own, whose SIMD kernel is faster than shared ones for so few"):
+    assert(setup("stream", "vpn", None, candidates = 255).engines.matches("SIMD, [0-9]+ worlds at a time"))
+    val paused = setup("paused", "vpn", Some(eyeFile()), candidates = 8).engines
+    assert(paused.contains(" candidates of an episode at a time"), paused)
+
   test("fresh episodes with the scalar engine are reported, with the reason"):
     val seeing = engines("paused", "vpn", Some(eyeFile()))
     assert(
@@ -66,7 +71,7 @@ class SearchEnginesSuite extends munit.FunSuite, TemporaryFolders, Optimised:
       method = "random",
       conditions = Conditions("stream", "drag", 100, 10),
       link = "vpn",
-      candidates = 8,
+      candidates = 256,
       episodes = 1,
       population = 4,
       seed = 1,
