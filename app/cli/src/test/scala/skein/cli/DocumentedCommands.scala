@@ -15,7 +15,7 @@ import skein.gpu.CudaGpu
 import skein.link.{Address, TcpTransport}
 import skein.mujoco.MujocoLibrary
 import skein.simulator.{SimulatorServer, SimulatorSettings}
-import skein.testing.{Lengthy, Optimised, Unhurried}
+import skein.testing.{Lengthy, Optimised}
 import skein.units.Clock
 
 /** Flights by the clock. */
@@ -40,7 +40,7 @@ class DocumentedCommandsLiveSuite
       Lengthy
 
 /** One command of each kind and engine, before every commit. */
-class DocumentedSampleLiveSuite extends DocumentedCommands(DocumentedCommands.sample), Unhurried
+class DocumentedSampleLiveSuite extends DocumentedCommands(DocumentedCommands.sample), Optimised
 
 /** Runs commands that README, guides, results and examples show, as they are written there, for a shorter
   * time; [[DocumentedCommands.leftOut]] says which are not run, and why. Real sockets on loopback.
