@@ -3,8 +3,8 @@ package skein.forecast
 import skein.policy.{Axis, SearchSpace}
 import skein.vehicle.{ObservedPlant, ReducedModel}
 
-/** Plants of one form that differ in named parameters: what `skein identify` fits to flights, and what a
-  * model file names.
+/** Plants of one form that differ in named parameters: `skein identify` fits them to flights, and a model
+  * file names them.
   *
   * @param label as on the command line and in model files, for example `drag`
   * @param space the free parameters: names with their units, bounds, and as defaults the guesses from which a

@@ -7,9 +7,9 @@ import scala.collection.mutable
 import scala.jdk.CollectionConverters.*
 import scala.jdk.OptionConverters.*
 
-/** A method's code, by the number of the instruction.
+/** The code of a method, with access by the index of an instruction.
   *
-  * @param source the file it was written in
+  * @param source the file with its source code
   */
 private[formula] final class MethodCode(
     val owner: String,

@@ -21,10 +21,10 @@ final class Example(
   /** @throws Untraceable if it holds something that no number can represent */
   private[formula] lazy val shape: Shape = Shape(this, takesWholes)
 
-  /** Its numbers, in the order in which they are inputs. */
+  /** The example's numbers, in the order of the inputs. */
   def numbers: Vector[Double] = shape.leaves.map(_.number)
 
-  /** Whether another one differs in numbers alone. */
+  /** Whether another example differs in numbers alone. */
   def isLike(other: Example): Boolean = shape.form == other.shape.form
 
 /** The numbers of an [[Example]], and what is constant in all examples like it. */
@@ -75,7 +75,7 @@ private[formula] final class Shape(of: Example, takesWholes: Boolean):
             visit(Shape.read(field, value), way, Shape.isInternal(field), depth + 1)
 
 private[formula] object Shape:
-  /** A number in an example, and the way to it. */
+  /** A number in an example, with the path to it. */
   final case class Leaf(path: Path, number: Double)
 
   private val MostDepth = 60

@@ -2,7 +2,7 @@ package skein.formula
 
 import java.lang.reflect.Field
 
-/** What a local variable, a field or the operand stack holds while a method is traced. */
+/** The content of a local variable, a field or the operand stack during tracing. */
 private[formula] sealed trait Value
 
 private[formula] object Value:
@@ -29,7 +29,7 @@ private[formula] object Value:
     */
   final case class Known(what: AnyRef, path: Option[Path]) extends Value
 
-  /** An object, array or closure made while tracing. */
+  /** An object, array or closure that the traced method made. */
   final case class Made(id: Int) extends Value
 
   final case class Boxed(value: Value) extends Value
@@ -61,7 +61,7 @@ private[formula] enum Thing:
   case Either(className: String, fields: Map[String, Value])
 
 private[formula] object Thing:
-  /** The method that a closure's body was compiled to. */
+  /** The compiled method of a closure's body. */
   final case class Impl(owner: String, name: String, descriptor: String, kind: Kind)
   enum Kind:
     case Static, Instance, Constructor

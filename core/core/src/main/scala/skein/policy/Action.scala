@@ -2,8 +2,8 @@ package skein.policy
 
 import skein.units.*
 
-/** What a vehicle is to do. World frame NED, metres, m/s, radians from north towards east. An action lasts
-  * until the next one, or for the time that it was sent for; then the vehicle holds its position.
+/** The action that a vehicle performs. World frame NED, metres, m/s, radians from north towards east. An
+  * action lasts until the next one, or until its duration is over; then the vehicle holds its position.
   */
 enum Action:
   case Velocity(velocityNed: Vector3, yaw: Yaw = Yaw.Still)
@@ -39,7 +39,7 @@ enum Action:
   case Along(heading: Radians, speed: MetresPerSecond, down: Metres, yaw: Yaw = Yaw.Still)
 
 object Action:
-  /** Slower than this, a velocity has no direction, m/s. */
+  /** Least speed of a velocity with a direction, m/s. */
   val LeastMps: Double = 1e-9
 
   extension (action: Action)
@@ -72,7 +72,7 @@ object Action:
     if StrictMath.hypot(northMps, eastMps) < LeastMps then beforeRad
     else StrictMath.atan2(eastMps, northMps)
 
-/** What an action does with the vehicle's yaw. */
+/** How an action controls the vehicle's yaw. */
 enum Yaw:
   case Still
 

@@ -69,9 +69,9 @@ final case class Avoidance(
       else bounds.put(i, 0, 0, HalfPlanes.Always)
     bounds
 
-  /** The half plane of velocities that is this vehicle's half of keeping clear of another one: the smallest
-    * change u of the relative velocity that leaves the cone of those which lead to a meeting within the
-    * horizon, half of it taken on.
+  /** The half plane of velocities that is this vehicle's half of avoiding another one: half of the smallest
+    * change u of the relative velocity that leaves the cone of velocities which lead to a conflict within the
+    * horizon.
     */
   private def bound(northM: Double, eastM: Double, own: Velocity, its: Velocity): Bound =
     val relative = own - its

@@ -5,7 +5,7 @@ import skein.policy.HalfPlanes.*
 /** Half planes of velocities v, m/s: v·normal ≥ least. A normal may have any length. Filled in by [[put]].
   *
   * Both questions are answered by linear programming, in the plane and in three dimensions, in [[Rounds]]
-  * rounds: each takes in the half plane that the velocity so far breaks most, and finds the best velocity on
+  * rounds: each adds the half plane that the present velocity violates most, and finds the best velocity on
   * its edge, as incremental programming does (de Berg, Cheong, van Kreveld, Overmars: ''Computational
   * Geometry'', 3rd ed., 2008, chapter 4; van den Berg and others as in [[Avoidance]], section 5). No more
   * rounds are needed than there are half planes, and hardly ever more than five.
@@ -20,11 +20,11 @@ private[policy] final class HalfPlanes(val count: Int):
     this.normalEast(number) = normalEast
     this.least(number) = least
 
-  /** By how far a velocity breaks one, of its normal's length. */
+  /** By how much a velocity violates a half plane, in units of its normal's length. */
   def broken(number: Int, of: Velocity): Double =
     least(number) - (normalNorth(number) * of.north + normalEast(number) * of.east)
 
-  /** The velocity nearest to one that is wanted, within all half planes and no faster than allowed. */
+  /** The velocity nearest to the wanted one, within all half planes and the speed limit. */
   def nearest(wanted: Velocity, mostMps: Double): Nearest =
     val taken   = HalfPlanes(count.min(Rounds))
     var found   = wanted.limited(mostMps)
@@ -37,9 +37,9 @@ private[policy] final class HalfPlanes(val count: Int):
     if count > Rounds then missing = missing.max(takeMostBroken(found, taken, 0) - Slack)
     Nearest(found, missing)
 
-  /** The velocity that breaks the worst of them least, and of those that do so about equally the one nearest
-    * to that wanted: the minimum of the worst violation + |v − wanted|² / (2 [[Weight]]). Normals have a
-    * length of 1, or of 0.
+  /** The velocity whose worst violation is least, and among about equal ones the nearest to the wanted one:
+    * the minimum of the worst violation + |v − wanted|² / (2 [[Weight]]). Normals have a length of 1, or of
+    * 0.
     */
   def leastBroken(wanted: Velocity, mostMps: Double): Velocity =
     val taken = HalfPlanes(count.min(Rounds))
@@ -133,7 +133,7 @@ private[policy] object HalfPlanes:
     */
   private val Slack = 1e-4
 
-  /** A least that, with a normal of 0, bounds nothing. */
+  /** Bound of a half plane that, with a normal of 0, limits nothing. */
   val Always: Double = -1e6
 
   /** Weight of a violation over the distance from the wanted velocity, m/s: so large that only edges within

@@ -1,6 +1,6 @@
 package skein.policy
 
-/** Stays where it is: used where a policy does not answer. */
+/** Holds its position: used where a policy does not answer. */
 object HoldPosition extends Policy:
   type Memory = Unit
 

@@ -3,8 +3,8 @@ package skein.policy
 /** Keeps a place in the leader's frame. That frame's first axis points along the circuit where the leader is,
   * the second to the right; it turns as the leader moves along, and the slot's velocity follows from both:
   * the leader's velocity plus turn rate × offset, so that the outer vehicles of a turn fly faster and the
-  * inner ones slower. What a vehicle that lags loses in a turn is commanded on top: lag × turn rate × the
-  * slot's velocity.
+  * inner ones slower. The loss of a lagging vehicle in a turn is compensated: lag × turn rate × the slot's
+  * velocity.
   *
   * @param aheadM distance of the slot ahead of the leader
   * @param rightM distance of the slot to the right of the leader

@@ -1,13 +1,13 @@
 package skein.policy
 
-/** How a vehicle decides: a pure function from observation and memory to action and next memory. It
+/** A vehicle's decision rule: a pure function from observation and memory to action and next memory. It
   * integrates over measured time ([[Observation.elapsed]]) and never counts its calls: deciding twice as
   * often must not act twice as strongly. It keeps nothing else between decisions, so that a replay can repeat
   * them from the recording alone.
   */
 trait Policy:
 
-  /** What is kept from one decision to the next. Immutable. */
+  /** The state kept from one decision to the next. Immutable. */
   type Memory
 
   /** Names of its vehicle's sensors that must be read; see [[skein.port.VehiclePort.sensors]]. Their last

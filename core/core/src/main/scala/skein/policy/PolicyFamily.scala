@@ -2,8 +2,8 @@ package skein.policy
 
 import skein.units.OwnFailure
 
-/** Policies of one form that differ in named parameters: what a search chooses from, and what a policy file
-  * names.
+/** Policies of one form that differ in named parameters: searches choose from them, and policy files name
+  * them.
   *
   * @param name as on the command line and in policy files, for example `paper-pursuer`
   * @param summary one line for people

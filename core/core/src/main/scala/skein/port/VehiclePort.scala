@@ -5,8 +5,8 @@ import skein.policy.Action
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 
-/** One vehicle as a loop sees it: the interface that an adapter implements for a simulator. Every call ends
-  * by itself, within a time limit of its own, and fails by a [[VehicleError]], never by an exception.
+/** One vehicle as a loop sees it: the interface that an adapter implements for a simulator. Every call
+  * completes within its own time limit, and reports failures as a [[VehicleError]], never as an exception.
   */
 trait VehiclePort:
 

@@ -24,7 +24,7 @@ enum Equipment:
       verticalFovDeg: (Double, Double) = (-20, 20)
   )
 
-  /** A camera at the front of the vehicle, which looks ahead.
+  /** A camera at the front of the vehicle that points forward.
     *
     * @param fovDeg horizontal
     */

@@ -4,11 +4,13 @@ package skein.scenario
 enum Fence:
   case Circle(northM: Double, eastM: Double, radiusM: Double)
 
-  /** @param corners north and east, in turn; at least three
+  /** A polygon that vehicles must stay in.
+    *
+    * @param corners north and east, in turn; at least three
     */
   case Polygon(corners: Vector[(Double, Double)])
 
-  /** How far a place is outside, m; inside, how far it is from there, negative. */
+  /** Distance of a place outside of the fence, m; inside, the negative distance to the fence. */
   def beyondM(north: Double, east: Double): Double = this match
     case Circle(middleN, middleE, radius) => StrictMath.hypot(north - middleN, east - middleE) - radius
     case Polygon(corners)                 =>

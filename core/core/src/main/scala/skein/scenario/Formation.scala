@@ -34,7 +34,7 @@ final case class Formation(
 
   def circuit: Racetrack = Racetrack(straightM, radiusM)
 
-  /** Where slots are in the leader's frame: metres ahead and to the right, by follower. */
+  /** The slots in the leader's frame: metres ahead and to the right, by follower. */
   def slots: Vector[(Double, Double)] =
     Vector.tabulate(vehicles - 1): follower =>
       val rank = follower / 2 + 1

@@ -19,7 +19,7 @@ final class Limit private (
     val kept: Option[Kept],
     quantity: (Tracks, Vector[Int]) => Int => Double
 ):
-  /** For example `separation of at least 5 m`. */
+  /** The limit in words: for example `separation of at least 5 m`. */
   def text: String =
     s"$name of at ${if isLeast then "least" else "most"} ${Limit.brief(value)} $unit".trim
 
@@ -68,7 +68,7 @@ object Limit:
       tracks.velocityNed(vehicle, _).norm
     )
 
-  /** Every vehicle stays in a circle, seen from above. */
+  /** Every vehicle must stay in a circle, seen from above. */
   def geofence(north: Metres, east: Metres, radius: Metres): Limit =
     single(
       "distance from the geofence's middle",
@@ -78,7 +78,7 @@ object Limit:
       Some(Kept.Inside(Fence.Circle(north.value, east.value, radius.value)))
     )((tracks, vehicle) => tracks.distanceM(vehicle, north.value, east.value, _))
 
-  /** Every vehicle stays in a polygon, seen from above; the quantity is how far it is outside.
+  /** Every vehicle must stay in a polygon, seen from above; the quantity is its distance outside.
     *
     * @param corners north and east, in turn; at least three
     */

@@ -35,7 +35,7 @@ object Measure:
   ): Measure =
     new Measure(name, unit, false, part, None, tracks => part.of(tracks).map(of(tracks, _)))
 
-  /** Events, for example vehicles that arrived. */
+  /** A count of events, for example of vehicles that arrived. */
   def count(name: String)(of: Tracks => Int): Measure =
     new Measure(name, "", true, Window.Whole, None, tracks => Some(of(tracks).toDouble))
 
@@ -121,10 +121,10 @@ object Series:
   */
 final case class Bound(name: String, value: Double)
 
-/** A quantity at equal instants: seconds since all vehicles were first seen, and its values. */
+/** A quantity at equidistant instants: seconds since all vehicles were first read, and its values. */
 final case class Curve(points: Vector[(Double, Double)]):
 
-  /** Where its values are finite numbers, each stretch without a gap. */
+  /** The stretches in which its values are finite numbers. */
   def stretches: Vector[Vector[(Double, Double)]] =
     Vector.unfold(points): left =>
       val (stretch, rest) = left.dropWhile(!_._2.isFinite).span(_._2.isFinite)

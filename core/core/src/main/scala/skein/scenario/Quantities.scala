@@ -2,7 +2,7 @@ package skein.scenario
 
 import skein.policy.Racetrack
 
-/** How far the pursuers are from a ring around the evader, the first vehicle: root of the mean square, m. */
+/** Deviation of the pursuers from a ring around the evader, the first vehicle: root of the mean square, m. */
 final case class OffRing(ringM: Double) extends Quantity:
   def of(positions: Positions): Double =
     var sum     = 0.0

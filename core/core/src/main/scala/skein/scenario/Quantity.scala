@@ -6,11 +6,11 @@ import skein.units.OwnFailure
 final case class Positions(northM: IArray[Double], eastM: IArray[Double], downM: IArray[Double]):
   def count: Int = northM.length
 
-  /** Between two vehicles, in the horizontal plane, m. */
+  /** Distance between two vehicles in the horizontal plane, m. */
   def distanceM(one: Int, other: Int): Double =
     StrictMath.hypot(northM(one) - northM(other), eastM(one) - eastM(other))
 
-  /** From a vehicle to a place, in the horizontal plane, m. */
+  /** Distance from a vehicle to a place in the horizontal plane, m. */
   def distanceM(vehicle: Int, north: Double, east: Double): Double =
     StrictMath.hypot(northM(vehicle) - north, eastM(vehicle) - east)
 
@@ -22,7 +22,9 @@ trait Quantity:
   def of(positions: Positions): Double
 
 object Quantity:
-  /** @throws OwnFailure if the quantity throws
+  /** Evaluates a quantity.
+    *
+    * @throws OwnFailure if the quantity throws
     */
   private[skein] def told(quantity: Quantity, positions: Positions): Double =
     OwnFailure.told(whose(quantity))(quantity.of(positions))

@@ -36,7 +36,7 @@ trait Scenario extends Product:
   /** Whether the flight ends before its duration; evaluated at every decision. A pure function. */
   def isOver(known: Known): Boolean = false
 
-  /** Whether it is the paper's game, beside whose flights the paper's figures stand, and whose policies are
+  /** Whether it is the paper's game, whose reports include the paper's figures, and whose policies are
     * searched and trained against each other.
     */
   def isPapersGame: Boolean = false
@@ -44,13 +44,13 @@ trait Scenario extends Product:
   /** Whether loops run as the paper's published code does, which confounds its result. */
   def isAsPublished: Boolean = false
 
-  /** For the report: how to read the measures, in whole sentences. */
+  /** How to read the measures, for the report, in whole sentences. */
   def note: String = ""
 
   /** Every setting with an invalid value: `name: expected …, came …`. */
   def mistakes: Seq[String] = Seq.empty
 
-  /** One word, under which its settings stand in configurations and recordings. */
+  /** The identifier of its settings in configurations and recordings, one word. */
   def name: String = Scenario.worded(productPrefix)
 
   /** The name, with settings that tables must show after a comma. */

@@ -4,7 +4,7 @@ import java.util.Locale
 import skein.policy.Role
 import skein.units.*
 
-/** Where one vehicle was, by the simulator's clock; ascending, each instant once, at least one.
+/** The track of one vehicle by the simulator's clock; ascending, each instant once, at least one.
   *
   * @param positionsNed by instant, m, world frame
   * @param velocitiesNed by instant, m/s

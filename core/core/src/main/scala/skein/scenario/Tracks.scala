@@ -39,14 +39,14 @@ final class Tracks private (
 
   def altitudeM(vehicle: Int, instant: Int): Double = -downM(vehicle)(instant)
 
-  /** Between two vehicles, in the horizontal plane, m. */
+  /** Distance between two vehicles in the horizontal plane, m. */
   def distanceM(one: Int, other: Int, instant: Int): Double =
     StrictMath.hypot(
       northM(one)(instant) - northM(other)(instant),
       eastM(one)(instant) - eastM(other)(instant)
     )
 
-  /** From a vehicle to a place, in the horizontal plane, m. */
+  /** Distance from a vehicle to a place in the horizontal plane, m. */
   def distanceM(vehicle: Int, north: Double, east: Double, instant: Int): Double =
     StrictMath.hypot(northM(vehicle)(instant) - north, eastM(vehicle)(instant) - east)
 

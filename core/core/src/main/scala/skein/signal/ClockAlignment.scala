@@ -53,9 +53,9 @@ final case class ClockAlignment private (
   /** The controller's time at which the simulator's clock showed `simulatorTime`. */
   def toController(simulatorTime: Instant): Instant = simulatorTime + offset
 
-  /** From a reading's sampling to `now`, by the controller's clock. Absent where the present offset does not
-    * hold for the reading: it was sampled before the simulator's clock was set anew, and would seem to come
-    * from the future.
+  /** Age of a reading at `now`, since its sampling, by the controller's clock. Absent where the present
+    * offset does not hold for the reading: it was sampled before the simulator's clock was reset, and would
+    * seem to come from the future.
     */
   def ageOf(reading: Stamped[?], now: Instant): Option[Span] =
     Some(now.since(toController(reading.validAt))).filter(_ >= Span.Zero)
@@ -145,7 +145,7 @@ object ClockAlignment:
   /** Limit of the drift between the two clocks, seconds a second: about twice that of quartz clocks. */
   val MaxDrift = 100e-6
 
-  /** A running simulator's clock advances within this: three physics steps of AirSim. */
+  /** Longest time without an advance of a running simulator's clock: three physics steps of AirSim. */
   val Tick: Span = Span.ofMillis(9)
 
   def of(reading: Stamped[?]): ClockAlignment =

@@ -2,7 +2,7 @@ package skein.signal
 
 import skein.units.*
 
-/** Where a vehicle is and how it moves, in the world frame (NED, one origin for all vehicles).
+/** The position and motion of a vehicle, in the world frame (NED, one origin for all vehicles).
   *
   * @param positionNed m
   * @param velocityNed m/s

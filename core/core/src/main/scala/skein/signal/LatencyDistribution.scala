@@ -2,7 +2,7 @@ package skein.signal
 
 import skein.units.*
 
-/** How long round trips take, given by its inverse cumulative distribution function. */
+/** The distribution of round trips, given by its inverse cumulative distribution function. */
 enum LatencyDistribution:
 
   /** Every round trip takes an equal, constant time. */
@@ -21,7 +21,7 @@ enum LatencyDistribution:
     */
   case Quantiles(probabilities: Vector[Double], roundTripsMs: Vector[Double])
 
-  /** The round trip that the share `p` of all does not exceed.
+  /** The quantile of the round trips: a share `p` of them does not exceed it.
     *
     * @param p in [0, 1]; a log-normal distribution has no largest value and is cut at 1 − 10^−12^
     */

@@ -2,10 +2,10 @@ package skein.signal
 
 import skein.units.*
 
-/** How long messages take over one direction of a link, as the distribution of round trips that was measured
-  * there. One direction takes half of a sampled round trip. The two directions sample independently, so that
-  * a round trip spreads less than what was measured, by a factor of √2; under [[LatencyProfile.Correlated]]
-  * it spreads as measured.
+/** The delays of one direction of a link, given by the measured distribution of its round trips. One
+  * direction takes half of a sampled round trip. The two directions sample independently, so that a round
+  * trip spreads less than what was measured, by a factor of √2; under [[LatencyProfile.Correlated]] it
+  * spreads as measured.
   */
 enum LatencyProfile:
 
@@ -135,7 +135,7 @@ private object LatencyText:
 
   private val time = """\s*(\d+(?:\.\d+)?)\s*(us|ms|s)\s*""".r
 
-  /** At most an hour; a longer round trip is a mistake. */
+  /** Reads a time of at most an hour; a longer round trip is a mistake. */
   private def span(text: String): Option[Span] = text match
     case time(number, unit) =>
       val ms = unit match

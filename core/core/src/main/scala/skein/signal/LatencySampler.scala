@@ -5,8 +5,8 @@ import skein.units.*
 /** Draws the delays of one direction of one connection. Holds mutable state: one per direction and
   * connection.
   *
-  * @param linkSeed decides when the link is busy, and what delays hold for a while: equal for all connections
-  *   and directions of one link, so that they agree
+  * @param linkSeed decides when the link is busy, and which delays persist for a while: equal for all
+  *   connections and directions of one link, so that they agree
   * @param lineSeed decides the delays: different for each
   */
 final class LatencySampler(profile: LatencyProfile, linkSeed: Long, lineSeed: Long):
@@ -46,7 +46,7 @@ private final class HeldShare(mean: Span, seed: Long):
       until = until + length()
     held
 
-/** Which of the two distributions holds when. */
+/** The sequence of the two distributions over time. */
 private final class Stretches(profile: LatencyProfile.Alternating, seed: Long):
   private val random    = SplitMix64(seed)
   private val busyShare =

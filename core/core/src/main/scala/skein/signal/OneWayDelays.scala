@@ -15,7 +15,7 @@ final case class OneWayDelays private (toSimulator: Span, fromSimulator: Span, r
 
   def roundTrip: Span = toSimulator + fromSimulator
 
-  /** The simulator's time at which a message acts that left at this controller's time. */
+  /** The simulator's time at which a message takes effect that was sent at this controller's time. */
   def expectedArrival(sentAt: Instant): Instant = sentAt + toSimulator
 
   /** The arrival time of a message whose answer was received. Its round trip says more than the means do: of
@@ -25,7 +25,9 @@ final case class OneWayDelays private (toSimulator: Span, fromSimulator: Span, r
   def arrivalGiven(sentAt: Instant, answeredAt: Instant): Instant =
     sentAt + toSimulator + (answeredAt.since(sentAt) - roundTrip) / 2
 
-  /** With one more reading: the plain mean of the first [[OneWayDelays.Memory]], then an exponential one. */
+  /** The means with one more reading: plain means of the first [[OneWayDelays.Memory]] readings, exponential
+    * ones thereafter.
+    */
   def updated(reading: Stamped[?]): OneWayDelays =
     val one    = OneWayDelays.of(reading)
     val weight = (readings + 1).min(OneWayDelays.Memory).toLong
@@ -37,8 +39,8 @@ final case class OneWayDelays private (toSimulator: Span, fromSimulator: Span, r
 
 object OneWayDelays:
 
-  /** Readings that the means remember, about: 1.6 s at 20 a second, so that a link that turns busy is noticed
-    * soon.
+  /** Approximate number of readings behind the means: 1.6 s at 20 a second, so that a link that turns busy is
+    * noticed soon.
     */
   val Memory = 32
 

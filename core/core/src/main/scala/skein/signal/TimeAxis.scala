@@ -22,7 +22,7 @@ final case class TimeAxis private (
 ):
   import TimeAxis.*
 
-  /** With one more reading. After a fault nothing changes. */
+  /** The state after one more reading. After a fault nothing changes. */
   def updated(vehicle: String, reading: Stamped[?]): TimeAxis =
     if fault.isDefined then this
     else
@@ -124,7 +124,7 @@ object TimeAxis:
 
   /** A reading's times, ns; the first on the vehicles' clock. */
   private final case class Sample(vehicle: String, validNanos: Long, sentNanos: Long, receivedNanos: Long):
-    /** The offset, controller minus simulator, is at least this. */
+    /** Lower bound of the offset, controller minus simulator, ns. */
     val lower: Long = minus(sentNanos, validNanos)
 
     val upper: Long       = minus(receivedNanos, validNanos)
@@ -138,7 +138,7 @@ object TimeAxis:
 
   /** A vehicle's readings in the window.
     *
-    * @param still the first of the newest that show one time
+    * @param still the first of the newest readings with one time stamp
     */
   private final case class Seen(newest: Sample, still: Sample, seconds: Vector[Second]):
     /** Reading with the largest lower bound in the window. */

@@ -1,6 +1,6 @@
 package skein.vehicle
 
-/** Everything that changes while a car drives. Place and velocity are those of its centre of mass.
+/** The state of a moving car. Position and velocity are those of its centre of mass.
   *
   * @param headingRad from north towards east, any number of turns
   * @param frontMps velocity along the heading, negative backwards
@@ -24,7 +24,7 @@ final case class CarState(
   def northMps: Double = frontMps * StrictMath.cos(headingRad) - rightMps * StrictMath.sin(headingRad)
   def eastMps: Double  = frontMps * StrictMath.sin(headingRad) + rightMps * StrictMath.cos(headingRad)
 
-/** What a driver does.
+/** The driver's controls.
   *
   * @param throttle −1 to 1; negative drives backwards
   * @param steering −1, full lock to the left, to 1

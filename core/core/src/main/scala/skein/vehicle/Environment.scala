@@ -2,7 +2,7 @@ package skein.vehicle
 
 import skein.units.Vector3
 
-/** What surrounds a vehicle: air and ground. Constant over the steps it is passed to; pass another one when
+/** A vehicle's surroundings: air and ground. Constant over the steps it is passed to; pass another one when
   * the wind changes.
   *
   * @param windNed velocity of the air, m/s; acts through drag alone

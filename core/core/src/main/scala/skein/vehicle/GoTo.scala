@@ -11,7 +11,7 @@ object GoTo:
 
   /** The velocity to command, NED, m/s, in the frame of the positions.
     *
-    * @param cruise the fastest that the vehicle flies
+    * @param cruise limit of the speed, m/s
     */
   def velocityNed(
       positionNed: Vector3,

@@ -2,7 +2,7 @@ package skein.vehicle
 
 import skein.units.{Span, Vector3}
 
-/** How AirSim flies along a path: 50 times a second it aims at a point ahead, with a velocity
+/** AirSim's path following: 50 times a second it steers to a point ahead by a velocity
   * (`MultirotorApiBase::moveOnPath`).
   */
 object PathFollowing:

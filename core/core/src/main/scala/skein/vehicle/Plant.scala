@@ -38,5 +38,5 @@ trait ObservedPlant[S] extends Plant[S]:
     */
   def corrected(state: S, seen: PlaneReading): S
 
-/** Horizontal position, m, and velocity, m/s, as they are read of a vehicle. */
+/** A vehicle's horizontal position, m, and velocity, m/s, in a reading. */
 final case class PlaneReading(northM: Double, eastM: Double, northMps: Double, eastMps: Double)

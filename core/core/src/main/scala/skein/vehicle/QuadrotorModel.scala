@@ -3,8 +3,8 @@ package skein.vehicle
 import skein.signal.Kinematics
 import skein.units.*
 
-/** The whole vehicle as a model: what a reading does not show, rotors and integrators, is simulated along
-  * between readings. About 0.13 µs per 3 ms of flight.
+/** The whole vehicle as a model: rotors and integrators, which readings lack, are simulated between readings.
+  * About 0.13 µs per 3 ms of flight.
   */
 final class QuadrotorModel(quadrotor: Quadrotor, environment: Environment = Environment.Calm)
     extends VehicleModel[QuadrotorModel.Flying]:
@@ -12,7 +12,7 @@ final class QuadrotorModel(quadrotor: Quadrotor, environment: Environment = Envi
 
   private val step = Span.ofSeconds(quadrotor.stepS)
 
-  /** As if the vehicle had hovered where it was seen, until it was seen to move. */
+  /** Assumes that the vehicle hovers at its first reading, until a reading shows motion. */
   def start(seen: Kinematics): Flying =
     corrected(
       Flying(quadrotor.hovering(seen.positionNed, environment = environment), Span.Zero),

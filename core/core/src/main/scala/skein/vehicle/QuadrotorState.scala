@@ -3,9 +3,9 @@ package skein.vehicle
 import skein.signal.Kinematics
 import skein.units.{Quaternion, Vector3}
 
-/** Everything that changes while a quadrotor flies: kinematics, rotors and the memory of its flight
-  * controller. Mutable and flat, so that a step allocates nothing; [[copyFrom]] makes it equal to another.
-  * Create one with [[Quadrotor.hovering]] or [[Quadrotor.landed]].
+/** The state of a quadrotor: kinematics, rotors and the memory of its flight controller. Mutable and flat, so
+  * that a step allocates nothing; [[copyFrom]] makes it equal to another. Create one with
+  * [[Quadrotor.hovering]] or [[Quadrotor.landed]].
   *
   * World frame NED, body frame FRD, metres, seconds, radians.
   */
@@ -27,7 +27,7 @@ final class QuadrotorState:
   /** Angular acceleration (front, right, down), rad/s². */
   var wxDot, wyDot, wzDot = 0.0
 
-  /** Controls of the rotors, 0 to 1, that the controller has set last. */
+  /** The last controls of the rotors set by the controller, 0 to 1. */
   var control0, control1, control2, control3 = 0.0
 
   /** Controls of the rotors after their lag, 0 to 1. */
@@ -47,10 +47,10 @@ final class QuadrotorState:
     */
   private[vehicle] var verticalMode: VerticalMode | Null = null
 
-  /** What a [[TunedFlightController]] remembers of all axes; null under the plain one. */
+  /** Memory of a [[TunedFlightController]] for all axes; null under the plain one. */
   private[vehicle] var cascadeMemory: CascadeMemory | Null = null
 
-  /** All controllers start anew at the next step, as when AirSim's gains are set. */
+  /** Resets all controllers at the next step, as when AirSim's gains are set. */
   def restartController(): Unit =
     verticalMode = null
     cascadeMemory = null

@@ -6,10 +6,10 @@ package skein.vehicle
   *   - along u: v' = (gain · |u| − v) / lag − drag · s · v
   *   - across u: v' = −v / turnLag − drag · s · v
   *
-  * A command acts `deadTimeS` after it has come. s is the speed when the present piece of the flight began:
-  * pieces begin when a command begins to act, and every [[ReducedModel.PieceS]] after it. So each piece is
-  * linear and has a closed form, and drag still grows with the square of the speed. Without drag a piece is
-  * exact however long it is.
+  * A command takes effect `deadTimeS` after its arrival. s is the speed when the present piece of the flight
+  * began: pieces begin when a command takes effect, and every [[ReducedModel.PieceS]] after it. So each piece
+  * is linear and has a closed form, and drag still grows with the square of the speed. Without drag a piece
+  * is exact however long it is.
   *
   * Why this form: AirSim's flight controller tilts in proportion to the velocity's error, so velocity has a
   * first-order lag (the tilt itself settles within a dead time); the air's drag is quadratic, so a gain fits
@@ -44,7 +44,7 @@ final case class ReducedModel(
 
   def isLag: Boolean = !drags && !turns
 
-  /** Within a piece of the flight, from its begin. */
+  /** The state at a time after the begin of a piece. */
   def step(from: PlaneReading, wantedVx: Double, wantedVy: Double, spanS: Double): PlaneReading =
     import from.{eastMps as vy, northMps as vx}
     val drag             = if drags then dragPerM * math.sqrt(vx * vx + vy * vy) else 0

@@ -138,7 +138,7 @@ object Setpoint:
       throttle
     ).withYawRate(yawRadps)
 
-  /** `moveByMotorPWMs`: the rotors' controls, 0 to 1, in AirSim's order; the flight controller stands aside.
+  /** `moveByMotorPWMs`: the rotors' controls, 0 to 1, in AirSim's order; the flight controller is bypassed.
     */
   def rotors(frontRight: Double, rearLeft: Double, frontLeft: Double, rearRight: Double): Setpoint =
     Setpoint(

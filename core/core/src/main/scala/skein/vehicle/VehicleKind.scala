@@ -1,6 +1,6 @@
 package skein.vehicle
 
-/** What sort of vehicle an agent of a scenario is. */
+/** The kind of vehicle that a scenario's agent controls. */
 enum VehicleKind:
   /** AirSim's quadrotor, which flies in three dimensions. */
   case Multirotor

@@ -22,7 +22,8 @@ class VehicleForecastSuite extends munit.FunSuite:
 
   private val delays = OneWayDelays.of(reading(0, at(0)))
 
-  /** A vehicle that obeys within a microsecond, so that what it flies under can be read off where it is. */
+  /** A vehicle that follows commands within a microsecond, so that its position shows the command in effect.
+    */
   private val obedient = PlantModel(ReducedModel.lag(gain = 1, lagS = 1e-6, deadTimeS = 0))
 
   private def command(sequence: Long, north: Double, sentMs: Double) =
@@ -40,13 +41,13 @@ class VehicleForecastSuite extends munit.FunSuite:
     assertEqualsDouble(northAt(commanded, 200, 210), 2, 1e-4)
 
   test(
-    "a receipt tells of the arrival of the next command: half of what its round trip is longer than usual"
+    "an acknowledgement shows the arrival of the next command: half of the excess of its round trip"
   ):
     val late = commanded.replaced(sequence = 0, answeredAt = controller(100 + 140))
     assertEqualsDouble(northAt(late, 170, 250), 1.2, 1e-4)
     assertEqualsDouble(northAt(late, 200, 250), 1.8, 1e-4)
 
-  test("a receipt of a command that acted before all that are held tells nothing of these"):
+  test("an acknowledgement of a command in effect before all that are held changes nothing"):
     val several = commanded.sent(command(2, 30, 110)).sent(command(3, 40, 300))
     val seen    = several.seen(reading(200, at(0)), delays)
     assertEquals(seen.commands.map(_.sequence), Vector(2L, 3L))
@@ -75,7 +76,7 @@ class VehicleForecastSuite extends munit.FunSuite:
     assertEqualsDouble(northAt(commanded.failed(1), 300, 310), 2.5, 1e-4)
     assertEqualsDouble(northAt(commanded.replaced(0, controller(200)).failed(1), 300, 310), 4, 1e-4)
 
-  test("a reading that is older than the newest, or the same again, changes nothing"):
+  test("a reading that is older than the newest, or equal to it, changes nothing"):
     val seen = commanded.seen(reading(100, at(0.5, 10)), delays)
     assert(seen.seen(reading(50, at(7)), delays) eq seen)
     assert(seen.seen(reading(100, at(7)), delays) eq seen)

@@ -2,25 +2,23 @@ package skein.formula
 
 import skein.formula.Op.*
 
-/** How far an expression that is computed in floats, with the polynomials of `skein.simd`, may lie from the
-  * same in doubles: running error analysis, first rounding by rounding, with each function's own error on
-  * top.
+/** Bounds the difference between an expression computed in floats, with the polynomials of `skein.simd`, and
+  * in doubles: running error analysis, first rounding by rounding, with each function's own error on top.
   *
   * @param value in doubles; a condition is 1 or 0
-  * @param error the most that it may be off; of a condition, 1 where floats may decide otherwise
+  * @param error the bound; of a condition, 1 where floats may decide otherwise
   */
 final class ErrorBound private (values: Array[Double], errors: Array[Double], margins: Array[Double]):
   def value(of: Node): Double = values(of.id)
   def error(of: Node): Double = errors(of.id)
 
-  /** What floats may decide otherwise, of all that these nodes need: comparisons, and jumps of angles, signs
-    * and whole numbers; with how near to the threshold each is.
+  /** Discontinuities that these nodes depend on and that floats may decide otherwise: comparisons, and jumps
+    * of angles, signs and whole numbers; each with its distance from the threshold.
     */
   def undecided(of: Seq[Node]): Vector[(Node, Double)] =
     Trace.needed(of).filter(node => !margins(node.id).isNaN).map(node => (node, margins(node.id)))
 
 object ErrorBound:
-  /** Half a float's last place, of 1. */
   private val U = 1.0 / (1 << 24)
 
   /** Errors of the polynomials, absolute, as `LaneMathSuite` holds them; the exponential's is relative. */
@@ -28,12 +26,14 @@ object ErrorBound:
   private val ArcCosine        = 6e-7
   private val Exponential      = 2.5e-7
 
-  /** A turn in floats lies so far from one in doubles. */
+  /** Difference of a full turn in floats from one in doubles. */
   private val Turn = 1.8e-7
 
-  /** @param off how far each input may be off before it is rounded
-    * @param sameWay whether floats are taken to decide as doubles do, so that the error is that of the way
-    *   taken
+  /** Computes the bounds.
+    *
+    * @param off error of each input before it is rounded
+    * @param sameWay whether floats are assumed to decide like doubles, so that the error is that of the
+    *   branch taken
     */
   def of(
       nodes: Seq[Node],
@@ -56,7 +56,6 @@ object ErrorBound:
       val v       = values(node.id)
       val rounded = if v.isInfinite then 0.0 else U * math.abs(v)
 
-      /** Of what jumps at a threshold. */
       def jump(margin: Double, within: Double, by: Double, beside: Double) =
         if margin > within then beside
         else

@@ -3,8 +3,8 @@ package skein.formula
 import skein.signal.SplitMix64
 import skein.units.Vector3
 
-/** What is read from a method's bytecode is what the method computes: every operator, and what refuses says
-  * why.
+/** A formula read from a method's bytecode computes the method's result, for every operator; what is no
+  * formula is refused with its reason.
   */
 class FormulaLaws extends munit.FunSuite:
   import FormulaLaws.*
@@ -40,7 +40,7 @@ class FormulaLaws extends munit.FunSuite:
           input.mkString(" ")
         )
 
-  test("equal expressions are one node, and what is known is computed at once"):
+  test("equal expressions are one node, and known values are computed immediately"):
     val trace  = Trace()
     val (a, b) = (trace.input(0), trace.input(1))
     assert(trace.add(a, b) eq trace.add(a, b))

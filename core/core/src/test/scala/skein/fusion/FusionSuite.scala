@@ -12,7 +12,7 @@ class FusionSuite extends munit.FunSuite:
     sd * skein.signal.NormalQuantile(random.nextDouble().max(1e-9))
   )
 
-  /** Readings and sightings of a vehicle that flies a curve, each at a moment of its own. */
+  /** Readings and detections of a vehicle on a curve, each at its own time. */
   private def measured(count: Int, seed: Long): Vector[Measurement] =
     val random = SplitMix64(seed)
     val noise  = normals(random)
@@ -46,7 +46,7 @@ class FusionSuite extends munit.FunSuite:
       val mixed   = inOrder.sortBy(_ => random.nextLong())
       assertEquals(joined(mixed).belief, joined(inOrder).belief, s"seed $seed")
 
-  test("the belief is the solution of all measurements at once"):
+  test("the estimate solves all measurements simultaneously"):
     for seed <- 1L to 5L do
       val all      = measured(12, seed)
       val belief   = joined(all).belief.get
@@ -89,16 +89,15 @@ class FusionSuite extends munit.FunSuite:
     assert(later.position.xx > now.position.xx)
     assertEquals(fusion.at(now.at - Span.ofMillis(1)), None)
 
-/** The same model's normal equations over the states of all moments at once, solved densely. */
+/** The model's normal equations over the states of all moments simultaneously, solved densely. */
 private object BatchOracle:
 
-  /** Mean and covariance of the last state. */
   def last(all: Vector[Measurement], settings: FusionSettings): (Vector[Double], Vector[Vector[Double]]) =
     val size        = 6 * all.size
     val information = Array.ofDim[Double](size, size)
     val vector      = new Array[Double](size)
 
-    /** One observation: coefficients by index, what came, and its inverse covariance. */
+    /** Adds one observation: coefficients by index, observed values, and inverse covariance. */
     def observe(rows: Vector[Map[Int, Double]], came: Vector[Double], weight: Vector[Vector[Double]]): Unit =
       for
         (a, i) <- rows.zipWithIndex; (b, j) <- rows.zipWithIndex
@@ -137,7 +136,6 @@ private object BatchOracle:
     val mean       = covariance.map(row => row.indices.map(j => row(j) * vector(j)).sum)
     (mean.takeRight(6), covariance.takeRight(6).map(_.takeRight(6)))
 
-  /** Gauss-Jordan with row pivots. */
   private def inverse(matrix: Vector[Vector[Double]]): Vector[Vector[Double]] =
     val n    = matrix.size
     val rows =

@@ -10,7 +10,7 @@ class PolarMeasurementSuite extends munit.FunSuite:
   private def near(came: Vector3, expected: Vector3)(using munit.Location) =
     assert((came - expected).norm < 1e-9, s"$came, expected $expected")
 
-  test("a point is told by its angles and range, and found again"):
+  test("a point is converted to angles and range, and back"):
     for point <- List(Vector3(5, 0, 0), Vector3(3, 4, -2), Vector3(-1, 2, 0.5)) do
       near(
         PolarMeasurement.of(

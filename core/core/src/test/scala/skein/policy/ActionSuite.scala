@@ -2,7 +2,7 @@ package skein.policy
 
 import skein.units.*
 
-/** What an action is taken for where headings and speeds are asked for. */
+/** Headings and speeds of actions, for policies that need them. */
 class ActionSuite extends munit.FunSuite:
   private val down  = Metres(-20)
   private val place = Action.Position(Vector3(1, 2, -20), MetresPerSecond(4))

@@ -11,7 +11,7 @@ class CameraPursuerSuite extends munit.FunSuite:
   private def at(positionNed: Vector3, velocityNed: Vector3 = Vector3.Zero, isPredicted: Boolean = false) =
     Seen(Kinematics(positionNed, velocityNed, Quaternion.Identity, Vector3.Zero), Span.Zero, isPredicted)
 
-  /** Of a pursuer at the origin, the evader truly 5 m to the west. */
+  /** The decision of a pursuer at the origin, with the evader truly 5 m to the west. */
   private def chosen(
       policy: CameraPursuer,
       sensed: Map[String, Sensed],
@@ -36,12 +36,12 @@ class CameraPursuerSuite extends munit.FunSuite:
         (StrictMath.atan2(east, north), yaw)
       case other => fail(s"$other")
 
-  /** Believed 8 m to the north, on its way east at 5 m/s. */
+  /** An estimate 8 m to the north, moving east at 5 m/s. */
   private def belief(age: Span) = Map(
     "evader" -> Sensed(Eye.Columns, Vector(8.0, 0, -20, 0, 5, 0) ++ Vector.fill(14)(0.0), age)
   )
 
-  test("told where its opponent is, it flies there and looks there"):
+  test("given its opponent's position, it flies there and looks there"):
     val told = chosen(pursuer.copy(sensor = None), Map.empty)
     assertEqualsDouble(told.heading, -math.Pi / 2, 1e-9)
     assertEquals(told.yaw, Yaw.Towards(Radians(told.heading)))

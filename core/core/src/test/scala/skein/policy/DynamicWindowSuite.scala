@@ -7,8 +7,6 @@ class DynamicWindowSuite extends munit.FunSuite:
   private val window  = DynamicWindow("lidar", 0, 0, Radians(0), 5)
   private val columns = Vector("northM", "eastM", "downM") ++ Vector.tabulate(120)(i => f"range${i * 3}%03dM")
 
-  /** @param nearM by direction in degrees
-    */
   private def scan(nearM: Double => Double, age: Span = Span.ofMillis(50)) = Map(
     "lidar" -> Sensed(columns, Vector(0.0, 0.0, -4.0) ++ Vector.tabulate(120)(i => nearM(3 * i + 1.5)), age)
   )
@@ -38,10 +36,10 @@ class DynamicWindowSuite extends munit.FunSuite:
       case along: Action.Along => along
       case other               => fail(s"came $other")
 
-  test("nothing in the way: straight on, as fast as told"):
+  test("without obstacles it flies straight on at its cruise speed"):
     assertEquals(choose(scan(_ => 40)), Action.Along(Radians(0), MetresPerSecond(5), Metres(-4)))
 
-  test("nothing seen, or long ago: it stands still"):
+  test("without a scan, or with an old one, it stands still"):
     assertEquals(choose(Map.empty).speed, MetresPerSecond(0))
     assertEquals(choose(scan(_ => 40, Span.ofSeconds(1))).speed, MetresPerSecond(0))
 
@@ -61,7 +59,7 @@ class DynamicWindowSuite extends munit.FunSuite:
     val chose = choose(scan(_ => 40), position = Vector3(0, 5, -4))
     assertEqualsDouble(chose.heading.value, -StrictMath.atan2(5, 10), 0.1)
 
-  test("points stay where they were when the vehicle has flown on since"):
+  test("points are assumed not to move while the vehicle flies on"):
     // Seen from 0, a tree at 10 m: from 12 m north it lies behind.
     val tree = scan(deg => if deg < 3 || deg > 357 then 10 else 40)
     assertEquals(

@@ -27,7 +27,7 @@ class GuidanceSuite extends munit.FunSuite:
       )
     )
 
-  /** Pursuer and evader step by step, until they come within the distance of one step or time is over. */
+  /** Simulates pursuer and evader until they come within the distance of one step or time is over. */
   private def chase(
       pursuing: HeadingPolicy,
       evading: HeadingPolicy,

@@ -2,7 +2,7 @@ package skein.policy
 
 class PolicyFamilySuite extends munit.FunSuite:
 
-  test("a family is found by its name, and an unknown one is told what there is"):
+  test("a family is found by its name, and an unknown name is answered with the known ones"):
     for family <- PolicyFamily.all do assertEquals(PolicyFamily.parse(family.name), Right(family))
     val mistake = PolicyFamily.parse("nosuch").left.getOrElse("")
     assert(mistake.contains("nosuch") && mistake.contains("paper-pursuer"), mistake)

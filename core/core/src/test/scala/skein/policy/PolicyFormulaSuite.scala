@@ -4,8 +4,8 @@ import skein.formula.{Evaluation, Untraceable}
 import skein.signal.{Kinematics, SplitMix64}
 import skein.units.*
 
-/** What is read from the bytecode of a policy's own method is what the method decides, along a way on which
-  * it remembers; and what is none is refused with its line.
+/** The formula from the bytecode of a policy's own method decides like the method, over several decisions
+  * with memory; what is no formula is refused with its line.
   */
 class PolicyFormulaSuite extends munit.FunSuite:
   import PolicyFormulaSuite.*
@@ -47,7 +47,6 @@ class PolicyFormulaSuite extends munit.FunSuite:
       Span.ofSeconds(random.nextDouble())
     )
 
-  /** What the formula answers. */
   private def answered(of: PolicyFormula, policy: Policy, seen: Observation, memory: Array[Double]) =
     val inputs = of.inputs.map:
       case PolicyInput.Position(vehicle, axis) =>
@@ -156,7 +155,7 @@ class PolicyFormulaSuite extends munit.FunSuite:
     assert(clue(formulaOf(Longs, 0).left.map(_.getMessage)).left.exists(_.contains("is a long")))
     assert(clue(formulaOf(Sensing, 0).left.map(_.getMessage)).left.exists(_.contains("sensors")))
 
-  test("one that flies higher is told, and one that names the altitude of its start is not"):
+  test("a policy that leaves its altitude is reported, and one that names the altitude of its start is not"):
     val higher = formulaOf(Higher(Metres(-25)), 0).fold(throw _, identity)
     assert(clue(higher.leaves(Higher(Metres(-25)), Metres(-20))).nonEmpty)
     assertEquals(higher.leaves(Higher(Metres(-20)), Metres(-20)), None)

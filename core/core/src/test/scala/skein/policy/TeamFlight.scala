@@ -3,10 +3,10 @@ package skein.policy
 import skein.signal.Kinematics
 import skein.units.*
 
-/** A team flown by its policies without any delay, each velocity following its command with a first-order
+/** Simulates a team by its policies without any delay, each velocity following its command with a first-order
   * lag.
   *
-  * @param lagS 0 for velocities that are at once as commanded
+  * @param lagS 0 for velocities that equal their commands immediately
   */
 final class TeamFlight(scenario: Fleet, lagS: Double, stepS: Double = 0.05):
   private val agents  = scenario.agents
@@ -16,7 +16,7 @@ final class TeamFlight(scenario: Fleet, lagS: Double, stepS: Double = 0.05):
   val eastMps         = Array.fill(agents.size)(0.0)
   private val heading = agents.map(_.startHeading.value).toArray
 
-  /** The smallest distance of any two so far, m. */
+  /** The smallest distance of any two vehicles so far, m. */
   var leastM: Double = Double.PositiveInfinity
 
   def seenBy(vehicle: Int): Observation =
@@ -50,7 +50,7 @@ final class TeamFlight(scenario: Fleet, lagS: Double, stepS: Double = 0.05):
     math.hypot(northM(one) - northM(other), eastM(one) - eastM(other))
 
 object TeamFlight:
-  /** What a vehicle sees of a team, all at one altitude, and against nobody. */
+  /** The observation of a team by one vehicle without an opponent, all at one altitude. */
   def seen(
       self: Int,
       northM: Seq[Double],

@@ -5,7 +5,7 @@ import skein.units.*
 
 class TeamPolicySuite extends munit.FunSuite:
 
-  test("pursuers stand at rest on the ring at even bearings around an evader that does not move"):
+  test("pursuers rest on the ring at even bearings around an evader that does not move"):
     val surround = Surround(vehicles = 6)
     val agents   = surround.agents
     val still    = agents.head.copy(policy = Flee(0))
@@ -125,7 +125,7 @@ class TeamPolicySuite extends munit.FunSuite:
 
   for (sideM, lagS) <- Seq((0.0, 0.0), (0.5, 0.0), (-0.5, 0.0)) do
     test(
-      s"two vehicles head-on, $sideM m to the side, pass with the separation asked for and reach their goals"
+      s"two vehicles head-on, $sideM m to the side, pass with the required separation and reach their goals"
     ):
       val flight = headOn(sideM, lagS)
       assert(flight.leastM > 3.45, s"${flight.leastM} m")
@@ -136,7 +136,9 @@ class TeamPolicySuite extends munit.FunSuite:
     val flight = headOn(0, lagS = 1.5)
     assert(flight.leastM > 2.0, s"${flight.leastM} m")
 
-  test("twenty in four streams cross with the separation asked for, if they follow their commands at once"):
+  test(
+    "twenty in four streams cross with the required separation, if they follow their commands immediately"
+  ):
     val crossing = Crossing()
     val flight   = TeamFlight(crossing.fleet, lagS = 0)
     flight.fly(60)()
@@ -217,7 +219,7 @@ class TeamPolicySuite extends munit.FunSuite:
     assert(allowed > 500 && least > 500, s"$allowed allowed, $least least broken")
     assert(short <= 4, s"$short of $least fell short")
 
-  test("vehicles out of reach, and those that stand in one another, leave numbers"):
+  test("vehicles out of reach, and those at one position, give finite numbers"):
     for side <- Seq(0.0, 1e6) do
       val policy = Avoidance(10, 0, cruiseMps = 5, mostMps = 8, minimumM = 2, marginM = 1.5, horizonS = 4)
       val places = Seq(side, 0, 0)

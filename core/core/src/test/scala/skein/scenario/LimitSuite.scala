@@ -2,10 +2,12 @@ package skein.scenario
 
 import skein.units.*
 
-/** Limits and measures of two vehicles that fly where they are told, sampled ten times a second. */
+/** Limits and measures of two vehicles with prescribed tracks, sampled ten times a second. */
 class LimitSuite extends munit.FunSuite:
 
-  /** @param placeNed of a vehicle at a time, s; it moves by the differences
+  /** Tracks of two vehicles.
+    *
+    * @param placeNed of a vehicle at a time, s; velocities are its differences
     */
   private def flown(seconds: Int)(placeNed: (Int, Double) => Vector3): Tracks =
     val tracks = Vector.tabulate(2): vehicle =>

@@ -3,7 +3,7 @@ package skein.scenario
 import skein.policy.Role
 import skein.units.*
 
-/** Where the vehicles of our scenarios start and want to be. */
+/** Starts and goals of the vehicles in Skein's scenarios. */
 class OurScenariosSuite extends munit.FunSuite:
 
   private def startsM(scenario: Scenario) =
@@ -24,7 +24,7 @@ class OurScenariosSuite extends munit.FunSuite:
     assertEquals((PaperDuel().crowded(9).pairs, PaperDuel(pairs = 6).crowded(9).pairs), (4, 6))
     assertEquals(PaperDuel(pairs = 51).mistakes, Seq("pairs: expected 1 to 50, came 51"))
 
-  test("surround: pursuers stand in a line, half a ring's radius apart, 30 m south of the evader"):
+  test("surround: pursuers start in a line, half a ring's radius apart, 30 m south of the evader"):
     assertEquals(
       startsM(Surround(vehicles = 4, ringM = 8)),
       Vector((30.0, 0.0, -5.0), (0.0, -4.0, -5.0), (0.0, 0.0, -5.0), (0.0, 4.0, -5.0))
@@ -35,7 +35,7 @@ class OurScenariosSuite extends munit.FunSuite:
     assertEquals(Surround(vehicles = 2).mistakes, Seq("vehicles: expected 3 to 100, came 2"))
     assertEquals((0 to 3).map(Surround().shade), Seq(0, 0, 1, 2))
 
-  test("notes tell lengths with three digits at most"):
+  test("notes have lengths of three digits at most"):
     assert(Surround().note.contains("the ring of 8 m,"), Surround().note)
     assert(Crossing(minimumM = 2.5).note.contains("minimum of 2.5 m; arrived: within 3 m"), Crossing().note)
     assert(Formation().note.contains("first 10 s:"), Formation().note)

@@ -23,7 +23,7 @@ class ScenarioKindSuite extends munit.FunSuite:
     )
     assertEquals(kind.read(Map("scouts" -> "4")), Right(OverTheRidge(scouts = 4)))
 
-  test("what is wrong with settings is told all at once: expected, came, nearest"):
+  test("all mistakes in settings are reported together: expected, given, nearest"):
     assertEquals(
       kind.read(Map("scuots" -> "3", "heightM" -> "high", "isNight" -> "dusk")),
       Left(Seq(
@@ -45,7 +45,7 @@ class ScenarioKindSuite extends munit.FunSuite:
       assertEquals(Scenarios.ours.ofRecording(scenario.name, recorded), Right(scenario))
       assertEquals(scenario.mistakes, Nil)
 
-  test("recordings of duels name their settings as ever; a setting that came later takes its default"):
+  test("recordings of duels name their settings as before; a setting introduced later takes its default"):
     assertEquals(PaperDuel().recordedAs("pairs"), "pairs")
     assertEquals(Surround().recordedAs("ringM"), "surround.ringM")
     assertEquals(
@@ -53,7 +53,7 @@ class ScenarioKindSuite extends munit.FunSuite:
       Right(PaperDuel(pairs = 2))
     )
 
-  test("vehicles that nothing can fly are told with their name"):
+  test("vehicles that cannot fly are reported with their names"):
     final case class Pair(second: String = "B", speedMps: Double = 1, north: String = "0") extends Scenario:
       def agents: Vector[Agent] =
         for (name, north) <- Vector("A" -> 0.0, second -> this.north.toDouble)
@@ -78,7 +78,7 @@ class ScenarioKindSuite extends munit.FunSuite:
       Left("agents: expected finite numbers as a start, came NaN, 0.0, -10.0, of B")
     )
 
-  test("what a scenario's own code throws is told with its name and its line"):
+  test("an exception in a scenario's own code is reported with its name and line"):
     final case class Broken(where: String = "") extends Scenario:
       require(where != "constructor", "no such place")
       private def mayFail(place: String): Unit = if where == place then sys.error(s"in $place")
@@ -108,7 +108,7 @@ class ScenarioKindSuite extends munit.FunSuite:
     for place <- Seq("series", "measure") do
       isOf(told(Result.of(Broken(place), tracks)), s"RuntimeException: in $place")
 
-  test("what cannot be flown is named by its setting"):
+  test("a setting that cannot be simulated is named"):
     assertEquals(
       Crossing(vehicles = 1, streams = 3, spacingM = -1).mistakes,
       Seq(
@@ -118,7 +118,7 @@ class ScenarioKindSuite extends munit.FunSuite:
       )
     )
 
-  test("a kind that is not known is told with the nearest that is; no two kinds share a name"):
+  test("an unknown kind is reported with the nearest known one; no two kinds share a name"):
     assertEquals(
       Scenarios.ours.kind("crosing"),
       Left(
@@ -128,7 +128,7 @@ class ScenarioKindSuite extends munit.FunSuite:
     )
     intercept[IllegalArgumentException](Scenarios(ScenarioKind(Surround()), ScenarioKind(Surround(4))))
 
-  test("a scenario's name can be told from what stands beside it in recordings and configurations"):
+  test("a scenario's name differs from the keys beside it in recordings and configurations"):
     final case class Called(override val name: String = "") extends Scenario:
       def agents: Vector[Agent] = Vector.empty
     for name <- Seq("ridge, by night", "ridge.north", "ridge {}", "") do

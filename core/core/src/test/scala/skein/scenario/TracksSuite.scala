@@ -3,14 +3,11 @@ package skein.scenario
 import skein.policy.Role
 import skein.units.*
 
-/** Where vehicles were, and what of it is measured, on flights whose numbers are known without computing
-  * them.
-  */
+/** Tracks and their measures, on flights with obvious numbers. */
 class TracksSuite extends munit.FunSuite:
 
   private def s(seconds: Double) = Instant.Epoch + Span.ofSeconds(seconds)
 
-  /** North by a number of metres a second. */
   private def flying(name: String, fromS: Double, toS: Double, northMps: Double, eastM: Double = 0) =
     Track.ofPositions(
       name,
@@ -20,7 +17,7 @@ class TracksSuite extends munit.FunSuite:
 
   private def tracks(all: Track*): Tracks = Tracks.of(all.toVector).getOrElse(fail("no tracks"))
 
-  test("a track is straight between its samples, and stands before the first and after the last"):
+  test("a track is straight between its samples, and constant before the first and after the last"):
     val track = Track.of(
       "One",
       "Leader",
@@ -65,7 +62,7 @@ class TracksSuite extends munit.FunSuite:
     assertEquals(Tracks.of(Vector(flying("One", 0, 1, 1), flying("Two", 1, 2, 1))), None)
     assertEquals(Tracks.of(Vector.empty), None)
 
-  test("how far a flight is from another counts as long as both flew, with the height where it is asked for"):
+  test("the deviation of two flights counts their common time, with the height on request"):
     def at(height: Double, seconds: Double) =
       tracks(Track.ofPositions("One", "Scout", Vector(0.0, seconds).map(t => (s(t), Vector3(3, 0, -height)))))
     val off = tracks(Track.ofPositions("One", "Scout", Vector(0.0, 9.0).map(t => (s(t), Vector3(6, 0, -14)))))

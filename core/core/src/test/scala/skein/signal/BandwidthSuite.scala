@@ -14,7 +14,7 @@ class BandwidthSuite extends munit.FunSuite:
     assertEquals(Bandwidth.parse("1mbit/1500B"), Right(Bandwidth(1_000_000, 1500)))
     assertEquals(Bandwidth.parse("1mbit/7.5MB"), Right(Bandwidth(1_000_000, 7_500_000)))
 
-  test("what is no rate is refused with what came"):
+  test("an invalid rate is refused with the text that was given"):
     for text <- List(
         "",
         "50",

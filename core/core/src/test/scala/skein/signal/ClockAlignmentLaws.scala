@@ -49,7 +49,7 @@ class ClockAlignmentLaws extends munit.ScalaCheckSuite:
     )
     assertEquals((aligned.restarts, aligned.standsStill), (1, false))
 
-  test("a simulator that stands still is recognised at the next reading, and so is that it runs again"):
+  test("a simulator that stops is recognised at the next reading, and so is its resumption"):
     val legs    = (10.0, 10.0)
     val before  = reading(0, legs)
     val paused  = (1 to 3).map(at => reading(at, legs).copy(validAt = before.validAt))
@@ -61,7 +61,7 @@ class ClockAlignmentLaws extends munit.ScalaCheckSuite:
     assertEquals(states.last.restarts, 1)
     assertEquals(states.last.offset, trueOffset + Span.ofMillis(300))
 
-  test("the same sample told twice within a tick of the simulator's clock is no standing still"):
+  test("one sample reported twice within a tick of the simulator's clock is not a stop"):
     val before            = reading(0, (10, 10))
     val first             = ClockAlignment.of(before)
     def told(after: Span) =

@@ -102,7 +102,7 @@ class LatencyProfileSuite extends munit.FunSuite:
     )
     assert(parse("rate:1mbit,correlated:1s,lognormal:36ms,0.3").isRight)
 
-  test("a rate or correlation in the wrong place is told"):
+  test("a rate or correlation in the wrong place is reported"):
     for (text, expected) <- List(
         "rate:50mb,direct"          -> s"expected ${Bandwidth.form}, got \"50mb\"",
         "rate:50mbit"               -> "expected a rate and a profile such as 50mbit,direct, got \"50mbit\"",

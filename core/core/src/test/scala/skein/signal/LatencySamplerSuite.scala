@@ -12,7 +12,7 @@ class LatencySamplerSuite extends munit.FunSuite:
     val constant = LatencyProfile.Steady("constant:200ms", LatencyDistribution.Constant(Span.ofMillis(200)))
     assertEquals(delaysMs(constant, 1, 2, 3), Vector(100.0, 100.0, 100.0))
 
-  test("the same seeds give the same delays, another line seed gives others"):
+  test("equal seeds give equal delays, another line seed gives others"):
     val first = delaysMs(LatencyProfile.vpnMixed, 1, 2, 2000)
     assertEquals(delaysMs(LatencyProfile.vpnMixed, 1, 2, 2000), first)
     assertNotEquals(delaysMs(LatencyProfile.vpnMixed, 1, 3, 2000), first)
@@ -26,7 +26,7 @@ class LatencySamplerSuite extends munit.FunSuite:
     for (p, ms) <- List(0.1 -> 25.9, 0.3 -> 37.4, 0.5 -> 50.7, 0.7 -> 86.5, 0.9 -> 120.4, 0.99 -> 159.5) do
       assertEqualsDouble(roundTrips((p * roundTrips.size).toInt), ms, 5, s"quantile at $p")
 
-  test("all lines of a link are busy and quiet at the same times, in long stretches"):
+  test("all lines of a link are busy and quiet simultaneously, in long stretches"):
     val windows = List(2L, 3L).map: lineSeed =>
       delaysMs(LatencyProfile.vpnMixed, 1, lineSeed, 36_000).grouped(50).map(_.sum / 50 > 35).toVector
     val List(first, second) = windows: @unchecked
@@ -43,7 +43,7 @@ class LatencySamplerSuite extends munit.FunSuite:
       val arrived = there.oneWay(sent)
       (arrived + back.oneWay(sent + arrived)).toMillis
 
-  /** Largest difference of the distribution functions. */
+  /** Largest difference between the sampled and the exact distribution function. */
   private def distance(samplesMs: Vector[Double], profile: LatencyDistribution): Double =
     val sorted = samplesMs.sorted
     (0 to 100).map: percent =>
@@ -75,7 +75,7 @@ class LatencySamplerSuite extends munit.FunSuite:
     assertEqualsDouble(covariance(3) / covariance(0), math.exp(-1), 0.02)
     assertEqualsDouble(covariance(6) / covariance(0), math.exp(-2), 0.02)
 
-  test("both directions and all connections of a correlated link have the same delay at the same moment"):
+  test("both directions and all connections of a correlated link have equal delays at one moment"):
     val profile = LatencyProfile.Correlated("", LatencyProfile.vpn, over = Span.ofSeconds(1))
     assertEquals(delaysMs(profile, 1, 2, 500), delaysMs(profile, 1, 3, 500))
     assertNotEquals(delaysMs(profile, 1, 2, 500), delaysMs(profile, 2, 2, 500))

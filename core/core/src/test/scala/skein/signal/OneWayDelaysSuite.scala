@@ -24,7 +24,7 @@ class OneWayDelaysSuite extends munit.FunSuite:
     val seen = delays(Seq.fill(1000)((10.0, 10.0)) ++ Seq.fill(100)((50.0, 50.0))*)
     assertEqualsDouble((seen.toSimulator - skew).toMillis, 50, 2)
 
-  test("of a message whose answer came late, half of the delay is laid to each way"):
+  test("half of a late answer's excess delay is attributed to each direction"):
     val sentAt = Instant.Epoch + Span.ofSeconds(9)
     val seen   = delays((30, 50))
     assertEquals(seen.expectedArrival(sentAt), sentAt + skew + Span.ofMillis(30))

@@ -7,7 +7,10 @@ class TimeAxisSuite extends munit.FunSuite:
 
   private val random = java.util.Random(5)
 
-  /** @param clockS what a vehicle's clock shows, s, at a time of the controller's, s */
+  /** Readings of vehicles.
+    *
+    * @param clockS time of a vehicle's clock, s, at a time of the controller's, s
+    */
   private def readings(
       lastsS: Double = 30,
       vehicles: Seq[String] = Seq("a", "b")
@@ -31,10 +34,10 @@ class TimeAxisSuite extends munit.FunSuite:
     for epoch <- Seq(0.0, 12345.678, -3e8, 1.7e9) do
       assertEquals(fault(readings()((_, s) => epoch + s * 1.0001)), None)
 
-  test("a clock that runs backwards from some moment on is a fault at once"):
+  test("a clock that runs backwards is a fault immediately"):
     assertFault(readings()((_, s) => if s < 10 then s else 20 - s), "ran back by 0.")
 
-  test("a clock that stands still is a fault within a second, also while vehicles move"):
+  test("a clock that stops is a fault within a second, also while vehicles move"):
     assertFault(readings()((_, s) => s.min(10)), "stood still for 0.")
     assertEquals(fault(readings(10.4)((_, s) => s.min(10))), None)
     assertFault(readings()((_, _) => 0.0), "stood still")
@@ -73,7 +76,7 @@ class TimeAxisSuite extends munit.FunSuite:
         s"$by s: $told"
       )
 
-  test("a clock that is a little off is told as long as it is, and is no fault"):
+  test("a clock that is slightly off is reported as long as it is, and is not a fault"):
     def axis(lastsS: Double) = readings(lastsS)((_, s) => if s < 10 then s else s - (s - 10).min(0.3) * 0.99)
       .foldLeft(TimeAxis.begun)((axis, one) => axis.updated(one._1, one._2))
     assertEquals((axis(9).fault, axis(9).wandering), (None, None))

@@ -4,7 +4,7 @@ import skein.units.Decimals.{brief, fixed, significant, signed}
 
 class DecimalsSuite extends munit.FunSuite:
 
-  test("brief numbers have as many digits as they need to be told apart"):
+  test("brief numbers have enough digits to be distinguished"):
     val shown = Seq(123.4, 10.0, 9.96, 9.94, 1.0, 0.96, 0.94, 0.05, 0.0, -12.3, -0.5).map(_.brief)
     assertEquals(
       shown,

@@ -2,7 +2,7 @@ package skein.units
 
 class IntervalSuite extends munit.FunSuite:
 
-  test("a half width has two significant digits, and its mean ends at the same decimal place"):
+  test("a half width has two significant digits, and its mean as many decimals"):
     val shown = Seq(
       (10.69213, 0.003406),
       (10.7, 0.007061),

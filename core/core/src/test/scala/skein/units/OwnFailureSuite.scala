@@ -7,7 +7,7 @@ class OwnFailureSuite extends munit.FunSuite:
   private def told(mistake: => Throwable): String =
     intercept[OwnFailure](OwnFailure.told("the policy of Scout")(throw mistake)).getMessage
 
-  test("whatever is thrown is told with whose it is, checked exceptions too"):
+  test("every exception is reported with its owner, checked exceptions too"):
     val mistakes = Vector[() => Throwable](
       () => Exception("no luck"),
       () => FileNotFoundException("corners.csv"),
@@ -19,13 +19,13 @@ class OwnFailureSuite extends munit.FunSuite:
         clue(told(mistake())).startsWith(s"the policy of Scout failed: ${mistake()} (OwnFailureSuite.scala:")
       )
 
-  test("as text it is its message, by whatever process it is told"):
+  test("its text is its message, whichever process reports it"):
     assertEquals(
       s"${OwnFailure("the policy of Scout", "answered null")}",
       "the policy of Scout answered null"
     )
 
-  test("that memory is full, or that the thread shall end, is told as it is"):
+  test("lack of memory and the end of a thread are rethrown unchanged"):
     for asItIs <- Seq(OutOfMemoryError(), InterruptedException()) do
       val thrown =
         try OwnFailure.told("it")(throw asItIs)
@@ -52,7 +52,7 @@ class OwnFailureSuite extends munit.FunSuite:
     )
     assertEquals(line("scala.Option", "skein.scenario.Forest", "skein.loop.Decider"), "(Forest.scala:1)")
 
-  test("of what an object's beginning threw, that itself is told"):
+  test("the cause of a failed class initialisation is reported itself"):
     assert(clue(told(ExceptionInInitializerError(IllegalStateException("no map")))).startsWith(
       "the policy of Scout failed: java.lang.IllegalStateException: no map"
     ))

@@ -14,7 +14,7 @@ class SpanSuite extends munit.FunSuite:
       )
     do assertEquals(Span.parse(text).map(_.toNanos), Right(nanos), text)
 
-  test("a bare number is no length of time, and is told which unit it may have meant"):
+  test("a bare number is no length of time, and the error suggests a unit"):
     assertEquals(Span.parse("40"), Left("expected a duration with unit, such as 40s, came '40'"))
     assertEquals(Span.parse("0.5"), Left("expected a duration with unit, such as 0.5s, came '0.5'"))
 

@@ -1,7 +1,7 @@
 package skein.vehicle
 
 class FirstOrderLagSuite extends munit.FunSuite:
-  test("it is what small steps of v' = −v / lag come to"):
+  test("it agrees with small steps of v' = −v / lag"):
     for lagS <- Seq(0.3, 2.66); afterS <- Seq(0.0, 0.1, 1.7) do
       val steps             = 200_000
       val dtS               = afterS / steps

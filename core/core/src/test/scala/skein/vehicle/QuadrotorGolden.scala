@@ -134,8 +134,8 @@ object QuadrotorGolden:
   /** Half of the last printed digit of the reference. */
   private val Printed = 0.005
 
-  /** Length of a reference flight's two parts; the altitudes drift slowly, so it matters. Inferred: all final
-    * speeds and altitudes fit it.
+  /** Duration of a reference flight's two parts; it matters because altitudes drift slowly. Inferred: all
+    * final speeds and altitudes fit it.
     */
   private val StepSeconds = 14.0
 

@@ -40,7 +40,7 @@ class QuadrotorSuite extends munit.FunSuite:
     for (altitudeM, density) <- Seq(0.0 -> 1.2250, 142.0 -> 1.2084, 1000.0 -> 1.1117, 2000.0 -> 1.0065) do
       assertEqualsDouble(Atmosphere.SeaLevelDensity * Atmosphere.densityRatio(altitudeM), density, 6e-5)
 
-  test("two runs of the same commands are equal bit for bit, also from a copied state"):
+  test("two runs of equal commands are equal bit for bit, also from a copied state"):
     val first = quadrotor.hovering(goal)
     fly(first, Setpoint.velocityZ(5, 1, -20), 1.0)
     val second = QuadrotorState()

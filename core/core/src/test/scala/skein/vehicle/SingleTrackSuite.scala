@@ -3,7 +3,7 @@ package skein.vehicle
 import skein.signal.Kinematics
 import skein.units.*
 
-/** The car's model against what follows from its source, and its driver. */
+/** Compares the car's model with results that follow from its source, and tests its driver. */
 class SingleTrackSuite extends munit.FunSuite:
   private val car     = SingleTrack()
   private val gravity = Airframe.Gravity
@@ -13,7 +13,6 @@ class SingleTrackSuite extends munit.FunSuite:
 
   private def rolling(frontMps: Double) = CarState(0, 0, 0, frontMps)
 
-  /** Keeps a speed, straight ahead. */
   private def keeping(frontMps: Double, steeredRad: Double) =
     CarControls(car.coastMps2(frontMps) / car.driveMps2(frontMps), steeredRad / car.mostSteeredRad, 0)
 
@@ -58,7 +57,7 @@ class SingleTrackSuite extends munit.FunSuite:
       state = next
     assert(state.frontSlipRad > 0.1, state)
 
-  test("one that stands does not turn, however it is steered"):
+  test("a car at rest does not turn, however it is steered"):
     val stood = driven(CarState(0, 0, 0), CarControls(0, 1, 0), 3)
     assertEquals((stood.headingRad, stood.northM, stood.yawRadPerS), (0.0, 0.0, 0.0))
 
@@ -78,7 +77,7 @@ class SingleTrackSuite extends munit.FunSuite:
     assertEqualsDouble(coarse.eastM, fine.eastM, 0.05)
 
   /** The linear single-track model with two tyres, each with its relaxation length: Rajamani's equations 2.31
-    * and 2.32 in kilograms and newtons, with slip angles that follow late, in small steps.
+    * and 2.32 in kilograms and newtons, with lagging slip angles, in small steps.
     *
     * @return heading, rad, after the steering angle has gone to `steerRad` as fast as it can
     */

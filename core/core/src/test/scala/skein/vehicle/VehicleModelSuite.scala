@@ -62,11 +62,11 @@ class VehicleModelSuite extends munit.FunSuite:
     assertClose(after.velocityNed, Vector3(9, -4.5, 0) * (1 - 1 / math.E), 1e-12)
     assertClose(after.positionNed, start + Vector3(9, -4.5, 0) * (2 / math.E), 1e-12)
 
-  test("constant velocity goes on as seen"):
+  test("constant velocity continues as read"):
     val after = ConstantVelocity.advanced(seen(start, Vector3(1, 2, -3)), Setpoint.Armed, Span.ofSeconds(0.5))
     assertClose(after.positionNed, start + Vector3(0.5, 1, -1.5), 1e-12)
 
-  test("constant turn goes on along the circle that two readings lie on"):
+  test("constant turn continues along the circle through two readings"):
     def onCircle(t: Double) =
       seen(
         Vector3(10 * math.cos(0.8 * t), 10 * math.sin(0.8 * t), -20),

@@ -231,7 +231,7 @@ private[onnx] object DenseGraph:
     */
   private def quotient(one: Double, by: Double): Double = if one.toFloat == by.toFloat then 1 else one / by
 
-  /** A policy's network as a graph: scales, then a layer by a `Gemm` and its activation. */
+  /** Writes a policy's network as a graph: scales, then a `Gemm` and an activation for each layer. */
   def graph(policy: LearnedPolicy, metadata: Map[String, String]): OnnxGraph =
     val shape  = policy.shape
     val widths = shape.widths

@@ -28,7 +28,7 @@ object OnnxPolicy:
 
   private val MostBytes = 64L << 20
 
-  /** The most that a pursuer turns, unless its file says otherwise: as in environments. */
+  /** Default limit of a pursuer's turn rate, as in environments. */
   private val TurnRateRadPerS = 1.0
 
   private val RoleNote = "skein.role"

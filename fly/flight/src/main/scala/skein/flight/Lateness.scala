@@ -26,7 +26,7 @@ private[flight] final case class Lateness(ticks: Int = 0, late: Int = 0, most: S
       s"${Allowed.toMillis.fixed(0)} ms late, one ${most.toMillis.fixed(0)} ms"
 
 private[flight] object Lateness:
-  /** Two ticks of the scheduler. A vehicle at 10 m/s flies 0.2 m in it. */
+  /** Tolerance of a tick's lateness: two ticks of the scheduler. A vehicle at 10 m/s moves 0.2 m in it. */
   val Allowed: Span = Span.ofMillis(20)
 
   /** Largest share of late ticks in a comparable flight. */

@@ -31,7 +31,8 @@ final case class FlightProgress(
         s"${seen.age.toMillis.fixed(0, width = 3)} ms old"
     if hasEnded then "ended" else silence.orElse(shown).getOrElse("")
 
-/** Shows the progress of flights side by side: a bar each on a terminal, else a line for all every 10 s. */
+/** Shows the progress of flights side by side: a bar for each on a terminal, else a line for all every 10 s.
+  */
 trait ProgressBoard extends AutoCloseable:
   def show(progress: Seq[FlightProgress]): Unit
 

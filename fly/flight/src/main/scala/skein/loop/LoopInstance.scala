@@ -14,7 +14,7 @@ import skein.units.*
   */
 object LoopInstance:
 
-  /** Absent for `paused`, which is no graph but a sequence of steps. */
+  /** The graph of a loop. Absent for `paused`, which is a sequence of steps without a graph. */
   def graph(loop: AnyLoop, fleet: Fleet, settings: LoopSettings = LoopSettings())(using
       system: ActorSystem
   ): Future[Option[LoopGraph]] =

@@ -7,7 +7,7 @@ import skein.units.*
 
 /** The timing of the live loops, for forward simulation. */
 object LoopTimings:
-  /** Absent for `plan`, whose decisions are themselves forward simulations. */
+  /** The timing of a loop. Absent for `plan`, whose decisions are themselves forward simulations. */
   def of(kind: LoopKind, settings: LoopSettings): Option[LoopTiming] =
     val periodS = settings.period.toSeconds
     val asking  = Asking(

@@ -128,7 +128,7 @@ final case class PlanReport(
     course: Option[PlannedPath]
 )
 
-/** Which vehicles plan, and how their plans begin. */
+/** The choice of vehicles that plan, and the constants of their plans. */
 object Planning:
 
   /** Whether a vehicle's decisions are planned; else its policy decides. Plans are for multirotors: they turn

@@ -62,7 +62,7 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
     )
   private val planners = joint.fold(Vector.empty)(_.vehicles).map(fleet.agents(_).name)
 
-  /** Decisions made together, by their time and vehicle. */
+  /** Decisions made jointly, by their time and vehicle. */
   private val together =
     recording.decisions
       .filter(decision => planners.contains(decision.vehicle))

@@ -9,7 +9,7 @@ import skein.units.*
   */
 final case class DistanceCurve private (points: Vector[(Double, Double)]):
 
-  /** When they were closest, s, and how close, m. */
+  /** Time of the closest approach, s, and its distance, m. */
   val closest: (Double, Double) = points.minBy(_._2)
 
   /** Distances over the last 10 s, evenly spaced in time, m; absent for a shorter curve. */

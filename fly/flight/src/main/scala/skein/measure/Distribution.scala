@@ -9,7 +9,7 @@ final case class Distribution private (sorted: Vector[Double]):
   def median: Double = quantile(0.5)
   def p99: Double    = quantile(0.99)
 
-  /** The samples' own standard deviation: divided by their number, not by one less. */
+  /** Standard deviation of the samples themselves: divided by their number, not by one less. */
   def sd: Double =
     val centre = mean
     math.sqrt(sorted.iterator.map(value => (value - centre) * (value - centre)).sum / count)

@@ -21,7 +21,7 @@ final case class PredictionErrors(made: Int, samples: Vector[(Double, Double)]):
     */
   def around(ageMs: Int): Option[Distribution] = byAge.collectFirst { case (`ageMs`, errors) => errors }
 
-  /** By age, ms, ascending; ages with fewer than [[PredictionErrors.Fewest]] samples are left out. */
+  /** Errors by age, ms, ascending; ages with fewer than [[PredictionErrors.Fewest]] samples are left out. */
   def byAge: Vector[(Int, Distribution)] =
     samples
       .groupMap((age, _) => PredictionErrors.bin(age))(_._2)

@@ -10,7 +10,7 @@ object Published:
 
   /** A flight of the paper.
     *
-    * @param distance absent where it was not published
+    * @param distance absent if it was not published
     * @param observedMs means at the decisions for the evader and for the pursuer
     */
   final case class Flight(

@@ -31,7 +31,7 @@ final class Truth private (paused: Map[Truth.Kind, Vector[FlightSummary]]):
     yield own / truth - 1
 
 object Truth:
-  /** Scenario with its settings, policy, period and duration. */
+  /** The settings that a flight shares with its truth: scenario, policy, period and duration. */
   private type Kind = (Option[Scenario], Option[String], Span, Span)
 
   def among(flights: Seq[FlightSummary]): Truth = Truth(

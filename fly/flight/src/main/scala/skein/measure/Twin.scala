@@ -51,7 +51,7 @@ final case class Twin(live: FlightSummary, virtual: Vector[FlightSummary]):
       names("simulator", _.simulator)(identity)
     ).flatten
 
-/** One quantity in a live flight and in its twins, in ms. */
+/** A quantity compared between a live flight and its twins, ms. */
 final case class Compared(role: String, quantity: String, live: Distribution, virtual: Distribution):
   val distance: Double = KolmogorovSmirnov.distance(live, virtual, Compared.WithinMs)
 

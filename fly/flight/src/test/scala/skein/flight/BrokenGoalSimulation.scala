@@ -6,7 +6,7 @@ import skein.scenario.Scenario
 import skein.signal.LatencyProfile
 import skein.units.*
 
-/** What becomes of a plan whose goal a policy cannot tell. */
+/** The fate of a plan if a policy cannot state its goal. */
 class BrokenGoalSimulation extends munit.FunSuite:
 
   private final case class Wanting(place: () => (Double, Double)) extends Policy, Goal:

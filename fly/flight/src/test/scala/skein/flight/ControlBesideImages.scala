@@ -16,7 +16,7 @@ import skein.simulator.{SimulatorServer, SimulatorSettings}
 import skein.units.*
 import upack.{Bool, Str}
 
-/** How images go to the controller meanwhile. */
+/** How images are transferred to the controller meanwhile. */
 private enum Beside(val name: String):
   case Nothing     extends Beside("no images")
   case OwnLane     extends Beside("images on their own lane")

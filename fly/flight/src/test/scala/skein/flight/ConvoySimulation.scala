@@ -12,7 +12,7 @@ import skein.vehicle.VehicleKind
 
 /** Two cars and three drones, in virtual time. */
 class ConvoySimulation extends munit.FunSuite, Lengthy, Optimised:
-  /** Five vehicles asked one after the other over a VPN are too much for these. */
+  /** Loops that cannot read five vehicles in sequence over a VPN in time. */
   private val overtaxed = Set(LoopKind.Sequential, LoopKind.Futures)
 
   private def flown(loop: LoopKind, link: LatencyProfile): (Recording, Result) =
@@ -48,7 +48,7 @@ class ConvoySimulation extends munit.FunSuite, Lengthy, Optimised:
       assert(lead.forall(_.positionNed.z == 0))
       assert(lead.last.positionNed.x > 20 || lead.last.positionNed.y > 10, lead.last)
 
-  test("predictive foresees a car better than constant velocity would"):
+  test("predictive predicts a car better than constant velocity"):
     val (recording, _) = predictive
     val errors         = recording.predictions.filter(_.vehicle == "Lead").map(_.error.value)
     assert(errors.size > 100, errors.size)

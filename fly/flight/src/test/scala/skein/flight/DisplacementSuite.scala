@@ -23,11 +23,11 @@ class DisplacementSuite extends munit.FunSuite:
     assert(!displaced(at(0, 0, 0), at(2, 25, 20)))
     assert(!displaced(at(0, 0, 0), at(0, 0, 0)))
 
-  test("who was put elsewhere, or told another vehicle's place, is not, wherever that is"):
+  test("a vehicle that was placed elsewhere, or reported another one's position, is recognised anywhere"):
     assert(displaced(at(0, 40, 10), at(0.1, 0, 0)), "reset")
     assert(displaced(at(0, 40, 10), at(0.1, 42.5, 10)), "a pose ahead")
     assert(displaced(at(0, 40, 10), at(0.1, 41, 10, down = -21)), "a pose above")
     assert(displaced(at(0, 0, 5), at(0.1, 9, 8)), "another vehicle's state")
 
-  test("of a clock that stands still, nothing can be said"):
+  test("a clock that stands still allows no conclusion"):
     assert(!displaced(at(0, 0, 0), at(0, 3, 0)))

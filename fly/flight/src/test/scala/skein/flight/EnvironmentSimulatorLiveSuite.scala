@@ -56,7 +56,7 @@ class EnvironmentSimulatorLiveSuite extends munit.FunSuite:
 
   /** Serves one connection.
     *
-    * @param answer to a line; absent where the process ends
+    * @param answer to a line; absent to end the process
     */
   private def served[A](answer: ujson.Value => Option[String])(use: String => A): A =
     val path   = Files.createTempDirectory("environment").resolve("socket")
@@ -137,7 +137,7 @@ class EnvironmentSimulatorLiveSuite extends munit.FunSuite:
       .value
 
   test(
-    "a paused flight's rewards are those of the environment's own loop under the same commands, to the digit"
+    "a paused flight's rewards equal those of the environment's own loop under equal commands, to the digit"
   ):
     val recording = flown(LoopKind.Paused, LatencyProfile.none)
     val own       = Points()
@@ -163,7 +163,7 @@ class EnvironmentSimulatorLiveSuite extends munit.FunSuite:
         recording.readings.map(reading => reading.state.receivedAt.since(reading.state.sentAt).toMillis)
       assert(ages.sum / ages.size > 60, "over a VPN")
 
-  test("its time begins when somebody looks, and stands still while it is paused"):
+  test("its time begins at the first reading, and stops while it is paused"):
     val recorded = served(points(Points())): path =>
       VirtualTime
         .run(seed = 1): system =>
@@ -199,7 +199,7 @@ class EnvironmentSimulatorLiveSuite extends munit.FunSuite:
       EnvironmentProcess.connect(path, many).flatMap(_.step(many.map(_ => Vector3(1, 2, 3))))
     assertEquals(heard.left.toOption, Some("heard of 20000"))
 
-  test("what it cannot do, its errors and its end are told"):
+  test("unsupported actions, errors and the end are reported"):
     def refused(answer: ujson.Value => Option[String]) = served(answer): path =>
       EnvironmentProcess.connect(path, names).flatMap(process => process.reset().left.map(identity))
     assertEquals(

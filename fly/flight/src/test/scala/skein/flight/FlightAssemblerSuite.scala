@@ -13,7 +13,7 @@ import skein.vtime.VirtualTime
 
 class FlightAssemblerSuite extends munit.FunSuite:
 
-  /** Listens `allowed` times and no more; counts who listens still. */
+  /** Listens `allowed` times at most; counts the open listeners. */
   private final class Ports(transport: Transport, allowed: Int)(using system: ActorSystem) extends Transport:
     import system.dispatcher
     var asked, open = 0
@@ -45,7 +45,7 @@ class FlightAssemblerSuite extends munit.FunSuite:
     seed = 1
   )
 
-  /** What became of starting a flight, and how many listeners were left when all was over. */
+  /** The result of starting a flight, and the number of listeners left at the end. */
   private def start(allowed: Int): (Either[String, Unit], Int) =
     VirtualTime
       .run(seed = 1): system =>

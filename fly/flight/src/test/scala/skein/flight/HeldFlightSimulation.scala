@@ -15,7 +15,7 @@ import skein.testing.{Optimised, TemporaryFolders}
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** Flights that somebody pauses after a while and lets go on 5 s later, in virtual time. */
+/** Flights that are paused after a while and continued 5 s later, in virtual time. */
 class HeldFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimised:
   private given Scenarios = Scenarios.ours
 
@@ -28,7 +28,9 @@ class HeldFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimised:
     planning = PlanSettings(horizonSteps = 10, slices = 2, blocksPerSlice = 1)
   )
 
-  /** @param stopping after so long, instead of letting it go on
+  /** Runs a paused flight.
+    *
+    * @param stopping whether it is stopped instead of continued
     */
   private def fly(loop: LoopKind, stopping: Boolean = false): (FlightOutcome, MemoryRecorder) =
     val plan = settings.plans.find(_.loop == loop).getOrElse(fail("there is no such flight"))
@@ -65,7 +67,9 @@ class HeldFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimised:
       .value
 
   for loop <- LoopKind.values do
-    test(s"${loop.label}: while it is paused nobody decides and the vehicles stand still; then it goes on"):
+    test(
+      s"${loop.label}: while it is paused there are no decisions and the vehicles hover; then it continues"
+    ):
       val (outcome, recorder) = fly(loop)
       val recording           = recorder.recording
       assertEquals(outcome, FlightOutcome.Completed)

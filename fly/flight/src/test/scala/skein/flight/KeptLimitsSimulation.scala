@@ -8,9 +8,9 @@ import skein.signal.LatencyProfile
 import skein.testing.Optimised
 import skein.units.*
 
-/** A scenario as a user would write it: its policies know nothing of its limits. */
+/** A scenario as a user would write it: its policies do not know its limits. */
 class KeptLimitsSimulation extends munit.FunSuite, Optimised:
-  /** What is broken by some vehicles, theirs alone or with others. */
+  /** Violations by some vehicles, alone or with others. */
   private def violations(scenario: Scenario, loop: LoopKind, by: Int*) =
     val few      = PlanSettings(searches = 1, slices = 4, blocksPerSlice = 2)
     val links    = List(LatencyProfile.vpn)
@@ -44,7 +44,9 @@ class KeptLimitsSimulation extends munit.FunSuite, Optimised:
       assertEquals(late.map(one => (one.limit.text, one.worst, one.toS)), Vector.empty, corridor)
       assert(flown.value("furthest from the goals").exists(_ < 6), flown.measured.toString)
 
-/** Starts at 5 m, where nobody may fly, and has policies that fly 5 m/s, which nobody may. */
+/** A corridor whose vehicles start at 5 m, below the floor, and whose policies choose 5 m/s, above the speed
+  * limit.
+  */
 final case class Corridor(floorM: Double, ceilingM: Double) extends Scenario:
   def agents: Vector[Agent]              = Couriers().agents
   override def duration: Span            = Span.ofSeconds(14)
@@ -56,10 +58,10 @@ final case class Corridor(floorM: Double, ceilingM: Double) extends Scenario:
   )
 
 object Corridor:
-  /** Until when vehicles may be on their way up or down. */
+  /** Time until which vehicles may still climb or descend. */
   val ClimbS = 5.0
 
-/** Two fly at one another, each to where the other began, past a notch in the field's edge. */
+/** Two vehicles fly at one another, each to the other's start, past a notch in the field's edge. */
 final case class Couriers() extends Scenario:
   private val goals = Vector((18.0, 3.0), (-18.0, 3.0))
 
@@ -91,7 +93,7 @@ final case class Couriers() extends Scenario:
     ).max)
   ))
 
-/** Straight to a place. */
+/** Flies straight to a place, which is its goal. */
 final case class ToGoal(goal: (Double, Double)) extends Policy, Goal:
   def mostMps: Double = 6
 
@@ -109,7 +111,7 @@ final case class ToGoal(goal: (Double, Double)) extends Policy, Goal:
     val (north, east) = way(seen)
     (seen.towards(north, east, mostMps = 5), ())
 
-/** The paper's two, who may not come near each other, in a round field; the evader, which does not plan, may
+/** The paper's two vehicles, which must keep apart, in a round field; the evader, which does not plan, may
   * leave it.
   */
 final case class Shadow() extends Scenario:

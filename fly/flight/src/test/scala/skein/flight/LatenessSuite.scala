@@ -10,11 +10,11 @@ class LatenessSuite extends munit.FunSuite:
     assertEquals(ticked(Seq.fill(600)(3.0)*).starved, None)
     assertEquals(ticked((Seq.fill(570)(3.0) ++ Seq.fill(30)(80.0))*).starved, None)
 
-  test("one with more is, and how much is told"):
+  test("a flight with more late ticks is starved, and the share is reported"):
     assertEquals(
       ticked((Seq.fill(500)(3.0) ++ Seq.fill(99)(80.0) :+ 310.0)*).starved,
       Some("the machine was too busy: 17 % of 600 ticks came more than 20 ms late, one 310 ms")
     )
 
-  test("a few ticks tell nothing"):
+  test("a few ticks are not enough for a judgement"):
     assertEquals(ticked(Seq.fill(10)(500.0)*).starved, None)

@@ -10,7 +10,7 @@ import skein.signal.{LatencyProfile, SplitMix64}
 import skein.testing.{Optimised, TemporaryFolders}
 import skein.units.*
 
-/** Flights in virtual time whose pursuer's policy is another every now and then. */
+/** Flights in virtual time whose pursuer's policy changes repeatedly. */
 class LearningFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimised:
   private given Scenarios = Scenarios(ScenarioKind(PaperDuel()))
 
@@ -30,7 +30,7 @@ class LearningFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimis
 
   private val first = PolicyFile(Role.Pursuer, family, drawn(0))
 
-  /** A new version after every ten transitions, drawn by what was flown. */
+  /** Makes a new version after every ten transitions, drawn from them. */
   private def every10(seen: Transition => Unit): FlownLearner = new FlownLearner:
     private var learned                        = 0
     def learn(transitions: Vector[Transition]) =
@@ -45,7 +45,7 @@ class LearningFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimis
 
   private def learned(recording: Recording) = recording.events.filter(_.kind == EventKind.Learned)
 
-  test("versions are swapped in between decisions, recorded, and flown again to an equal digest"):
+  test("versions are replaced between decisions, recorded, and repeated with an equal digest"):
     var seen      = Vector.empty[Transition]
     val landed    = flown(every10(seen :+= _))
     val recording = landed.recorder.recording
@@ -76,7 +76,7 @@ class LearningFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimis
   private def headings(recording: Recording) =
     recording.decisions.filter(_.vehicle == "Pursuer").map(_.heading)
 
-  test("it tries out as much as it is told to: nothing, and never more than the most that it turns"):
+  test("it explores as much as configured: not at all, and never beyond the largest turn"):
     val alone = VirtualFlights.fly(settings, settings.plansWith(ChosenPolicy("alone", first)).last)
     val same  = flown(_ => None, explore = 0)
     assertEquals(headings(same.recorder.recording), headings(alone.fold(fail(_), _.recorder.recording)))

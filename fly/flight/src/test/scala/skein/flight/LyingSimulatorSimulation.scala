@@ -22,7 +22,7 @@ import skein.testing.Unhurried
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** Flights beside a simulator whose clock lies, and beside another client of it. */
+/** Flights with a simulator whose clock is wrong, and beside another client of it. */
 class LyingSimulatorSimulation extends munit.FunSuite, Unhurried:
   private given Scenarios = Scenarios.ours
 
@@ -34,10 +34,12 @@ class LyingSimulatorSimulation extends munit.FunSuite, Unhurried:
     seed = 1
   )
 
-  /** From so long after the flight's start on, something is wrong. */
+  /** Time from the flight's start to the fault. */
   private val From = Span.ofSeconds(5)
 
-  /** @param told lines, each with the time since the flight began
+  /** The result of a flight.
+    *
+    * @param told reported lines, each with the time since the flight began
     */
   private final case class Flown(landed: FlightResult, recording: Recording, told: Vector[(Span, String)]):
     def summary: FlightSummary      = FlightSummary.of(recording)
@@ -46,7 +48,6 @@ class LyingSimulatorSimulation extends munit.FunSuite, Unhurried:
       case FlightOutcome.Failed(reason) => reason
       case other                        => fail(s"it ended as $other: $told")
 
-    /** It ended soon, and says so everywhere. */
     def assertNoResult(kind: EventKind, words: String): Unit =
       assert(reason.contains(words), reason)
       assertEquals(count(kind), 1, recording.events.filterNot(_.kind == EventKind.Skipped).toString)
@@ -64,8 +65,10 @@ class LyingSimulatorSimulation extends munit.FunSuite, Unhurried:
         0
       )
 
-  /** @param shows what the clock shows at a time since the lie began, s; absent where it is honest
-    * @param acts what another client does then
+  /** Runs a flight.
+    *
+    * @param shows time of the clock at a time since the fault began, s; absent if it is right
+    * @param acts actions of another client then
     */
   private def fly(
       loop: LoopKind,
@@ -125,7 +128,7 @@ class LyingSimulatorSimulation extends munit.FunSuite, Unhurried:
   )
 
   for (what, shows, words) <- clocks do
-    test(s"stream: a clock that $what ends the flight without result, and is told"):
+    test(s"stream: a clock that $what ends the flight without result, and is reported"):
       fly(LoopKind.Stream, Some(shows)).assertNoResult(EventKind.ClockBroken, words)
 
   for loop <- LoopKind.values.toSeq.filterNot(Set(LoopKind.Stream, LoopKind.Plan)) do
@@ -144,7 +147,7 @@ class LyingSimulatorSimulation extends munit.FunSuite, Unhurried:
     assertEquals(flown.summary.noResult, None)
 
   for loop <- LoopKind.values.toSeq.filterNot(_ == LoopKind.Plan) do
-    test(s"${loop.label}: beside an honest simulator nothing is told, and the flight has its result"):
+    test(s"${loop.label}: beside an honest simulator nothing is reported, and the flight has its result"):
       val flown = fly(loop)
       assertEquals(flown.landed.outcome, FlightOutcome.Completed)
       assertEquals(flown.told, Vector.empty)
@@ -180,7 +183,7 @@ class LyingSimulatorSimulation extends munit.FunSuite, Unhurried:
     (what, acts, words) <- taken
     loop                <- Seq(LoopKind.Stream, LoopKind.Futures, LoopKind.Paused)
   do
-    test(s"${loop.label}: another client that $what ends the flight without result, and is told"):
+    test(s"${loop.label}: another client that $what ends the flight without result, and is reported"):
       fly(loop, acts = acts).assertNoResult(EventKind.VehicleTaken, words)
 
   test("stream: another client that pauses the simulator ends the flight without result"):
@@ -189,7 +192,7 @@ class LyingSimulatorSimulation extends munit.FunSuite, Unhurried:
   test("paused: another client that lets the simulator run is noted"):
     assert(fly(LoopKind.Paused, acts = _.resume()).count(EventKind.StepDrift) > 0)
 
-  /** Sets the time stamps of what the simulator sends. */
+  /** Changes the time stamps in the simulator's messages. */
   private final class Lying(transport: Transport, lied: Instant => Instant) extends Transport:
     def connect(to: Address) = transport.connect(to)
     def listen(at: Address)  = transport.listen(at).map: incoming =>
@@ -207,5 +210,5 @@ class LyingSimulatorSimulation extends munit.FunSuite, Unhurried:
       next(ByteString.empty, bytes)
 
   private object Lying:
-    /** A multirotor state's time stamp, as MessagePack has it: a key, and that 64 bits follow. */
+    /** The beginning of a multirotor state's time stamp in MessagePack: its key, and the tag of 64 bits. */
     val Key: ByteString = ByteString("timestamp".getBytes(US_ASCII)) ++ ByteString(0xcf.toByte)

@@ -5,9 +5,8 @@ import skein.settings.*
 import skein.signal.*
 import skein.units.*
 
-/** The duel over AirSim's wire and over MAVLink, in virtual time: mean distance in the second half, and by
-  * how much the ages that decisions are recorded with differ from the simulator's truth. Lists are separated
-  * by commas.
+/** The duel over AirSim's wire protocol and over MAVLink, in virtual time: mean distance in the second half,
+  * and the deviation of recorded ages from the simulator's truth. Lists are separated by commas.
   */
 @main def mavlinkFigures(wires: String, links: String, loops: String, seconds: Int, seeds: Int): Unit =
   for

@@ -40,12 +40,12 @@ class MavlinkFlightLiveSuite extends munit.FunSuite, Lengthy, Waiting:
     isMavlinkByTcp = isTcp
   )
 
-  /** Begins where nobody is to be found while the other test flies. */
+  /** A flight that starts without a simulator while the other test runs. */
   private val unheard =
     val flying = assembler(9)
     flying.start(plan, MemoryRecorder(flying.heading(plan, "real")))
 
-  /** Vehicles take off, come to their starts, and are flown to the end. */
+  /** Vehicles take off, reach their starts, and fly to the end. */
   private def flies(mavlink: MavlinkSettings, isTcp: Boolean = false)(
       reached: SimulatorServer => Future[Address]
   ): Unit =
@@ -100,6 +100,6 @@ class MavlinkFlightLiveSuite extends munit.FunSuite, Lengthy, Waiting:
         .map(_.address)(using system.dispatcher)
     assert(link.counts.bytesToServer > 10_000 && link.counts.bytesToClient > 10_000, s"${link.counts}")
 
-  test("where nobody speaks MAVLink, the flight says so"):
+  test("without a MAVLink peer, the flight says so"):
     val why = Await.result(unheard, 1.minute)
     assert(why.left.exists(_.contains("expected MAVLink systems 1, 2")), why.toString)

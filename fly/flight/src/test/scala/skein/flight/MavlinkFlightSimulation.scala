@@ -7,7 +7,7 @@ import skein.signal.LatencyProfile
 import skein.testing.{Optimised, TemporaryFolders}
 import skein.units.*
 
-/** The duel over MAVLink, in virtual time, beside the same one over AirSim's wire. */
+/** The duel over MAVLink, in virtual time, compared with that over AirSim's wire protocol. */
 class MavlinkFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimised:
   private given Scenarios = Scenarios.ours
 
@@ -25,7 +25,7 @@ class MavlinkFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimise
   for link <- Seq("direct", "vpn") do
     val over = flown(Wire.Mavlink, link)
 
-    test(s"over $link, it is flown to its end"):
+    test(s"over $link, the flight completes"):
       assertEquals(over.landed.outcome, FlightOutcome.Completed)
       assert(over.recorder.recording.decisions.size >= 320, s"${over.recorder.recording.decisions.size}")
 
@@ -42,7 +42,7 @@ class MavlinkFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimise
       assert(errors.size > 300, s"${errors.size}")
       assert(errors.max < 5, s"${errors.max} ms, ${errors.count(_ >= 5)} of ${errors.size}")
 
-  test("the same seed gives the same flight"):
+  test("equal seeds give equal flights"):
     val ends = Vector.fill(2)(flown(Wire.Mavlink, "vpn").recorder.recording.decisions.last.own.state.value)
     assertEquals(ends(0), ends(1))
 
@@ -57,7 +57,7 @@ class MavlinkFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimise
   )
 
   for loop <- LoopKind.values if loop != LoopKind.Paused do
-    folder.test(s"${loop.label} flies over MAVLink, and decides the same again by its recording"): folder =>
+    folder.test(s"${loop.label} flies over MAVLink, and its recording replays to equal decisions"): folder =>
       val settings = brief(loop)
       val plan     = settings.plans.last
       val flown    = VirtualFlights.fly(settings, plan).fold(fail(_), identity)

@@ -9,8 +9,8 @@ import skein.scenario.Scenarios
 import skein.settings.{FlySettings, SimulatedBody}
 import skein.units.*
 
-/** What `fly --plant mujoco:FILE.xml --clock virtual` flies, and what it refuses. Runs where MuJoCo is, or
-  * can be installed.
+/** Flights of `fly --plant mujoco:FILE.xml --clock virtual`, and its refusals. Runs where MuJoCo is
+  * installed, or can be.
   */
 class MujocoFlightLiveSuite extends MujocoHere:
   import MujocoFlightLiveSuite.*
@@ -50,7 +50,7 @@ class MujocoFlightLiveSuite extends MujocoHere:
     def again() = tracks(flown(example("slung-load"), LoopKind.Stream))
     assertEquals(again(), again())
 
-  test("what cannot be flown is refused before the flight, with its reason"):
+  test("an unsupported model is refused before the flight, with its reason"):
     assumeMujoco()
     def refused(plant: String, reason: String) =
       assert(clue(settings(plant, LoopKind.Stream)).left.exists(_.contains(reason)), reason)

@@ -40,7 +40,7 @@ class OutsidePolicySimulation extends munit.FunSuite:
   private def missed(recording: Recording) =
     recording.events.filter(_.kind == EventKind.DeadlineMissed)
 
-  test("it flies as the same policy in this process, with a deadline and without"):
+  test("it flies like that policy in this process, with a deadline and without"):
     val (outcome, own) = flown(settings)
     assertEquals(outcome, FlightOutcome.Completed)
     assert(own.decisions.size > 60, own.decisions.size)

@@ -15,10 +15,10 @@ import skein.signal.{Kinematics, LatencyProfile, Stamped}
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** A loop that no one has written here: a user's graph, from public operators. */
+/** A user's own loop: a graph of public operators. */
 class OwnLoopSimulation extends munit.FunSuite:
 
-  /** The same as `stream`, but that nobody paces: whatever is new is decided upon. */
+  /** A loop like `stream` without pacing: decides on everything new. */
   private val eager = OwnLoop("eager", (team, stop) => OwnLoopSimulation.eager(team, stop))
 
   private final class Counted(port: VehiclePort, hovers: () => Unit) extends VehiclePort:
@@ -51,7 +51,7 @@ class OwnLoopSimulation extends munit.FunSuite:
 
   private lazy val flown = fly(eager)
 
-  test("it flies in virtual time, equal seeds record the same, and what was decided is decided again"):
+  test("it flies in virtual time, equal seeds give equal recordings, and a replay repeats the decisions"):
     val recording = flown.recorder.recording
     assertEquals(flown.outcome, FlightOutcome.Completed)
     assertEquals(recording.flight.loop, "eager")
@@ -65,7 +65,7 @@ class OwnLoopSimulation extends munit.FunSuite:
     val replayed = Replayed.of(file)(using Scenarios.ours).fold(fail(_), identity)
     assertEquals((replayed.isSame, replayed.flownAgain), (true, None))
 
-  test("vehicles hover after a graph that does not tell them to"):
+  test("vehicles hover after a graph that does not command it"):
     val idle = OwnLoop(
       "idle",
       (team, stop) =>
@@ -74,7 +74,7 @@ class OwnLoopSimulation extends munit.FunSuite:
     val landed = fly(idle)
     assertEquals((landed.outcome, landed.hovers), (FlightOutcome.Completed, 2))
 
-  test("a graph that does not mind the switch is broken off, and the vehicles hover"):
+  test("a graph that ignores the switch is aborted, and the vehicles hover"):
     val deaf   = OwnLoop("deaf", (team, _) => team.ticks(team.now).toMat(Sink.ignore)(Keep.right))
     val landed = fly(deaf)
     assertEquals(landed.hovers, 2)

@@ -8,7 +8,7 @@ import skein.signal.LatencyProfile
 import skein.testing.Unhurried
 import skein.units.*
 
-/** Moves to positions, as the simulator flies them and as they are predicted. */
+/** Moves to positions: the simulator's flight compared with its prediction. */
 class PositionPredictionSimulation extends munit.FunSuite, Unhurried:
   private final case class Corners(places: Vector[Vector3], yaw: Yaw) extends Policy:
     type Memory = Int
@@ -18,7 +18,7 @@ class PositionPredictionSimulation extends munit.FunSuite, Unhurried:
       val next = if (places(memory) - here).norm < 2 then (memory + 1) % places.size else memory
       (Action.Position(places(next), seen.cruise, yaw), next)
 
-  /** Two vehicles fly from corner to corner, which rise and sink. */
+  /** Two vehicles fly from corner to corner, with changes of altitude. */
   private final case class Patrol(yaw: Yaw) extends Scenario:
     private def patrol(east: Double) = Corners(
       Vector((30, 0, -10), (30, 30, -20), (0, 30, -10), (0, 0, -20))
@@ -43,7 +43,7 @@ class PositionPredictionSimulation extends munit.FunSuite, Unhurried:
     flown.recorder.recording.predictions.map(_.error.value).sorted
 
   for yaw <- Seq(Yaw.Still, Yaw.Forward) do
-    test(s"a vehicle told to fly to places, yaw $yaw, is predicted within two centimetres over vpn"):
+    test(s"a vehicle on its way to positions, yaw $yaw, is predicted within two centimetres over vpn"):
       val errors = errorsM(yaw)
       assert(errors.sizeIs > 300, s"only ${errors.size} predictions were verified")
       assert(

@@ -10,7 +10,7 @@ import skein.testing.{Optimised, TemporaryFolders}
 import skein.units.*
 import skein.vehicle.ReducedModel
 
-/** Run = run = replay, for every loop. */
+/** A repeated flight and a replay reproduce the recording, for every loop. */
 class ReplaySimulation extends munit.FunSuite, TemporaryFolders, Optimised:
   private given Scenarios = Scenarios.ours
 
@@ -42,13 +42,13 @@ class ReplaySimulation extends munit.FunSuite, TemporaryFolders, Optimised:
 
   for loop <- LoopKind.values do
     folder.test(
-      s"${loop.label} decides the same when it is flown again, and when its recording is decided upon again"
+      s"${loop.label} makes equal decisions when the flight is repeated, and when its recording is replayed"
     ): folder =>
       check(settings.copy(loops = List(loop)), folder)
 
   for scenario <- Seq(PaperDuel(), Crossing(vehicles = 4)) do
     folder.test(
-      s"so does a plan of ${scenario.name} by a plant of one's own, from states that no reading tells"
+      s"so does a plan of ${scenario.name} by a user's own plant, from states that readings lack"
     ): folder =>
       val own = settings.copy(loops = List(LoopKind.Plan), scenario = scenario, predictor = Tilting.predictor)
       val plan = own.plans.head
@@ -105,7 +105,7 @@ class ReplaySimulation extends munit.FunSuite, TemporaryFolders, Optimised:
     assertEquals(found.column, "headingRad")
     assertEquals((found.recorded, found.again), (heading.value.toString, forged.heading.value.toString))
 
-  test("a replay notices a reading that was changed after it had been decided upon"):
+  test("a replay notices a reading that was changed after the decision on it"):
     val recording = fly(settings, predictive).recording
     val forged    = recording.readings.map: reading =>
       if reading.sequence != 5 then reading

@@ -11,14 +11,13 @@ import skein.signal.LatencyProfile
 import skein.testing.Unhurried
 import skein.units.*
 
-/** Given the delays of a flight in virtual time, the scalar forward simulation flies it again, to the last
-  * bit: every vehicle is read at the same nanoseconds at the same places, and is commanded the same headings.
+/** Given the delays of a flight in virtual time, the scalar forward simulation repeats it, to the last bit:
+  * every vehicle is read at equal nanoseconds and positions, and receives equal headings.
   */
 class RolloutParitySimulation extends munit.FunSuite, Unhurried:
-  /** Until the pursuer has passed, turned and come near again. */
+  /** Time until the pursuer has passed, turned and come near again. */
   private val once = Span.ofSeconds(15)
 
-  /** In which a mixed link is busy and quiet. */
   private val minute = Span.ofSeconds(60)
 
   private def settings(
@@ -35,7 +34,7 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
     scenario
   )
 
-  /** One thing that happened: to a vehicle, the how manieth, when, and two numbers. */
+  /** One event: its vehicle, its index, its time, and two numbers. */
   private case class Note(vehicle: Int, number: Int, at: Span, a: Double, b: Double):
     override def toString = f"vehicle $vehicle number $number at ${at.toSeconds}%.9f s: $a, $b"
 
@@ -101,7 +100,7 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
     same("readings", read, readings.toSeq)
     if loop != LoopKind.Paused then same("commands", sent, commands.toSeq)
 
-  /** In the order of time, those of the last moments left out. */
+  /** Events in the order of time, without those of the last moments. */
   private def sorted(notes: Seq[Note], duration: Span): Seq[Note] =
     notes.filter(_.at < duration - Span.ofMillis(1)).sortBy(note =>
       (note.vehicle, note.at.toNanos, note.number)
@@ -184,7 +183,7 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
       check(loop, LatencyProfile.vpn, 1, PaperDuel(pairs = 2))
 
   for loop <- Seq(LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream, LoopKind.Predictive) do
-    test(s"${loop.label} over vpn, policies of four kinds, with memories, who know what others are told"):
+    test(s"${loop.label} over vpn, policies of four kinds, with memories, that know the commands of others"):
       check(loop, LatencyProfile.vpn, 2, AnyPolicies(), Span.ofSeconds(8))
 
   test("paused, policies of four kinds"):
@@ -201,7 +200,6 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
   private def profile(name: String): LatencyProfile =
     LatencyProfile.parse(name, Left(_)).fold(error => fail(error.message), identity)
 
-/** Policies of every kind in one team. */
 final case class AnyPolicies(byAges: Boolean = false) extends Scenario:
   import AnyPolicies.*
   private def agent(i: Int, role: Role, policy: Policy) =
@@ -234,7 +232,7 @@ object AnyPolicies:
         if angle.abs > 0.5 then Phase(angle.min(0.5).max(-0.5), !memory.isLeft) else memory.copy(angle)
       (heading(seen, towards(seen, seen.opponent) * -1, next.angle), next)
 
-  /** Goes by what it and its opponent were told last. */
+  /** Follows the last commands of itself and its opponent. */
   case object Mirror extends Policy:
     type Memory = Unit
     def start: Unit                                             = ()
@@ -255,7 +253,6 @@ object AnyPolicies:
       val mean = next.map(_ - next.last).sum / next.size
       (heading(seen, way, 0.2 * mean.max(-1).min(1)), next)
 
-  /** Leads by the age of what it knows. */
   case object Ages extends Policy:
     type Memory = Unit
     def start: Unit                                             = ()

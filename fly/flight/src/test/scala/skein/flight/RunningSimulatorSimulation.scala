@@ -19,7 +19,7 @@ import skein.simulator.{SimulatorServer, SimulatorSettings}
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** Flights against a simulator that runs already and goes on running, as AirSim does. */
+/** Flights against a simulator that was started before and continues afterwards, as AirSim does. */
 class RunningSimulatorSimulation extends munit.FunSuite:
   private val settings = FlySettings(
     List(LoopKind.Stream, LoopKind.Paused, LoopKind.Predictive),
@@ -29,7 +29,6 @@ class RunningSimulatorSimulation extends munit.FunSuite:
     seed = 1
   )
 
-  /** One short flight. */
   private val brief = settings.copy(loops = List(LoopKind.Stream), duration = Span.ofSeconds(2))
 
   private val duel = Vector(
@@ -37,7 +36,7 @@ class RunningSimulatorSimulation extends munit.FunSuite:
     VehicleSettings("Pursuer", Vector3(-20, 5, 0), Radians(0))
   )
 
-  /** A simulator that runs, in virtual time, and whoever flies it. */
+  /** A running simulator in virtual time, with its clients. */
   private final class Bench(vehicles: Vector[VehicleSettings], losesCancel: () => Boolean)(using
       val system: ActorSystem
   ):
@@ -51,16 +50,15 @@ class RunningSimulatorSimulation extends munit.FunSuite:
     )
     val server: Future[SimulatorServer] = SimulatorServer.start(world, Tapped(network), clock)
 
-    /** Calls by which clients took what a vehicle did not have. */
+    /** Calls by which clients took control that a vehicle did not have. */
     var taken = Vector.empty[String]
 
-    /** Questions for a camera that have come; the first is lost. */
+    /** Requests to a camera that were received; the first is lost. */
     var cameraQuestions = 0
 
-    /** What a person was told. */
+    /** Lines that were reported to the user. */
     var told = Vector.empty[String]
 
-    /** What the last flight's cameras saw. */
     var images = Vector.empty[CameraImage]
 
     private final class Tapped(transport: Transport) extends Transport:
@@ -72,7 +70,7 @@ class RunningSimulatorSimulation extends munit.FunSuite:
           if text.contains("simGetCameraInfo") then cameraQuestions += 1
           if text.contains("simGetCameraInfo") && cameraQuestions == 1 then ByteString.empty else bytes)
 
-    /** Flies plans one after another, as one command does. */
+    /** Flies plans in sequence, like one command. */
     def command(
         settings: FlySettings,
         onStart: () => Unit = () => (),
@@ -115,7 +113,7 @@ class RunningSimulatorSimulation extends munit.FunSuite:
               )
             )
 
-    /** Every vehicle as it is, each in its own frame, at every tick until `done`. */
+    /** Every vehicle's state in its own frame, at every tick until `done`. */
     def watch(done: Future[?]): Future[Vector[Vector[Kinematics]]] = operate: client =>
       val watched = vehicles.map(vehicle => Multirotor(client, vehicle.name))
       def more(seen: Vector[Vector[Kinematics]]): Future[Vector[Vector[Kinematics]]] =
@@ -125,7 +123,6 @@ class RunningSimulatorSimulation extends munit.FunSuite:
             if done.isCompleted then Future.successful(seen :+ now) else after(50.millis)(more(seen :+ now))
       more(Vector.empty)
 
-    /** By a client of its own. */
     def operate[A](act: AirSimClient => Future[A]): Future[A] =
       server.flatMap: server =>
         val client = AirSimClient(RpcClient(network, server.address, clock))
@@ -276,7 +273,7 @@ class RunningSimulatorSimulation extends munit.FunSuite:
     assert(high.max > 2 && high.max < 15, s"the highest were at ${high.max} m")
     assert(seen.last.forall(_.velocityNed.norm < 0.3), seen.last)
 
-  test("a camera whose lens was not told, since the question was lost, is asked again"):
+  test("a camera's field of view is requested again if the request was lost"):
     val filmed          = brief.copy(images = List(ImageSource.Camera("front_center", 5)))
     val (asked, images) = on(duel): bench =>
       import bench.system.dispatcher
@@ -292,7 +289,7 @@ class RunningSimulatorSimulation extends munit.FunSuite:
       Left("the simulator has no vehicle 'Pursuer'; it has 'Evader'")
     )
 
-  test("a camera of which no image comes is told of, with the reason, and the summary has it"):
+  test("a camera without any image is reported with the reason, also in the summary"):
     val filmed        = brief.copy(images = List(ImageSource.Camera("nose", 5)))
     val (told, flown) = on(duel): bench =>
       import bench.system.dispatcher

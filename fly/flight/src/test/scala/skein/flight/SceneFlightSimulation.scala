@@ -8,7 +8,7 @@ import skein.signal.LatencyProfile
 import skein.testing.Unhurried
 import skein.units.*
 
-/** Flights among things that can be touched. */
+/** Flights among obstacles that vehicles can touch. */
 class SceneFlightSimulation extends munit.FunSuite, Unhurried:
   private given Scenarios = Scenarios.ours
 
@@ -32,13 +32,15 @@ class SceneFlightSimulation extends munit.FunSuite, Unhurried:
     assertEquals(RecordedPlan.of(recording).map(_.settings.world.name), Right("forest"))
     assertEquals(fly(duel).recorder.digest, flown.recorder.digest)
 
-  test("a duel in an empty world is asked nothing of contacts"):
+  test("a duel in an empty world sends no requests for contacts"):
     val flown = fly(settings(LoopKind.Stream, Span.ofSeconds(2)))
     assertEquals(contacts(flown).size, 0)
     assertEquals(flown.recorder.recording.heading.parameters.filter(_.name.startsWith("scene")), Seq.empty)
 
   for loop <- Seq(LoopKind.Stream, LoopKind.Predictive) do
-    test(s"${loop.label}: scouts cross the forest by lidar alone, touch nothing, and decide the same again"):
+    test(
+      s"${loop.label}: scouts cross the forest by lidar alone, touch nothing, and replay to equal decisions"
+    ):
       val crossing = settings(loop, Span.ofSeconds(45)).copy(scenario = Forest(vehicles = 2))
       val flown    = fly(crossing)
       assertEquals(flown.landed.outcome, FlightOutcome.Completed)

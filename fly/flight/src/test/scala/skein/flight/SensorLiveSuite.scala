@@ -63,7 +63,7 @@ class SensorLiveSuite extends munit.FunSuite, Unhurried:
       _ <- server.close()
     yield recorder.recording
 
-  test("every loop but plan flies by AirSim's barometer, and decides the same from its recording"):
+  test("every loop but plan flies by AirSim's barometer, and its recording replays to equal decisions"):
     import system.dispatcher
     val loops = LoopKind.values.toVector.filterNot(_ == LoopKind.Plan)
     Future.traverse(loops)(kind => fly(kind).map((kind, _))).map: flown =>

@@ -9,7 +9,7 @@ class SignsOfLifeSuite extends munit.FunSuite:
 
   private def at(millis: Double) = Instant.Epoch + Span.ofMillis(millis)
 
-  test("silence is told once, when an answer is overdue, and its end once, when one has come"):
+  test("silence is reported once, when an answer is overdue, and its end once, at the next answer"):
     val looks = Vector[(heardAt: Double, now: Double, sign: Option[Sign])](
       (heardAt = 0.0, now = 700.0, sign = None),
       (heardAt = 0.0, now = 701.0, sign = Some(Sign.Silent(Span.ofMillis(701)))),
@@ -23,7 +23,7 @@ class SignsOfLifeSuite extends munit.FunSuite:
       assertEquals(sign, look.sign, s"at ${look.now} ms")
       next
 
-  test("where a policy keeps the loop from asking, that is told of the silence"):
+  test("if a policy keeps the loop from sending requests, the report of the silence says so"):
     def told(since: Double) =
       SimulatorWatchdog.silence("localhost:1", "1.0 s", Some(("Pursuer", at(since))), at(2000))
     assertEquals(told(1900), "no answer from the simulator at localhost:1 for 1.0 s")

@@ -11,7 +11,7 @@ import skein.signal.LatencyProfile
 import skein.solver.*
 import skein.units.*
 
-/** A duel that is flown live and decided by a solver alone: what tests of the links between the two share.
+/** A live duel that only a solver decides: common to tests of the links between the two.
   *
   * @param link to the solver
   */
@@ -47,7 +47,6 @@ final class SolvedFlight(
   val briefing: Briefing       = Briefing.of(settings, plan)
   val recorder: MemoryRecorder = MemoryRecorder(assembler.heading(plan, "real"))
 
-  /** @return or why it is not flown */
   def start(): Future[Either[String, FlightAssembly]] = assembler.start(plan, recorder)
 
   def flown(): Future[FlightOutcome] =
@@ -55,7 +54,6 @@ final class SolvedFlight(
     start().flatMap(_.fold(why => throw AssertionError(why), _.landed)).map(_.outcome)
 
 object SolvedFlight:
-  /** Of both programs. */
   val Build = "same"
 
   def desk(id: Long = 1)(using system: ActorSystem)(using Scenarios): SolverDesk = SolverDesk(

@@ -18,7 +18,7 @@ import skein.testing.Optimised
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** Flights whose solver stands behind the emulated network: wire, connection and all. */
+/** Flights with a solver behind the emulated network, including protocol and connection. */
 class SolverFlightSimulation extends munit.FunSuite, Optimised:
   private given Scenarios = Tilting.scenarios
 
@@ -32,7 +32,7 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
     solver = SolverChoice.parse("link:lognormal:8ms,0.5").toOption
   )
 
-  test("every loop that can is flown twice, with the same seed: decided here, and elsewhere"):
+  test("every loop that can is flown twice, with equal seeds: decided here, and by a solver"):
     assertEquals(
       settings.plans.map(_.id),
       Vector("paused-none", "stream-vpn", "predictive-vpn", "stream-vpn-solver", "predictive-vpn-solver")
@@ -40,7 +40,7 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
     assertEquals(settings.plans.filter(_.id.startsWith("stream")).map(_.seed).distinct.size, 1)
 
   test(
-    "a flight decided elsewhere is recorded with the ways there and back, replays, and flies again the same"
+    "a flight with a solver is recorded with its round trips, replays, and repeats equally"
   ):
     for plan <- settings.plans.filter(_.solver.isDefined) do
       val flown     = VirtualFlights.fly(settings, plan).fold(fail(_), identity)
@@ -97,7 +97,7 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
     val used   = VirtualFlights.fly(timely, timely.plans.last).fold(fail(_), identity).recorder.recording
     assert(used.solved.size > 10, used.solved.size)
 
-  test("a flight tells a solver all that it needs to decide for the same fleet"):
+  test("a flight sends a solver all data for equal decisions on an equal fleet"):
     val chosen = PolicyFile.ofDefaults(Role.Pursuer, PolicyFamily.paperPursuer)
     for flown <- Seq(settings, settings.copy(policies = List(chosen)), settings.copy(scenario = Crossing()))
     do
@@ -107,9 +107,9 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
       assertEquals(Briefing.agents(fleet), briefing.agents)
       assertEquals(fleet, plan.fleet(flown))
 
-  /** What a flight is told by a desk of this build for a briefing.
+  /** The answer of a solver of this build to a flight with a briefing.
     *
-    * @param prepares how long it takes the desk
+    * @param prepares duration of the solver's preparation
     */
   private def welcomed(
       briefing: Briefing,
@@ -160,7 +160,7 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
     val told = welcomed(Briefing.of(settings, settings.plans.last), byVectors = false).map(_.warning)
     assert(told.exists(_.exists(_.contains("jdk.incubator.vector"))), told)
 
-  test("where no solver is, a flight waits for as long as it is told to, and says where it looked"):
+  test("without a solver, a flight waits for its patience, and says where it looked"):
     val run = VirtualTime.run(seed = 1): system =>
       given ActorSystem = system
       import system.dispatcher
@@ -176,7 +176,7 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
       "no solver within 3 s: nobody listens at solver:7400; is the program there started?"
     )
 
-  test("a solver that prepares for long is waited for, and one that does not come to an end is not"):
+  test("a solver that prepares for long is waited for, up to a limit"):
     val briefing = Briefing.of(settings, settings.plans.last)
     assert(welcomed(briefing, prepares = Span.ofSeconds(200)).isRight)
     assertEquals(
@@ -224,7 +224,7 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
     assertEquals(run.value.refused, 0L)
 
   test(
-    "strangers who stay silent, drip, or say a word and stay lock no flight out, and take nobody's place who asks"
+    "strangers who stay silent, drip, or send a word and stay keep no flight out, and displace no useful peer"
   ):
     val word = ByteString(SolverMessageCodec.bytes(SolverMessage.Goodbye(5)))
     val said = ByteString(0, 0, 0, word.size.toByte) ++ word
@@ -268,7 +268,7 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
       yield (stats.flights, server.displacedConnections >= 65, server.refusedConnections < 64)
     assertEquals(run.value, (2, true, true))
 
-/** Runs everything so much later. */
+/** Runs every task after a fixed delay. */
 private final class Later(system: ActorSystem, by: Span) extends ExecutionContext:
   def execute(work: Runnable): Unit =
     if by == Span.Zero then system.dispatcher.execute(work)

@@ -53,7 +53,9 @@ class SolverLiveSuite extends munit.FunSuite, Optimised:
     val again = RecordedPlan.of(recording).fold(fail(_), identity)
     assertEquals(Replay(again.fleet, recording, again.settings.loopSettings).firstDifference, None)
 
-  test("who takes the connection and says nothing is no solver: that is told long before patience ends"):
+  test(
+    "a peer that accepts the connection and sends nothing is no solver: reported long before patience ends"
+  ):
     // Backlog: what nobody accepts is connected all the same.
     Using.resource(ServerSocket(0, 8, InetAddress.getLoopbackAddress)): silent =>
       val at     = Address("127.0.0.1", silent.getLocalPort)

@@ -15,10 +15,10 @@ import skein.units.*
 import skein.vtime.VirtualTime
 import upack.Str
 
-/** A flight in virtual time and when each of its moves came to the simulator.
+/** A flight in virtual time with the arrival times of its moves at the simulator.
   *
   * @param startedAt when the loop began, and how long the vehicles had hovered then
-  * @param arrivedAt of each vehicle's moves, in the order in which they came
+  * @param arrivedAt of each vehicle's moves, in the order of arrival
   */
 final case class TappedFlight(
     recording: Recording,
@@ -28,7 +28,6 @@ final case class TappedFlight(
 ):
   private val vehicles = recording.heading.vehicles.map(_.name).toVector
 
-  /** How long each message was under way. */
   def delays: RecordedDelays = RecordedDelays(vehicles.map: vehicle =>
     val readings = recording.readings.filter(_.vehicle == vehicle).map(r => r.sequence -> r.state)
     val commands = recording.commands.filter(_.vehicle == vehicle).sortBy(_.sentAt.toNanos)
@@ -71,7 +70,7 @@ object TappedFlight:
               )
       .value
 
-/** A transport that notes when moves come to the first that listens: the simulator. */
+/** A transport that records when moves arrive at the first listener: the simulator. */
 private final class MoveTap(transport: Transport, clock: Clock) extends Transport:
   private val arrived   = mutable.Map.empty[String, Vector[Instant]].withDefaultValue(Vector.empty)
   private var listeners = 0

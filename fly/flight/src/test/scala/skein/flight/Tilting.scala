@@ -6,10 +6,10 @@ import skein.scenario.Scenarios
 import skein.settings.PredictionModel
 import skein.vehicle.{ObservedPlant, PlaneReading}
 
-/** Where it is, and how it accelerates, which no reading tells. */
+/** Position, velocity and acceleration; readings lack the acceleration. */
 final case class Tilted(seen: PlaneReading, northMps2: Double, eastMps2: Double)
 
-/** Tilts before it accelerates: a plant of a user's own. */
+/** Tilts before it accelerates: a user's own plant. */
 final case class Tilting(gain: Double, lagS: Double, tiltLagS: Double) extends ObservedPlant[Tilted]:
   def initial: Tilted                                      = Tilted(PlaneReading(0, 0, 0, 0), 0, 0)
   def stepS: Double                                        = 0.05
@@ -38,5 +38,4 @@ object Tilting:
 
   val predictor: PredictionModel = PredictionModel.Own(structure, Vector(2.9, 0.15))
 
-  /** Skein's, in a program that knows it. */
   val scenarios: Scenarios = Scenarios.ours.copy(ownStructures = Vector(structure))

@@ -25,7 +25,7 @@ class VirtualFlightSimulation extends munit.FunSuite:
     assert(flown.recorder.records.size > 50)
     flown.recorder.digest
 
-  test("the same flight leaves the same recording, again and beside another flight in another thread"):
+  test("equal flights leave equal recordings, repeated and beside another flight in another thread"):
     val plans   = settings.plans
     val alone   = plans.map(digest)
     val threads = Executors.newFixedThreadPool(2)
@@ -46,7 +46,7 @@ class VirtualFlightSimulation extends munit.FunSuite:
     val flown  = VirtualFlights.fly(paused, paused.plans.head, RunLimits(tasksPerInstant = 1))
     assertEquals(flown.map(_.landed.outcome), Right(FlightOutcome.Completed))
 
-  test("a flight that ends in whatever error is told with its seed, and the others are flown"):
+  test("a flight that ends by any error is reported with its seed, and the others still run"):
     val plan  = settings.plans.head
     val plans = Vector.tabulate(6)(number => plan.copy(seed = number.toLong))
     val flown = VirtualFlights.eachInParallel(plans): plan =>
@@ -63,7 +63,7 @@ class VirtualFlightSimulation extends munit.FunSuite:
     for told <- Seq("seed 1: no link", "seed 3: java.lang.StackOverflowError: too deep", "seed 4: ") do
       assert(message.contains(told), message)
 
-  test("that virtual time has no agent is told in words, and what nobody can mend with where it was"):
+  test("a missing agent of virtual time is reported in words, and any other error with its stack"):
     val missing = VirtualTimeException(Problem.NoAgent("Pekko reads the JVM's clock"))
     for thrown <- Seq(missing, RuntimeException(missing)) do
       assertEquals(NotFlown.trace(thrown), missing.getMessage)

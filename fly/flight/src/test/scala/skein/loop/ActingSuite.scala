@@ -5,11 +5,11 @@ import skein.signal.Kinematics
 import skein.units.*
 import skein.vehicle.Setpoint
 
-/** What is foreseen of a vehicle that is told an action. */
+/** Predictions of a vehicle under an action. */
 class ActingSuite extends munit.FunSuite:
   private val down = Metres(-20)
 
-  test("a vehicle that hovers or turns is foreseen to stay, one that lands to sink as AirSim sinks"):
+  test("a vehicle that hovers or turns is predicted to stay, one that lands to descend as AirSim does"):
     val stays = Setpoint.velocity(0, 0, 0)
     assertEquals(Acting.guidance(Action.Hover), stays)
     assertEquals(Acting.guidance(Action.Turn(Yaw.Forward)), stays)
@@ -38,7 +38,7 @@ class ActingSuite extends munit.FunSuite:
       .guidance(Action.Position(here + wayNed, MetresPerSecond(4), yaw))
       .setpoint(Kinematics(here, Vector3.Zero, Quaternion.Identity, Vector3.Zero))
 
-  test("on its way to a place it flies at its speed, and stands within half a metre of it"):
+  test("on its way to a position it flies at its speed, and stops within half a metre of it"):
     assertEquals(towards(Vector3(100, 0, 0)), Setpoint.velocity(4, 0, 0))
     assertEquals(towards(Vector3(0, -100, 0), Yaw.Forward), Setpoint.velocity(0, -4, 0).withYaw(-math.Pi / 2))
     assertEquals(towards(Vector3(0.3, 0, 0)), Setpoint.velocity(0, 0, 0))

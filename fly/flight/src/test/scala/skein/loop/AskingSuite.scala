@@ -8,7 +8,7 @@ import skein.signal.LatencyProfile
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** When vehicles are asked where they are, and what is noted where they are not. */
+/** When vehicles are read, and what is recorded if they do not answer. */
 class AskingSuite extends munit.FunSuite:
   private val start = Instant.Epoch
 
@@ -35,7 +35,7 @@ class AskingSuite extends munit.FunSuite:
     PaperDuel(pairs = 2).fleet.agents.map: agent =>
       recording.readings.filter(_.vehicle == agent.name).map(_.state.sentAt).min.since(start).toMillis
 
-  test("a stream asks all vehicles at the same moments, as published one after the other over the period"):
+  test("a stream reads all vehicles simultaneously, as published one after the other over the period"):
     assertEquals(firstAsked(flown(LoopKind.Stream, LatencyProfile.none)), Seq(0.0, 0.0, 0.0, 0.0))
     val published = flown(LoopKind.Stream, LatencyProfile.none, LoopSettings().asPublished)
     assertEquals(firstAsked(published), Seq(0.0, 25.0, 50.0, 75.0))

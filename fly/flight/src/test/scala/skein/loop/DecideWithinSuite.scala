@@ -64,7 +64,7 @@ class DecideWithinSuite extends munit.FunSuite:
     assertEquals(decisions.map(_.sequence), Vector(0L, 1L, 2L, 3L))
     assertEquals(decisions.map(_.elapsed.toMillis), Vector(0.0, 100.0, 200.0, 100.0))
 
-  test("the last decision is repeated where it is asked for, and counts as a decision"):
+  test("the last decision is repeated where configured, and counts as a decision"):
     val (decisions, events) = flown(instead = Some(KeepHeading))
     assertEquals(events.map(_.kind), Vector(EventKind.DeadlineMissed))
     assertEquals(decisions.map(_.sequence), (0L to 4L).toVector)

@@ -33,7 +33,6 @@ class DeciderSuite extends munit.FunSuite:
     .withReading(reading(0, 21, 4, 1010, 100, 120))
     .withReading(reading(1, 1, 2, 1040, 130, 160))
 
-  /** As it is recorded. */
   private def row(decided: (Memory, Decision)) = Rows(scenario).decision(decided._2)
 
   test("the pursuer integrates its turn over the time since its last decision"):
@@ -44,14 +43,14 @@ class DeciderSuite extends munit.FunSuite:
     assertEquals(second.elapsed, Span.ofMillis(150))
     assertEquals(second.sequence, 1L)
 
-  test("no vehicle is told a heading that is no finite number"):
+  test("no vehicle receives a heading that is not finite"):
     val lost = Decider(scenario, 1, skein.policy.PaperPursuer(Double.NaN))
     val told = intercept[OwnFailure](lost.decide(lost.start, view, millis(200)))
     assert(
       told.getMessage.contains("the policy of Pursuer decided for what no vehicle can do: Along(NaN")
     )
 
-  test("a heading at the start's altitude is the whole decision; at another, its velocity is told too"):
+  test("a heading at the start's altitude is the whole decision; at another, its velocity is added"):
     final case class Straight(down: Metres, yaw: Yaw) extends Policy:
       type Memory = Int
       def start: Int                                            = 0
@@ -77,7 +76,7 @@ class DeciderSuite extends munit.FunSuite:
     val decider = Decider(scenario, 1, Broken)
     intercept[OwnFailure](decider.decide(decider.start, view, millis(200))).getMessage
 
-  test("no vehicle is told an action with a number that is not finite"):
+  test("no vehicle receives an action with a number that is not finite"):
     val actions = Seq(
       Action.Velocity(Vector3(Double.PositiveInfinity, 0, 0)),
       Action.VelocityAt(1, 2, Metres(Double.NaN)),
@@ -88,7 +87,7 @@ class DeciderSuite extends munit.FunSuite:
       assertEquals(failureOf(action), s"the policy of Pursuer decided for what no vehicle can do: $action")
     assertEquals(failureOf(null), "the policy of Pursuer decided for what no vehicle can do: null")
 
-  test("what a policy throws is told with its vehicle and its line"):
+  test("an exception in a policy is reported with its vehicle and line"):
     def endless(n: Int): Int = 1 + endless(n + 1)
     val mistakes             = Seq[(() => Action, String)](
       (() => Vector(Action.Hover)(7), "java.lang.IndexOutOfBoundsException: 7 is out of bounds"),
@@ -100,7 +99,7 @@ class DeciderSuite extends munit.FunSuite:
       assert(clue(failure).startsWith(s"the policy of Pursuer failed: $told"))
       assert(clue(failure).matches(".* \\(DeciderSuite.scala:\\d+\\)"))
 
-  test("what a policy throws instead of what it remembers first is told likewise"):
+  test("an exception in a policy's initial memory is reported likewise"):
     object Broken extends Policy:
       type Memory = Unit
       def start: Unit                                             = throw IllegalStateException("no memory")

@@ -11,11 +11,11 @@ import skein.signal.{Kinematics, LatencyProfile, Stamped}
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** What becomes of the vehicles when a stage of the loop fails, here by a policy that throws. */
+/** The fate of the vehicles when a stage of the loop fails, here by a policy that throws. */
 class FailedFlightSuite extends munit.FunSuite:
   private val lost = Left(VehicleError.TimedOut("hover: no answer within 500 ms"))
 
-  /** Counts what is outstanding; its first hovers are lost, and moves end by themselves, too. */
+  /** Counts unfinished calls; its first hovers are lost, and moves also end by themselves. */
   private final class Counted(port: VehiclePort, lostHovers: Int)(using system: ActorSystem)
       extends VehiclePort:
     import system.dispatcher

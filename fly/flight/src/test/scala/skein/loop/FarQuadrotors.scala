@@ -29,7 +29,7 @@ final class FarQuadrotors(scenario: Fleet, link: LatencyProfile, seed: Long, clo
   private var running  = true
   private var ranFrom  = (start, 0L)
 
-  /** After every step of physics: the simulator's time and the states. */
+  /** Called after every step of physics with the simulator's time and the states. */
   var watch: (Span, Vector[QuadrotorState]) => Unit = (_, _) => ()
 
   val ports: Vector[VehiclePort] = scenario.agents.indices.map(FarQuadrotor(_)).toVector
@@ -44,7 +44,7 @@ final class FarQuadrotors(scenario: Fleet, link: LatencyProfile, seed: Long, clo
     ranFrom = (clock.now(), steps)
     done
 
-  /** Not all lengths are whole steps: the remainder is made up for in the next one. */
+  /** Not all spans are whole steps: the remainder is added to the next one. */
   def continueFor(span: Span): Future[Either[VehicleError, Unit]] =
     heldFor = heldFor + span
     while step * (steps + 1) <= heldFor do stepOnce()

@@ -1,6 +1,6 @@
 package skein.loop
 
-/** Where the parts of a loop's graph are drawn. */
+/** Positions of a loop's parts in a drawing of its graph. */
 class GraphLayoutSuite extends munit.FunSuite:
 
   private def places(stages: String*)(edges: (String, String)*): Map[String, (Int, Double)] =
@@ -40,13 +40,13 @@ class GraphLayoutSuite extends munit.FunSuite:
       )
     )
 
-  test("a part stands behind the last of those that lead to it"):
+  test("a part is one column after the last of those that lead to it"):
     assertEquals(
       places("a", "b", "c")("a" -> "b", "b"      -> "c", "a"      -> "c"),
       Map("a"                   -> (0, 0.0), "b" -> (1, 0.0), "c" -> (2, 0.0))
     )
 
-  test("what leads back is no way forward, and what turns back stands below"):
+  test("a back edge does not move its target, and is drawn below"):
     assertEquals(
       places("back", "sense", "steer", "tell", "view")(
         "sense" -> "view",
@@ -64,11 +64,11 @@ class GraphLayoutSuite extends munit.FunSuite:
       )
     )
 
-  test("a circle without a source has a way through it, and a part that leads to itself stands still"):
+  test("a cycle without a source is laid out, and a self-loop moves nothing"):
     assertEquals(places("a", "b")("a" -> "b", "b" -> "a"), Map("a" -> (0, 0.0), "b" -> (1, 0.0)))
     assertEquals(places("a", "b")("a" -> "a", "a" -> "b"), Map("a" -> (0, 0.0), "b" -> (1, 0.0)))
 
-  test("a part stands in the middle of those that lead to it"):
+  test("a part is vertically centred on those that lead to it"):
     val sources = Seq("a", "b", "c", "d")
     val placed  = places(sources ++ Seq("m", "n")*)((sources.map(_ -> "n") :+ ("c" -> "m"))*)
     // n comes of rows 0 to 3, m of row 2.

@@ -9,10 +9,12 @@ import skein.scenario.PaperDuel
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** The last answers of a flight come after its time is over: can they not be kept, the flight has failed. */
+/** The last answers of a flight are received after its time is over: if they cannot be recorded, the flight
+  * has failed.
+  */
 class LateFailureSimulation extends munit.FunSuite:
 
-  /** Of a flight of 2 s over 200 ms each way, whose recorder fails at a moment, if ever. */
+  /** The outcome of a flight of 2 s over 200 ms each way, whose recorder fails at a moment, if ever. */
   private def outcome(
       kind: LoopKind,
       failsAt: Option[Span],
@@ -37,7 +39,7 @@ class LateFailureSimulation extends munit.FunSuite:
       .value
 
   for kind <- Seq(LoopKind.Stream, LoopKind.Futures, LoopKind.Predictive) do
-    test(s"${kind.label}: a recorder that fails while vehicles are told to hover fails the flight"):
+    test(s"${kind.label}: a recorder that fails while vehicles are commanded to hover fails the flight"):
       assertEquals(outcome(kind, None), FlightOutcome.Completed)
       assertEquals(
         outcome(kind, Some(Span.ofMillis(2100))),

@@ -13,7 +13,7 @@ import skein.vtime.VirtualTime
 class PausedLoopSuite extends munit.FunSuite:
   private val lost = Left(VehicleError.TimedOut("lost: no answer within 500 ms"))
 
-  /** A vehicle whose readings `failing` fail, and whose first hovers do. */
+  /** A vehicle whose readings in `failing` fail, and whose first hovers do. */
   private final class Fragile(port: VehiclePort, isPaused: () => Boolean, failing: Range, failedHovers: Int)
       extends VehiclePort:
     private var reads, hovers = 0
@@ -38,9 +38,9 @@ class PausedLoopSuite extends munit.FunSuite:
         hovering = true
         port.hover()
 
-  /** A simulator whose steps `failing` fail, and which answers only after so many times that it is let run.
+  /** A simulator whose steps in `failing` fail, and which resumes only after several attempts.
     *
-    * @param isMade whether a step is made that fails: its answer alone is lost
+    * @param isMade whether a failing step is made, and only its answer is lost
     */
   private final class FragileStepper(
       stepper: SteppedTime,
@@ -135,7 +135,7 @@ class PausedLoopSuite extends munit.FunSuite:
   private def readAt(ms: Double*): Vector[Stamped[Unit]] =
     ms.toVector.map(at => Stamped((), Instant.Epoch + Span.ofMillis(at), Instant.Epoch, Instant.Epoch))
 
-  test("a step that took other than its time, or in which time passed while it was read, is told"):
+  test("a step with a wrong duration, or with time passing while it was read, is reported"):
     def drift(step: Long, before: Vector[Stamped[Unit]], read: Vector[Stamped[Unit]]) =
       PausedLoop.drift(step, before, read, Span.ofMillis(100))
     assertEquals(PausedLoop.newest(readAt(500, 503, 501)), Instant.Epoch + Span.ofMillis(503))
@@ -155,7 +155,9 @@ class PausedLoopSuite extends munit.FunSuite:
     assertEquals(fly().drifts, 0)
     assertEquals(fly(stepsBy = _ => Some(Span.ofMillis(90))).drifts, 9)
 
-  test("what is not answered is asked again, and a step is made once, whether its answer or itself was lost"):
+  test(
+    "a request without an answer is repeated, and a step is made once, whether its answer or itself was lost"
+  ):
     val truth = fly()
     for
       landed <- Seq(
@@ -167,7 +169,7 @@ class PausedLoopSuite extends munit.FunSuite:
     do
       assertEquals(landed.copy(stoodStill = true), truth)
 
-  test("a simulator whose clock stands still, runs back or leaps in a step ends the flight, which says so"):
+  test("a simulator whose clock stops, runs back or leaps in a step ends the flight, which says so"):
     for
       (step, why) <- Seq(
         Span.Zero          -> "stood still in a step of 0.10 s",
@@ -196,7 +198,7 @@ class PausedLoopSuite extends munit.FunSuite:
         case other                        => fail(s"expected a failure, came $other")
       isReleased(landed)
 
-  test("vehicles and simulator are told again until they answer"):
+  test("commands to vehicles and simulator are repeated until they answer"):
     isReleased(fly(failedHovers = 3))
     isReleased(fly(failingReads = forGood, failedHovers = 2, failedResumes = 4))
 

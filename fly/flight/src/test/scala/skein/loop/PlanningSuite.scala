@@ -7,7 +7,7 @@ import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 import skein.vehicle.QuadrotorModel
 
-/** What a pursuer plans upon: its own limits, what it keeps from whom, and how far it may turn at once. */
+/** The input of a pursuer's plan: its own limits, the separation it keeps, and its largest first turn. */
 class PlanningSuite extends munit.FunSuite:
   private val fleet   = PaperDuel(pairs = 2).fleet
   private val pursuer = fleet.agents.indexWhere(_.role == Role.Pursuer)
@@ -64,9 +64,7 @@ class PlanningSuite extends munit.FunSuite:
     assertEquals(part(little).objective.separation, SeparationCost(0.5, margin = 1))
     assert(pursuit(little).regardsTeam)
 
-  /** What is decided in the place of a plan by a policy that turns so far from where it was told to head,
-    * 0.25 rad.
-    */
+  /** The decision instead of a plan by a policy that turns by this angle from its last heading, 0.25 rad. */
   private def byPolicy(turn: Double, settings: PlanSettings): (Decision, PlannedDecision) =
     object Turning extends HeadingPolicy:
       def heading(dx: Double, dy: Double, dvx: Double, dvy: Double, own: Double, its: Double, s: Double) =
@@ -147,7 +145,7 @@ class PlanningSuite extends munit.FunSuite:
       yield Planning.stream(seed, self, Memory(0, None, decisions))
     assertEquals(streams.distinct.size, streams.size)
 
-  /** A slot that moves north at 3 m/s, whatever is seen. */
+  /** A slot that moves north at 3 m/s, whatever the observation. */
   private final class Moving(override val minimumM: Double = 0) extends Policy, Goal:
     def mostMps: Double                                             = 6
     def wanted(seen: Observation, aheadS: Double): (Double, Double) = (3 * aheadS, 4)
@@ -206,7 +204,7 @@ class PlanningSuite extends munit.FunSuite:
     assertEquals(flown(Kept.Below(9), Kept.Below(4)), 3.0)
     assertEquals(flown(Kept.Above(7), Kept.Below(8)), 7.5)
 
-  test("after a longer pause one of a team turns no further at once, a radian"):
+  test("after a longer pause the first turn of a team's vehicle is limited to a radian"):
     def mostAtOnce(pauseS: Double) =
       teamPart(
         Moving(),

@@ -8,11 +8,10 @@ import skein.signal.LatencyProfile
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** Policies in three dimensions, with memories and actions of their own, through whole loops in virtual time.
-  */
+/** Policies in three dimensions, with their own memories and actions, through whole loops in virtual time. */
 class PolicyInSpaceSimulation extends munit.FunSuite:
 
-  /** Climbs to an altitude, remembers that it was there, and sinks to another. */
+  /** Climbs to an altitude, remembers that it was there, and descends to another. */
   private final case class UpAndDown(topM: Double, bottomM: Double) extends Policy:
     type Memory = Boolean
     def start: Boolean                                                  = false
@@ -23,7 +22,7 @@ class PolicyInSpaceSimulation extends munit.FunSuite:
       if atTop && (altitudeM - bottomM).abs < 0.3 then (Action.Hover, atTop)
       else (Action.Velocity(Vector3(0, 0, if altitudeM < goalM then -2 else 2)), atTop)
 
-  /** Stays where it is and looks at the other. */
+  /** Holds its position and looks at the other vehicle. */
   private object LookAtTheOther extends Policy:
     type Memory = Unit
     def start: Unit                                             = ()

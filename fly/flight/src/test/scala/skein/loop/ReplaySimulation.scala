@@ -11,7 +11,7 @@ import skein.testing.Optimised
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** What a replay decides again, and what it finds where a recording was changed. */
+/** The decisions that a replay repeats, and the changes of a recording that it finds. */
 class ReplaySimulation extends munit.FunSuite, Optimised:
   private val planning = PlanSettings(horizonSteps = 10, searches = 1, slices = 2, blocksPerSlice = 1)
 
@@ -37,7 +37,7 @@ class ReplaySimulation extends munit.FunSuite, Optimised:
 
   private val duels = PaperDuel(pairs = 2).fleet
 
-  /** Flies where the rest of the team is heading, and away from where it is. */
+  /** Flies in the direction of the rest of the team, and away from its position. */
   private object Together extends Policy:
     type Memory = Unit
     def start: Unit                                             = ()
@@ -47,7 +47,7 @@ class ReplaySimulation extends munit.FunSuite, Optimised:
       val east   = others.map(other => seen.eastM(other) - seen.eastMps(other)).sum
       (seen.along(math.atan2(east, north), 2), ())
 
-  /** A place of its own beside all others, that moves north. */
+  /** A separate slot beside all others, moving north. */
   private object Slot extends Policy, Goal:
     def mostMps: Double                                             = 6
     def wanted(seen: Observation, aheadS: Double): (Double, Double) = (3 * aheadS, 8.0 * seen.self)
@@ -70,7 +70,7 @@ class ReplaySimulation extends munit.FunSuite, Optimised:
       ) :+ ("plan, a team", LoopKind.Plan, team(Slot))
 
   for (name, kind, fleet) <- flights do
-    test(s"$name: it decides the same again, and a decision that was changed is found, the last one, too"):
+    test(s"$name: a replay makes equal decisions, and finds a changed decision, the last one, too"):
       val recording = flown(kind, fleet)
       val decisions = recording.decisions
       assert(decisions.size > 10, decisions.size.toString)

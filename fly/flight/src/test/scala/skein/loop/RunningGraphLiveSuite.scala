@@ -8,7 +8,7 @@ import scala.concurrent.duration.*
 
 class RunningGraphLiveSuite extends munit.FunSuite:
 
-  test("the named parts of a graph that runs, and what leads where, are told by its interpreter"):
+  test("the named parts of a running graph, and its edges, are reported by its interpreter"):
     given system: ActorSystem = ActorSystem("graph")
     import system.dispatcher
     try
@@ -26,7 +26,7 @@ class RunningGraphLiveSuite extends munit.FunSuite:
       switches.foreach(_.shutdown())
     finally Await.result(system.terminate(), 10.seconds): Unit
 
-  test("a flight's graph is told whatever other streams of the same system do"):
+  test("a flight's graph is reported whatever other streams of its actor system do"):
     given system: ActorSystem = ActorSystem("graph-beside-others")
     val released              = java.util.concurrent.CountDownLatch(1)
     val entered               = java.util.concurrent.CountDownLatch(1)

@@ -15,7 +15,7 @@ import skein.vtime.VirtualTime
 /** Policies that read sensors, through every loop in virtual time. */
 class SensorSimulation extends munit.FunSuite, Optimised:
 
-  /** Climbs by its barometer alone, and hovers where that is too old. */
+  /** Climbs by its barometer alone, and hovers if that reading is too old. */
   private final case class ByBarometer(topM: Double, oldest: Span) extends Policy:
     override def sensors: Set[String] = Set("barometer")
     type Memory = Unit
@@ -38,7 +38,7 @@ class SensorSimulation extends munit.FunSuite, Optimised:
     )
   ))
 
-  /** Says what the vehicle's own reading says, so much later; or something else. */
+  /** Repeats the vehicle's own reading after a delay; or returns something else. */
   private final class Barometer(
       vehicle: VehiclePort,
       delay: Span,
@@ -91,14 +91,14 @@ class SensorSimulation extends munit.FunSuite, Optimised:
     -recording.readings.filter(_.vehicle == vehicle).last.state.value.positionNed.z
 
   for kind <- LoopKind.values do
-    test(s"${kind.label}: a policy climbs by what its sensor says, and decides the same from the recording"):
+    test(s"${kind.label}: a policy climbs by its sensor, and its recording replays to equal decisions"):
       val recording = fly(kind)
       assertEqualsDouble(lastAltitude(recording, "Evader"), 26, 0.5)
       assertEqualsDouble(lastAltitude(recording, "Pursuer"), 15, 0.5)
       assert(recording.measurements.sizeIs > 200, s"${recording.measurements.size} measurements")
       assertEquals(Replay(fleet, recording).firstDifference, None)
 
-  /** Over a line of its own, and always the same. */
+  /** A sensor with its own delay and a constant value. */
   private final class Slow(clock: Clock)(using ActorSystem) extends Sensor:
     def columns: Vector[String]                                       = Vector("altitudeM")
     def read(): Future[Either[VehicleError, Stamped[IArray[Double]]]] =
@@ -121,7 +121,7 @@ class SensorSimulation extends munit.FunSuite, Optimised:
       assert(late.sensings.nonEmpty)
       assertEquals(times(late), times(without))
 
-  test("sensors are asked a quarter of a period after the vehicle was asked where it is"):
+  test("sensors are read a quarter of a period after the vehicle"):
     val recording = fly(LoopKind.Stream)
     for vehicle <- Seq("Evader", "Pursuer") do
       val first  = recording.readings.filter(_.vehicle == vehicle).map(_.state.sentAt).min
@@ -148,7 +148,7 @@ class SensorSimulation extends munit.FunSuite, Optimised:
       assert(recording.decisions.exists(_.action.contains(Action.Hover)))
       assertEquals(Replay(fleet, recording).firstDifference, None)
 
-  test("a sensor that the vehicle does not have is told before the flight"):
+  test("a sensor that the vehicle lacks is reported before the flight"):
     val odd   = fleet.copy(agents = fleet.agents.map(_.copy(policy = Blind)))
     val error = intercept[IllegalArgumentException](fly(LoopKind.Stream, fleet = odd))
     assertEquals(

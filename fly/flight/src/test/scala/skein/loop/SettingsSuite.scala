@@ -8,7 +8,7 @@ import skein.scenario.Fence
 import skein.units.*
 import skein.vehicle.{ConstantTurn, ConstantVelocity}
 
-/** What loops are flown by: the bounds of every number, and what follows from it. */
+/** Settings of loops: the bounds of every number, and derived values. */
 class SettingsSuite extends munit.FunSuite:
   private val ms = Span.ofMillis
 
@@ -30,7 +30,7 @@ class SettingsSuite extends munit.FunSuite:
       Fallback.Hold
     )).getMessage.contains("deadline"))
 
-  test("settings for the paper's period are those that nobody set"):
+  test("settings for the paper's period are the defaults"):
     assertEquals(LoopSettings.every(ms(100)).copy(model = LoopSettings().model), LoopSettings())
     val slow = LoopSettings.every(ms(300))
     assertEquals((slow.period, slow.paceInterval, slow.patience), (ms(300), ms(150), ms(300)))

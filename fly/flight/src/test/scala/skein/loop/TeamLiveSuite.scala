@@ -11,10 +11,9 @@ import skein.record.{MemoryRecorder, Samples}
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 
-/** Real threads: virtual time has only one. */
 class TeamLiveSuite extends munit.FunSuite:
 
-  /** Answers once it is told to, and until then never. */
+  /** Answers when it is requested to, and never before. */
   private final class Slow extends VehiclePort:
     @volatile var answers = false
     private val here      = Kinematics(Vector3.Zero, Vector3.Zero, Quaternion.Identity, Vector3.Zero)
@@ -26,7 +25,7 @@ class TeamLiveSuite extends munit.FunSuite:
       Future.successful(Right(true))
     def hover(): Future[Either[VehicleError, Boolean]] = Future.successful(Right(true))
 
-  test("of the readings of one vehicle that several threads ask for at once each has a number of its own"):
+  test("simultaneous readings of one vehicle by several threads have distinct numbers"):
     // So many that on a busy machine, too, threads ask at the same instant.
     val (threads, each)    = (4, 3_000_000)
     val pool               = Executors.newFixedThreadPool(threads)

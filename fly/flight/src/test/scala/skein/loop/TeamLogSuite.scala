@@ -9,7 +9,7 @@ import skein.scenario.PaperDuel
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 
-/** What is on record of what happened to a team. */
+/** The records of a team's events. */
 class TeamLogSuite extends munit.FunSuite:
   private val now = Instant.Epoch + Span.ofSeconds(5)
 
@@ -40,7 +40,7 @@ class TeamLogSuite extends munit.FunSuite:
       books.log.ended(books.decision(1), now, result)
       assertEquals(books.recording.acknowledgements.map(_.outcome), Vector(told))
 
-  test("every error is an event of its kind, with what was asked for"):
+  test("every error is an event of its kind, with the failed call"):
     val kinds = Seq(
       VehicleError.TimedOut("x")    -> EventKind.TimedOut,
       VehicleError.Lost("x", true)  -> EventKind.Disconnected,

@@ -12,7 +12,7 @@ import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** No overtaking: what a late answer tells never takes the place of something newer. */
+/** No overtaking: a late answer never replaces newer data. */
 class TeamViewSuite extends munit.FunSuite:
 
   private object Silent extends VehiclePort:
@@ -34,7 +34,7 @@ class TeamViewSuite extends munit.FunSuite:
   private val late  = reading(0, 2, 90, 80, 150)
   private val other = reading(1, 0, 10, 0, 20)
 
-  /** What is decided upon, and which readings are noted as stale. */
+  /** The decision requests, and the readings that are recorded as stale. */
   private def seen(events: LoopEvent*): (Vector[DecisionRequest], Vector[String]) = seenBy(_ => ())(events*)
 
   private def silent(system: ActorSystem): Team =
@@ -61,7 +61,7 @@ class TeamViewSuite extends munit.FunSuite:
         (requests.toVector, stale)
     .value
 
-  test("a reading is news where it tells of a later moment, or was asked for when the other had come"):
+  test("a reading is news if it was sampled later, or requested after the other was received"):
     val view = TeamView.empty(2).withReading(later)
     assert(TeamView.empty(2).isNews(late))
     assert(!view.isNews(late))
@@ -81,7 +81,7 @@ class TeamViewSuite extends munit.FunSuite:
       SensorReading(0, "gps", 2, Vector("x"), reading(0, 2, 170, 160, 240).state.map(_ => Vector(0.0)))
     assertEquals(said.withSensorReading(old), said)
 
-  test("a vehicle is taken to be where it was read, or estimated, and to head where it was last told"):
+  test("a vehicle is at its reading or estimate, and heads for its last commanded heading"):
     val fleet = PaperDuel().fleet
     val view  = TeamView.empty(2).withReading(first).withReading(other)
     assertEquals(view.kinematics(0), first.state.value)
@@ -90,7 +90,7 @@ class TeamViewSuite extends munit.FunSuite:
     val estimate = skein.forecast.Estimate(later.state.value, millis(0), millis(1))
     assertEquals(view.copy(estimates = Some(Vector(estimate, estimate))).kinematics(0), later.state.value)
 
-  test("a sensor's late answer never overrides a newer one of the same sensor"):
+  test("a sensor's late answer never overrides a newer one of that sensor"):
     def sensed(sensor: String, sequence: Long, validMs: Double) = SensorReading(
       0,
       sensor,
@@ -107,7 +107,7 @@ class TeamViewSuite extends munit.FunSuite:
     assertEquals(held.withSensorReading(sensed("gps", 4, 101)).sensed(0)("gps").sequence, 4L)
     assertEquals(held.sensed(1), Map.empty)
 
-  test("a late reading is dropped and noted, and decided is upon the newer one"):
+  test("a late reading is dropped and recorded, and the decision uses the newer one"):
     val (requests, stale) = seen(
       LoopEvent.Read(first),
       LoopEvent.Read(other),
@@ -119,12 +119,12 @@ class TeamViewSuite extends munit.FunSuite:
     assertEquals(requests.map(_.deciders), Vector(Set(0, 1)))
     assertEquals(stale, Vector("reading 2 is stale"))
 
-  test("nobody decides before everybody was seen"):
+  test("there are no decisions before every vehicle was read"):
     assertEquals(seen(LoopEvent.Read(first), LoopEvent.Due(Set(0, 1)))._1, Vector.empty)
     assertEquals(seen(LoopEvent.Seen(Vector(first), Set(0)))._1, Vector.empty)
     assertEquals(seen(LoopEvent.Seen(Vector(first, other), Set(1)))._1.map(_.deciders), Vector(Set(1)))
 
-  test("while the team is held nobody decides, and its readings go on into the view"):
+  test("while the team is held there are no decisions, and its readings still update the view"):
     val held = seenBy(_.hold.hold(): Unit)(
       LoopEvent.Read(first),
       LoopEvent.Read(other),
@@ -153,7 +153,7 @@ class TeamViewSuite extends munit.FunSuite:
     assertEquals((one.unanswered, one.entered), (1L, 0L))
 
   test(
-    "a forecast is told what was sent and what did not come to be; a move that flew to its end is no news"
+    "a forecast receives sent commands and failed ones; a move that ran to its end is no news"
   ):
     import scala.util.{Failure, Success}
     val pursuer  = Decider(PaperDuel().fleet, 1)

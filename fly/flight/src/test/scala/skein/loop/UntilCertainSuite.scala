@@ -6,10 +6,10 @@ import scala.util.{Failure, Success, Try}
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** What must not get lost is told again, at its own pace, and not for ever. */
+/** A command that must not get lost is repeated, with pauses, and a limited number of times. */
 class UntilCertainSuite extends munit.FunSuite:
 
-  /** When it was told, ms, and what it came to in the end. Even numbers are certain. */
+  /** Times of the attempts, ms, and the final result. Even numbers are certain. */
   private def told(answer: Int => Try[Int]): (Vector[Double], Try[Int]) = VirtualTime
     .run(seed = 1): system =>
       given ActorSystem      = system
@@ -23,7 +23,7 @@ class UntilCertainSuite extends munit.FunSuite:
       UntilCertain(attempt())(_ % 2 == 0).transform(result => Success((times, result)))
     .value
 
-  test("until an answer is certain, at once where the first one is"):
+  test("repeats until an answer is certain, and stops immediately where the first one is"):
     assertEquals(told(_ => Success(8)), (Vector(0.0), Success(8)))
     val pauseMs = UntilCertain.Pause.toMillis
     assertEquals(told(count => Success(count + 3)), (Vector(0.0), Success(4)))
@@ -32,7 +32,7 @@ class UntilCertainSuite extends munit.FunSuite:
       (Vector(0.0, pauseMs, 2 * pauseMs), Success(6))
     )
 
-  test("a failure is not certain, and the last attempt's answer is told whatever it is"):
+  test("a failure is not certain, and the last attempt's answer is returned whatever it is"):
     val lost  = Failure(IllegalStateException("lost"))
     val never = told(_ => lost)
     assertEquals((never._1.size, never._2), (UntilCertain.Attempts, lost))

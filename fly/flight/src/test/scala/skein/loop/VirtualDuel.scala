@@ -11,12 +11,11 @@ import skein.vtime.VirtualTime
 
 /** The paper's duel in virtual time, on [[FarQuadrotors]].
   *
-  * @param distanceM between the vehicles where they truly are, horizontally: mean over the last 10 s of
-  *   physics
+  * @param distanceM between the vehicles' true positions, horizontally: mean over the last 10 s of physics
   */
 final case class VirtualDuel(distanceM: Double, outcome: FlightOutcome, recording: Recording):
 
-  /** Ascending, m.
+  /** Prediction errors, ascending, m.
     *
     * @param own of the deciding vehicle itself, or of its opponent
     */

@@ -6,8 +6,8 @@ import skein.record.CommandOutcome.*
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 
-/** When commands arrived, told from readings that take 30 ms to the simulator and 10 ms back, every 100 ms
-  * for 1 s. The simulator's clock is 1000 s behind. So a command that leaves at t arrives t after the first
+/** Arrival times of commands, estimated from readings that take 30 ms to the simulator and 10 ms back, every
+  * 100 ms for 1 s. The simulator's clock is 1000 s behind. So a command sent at t arrives t after the first
   * reading.
   */
 class FlownVehiclesSuite extends munit.FunSuite:
@@ -121,7 +121,7 @@ class FlownVehiclesSuite extends munit.FunSuite:
       Seq(50.0 -> 1.0, 380.0 -> 2.0, 380.0 -> 3.0)
     )
 
-  test("while the simulator stands still a command arrives when it is decided"):
+  test("while the simulator is stopped a command arrives when it is decided"):
     val decided =
       Samples.decision(7).copy(vehicle = "Red", decidedAt = start + ms(530) - Span.ofSeconds(1000))
     val other = decided.copy(vehicle = "Blue", decidedAt = start)

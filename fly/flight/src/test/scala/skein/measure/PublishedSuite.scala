@@ -2,7 +2,8 @@ package skein.measure
 
 import skein.loop.LoopKind
 
-/** The paper's figures, taken from it a second time: m; and ms of evader and pursuer for each observation. */
+/** The paper's figures, copied from it a second time: m; and ms of evader and pursuer for each observation.
+  */
 class PublishedSuite extends munit.FunSuite:
 
   private val paper =
@@ -39,7 +40,7 @@ class PublishedSuite extends munit.FunSuite:
         yield Published.ofRole(flight.observedMs(observation), role)
       assertEquals(told.map(Some(_)), observed, s"$loop over $link")
 
-  test("the paper's paused flight stands beside ours over any link, others beside their own"):
+  test("the paper's paused flight is comparable over any link, others over their own"):
     assertEquals(Published.flight(LoopKind.Paused, "vpn").map(_.link), Some("direct"))
     assertEquals(Published.flight(LoopKind.Futures, "none"), None)
     assertEquals(Published.flight(LoopKind.Futures, "vpn").map(_.loop), Some(LoopKind.Futures))

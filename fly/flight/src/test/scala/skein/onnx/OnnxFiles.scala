@@ -6,7 +6,7 @@ import skein.scenario.Scenarios
 import skein.signal.SplitMix64
 import skein.testing.TemporaryFolders
 
-/** Files of models, and what their policies see. */
+/** Files of models, and observations of their policies. */
 trait OnnxFiles extends TemporaryFolders:
   protected given Scenarios = Scenarios.ours
 
@@ -15,7 +15,9 @@ trait OnnxFiles extends TemporaryFolders:
   protected def written(folder: Path, bytes: Array[Byte]): String =
     Files.write(folder.resolve("policy.onnx"), bytes).toString
 
-  /** @param longestS since the last decision, and the oldest age
+  /** A random observation.
+    *
+    * @param longestS largest time since the last decision, and largest age
     */
   protected def seen(random: SplitMix64, longestS: Double): PlanarObservation =
     def number(most: Double) = most * (2 * random.nextDouble() - 1)

@@ -7,14 +7,12 @@ import skein.settings.PolicyFile
 import skein.signal.SplitMix64
 
 class OnnxPolicySuite extends munit.FunSuite, OnnxFiles:
-  /** Weights that 32-bit floats can be. */
   private def drawn(name: String): HeadingPolicy =
     val random = SplitMix64(seed)
     val family = PolicyFamily.parse(name).fold(fail(_), identity)
     val values = Vector.fill(family.space.dimension)((2 * random.nextDouble() - 1).toFloat.toDouble)
     family.policy(values)
 
-  /** Of nine inputs. */
   private def graph(nodes: Node*)(constants: (String, Tensor)*): Array[Byte] =
     OnnxFormat.write(OnnxGraph(
       nodes.toVector,
@@ -42,7 +40,7 @@ class OnnxPolicySuite extends munit.FunSuite, OnnxFiles:
         if name.startsWith("learned") then assertEquals(heading(again.policy), heading(policy))
         else assertEqualsDouble(heading(again.policy), heading(policy), 1e-12)
 
-  /** As the frameworks write the same network: by `Gemm` (PyTorch), by `MatMul` and `Add` (Keras, JAX). */
+  /** One network as the frameworks write it: by `Gemm` (PyTorch), by `MatMul` and `Add` (Keras, JAX). */
   private val weights = tensor(3, 9)(i => StrictMath.sin(i))
   private val across  = Tensor(Vector(9, 3), weights.values.grouped(9).toVector.transpose.flatten)
   private val biases  = tensor(3)(i => 0.1 * i)
@@ -112,7 +110,7 @@ class OnnxPolicySuite extends munit.FunSuite, OnnxFiles:
       )
     )
   do
-    folder.test(s"$what: becomes a network of ours that answers the same"): folder =>
+    folder.test(s"$what: becomes a Skein network with equal answers"): folder =>
       val file = PolicyFile.read(written(folder, bytes)).fold(fail(_), identity)
       assertEquals(file.role, Role.Pursuer)
       val policy = file.policy.asInstanceOf[LearnedPolicy]
@@ -123,7 +121,7 @@ class OnnxPolicySuite extends munit.FunSuite, OnnxFiles:
         val heading = one.ownHeadingRad + policy.share(one) * one.elapsedS
         assertEquals(policy.decide(one, 0).headingRad, heading)
 
-  folder.test("whose it is can be told, and an evader turns by up to half a turn"): folder =>
+  folder.test("its role can be stated, and an evader turns by up to half a turn"): folder =>
     val file = written(
       folder,
       graph(Node("MatMul", Vector("x", "w"), Vector("y")))("w" -> tensor(9, 1)(i => 0.01 * i))
@@ -136,7 +134,7 @@ class OnnxPolicySuite extends munit.FunSuite, OnnxFiles:
   private def refused(folder: Path, bytes: Array[Byte]): String =
     PolicyFile.read(written(folder, bytes)).fold(identity, file => fail(s"came ${file.label}"))
 
-  folder.test("a wrong shape is told with both shapes"): folder =>
+  folder.test("a wrong shape is reported with both shapes"): folder =>
     val wrong = OnnxFormat.write(OnnxGraph(
       Vector(Node("MatMul", Vector("obs", "w"), Vector("act"))),
       Map("w" -> tensor(12, 2)(_ => 1)),
@@ -154,21 +152,20 @@ class OnnxPolicySuite extends munit.FunSuite, OnnxFiles:
       graph(Node("MatMul", Vector("x", "w"), Vector("y")))("w" -> tensor(12, 1)(_ => 1))
     assert(refused(folder, narrow).contains("expected weights of 9 inputs, came 12"), refused(folder, narrow))
 
-  folder.test("weights that are no finite numbers, and other models where nothing runs them, are told"):
-    folder =>
-      val infinite = graph(Node("MatMul", Vector("x", "w"), Vector("y")))(
-        "w" -> tensor(9, 1)(i => if i == 4 then Double.NaN else 1)
-      )
-      assert(refused(folder, infinite).contains("expected finite weights"))
-      val other = graph(
-        Node("MatMul", Vector("x", "w"), Vector("m")),
-        Node("Sin", Vector("m"), Vector("y"))
-      )("w" -> tensor(9, 1)(_ => 1))
-      val reason = refused(folder, other)
-      assert(reason.contains("operator Sin is none of Identity"), reason)
-      assert(reason.contains("nothing here runs other models"), reason)
+  folder.test("weights that are not finite, and other models without a runtime, are reported"): folder =>
+    val infinite = graph(Node("MatMul", Vector("x", "w"), Vector("y")))(
+      "w" -> tensor(9, 1)(i => if i == 4 then Double.NaN else 1)
+    )
+    assert(refused(folder, infinite).contains("expected finite weights"))
+    val other = graph(
+      Node("MatMul", Vector("x", "w"), Vector("m")),
+      Node("Sin", Vector("m"), Vector("y"))
+    )("w" -> tensor(9, 1)(_ => 1))
+    val reason = refused(folder, other)
+    assert(reason.contains("operator Sin is none of Identity"), reason)
+    assert(reason.contains("nothing here runs other models"), reason)
 
-  folder.test("a damaged file is told, wherever it is damaged"): folder =>
+  folder.test("a damaged file is reported, wherever it is damaged"): folder =>
     val whole = OnnxPolicy.write(drawn("learned:3"), "pursuer").fold(fail(_), identity)
     for length <- 0 until whole.length by 7 do
       val cut = PolicyFile.read(written(folder, whole.take(length)))

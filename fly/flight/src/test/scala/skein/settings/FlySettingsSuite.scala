@@ -41,14 +41,14 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
       None
     )
 
-  /** Each of a file's lines that cannot be read is told by one, which says where, what was expected and what
-    * came.
+  /** Each unreadable line of a file is reported in one line, which states where, what was expected and what
+    * was found.
     */
   private def assertTold(text: String, expected: String*)(using munit.Location): Unit =
     val said = read(s"skein.fly {\n$text\n}").left.getOrElse("").linesIterator.toSeq
     assertEquals(said.map(_.replaceAll("^.*String: ", "")), expected)
 
-  test("a null, a list, a single value and settings in one another's places are told, in a line each"):
+  test("a null, a list, a single value and settings in one another's places are reported, in a line each"):
     assertTold(
       "scenario = surround, surround { ring-m = null }",
       "2: skein.fly.surround.ring-m: expected a value, came null"
@@ -72,7 +72,7 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
     )
     assertTold("only-policies = true", "2: skein.fly.only-policies: expected policies beside it, came none")
 
-  test("values of a wrong kind are told in a line each, whatever reads them"):
+  test("values of a wrong kind are reported in a line each, whatever reads them"):
     assertTold("seed = many", "2: skein.fly.seed: expected a whole number, came 'many'")
     assertTold("seed = 1e30", "2: skein.fly.seed: expected a whole number, came '1.0E30'")
     assertTold(
@@ -89,7 +89,7 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(read("skein.fly.seed = 1e3").map(_.seed), Right(1000L))
     assert(read("skein.fly { duration = null, deadline = null, solver = null, scene = null }").isRight)
 
-  test("plan is refused where nobody plans, and says who flies"):
+  test("plan is refused where no vehicle plans, and the message lists the policies"):
     assertTold(
       "scenario = forest, loops = [stream, plan]",
       "2: skein.fly.loops: plan: expected a multirotor that can plan, by a policy with a Goal or by a HeadingPolicy that " +
@@ -100,7 +100,7 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
       Right("plan: Pursuer plans; Evader flies by its own policy")
     )
 
-  test("with only-policies the scenario is not flown by its own policies"):
+  test("with only-policies the scenario's own policies are omitted"):
     val file = temporaryFolder().resolve("policy.conf")
     Files.writeString(
       file,
@@ -145,7 +145,7 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(read("").map(_.deadline), Right(None))
     assertEquals(read("skein.fly.deadline = 20 ms").map(_.deadline), Right(Some(Span.ofMillis(20))))
 
-  test("a scenario's settings stand under its name; what was set elsewhere says where it is now"):
+  test("a scenario's settings are under its name; a setting elsewhere is answered with its new place"):
     val flown = read("skein.fly { scenario = surround, surround { ring-m = 10, vehicles = 4 } }")
     assertEquals(flown.map(_.scenario), Right(Surround(vehicles = 4, ringM = 10)))
     assertEquals(read("").map(_.scenario), Right(PaperDuel()))
@@ -153,7 +153,7 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
     assert(clue(old).contains("no setting 'skein.fly.pairs' any more; it is 'duel.pairs' now"))
     assert(old.contains("it is 'duel.altitude-m' now"))
 
-  test("a scenario's mistakes say where they stand, what was expected and what came"):
+  test("a scenario's mistakes state their place, what was expected and what was given"):
     val none = read("skein.fly.scenario = crosing").left.getOrElse("")
     assert(clue(none).contains("came 'crosing'; the nearest is 'crossing'"))
     val text = "skein.fly { scenario = crossing\n crossing { vehicles = many, streams = 3 } }"
@@ -166,7 +166,7 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
     assert(clue(unsound).contains("skein.fly.crossing.spacing-m: expected more than 0, came -1.0"))
     assert(unsound.contains("skein.fly.crossing.streams: expected 2 or 4, came 3"))
 
-  test("a flight lasts as long as its scenario says, unless it is told otherwise"):
+  test("a flight lasts as long as its scenario states, unless configured otherwise"):
     assertEquals(read("").map(_.duration), Right(Span.ofSeconds(60)))
     assertEquals(read("skein.fly.duration = 5 s").map(_.duration), Right(Span.ofSeconds(5)))
 

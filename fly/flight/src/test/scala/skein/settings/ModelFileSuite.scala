@@ -14,7 +14,7 @@ import skein.units.Expect
 import skein.vehicle.*
 import scala.jdk.CollectionConverters.*
 
-/** Reached at once, after a time: a plant of a user's own. */
+/** A plant of a user's own that reaches its command immediately after a dead time. */
 final case class Late(gain: Double, override val deadTimeS: Double) extends ObservedPlant[PlaneReading]:
   def initial: PlaneReading                                            = PlaneReading(0, 0, 0, 0)
   def stepS: Double                                                    = 0.1
@@ -24,7 +24,7 @@ final case class Late(gain: Double, override val deadTimeS: Double) extends Obse
     val (north, east) = (gain * northMps, gain * eastMps)
     PlaneReading(from.northM + north * dtS, from.eastM + east * dtS, north, east)
 
-/** Arithmetic on the time of day: no formula. */
+/** Arithmetic on the time of day: not a formula. */
 object Fickle extends ObservedPlant[PlaneReading]:
   def initial: PlaneReading                                            = PlaneReading(0, 0, 0, 0)
   def stepS: Double                                                    = 0.1

@@ -10,7 +10,7 @@ import skein.units.{OwnFailure, Span}
 class OutsidePolicyLiveSuite extends munit.FunSuite, TemporaryFolders:
   private val seen = PlanarObservation(3, 4, 1, -2, 0.5, 1.5, 0.1, 0.02, 0.03)
 
-  /** What is decided, or why nothing, of as many questions as there are answers. */
+  /** Decisions or failures of as many requests as there are answers. */
   private def decided(answers: Array[Byte]*): Seq[Either[String, Double]] =
     Using.resource(Peer((number, _) => answers.lift(number))): peer =>
       val policy =
@@ -28,7 +28,7 @@ class OutsidePolicyLiveSuite extends munit.FunSuite, TemporaryFolders:
       Seq(Right(0.5 + 0.05), Right(0.5 - 0.1), Right(0.5 + 0.1))
     )
 
-  test("what is seen stands in the frame of the own heading"):
+  test("observations are in the frame of the own heading"):
     val straight = seen.copy(ownHeadingRad = 0).fromOwnHeading.toVector
     assertEquals(straight.take(4), Vector(3.0, 4.0, 1.0, -2.0))
     assertEquals(straight.drop(6), Vector(0.1, 0.02, 0.03))
@@ -36,7 +36,7 @@ class OutsidePolicyLiveSuite extends munit.FunSuite, TemporaryFolders:
     for (came, expected) <- east.take(6).toSeq.zip(Seq(4.0, -3.0, -2.0, -1.0, 0.0, 1.0)) do
       assertEqualsDouble(came, expected, 1e-6)
 
-  test("a policy that fails, or tells no number, is asked again"):
+  test("a policy that fails, or returns no number, receives further requests"):
     assertEquals(
       decided(
         Peer.refusal("no \u001b[2J\r\n such\u0007luck\n"),
@@ -52,7 +52,7 @@ class OutsidePolicyLiveSuite extends munit.FunSuite, TemporaryFolders:
       )
     )
 
-  test("who does not keep to the protocol, or ends, is not asked again"):
+  test("a policy that violates the protocol, or ends, receives no further requests"):
     for
       (answer, reason) <- Seq(
         Array[Byte](7)                 -> "expected 0 or 1 before an answer, came 7",
@@ -69,13 +69,13 @@ class OutsidePolicyLiveSuite extends munit.FunSuite, TemporaryFolders:
         )).getMessage.startsWith("the policy: "))
       assertEquals(peer.asked, 1)
 
-  test("an answer that nobody asked for is not taken for that to the next question"):
+  test("an answer without a request is not taken for that to the next request"):
     assertEquals(
       decided(Peer.number(0.5f) ++ Peer.number(-1), Peer.number(0), Peer.number(0)),
       Right(0.55) +: Seq.fill(2)(Left("the policy: expected one answer to a question, came more"))
     )
 
-  test("a process that ends between two questions has ended, and is not asked again"):
+  test("a process that ends between two requests has ended, and receives no further ones"):
     val path = temporaryFolder().resolve("policy")
     Using.resource(ServerSocketChannel.open(StandardProtocolFamily.UNIX)): listener =>
       listener.bind(UnixDomainSocketAddress.of(path)): Unit
@@ -85,7 +85,7 @@ class OutsidePolicyLiveSuite extends munit.FunSuite, TemporaryFolders:
         val reason = intercept[OwnFailure](policy.heading(1, 1, 0, 0, 0, 0, 0.1)).getMessage
         assertEquals(reason, "the policy: its process has ended")
 
-  test("who accepts nobody is not waited for longer than for an answer"):
+  test("connecting takes no longer than an answer may"):
     val path = temporaryFolder().resolve("policy")
     Using.resource(ServerSocketChannel.open(StandardProtocolFamily.UNIX)): listener =>
       listener.bind(UnixDomainSocketAddress.of(path), 1): Unit
@@ -108,7 +108,7 @@ class OutsidePolicyLiveSuite extends munit.FunSuite, TemporaryFolders:
           assertEquals(reason, "the policy: expected an answer within 30 ms, came none")
         assert(peer.asked <= 1)
 
-  test("whom nobody answers for is refused, with what was expected"):
+  test("an address without a process is refused, with what was expected"):
     val nobody = OutsidePolicy.reach("unix:pursuer:/nowhere/policy").left.toOption
     assert(nobody.exists(_.startsWith("expected a policy behind the socket /nowhere/policy: ")), nobody)
     assertEquals(

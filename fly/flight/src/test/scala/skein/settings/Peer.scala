@@ -7,10 +7,10 @@ import java.nio.channels.{Channels, ServerSocketChannel}
 import java.nio.file.Files
 import java.util.concurrent.atomic.AtomicInteger
 
-/** A policy behind a socket, of another process as far as a flight can tell.
+/** A policy behind a socket, which a flight cannot distinguish from another process.
   *
-  * @param answer from the number of the question, from 0, and what is seen, to bytes; without any, the
-  *   connection ends
+  * @param answer from the number of the request, from 0, and the observation, to bytes; None ends the
+  *   connection
   */
 final class Peer(answer: (Int, Vector[Float]) => Option[Array[Byte]]) extends AutoCloseable:
   private val folder   = Files.createTempDirectory("skein-peer")
@@ -50,6 +50,5 @@ object Peer:
     val told = reason.getBytes("UTF-8")
     ByteBuffer.allocate(5 + told.length).put(1.toByte).putInt(told.length).put(told).array
 
-  /** The paper's. */
   def pursuer(seen: Vector[Float]): Array[Byte] =
     number(if seen(1) != 0 then math.signum(seen(1)) else if seen(0) < 0 then 1 else 0)

@@ -11,7 +11,7 @@ class PolicyFileSuite extends munit.FunSuite, TemporaryFolders:
   private def read(folder: Path, text: String): Either[String, PolicyFile] =
     PolicyFile.read(Files.writeString(folder.resolve("policy.conf"), text).toString)
 
-  folder.test("a policy that was written is read back, whatever remarks stand below"): folder =>
+  folder.test("a policy that was written is read back, with any remarks below"): folder =>
     for family <- PolicyFamily.all; role <- family.roles if role == Role.Pursuer || role == Role.Evader do
       val policy =
         PolicyFile(role, family, family.space.axes.map(axis => axis.least + 0.123456789012345 * axis.width))

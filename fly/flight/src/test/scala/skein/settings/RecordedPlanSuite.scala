@@ -7,7 +7,7 @@ import skein.scenario.{PaperDuel, Scenarios}
 import skein.signal.LatencyProfile
 import skein.units.*
 
-/** Settings as a recording keeps them: files of all versions have the same names. */
+/** Settings as a recording stores them: files of all versions use equal names. */
 class RecordedPlanSuite extends munit.FunSuite:
   private given Scenarios = Scenarios.ours
 
@@ -62,7 +62,7 @@ class RecordedPlanSuite extends munit.FunSuite:
     assertEquals(again.settings.copy(plant = set.plant, scene = set.scene), set)
     assertEquals((again.plan.solver, again.plan.policy.map(_.name)), (Some(solver), Some("own")))
 
-  test("what nobody set is kept where older versions keep it, and reads back as nobody set it"):
+  test("a default is stored where older versions store it, and is read back as a default"):
     val all = RecordedPlan.parameters(usual, plan(usual))
     assertEquals(
       all.drop(PaperDuel().settings.size).map(_.name),
@@ -71,7 +71,7 @@ class RecordedPlanSuite extends munit.FunSuite:
     assertEquals(right(read(all)).settings, usual.copy(scene = Some(NamedScene.Empty)))
     assertEquals(right(read(Nil)).settings, usual.copy(scene = Some(NamedScene.Empty)))
 
-  test("a parameter that is none is told with what was expected"):
+  test("an invalid parameter is reported with what was expected"):
     for
       (name, wrong, expected) <- Seq(
         ("movesInFlight", "few", "expected a whole number, came 'few'"),

@@ -18,7 +18,7 @@ class SensorFileSuite extends munit.FunSuite:
     val lines = (whole ++ changed).map((key, value) => s"$key = $value")
     SensorFile.parse(lines.mkString("skein.sensor {\n", "\n", "\n}"), "sensor.conf")
 
-  test("a recognition that ends before it began is told as the mistake"):
+  test("a recognition that ends before it began is reported as the mistake"):
     assert(
       read("takes-ms" -> "[-5]").left.exists(_.contains("takes no negative time")),
       read("takes-ms" -> "[-5]")
@@ -36,5 +36,5 @@ class SensorFileSuite extends munit.FunSuite:
       ("workers", "0", "expected at least one worker, came 0")
     )
   do
-    test(s"$key = $value is told as the mistake"):
+    test(s"$key = $value is reported as the mistake"):
       assertEquals(read(key -> value), Left(s"sensor.conf: $mistake"))

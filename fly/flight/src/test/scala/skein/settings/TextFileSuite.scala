@@ -15,7 +15,7 @@ class TextFileSuite extends munit.FunSuite, TemporaryFolders:
       assert(clue(TextFile.read(file.toString)).left.exists(_.contains("expected a file of at most 64 MiB")))
     finally Files.delete(file)
 
-  test("a text is read whole; other bytes, folders and nothing are told"):
+  test("a text is read whole; other bytes, folders and missing files are reported"):
     val folder = temporaryFolder()
     val file   = Files.writeString(folder.resolve("a.conf"), "zwei = \u0662")
     assertEquals(TextFile.read(file.toString), Right("zwei = \u0662"))

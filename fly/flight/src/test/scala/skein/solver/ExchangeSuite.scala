@@ -30,7 +30,7 @@ class ExchangeSuite extends munit.FunSuite:
     assertEquals(heard.heard(answer(0, vehicle = 1), at(31))._2, Verdict.Foreign)
     assertEquals(heard.heard(answer(0, vehicle = 999), at(31))._2, Verdict.Foreign)
 
-  test("an answer that was held up is not used once something newer was asked"):
+  test("a delayed answer is not used after a newer request"):
     val exchange      = asking(0, 50)
     val (next, first) = exchange.heard(answer(1), at(60))
     assertEquals(first, Verdict.Counts(at(50)))
@@ -64,7 +64,7 @@ class ExchangeSuite extends munit.FunSuite:
     val (two, _)    = second.heard(answer(0, vehicle = 1), at(110))
     assertEquals(two.delay, Span.ofMillis(9))
 
-  test("what the solver has counted is told once"):
+  test("the solver's counts are reported once"):
     val (one, first)  = asking(0).heard(answer(0, overtaken = 3), at(10))._1.news(answer(0, overtaken = 3))
     val (two, second) = one.news(answer(0, overtaken = 3))
     val (_, older)    = two.news(answer(0, overtaken = 2))

@@ -56,7 +56,7 @@ class SolverMessageCodecLaws extends munit.ScalaCheckSuite:
         SentCommand(vehicle, decision, heading, at, speed, action)
     )
 
-  /** Of which middle and half width are whole. */
+  /** Clock alignments with a whole middle and half width. */
   private val alignment = Gen.zip(span, Gen.choose(0L, 1_000_000L)).map: (offset, half) =>
     val width = Span.ofNanos(half)
     ClockAlignment.of(Stamped(
@@ -189,7 +189,7 @@ class SolverMessageCodecLaws extends munit.ScalaCheckSuite:
       SolverMessageCodec.message(bytes).isLeft || bytes.length > 9
     )
 
-  test("a mistake says what was expected and what came"):
+  test("a mistake states what was expected and what was received"):
     val welcome = SolverMessageCodec.bytes(SolverMessage.Welcome(1, 2, true))
     assertEquals(
       SolverMessageCodec.message(welcome.updated(0, 9.toByte)),

@@ -9,18 +9,17 @@ import skein.solver.SolverTrial.To
 import skein.testing.Optimised
 import skein.units.*
 
-/** Whole flights whose decisions are made by a solver elsewhere, in virtual time: where it is slow, dies, is
-  * started again, answers twice, or answers in another order.
+/** Whole flights with a remote solver in virtual time: one that is slow, dies, restarts, answers twice, or
+  * answers in another order.
   */
 class SolverSimulation extends munit.FunSuite, Optimised:
   private val fleet = PaperDuel().fleet
 
-  /** As a flight records it whose fallback that is. */
+  /** The recording as a flight with that fallback makes it. */
   private def hovering(recording: Recording): Recording =
     val fallback = ParameterRow(Replay.Fallback, Fallback.Hover.label)
     recording.copy(heading = recording.heading.copy(parameters = recording.heading.parameters :+ fallback))
 
-  /** What must hold of every such flight. */
   private def checked(
       trial: SolverTrial,
       fleet: Fleet = fleet,
@@ -118,7 +117,7 @@ class SolverSimulation extends munit.FunSuite, Optimised:
       fleet.agents.map(_.name).toSet
     )
 
-  test("a link that is lost fails at once, and is told when it is lost and when it is back"):
+  test("a link that is lost fails immediately, and reports its loss and its return"):
     val trial = checked(SolverTrial.fly(): hand =>
       hand.at(2)(hand.breakLink("cut"))
       hand.at(3)(hand.mendLink()))
@@ -248,7 +247,7 @@ class SolverSimulation extends munit.FunSuite, Optimised:
       assert(math.abs(off) < 0.02, s"over $name hop: ${off * 100} %")
 
 object SolverSimulation:
-  /** Turns by how often it has decided, so that its memory is seen in what it does. */
+  /** Turns by the number of its decisions, so that its actions show its memory. */
   object Counting extends ObservingPolicy[Int]:
     def initial: Int                                               = 0
     def decide(seen: PlanarObservation, memory: Int): Decided[Int] =

@@ -13,9 +13,9 @@ import skein.signal.LatencyProfile
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** A duel in virtual time whose decisions are made by a solver behind a link that does as a test says.
+/** A duel in virtual time whose decisions are made by a solver behind a link that a test controls.
   *
-  * @param questions as they came to a solver, by its start, vehicle and number
+  * @param questions received by a solver, by its start, vehicle and number
   */
 final case class SolverTrial(
     outcome: FlightOutcome,
@@ -26,7 +26,7 @@ final case class SolverTrial(
 ):
   def events(kind: EventKind) = recording.events.filter(_.kind == kind)
 
-  /** Of decisions that no solver made. */
+  /** The decisions that no solver made, by vehicle and number. */
   def byFallback: Set[(String, Long)] =
     events(EventKind.DeadlineMissed).flatMap(event => event.vehicle.zip(event.decision)).toSet
 
@@ -36,10 +36,10 @@ object SolverTrial:
 
   val within: Span = Span.ofMillis(100)
 
-  /** How loops that plan do: fast, and not well. */
+  /** Settings for loops that plan: fast, and not good. */
   val planning: PlanSettings = PlanSettings(horizonSteps = 10, searches = 2, slices = 2, blocksPerSlice = 1)
 
-  /** What a test does to a trial under way. */
+  /** Controls of a test over a running trial. */
   final class Hand(val system: ActorSystem, start: Long => SolverDesk, override val rehearsals: Int)
       extends MessageLink:
     import system.dispatcher
@@ -56,10 +56,9 @@ object SolverTrial:
     def at(seconds: Double)(act: => Unit): Unit =
       system.scheduler.scheduleOnce(Span.ofSeconds(seconds).toDuration)(act): Unit
 
-    /** Another start of a solver. */
     def start(id: Long): Unit = desk = Some(start.apply(id))
 
-    /** What comes is lost, and nobody is told. */
+    /** Loses all later messages without any notice. */
     def kill(): Unit = desk = None
 
     def breakLink(why: String): Unit =
@@ -87,8 +86,9 @@ object SolverTrial:
       for span <- fate(to, sent) do
         after(span.toDuration, system.scheduler)(Future.unit).foreach(_ => if down.isEmpty then arrive)
 
-  /** @param fate when each message arrives, counted in the order of their sending: once, several times, or
-    *   never
+  /** Runs a trial.
+    *
+    * @param fate arrival times of each message, by the order of sending: once, several times, or never
     * @param solverClock the solver's clock minus the controller's
     */
   def fly(

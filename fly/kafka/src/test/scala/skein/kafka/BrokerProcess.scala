@@ -6,12 +6,12 @@ import java.util.concurrent.TimeUnit
 import scala.jdk.CollectionConverters.*
 import skein.link.Address
 
-/** A broker in a process of its own, on loopback, which can be killed. It ends with the process that started
+/** A broker in a separate process, on loopback, which can be killed. It ends with the process that started
   * it.
   */
 final class BrokerProcess private (process: Process, val address: Address):
 
-  /** As by `kill -9`: it writes nothing more, and tells nobody. */
+  /** Kills the process as by `kill -9`: it writes nothing more, and notifies no client. */
   def kill(): Unit =
     if !process.destroyForcibly().waitFor(60, TimeUnit.SECONDS) then
       throw IllegalStateException("it lives on")
@@ -21,8 +21,8 @@ object BrokerProcess:
 
   /** Blocks until it answers.
     *
-    * @param folder for what it holds; what a broker of before has left there goes on
-    * @param port 0 for any that is free
+    * @param folder for its data; data of an earlier broker is continued
+    * @param port 0 for any free one
     */
   def start(folder: Path, port: Int, log: File): BrokerProcess =
     val java    = Path.of(sys.props("java.home"), "bin", "java").toString
@@ -33,7 +33,6 @@ object BrokerProcess:
       case Some(port) => BrokerProcess(process, Address("127.0.0.1", port))
       case None       => throw IllegalStateException(s"the broker did not start; it said in $log why")
 
-/** Until its standard input ends. */
 @main def broker(folder: String, port: Int): Unit =
   val started = KafkaBroker.start(Path.of(folder), Address("127.0.0.1", port))
   val own     = started.fold(reason => throw IllegalStateException(reason), identity)

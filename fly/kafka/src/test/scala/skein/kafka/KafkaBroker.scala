@@ -13,13 +13,11 @@ import scala.util.Using
 import scala.util.control.NonFatal
 import skein.link.Address
 
-/** Kafka's own broker in this process, one node that is its own controller. What it holds lies in a folder.
-  * One that fails while it runs answers no longer, and says why on standard error; Kafka itself would end the
-  * process.
+/** Kafka's own broker in this process, one node that is its own controller. Its data is in a folder. One that
+  * fails at run time stops answering, and states why on standard error; Kafka itself would end the process.
   */
 final class KafkaBroker private (server: KafkaRaftServer, val address: Address) extends AutoCloseable:
 
-  /** Blocks until it has ended. */
   def close(): Unit =
     server.shutdown()
     server.awaitShutdown()
@@ -28,11 +26,11 @@ object KafkaBroker:
 
   /** Blocks until it answers.
     *
-    * @param folder for what it holds; one that a broker of before has left goes on
-    * @param at where clients find it, which it tells them; port 0 takes a free one
-    * @param certificates of [[KafkaCertificates]]: it shows its own, and asks clients for theirs. Without
-    *   them it speaks to everybody who gets there
-    * @return or why it cannot be had
+    * @param folder for its data; data of an earlier broker is continued
+    * @param at its address, which it advertises to clients; port 0 takes a free one
+    * @param certificates of [[KafkaCertificates]]: it presents its own, and requests those of clients.
+    *   Without them it accepts every client
+    * @return Left states why it cannot start
     */
   def start(
       folder: Path,
@@ -41,8 +39,10 @@ object KafkaBroker:
   ): Either[String, KafkaBroker] =
     start(folder, at, certificates, freed, Attempts)
 
-  /** @param free finds a free port where none is asked for
-    * @param attempts another program may have a port that was free by the time the broker listens there
+  /** Starts a broker.
+    *
+    * @param free finds a free port if none is given
+    * @param attempts number of tries: another program may take a free port before the broker listens there
     */
   private[kafka] def start(
       folder: Path,
@@ -78,8 +78,8 @@ object KafkaBroker:
 
   private val Attempts = 3
 
-  /** Kafka ends the process where it finds a fault, at the start of a broker and later. It goes on behind
-    * that with an exception or with nothing.
+  /** Prevents Kafka from ending the process at a fault, at the start of a broker and later. Its code after
+    * that call throws or does nothing.
     */
   private def outlive(): Unit =
     val told: Exit.Procedure = (code, message) =>
@@ -88,14 +88,14 @@ object KafkaBroker:
     Exit.setExitProcedure(told)
     Exit.setHaltProcedure(told)
 
-  /** Takes away what a broker that has ended held. */
+  /** Deletes the data of a broker that has ended. */
   def delete(folder: Path): Unit =
     if Files.exists(folder) then
       Using.resource(
         Files.walk(folder)
       )(_.sorted(Comparator.reverseOrder).forEach(Files.deleteIfExists(_): Unit))
 
-  /** Where it speaks to itself as its controller. */
+  /** Address at which it connects to itself as its controller. */
   private val Inside = "127.0.0.1"
 
   private[kafka] def freed(at: Address): Int =
@@ -111,8 +111,8 @@ object KafkaBroker:
       .addDirectory(folder.toString)
       .run()
 
-  /** As little as one node needs: every topic of internal use has one partition, and starts without waiting
-    * for others.
+  /** Minimal settings of one node: every internal topic has one partition, and starts without waiting for
+    * others.
     */
   private def configuration(
       folder: Path,

@@ -31,9 +31,9 @@ class KafkaLiveSuite extends munit.FunSuite, Lengthy:
     KafkaBroker.delete(folder)
     val _ = Await.result(system.terminate(), 20.seconds)
 
-  /** Flown in real time by a solver over topics of its own.
+  /** A flight in real time with a solver over its own topics.
     *
-    * @param meanwhile done while it flies; then it is stopped
+    * @param meanwhile executed during the flight, which is then stopped
     */
   private def flown(
       prefix: String,
@@ -66,7 +66,7 @@ class KafkaLiveSuite extends munit.FunSuite, Lengthy:
   private def solvedSince(seen: Recording, vehicle: String, from: Instant): Int =
     seen.solved.count(one => one.vehicle == vehicle && one.askedAt > from)
 
-  /** Asks again and again, since other threads tell when they have come so far. */
+  /** Polls, because other threads report their progress. */
   private def until(recorder: MemoryRecorder)(isSo: Recording => Boolean): Unit =
     val deadline = 60.seconds.fromNow
     while !isSo(recorder.recording) && deadline.hasTimeLeft() do Thread.sleep(50)

@@ -1,6 +1,6 @@
 package skein.observe
 
-/** What a call of AirSim's interface is for, as far as a loop's timing is concerned. */
+/** The purpose of a call of AirSim's interface, for a loop's timing. */
 enum CallKind(val label: String):
   case State extends CallKind("state")
 

@@ -16,7 +16,6 @@ class ConversationSuite extends munit.FunSuite:
   private val asked    = bytes(Arr(Int32(0), Int32(1), Str("getMultirotorState"), Arr(Str("Evader"))))
   private val answered = bytes(Arr(Int32(1), Int32(1), Null, state(123)))
 
-  /** In pieces of random lengths. */
   private def cut(whole: ByteString, random: SplittableRandom): Vector[ByteString] =
     if whole.isEmpty then Vector.empty
     else
@@ -38,7 +37,7 @@ class ConversationSuite extends munit.FunSuite:
         s"seed $seed"
       )
 
-  test("the vehicle's name is found where images are asked for with a flag behind it"):
+  test("the vehicle's name is found where a request for images has a flag after it"):
     val request = bytes(Arr(Int32(0), Int32(9), Str("simGetImages"), Arr(Arr(), Str("Drone"), upack.False)))
     assertEquals(
       Conversation(0).fromClient(request, now),
@@ -54,7 +53,7 @@ class ConversationSuite extends munit.FunSuite:
       Vector(image.size.toLong, answered.size.toLong)
     )
 
-  test("bytes that are no messages are told once, and harm nothing"):
+  test("bytes that are no messages are reported once, and harm nothing"):
     for seed <- 1L to 500 do
       val random = SplittableRandom(seed)
       val noise  = ByteString(Array.fill(1 + random.nextInt(2_000))(random.nextInt.toByte))

@@ -2,10 +2,10 @@ package skein.observe
 
 import skein.units.*
 
-/** What an observer makes of the messages that pass. Times are in milliseconds on the observer's clock. */
+/** An observer's analysis of passing messages. Times are in milliseconds on the observer's clock. */
 class LoopAccountSuite extends munit.FunSuite:
 
-  /** A program on one or several connections, of which every message passes the observer. */
+  /** A program on one or several connections, whose messages all pass the observer. */
   private final class Program(offsetMs: Double = 5_000):
     private val account = LoopAccount()
     private var ids     = 0L
@@ -66,7 +66,7 @@ class LoopAccountSuite extends munit.FunSuite:
     assertEqualsDouble(program.vehicle("A").ownAgeMs.get.mean, 30, 1e-6)
     assertEqualsDouble(program.vehicle("A").boundMs.get, 20, 1e-6)
 
-  test("vehicles that are read one after the other are found, and read at once they are not"):
+  test("sequential readings of vehicles are found, and simultaneous ones are not"):
     def loop(apart: Double) =
       val program = Program()
       for tick <- 0 until 50 do
@@ -115,7 +115,7 @@ class LoopAccountSuite extends munit.FunSuite:
     crossed.answer(late, 500, connection = 1)
     assertEquals(crossed.vehicle("A").overtaken, 1L)
 
-  test("a program that waits for each move to end is found; one that goes on meanwhile is not"):
+  test("a program that waits for each move to end is found; one that continues meanwhile is not"):
     def loop(waits: Boolean) =
       val program = Program()
       for tick <- 0 until 10 do
@@ -145,7 +145,7 @@ class LoopAccountSuite extends munit.FunSuite:
     waiting.foreach(program.answer(_, 4_500))
     assertEquals(program.observed.stalls.map(_.length), Vector(Span.ofMillis(1_500)))
 
-  test("a simulator's clock that goes back, and one that stands still, are found"):
+  test("a simulator's clock that runs back, and one that stops, are found"):
     val back = Program()
     back.called("getMultirotorState", "A", 0, 40, Some(20))
     back.called("getMultirotorState", "A", 100, 140, Some(-900))
@@ -155,14 +155,14 @@ class LoopAccountSuite extends munit.FunSuite:
       still.called("getMultirotorState", "A", tick * 100.0, tick * 100.0 + 40, Some(20))
     assert(still.found("the simulator stands still"))
 
-  test("commands that still run when their connection closes are told"):
+  test("commands that still run when their connection closes are reported"):
     val program = Program()
     program.move("A", 0)
     program.closed(50)
     assertEquals(program.vehicle("A").leftRunning, 1L)
     assert(program.found("moves left running"))
 
-  test("calls that fail are told with the first reason"):
+  test("calls that fail are reported with the first reason"):
     val program = Program()
     program.answer(program.call("getMultirotorState", "A", 0), 40, error = Some("no such vehicle"))
     assertEquals(program.observed.methods.map(_.firstError), Vector(Some("no such vehicle")))

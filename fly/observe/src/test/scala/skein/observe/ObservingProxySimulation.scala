@@ -12,13 +12,15 @@ import skein.simulator.{SimulatorServer, SimulatorSettings}
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** A program flies the built-in simulator through the observer, in virtual time; what the observer says of
-  * its data's age is held to what the program itself has noted.
+/** A program flies the built-in simulator through the observer, in virtual time; the data ages that the
+  * observer reports are compared with the program's own records.
   */
 class ObservingProxySimulation extends munit.FunSuite:
   private val vehicles = Vector(VehicleSettings("Evader"), VehicleSettings("Pursuer", Vector3(-21, 0, 0)))
 
-  /** @param ages of the evader's data at each of its commands, ms, by the simulator's own clock
+  /** The result of an observed flight.
+    *
+    * @param ages of the evader's data at each of its commands, ms, by the simulator's own clock
     */
   private final case class Flown(observed: Observed, ages: Seq[Double])
 
@@ -74,7 +76,7 @@ class ObservingProxySimulation extends munit.FunSuite:
     Multirotor.named(client, name).map(_.fold(error => throw AssertionError(error.message), identity))
 
   for profile <- Seq(LatencyProfile.direct, LatencyProfile.vpn) do
-    test(s"over ${profile.name} the ages that the observer tells are the program's own, within its bounds"):
+    test(s"over ${profile.name} the ages that the observer reports are the program's own, within its bounds"):
       val flown  = fly(profile, seed = 5)
       val evader = flown.observed.vehicles.find(_.name == "Evader").get
       val mean   = flown.ages.sum / flown.ages.size

@@ -9,7 +9,7 @@ import skein.units.*
 final case class FaultVerdict(faultPlan: FaultPlan, violations: Vector[String]):
   def isClean: Boolean = violations.isEmpty
 
-/** Seeded flights through faults, each checked from outside. */
+/** Simulates seeded flights with faults, each checked from outside. */
 object Torture:
 
   /** Runs the fault plan of one seed. A flight that fails is a violation, too. */

@@ -14,7 +14,7 @@ import skein.torture.{Disk, FaultyRecorder}
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** What is told, recorded and answered of a flight that goes wrong, and when. */
+/** What is reported, recorded and answered when a flight goes wrong, and when. */
 class FailureTellingSimulation extends munit.FunSuite:
   private def settings(loop: LoopKind) = FlySettings(
     List(loop),
@@ -24,8 +24,10 @@ class FailureTellingSimulation extends munit.FunSuite:
     seed = 1
   )
 
-  /** @param told lines, each with the time since the flight began
-    * @param wentWrong when, likewise
+  /** The result of a flight.
+    *
+    * @param told reported lines, each with the time since the flight began
+    * @param wentWrong time of the fault, likewise
     * @param seen the text of the progress line 2 s after that
     */
   private final case class Flown(
@@ -42,10 +44,10 @@ class FailureTellingSimulation extends munit.FunSuite:
       }
       .getOrElse(fail(s"not told within a second of ${wentWrong.toSeconds} s: $told"))
 
-  /** Flies, and after 5 s something happens.
+  /** Runs a flight with a fault after 5 s.
     *
-    * @param restarts so long after it died the simulator is started again
-    * @param stall from then on nothing comes through for so long
+    * @param restarts time from the simulator's end to its restart
+    * @param stall duration of a stall of all messages
     */
   private def fly(
       loop: LoopKind = LoopKind.Stream,
@@ -126,7 +128,7 @@ class FailureTellingSimulation extends munit.FunSuite:
       assert(ended < Span.ofSeconds(80), s"it went on for ${ended.toSeconds} s")
 
   test(
-    "a simulator that is silent for 3 s is told, and that it answers again; the flight goes on to its end"
+    "a simulator that is silent for 3 s is reported, and so is its return; the flight continues to its end"
   ):
     val flown = fly(stall = Some(Span.ofSeconds(3)))
     val _     = flown.toldInTime("no answer from the simulator")
@@ -161,7 +163,7 @@ class FailureTellingSimulation extends munit.FunSuite:
       assert(flown.told.exists((at, line) => saysWhy(line) && at < latest), flown.told.toString)
       assertEquals(flown.recording.ending.map(_.how), Some(EndingKind.Failed))
 
-  test("a disk that is full in flight is told within a second, and the end of the recording says why"):
+  test("a disk that is full in flight is reported within a second, and the end of the recording says why"):
     val flown  = fly(disk = true)
     val reason = "cannot write to recording flight.duckdb: the disk is full"
     val _      = flown.toldInTime(reason)
@@ -174,7 +176,7 @@ class FailureTellingSimulation extends munit.FunSuite:
     assert(age.exists(ms => ms > 5 && ms < 250), flown.seen)
     assertEquals(flown.told, Vector.empty)
 
-  /** A disk that fails so long after the flight began. */
+  /** A disk that fails a fixed time after the flight began. */
   private final class Late(recorder: Recorder, clock: Clock, fails: Option[Span]) extends Recorder:
     var startedAt         = Option.empty[Instant]
     private lazy val disk =
@@ -188,7 +190,7 @@ class FailureTellingSimulation extends munit.FunSuite:
     def failure = failed.future
     def close() = recorder.close()
 
-  /** Holds what the simulator sends until `gate`. */
+  /** Holds the simulator's messages until `gate`. */
   private final class Stalling(transport: Transport, clock: Clock, gate: () => Option[Instant])(using
       system: ActorSystem
   ) extends Transport:

@@ -10,7 +10,9 @@ import skein.signal.Stamped
 import skein.testing.Unhurried
 import skein.units.*
 
-/** The checks find what they are there to find: a clean flight's trace is forged in one thing at a time. */
+/** The checks find what they are meant to find: the trace of a clean flight is forged in one detail at a
+  * time.
+  */
 class ChecksSimulation extends munit.FunSuite, Unhurried:
   private val clean = undisturbed(LoopKind.Stream)
 
@@ -45,7 +47,7 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
       val told = if loop == LoopKind.Predictive || loop == LoopKind.Paused then "had come" else "no round"
       assert(found(forged).contains(told), found(forged))
 
-  /** Flies to a place, turns, flies on. */
+  /** Flies to a place, turns, and flies on. */
   private case class Patrol() extends Scenario:
     private object Still extends Policy:
       type Memory = Unit
@@ -59,7 +61,7 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     def agents: Vector[Agent] =
       Vector(Agent("Scout", Role.Traveller, MetresPerSecond(3), Vector3(0, 0, -20), Radians(0), Still))
 
-  test("commands that are no velocities are told apart by their places alone"):
+  test("commands that are no velocities are distinguished by their places alone"):
     val seen = undisturbed(LoopKind.Stream, Patrol())
     assertEquals(Checks.violations(seen), Vector.empty)
     assert(
@@ -130,7 +132,7 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     assert(found(clean.copy(steps = steps)).contains("2 calls of the stepper began, 1 ended"))
     assertEquals(found(clean), "")
 
-  test("books that do not agree: calls nobody made, written or answered"):
+  test("counts that do not agree: calls that were never made, written or answered"):
     val stats = clean.stats
     val calls = clean.copy(stats = stats.copy(called = stats.called + 1, answered = stats.answered + 1))
     assert(
@@ -146,7 +148,7 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
       twice
     ).contains(s"${twice.arrivals.size} moves arrived of ${clean.ports.map(_.sendings.size).sum}"))
 
-  test("images of which nobody tells what became of them"):
+  test("images without a recorded fate"):
     val counts = CameraSensor.Counts(due = 80, missed = 10, lost = 5, searched = 65)
     val forged = clean.copy(
       images = Vector(counts),
@@ -205,7 +207,7 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     assert(found(dense).contains("are many for this flight"))
     assert(!found(tapped).contains("are many for this flight"), found(tapped))
 
-  test("control that does not come back in calm: no decision upon something new, no command"):
+  test("control that does not resume in calm: no decision on new data, no command"):
     val due = clean.calmFrom + FaultPlan.ResumesWithin
     val old = clean.recording.copy(decisions =
       clean.recording.decisions.filterNot(decision =>
@@ -225,7 +227,7 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     assert(!found(paused).contains("no command came within"))
 
   test(
-    "control has to be back and to go on from three seconds into the calm, until the flight's time is over"
+    "control must have resumed three seconds into the calm, and continue until the flight's time is over"
   ):
     val due    = clean.calmFrom + FaultPlan.ResumesWithin
     val silent = clean.copy(arrivals =
@@ -240,7 +242,7 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     val late = found(begun.copy(endedAt = due + Span.ofSeconds(1.5) + Span.ofNanos(1)))
     assert(late.contains("no command for 1.50 s in calm"), late)
 
-  test("from three seconds into the calm the simulator hears what it is told: to run, and vehicles to hover"):
+  test("from three seconds into the calm commands reach the simulator: to run, and vehicles to hover"):
     val due    = clean.calmFrom + FaultPlan.ResumesWithin
     val before = due - Span.ofNanos(1)
     assert(found(clean.copy(leftPaused = true, endedAt = due)).contains("left standing still"))
@@ -268,7 +270,7 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     assert(found(cut.copy(outcome = FlightOutcome.Completed)).contains("readings were asked for"))
 
   test(
-    "what a simulator told before it was started again with another clock is not held against its new one"
+    "reports of a simulator before its restart with another clock are not compared with those after it"
   ):
     def restarted(atS: Double, jump: Span) = clean.copy(runs =
       clean.runs :+ Run(clean.startedAt + Span.ofSeconds(atS), clean.runs.head.clockOffset + jump)
@@ -307,12 +309,12 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     val recording = clean.recording.copy(decisions = decisions.updated(number, change(decisions(number))))
     clean.copy(recording = recording)
 
-  test("a decision upon a reading that is older than one that had come long before"):
+  test("a decision on a reading that is older than one received long before"):
     val older = clean.recording.decisions(20).own
     assert(clean.recording.decisions(60).own.vehicle == older.vehicle)
     assert(found(withDecision(60)(_.copy(own = older))).contains("and had the newer"))
 
-  test("a decision upon a reading that is older than what was decided upon before"):
+  test("a decision on a reading that is older than that of an earlier decision"):
     val published = clean.faultPlan.copy(scenario = PaperDuel(asPublished = true))
     val older     = clean.recording.decisions(20).own
     val forged    = withDecision(60)(_.copy(own = older)).copy(faultPlan = published)
@@ -337,7 +339,7 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     assert(!KnowledgeChecks.isNewer(runs)(again, atOnce) && !KnowledgeChecks.isNewer(runs)(atOnce, again))
     assert(KnowledgeChecks.isNewer(Vector(runs.head))(late, next), "by the clock alone it is")
 
-  test("what nobody knows the clock of is newer where both clocks, or the times of asking, say so"):
+  test("with an unknown clock a report is newer where both clocks, or the times of request, say so"):
     def answer(validMs: Double, sentMs: Double, receivedMs: Double) =
       def at(ms: Double) = Instant.Epoch + Span.ofMillis(ms)
       Stamped((), at(validMs), at(sentMs), at(receivedMs))

@@ -5,7 +5,7 @@ import skein.loop.LoopKind
 import skein.scenario.PaperDuel
 import skein.units.*
 
-/** What seeds draw: enough of every trouble, none of it in the calm. */
+/** The faults that seeds draw: enough of every kind, none in the calm. */
 class FaultPlanSuite extends munit.FunSuite:
   private val duration   = Span.ofSeconds(30)
   private val start      = Span.ofMillis(500)
@@ -22,7 +22,7 @@ class FaultPlanSuite extends munit.FunSuite:
 
   private def pairs(faultPlan: FaultPlan) = faultPlan.scenario.agents.size / 2
 
-  test("the same seed and duration are the same faultPlan, and another seed is another"):
+  test("equal seeds and durations give equal fault plans, and another seed gives another"):
     assertEquals(FaultPlan.of(7, duration), faultPlans(6))
     assertEquals(faultPlans.map(_.copy(seed = 0)).distinct.size, faultPlans.size)
 
@@ -54,7 +54,7 @@ class FaultPlanSuite extends munit.FunSuite:
         assert(last.at + last.lasts + Span.ofMillis(200) <= faultPlan.calmFrom, faultPlan.toString)
     assertEquals(faultPlans.map(_.restarts.size).distinct.sorted.toSeq, Seq(0, 1, 2, 3, 4, 5))
 
-  test("each loop, link and trouble is flown about as often as is meant"):
+  test("each loop, link and fault is drawn about as often as intended"):
     val others = faultPlans.filterNot(_.loop == LoopKind.Paused)
     often("the paused truth", 0.1)(_.loop == LoopKind.Paused)
     often("streams", 0.4, others)(_.loop == LoopKind.Stream)
@@ -121,7 +121,7 @@ class FaultPlanSuite extends munit.FunSuite:
     assert(ahead.forall(_.abs <= 20) && ahead.min < -19.5 && ahead.max > 19.5)
     often("ahead", 0.5)(_.clockAhead > Span.Zero)
 
-  test("a flight that leaves no time for trouble is refused, and the shortest is flown"):
+  test("a flight that leaves no time for faults is refused, and the shortest is not"):
     val refused = intercept[IllegalArgumentException](FaultPlan.of(1, FaultPlan.Shortest - Span.ofMillis(1)))
     assert(refused.getMessage.contains("6.5 s at least"), refused.getMessage)
     for seed <- 1L to 200L do assert(FaultPlan.of(seed, FaultPlan.Shortest).calmFrom > start)
@@ -133,7 +133,7 @@ class FaultPlanSuite extends munit.FunSuite:
     assert(short.nonEmpty && short.forall((plan, _) => plan.restarts.sizeIs == 1))
     for (plan, restart) <- short do assert(restart.at + restart.lasts <= plan.calmFrom, plan.toString)
 
-  test("another task is flown by the drawn loop, or by stream where the loop cannot serve so many"):
+  test("another task runs under the drawn loop, or under stream where the loop cannot serve its vehicles"):
     def flown(loop: LoopKind, pairs: Int) =
       val plan = faultPlans.head.copy(loop = loop).flying(PaperDuel(pairs))
       assertEquals(plan.scenario, PaperDuel(pairs))

@@ -11,7 +11,7 @@ class FaultyRecorderSuite extends munit.FunSuite:
     val memory      = MemoryRecorder(Samples.heading)
     val recorder    = FaultyRecorder(memory, disk, Clock.ofNanos(() => now.toNanos), start)
 
-    /** Offers so many readings at a time since the start. */
+    /** Offers this number of readings at a time since the start. */
     def offer(atMs: Double, readings: Int = 1): Unit =
       now = start + Span.ofMillis(atMs)
       for n <- 1 to readings do recorder.offer(Samples.reading(n))
@@ -32,7 +32,7 @@ class FaultyRecorderSuite extends munit.FunSuite:
       assertEquals(assembly.recorder.offered, assembly.memory.records)
 
   test(
-    "one row more than the queue holds has failed the recording, and what came before is what it must hold"
+    "one row more than the queue holds fails the recording, which must hold all rows before"
   ):
     val assembly = Assembly(Disk.Blocks(Span.ofMillis(100), Span.ofMillis(50), capacity = 3))
     assembly.offer(0, 2)

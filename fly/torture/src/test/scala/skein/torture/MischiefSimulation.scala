@@ -6,7 +6,7 @@ import skein.scenario.PaperDuel
 import skein.testing.Unhurried
 import skein.units.*
 
-/** Each mischief alone is really done, borne by the loop, and over when calm begins. */
+/** Each fault alone really happens, is survived by the loop, and ends when the calm begins. */
 class MischiefSimulation extends munit.FunSuite, Unhurried:
   private def flown(messageFaults: MessageFaults): FlightTrace =
     val faultPlan = FaultPlan
@@ -86,7 +86,7 @@ class MischiefSimulation extends munit.FunSuite, Unhurried:
     seen =>
       seen.recording.readings.size < seen.ports.map(_.reads.begun).sum && seen.stats.timedOut == 0
 
-  test("all seeds asked for are flown, each once, with several at once"):
+  test("all requested seeds run, each once, several in parallel"):
     var told = Vector.empty[Long]
     Torture.all(Iterator(1L, 2L, 3L, 4L), FaultPlan.Shortest, threads = 2)(verdict =>
       told :+= verdict.faultPlan.seed

@@ -7,7 +7,7 @@ import skein.signal.LatencyProfile
 import skein.testing.Unhurried
 import skein.units.*
 
-/** Whole flights through seeded trouble, in virtual time. */
+/** Whole flights with seeded faults, in virtual time. */
 class TortureSimulation extends munit.FunSuite, Unhurried:
 
   private val duration = Span.ofSeconds(8)
@@ -25,7 +25,7 @@ class TortureSimulation extends munit.FunSuite, Unhurried:
         failed :+= (verdict.faultPlan.toString +: verdict.violations :+ again).mkString("\n  ")
     assert(failed.isEmpty, failed.mkString("\n", "\n", ""))
 
-  test("a team that knows by its lidars, through the same faults, breaks no rule"):
+  test("a team that relies on its lidars breaks no rule under these faults"):
     for seed <- 1L to 2L do
       val verdict = Torture.of(seed, duration, Some(Forest()), None)
       assert(verdict.isClean, (verdict.faultPlan.toString +: verdict.violations).mkString("\n  "))
@@ -65,7 +65,7 @@ class TortureSimulation extends munit.FunSuite, Unhurried:
       s"$told"
     )
 
-  test("the same seed gives the same flight"):
+  test("equal seeds give equal flights"):
     for seed <- Seq(3L, 11L) do
       val Seq(one, other) = Seq.fill(2)(TortureFlight.fly(FaultPlan.of(seed, duration)))
       assertEquals(one.arrivals, other.arrivals, s"seed $seed")

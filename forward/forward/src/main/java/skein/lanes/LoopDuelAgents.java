@@ -19,7 +19,7 @@ import skein.lanes.policy.Directions;
 import skein.lanes.policy.LaneObservation;
 import skein.lanes.policy.LanePolicy;
 
-/** One side of a duel in many worlds with delays of their own: 0 is the evader, 1 the pursuer. */
+/** One side of a duel in many worlds with separate delays: 0 is the evader, 1 the pursuer. */
 final class LoopDuelAgents extends LaneAgents {
   private static final int WORLDS = LanePolicy.WORLDS;
 

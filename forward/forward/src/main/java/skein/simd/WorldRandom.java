@@ -17,7 +17,7 @@ public final class WorldRandom {
   /** Steps from one place to the next; odd, so that all places differ. */
   public static final int STRIDE = 0x9e3779b9;
 
-  /** The key of the world that flies a candidate's episode. */
+  /** The key of the world for a candidate's episode. */
   public static int key(long seed, long candidate, long episode) {
     long mixed = mix64(mix64(mix64(seed) + candidate) + episode);
     return (int) (mixed >>> 32);

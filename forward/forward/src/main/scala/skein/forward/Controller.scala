@@ -20,7 +20,7 @@ private[skein] final class RolloutView(world: RolloutWorld) extends Grounds:
   private val keepsAll            = world.keepsKinematics
   val x, y, vx, vy: Array[Double] = Array.ofDim[Double](count)
 
-  /** Headings sent last, rad. */
+  /** Last heading sent to each vehicle, rad. */
   val sent: Array[Double] = Array.ofDim[Double](count)
 
   val sentDecision: Array[Int] = Array.ofDim[Int](count)

@@ -20,7 +20,7 @@ object Duel:
 
   val paper: Duel = of(PaperDuel().fleet)
 
-  /** The paper's duel at another altitude. */
+  /** The paper's duel, moved to another altitude. */
   def paperAt(altitudeM: Double, durationS: Double): Duel =
     of(PaperDuel(altitudeM = altitudeM).fleet, durationS)
 

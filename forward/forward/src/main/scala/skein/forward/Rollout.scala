@@ -129,7 +129,7 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
 
 object Rollout:
 
-  /** The first score that counts for the mean of an episode's last 10 s, s. */
+  /** Time of the first score in the mean of an episode's last 10 s, s. */
   private[skein] def last10sFromS(durationS: Double, periodS: Double): Double =
     (math.floor((durationS - 10 + 1e-9) / periodS) + 1) * periodS
 

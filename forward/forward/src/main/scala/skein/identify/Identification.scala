@@ -7,7 +7,7 @@ import skein.vehicle.{ObservedPlant, PlantFlight}
 
 /** A fitted parameter. The interval covers the truth with 95 % probability.
   *
-  * @param atBound the fit stopped at a bound of the parameter: neither value nor interval mean much
+  * @param atBound the fit stopped at a bound of the parameter: then value and interval are unreliable
   */
 final case class Fitted(name: String, value: Double, least: Double, most: Double, atBound: Boolean)
 

@@ -28,7 +28,7 @@ private final class SteppedRollouts private (
   /** The end of the last step, since the flight's start, ns. */
   private var steppedTo = 0L
 
-  /** The vehicles of one world, for one rollout. */
+  /** The response whose vehicles belong to one world, for one rollout. */
   def vehiclesOf(world: Int): VelocityResponse = Places(world)
 
   /** Simulates worlds to their end.

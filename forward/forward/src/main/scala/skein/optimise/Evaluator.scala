@@ -6,7 +6,7 @@ package skein.optimise
 trait Evaluator:
 
   /** The objective's mean and spread over these episodes for each candidate. A pure function: a candidate's
-    * tally depends on the candidate and the episodes alone, to the bit, whatever else the call holds.
+    * tally depends only on the candidate and the episodes, to the bit, not on other candidates of the call.
     *
     * @param episodes numbers of the episodes, at least one
     */

@@ -20,7 +20,7 @@ enum DuelMeasure:
     */
   case Capture(radiusM: Double, withinS: Double)
 
-  /** When the distance first was at most `radiusM`, s; the episode's duration if it never was. */
+  /** First time at which the distance was at most `radiusM`, s; the episode's duration if it never was. */
   case CaptureTime(radiusM: Double)
 
   def text: String = this match

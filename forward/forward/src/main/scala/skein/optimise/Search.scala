@@ -71,7 +71,7 @@ final class Search(
   private val playOffEpisodes =
     (method.evaluations(space.dimension) / 10 / (MostLeaders + 2)).max(leastPlayOff).min(MostPlayOff).toInt
 
-  /** Episodes of the whole search, if it does not end early. */
+  /** Expected number of episodes of the whole search, if it does not end early. */
   val expected: Long = method.evaluations(space.dimension) + (MostLeaders + 2L) * playOffEpisodes
 
   def start: SearchState =

@@ -112,7 +112,7 @@ final class ManoeuvreRollout(situation: Situation, objective: PlanCost, dtS: Dou
   */
 final case class FlownManoeuvre(track: PredictedTrack, cost: Double, breaches: Vector[Breached])
 
-/** A hard limit broken at the end of a step. */
+/** A breach of a hard limit at the end of a step. */
 enum Breached:
   def step: Int
 

@@ -8,7 +8,7 @@ import skein.vehicle.PlaneReading
   * @param marginM kept inside of it
   */
 final case class Geofence(fence: Fence, marginM: Double = 0):
-  /** How far a place is outside, m; negative inside. */
+  /** Distance of a place outside, m; negative inside. */
   def beyond(x: Double, y: Double): Double = fence.beyondM(x, y) + marginM
 
   /** Adds the cost of a position at the end of a step to the costs so far. */

@@ -1,7 +1,7 @@
 package skein.forward
 
 class DeadTimeSuite extends munit.FunSuite:
-  test("each of many commands acts a dead time after it came, however many wait"):
+  test("each of many commands takes effect a dead time after its arrival, however many wait"):
     val vehicle = VelocityResponses.lag(gain = 1, lagS = 0, deadTimeS = 3).create()
     vehicle.start(0, 0, 0)
     for step <- 0 until 1000 do

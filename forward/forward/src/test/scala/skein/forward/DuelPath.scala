@@ -1,6 +1,7 @@
 package skein.forward
 
-/** Tells where the evader and the pursuer of a duel are, once a period: s, then m north and east of either.
+/** Reports the positions of a duel's evader and pursuer once a period: time, s, then north and east of each,
+  * m.
   */
 final class DuelPath(told: (Double, Double, Double, Double, Double) => Unit) extends LoopObserver:
   private var evaderX, evaderY = 0.0

@@ -14,7 +14,6 @@ class EngagementSuite extends munit.FunSuite:
       .getOrElse(duel.head.copy(role = role))
       .copy(name = s"$role$number", startPositionNed = Vector3(north, east, -20), policy = policy)
 
-  /** Places of all agents at every score. */
   private def places(rollout: Rollout, key: Int = 7): Vector[(Int, Double, Double)] =
     val seen = Vector.newBuilder[(Int, Double, Double)]
     val _    = rollout.fly(
@@ -44,7 +43,7 @@ class EngagementSuite extends munit.FunSuite:
       val same = Rollout(Duel.paper, loop, DelayTable.vpn, PlantResponse(ReducedModel.AirSimLag)).fly(3)
       assertEquals(one, same, loop.toString)
 
-  test("duels out of each other's sight fly as each does alone"):
+  test("duels far from each other are simulated like each alone"):
     val far      = 4096.0
     val scenario = Fleet(
       Vector(0.0, far).zipWithIndex.flatMap((east, i) =>
@@ -183,8 +182,7 @@ class EngagementSuite extends munit.FunSuite:
       )
     )
 
-  /** Runs in one direction for ever. */
-  /** Along the meridian, towards the second one. */
+  /** Flies north, towards the second vehicle. */
   private final case class ToSecond(mps: Double) extends Policy:
     type Memory = Unit
     def start: Unit                                             = ()

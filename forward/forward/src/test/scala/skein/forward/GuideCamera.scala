@@ -4,7 +4,7 @@ import skein.fusion.SensorModel
 import skein.signal.LatencyDistribution
 import skein.units.Span
 
-/** A camera and its recogniser, such as docs/guides/recognition.md has one. */
+/** A camera and its recogniser, as in docs/guides/recognition.md. */
 object GuideCamera:
   val model: SensorModel = SensorModel(
     everyS = 0.1,

@@ -15,12 +15,11 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
   private val threshold = game.thresholdM
   private val pure      = PurePursuit(turnRate)
 
-  /** Where the evader begins, in the frame of a pursuer who flies north, and whither. */
+  /** Initial position and course of the evader, in the frame of a pursuer that flies north. */
   private final case class Start(ahead: Double, right: Double, headingRad: Double):
     val distance: Double          = math.hypot(ahead, right)
     override def toString: String = f"start $ahead%.3f m ahead, $right%.3f m right, at $headingRad%.3f rad"
 
-  /** Near and far, all around. */
   private def starts(seed: Long, count: Int): Vector[Start] =
     val random = SplitMix64(seed)
     Vector.fill(count):
@@ -53,7 +52,7 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
   ): Double =
     duel(pursuer, evader, start, durationS).fly(0).minDistanceM
 
-  /** Flies until it is captured; without capture, until the end. */
+  /** Simulates until capture, or to the end without it. */
   private def captureS(
       pursuer: HeadingPolicy,
       evader: HeadingPolicy,
@@ -70,8 +69,8 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
       )
       Double.PositiveInfinity
 
-  /** Runs straight away; when the pursuer is γ turning radii behind, aside at a right angle, and on in that
-    * direction while the pursuer turns after it.
+  /** Runs straight away; when the pursuer is γ turning radii behind, turns aside by a right angle, and keeps
+    * that direction while the pursuer turns after it.
     */
   private val barrier: HeadingPolicy = (dx, dy, _, _, own, pursuer, _) =>
     val ahead = -dx * math.cos(pursuer) - dy * math.sin(pursuer)
@@ -81,7 +80,8 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
     else if aside > math.toRadians(40) && aside < math.toRadians(100) then own
     else pursuer + (if right >= 0 then 1 else -1) * math.Pi / 2
 
-  /** Crosses the barriers as steeply as it can; within the circle where it may wait, makes for the centre. */
+  /** Crosses the barriers as steeply as it can; within the circle where it may wait, it heads for the centre.
+    */
   private val steepest: HeadingPolicy = (dx, dy, _, _, _, pursuer, _) =>
     val (cos, sin)       = (math.cos(pursuer), math.sin(pursuer))
     val (ahead, right)   = (-dx * cos - dy * sin, dx * sin - dy * cos)
@@ -100,7 +100,6 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
   private val hunter: HeadingPolicy = (dx, dy, _, _, _, _, _) => math.atan2(dy, dx)
   private val away: HeadingPolicy   = (dx, dy, _, _, _, _, _) => math.atan2(-dy, -dx)
 
-  /** Evaders by which number they have. */
   private val evaders: Seq[(String, Int => HeadingPolicy)] =
     val shape = NeuralShape(Vector(6))
     Seq(
@@ -140,8 +139,8 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
     assertEqualsDouble(best._1, threshold, 0.01 * threshold)
     assertEquals((best._2, best._3), (dodgeM, 90))
 
-  /** The evader's place in the pursuer's frame after it ran at an angle to the pursuer's heading and that
-    * turned right.
+  /** The evader's position in the pursuer's frame after the evader ran at an angle to the pursuer's heading
+    * and the pursuer turned right.
     */
   private def after(start: Start, courseRad: Double, seconds: Double): Start =
     val turn = turnRate * seconds

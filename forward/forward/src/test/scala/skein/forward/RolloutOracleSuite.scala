@@ -7,7 +7,7 @@ import skein.simd.WorldRandom
 import skein.units.*
 import skein.vehicle.*
 
-/** What the rollout must give because geometry, game theory or numerics say so. */
+/** Results of the rollout that follow from geometry, game theory or numerics. */
 class RolloutOracleSuite extends munit.FunSuite:
   private val away: HeadingPolicy = (dx, dy, _, _, _, _, _) => math.atan2(-dy, -dx)
   private val lag                 = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0)
@@ -84,7 +84,6 @@ class RolloutOracleSuite extends munit.FunSuite:
 
   // ---- timing
 
-  /** All headings commanded to one vehicle. */
   private def headings(timing: LoopTiming, link: Delays): Map[Int, Vector[Double]] =
     val sent     = Map(0 -> ArrayBuffer.empty[Double], 1 -> ArrayBuffer.empty[Double])
     val observer = new LoopObserver:

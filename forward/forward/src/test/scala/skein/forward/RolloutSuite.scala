@@ -32,7 +32,7 @@ class RolloutSuite extends munit.FunSuite:
       val truth = distances(Rollout(Duel.paper, LoopTiming.Paused(), DelayTable.none, model), 1)
       assertClose(distances(Rollout(Duel.paper, loop, DelayTable.none, model), 1), truth, 1e-6)
 
-  test("what a policy or a plant throws is told with its name and its line"):
+  test("an exception in a policy or a plant is reported with its name and line"):
     final class Lost extends HeadingPolicy:
       def heading(x: Double, y: Double, vx: Double, vy: Double, own: Double, sent: Double, elapsedS: Double) =
         throw Exception("no way")

@@ -8,7 +8,7 @@ import skein.simd.WorldRandom
 import skein.units.*
 import skein.vehicle.ReducedModel
 
-/** Pursuers that know of their evaders by a sensor's model alone. */
+/** Pursuers whose only knowledge of their evaders is a sensor's model. */
 class SensedDuelSuite extends munit.FunSuite:
   private val exact = SensorModel(
     everyS = 0.02,
@@ -40,13 +40,15 @@ class SensedDuelSuite extends munit.FunSuite:
   private val predictive = LoopTiming.Predictive(predictor = PlantResponse(ReducedModel.AirSimLag).predictor)
 
   for timing <- Seq(LoopTiming.Paused(), LoopTiming.stream(0.1), predictive) do
-    test(s"${timing.productPrefix}: who sees exactly and at once flies as one that is told"):
+    test(
+      s"${timing.productPrefix}: an exact sensor without delay gives the flight of a policy with readings"
+    ):
       val told = flown(None, timing)
       val seen = flown(Some(exact), timing)
       assertEqualsDouble(seen.meanLast10sM, told.meanLast10sM, 0.05 * told.meanLast10sM)
       assertEquals(seen, flown(Some(exact), timing))
 
-  test("what is not in view, too far or not detected is not found; errors are as wide as told"):
+  test("an evader out of view, too far or undetected is not found; errors are as wide as configured"):
     val random                                                       = SplitMix64(3)
     val own                                                          = Vector3(3, -2, -20)
     def seen(model: SensorModel, azimuthRad: Double, rangeM: Double) = model.measured(
@@ -96,7 +98,9 @@ class SensedDuelSuite extends munit.FunSuite:
   private val (pursuer, evader) = (PaperPursuer(), PaperEvader())
 
   for timing <- Seq(LoopTiming.Sequential(), LoopTiming.Futures(), LoopTiming.stream(0.1), predictive) do
-    test(s"${timing.productPrefix}: worlds with delays of their own fly by lanes as by the scalar engine"):
+    test(
+      s"${timing.productPrefix}: worlds with separate delays have equal results by SIMD and the scalar engine"
+    ):
       // Beside the pursuer's way, so that no rounding decides to which side anybody turns.
       val seeing = duel(Some(camera))
       val beside = seeing.copy(evader = seeing.evader.copy(startY = 2), durationS = 12)
@@ -115,7 +119,7 @@ class SensedDuelSuite extends munit.FunSuite:
         val alone = rollout.fly(worlds.key(world))
         assertEqualsDouble(outcomes.meanLast10sM(world), alone.meanLast10sM, 5e-3, s"world $world")
 
-  test("eyes that no lanes know fly by the scalar engine, and are told of"):
+  test("eyes that SIMD does not support use the scalar engine, and the engine's text states it"):
     def told(duel: Duel, model: VelocityResponse) =
       DuelBatch(duel, predictive, model, threads = 1)
         .engine(pursuer, evader, shareEpisodes = false, Seq(DelayTable.vpn)).text
@@ -133,7 +137,7 @@ class SensedDuelSuite extends munit.FunSuite:
       "scalar: quadrotors of which one sees by a sensor fly by lanes where candidates share episodes"
     )
 
-  test("a sensor whose errors floats cannot tell from none flies by the scalar engine"):
+  test("a sensor with errors too small for floats uses the scalar engine"):
     val batch  = DuelBatch(duel(Some(exact)), predictive, PlantResponse(ReducedModel.AirSimLag), threads = 1)
     val engine = batch.engine(pursuer, evader, shareEpisodes = true, Seq(DelayTable.vpn)).text
     assert(engine.startsWith("scalar: the lanes know sensors with deviations of"), engine)

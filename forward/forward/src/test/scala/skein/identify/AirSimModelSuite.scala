@@ -7,12 +7,12 @@ import skein.scenario.PaperDuel
 import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
 
-/** Holds the identified models of the built-in quadrotor to the quadrotor itself, in the paper's duel over
-  * the VPN.
+/** Compares the identified models of the built-in quadrotor with the quadrotor itself, in the paper's duel
+  * over the VPN.
   */
 class AirSimModelSuite extends munit.FunSuite:
 
-  /** What both vehicles were told and did in an episode with the full quadrotor. */
+  /** Commands and motion of both vehicles in an episode with the full quadrotor. */
   private lazy val flights: Vector[TimeHistory] =
     val flown                    = Vector.newBuilder[TappedVehicle]
     val tapped: VelocityResponse = () =>
@@ -51,7 +51,6 @@ class AirSimModelSuite extends munit.FunSuite:
       assertEqualsDouble(found.deadTimeS, model.deadTimeS, 0.03, s"$structure: $found")
       assertEqualsDouble(found.dragPerM, model.dragPerM, 0.002, s"$structure: $found")
 
-/** Notes what a vehicle is told. */
 private final class TappedVehicle(vehicle: Vehicle) extends Vehicle:
   private val arrivals              = Vector.newBuilder[ArrivedCommand]
   private val samples               = Vector.newBuilder[Sample]

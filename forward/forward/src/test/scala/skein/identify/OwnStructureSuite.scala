@@ -5,7 +5,7 @@ import skein.policy.{Axis, SearchSpace}
 import skein.signal.{NormalQuantile, SplitMix64}
 import skein.vehicle.{ObservedPlant, PlaneReading, PlantFlight}
 
-/** A vehicle that has to tilt before it accelerates: readings do not tell its tilt. */
+/** A vehicle that must tilt before it accelerates: its readings lack the tilt. */
 final case class Tilted(seen: PlaneReading, northMps2: Double, eastMps2: Double)
 
 final case class Tilting(gain: Double, lagS: Double, tiltLagS: Double, override val deadTimeS: Double = 0)
@@ -31,7 +31,7 @@ final case class Tilting(gain: Double, lagS: Double, tiltLagS: Double, override 
       east
     )
 
-/** A structure of a user's own is fitted as Skein's are. */
+/** A user's own structure is fitted like Skein's. */
 class OwnStructureSuite extends munit.FunSuite:
   private val structure = Structure(
     "tilting",
@@ -41,7 +41,7 @@ class OwnStructureSuite extends munit.FunSuite:
   private val truth  = Tilting(gain = 0.9, lagS = 1.4, tiltLagS = 0.5)
   private val values = Vector("gain" -> 0.9, "lag-s" -> 1.4, "tilt-lag-s" -> 0.5)
 
-  /** A minute under commands that turn and change speed, seen ten times a second with noise. */
+  /** A minute under commands that turn and change speed, sampled ten times a second with noise. */
   private def flown(seed: Long, noiseMps: Double): TimeHistory =
     val source   = SplitMix64(seed)
     def normal() = NormalQuantile(source.nextDouble().max(1e-12).min(1 - 1e-12))
@@ -67,7 +67,7 @@ class OwnStructureSuite extends munit.FunSuite:
   private def identified(seed: Long, noiseMps: Double): Identification =
     Identification.of(Vector(flown(seed, noiseMps)), structure).fold(fail(_), identity)
 
-  test("without noise it finds its parameters again, also of what no reading tells"):
+  test("without noise the fit finds its parameters, also those that readings lack"):
     val found = identified(seed = 1, noiseMps = 0)
     for (parameter, (name, value)) <- found.parameters.zip(values) do
       assertEquals(parameter.name, name)

@@ -36,7 +36,7 @@ class SensorFitSuite extends munit.FunSuite:
     assertEqualsDouble(fit.model.takes.quantile(0.5).toMillis, 67.5, 6)
     assertEqualsDouble(fit.model.farthestM, 15, 0.2)
 
-  test("too few detections, or several kinds of eyes, are told"):
+  test("too few detections, or several kinds of eyes, are reported"):
     assertEquals(
       SensorFit.of(Vector(seeing(29))).left.map(identity),
       Left("expected at least 30 detections to identify a sensor, came 29")

@@ -3,9 +3,9 @@ package skein.lanes
 import scala.collection.mutable.ArrayBuffer
 import skein.formula.{ErrorBound, Node}
 
-/** Worlds that fly by lanes and by the scalar engine. Both take the same decisions in each, but where a
-  * number that is compared lies so near to a threshold that rounding decides: [[ErrorBound]] says how near
-  * that is. From there on a world may fly otherwise.
+/** Compares worlds simulated by SIMD with the scalar engine. Both take equal decisions in each, except where
+  * a compared number is so near to a threshold that rounding decides, as [[ErrorBound]] shows. After that, a
+  * world may differ.
   */
 private[skein] final class Agreement:
   import Agreement.*
@@ -14,15 +14,17 @@ private[skein] final class Agreement:
 
   /** Adds a world.
     *
-    * @param first what the two decided otherwise first
-    * @param whereSame holds the flights together, if there is nothing
+    * @param first the first decision that differs
+    * @param whereSame compares the flights if there is none
     */
   def add(world: Int, first: Option[Departure])(whereSame: => Unit): Unit = first match
     case None                                   => same += 1; whereSame
     case Some(departure) if departure.isRounded => undecided += world -> departure
     case Some(departure)                        => wrong += world     -> departure
 
-  /** @param atLeast so many worlds take the same decisions from begin to end, or else nothing was compared
+  /** Checks all worlds added.
+    *
+    * @param atLeast number of worlds that must take equal decisions to the end, lest nothing be compared
     */
   def check(what: String, atLeast: Int = 1)(using munit.Location): Unit =
     def told(departures: Iterable[(Int, Departure)]) =
@@ -37,16 +39,17 @@ private[skein] final class Agreement:
 private[skein] object Agreement:
   private val Told = 5
 
-  /** What floats add up to in the vehicles' flight until a time, m and m/s: until decisions part, vehicles
-    * are where they are in doubles. At 500 m a float is rounded by up to 3e-5 m, here a dozen times a second.
+  /** Accumulated rounding of floats in the vehicles' motion until a time, m and m/s: until decisions differ,
+    * vehicles are where they are in doubles. At 500 m a float is rounded by up to 3e-5 m, here a dozen times
+    * a second.
     */
   def mostOff(timeS: Double): Double = 1e-3 + 4e-4 * timeS
 
-  /** What lanes decided otherwise than the scalar engine.
+  /** A decision of the SIMD engine that differs from the scalar engine's.
     *
-    * @param apart by output: how far off, and how far it may be if each comparison near its threshold went
-    *   the other way
-    * @param near comparisons so near to their thresholds that rounding decides, with how near
+    * @param apart by output: its error, and the bound on it if each comparison near its threshold went the
+    *   other way
+    * @param near comparisons so near to their thresholds that rounding decides, with their distances
     */
   final case class Departure(
       agent: Int,
@@ -64,11 +67,11 @@ private[skein] object Agreement:
          else
            near.sortBy(_._2).take(Told).map((node, by) => s", $by from ${node.toString.take(200)}").mkString)
 
-  /** Where outputs differ by more than floats may that decide as doubles do.
+  /** The outputs that differ by more than floats allow with equal branches.
     *
-    * @param off how far each input is
-    * @param ours of the lanes, in the nodes' order
-    * @param between how far two values of an output are apart, by its number
+    * @param off error of each input
+    * @param ours the SIMD results, in the nodes' order
+    * @param between difference of two values of an output, by its number
     */
   def departure(
       agent: Int,

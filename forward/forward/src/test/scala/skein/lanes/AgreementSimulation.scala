@@ -7,12 +7,14 @@ import skein.simd.WorldRandom
 import skein.testing.Unhurried
 import skein.vehicle.ReducedModel
 
-/** Lanes and the scalar engine take the same decisions in every world: [[DuelAgreement]]. */
+/** SIMD and the scalar engine take equal decisions in every world: [[DuelAgreement]]. */
 class AgreementSimulation extends munit.FunSuite, Unhurried:
   private val lag    = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
   private val worlds = DuelKernel.WORLDS
 
-  /** The paper's, but that the evader does not start straight ahead, on a threshold of most pursuers. */
+  /** The paper's duel, with the evader's start moved from straight ahead, which is a threshold of most
+    * pursuers.
+    */
   private val duel = Duel.paper.copy(evader = Duel.paper.evader.copy(startY = 2), durationS = 10)
 
   // Of every place within a vector some.
@@ -41,7 +43,7 @@ class AgreementSimulation extends munit.FunSuite, Unhurried:
     timing                 <-
       Seq(LoopTiming.Stream(), LoopTiming.Sequential(), LoopTiming.Predictive(predictor = lag.predictor))
   do
-    test(s"$pursuer against $evader, ${timing.productPrefix}: the same decisions in each world compared"):
+    test(s"$pursuer against $evader, ${timing.productPrefix}: equal decisions in each world compared"):
       DuelAgreement
         .shared(duel, timing, lag, DelayTable.vpn, WorldRandom.key(2, 0, 0))(
           each(19, drawPursuer),
@@ -50,7 +52,7 @@ class AgreementSimulation extends munit.FunSuite, Unhurried:
         .check("seeds 19 and 23", many)
 
   for (pursuer, draw) <- pursuers do
-    test(s"$pursuer, delays of its own in each world: the same decisions in each compared"):
+    test(s"$pursuer, separate delays in each world: equal decisions in each world compared"):
       for timing <- Seq(LoopTiming.Stream(), LoopTiming.Sequential(), LoopTiming.Futures()) do
         DuelAgreement
           .alone(duel, timing, lag, _ => DelayTable.vpn, WorldRandom.key(2, 1, _))(
@@ -74,7 +76,7 @@ class AgreementSimulation extends munit.FunSuite, Unhurried:
     // Above, the others fly with it.
     if name != "lag" || timing.isInstanceOf[LoopTiming.Paused] || timing.isInstanceOf[LoopTiming.Futures]
   do
-    test(s"with $name, ${timing.productPrefix}: the same decisions in each world compared"):
+    test(s"with $name, ${timing.productPrefix}: equal decisions in each world compared"):
       for draw <- Seq(drawn(PolicyFamily.paperPursuer), trend) do
         DuelAgreement
           .shared(duel, timing, vehicle, DelayTable.vpn, WorldRandom.key(2, 2, 0))(

@@ -11,8 +11,8 @@ import skein.testing.{Lengthy, Optimised}
 import skein.units.*
 import skein.vehicle.ReducedModel
 
-/** Policies of every kind, mixed in one team and alone against one another, fly by SIMD as by the scalar
-  * engine.
+/** Policies of every kind, mixed in one team and alone against one another, have equal results by SIMD and by
+  * the scalar engine.
   */
 class AnyPolicySimulation extends munit.FunSuite, Lengthy, Optimised:
   import AnyPolicySimulation.*
@@ -50,7 +50,7 @@ class AnyPolicySimulation extends munit.FunSuite, Lengthy, Optimised:
     ))
   )
 
-  /** A candidate each, and where all vehicles are at the end and in the mean. */
+  /** One candidate each, with the vehicles' final and mean positions. */
   private def candidates(draw: SplitMix64 => Fleet, count: Int, durationS: Double): Vector[TeamCandidate] =
     val random = SplitMix64(11)
     Vector.fill(count):

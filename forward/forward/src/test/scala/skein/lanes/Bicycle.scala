@@ -2,7 +2,7 @@ package skein.lanes
 
 import skein.vehicle.{PlaneReading, Plant}
 
-/** Of the middle between the wheels. */
+/** The state at the middle between the wheels. */
 final case class Rolling(
     northM: Double,
     eastM: Double,
@@ -12,7 +12,7 @@ final case class Rolling(
 )
 
 /** A kinematic bicycle that steers after the commanded velocity, and whose position is read at an antenna
-  * ahead of its middle. Nothing in the product knows it.
+  * ahead of its middle. The product does not contain it.
   */
 final case class Bicycle(
     wheelbaseM: Double,

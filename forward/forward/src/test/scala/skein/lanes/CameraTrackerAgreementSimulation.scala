@@ -12,9 +12,9 @@ import skein.simd.WorldRandom
 import skein.units.Instant
 import skein.vehicle.ReducedModel
 
-/** Pursuers that know of their evaders by a sensor's model alone: lanes and the scalar engine find the evader
-  * in the same images of every world, and take the same decisions; but where a bearing, a range, or a number
-  * that a policy compares lies so near to a threshold that rounding decides.
+/** Pursuers whose only knowledge of their evaders is a sensor's model: SIMD and the scalar engine find the
+  * evader in equal images of every world, and take equal decisions, except where a bearing, a range, or a
+  * number that a policy compares is so near to a threshold that rounding decides.
   */
 class CameraTrackerAgreementSimulation extends munit.FunSuite:
   import CameraTrackerAgreementSimulation.*
@@ -76,7 +76,7 @@ class CameraTrackerAgreementSimulation extends munit.FunSuite:
     )
     episode <- 0 until 2
   do
-    test(s"${timing.productPrefix}, episode $episode: the same is found and decided in each world compared"):
+    test(s"${timing.productPrefix}, episode $episode: equal detections and decisions in each world compared"):
       val key      = WorldRandom.key(5, 0, episode)
       val forms    = CameraTrackerLanes.of(camera).fold(fail(_), identity)
       val eye      = SharedEye(forms, duel.pursuer, duel.evader)
@@ -104,7 +104,7 @@ class CameraTrackerAgreementSimulation extends munit.FunSuite:
           if looked.k < eye.looks.size then found(looked, eye.looks(looked.k)(world)) else None
       agreement.check(s"episode $episode", 0 until worlds by 5)
 
-  /** What the front of forward simulation flies is this, to the bit. */
+  /** The batch of forward simulation gives these results, to the bit. */
   private def isFlownByBatch(timing: LoopTiming, episode: Int, kernel: DuelKernel): Unit =
     val all = new DuelWorlds:
       def size: Int                          = worlds
@@ -130,13 +130,13 @@ class CameraTrackerAgreementSimulation extends munit.FunSuite:
       case (_, who)           => who == "pursuer" && name == "vpn" && timing != LoopTiming.Sequential()
   do
     test(
-      s"own delays, $plant, $timing over $name, the $who sees: the same is found and decided in each world compared"
+      s"separate delays, $plant, $timing over $name, camera of the $who: equal detections and decisions in each world"
     ):
       agreeAlone(seeing, timing, model, link)
 
   for timing <- Seq(LoopTiming.Sequential(2.5), LoopTiming.Futures(0.03), LoopTiming.stream(0.03)) do
     test(
-      s"own delays, $timing, images every 30 ms: the same is found and decided in each world compared"
+      s"separate delays, $timing, images every 30 ms: equal detections and decisions in each world compared"
     ):
       val often = camera.copy(everyS = 1.0 / 30)
       agreeAlone(
@@ -146,7 +146,6 @@ class CameraTrackerAgreementSimulation extends munit.FunSuite:
         DelayTable.vpn
       )
 
-  /** Worlds with delays of their own. */
   private def agreeAlone(
       seeing: Duel,
       timing: LoopTiming,
@@ -188,7 +187,7 @@ class CameraTrackerAgreementSimulation extends munit.FunSuite:
     for (looks, world) <- eye.looks.zipWithIndex do
       assert(looks.size > seeing.durationS, s"seed $seed, world $world: ${looks.size} images")
 
-  /** Where an image shows an opponent to the one and not to the other. */
+  /** The difference where an image shows an opponent in one engine only. */
   private def found(event: Event.Looked, lanes: Looked): Option[Agreement.Departure] =
     val scalar  = event.exposure
     val isFound = camera.measured(Instant.Epoch, scalar).isDefined
@@ -213,9 +212,9 @@ class CameraTrackerAgreementSimulation extends munit.FunSuite:
       Agreement.Departure(1, event.k, event.timeS, Vector(1.0 -> 1.0), near)
 
 private object CameraTrackerAgreementSimulation:
-  /** An image that the lanes took in a world.
+  /** An image of the SIMD engine in a world.
     *
-    * @param inputs as the sensor's formula takes them, without errors
+    * @param inputs of the sensor's formula, without errors
     */
   final class Looked(
       val by: CameraTrackerLanes.Forms,
@@ -229,7 +228,6 @@ private object CameraTrackerAgreementSimulation:
 
   final class SharedEye(forms: CameraTrackerLanes.Forms, own: RolloutAgent, opponent: RolloutAgent)
       extends TimetableEye(forms, own, opponent):
-    /** By image, then by world. */
     val looks: ArrayBuffer[Vector[Looked]] = ArrayBuffer.empty
 
     override def expose(
@@ -267,7 +265,6 @@ private object CameraTrackerAgreementSimulation:
       ours: LaneAgents,
       theirs: LaneAgents
   ) extends LoopEye(forms, own, opponent, loop, ours, theirs):
-    /** By world, then by image. */
     val looks: Vector[ArrayBuffer[Looked]] = Vector.fill(DuelKernel.WORLDS)(ArrayBuffer.empty)
 
     override def keep(n: Int, world: Int): Unit =

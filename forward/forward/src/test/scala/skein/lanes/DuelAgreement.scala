@@ -8,12 +8,12 @@ import skein.lanes.policy.{LaneObservation, PolicyLanes}
 import skein.lanes.timetable.Timetable
 import skein.policy.{Decided, ObservingPolicy, PlanarObservation, HeadingPolicy}
 
-/** Duels flown by lanes, beside the scalar engine: decision by decision, by [[Agreement]]. All but the
-  * vehicles' flight is followed to the bit: a decision's own heading and memory are those that lanes decided
-  * before, the opponent's heading is that of the decision which the scalar engine knows of.
+/** Compares duels by SIMD with the scalar engine, decision by decision, by [[Agreement]]. All but the
+  * vehicles' motion is compared to the bit: a decision starts from the heading and memory of the SIMD
+  * engine's previous one, and the opponent's heading is that of the decision which the scalar engine knows.
   *
-  * @param lanes by agent, the evader first: what flew
-  * @param policies the same, of a world
+  * @param lanes by agent, the evader first: the policies of the SIMD engine
+  * @param policies by agent, of one world
   */
 private[skein] class DuelAgreement(
     duel: Duel,
@@ -28,7 +28,6 @@ private[skein] class DuelAgreement(
 ):
   import DuelAgreement.*
 
-  /** Compares some worlds. */
   def check(what: String, worlds: Seq[Int], atLeast: Int = 1)(using munit.Location): Unit =
     val agreement = Agreement()
     for world <- worlds do
@@ -49,10 +48,11 @@ private[skein] class DuelAgreement(
       agreement.add(world, first)(outcomes(world, came, events.distances.toVector, placesOff(_, off)))
     agreement.check(what, atLeast)
 
-  /** The same of an image that a world's scalar engine took. */
+  /** The difference of an image that a world's scalar engine took, if any. */
   protected def difference(looked: Event.Looked, world: Int): Option[Agreement.Departure] = None
 
-  /** How far vehicles may be off, m and m/s: by rounding, and by their speeds in directions that are. */
+  /** Bound on the vehicles' error, m and m/s: by rounding, and by their speeds times the error of directions.
+    */
   private def placesOff(timeS: Double, direction: Double) =
     Agreement.mostOff(timeS) + direction * (duel.pursuer.speed + duel.evader.speed) * timeS.max(1)
 
@@ -106,7 +106,7 @@ private[skein] class DuelAgreement(
         )
     departure(agent, k, timeS, policies(agent)(world), log.seen(k), log.before(k), ours, world)
 
-  /** Where decisions are the same, so are the flights. */
+  /** Where decisions are equal, the flights must be equal. */
   private def outcomes(
       world: Int,
       came: DuelOutcome,
@@ -135,7 +135,7 @@ private[skein] class DuelAgreement(
 private[skein] object DuelAgreement:
   private val Heading = PolicyLanes.In.Heading
 
-  /** Of a second, in floats; grains of 4 ns are exact. */
+  /** Rounding of a time, as a share of a second; grains of 4 ns are exact. */
   private val TimeOff = 2e-7
 
   /** Of a number that is not computed. */

@@ -43,7 +43,7 @@ class DuelBatchSimulation extends munit.FunSuite:
 
   for model <- Seq(lag, PlantResponse(Bicycle(1.2, 0.3, 4, 0.4))) do
     test(
-      s"$model, predicted by what the lanes do not know, flies by the scalar reference, and the engine says so"
+      s"$model, predicted by a model that SIMD does not support, uses the scalar reference, and the engine says so"
     ):
       val timing = LoopTiming.Predictive(predictor = ConstantTurn)
       val batch  = DuelBatch(short, timing, model, threads = 2)
@@ -146,7 +146,7 @@ class DuelBatchSimulation extends munit.FunSuite:
     )
   do
     test(
-      s"candidates with $name that share episodes fly by lanes as each alone, and close to the scalar engine"
+      s"candidates with $name that share episodes have by SIMD the results of each alone, close to the scalar engine"
     ):
       val offAxis = Duel(short.pursuer, short.evader.copy(startY = 2), short.durationS)
       val batch   = DuelBatch(offAxis, LoopTiming.Futures(), model, threads = 2)
@@ -165,7 +165,7 @@ class DuelBatchSimulation extends munit.FunSuite:
   private val foreseen = LoopTiming.Predictive(predictor = PlantModel(ReducedModel.AirSim))
 
   for timing <- Seq(LoopTiming.Stream(), LoopTiming.Sequential(), foreseen) do
-    test(s"quadrotors with delays of their own under $timing fly by lanes, close to the scalar engine"):
+    test(s"quadrotors with separate delays under $timing have results close to the scalar engine"):
       val (model, count) = (VelocityResponses.quadrotor(), 150)
       val offAxis        = Duel(short.pursuer, short.evader.copy(startY = 2), short.durationS)
       val all = DuelBatch(offAxis, timing, model, threads = 2).fly(mixed(count), captureRadiusM = 5)
@@ -229,7 +229,7 @@ object DuelBatchSimulation:
       def evader(world: Int): HeadingPolicy  =
         if world % 7 == 6 then Straight else PaperEvader(8 - 0.002 * world)
 
-  /** So many candidates meet 3 episodes over 2 links; the evader of every seventh goes straight on. */
+  /** Candidates with 3 episodes over 2 links; the evader of every seventh goes straight on. */
   def candidates(count: Int): DuelWorlds =
     val links = Vector(DelayTable.vpn, DelayTable.direct)
     new DuelWorlds:
@@ -277,7 +277,7 @@ object DuelBatchSimulation:
     Vector(o.minDistanceM, o.meanDistanceM, o.meanLast10sM, o.captureS, o.pursuerEffortRad, o.evaderEffortRad)
       .map(_.toFloat)
 
-/** Started in a JVM without the vector module. */
+/** Runs in a JVM without the vector module. */
 object DuelBatchWithoutVectors:
   def main(args: Array[String]): Unit =
     val batch =

@@ -5,7 +5,7 @@ import skein.policy.{PaperEvader, PaperPursuer, HeadingPolicy}
 import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
 
-/** Efforts are computed where they are asked for, and nothing else depends on that. */
+/** Efforts are computed where they are requested, and nothing else depends on that. */
 class EffortSuite extends munit.FunSuite:
   private val duel = Duel.paper.copy(durationS = 5)
 

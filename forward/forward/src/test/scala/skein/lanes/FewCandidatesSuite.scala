@@ -11,7 +11,7 @@ import skein.testing.Unhurried
 import skein.vehicle.ReducedModel
 
 /** Kernels compute no more worlds than there are candidates of an episode, as in a search that proposes a few
-  * at a time. These come to what they do among many, to the bit.
+  * at a time. Their results are bit-identical to those among many.
   */
 class FewCandidatesSuite extends munit.FunSuite, Unhurried:
   private val many = TimetableKernel.WORLDS

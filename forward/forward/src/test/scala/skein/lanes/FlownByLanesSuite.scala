@@ -9,9 +9,9 @@ import skein.scenario.{OffRing, Reduction, Surround}
 import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
 
-/** The table of docs/engines.md is what the engines say, cell by cell; and what is said to fly by lanes or
-  * vehicle by vehicle flies as the scalar reference does. Bodies of MuJoCo's have no column: they need a
-  * library that is not everywhere; `skein.mujoco.FlownByVehiclesLiveSuite` holds what is said of them.
+/** The table of docs/engines.md agrees with the engines, cell by cell; and worlds listed for SIMD or for
+  * stepped vehicles have the scalar reference's results. Bodies of MuJoCo's have no column: they need a
+  * library that is not everywhere; `skein.mujoco.FlownByVehiclesLiveSuite` covers them.
   */
 class FlownByLanesSuite extends munit.FunSuite:
   private val root =
@@ -45,7 +45,7 @@ class FlownByLanesSuite extends munit.FunSuite:
     "no formula"                   -> DuelBatchSimulation.Straight
   )
 
-  /** What the table says of worlds under a loop, by plant. */
+  /** The table's entries for worlds under a loop, by plant. */
   private val table: Map[(String, String), Map[String, String]] =
     val rows = Files
       .readString(root.resolve("docs/engines.md"))
@@ -94,7 +94,9 @@ class FlownByLanesSuite extends munit.FunSuite:
     timing           <- loops(model)
     (worlds, shared) <- Seq("duels, shared delays" -> true, "duels, own delays" -> false)
   do
-    test(s"$worlds, ${nameOf(timing)}, $plant, with a sensor: the engine says what is told below the table"):
+    test(
+      s"$worlds, ${nameOf(timing)}, $plant, with a sensor: the engine agrees with the text below the table"
+    ):
       val seeing = duel.copy(pursuer = duel.pursuer.copy(eye = Some(GuideCamera.model)))
       val engine = DuelBatch(seeing, timing, model, threads = 1)
         .engine(PaperPursuer(), PaperEvader(), shared, Seq(DelayTable.vpn)).text
@@ -145,7 +147,7 @@ class FlownByLanesSuite extends munit.FunSuite:
         assertEquals(word(engine), table((worlds, nameOf(timing)))(plant), engine)
 
   test(
-    "a plant whose steps are longer than lanes fly is refused in teams under every loop that meets delays"
+    "a plant with steps too long for SIMD is refused in teams under every loop with delays"
   ):
     val model = PlantResponse(Bicycle(1.2, 0.3, 4, 0.4, stepS = 1.5))
     val team  = TeamCandidate(

@@ -3,7 +3,7 @@ package skein.lanes
 // guide: policy
 import skein.policy.{Decided, ObservingPolicy, PlanarObservation}
 
-/** The opponent's last bearing, and the mean rate at which it turns. */
+/** The opponent's last bearing, and the mean rate of its change. */
 final case class Bearing(rad: Double, rateRadPerS: Double)
 
 /** Leads the opponent by the mean rate of its bearing, and trusts old readings less. */

@@ -4,7 +4,7 @@ import java.nio.file.{Files, Path}
 import skein.forward.DelayTable
 import skein.policy.PaperEvader
 
-/** What the guide on formulas shows is compiled and runs. */
+/** The code of the guide on formulas compiles and runs. */
 class GuideSuite extends munit.FunSuite:
   private val root =
     Iterator.iterate(Path.of("").toAbsolutePath)(_.getParent).find(at => Files.exists(at.resolve("sbtw"))).get
@@ -19,7 +19,7 @@ class GuideSuite extends munit.FunSuite:
   test("the guide's code is the example's, word by word"):
     for part <- shown do assert(guide.contains(part), part)
 
-  test("the example's policy is searched by lanes, and the best is better than the middle"):
+  test("a SIMD search of the example's policy finds a better one than the middle"):
     import GuideExample.*
     val engine = batch.engine(leads.defaultPolicy, PaperEvader(), true, Seq(DelayTable.vpn)).text
     assert(engine.startsWith("SIMD"), engine)

@@ -8,7 +8,7 @@ import skein.optimise.LatencyBudget
 import skein.policy.{PaperEvader, PaperPursuer}
 import skein.simd.WorldRandom
 
-/** [[LoopDuelKernel]] under `stream` with a lag, for which it has a way of its own
+/** [[LoopDuelKernel]] under `stream` with a lag, which has its own implementation
   * ([[skein.lanes.loop.LagVehicles]]).
   */
 class LagDuelsSuite extends munit.FunSuite:
@@ -21,7 +21,6 @@ class LagDuelsSuite extends munit.FunSuite:
 
   private val captureRadiusM = 3.9f
 
-  /** Of any link here. */
   private val MaxDelayS = 1.0
 
   private def duel(world: Int, durationS: Double): Duel = Duel(
@@ -72,7 +71,7 @@ class LagDuelsSuite extends munit.FunSuite:
 
   for (name, link) <- Seq("none" -> DelayTable.none, "direct" -> DelayTable.direct, "vpn" -> DelayTable.vpn)
   do
-    test(s"over $name kernel and scalar reference fly the same 5 s, to 2 mm in every world"):
+    test(s"over $name kernel and scalar reference agree for 5 s, to 2 mm in every world"):
       val kernel = fly(link, 5)
       val equal  = (0 until worlds).count: world =>
         val scalar = Rollout(duel(world, 5), LoopTiming.Stream(), link, lag).fly(keys(world), captureRadiusM)
@@ -117,7 +116,7 @@ class LagDuelsSuite extends munit.FunSuite:
   for (meanMs, jitterMs) <- badLinks do
     val link = DelayTable.of(LatencyBudget.link(meanMs, jitterMs).get)
 
-    test(s"at $meanMs ms and $jitterMs ms of jitter kernel and scalar reference fly the same 10 s"):
+    test(s"at $meanMs ms and $jitterMs ms of jitter kernel and scalar reference agree for 10 s"):
       assertEquals(
         LoopSupport.refusal(LoopTiming.stream(0.1), 2, link, vehicles(lag)),
         None,
@@ -125,7 +124,7 @@ class LagDuelsSuite extends munit.FunSuite:
       )
       agreement(link, 10).check(s"$meanMs ms and $jitterMs ms of jitter", some)
 
-    test(s"at $meanMs ms and $jitterMs ms of jitter telling views by lanes is but a short cut"):
+    test(s"at $meanMs ms and $jitterMs ms of jitter views by SIMD equal those computed one by one"):
       val kernel  = kernelOf(turnRates, radii)
       val longWay = kernelOf(turnRates, radii, shortCut = false)
       for each <- Seq(kernel, longWay) do each.fly(keys, Array.fill(worlds)(link), captureRadiusM)

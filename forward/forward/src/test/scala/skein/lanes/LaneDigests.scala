@@ -12,9 +12,8 @@ import skein.simd.{LaneMath, WorldRandom}
 import skein.units.Span
 import skein.vehicle.{PlaneReading, ReducedModel}
 
-/** What flies by lanes, in short: of each engine, plant, loop and policy a line with the checksum of all
-  * results' bits. Machines with other vectors print the same lines, but for the first, which says how many
-  * lanes they have.
+/** Prints a line for each engine, plant, loop and policy of the SIMD code, with the checksum of all results'
+  * bits. Machines with other vectors print equal lines, except for the first, which states the lane count.
   */
 object LaneDigests:
   private val plants = Vector[(String, VelocityResponse)](
@@ -99,7 +98,7 @@ object LaneDigests:
     out.values.foreach(numbers => bits.take(numbers.toSeq))
     bits
 
-  /** Three pursuers of one evader, who keep apart; a slice after the other. */
+  /** A joint plan of three pursuers of one evader, who keep apart, slice by slice. */
   private def plan(target: Target): Bits =
     val settings  = PlannerSettings(steps = 20, blocksPerSlice = 2)
     val objective = PlanCost(

@@ -4,9 +4,7 @@ import java.nio.file.{Files, Path}
 import scala.jdk.CollectionConverters.*
 import skein.testing.{Lengthy, TemporaryFolders}
 
-/** Processes with vectors of 16, 32 and 64 bytes, as far as this machine has them, fly all that flies by
-  * lanes.
-  */
+/** Processes with vectors of 16, 32 and 64 bytes, as far as this machine has them, run all SIMD code. */
 class LaneDigestsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
 
   private def started(bytes: Int): (Process, Path, Path) =
@@ -20,7 +18,7 @@ class LaneDigestsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
 
   private lazy val folders = temporaryFolder()
 
-  test("searches, duels with delays of their own, teams and plans have the same bits for 4, 8 and 16 lanes"):
+  test("searches, duels with separate delays, teams and plans have equal bits for 4, 8 and 16 lanes"):
     val told = Seq(16, 32, 64).map(started).map: (process, out, err) =>
       assertEquals(process.waitFor(), 0, Files.readString(err))
       Files.readAllLines(out).asScala.toVector

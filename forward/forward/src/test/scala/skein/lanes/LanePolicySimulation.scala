@@ -22,7 +22,7 @@ class LanePolicySimulation extends munit.FunSuite:
     family.policy(family.space.at(Vector.fill(family.space.dimension)(random.nextDouble())))
 
   for (name, draw) <- families do
-    test(s"$name decides by lanes as the scalar policy does"):
+    test(s"$name decides by SIMD like the scalar policy"):
       val random             = SplitMix64(11)
       val (observation, own) = (LaneObservation(), Directions(worlds))
       val (known, into)      = (Directions(worlds), Directions(worlds))
@@ -87,7 +87,7 @@ class LanePolicySimulation extends munit.FunSuite:
     val many = if shared then "candidates of an episode" else "worlds with delays of their own"
     // The paper's pursuer turns to either side of an evader straight ahead, as a rounding error decides.
     val opponent = if name.startsWith("paper") then PaperEvader() else ChauffeurEvader()
-    test(s"$name against $opponent, ${timing.productPrefix}, $many: by lanes as by the scalar reference"):
+    test(s"$name against $opponent, ${timing.productPrefix}, $many: SIMD equals the scalar reference"):
       val random   = SplitMix64(5)
       val pursuers = Vector.fill(worlds)(draw(random))
       val model    = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
@@ -99,7 +99,7 @@ class LanePolicySimulation extends munit.FunSuite:
         else DuelAgreement.alone(short, timing, model, _ => DelayTable.vpn, key)
       agreement(pursuers, _ => opponent).check("seed 5", 0 until worlds by 3)
 
-/** Of another form, and no formula, where it waits for nothing. */
+/** A policy of another form, or no formula, depending on `isHasty`. */
 private final case class Hasty(isHasty: Boolean) extends HeadingPolicy:
   def heading(
       dxM: Double,

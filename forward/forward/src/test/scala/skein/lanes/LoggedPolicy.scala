@@ -5,21 +5,21 @@ import scala.collection.mutable.ArrayBuffer
 import skein.lanes.policy.{Directions, LaneObservation, LanePolicy, PolicyLanes}
 import skein.policy.HeadingPolicy
 
-/** Notes what many worlds' decisions are made from, and what they come to. */
+/** Records the inputs and results of many worlds' decisions. */
 private[skein] final class LoggedPolicy(of: HeadingPolicy) extends LanePolicy(PolicyLanes.get(of)):
   import LoggedPolicy.*
   private val form   = PolicyLanes.get(of)
   private val worlds = LanePolicy.WORLDS
 
-  /** In turn; in each some world decides. */
+  /** The recorded decisions in order; in each, some world decides. */
   val made: ArrayBuffer[Made] = ArrayBuffer.empty
 
-  /** By world: which of those decisions are its own. */
+  /** By world: the indices of its own decisions. */
   private val numbers = Array.fill(worlds)(ArrayBuffer.empty[Int])
 
   def count(world: Int): Int = numbers(world).size
 
-  /** In [[made]], of a world's decision; -1 where there was none. */
+  /** Index in [[made]] of a world's decision; -1 if there was none. */
   def number(world: Int, decision: Int): Int =
     if decision < numbers(world).size then numbers(world)(decision) else -1
 
@@ -44,19 +44,17 @@ private[skein] final class LoggedPolicy(of: HeadingPolicy) extends LanePolicy(Po
       copied(form.inputs, form.inputs + form.outputs.size)
     )
 
-  /** All worlds have decided. */
   override def commit(effort: Array[Float]): Unit =
     super.commit(effort)
     for of <- numbers do of += made.size - 1
 
-  /** Some have. */
   override def rememberBefore(times: Array[Int], from: Int, before: Int): Unit =
     super.rememberBefore(times, from, before)
     for world <- 0 until worlds if times(from + world) < before do numbers(world) += made.size - 1
 
 private[skein] object LoggedPolicy:
-  /** By input or output of the policy's form, then by world. */
+  /** Values by input or output of the policy's form, then by world. */
   final case class Made(inputs: Vector[Array[Float]], outputs: Vector[Array[Float]]):
-    /** How far a world's inputs are from these. */
+    /** Differences between a world's inputs and these. */
     def off(from: Array[Double], world: Int): Array[Double] =
       from.indices.map(i => math.abs(inputs(i)(world) - from(i))).toArray

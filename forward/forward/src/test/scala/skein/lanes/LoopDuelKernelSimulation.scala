@@ -73,7 +73,7 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
 
   private def wild(meanMs: Double, jitterMs: Double) = DelayTable.of(LatencyBudget.link(meanMs, jitterMs).get)
 
-  /** Busy for a second or so, and quiet for half of one. */
+  /** A link that is busy for about a second, and quiet for half of one. */
   private val changing = AlternatingDelays(wild(200, 300), DelayTable.direct, 1.0, 0.5)
 
   private val links = Seq[(String, TabledDelays)](

@@ -7,7 +7,7 @@ import skein.simd.WorldRandom
 import skein.testing.Unhurried
 import skein.vehicle.{DrivenCar, PlaneReading, Plant, ReducedModel}
 
-/** Vehicles of a user's own, as they are written. */
+/** Vehicles of a user's own, compiled as they are written. */
 class PlantSimulation extends munit.FunSuite, Unhurried:
   private val bicycle =
     PlantResponse(Bicycle(wheelbaseM = 1.2, steeringLagS = 0.3, mostMps2 = 4, antennaM = 0.4))
@@ -36,7 +36,7 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
         "a train"                            -> train
       )
   do
-    test(s"$name flies by lanes under ${timing.productPrefix} as its scalar does"):
+    test(s"$name by SIMD under ${timing.productPrefix} equals its scalar simulation"):
       val batch = DuelBatch(short, timing, vehicle, threads = 1)
       assert(batch.engine(PaperPursuer(), PaperEvader(), shareEpisodes = true, Seq(DelayTable.vpn)).isFast)
       val all   = worlds(shared = true)
@@ -69,7 +69,7 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
         "a train"                            -> train
       )
   do
-    test(s"$name flies by lanes under ${timing.productPrefix} where every world has delays of its own"):
+    test(s"$name by SIMD under ${timing.productPrefix} with separate delays equals its scalar simulation"):
       val batch = DuelBatch(short, timing, vehicle, threads = 1)
       val all   = new DuelWorlds:
         def size: Int                          = 256
@@ -83,7 +83,9 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
       assert(off.max < 1e-3, off.sorted.takeRight(5))
 
   for shared <- Seq(true, false) do
-    test(s"what heeds one part of its command alone is predicted by lanes as by its scalar, shared: $shared"):
+    test(
+      s"a plant that uses one part of its command is predicted by SIMD like by its scalar, shared: $shared"
+    ):
       val timing = LoopTiming.Predictive(predictor = train.predictor)
       val batch  = DuelBatch(short, timing, train, threads = 1)
       assert(batch.engine(PaperPursuer(), PaperEvader(), shared, Seq(DelayTable.vpn)).isFast)
@@ -122,7 +124,6 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
           val scalar = Rollout(own, timing, all.link(world), PlantResponse(plant)).fly(all.key(world))
           assertEqualsDouble(flown.meanDistanceM(world), scalar.meanDistanceM, 1e-3)
 
-  /** Faster the farther north of its start. */
   private object Sheltered extends Plant[PlaneReading]:
     def initial: PlaneReading     = PlaneReading(0, 0, 0, 0)
     def stepS: Double             = 0.1
@@ -136,7 +137,7 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
         share * eastMps
       )
 
-  test("what does not fly by lanes is told"):
+  test("a plant that SIMD does not support is reported"):
     def engine(plant: Plant[?], shared: Boolean, timing: LoopTiming = LoopTiming.Stream()) =
       DuelBatch(short, timing, PlantResponse(plant), 1)
         .engine(PaperPursuer(), PaperEvader(), shared, Seq(DelayTable.vpn)).text

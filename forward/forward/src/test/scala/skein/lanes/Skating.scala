@@ -4,8 +4,8 @@ import skein.vehicle.{ObservedPlant, PlaneReading}
 
 final case class Sliding(headingRad: Double, speedMps: Double, eastM: Double, northM: Double)
 
-/** Turns after the commanded velocity and slides where it heads. Readings tell its whole state, in other
-  * numbers. Nothing in the product knows it.
+/** Turns after the commanded velocity and slides where it heads. Readings contain its whole state, in other
+  * numbers. The product does not contain it.
   */
 final case class Skating(lagS: Double, turnPerS: Double, stepS: Double = 0.04)
     extends ObservedPlant[Sliding]:

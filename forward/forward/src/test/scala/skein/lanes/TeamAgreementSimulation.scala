@@ -19,9 +19,8 @@ import skein.signal.SplitMix64
 import skein.simd.{BoundFunction, WorldRandom}
 import skein.testing.Unhurried
 
-/** A team's lanes and the scalar engine take the same decisions in every world, but where a number that a
-  * policy compares lies so near to another that rounding decides: that is told, with how near it was, by
-  * [[ErrorBound]].
+/** A team's SIMD and scalar engines take equal decisions in every world, except where a number that a policy
+  * compares is so near to another that rounding decides: [[ErrorBound]] reports how near.
   */
 class TeamAgreementSimulation extends munit.FunSuite, Unhurried:
   import TeamAgreementSimulation.*
@@ -46,7 +45,7 @@ class TeamAgreementSimulation extends munit.FunSuite, Unhurried:
     (name, draw) <- scenarios
     timing       <- Seq(LoopTiming.Stream(), LoopTiming.Sequential())
   do
-    test(s"$name, ${timing.productPrefix}: the same decisions in each world compared, 6 s"):
+    test(s"$name, ${timing.productPrefix}: equal decisions in each world compared, 6 s"):
       val seed   = 23L
       val random = SplitMix64(seed)
       val drawn  = Vector.fill(worlds)(Engagement.of(draw(random).fleet, 6))
@@ -89,7 +88,7 @@ class TeamAgreementSimulation extends munit.FunSuite, Unhurried:
   private def policies(of: Engagement) = of.agents.map(_.policy)
 
 object TeamAgreementSimulation:
-  /** What one decision was made from in all worlds, and the velocity and the direction that it came to. */
+  /** The inputs of one decision in all worlds, with the resulting velocities and directions. */
   final case class Made(
       readings: Vector[Array[Float]],
       cos: Array[Float],
@@ -100,7 +99,7 @@ object TeamAgreementSimulation:
       nextSin: Array[Float]
   )
 
-  /** How a vehicle's decision is computed, and what its inputs are. */
+  /** How a vehicle's decision is computed, with its inputs. */
   final class Form(lanes: TeamLanes, self: Int):
     import TeamLanes.Source
     private val bound = BoundFunction.of(lanes.outputs(self))
@@ -123,9 +122,9 @@ object TeamAgreementSimulation:
               case Source.Parameter(number) => own(number)
               case other                    => throw IllegalStateException(s"$other is not asked for here")
 
-    /** Where a decision differs by more than the bound of the way that doubles take.
+    /** The difference of a decision beyond the error bound of the branches taken in doubles.
       *
-      * @param made by lanes: the decision before, if there was one, and this
+      * @param made the SIMD engine's previous decision, if there was one, and this one
       */
     def difference(
         k: Int,
@@ -163,7 +162,7 @@ object TeamAgreementSimulation:
         now.velocity.map(_(world).toDouble)
       )
 
-  /** What the scalar engine decides, in turn: for whom, the how manieth from 0, and when. */
+  /** Records the scalar engine's decisions in order: vehicle, index from 0, and time. */
   final class Events(count: Int) extends LoopObserver:
     val all: ArrayBuffer[(Int, Int, Double)] = ArrayBuffer.empty
     private val decisions                    = Array.ofDim[Int](count)
@@ -204,7 +203,7 @@ object TeamAgreementSimulation:
         direction._2.clone
       )
 
-  /** Notes what a policy sees, and answers as it does. */
+  /** Records the observations of a policy, and returns its answers. */
   final class Log(val policy: Policy) extends Policy:
     val seen: ArrayBuffer[Observation] = ArrayBuffer.empty
     type Memory = policy.Memory

@@ -38,7 +38,9 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
     )
   )
 
-  /** Without the symmetry in which two pursuers are as near, and rounding decides who is the nearest. */
+  /** The engagement without a symmetry in which two pursuers are equally near, and rounding decides who is
+    * the nearest.
+    */
   private def engagement(scenario: Scenario, durationS: Double) =
     val all = Engagement.of(scenario.fleet, durationS)
     all.copy(agents =
@@ -78,7 +80,6 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
     test(s"$name, $timing over $linked: every world flies as by the scalar reference, 6 s to 2 mm"):
       agree(draw, timing, link, lag, 2e-3, 6)
 
-  /** More moves in flight than is usual. */
   private val manyMoves = Steering(mostOutstanding = 6)
 
   private val loopsOfManyMoves = Seq(
@@ -187,7 +188,7 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
     ):
       agreeAlone(draw, timing, DelayTable.vpn, plant, 4e-3, 3)
 
-  test("what a world with delays of its own comes to depends on no other, whatever flew before"):
+  test("the result of a world with separate delays depends on no other world, whatever ran before"):
     val team  = TeamCandidate(engagement(Surround(4), 5), Vector(Judged(OffRing(8), Reduction.Rms, 0)))
     val links = Vector(DelayTable.direct, DelayTable.vpn, wild(110, 60))
     def all(from: Int, count: Int) = new TeamWorlds:
@@ -273,7 +274,7 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
     (name, draw, judging) <- quantities
     reduction             <- Reduction.values ++ Seq(OfMoment.Newest)
   do
-    test(s"$name, $reduction: candidates come to what the scalar reference says, to 1e-3 of it"):
+    test(s"$name, $reduction: candidates agree with the scalar reference, to 1e-3 of it"):
       val random     = SplitMix64(9)
       val candidates = Vector.tabulate(150): i =>
         TeamCandidate(engagement(draw(random), 10), judging(i).map(Judged(_, reduction, 2)))
@@ -298,7 +299,7 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
             s"world $world, $number"
           )
 
-  test("numbers from different times on come to what each alone does, and are found at the scalar's moment"):
+  test("numbers from different times on equal those of each alone, and are found at the scalar's moment"):
     val random = SplitMix64(9)
     val judged = Vector(
       Judged(Separation, Reduction.Least, 0),
@@ -334,7 +335,7 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
   private def avoiding(scenario: Crossing, durationS: Double) =
     TeamCandidate(Engagement.of(scenario.fleet, durationS), Vector(Judged(Separation, Reduction.Least, 0)))
 
-  test("twenty, more than there are rounds, avoid one another by lanes as by the scalar reference"):
+  test("twenty, more than there are rounds, avoid one another by SIMD like in the scalar reference"):
     val crossing = avoiding(Crossing(20, entryM = 8, spacingM = 4), 1.5)
     val batch    = TeamBatch(LoopTiming.Stream(), lag, 1)
     val engine   = batch.engine(crossing, shareEpisodes = true, Seq(DelayTable.vpn)).text
@@ -348,7 +349,7 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
     val scalar = ScalarTeam(LoopTiming.Stream(), lag).fly(crossing, DelayTable.direct, 4)(0)
     assertEqualsDouble(batch.fly(one).values(0)(0), scalar, 2e-3)
 
-  test("what cannot fly by lanes says why, and is flown by the scalar reference"):
+  test("what SIMD does not support is reported, and uses the scalar reference"):
     val surround = Engagement.of(Surround(4).fleet, 5)
     val team     = surround.copy(agents = surround.agents.map(_.copy(policy = Zigzag)))
     val crossing = TeamCandidate(team, Vector(Judged(Separation, Reduction.Least, 0)))
@@ -366,7 +367,7 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
       ScalarTeam(LoopTiming.Stream(), lag).fly(crossing, DelayTable.vpn, 4)(0).toFloat
     )
 
-  test("what a quantity of the user's own throws is told by its name"):
+  test("an exception in a user's own quantity is reported by its name"):
     val broken =
       TeamCandidate(Engagement.of(Surround(4).fleet, 5), Vector(Judged(Broken, Reduction.Least, 0)))
     val told = intercept[OwnFailure](ScalarTeam(LoopTiming.Stream(), lag).fly(broken, DelayTable.vpn, 4))
@@ -376,7 +377,7 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
     val engine = batch.engine(team, shareEpisodes = true, Seq(DelayTable.vpn)).text
     assert(batch.engine(team, shareEpisodes = true, Seq(DelayTable.vpn)).isFast, engine)
 
-/** How often it turns depends on what it sees. */
+/** A policy whose frequency of turns depends on its observation. */
 object Zigzag extends Policy:
   type Memory = Unit
   def start: Unit                                             = ()
@@ -396,7 +397,7 @@ final case class East(vehicle: Int) extends Quantity:
   def of(places: Positions): Double = places.eastM(vehicle)
 
 // As docs/guides/search.md has it.
-/** How far the vehicles are from their middle, on average, m. */
+/** Mean distance of the vehicles from their middle, m. */
 case object Spread extends Quantity:
   def of(places: Positions): Double =
     val (north, east) = (mean(places.northM), mean(places.eastM))

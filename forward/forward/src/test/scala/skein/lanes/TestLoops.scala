@@ -2,9 +2,8 @@ package skein.lanes
 
 import skein.forward.LoopTiming
 
-/** The loops that tests fly by lanes. */
 object TestLoops:
-  /** Those that do not predict, as they are unless told otherwise, and `stream` as it may be told. */
+  /** The loops without prediction, with default settings, and `stream` with all others. */
   val unpredicted: Seq[LoopTiming] = Seq(
     LoopTiming.Paused(),
     LoopTiming.Sequential(),

@@ -33,8 +33,8 @@ class TimetableKernelSimulation extends munit.FunSuite:
 
   private def evader(world: Int): PaperEvader = PaperEvader(radii(world))
 
-  /** The paper's, but that the evader does not start straight ahead: there the sign of a rounding error would
-    * tell the pursuer of the quadrotors where to turn.
+  /** The paper's duel, with the evader's start moved from straight ahead: there the sign of a rounding error
+    * decides which way the quadrotors' pursuer turns.
     */
   private val paper = Duel.paper.copy(evader = Duel.paper.evader.copy(startY = 2))
 
@@ -64,7 +64,7 @@ class TimetableKernelSimulation extends munit.FunSuite:
 
   private val loops = TestLoops.unpredicted
 
-  /** The loop that predicts, by the best model of the vehicles that flies by lanes. */
+  /** The predictive loop, with the best model of the vehicles that SIMD supports. */
   private def predicted(model: VelocityResponse): Option[LoopTiming] =
     Some(LoopTiming.Predictive(predictor = model.predictor)).filter(timing =>
       LaneDynamics.under(timing, model, paper).isRight
@@ -115,7 +115,7 @@ class TimetableKernelSimulation extends munit.FunSuite:
 
     // Long flights of one loop: the others differ in their timetables alone.
     if timing == LoopTiming.Stream() then
-      test(s"$vehicles, $timing over $name: the same decisions and captures for 60 s in each world compared"):
+      test(s"$vehicles, $timing over $name: equal decisions and captures for 60 s in each world compared"):
         agreement(timing, link, WorldRandom.key(4, 1, 0), 60, model).check(name, 0 until worlds by 6)
 
   for timing <- Seq(
@@ -125,7 +125,7 @@ class TimetableKernelSimulation extends munit.FunSuite:
     )
   do
     test(
-      s"$timing over a round trip of 400 ms: the same decisions and captures for 10 s in each world compared"
+      s"$timing over a round trip of 400 ms: equal decisions and captures for 10 s in each world compared"
     ):
       val far = DelayTable.of(LatencyDistribution.Constant(Span.ofMillis(400)))
       agreement(timing, far, WorldRandom.key(6, 1, 0), 10, lag).check("far", 0 until worlds by 6)

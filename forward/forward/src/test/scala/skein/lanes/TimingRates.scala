@@ -6,10 +6,10 @@ import skein.policy.*
 import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
 
-/** How fast does each loop fly by lanes, beside the scalar engine?
-  * `forward/Test/runMain skein.lanes.timingRates [text] [-text]`: on one thread, 60 s over `vpn` unless told
-  * otherwise, only what contains a text, or does not contain that behind a minus sign; processor time.
-  * Agent-steps of a period, in millions a second.
+/** Measures the speed of each loop by SIMD, beside the scalar engine: `forward/Test/runMain
+  * skein.lanes.timingRates [text] [-text]`: on one thread, 60 s over `vpn` by default; only cases that
+  * contain a text, or that do not contain a text after a minus sign; processor time. Agent-steps of a period,
+  * in millions a second.
   */
 @main def timingRates(only: String*): Unit =
   val times  = java.lang.management.ManagementFactory.getThreadMXBean

@@ -4,7 +4,7 @@ import skein.vehicle.{ObservedPlant, PlaneReading}
 
 final case class OnRails(northM: Double, northMps: Double)
 
-/** Rolls north and south alone, whatever else it is told. Nothing in the product knows it. */
+/** Moves north and south only, whatever the command. The product does not contain it. */
 final case class Train(lagS: Double) extends ObservedPlant[OnRails]:
   def initial: OnRails                   = OnRails(0, 0)
   def stepS: Double                      = 0.04

@@ -2,12 +2,10 @@ package skein.lanes
 
 import skein.policy.{Decided, PlanarObservation, ObservingPolicy, HeadingPolicy}
 
-/** What [[TrendPursuer]] remembers: where the opponent was seen last, and how fast that direction turns on
-  * average.
-  */
+/** The memory of [[TrendPursuer]]: the opponent's last bearing, and the mean rate of its change. */
 final case class Trend(bearingRad: Double, rateRadPerS: Double)
 
-/** Turns with the line of sight's average rate, and after the opponent. Nothing in the product knows it. */
+/** Turns with the line of sight's average rate, and towards the opponent. The product does not contain it. */
 final case class TrendPursuer(gain: Double, forgetS: Double, turnRateRadPerS: Double)
     extends ObservingPolicy[Trend]:
   def initial: Trend = Trend(0, 0)
@@ -26,7 +24,7 @@ final case class TrendPursuer(gain: Double, forgetS: Double, turnRateRadPerS: Do
 
   private def wrapped(angleRad: Double) = math.IEEEremainder(angleRad, 2 * math.Pi)
 
-/** Heads for where the opponent is by now: its velocity carries it on over the age of its reading. */
+/** Heads for the opponent's present position, extrapolated by its velocity over the age of its reading. */
 final case class AgeAwarePursuer(ownSpeedMps: Double, trust: Double, turnRateRadPerS: Double)
     extends ObservingPolicy[Unit]:
   def initial: Unit = ()
@@ -42,7 +40,7 @@ final case class AgeAwarePursuer(ownSpeedMps: Double, trust: Double, turnRateRad
     val most  = turnRateRadPerS * seen.elapsedS
     Decided(seen.ownHeadingRad + turn.max(-most).min(most), memory)
 
-/** A network with two hidden layers of 16 rectified neurons, as one writes it who has never seen ours. */
+/** A network with two hidden layers of 16 rectified neurons, written without knowledge of Skein's. */
 final class RectifiedNetwork(weights: Array[Double], turnRateRadPerS: Double) extends HeadingPolicy:
   require(weights.length == RectifiedNetwork.Weights)
 

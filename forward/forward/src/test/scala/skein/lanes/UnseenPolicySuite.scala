@@ -5,7 +5,7 @@ import skein.policy.{ChauffeurEvader, HeadingPolicy}
 import skein.signal.SplitMix64
 import skein.simd.WorldRandom
 
-/** Policies that the product has never seen fly by lanes as they are written. */
+/** Policies that the product does not contain are compiled to SIMD as they are written. */
 class UnseenPolicySuite extends munit.FunSuite:
   import UnseenPolicySuite.*
 

@@ -6,10 +6,10 @@ import skein.lanes.timetable.Timetable
 import skein.policy.PolicyFamily
 import skein.signal.SplitMix64
 
-/** How fast are policies searched that the product has never seen?
-  * `forward/Test/runMain skein.lanes.unseenRates`: on one thread, 1,024 candidates of one episode of 60 s of
-  * `stream` over `vpn`, beside the paper's pursuer, and by the scalar engine; processor time. Agent-steps of
-  * 0.1 s; an operation is one of the compiled expression, whose number is told.
+/** Measures the speed of a search of policies that the product does not contain: `forward/Test/runMain
+  * skein.lanes.unseenRates`: on one thread, 1,024 candidates of one episode of 60 s of `stream` over `vpn`,
+  * beside the paper's pursuer, and by the scalar engine; processor time. Agent-steps of 0.1 s; the number of
+  * operations in the compiled expression is printed.
   */
 @main def unseenRates(rounds: Int*): Unit =
   val model  = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)

@@ -39,7 +39,7 @@ class DuelSearchSimulation extends munit.FunSuite, Unhurried:
     val found = Search.run(turnRate, SearchMethod.CmaEs(10, 12, 20), Direction.Minimise, 1, evaluator).head
     assert(found.tally.mean <= grid.tally.mean + 0.02, s"$found, grid $grid")
 
-  test("a cancelled flight of candidates ends within its batches and tells nothing"):
+  test("a cancelled simulation of candidates ends within its batches and returns nothing"):
     val asked      = AtomicInteger()
     val candidates = Vector.fill(400)(PolicyFamily.paperPursuer.space.defaults)
     assertEquals(game(1).talliesUnless(() => asked.incrementAndGet() > 2)(candidates, 0 until 4), None)

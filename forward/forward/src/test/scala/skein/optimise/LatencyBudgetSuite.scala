@@ -34,7 +34,7 @@ class LatencyBudgetSuite extends munit.FunSuite:
     assertEquals(budget(Vector(None, Some(8.0), Some(10.0), None)).holdsUpTo(0, 0.05), Bound.Below(20))
     assertEquals(budget(Vector.fill(4)(None)).holdsUpTo(0, 0.05), Bound.Unknown)
 
-  test("where the objective comes to no number it does not hold"):
+  test("where the objective has no finite value the tolerance does not hold"):
     val nowhere = Some(Double.NaN)
     assertEquals(budget(Vector.fill(4)(nowhere)).holdsUpTo(0, 0.05), Bound.Below(0))
     assertEquals(budget(Vector(Some(10.0), Some(10.0), nowhere, nowhere)).holdsUpTo(0, 0.05), Bound.At(20))

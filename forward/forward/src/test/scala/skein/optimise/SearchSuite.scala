@@ -8,7 +8,7 @@ class SearchSuite extends munit.FunSuite:
 
   private def depth(c: Vector[Double]): Double = math.pow(c(0) - 1, 2) + 2 * math.pow(c(1) + 0.5, 2)
 
-  /** A bowl around (1, -0.5) whose episodes are noisy, all candidates alike but for a little of their own. */
+  /** A bowl around (1, -0.5) with noisy episodes, whose noise is nearly equal for all candidates. */
   private val bowl: Evaluator = (candidates, episodes) =>
     candidates.map: c =>
       RunningStats.of(episodes.size): i =>
@@ -35,7 +35,7 @@ class SearchSuite extends munit.FunSuite:
     assertEquals(grid.last, Vector(4.0, 3.0))
     assertEquals(grid(1), Vector(-2.0, -1.0))
 
-  test("random candidates lie in the space, and the same seed draws the same"):
+  test("random candidates are within the space, and equal seeds draw equal candidates"):
     val drawn = space.random(500, 7)
     assert(drawn.forall(c => space.clamp(c) == c))
     assertEquals(space.random(500, 7), drawn)
@@ -47,7 +47,7 @@ class SearchSuite extends munit.FunSuite:
     assertEquals(space.shares(space.at(Vector(0.25, 0.75))), Vector(0.25, 0.75))
 
   for method <- methods do
-    test(s"$method finds the bottom of a noisy bowl, the same for the same seed"):
+    test(s"$method finds the minimum of a noisy bowl, the same for equal seeds"):
       val found = search(method).head
       assert(depth(found.candidate) < 0.05, s"seed 3: $found")
       assertEquals(search(method).head, found)
@@ -56,7 +56,7 @@ class SearchSuite extends munit.FunSuite:
       val found = Search.run(space, method, Direction.Maximise, 3, hill).head
       assert(depth(found.candidate) < 0.05, s"seed 3: $found")
 
-    test(s"$method ends the same however it is cut into steps"):
+    test(s"$method ends equally however it is divided into steps"):
       val machine                 = Search(space, method, Direction.Minimise, 5)
       def run(atMost: Int => Int) =
         Iterator

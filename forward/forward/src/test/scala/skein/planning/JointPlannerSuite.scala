@@ -16,8 +16,6 @@ class JointPlannerSuite extends munit.FunSuite:
 
   private def vehicle(at: PlaneReading) = PredictedVehicle(ReducedModel.airSimAt(5), at)
 
-  /** @param stepsFlown when it is planned for
-    */
   private def part(
       from: PlaneReading,
       headingRad: Double,
@@ -37,13 +35,13 @@ class JointPlannerSuite extends munit.FunSuite:
 
   private def bearing(self: Int): Double = self * 2 * math.Pi / count
 
-  /** Everybody on a circle, towards its middle; all want to the other side. */
+  /** Start of a vehicle on a circle, heading for the middle; all goals are on the opposite side. */
   private def start(self: Int): PlaneReading =
     val (cos, sin) = (math.cos(bearing(self)), math.sin(bearing(self)))
     PlaneReading(-25 * cos, -25 * sin, 8 * cos, 8 * sin)
 
-  /** Flies all under their plans, which are made anew each step by so many slices, and tells the least
-    * separation and the greatest distance to a goal at the end, m.
+  /** Simulates all under their plans, which are made anew each step by this number of slices; returns the
+    * least separation and the greatest final distance to a goal, m.
     */
   private def fly(slices: Int, seconds: Int): (Double, Double) =
     val planner                           = JointPlanner()
@@ -95,7 +93,7 @@ class JointPlannerSuite extends munit.FunSuite:
     val next = planner.searched(problem, planner.resumed(problem, Some(found)), 0, slices = 1)
     assertEquals(next.plans.map(_.slices), Vector(0, 1, 0))
 
-  test("each keeps apart from where the others plan to be; who keeps none regards nobody"):
+  test("each keeps apart from the others' plans; a plan without separation considers no others"):
     val planner = JointPlanner()
     val careful = part(start(0), bearing(0), 25, 0, stepsFlown = 0, self = 0)
     val blind   = careful.copy(objective = objective.copy(separation = SeparationCost(0)))

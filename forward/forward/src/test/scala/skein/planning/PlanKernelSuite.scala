@@ -50,7 +50,7 @@ class PlanKernelSuite extends munit.FunSuite:
     block.fly()
     block
 
-  /** Costs are the same but where they jump, within what floats add up to. */
+  /** Costs are equal except at jumps, within the accumulated rounding of floats. */
   private def assertAgree(situation: Situation, objective: PlanCost)(using munit.Location): Unit =
     val kernel = flown(PlanKernel(steps), situation, objective)
     val scalar = flown(ScalarBlock(steps), situation, objective)
@@ -70,14 +70,14 @@ class PlanKernelSuite extends munit.FunSuite:
     IArray.tabulate(steps)(step => block.speeds(step * size + i))
   )
 
-  /** Where a cost jumps.
+  /** A discontinuity of the cost.
     *
-    * @param nearM the distance from there
-    * @param by what it jumps by at most
+    * @param nearM the distance from it
+    * @param by the largest jump
     */
   private case class Jump(what: String, nearM: Double, by: Double)
 
-  /** Over a horizon floats add up to this, m: 24 steps of three roundings each, at some 30 m. */
+  /** Accumulated rounding of floats over a horizon, m: 24 steps of three roundings each, at some 30 m. */
   private val off = 1e-4
 
   private def jumps(situation: Situation, objective: PlanCost, manoeuvre: Manoeuvre): Seq[Jump] =
@@ -101,7 +101,7 @@ class PlanKernelSuite extends munit.FunSuite:
     limits ++ Option.when(captured > 0)(Jump("a capture", off, captured)) ++
       situation.behaviours.flatMap(decisions(situation, objective, manoeuvre, _))
 
-  /** Where the opponent's own decision jumps: what follows is another flight. */
+  /** Discontinuities of the opponent's own decision: after one, the flight differs. */
   private def decisions(
       situation: Situation,
       objective: PlanCost,
@@ -146,7 +146,7 @@ class PlanKernelSuite extends munit.FunSuite:
       assertAgree(situation(Behaviour(track)).copy(own = moving), objective)
       assertAgree(situation(Behaviour(evader.copy(vehicle = moving.moved(8, 2)))), objective)
 
-  test("a step longer than the plant's is flown in pieces"):
+  test("a step longer than the plant's is simulated in pieces"):
     val own    = vehicle(PlaneReading(1, 2, 6, 1))
     val halves = own.flown(3, 4, 0.1).flown(3, 4, 0.1)
     assertEquals(own.flown(3, 4, 0.2).motion, halves.motion)
@@ -219,7 +219,7 @@ class PlanKernelSuite extends munit.FunSuite:
     assert(block.turnRates.distinct.length > size * steps / knots / 2)
     assert(block.turnRates.max > 0.9 && block.turnRates.min < -0.9)
 
-  test("a manoeuvre is flown as the reduced model flies it"):
+  test("a manoeuvre is simulated like by the reduced model"):
     val model     = ReducedModel.AirSim
     val manoeuvre = Manoeuvre(IArray.tabulate(steps)(0.05f * _), IArray.tabulate(steps)(4 + 0.2f * _))
     val flown     = ManoeuvreRollout(situation(Behaviour(track)), objective, dtS).fly(manoeuvre).track

@@ -97,7 +97,7 @@ class PlannerSuite extends munit.FunSuite:
     val plan = improved(planner, situation, 10)
     assertEquals(ManoeuvreRollout(situation, fenced, settings.dtS).fly(plan.manoeuvre).breaches, Vector.empty)
 
-  test("without the vector module the same candidates are flown one after the other"):
+  test("without the vector module equal candidates are simulated one by one"):
     val settings = PlannerSettings(blocksPerSlice = 2)
     val scalar   = new Planner(settings, objective, ScalarBlock(settings.steps))
     val lanes    = new Planner(settings, objective, PlanKernel(settings.steps))

@@ -23,7 +23,7 @@ class PolicyManoeuvreSuite extends munit.FunSuite:
   )
   private val limits = CommandLimits(0, 6, 4)
 
-  /** Flies by what is answered; remembers how often it was asked. */
+  /** Repeats a given answer; remembers the number of its decisions. */
   private final class Answering(answer: (Observation, Int) => Action) extends Policy:
     type Memory = Int
     def start: Int                                            = 0

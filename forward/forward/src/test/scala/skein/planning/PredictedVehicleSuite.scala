@@ -2,7 +2,6 @@ package skein.planning
 
 import skein.vehicle.{ObservedPlant, PlaneReading, ReducedModel}
 
-/** A heading besides what is read. */
 private final case class Headed(
     northM: Double,
     eastM: Double,
@@ -13,7 +12,6 @@ private final case class Headed(
 
 class PredictedVehicleSuite extends munit.FunSuite:
 
-  /** A first-order lag. */
   private final class Lagging(lagS: Double) extends ObservedPlant[Headed]:
     def initial: Headed                   = Headed(0, 0, 0, 0, 0)
     def stepS: Double                     = 0.01
@@ -29,7 +27,7 @@ class PredictedVehicleSuite extends munit.FunSuite:
         )
       Headed(state.northM + north * dtS, state.eastM + east * dtS, north, east, state.heading)
 
-  test("a vehicle is where it was read, and what a reading does not tell is as it was known, or as at rest"):
+  test("a vehicle is at its reading; what readings lack is taken from the known state, or from rest"):
     val at     = PlaneReading(100, -50, 3, 4)
     val known  = PredictedVehicle.of(Lagging(1), at, 1, Vector(9, 9, 9, 9, 0.7))
     val anyhow = PredictedVehicle.of(Lagging(1), at, 1)

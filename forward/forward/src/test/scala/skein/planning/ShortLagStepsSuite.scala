@@ -3,7 +3,7 @@ package skein.planning
 import skein.vehicle.{PlaneReading, ReducedModel}
 
 class ShortLagStepsSuite extends munit.FunSuite:
-  test("a short step comes to what the reduced model's own comes to, within what the series leaves out"):
+  test("a short step agrees with the reduced model's own, within the truncated terms of the series"):
     for
       lagS     <- Seq(0.3, 1.0, 2.967)
       dragPerM <- Seq(0.0, 0.0067)

@@ -18,7 +18,7 @@ class FormsSuite extends munit.FunSuite:
     assertEquals(forms(1002), Right(1002))
     for odd <- Seq(1003, 1005, 1007) do assertEquals(forms(odd).left.map(_.getMessage), Left(s"$odd is odd"))
 
-  test("after so many refusals and no form, nothing more is compiled"):
+  test("after a number of refusals and no form, nothing more is compiled"):
     val (forms, compiled) = counted(mostRefused = 3, _ => false)
     for number <- 1001 to 1020 do assert(forms(number).isLeft)
     assertEquals(compiled(), 3)

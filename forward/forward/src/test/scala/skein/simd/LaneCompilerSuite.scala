@@ -6,8 +6,8 @@ import scala.jdk.CollectionConverters.*
 import skein.formula.{Op, Trace}
 
 class LaneCompilerSuite extends munit.FunSuite:
-  /** A pass through vectors of worlds fetches and stores nothing at its counter alone, or the JVM may take
-    * seconds to compile it ([[LaneFunction.UNUSED]]).
+  /** A pass over vectors of worlds must not load or store at its bare counter, or the JVM may take seconds to
+    * compile it ([[LaneFunction.UNUSED]]).
     */
   for parameters <- 1 to 2 do
     test(s"no index is the loop's counter with nothing added, with parameters: $parameters"):

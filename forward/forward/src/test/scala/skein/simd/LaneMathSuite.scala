@@ -11,13 +11,11 @@ class LaneMathSuite extends munit.FunSuite:
   private def spread(from: Double, to: Double): Array[Float] =
     Array.tabulate(count)(i => (from + (to - from) * i / (count - 1)).toFloat)
 
-  /** A function of one number, compiled. */
   private def compiled(op: Op, xs: Array[Float]): Array[Float] = compiled(_.unary(op, _), xs)
 
   private def atan2(ys: Array[Float], xs: Array[Float]): Array[Float] =
     compiled((trace, y) => trace.binary(Op.Atan2, y, trace.input(1)), ys, xs)
 
-  /** @param of the first input */
   private def compiled(of: (Trace, Node) => Node, inputs: Array[Float]*): Array[Float] =
     val trace    = Trace()
     val function = LaneCompiler.compile(inputs.size, Vector(of(trace, trace.input(0))))
@@ -77,7 +75,7 @@ class LaneMathSuite extends munit.FunSuite:
     val error = (0 until count).map(i => math.abs(out(i) / math.exp(xs(i)) - 1)).max
     assert(error < 2.5e-7, error)
 
-  test("what floats do not hold, and what is no number, comes to what doubles come to"):
+  test("overflow and NaN agree with doubles"):
     val lanes                  = LaneFunction.COUNT
     def one(op: Op, x: Double) = compiled(op, Array.fill(lanes)(x.toFloat)).head
     def two(op: Op, x: Double, y: Double) =

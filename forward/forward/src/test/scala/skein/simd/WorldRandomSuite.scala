@@ -2,7 +2,7 @@ package skein.simd
 
 class WorldRandomSuite extends munit.FunSuite:
 
-  test("vectors give the same bits as scalars"):
+  test("vectors and scalars give equal bits"):
     val keys = Array.tabulate(256)(WorldRandom.key(1, 2, _))
     val bits = Array.ofDim[Int](256)
     for place <- Seq(0, 1, 17, 9599) do

@@ -75,7 +75,7 @@ class ReducedModelSuite extends munit.FunSuite:
     assertEqualsDouble(vehicle.y, 4 + place, 1e-9)
     assertEqualsDouble(vehicle.vy, velocity, 1e-9)
 
-  test("as a predictor it holds a command back for the dead time, whatever the spans it is asked for"):
+  test("as a predictor it holds a command back for the dead time, whatever the requested spans"):
     val predictor       = PlantModel(model)
     val seen            = Kinematics(Vector3(0, 0, -20), Vector3.Zero, Quaternion.Identity, Vector3.Zero)
     val told            = Setpoint.velocityZ(10, 0, -20)

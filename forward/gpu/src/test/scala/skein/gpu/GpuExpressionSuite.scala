@@ -4,8 +4,8 @@ import skein.formula.{Node, Op, Trace}
 import skein.signal.SplitMix64
 import skein.simd.{LaneCompiler, LaneFunction}
 
-/** Every operation of formulas comes to the same on a GPU and by SIMD, to the bit, for ordinary numbers and
-  * for those at the edges.
+/** Every operation of formulas has bit-identical results on a GPU and by SIMD, for ordinary numbers and for
+  * extreme ones.
   */
 class GpuExpressionSuite extends munit.FunSuite, TestGpus:
   private val count  = LaneFunction.COUNT

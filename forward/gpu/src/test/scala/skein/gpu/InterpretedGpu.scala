@@ -3,8 +3,9 @@ package skein.gpu
 import java.nio.{ByteBuffer, ByteOrder}
 import scala.collection.mutable
 
-/** A GPU that interprets kernels thread by thread: slow, and as the PTX specification says, so that kernels
-  * are tested where there is no GPU. It knows the instructions that [[Ptx]] writes, and refuses others.
+/** A GPU that interprets kernels thread by thread: slow, and according to the PTX specification, so that
+  * kernels are tested where there is no GPU. It knows the instructions that [[Ptx]] writes, and refuses
+  * others.
   */
 final class InterpretedGpu extends Gpu:
   def name  = "an interpreter of PTX"
@@ -42,8 +43,10 @@ final class InterpretedGpu extends Gpu:
       for block <- 0 until blocks; thread <- 0 until threadsOfBlock do
         PtxThread(program, values, at => memory(at & ~0xffffffffL), block, threadsOfBlock, thread).run()
 
-/** @param parameters by name, in their order
-  * @param labels by name, the number of the instruction behind each
+/** A parsed kernel.
+  *
+  * @param parameters by name, in their order
+  * @param labels by name, the index of the instruction after each
   * @param tables of branches
   */
 private final case class PtxProgram(
@@ -55,7 +58,9 @@ private final case class PtxProgram(
     tables: Map[String, Vector[String]]
 )
 
-/** @param guard the condition's number and what it must be
+/** One instruction.
+  *
+  * @param guard the condition's number and its required value
   */
 private final case class PtxInstruction(name: String, guard: Option[(Int, Boolean)], operands: Array[String])
 

@@ -8,7 +8,6 @@ trait TestGpus:
 
   private val found = CudaGpu.find()
 
-  /** By their names in tests. */
   protected val gpus: Seq[(String, () => Gpu)] =
     ("interpreted" -> (() => InterpretedGpu())) +: found.toSeq.map(gpu => gpu.name -> (() => gpu))
 

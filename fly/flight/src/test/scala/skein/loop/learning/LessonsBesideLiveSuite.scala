@@ -8,7 +8,7 @@ import scala.jdk.CollectionConverters.*
 
 class LessonsBesideLiveSuite extends munit.FunSuite:
 
-  test("a learner that hangs delays nobody; what is not learned from is counted"):
+  test("a learner that hangs delays no decision; skipped transitions are counted"):
     given system: ActorSystem = ActorSystem("lessons")
     val thread                = Executors.newSingleThreadExecutor()
     val (began, goOn)         = (CountDownLatch(1), CountDownLatch(1))

@@ -54,7 +54,7 @@ class PlanSuite extends munit.FunSuite, Optimised:
     def turns = planned(CountedPlanWorkers(2, 3), ticks = 3).map(_._2.best.plans(0).manoeuvre.turnRates.toSeq)
     assertEquals(turns, turns)
 
-  test("a plan goes on from what is left of the one before: without a slice it is flown to its end"):
+  test("a plan continues the remainder of the one before: without a slice it is executed to its end"):
     val workers = new PlanWorkers:
       private val first                                            = CountedPlanWorkers(1, 5)
       private val none                                             = CountedPlanWorkers(1, 0)

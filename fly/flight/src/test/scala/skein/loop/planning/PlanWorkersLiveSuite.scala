@@ -10,8 +10,8 @@ import skein.testing.Optimised
 import skein.units.Span
 import skein.vehicle.{PlaneReading, ReducedModel}
 
-/** On threads and the real clock: how far a search comes is the machine's affair, what it has found then is
-  * not.
+/** Searches on threads and the real clock: the number of slices depends on the machine, and the result of a
+  * number of slices does not.
   */
 class PlanWorkersLiveSuite extends munit.FunSuite, Optimised:
   private val settings  = PlannerSettings(blocksPerSlice = 1)
@@ -52,14 +52,14 @@ class PlanWorkersLiveSuite extends munit.FunSuite, Optimised:
 
   private val workers = FunFixture[ThreadedPlanWorkers](_ => workersOn(named, named), _.close())
 
-  /** Polls until all searches have come so far. */
+  /** Polls until all searches have finished this number of slices. */
   private def finished(workers: PlanWorkers, problem: PlanProblem): Vector[JointPlan] =
     val search   = workers.begin(problem, warm(problem))
     val deadline = System.nanoTime() + 60_000_000_000L
     while System.nanoTime() < deadline && !search.found.forall(_.slices > 3) do Thread.sleep(1)
     search.finish()
 
-  workers.test("what threads find in so many slices is found again by counting them"): workers =>
+  workers.test("the result of threads after a number of slices is reproduced by counting them"): workers =>
     for stream <- 1 to 3 do
       val found   = finished(workers, problem(stream))
       val planner = JointPlanner()
@@ -86,7 +86,7 @@ class PlanWorkersLiveSuite extends munit.FunSuite, Optimised:
     assert(later.forall(_.slices > 3))
     assertEquals(search.finish().map(_.slices), found.map(_.slices))
 
-  test("a thread that was too long over a slice is replaced by a usual one, and the search goes on"):
+  test("a thread that was too long over a slice is replaced by a usual one, and the search continues"):
     val usual   = Thread.ofPlatform().daemon().name("usual-", 1).factory()
     val made    = AtomicInteger()
     val gaveWay = ConcurrentLinkedQueue[Thread]()

@@ -76,7 +76,7 @@ public abstract class LaneOffers {
 
   abstract void start(int[] worldKeys, TabledDelays[] links);
 
-  /** To a period; they are taken in turn, from 0. */
+  /** Moves to a period; periods are processed in order, from 0. */
   abstract void startRow(int row);
 
   /** Moves to the next round of the period, if it has one. */

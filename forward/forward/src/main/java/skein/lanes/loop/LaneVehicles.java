@@ -49,7 +49,7 @@ public abstract class LaneVehicles {
     startY[world] = (float) agent.startY();
   }
 
-  /** Back to the start of an episode, where they rest. */
+  /** Resets to the start of an episode, where the vehicles rest. */
   void start() {
     Arrays.fill(state, 0f);
     for (int x : new int[] {X, SEEN_X}) System.arraycopy(startX, 0, state, x, WORLDS);

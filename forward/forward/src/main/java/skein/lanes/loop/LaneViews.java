@@ -34,7 +34,7 @@ public final class LaneViews {
 
   private static final int GRAIN_NS = DelayTable.GrainNs();
 
-  /** {@link DelayTable#GrainNs} in seconds. */
+  /** {@link DelayTable#GrainNs} as a time in seconds. */
   public static final float GRAIN_S = GRAIN_NS * 1e-9f;
 
   public static final int NONE = Integer.MAX_VALUE;

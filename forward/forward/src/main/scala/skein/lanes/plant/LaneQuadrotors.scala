@@ -7,7 +7,7 @@ import skein.units.{Quaternion, Vector3}
 import skein.vehicle.Quadrotor
 
 /** Quadrotors with their flight controllers, [[LaneQuadrotors.VEHICLES]] at a time, in floats, under
-  * `moveByVelocityZ`. The scalar [[Quadrotor]] is what is compiled ([[QuadrotorLanes]]), and the reference.
+  * `moveByVelocityZ`. The compiled code and the reference is the scalar [[Quadrotor]] ([[QuadrotorLanes]]).
   * Mutable: one per thread.
   */
 private[skein] final class LaneQuadrotors private[lanes] (lanes: QuadrotorLanes) extends SteppedVehicles:

@@ -14,7 +14,7 @@ private[lanes] final class QuadrotorLanes private (
 ):
   import QuadrotorLanes.*
 
-  /** The numbers of a vehicle's state by their names, each of which is one row. */
+  /** The rows: the numbers of a vehicle's state, by name. */
   val rows: Vector[String] = formula.inputs.map(_.stripPrefix(State)).take(formula.bound.outputs)
 
   def row(name: String): Int = rows.indexOf(name)

@@ -49,7 +49,7 @@ private[skein] final class Timetable private[lanes] (
 private[skein] object Timetable:
   val Fields: Int = 6
 
-  /** Numbers of a reading: position and velocity, north and east. */
+  /** Count of numbers in a reading: position and velocity, north and east. */
   private[lanes] val Read: Int = LaneObservation.READ
 
   /** Least count of times per operation: some clocks need more. */

@@ -9,7 +9,7 @@ class StreamOffersSuite extends munit.FunSuite:
   private val worlds    = LaneOffers.WORLDS
   private val durationS = 30.0
 
-  /** Times from the flight's start, in grains, and places from its first question's. */
+  /** Times from the flight's start, in grains, and places from its first request's. */
   private final case class Told(
       joinedAt: Long,
       nextAt: Option[Long],
@@ -18,7 +18,7 @@ class StreamOffersSuite extends munit.FunSuite:
       place: Vector[Int]
   )
 
-  /** All views of each world, in the order in which they are told. */
+  /** All views of each world, in their order. */
   private def views(
       timing: LoopTiming.Stream,
       vehicles: Int,
@@ -68,7 +68,7 @@ class StreamOffersSuite extends munit.FunSuite:
     vehicles    <- Seq(2, 3, 6)
     (name, bad) <- steady ++ changing
   do
-    test(s"$vehicles vehicles, $name: views by lanes are those told one by one"):
+    test(s"$vehicles vehicles, $name: views by SIMD equal those computed one by one"):
       val timing = LoopTiming.stream(0.1)
       // Side by side with links of which nothing is irregular.
       val links =

@@ -45,7 +45,7 @@ class LaneQuadrotorsSuite extends munit.FunSuite:
       val off = (kernel.positionNed(v) - states(v).positionNed).norm
       assert(off < 2e-3, s"vehicle $v is $off m off")
 
-  test("fewer vehicles fly the same, to the bit"):
+  test("fewer vehicles have equal results, to the bit"):
     val Vector(all, some) = Vector.fill(2)(LaneQuadrotors.of(Quadrotor.AirSim).fold(fail(_), identity))
     some.use(3)
     for kernel <- Seq(all, some) do
@@ -55,7 +55,7 @@ class LaneQuadrotorsSuite extends munit.FunSuite:
       kernel.fly(333)
     for v <- 0 until 3 do assertEquals(some.positionNed(v), all.positionNed(v))
 
-  test("gains that a client has set remember more than lanes keep, which is told"):
+  test("gains that a client has set need more memory than SIMD keeps, which is reported"):
     val told = LaneQuadrotors.of(Quadrotor.AirSim.tuned(CascadeGains.Default)).left.getOrElse("none")
     assert(told.contains("cascadeMemory"), told)
 

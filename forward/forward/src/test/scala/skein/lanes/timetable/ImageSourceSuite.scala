@@ -58,7 +58,7 @@ class ImageSourceSuite extends munit.FunSuite:
         if source.isFound then Some((source.bearing, source.range)) else None
     )
 
-  /** What happens to the images of a flight, in turn. */
+  /** The events of a flight's images, in order. */
   private def happens(model: SensorModel, agent: Int, link: TabledDelays, key: Int): Vector[Happens] =
     val all      = ArrayBuffer.empty[Happens]
     val observer = new LoopObserver:
@@ -82,7 +82,9 @@ class ImageSourceSuite extends munit.FunSuite:
 private object ImageSourceSuite:
   private val DurationS = 12.0
 
-  /** @param errors of an image that is taken, if the opponent is found wherever it is in view; none where it
-    *   is known what an image shows
+  /** An event of an image.
+    *
+    * @param errors of an image that is taken, if the opponent is found wherever it is in view; None where an
+    *   image's result becomes known
     */
   private final case class Happens(image: Int, atNs: Long, errors: Option[Option[(Float, Float)]])

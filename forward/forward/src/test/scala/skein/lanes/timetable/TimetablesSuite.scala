@@ -14,7 +14,7 @@ class TimetablesSuite extends munit.FunSuite:
     // The oldest first, all would be made 20 times; 100 of 150 have room.
     assert(clue(times) < 1800)
 
-  test("what has room is made once, and one that has none is made all the same"):
+  test("a timetable that fits is made once, and one that does not fit is made each time"):
     val timetables           = Timetables(mostBytes = 3 * made(10).bytes)
     var times                = 0
     def get(of: Int)(n: Int) = timetables.getOrMake(of):

@@ -9,7 +9,7 @@ import skein.lanes.timetable.Timetable
   * @param views the register of the views' address
   */
 private[lanes] final class GpuRecord(code: Ptx, base: Int, views: Int):
-  /** One of the operation's fields, from 1 on. */
+  /** A field of the operation, from 1 on. */
   def field(number: Int): Int = code.loadWhole(base, number)
 
   /** Address in own memory of one of the operation's places. */

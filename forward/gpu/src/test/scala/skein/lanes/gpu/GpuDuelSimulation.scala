@@ -7,8 +7,8 @@ import skein.policy.{PaperEvader, PaperPursuer, HeadingPolicy}
 import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
 
-/** What flies on a GPU comes to what it comes to on the CPU, to the bit: by an interpreter of the GPU's
-  * instructions, and by the GPU itself, where there is one.
+/** Results on a GPU are bit-identical to those on the CPU: by an interpreter of the GPU's instructions, and
+  * by the GPU itself, where there is one.
   */
 class GpuDuelSimulation extends munit.FunSuite, TestGpus:
   override def munitTimeout: scala.concurrent.duration.Duration =

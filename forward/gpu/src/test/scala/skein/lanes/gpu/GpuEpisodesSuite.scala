@@ -17,7 +17,7 @@ class GpuEpisodesSuite extends munit.FunSuite:
   private def episodes(mostBytes: Long) =
     GpuEpisodes(InterpretedGpu(), 2, shows = false, threads = 1, mostBytes)
 
-  test("what a call needs stays, however little may be held; what nobody needs is forgotten"):
+  test("the episodes of a call stay, however small the limit; unused ones are evicted"):
     val held              = episodes(mostBytes = 1)
     var made              = Vector.empty[Int]
     def bring(keys: Int*) = held.bring(keys.toVector, () => false): i =>
