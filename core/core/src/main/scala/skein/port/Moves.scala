@@ -5,7 +5,7 @@ import skein.units.Span
 /** How AirSim executes moves of a vehicle, and how loops pace them. */
 object Moves:
   /** Limit of unanswered moves of one vehicle, unless configured: the one in effect and the one that replaces
-    * it. A third one that arrives during the replacement waits for its end, not its begin.
+    * it. A third one that arrives during the replacement waits for its end, not its start.
     */
   final val InFlight = 2
 

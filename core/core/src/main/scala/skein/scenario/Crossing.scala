@@ -4,7 +4,7 @@ import skein.policy.*
 import skein.units.Decimals.significant
 import skein.units.Metres
 
-/** Streams of vehicles cross at right angles, each vehicle flies to a goal beyond the crossing and avoids all
+/** Streams of vehicles cross at right angles; each vehicle flies to a goal beyond the crossing and avoids all
   * others.
   *
   * @param vehicles number of vehicles, in all streams

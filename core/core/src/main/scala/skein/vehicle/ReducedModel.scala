@@ -44,7 +44,7 @@ final case class ReducedModel(
 
   def isLag: Boolean = !drags && !turns
 
-  /** The state at a time after the begin of a piece. */
+  /** The state at a time after the start of a piece. */
   def step(from: PlaneReading, wantedVx: Double, wantedVy: Double, spanS: Double): PlaneReading =
     import from.{eastMps as vy, northMps as vx}
     val drag             = if drags then dragPerM * math.sqrt(vx * vx + vy * vy) else 0

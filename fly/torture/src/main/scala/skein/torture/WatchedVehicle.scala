@@ -20,7 +20,7 @@ final case class Sending(at: Instant, north: Float, east: Float)
   */
 final case class ReportedState(question: Long, state: Stamped[Kinematics])
 
-/** A port that counts every call: its begin, its end, its report, and the number of unfinished calls.
+/** A port that counts every call: its start, its end, its report, and the number of unfinished calls.
   *
   * @param eyes further sensors, which count their calls themselves
   */

@@ -7,7 +7,7 @@ public abstract class LaneFunction {
   /** Number of worlds of one call: a multiple of every lane count, small enough for the first-level cache. */
   public static final int COUNT = 128;
 
-  /** Number of unused entries at the begin of scratch and of parameters. Otherwise the index of the first
+  /** Number of unused entries at the start of scratch and of parameters. Otherwise the index of the first
    * entry would be the loop's counter with nothing added, which the JIT compiler may mistake for the loop's
    * end; then it peels the loop, for 14 s with some expressions.
    */

@@ -36,7 +36,7 @@ final class ArrivedReadings {
   /** Number of ranks that {@link #next} has visited. */
   private int gone;
 
-  /** When the newest reading was sampled, from the period's begin, in grains. */
+  /** When the newest reading was sampled, from the period's start, in grains. */
   final int[] newestAt = new int[WORLDS];
 
   /** 1 where a world has a reading of the current rank; and the vectors with one. */
@@ -53,7 +53,7 @@ final class ArrivedReadings {
    *
    * @param whose the vehicle of each reading
    * @param vehicle this one
-   * @param asked when it was requested, sampled and received, from the period's begin, in grains
+   * @param asked when it was requested, sampled and received, from the period's start, in grains
    * @param delays the means over all vehicles' readings
    */
   void take(
@@ -129,7 +129,7 @@ final class ArrivedReadings {
     return readings.get(gone - 1);
   }
 
-  /** When the current readings were sampled, from the period's begin, in grains. */
+  /** When the current readings were sampled, from the period's start, in grains. */
   int[] madeAt() {
     return here().madeAt;
   }

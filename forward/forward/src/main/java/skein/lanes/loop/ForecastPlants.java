@@ -36,12 +36,12 @@ final class ForecastPlants implements ForecastVehicles {
   /** The state at the newest reading, if readings do not contain all of it. */
   private final float[] held;
 
-  /** The state at the begin of a step, and at its end. */
+  /** The state at the start of a step, and at its end. */
   private final float[] from, to;
 
   private final float[] north = new float[WORLDS], east = new float[WORLDS], forS = new float[WORLDS];
 
-  /** Time simulated so far, end of the command in effect, and latest begin of the next step, s. */
+  /** Time simulated so far, end of the command in effect, and latest start of the next step, s. */
   private final float[] flownS = new float[WORLDS], untilS = new float[WORLDS], stopS = new float[WORLDS];
 
   private final float[] goes = new float[WORLDS];
@@ -106,7 +106,7 @@ final class ForecastPlants implements ForecastVehicles {
     correct.apply();
   }
 
-  /** Simulates from the begin of the track to its end. */
+  /** Simulates from the start of the track to its end. */
   private void fly(LaneVectors vectors, ForecastTrack way) {
     Arrays.fill(flownS, 0f);
     Arrays.fill(forS, stepS);

@@ -50,7 +50,7 @@ final class ForecastTrack {
   private final float periodS;
 
   /** The row in which the newest reading became known, -1 before the first; when it was sampled, from that
-   * row's begin.
+   * row's start.
    */
   final int[] knownRow = new int[WORLDS], readAt = new int[WORLDS];
 
@@ -168,7 +168,7 @@ final class ForecastTrack {
 
   /** Records commands.
    *
-   * @param times when each is sent, from the row's begin; {@link LaneOffers#NONE} where none is
+   * @param times when each is sent, from the row's start; {@link LaneOffers#NONE} where none is
    * @param answers when its arrival becomes known, {@link LaneOffers#NONE} where it never does
    */
   void send(int row, LaneVectors vectors, int[] times, int[] answers, Directions directions) {
@@ -225,7 +225,7 @@ final class ForecastTrack {
     }
   }
 
-  /** From the newest reading until a moment, given from the row's begin in grains; s. */
+  /** From the newest reading until a moment, given from the row's start in grains; s. */
   private FloatVector sinceReadingS(int row, int i, IntVector moment) {
     return ((FloatVector) moment.sub(IntVector.fromArray(INTS, readAt, i)).convertShape(I2F, SPECIES, 0))
         .mul(LaneViews.GRAIN_S)
@@ -346,8 +346,8 @@ final class ForecastTrack {
 
   /** Computes the track from the newest reading until a command sent at a given moment takes effect.
    *
-   * @param known by world, until when received answers are considered, from the row's begin
-   * @param when the moments of sending, from the row's begin; {@link LaneOffers#NONE} where no track is
+   * @param known by world, until when received answers are considered, from the row's start
+   * @param when the moments of sending, from the row's start; {@link LaneOffers#NONE} where no track is
    *   needed
    * @param isFirst whether it is the first track since readings were added
    */
@@ -460,7 +460,7 @@ final class ForecastTrack {
   /** Reports the sampling times of readings that are fresh.
    *
    * @param joined set to {@link LaneOffers#NONE} where the vehicle was never read
-   * @param into from the row's begin
+   * @param into from the row's start
    */
   void tell(int[] joined, int[] into) {
     System.arraycopy(arrived.newestAt, 0, into, 0, WORLDS);

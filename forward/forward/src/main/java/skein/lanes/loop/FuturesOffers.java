@@ -36,7 +36,7 @@ final class FuturesOffers extends LaneOffers {
   // Tasks by agent and slot, from their own step's begin: when they begin, and when they end with an offer.
   private final int[][][] beginAt, end;
 
-  /** The latest ends of all earlier tasks, the latest first, from the begin of the last known step. */
+  /** The latest ends of all earlier tasks, the latest first, from the start of the last known step. */
   private final int[][] latest;
 
   /** When the first task began in the last step that was not missed. */

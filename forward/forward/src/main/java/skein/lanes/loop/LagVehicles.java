@@ -22,7 +22,7 @@ import skein.vehicle.FirstOrderLag;
 import skein.vehicle.ReducedModel;
 
 /** The vehicles of one role in many worlds, with first-order lag, and the commands on their way to them,
- * which take effect at different times in each world. Positions are those at a row's begin; readings are
+ * which take effect at different times in each world. Positions are those at a row's start; readings are
  * sampled at different times in each world, and include the commands in effect before.
  *
  * <p>The response to commanded velocities is linear: position and velocity are those without the commands
@@ -37,7 +37,7 @@ import skein.vehicle.ReducedModel;
 public final class LagVehicles extends LaneVehicles {
   private static final float FUTURE = 1e9f;
 
-  /** No reading is sampled longer than this before its row's begin, s. */
+  /** No reading is sampled longer than this before its row's start, s. */
   private final float earliestS;
 
   private final double periodS;
@@ -64,7 +64,7 @@ public final class LagVehicles extends LaneVehicles {
   private static final int[] AT_BEGIN = new int[WORLDS];
   private static final LaneVectors ALL = LaneVectors.all();
 
-  /** By slot: when the command takes effect, from its own row's begin, s; e to that time over the lag; and
+  /** By slot: when the command takes effect, from its own row's start, s; e to that time over the lag; and
    * the change of the commanded velocity.
    */
   private float[] commands;
@@ -97,7 +97,7 @@ public final class LagVehicles extends LaneVehicles {
   private static final double MOST_LAGS = 80;
 
   /** @param longestS the longest time for which a command is on its way
-   * @param earliestS no reading is sampled longer than this before its row's begin
+   * @param earliestS no reading is sampled longer than this before its row's start
    */
   public LagVehicles(
       RolloutAgent agent, ReducedModel model, double periodS, double longestS, double earliestS) {
@@ -356,7 +356,7 @@ public final class LagVehicles extends LaneVehicles {
     }
   }
 
-  /** Corrects readings that were sampled before the row's begin. */
+  /** Corrects readings that were sampled before the row's start. */
   private void lookBack(int[] at, int[] fresh) {
     for (int i = 0; i < WORLDS; i += LANES) {
       long early = IntVector.fromArray(INTS, at, i).compare(LT, 0).toLong();

@@ -24,7 +24,7 @@ import skein.simd.WorldRandom;
 
 /** One vehicle in many worlds, with its controllers, which follow {@code skein.flow.Pace} and {@code
  * skein.flow.Steer}: when each decides on its offer, and when its command takes effect. Subclasses make the
- * decisions. Times are passed in grains of 4 ns from the period's begin, and stored from the episode's begin,
+ * decisions. Times are passed in grains of 4 ns from the period's start, and stored from the episode's start,
  * modulo 2³²; a stored time that is long past is moved closer before it could be mistaken for the future.
  */
 public abstract class LaneAgents {
@@ -62,7 +62,7 @@ public abstract class LaneAgents {
   /** When the last command was sent; not maintained if all offers are {@link #together}. */
   public final int[] sentAt = new int[WORLDS];
 
-  /** When it decides, from the period's begin; {@link LaneOffers#NONE} where it does not. */
+  /** When it decides, from the period's start; {@link LaneOffers#NONE} where it does not. */
   public final int[] decides = new int[WORLDS];
 
   /** 1 where it decides before it considers an offer of the moment in which it may send again: with a {@link

@@ -107,7 +107,7 @@ final class LaneDelays {
 
   /** Draws a line's delays at different places in each world.
    *
-   * @param begin origin of the times, since the episode's begin, in grains
+   * @param begin origin of the times, since the episode's start, in grains
    * @param sentAt when each message is sent; any time where none is
    */
   void draw(LaneVectors vectors, int[] places, int line, long begin, int[] sentAt, int[] into) {

@@ -16,10 +16,10 @@ import skein.forward.RolloutAgent;
 import skein.lanes.policy.Directions;
 
 /** The vehicles of one role in many worlds, whose commands take effect at different times in each. They move
- * in pieces, each a closed form from its begin; recent pieces are kept, so that a vehicle can be read at any
+ * in pieces, each a closed form from its start; recent pieces are kept, so that a vehicle can be read at any
  * recent moment. A piece has a maximum length; if no command ends it before, another begins under that
  * command. A slot holds the piece that was the newest in each world when it was filled. Times are in grains
- * since the episode's begin, modulo 2³²; two compared times never differ by half of that.
+ * since the episode's start, modulo 2³²; two compared times never differ by half of that.
  */
 public abstract class LaneFlights extends LaneVehicles {
   /** Offsets of a piece's numbers: the command's direction, north, then east; the subclass adds others. */
@@ -39,7 +39,7 @@ public abstract class LaneFlights extends LaneVehicles {
   /** Number of slots filled so far; the newest is one less. */
   private int filled;
 
-  /** The requested times; the pieces in which they lie, and the time from their begin, s. */
+  /** The requested times; the pieces in which they lie, and the time from their start, s. */
   private final int[] until = new int[WORLDS];
 
   final float[] chosen, sinceS = new float[WORLDS];
@@ -125,8 +125,8 @@ public abstract class LaneFlights extends LaneVehicles {
     begin(vectors, fill(row, vectors, until), acts, commanded);
   }
 
-  /** Requests times from a row's begin where a number is at least {@code least} and below {@link
-   * LaneOffers#NONE}, and elsewhere the begin of the newest piece.
+  /** Requests times from a row's start where a number is at least {@code least} and below {@link
+   * LaneOffers#NONE}, and elsewhere the start of the newest piece.
    */
   private void ask(int row, LaneVectors vectors, int[] times, int[] numbers, int least) {
     int newest = (filled - 1 & slots - 1) * WORLDS;
@@ -206,7 +206,7 @@ public abstract class LaneFlights extends LaneVehicles {
     }
   }
 
-  /** Chooses the newest pieces, with the time from their begin to the requested times. */
+  /** Chooses the newest pieces, with the time from their start to the requested times. */
   private void chooseNewest(LaneVectors vectors) {
     int newest = (filled - 1 & slots - 1) * WORLDS;
     FloatVector grainS = FloatVector.broadcast(SPECIES, LaneViews.GRAIN_S);

@@ -28,7 +28,7 @@ public final class LaneForecast {
 
   private final int[] predictedFor = new int[WORLDS];
 
-  /** Deadline, from a period's begin, of messages that its decisions consider. */
+  /** Deadline, from a period's start, of messages that its decisions consider. */
   final int dueGrains;
 
   private final int[] due = new int[WORLDS];
@@ -70,7 +70,7 @@ public final class LaneForecast {
   /** Adds readings: one per world at most, received no earlier than those before.
    *
    * @param whose the number of the vehicle, or -1 for none
-   * @param asked when it was requested, sampled and received, from the row's begin
+   * @param asked when it was requested, sampled and received, from the row's start
    */
   void enter(LaneVectors vectors, int[] whose, int[] asked, int[] made, int[] received) {
     for (int v = 0; v < tracks.length; v++)
@@ -81,7 +81,7 @@ public final class LaneForecast {
    * consider.
    *
    * @param joinedAt set to {@link #dueGrains} in those worlds, elsewhere to {@link LaneOffers#NONE}
-   * @param madeAt by vehicle, when a fresh reading was sampled, from the row's begin
+   * @param madeAt by vehicle, when a fresh reading was sampled, from the row's start
    */
   void tell(int[] joinedAt, int[][] madeAt) {
     Arrays.fill(joinedAt, dueGrains);
@@ -102,7 +102,7 @@ public final class LaneForecast {
 
   /** Predicts the vehicles' states for the time at which a command sent at a moment takes effect.
    *
-   * @param when by world, from the row's begin; {@link LaneOffers#NONE} where there is no decision
+   * @param when by world, from the row's start; {@link LaneOffers#NONE} where there is no decision
    */
   void predict(LaneVectors vectors, int[] when) {
     boolean isFirst = laidRow < row;
@@ -132,7 +132,7 @@ public final class LaneForecast {
 
   /** Records the commands of a period.
    *
-   * @param times when each is sent, from the row's begin; {@link LaneOffers#NONE} where none is
+   * @param times when each is sent, from the row's start; {@link LaneOffers#NONE} where none is
    * @param answers when its arrival becomes known
    */
   void send(int vehicle, LaneVectors vectors, int[] times, int[] answers, Directions directions) {

@@ -16,7 +16,7 @@ import skein.lanes.policy.LanePolicy;
  * <p>Worlds advance through the flight period by period, together. Each period has rounds ("beats") of
  * offers: of each world and agent at most one, none earlier than one of an earlier round. While some world
  * has an offer in the period, others may already have theirs of {@link #rowsAhead} later periods, so that
- * nearly all worlds have one in every round. Times are in {@link DelayTable#GrainNs} from the period's begin.
+ * nearly all worlds have one in every round. Times are in {@link DelayTable#GrainNs} from the period's start.
  */
 public abstract class LaneOffers {
   static final int WORLDS = LanePolicy.WORLDS;

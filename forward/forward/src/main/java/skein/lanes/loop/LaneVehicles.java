@@ -14,13 +14,13 @@ import skein.lanes.policy.Directions;
 import skein.lanes.policy.LanePolicy;
 
 /** The vehicles of one role in many worlds, whose commands take effect at different times in each. Times
- * count from the begin of a period; periods are processed in order. {@link LagVehicles} and {@link
+ * count from the start of a period; periods are processed in order. {@link LagVehicles} and {@link
  * LaneFlights} are the two representations of commands not yet in effect.
  */
 public abstract class LaneVehicles {
   static final int WORLDS = LanePolicy.WORLDS;
 
-  /** Offsets of each world's numbers in {@link #state}: position at the period's begin, m; position and
+  /** Offsets of each world's numbers in {@link #state}: position at the period's start, m; position and
    * velocity of the last reading, m and m/s; north, then east. Subclasses may keep more from {@link #OWN} on.
    * A single array, because passes over many arrays spend their time on addresses.
    */
@@ -60,12 +60,12 @@ public abstract class LaneVehicles {
    *
    * @param vectors in which some world is read
    * @param joined less than {@link LaneOffers#NONE} where a view was joined
-   * @param at when they are read, from the row's begin, in grains
+   * @param at when they are read, from the row's start, in grains
    */
   abstract void read(
       int row, LaneVectors vectors, int[] joined, int[] at, int[] fresh, boolean withVelocity);
 
-  /** Simulates up to a row's begin.
+  /** Simulates up to a row's start.
    *
    * @param isLookedAt whether their positions then are used
    */
@@ -74,14 +74,14 @@ public abstract class LaneVehicles {
   /** Lets commands take effect, none earlier than the one before.
    *
    * @param vectors in which some command does
-   * @param acts when, from the row's begin, in grains; {@link LaneOffers#NONE} where none does
+   * @param acts when, from the row's start, in grains; {@link LaneOffers#NONE} where none does
    */
   abstract void act(int row, LaneVectors vectors, int[] acts, Directions commanded);
 
   /** Returns the vehicles' positions at recent moments, without changing the last readings.
    *
    * @param vectors with a requested moment
-   * @param at when, from the row's begin, in grains; {@link LaneOffers#NONE} where none is requested
+   * @param at when, from the row's start, in grains; {@link LaneOffers#NONE} where none is requested
    * @param north and {@code east}: positions, m
    */
   final void look(int row, LaneVectors vectors, int[] at, float[] north, float[] east) {

@@ -35,7 +35,7 @@ public class LoopEye extends CameraTrackerLanes {
   private final LaneVehicles ours, theirs;
   private final long periodNs;
 
-  /** The begin of the period, since the episode's begin. */
+  /** The start of the period, since the episode's start. */
   private long beginNs;
 
   private int row;
@@ -73,7 +73,7 @@ public class LoopEye extends CameraTrackerLanes {
       reached = new float[BELIEF * WORLDS],
       replayed = new float[BELIEF * WORLDS];
 
-  /** All images earlier than this before a period's begin have been taken. */
+  /** All images earlier than this before a period's start have been taken. */
   private final int[] longAgo = new int[WORLDS];
 
   /** @param own the agent with the camera
@@ -114,7 +114,7 @@ public class LoopEye extends CameraTrackerLanes {
 
   /** Fills the estimates for decisions, and points the camera at them where a decision is made.
    *
-   * @param decides when, from the period's begin; {@link LaneOffers#NONE} where there is none
+   * @param decides when, from the period's start; {@link LaneOffers#NONE} where there is none
    * @param own estimated positions of the own vehicles: north from {@code x} on, east from {@code y} on
    * @param actsS time until the decision takes effect, if {@code own} is for that moment; else null
    */
@@ -144,7 +144,7 @@ public class LoopEye extends CameraTrackerLanes {
   /** Takes images, and evaluates them, up to given moments. The camera does not turn between decisions, so
    * all images are taken before any is evaluated.
    *
-   * @param until from the period's begin; {@link LaneOffers#NONE} in worlds that stay unchanged
+   * @param until from the period's start; {@link LaneOffers#NONE} in worlds that stay unchanged
    */
   private void see(LaneVectors vectors, int[] until) {
     boolean more = true;

@@ -124,7 +124,7 @@ public final class LoopKernel {
     if (counts) scores.score(timeS);
   }
 
-  /** From a row's begin to the end of the episode, limited to the range of integers. */
+  /** From a row's start to the end of the episode, limited to the range of integers. */
   private int grainsToEnd(int row) {
     double seconds = (steps - row) * periodS;
     return seconds < 7 ? LaneViews.grains(seconds) : Integer.MAX_VALUE;

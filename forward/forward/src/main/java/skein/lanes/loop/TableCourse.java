@@ -32,7 +32,7 @@ final class TableCourse {
     know();
   }
 
-  /** Where the table begins for a message sent at this time, since the flight's begin, in grains. */
+  /** Where the table begins for a message sent at this time, since the flight's start, in grains. */
   int tableAt(long sentAt) {
     while (sentAt >= ends[at]) {
       if (at + 1 == count) {

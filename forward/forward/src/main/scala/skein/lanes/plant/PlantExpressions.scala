@@ -7,7 +7,7 @@ import skein.vehicle.Plant
   * length 1, then the plant's own numbers.
   *
   * @param first the first parameter's number
-  * @param state its numbers at the begin of the step
+  * @param state its numbers at the start of the step
   * @param north of the command, over the speed
   * @param spanS duration of the step
   * @param taken which numbers of the final state are used

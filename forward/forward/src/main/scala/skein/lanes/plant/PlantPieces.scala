@@ -6,7 +6,7 @@ import skein.vehicle.Plant
 
 /** A plant's motion during one step, in worlds whose steps begin at different times. Compiled once for all
   * plants of a form. Stored for a step are the command, north and east over the speed, then the state at its
-  * begin, and then, unless the state contains it, the vehicle's start. A vehicle rests under a command that
+  * start, and then, unless the state contains it, the vehicle's start. A vehicle rests under a command that
   * is NaN.
   *
   * @param places the state's numbers that initially equal the vehicle's start, north and east, if there are
@@ -44,7 +44,7 @@ private[lanes] final class PlantPieces(stepping: Formula, reading: Formula, plac
     if places.isDefined then expressions.seen
     else expressions.seenFrom(trace.input(starts(0)), trace.input(starts(1)))
 
-  /** The function for the state at a time after the begin of the step, row by row. */
+  /** The function for the state at a time after the start of the step, row by row. */
   val flown: BoundFunction = bound(expressions.stepped)
 
   val position: BoundFunction = bound(seen.take(2))
@@ -59,7 +59,7 @@ private[lanes] final class PlantPieces(stepping: Formula, reading: Formula, plac
     (plant.stepS +: expressions.parametersOf(plant, speedMps)).map(_.toFloat)
 
 private[lanes] object PlantPieces:
-  /** Inputs of the expressions: the stored numbers, by row, and the time since the begin of the step, s. */
+  /** Inputs of the expressions: the stored numbers, by row, and the time since the start of the step, s. */
   val North: Int = 0
   val East: Int  = 1
   val State: Int = 2

@@ -6,7 +6,7 @@ import skein.simd.BoundFunction
 import skein.vehicle.Plant
 
 /** A plant's step, split by when its inputs are known, for worlds whose steps begin and end together. Values
-  * of the state and the command alone are computed at the begin of a step and stored; values of the time
+  * of the state and the command alone are computed at the start of a step and stored; values of the time
   * alone are equal in all worlds and passed in; only the rest is computed at each moment. Compiled once for
   * all plants of a form.
   *

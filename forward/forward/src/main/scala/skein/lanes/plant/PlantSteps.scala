@@ -56,7 +56,7 @@ private[skein] object PlantSteps:
     private val north = stepped.place(count)
     private val east  = stepped.place(count + 1)
 
-    /** Sets the rows of the state at the begin of a step.
+    /** Sets the rows of the state at the start of a step.
       *
       * @param apart distance between the rows of successive steps; after the last in the array follow the
       *   first

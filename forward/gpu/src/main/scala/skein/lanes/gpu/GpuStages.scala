@@ -40,7 +40,7 @@ private[lanes] final class GpuStages(
   def goOn(steps: Int): Unit =
     code.repeat(steps)(kept.take(write(stages.goOn, Nowhere, Nowhere, constantTime)))
 
-  /** Position and, if requested, velocity, at a time since the begin of the step that these numbers
+  /** Position and, if requested, velocity, at a time since the start of the step that these numbers
     * represent.
     */
   def look(withVelocity: Boolean, time: Int => Int): Vector[Int] =

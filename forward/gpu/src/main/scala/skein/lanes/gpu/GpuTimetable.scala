@@ -143,7 +143,7 @@ private[lanes] object GpuTimetable:
     def score: Int                                     = 4 * vehicles
     def show: Int                                      = score + 1
 
-    /** Labels for the begin of a prediction, its continuation under a command, and its end. */
+    /** Labels for the start of a prediction, its continuation under a command, and its end. */
     def predict(vehicle: Int): Int   = show + 1 + vehicle
     def carry(vehicle: Int): Int     = predict(vehicles + vehicle)
     def predicted(vehicle: Int): Int = carry(vehicles + vehicle)
