@@ -18,7 +18,7 @@ def on_config(config):
         if found := new_pages(text, seen):
             pages.append({title: found})
     nav = [{"Skein": "README.md"}, {"Documentation": pages}]
-    nav += [{"Architecture": "ARCHITECTURE.md"}, {"Releases": "CHANGELOG.md"}]
+    nav += [{"Architecture": "ARCHITECTURE.md"}]
     config.nav = [*nav, {"API": [{"Scala": "api/scala/index.html"}, {"Python": "api/python.md"}]}]
 
 
