@@ -20,7 +20,9 @@ object Packaging {
     "jdk.incubator.vector",
     "jdk.management",
     "jdk.net",
-    "jdk.unsupported"
+    "jdk.unsupported",
+    // JPype looks for packages in jars.
+    "jdk.zipfs"
   )
 
   /** Where the vector module is resolved by itself, the JVM is not told to compile it specially. */
