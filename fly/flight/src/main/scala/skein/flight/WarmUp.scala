@@ -38,10 +38,12 @@ object WarmUp:
     * @return number of flights, or why one failed
     */
   def fly(settings: FlySettings, flights: Int, clock: Clock): Either[String, Int] =
-    val short = settings.copy(
+    // For another process virtual time stands still: who is slow would take minutes.
+    val policies = settings.policies.filterNot(OutsidePolicy.decides)
+    val short    = settings.copy(
       duration = settings.duration.min(Flown),
-      // For another process virtual time stands still: who is slow would take minutes.
-      policies = settings.policies.filterNot(OutsidePolicy.decides),
+      policies = policies,
+      onlyPolicies = settings.onlyPolicies && policies.nonEmpty,
       solver = settings.solver.map(_ => SolverChoice.Link(LatencyProfile.direct))
     )
     val plans = short.plans
