@@ -72,7 +72,7 @@ trait ReadySearch:
     * @param alone what flies them so
     * @param accelerator flies shared episodes only
     */
-  protected final def shares(by: SearchMethod, accelerator: Option[Accelerator], alone: Engine): Boolean =
+  protected final def shares(by: SearchMethod, accelerator: Option[Accelerator], alone: => Engine): Boolean =
     accelerator.nonEmpty || by.together(space.dimension) >= ReadySearch.ShareFrom || !alone.isFast
 
   /** How many episodes are flown in a second, for people; where that is few, by flying one. */
