@@ -7,7 +7,7 @@ package skein.vehicle
   *
   * @tparam S the state: a case class of doubles, or of such
   */
-trait Plant[S]:
+trait Plant[S] extends PlantTiming:
 
   def initial: S
 
@@ -20,6 +20,8 @@ trait Plant[S]:
 
   def read(state: S): PlaneReading
 
+/** The times of a plant. */
+trait PlantTiming:
   /** Longest step, s. Steps begin when a command takes effect, and every `stepS` after that. */
   def stepS: Double
 

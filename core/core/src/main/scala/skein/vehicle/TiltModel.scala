@@ -1,0 +1,129 @@
+package skein.vehicle
+
+/** AirSim's quadrotor without its fastest parts: the cascade of [[FlightController]] from velocities to tilt
+  * and throttle, where rotors and rotation rates follow at once; nose to north. In each horizontal axis
+  *
+  *   - the wanted tilt is k · (u − v + tilt · third), at most `maxTilt`, with k = velocityP · maxTilt: the
+  *     quirk by which the third goal counts as wanted speed once the vehicle tilts;
+  *   - the tilt follows it by `angleP` · `maxRate`, at most at `maxRate`;
+  *   - v' = g · throttle / hover · sin(tilt) − drag · |v| · v.
+  *
+  * The throttle follows the vertical controller, with its integral and its limits. Tilts are small enough for
+  * the first terms of sine and cosine. Off the whole quadrotor by at most 1 % of the path, climbing, sinking
+  * and turning (`TiltModelSuite`).
+  *
+  * @param hover throttle at which thrust balances weight
+  * @param sideDragPerM deceleration per squared horizontal speed, 1/m
+  * @param downDragPerM deceleration per squared speed through the rotors' discs, 1/m
+  * @param deadTimeS stands for the lag of rotors and rates
+  */
+final case class TiltModel(
+    hover: Double,
+    sideDragPerM: Double,
+    downDragPerM: Double,
+    override val deadTimeS: Double,
+    gains: ControllerGains = ControllerGains()
+) extends SpatialPlant[TiltState]:
+  private val tiltPerMps   = gains.velocityP * gains.maxTilt
+  private val tiltPerS     = gains.angleP * gains.maxRate
+  private val climbPerM    = gains.positionP * gains.maxVelocity
+  private val discountPerS = (1 - gains.verticalDiscount) / TiltModel.ControlS
+
+  def stepS: Double = 0.02
+
+  def initial(downM: Double): TiltState = TiltState(0, 0, downM, 0, 0, 0, 0, 0, 1 - 2 * hover, 1)
+
+  def read(state: TiltState): SpaceReading =
+    import state.*
+    SpaceReading(northM, eastM, northMps, eastMps, downM, downMps)
+
+  def step(
+      from: TiltState,
+      northMps: Double,
+      eastMps: Double,
+      third: Double,
+      holds: Double,
+      dtS: Double
+  ): TiltState =
+    import from.{northMps as vn, eastMps as ve, downMps as vd}
+    val tiltNorth = tilted(from.tiltNorth, northMps - vn, third - vd, dtS)
+    val tiltEast  = tilted(from.tiltEast, eastMps - ve, third - vd, dtS)
+    val climbs    =
+      if holds > 0 then
+        clip(climbPerM * (third - from.downM), gains.maxVelocity) + tiltNorth * vn + tiltEast * ve
+      else third - tiltNorth * (northMps - vn) - tiltEast * (eastMps - ve)
+    val error    = climbs - vd
+    val before   = if holds == from.held then from.integral else 0
+    val integral = clip(before + (gains.verticalI * error - discountPerS * before) * dtS, 1)
+    val throttle = ((1 - clip(gains.verticalP * error + integral, 1)) / 2).max(gains.minThrottle)
+    val lift     = TiltModel.Gravity * throttle / hover
+    val through  = vd - tiltNorth * vn - tiltEast * ve
+    val pushes   = lift + downDragPerM * through * through.abs
+    val nextVn   = vn + (pushes * sine(tiltNorth) - sideDragPerM * vn * vn.abs) * dtS
+    val nextVe   = ve + (pushes * sine(tiltEast) - sideDragPerM * ve * ve.abs) * dtS
+    val level    = 1 - (tiltNorth * tiltNorth + tiltEast * tiltEast) / 2
+    val nextVd   = vd + (TiltModel.Gravity - pushes * level) * dtS
+    TiltState(
+      from.northM + (vn + nextVn) / 2 * dtS,
+      from.eastM + (ve + nextVe) / 2 * dtS,
+      from.downM + (vd + nextVd) / 2 * dtS,
+      nextVn,
+      nextVe,
+      nextVd,
+      tiltNorth,
+      tiltEast,
+      integral,
+      holds
+    )
+
+  /** The tilt along an axis after a time, rad.
+    *
+    * @param errorMps wanted over present velocity along the axis
+    */
+  private def tilted(tilt: Double, errorMps: Double, sinkMps: Double, dtS: Double): Double =
+    val wanted = clip(tiltPerMps * (errorMps + tilt * sinkMps), gains.maxTilt)
+    tilt + clip(tiltPerS * (wanted - tilt), gains.maxRate) * dtS
+
+  private def sine(tilt: Double) = tilt - tilt * tilt * tilt / 6
+
+  private def clip(value: Double, most: Double) = value.max(-most).min(most)
+
+/** The state of a [[TiltModel]].
+  *
+  * @param tiltNorth rad, positive where it accelerates the vehicle to north
+  * @param integral of the vertical velocity's controller
+  * @param held 1 if the last command held an altitude, else 0
+  */
+final case class TiltState(
+    northM: Double,
+    eastM: Double,
+    downM: Double,
+    northMps: Double,
+    eastMps: Double,
+    downMps: Double,
+    tiltNorth: Double,
+    tiltEast: Double,
+    integral: Double,
+    held: Double
+)
+
+object TiltModel:
+  private val Gravity  = Airframe.Gravity
+  private val ControlS = 0.003
+
+  /** A quadrotor at low altitude, by the throttle, the drag and the gains that it has. */
+  def of(quadrotor: Quadrotor): TiltModel =
+    import quadrotor.airframe
+    val kgPerM3 = Atmosphere.SeaLevelDensity
+    TiltModel(
+      quadrotor.hoverControl(0),
+      airframe.dragFront * kgPerM3 / airframe.massKg,
+      airframe.dragDown * kgPerM3 / airframe.massKg,
+      RotorsS,
+      quadrotor.gains
+    )
+
+  /** Fitted to steps of climb and of speed. */
+  private val RotorsS = 0.03
+
+  val AirSim: TiltModel = of(Quadrotor.AirSim)
