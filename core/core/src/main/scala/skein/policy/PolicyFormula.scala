@@ -6,12 +6,12 @@ import skein.signal.Kinematics
 import skein.units.*
 
 /** How a policy decides at one place of a team, as a formula of numbers: [[Policy.choose]], read from its
-  * bytecode. It serves forward simulation, whose vehicles follow horizontal velocities at the altitude of
-  * their start, so its actions must be of that kind.
+  * bytecode. It serves forward simulation, whose vehicles follow velocities, at an altitude or not, so its
+  * actions must be of that kind.
   *
   * @param inputs meaning of each of the formula's inputs
-  * @param motion nodes of the decided motion
-  * @param down node of the decided altitude; absent where it is always that of the start
+  * @param motion nodes of the decided horizontal motion
+  * @param vertical nodes of the decided vertical motion; absent where it is always the altitude of the start
   * @param memory nodes of the next memory, in the order of [[PolicyInput.Memory]]
   * @param turns whether its actions may turn the vehicle
   */
@@ -19,7 +19,7 @@ final class PolicyFormula private (
     val formula: Formula,
     val inputs: Vector[PolicyInput],
     val motion: PolicyFormula.Motion,
-    down: Option[Node],
+    val vertical: Option[PolicyFormula.Vertical],
     val memory: Vector[Node],
     val turns: Boolean,
     start: Example,
@@ -41,12 +41,13 @@ final class PolicyFormula private (
     *
     * @param startDown of the vehicle that it controls
     */
-  def leaves(policy: Policy, startDown: Metres): Option[String] = down.flatMap: node =>
-    val isFixed = Trace.needed(Seq(node)).forall(_.op != Op.Input)
-    val told    = "it flies at another altitude than that of its vehicle's start"
+  def leaves(policy: Policy, startDown: Metres): Option[String] = vertical.flatMap: vertical =>
+    val nodes   = Vector(vertical.third, vertical.holds)
+    val isFixed = Trace.needed(nodes).forall(_.op != Op.Input)
     Option.unless(
-      isFixed && Evaluation(Vector(node))(Array.emptyDoubleArray, parametersOf(policy))(0) == startDown.value
-    )(told)
+      isFixed && Evaluation(nodes)(Array.emptyDoubleArray, parametersOf(policy)).toSeq ==
+        Seq(startDown.value, 1)
+    )("it leaves the altitude of its vehicle's start")
 
 /** The meaning of an input of a [[PolicyFormula]]: where it is read. */
 enum PolicyInput:
@@ -81,6 +82,12 @@ object PolicyFormula:
 
     case With(north: Node, east: Node)
 
+  /** The vertical part of a decision.
+    *
+    * @param third the altitude to hold, m down, where `holds` is 1; the velocity down, m/s, where it is 0
+    */
+  final case class Vertical(third: Node, holds: Node)
+
   /** Traces a policy's decision.
     *
     * @param self the policy's place in its team
@@ -111,7 +118,7 @@ object PolicyFormula:
         formula,
         inputs,
         decided.motion,
-        decided.down,
+        decided.vertical,
         decided.memory,
         decided.turns,
         memory,
@@ -130,37 +137,49 @@ object PolicyFormula:
   private def memoryOf(policy: Policy) =
     Example("memory", policy.start.asInstanceOf[AnyRef], takesWholes = true)
 
-  private final case class Decided(motion: Motion, down: Option[Node], memory: Vector[Node], turns: Boolean)
+  private final case class Decided(
+      motion: Motion,
+      vertical: Option[Vertical],
+      memory: Vector[Node],
+      turns: Boolean
+  )
 
   private final class Reading(seen: Tagged, memory: Example):
     def of(trace: Trace, answer: Answer): (Vector[(String, Node)], Decided) =
-      val next                  = answer.get("_2").numbersOf(memory)
-      val (motion, down, turns) = answer.get("_1").fold(one)(chosen(trace))
-      val ofMotion              = motion match
+      val next                      = answer.get("_2").numbersOf(memory)
+      val (motion, vertical, turns) = answer.get("_1").fold(one(trace))(chosen(trace))
+      val ofMotion                  = motion match
         case Motion.Along(heading, speed) => Vector("heading" -> heading, "speed" -> speed)
         case Motion.With(north, east)     => Vector("north" -> north, "east" -> east)
       val start   = trace.input(seen.inputs.indexOf(PolicyInput.StartDown))
-      val leaving = Option.when(down != start)(down)
+      val leaving =
+        Option.unless(vertical.third == start && vertical.holds == trace.const(1))(vertical)
       val outputs =
-        ofMotion ++ leaving.map("down" -> _) ++ next.zipWithIndex.map((node, i) => s"memory$i" -> node)
+        ofMotion ++ leaving.toVector.flatMap(each =>
+          Vector("third" -> each.third, "holds" -> each.holds)
+        ) ++ next.zipWithIndex.map((node, i) => s"memory$i" -> node)
       (outputs, Decided(motion, leaving, next, turns))
 
-    private type Part = (Motion, Node, Boolean)
+    private type Part = (Motion, Vertical, Boolean)
 
-    private def one(of: String, answer: Answer): Part =
+    private def one(trace: Trace)(of: String, answer: Answer): Part =
       def number(field: String) = answer.get(field, "D").number
-      val motion                =
-        if of == classOf[Action.Along].getName then Motion.Along(number("heading"), number("speed"))
+      def held                  = Vertical(number("down"), trace.const(1))
+      val (motion, vertical)    =
+        if of == classOf[Action.Along].getName then (Motion.Along(number("heading"), number("speed")), held)
         else if of == classOf[Action.VelocityAt].getName then
-          Motion.With(number("northMps"), number("eastMps"))
+          (Motion.With(number("northMps"), number("eastMps")), held)
+        else if of == classOf[Action.Velocity].getName then
+          val velocity = answer.get("velocityNed", s"L${classOf[Vector3].getName.replace('.', '/')};")
+          def along(field: String) = velocity.get(field, "D").number
+          (Motion.With(along("x"), along("y")), Vertical(along("z"), trace.const(0)))
         else
           val name = of.substring(of.lastIndexOf('.') + 1).replace('$', '.')
           answer.refuse(
-            s"it decides for $name; forward simulation flies Action.Along and Action.VelocityAt at the " +
-              "start's altitude"
+            s"it decides for $name; SIMD flies Action.Along, Action.VelocityAt and Action.Velocity"
           )
       val yaw = answer.get("yaw", s"L${classOf[Yaw].getName.replace('.', '/')};")
-      (motion, number("down"), !yaw.isOne(Yaw.Still))
+      (motion, vertical, !yaw.isOne(Yaw.Still))
 
     private def chosen(trace: Trace)(condition: Node, a: Part, b: Part): Part =
       def either(x: Node, y: Node) = trace.where(condition, x, y)
@@ -169,7 +188,8 @@ object PolicyFormula:
         case (one, other)                           =>
           val ((x, v), (y, w)) = (along(trace, one), along(trace, other))
           Motion.Along(either(x, y), either(v, w))
-      (motion, either(a._2, b._2), a._3 || b._3)
+      val vertical = Vertical(either(a._2.third, b._2.third), either(a._2.holds, b._2.holds))
+      (motion, vertical, a._3 || b._3)
 
     /** Heading and speed of an action, as [[Action.headingRad]] defines them. */
     private def along(trace: Trace, motion: Motion): (Node, Node) = motion match

@@ -4,6 +4,7 @@ import java.nio.file.{Files, Path}
 import skein.forward.{
   PlantResponse,
   QuadrotorResponse,
+  SpatialResponse,
   SteppedResponse,
   VelocityResponse,
   VelocityResponses
@@ -12,7 +13,7 @@ import skein.forecast.Structure
 import skein.scenario.Scenarios
 import skein.mujoco.{MujocoModel, MujocoResponse}
 import skein.units.Decimals.fixed
-import skein.vehicle.{DrivenCar, ReducedModel}
+import skein.vehicle.{DrivenCar, ReducedModel, TiltModel}
 
 /** Models of vehicles by the names that users give: one list for simulated vehicles (`--plant`) and, as far
   * as they predict, for predictions (`--predictor`, [[PredictionModel]]).
@@ -47,10 +48,20 @@ object VehicleChoice:
       PlantResponse(model)
     )
 
+  /** Names of the vehicle that performs every action, and of the one that performs velocities. */
+  val Spatial = "quadrotor"
+  val Tilt    = "tilt"
+
   private val quadrotor = VehicleChoice(
-    "quadrotor",
+    Spatial,
     "AirSim's quadrotor with its flight controller at 3 ms",
     VelocityResponses.quadrotor()
+  )
+
+  private val tilt = VehicleChoice(
+    Tilt,
+    "AirSim's quadrotor in space, whose rotors and rotation rates follow at once",
+    SpatialResponse(TiltModel.AirSim)
   )
 
   private val ideal =
@@ -68,7 +79,7 @@ object VehicleChoice:
     */
   def named(name: String, altitudeM: Double): Option[VehicleChoice] = all(altitudeM).find(_.name == name)
 
-  private def all(altitudeM: Double) = Vector(reduced, drag(altitudeM), quadrotor, ideal, car)
+  private def all(altitudeM: Double) = Vector(reduced, drag(altitudeM), quadrotor, tilt, ideal, car)
 
   val forms: String =
     s"${all(ReducedModel.IdentifiedAtM).map(_.name).mkString(", ")}, " +

@@ -34,9 +34,9 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
     scenario
   )
 
-  /** One event: its vehicle, its index, its time, and two numbers. */
-  private case class Note(vehicle: Int, number: Int, at: Span, a: Double, b: Double):
-    override def toString = f"vehicle $vehicle number $number at ${at.toSeconds}%.9f s: $a, $b"
+  /** One event: its vehicle, its index, its time, and its numbers. */
+  private case class Note(vehicle: Int, number: Int, at: Span, values: Double*):
+    override def toString = f"vehicle $vehicle number $number at ${at.toSeconds}%.9f s: ${values.mkString(", ")}"
 
   private def check(
       loop: LoopKind,
@@ -58,13 +58,13 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
 
     val readings, commands = ArrayBuffer.empty[Note]
     val observer           = new LoopObserver:
-      override def read(vehicle: Int, number: Int, atNs: Long, x: Double, y: Double): Unit =
-        readings += Note(vehicle, number, Span.ofNanos(atNs), x, y)
+      override def read(vehicle: Int, number: Int, atNs: Long, x: Double, y: Double, z: Double): Unit =
+        readings += Note(vehicle, number, Span.ofNanos(atNs), x, y, z)
       override def commanded(vehicle: Int, number: Int, atNs: Long, headingRad: Double, speed: Double): Unit =
         val velocity = fleet.agents(vehicle).velocityNed(headingRad, Some(MetresPerSecond(speed)))
         commands += Note(vehicle, number, Span.ofNanos(atNs), velocity.x, velocity.y)
     val model   = VelocityResponses.quadrotor(hoveredS = flown.hovered.toSeconds)
-    val rollout = Rollout(Engagement.of(fleet, duration.toSeconds), timing, flown.delays, model)
+    val rollout = Rollout(Engagement.inSpace(fleet, duration.toSeconds), timing, flown.delays, model)
     val _       = rollout.fly(0, observer = observer)
 
     def same(what: String, recorded: Seq[Note], again: Seq[Note]): Unit =
@@ -82,7 +82,8 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
         reading.sequence.toInt,
         reading.state.validAt.since(startS),
         place.x,
-        place.y
+        place.y,
+        place.z
       )
     // A recorded command bears the number of its decision, and not every decision is sent.
     val sent = flown.recording.commands
@@ -189,6 +190,13 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
   test("paused, policies of four kinds"):
     check(LoopKind.Paused, LatencyProfile.none, 2, AnyPolicies(), Span.ofSeconds(8))
 
+  for loop <- Seq(LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream, LoopKind.Predictive) do
+    test(s"${loop.label} over vpn in three dimensions: climbing, turning, at altitudes of their own"):
+      check(loop, LatencyProfile.vpn, 3, InSpace(), Span.ofSeconds(8))
+
+  test("paused in three dimensions"):
+    check(LoopKind.Paused, LatencyProfile.none, 3, InSpace(), Span.ofSeconds(8))
+
   // Where delays are equal in both directions, a flight knows the ages of its readings as they are.
   for loop <- Seq(LoopKind.Sequential, LoopKind.Stream) do
     test(s"${loop.label} over 100 ms, a policy that goes by ages"):
@@ -260,3 +268,39 @@ object AnyPolicies:
       val other = seen.vehicles(seen.opponent)
       val way   = towards(seen, seen.opponent) + other.kinematics.velocityNed * other.age.toSeconds
       (heading(seen, way, 0), ())
+
+final case class InSpace() extends Scenario:
+  import InSpace.*
+  private def agent(i: Int, policy: Policy) =
+    Agent(s"V$i", Role("Scout"), MetresPerSecond(4 + i), Vector3(9 * i, 5 * i, -12 - 3 * i), Radians(0), policy)
+
+  def agents: Vector[Agent] =
+    Vector(agent(0, Helix), agent(1, Above(0, Yaw.Forward)), agent(2, Above(1, Yaw.Turning(0.3))), agent(3, Stairs))
+
+object InSpace:
+  /** Climbs and sinks along a circle, nose ahead. */
+  private case object Helix extends Policy:
+    type Memory = Double
+    def start: Double                                               = 0
+    def choose(seen: Observation, memory: Double): (Action, Double) =
+      val angle = memory + 0.4 * seen.elapsed.toSeconds
+      val (cos, sin) = (StrictMath.cos(angle), StrictMath.sin(angle))
+      (Action.Velocity(Vector3(4 * cos, 4 * sin, -1.5 * sin - 0.5), Yaw.Forward), angle)
+
+  /** Flies to the place three metres above another vehicle. */
+  private final case class Above(other: Int, yaw: Yaw) extends Policy:
+    type Memory = Unit
+    def start: Unit                                             = ()
+    def choose(seen: Observation, memory: Unit): (Action, Unit) =
+      val way   = seen.vehicles(other).kinematics.positionNed + Vector3(0, 0, -3) - seen.own.kinematics.positionNed
+      val speed = seen.cruise.value.min(way.norm)
+      (Action.Velocity(way * (speed / way.norm.max(1e-3)), yaw), ())
+
+  /** Holds one altitude after the other. */
+  private case object Stairs extends Policy:
+    type Memory = Double
+    def start: Double                                               = 0
+    def choose(seen: Observation, memory: Double): (Action, Double) =
+      val timeS = memory + seen.elapsed.toSeconds
+      val down  = Metres(seen.startDown.value - 2 * math.floor(timeS / 2))
+      (Action.VelocityAt(3, -1, down, Yaw.Towards(Radians(0.5))), timeS)

@@ -96,7 +96,7 @@ private final class MoveTap(transport: Transport, clock: Clock) extends Transpor
       framed match
         case Framed.Complete(frame) =>
           RpcMessage.fromClient(frame) match
-            case RpcMessage.Request(_, "moveByVelocityZ", params) =>
+            case RpcMessage.Request(_, "moveByVelocityZ" | "moveByVelocity" | "moveToPosition", params) =>
               params.last match
                 case Str(vehicle) => arrived(vehicle) = arrived(vehicle) :+ clock.now()
                 case other        => throw IllegalStateException(s"no vehicle's name: $other")

@@ -3,7 +3,7 @@ package skein.loop
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.pattern.after
 import scala.concurrent.{Future, Promise}
-import skein.policy.{Action, Fleet}
+import skein.policy.{Action, ActionGuidance, Fleet}
 import skein.port.{SteppedTime, VehicleError, VehiclePort}
 import skein.signal.*
 import skein.units.*
@@ -93,7 +93,7 @@ final class FarQuadrotors(scenario: Fleet, link: LatencyProfile, seed: Long, clo
       val ended = Promise[Boolean]()
       for
         _ <- there.cross()
-        _ = replaceBy(Acting.guidance(action), Some(ended))
+        _ = replaceBy(ActionGuidance.of(action), Some(ended))
         finished <- ended.future
         _        <- back.cross()
       yield Right(finished)

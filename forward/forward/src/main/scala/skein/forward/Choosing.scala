@@ -3,12 +3,11 @@ package skein.forward
 import skein.policy.*
 import skein.units.*
 
-/** Requests a horizontal velocity at the altitude of its vehicle's start from a policy of any kind, as
-  * forward simulation requires. Mutable: it holds the policy's memory.
+/** Asks a policy of any kind for the action of a vehicle. Mutable: it holds the policy's memory.
   *
-  * @param regardsYaw whether the vehicle's motion depends on a commanded yaw
+  * @param by how the vehicle responds
   */
-private[skein] final class Choosing(agent: RolloutAgent, regardsYaw: Boolean):
+private[skein] final class Choosing(agent: RolloutAgent, by: VelocityResponse):
   import Choosing.Chosen
   private val policy      = agent.policy
   private var memory: Any = ()
@@ -19,25 +18,40 @@ private[skein] final class Choosing(agent: RolloutAgent, regardsYaw: Boolean):
 
   /** Decides on an observation.
     *
-    * @throws OwnFailure if the policy throws, or its action is not supported by forward simulation
+    * @throws OwnFailure if the policy throws, or the vehicle does not perform its action
     */
   def choose(seen: Observation): Chosen =
     val (action, next) = OwnFailure.told(whose)(policy.choose(seen, own))
     memory = next
-    def holds(yaw: Yaw) = yaw == Yaw.Still || !regardsYaw
+    def holds(yaw: Yaw) = yaw == Yaw.Still || !by.regardsYaw
     action match
       case Action.Along(heading, speed, seen.startDown, yaw) if holds(yaw) =>
         val (cos, sin) = (StrictMath.cos(heading.value), StrictMath.sin(heading.value))
-        Chosen(heading.value, speed.value, speed.value * cos, speed.value * sin)
+        Chosen(heading.value, speed.value, speed.value * cos, speed.value * sin, None)
       case Action.VelocityAt(north, east, seen.startDown, yaw)
           if north.isFinite && east.isFinite && holds(yaw) =>
-        Chosen(action.headingRad(seen.headingRad), action.speed.value, north, east)
+        Chosen(action.headingRad(seen.headingRad), action.speed.value, north, east, None)
+      case other if by.performs(other) =>
+        val (north, east) = action.byVelocity match
+          case Action.Velocity(velocity, _)         => (velocity.x, velocity.y)
+          case Action.VelocityAt(north, east, _, _) => (north, east)
+          case _                                    => (0.0, 0.0)
+        Chosen(action.headingRad(seen.headingRad), action.speed.value, north, east, Some(other))
       case other => throw OwnFailure(
           whose,
-          s"decided for $other; forward simulation flies velocities at the altitude of the vehicle's start " +
-            s"(${seen.startDown.value} m down)${if regardsYaw then ", without turning" else ""}"
+          s"decided for $other; this vehicle flies velocities at the altitude of its start " +
+            s"(${seen.startDown.value} m down)${if by.regardsYaw then ", without turning" else ""}"
         )
 
 private[skein] object Choosing:
-  /** A velocity, m/s, with the heading and speed that represent it for policies of headings. */
-  final case class Chosen(headingRad: Double, speedMps: Double, northMps: Double, eastMps: Double)
+  /** A velocity, m/s, with the heading and speed that represent it for policies of headings.
+    *
+    * @param action what the vehicle performs, unless it is this velocity at the altitude of its start
+    */
+  final case class Chosen(
+      headingRad: Double,
+      speedMps: Double,
+      northMps: Double,
+      eastMps: Double,
+      action: Option[Action]
+  )

@@ -2,6 +2,7 @@ package skein.forward
 
 import skein.forecast.Forecast
 import skein.policy.{
+  Action,
   Observation,
   ObservingPolicy,
   PlanarObservation,
@@ -97,8 +98,9 @@ private[skein] final class Controller(
   private var made, unused  = 0
 
   /** Evaluates a policy that is not a [[HeadingPolicy]]. */
-  private val choosing                = Choosing(world.agents(agent), world.regardsYaw)
+  private val choosing                = Choosing(world.agents(agent), world.responses(agent))
   private var chosenNorth, chosenEast = 0.0
+  private var chosenAction            = Option.empty[Action]
   private var isChosen                = false
 
   private var memory: Any = ()
@@ -128,6 +130,7 @@ private[skein] final class Controller(
     decided = world.agents(agent).startHeadingRad
     memory = ObservingPolicy.initialOf(policy)
     isChosen = false
+    chosenAction = None
     if world.isAsked(agent) then choosing.start()
     speed = world.agents(agent).speed
     sent = decided; sentNumber = 0
@@ -167,6 +170,9 @@ private[skein] final class Controller(
   def decidedNorth: Double = if isChosen then chosenNorth else speed * StrictMath.cos(decided)
   def decidedEast: Double  = if isChosen then chosenEast else speed * StrictMath.sin(decided)
 
+  /** The decided action, unless it is that velocity at the altitude of the start. */
+  def decidedAction: Option[Action] = chosenAction
+
   def decide(observation: RolloutView): Unit =
     val now       = world.nowNs
     val elapsedNs = if lastDecidedAt == Controller.Never then 0L else now - lastDecidedAt
@@ -181,6 +187,7 @@ private[skein] final class Controller(
         speed = chosen.speedMps
         chosenNorth = chosen.northMps
         chosenEast = chosen.eastMps
+        chosenAction = chosen.action
         isChosen = true
     turned += math.abs(math.IEEEremainder(decided - before, 2 * math.Pi))
     lastDecidedAt = now
@@ -300,12 +307,19 @@ private[skein] final class Controller(
     outstanding += 1
     sentNow()
     val (north, east) = (decidedNorth, decidedEast)
-    onSent.sent(agent, world.send(agent, decided, speed, north, east, step), north, east)
+    onSent.sent(
+      agent,
+      world.send(agent, decided, speed, north, east, decidedAction, step),
+      north,
+      east,
+      decidedAction
+    )
     goOn()
 
 private[skein] object Controller:
   /** Receives every command that a controller sends. */
   trait OnSent:
-    def sent(agent: Int, number: Int, northMps: Double, eastMps: Double): Unit
+    /** @param action performed instead of this velocity at the altitude of the start */
+    def sent(agent: Int, number: Int, northMps: Double, eastMps: Double, action: Option[Action]): Unit
 
   private val Never = Long.MinValue

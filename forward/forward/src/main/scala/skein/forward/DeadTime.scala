@@ -6,16 +6,18 @@ import java.util.Arrays.copyOf
 private[forward] final class DeadTime(seconds: Double):
   import DeadTime.{Most, Room}
   private var atS, north, east = Array.ofDim[Double](Room)
+  private var third, holds     = Array.ofDim[Double](Room)
   private var first, afterLast = 0
 
   def clear(): Unit =
     first = 0; afterLast = 0
 
-  /** Adds a command received at this time. */
-  def put(nowS: Double, northMps: Double, eastMps: Double): Unit =
+  /** Adds a command received at this time; see [[skein.vehicle.SpatialPlant.step]]. */
+  def put(nowS: Double, northMps: Double, eastMps: Double, third: Double = 0, holds: Double = 0): Unit =
     if afterLast - first == atS.length then makeRoom()
     val slot = afterLast % atS.length
     atS(slot) = nowS + seconds; north(slot) = northMps; east(slot) = eastMps
+    this.third(slot) = third; this.holds(slot) = holds
     afterLast += 1
 
   private def makeRoom(): Unit =
@@ -27,19 +29,22 @@ private[forward] final class DeadTime(seconds: Double):
       for i <- 0 until count do room(i) = ring((first + i) % count)
       room
     atS = inOrder(atS); north = inOrder(north); east = inOrder(east)
+    third = inOrder(third); holds = inOrder(holds)
     first = 0; afterLast = count
 
   /** Removes the commands that take effect until a time, the earliest first. */
-  inline def until(timeS: Double)(inline act: (Double, Double, Double) => Unit): Unit =
+  inline def until(timeS: Double)(inline act: (Double, Double, Double, Double, Double) => Unit): Unit =
     while hasUntil(timeS) do
       val slot = take()
-      act(atOf(slot), northOf(slot), eastOf(slot))
+      act(atOf(slot), northOf(slot), eastOf(slot), thirdOf(slot), holdsOf(slot))
 
   private[forward] def hasUntil(timeS: Double): Boolean =
     first < afterLast && atS(first % atS.length) <= timeS
   private[forward] def atOf(slot: Int): Double    = atS(slot)
   private[forward] def northOf(slot: Int): Double = north(slot)
   private[forward] def eastOf(slot: Int): Double  = east(slot)
+  private[forward] def thirdOf(slot: Int): Double = third(slot)
+  private[forward] def holdsOf(slot: Int): Double = holds(slot)
   private[forward] def take(): Int                =
     first += 1
     (first - 1) % atS.length

@@ -1,26 +1,30 @@
 package skein.forward
 
 import skein.policy.{Assignment, Fleet, Role}
+import skein.scenario.{Known, OwnEnd, Scenario}
+import skein.vehicle.VehicleKind
 
-/** Vehicles in one plane, as a rollout simulates them: pursuers and evaders, 1 against 1 up to M against N,
-  * or a team without sides. Depending on its policy, each considers the rival assigned to it at its decision,
-  * or the whole team. A captured vehicle continues to fly.
+/** Vehicles as a rollout simulates them: pursuers and evaders, 1 against 1 up to M against N, or a team
+  * without sides. Depending on its policy, each considers the rival assigned to it at its decision, or the
+  * whole team. A captured vehicle continues to fly.
   *
   * @param roles of the agents, in the order in which a loop reads them
+  * @param isOver whether it ends before its duration; evaluated at every decision
   */
 final case class Engagement(
     agents: Vector[RolloutAgent],
     roles: Vector[Role],
     assignment: Assignment,
-    durationS: Double = 60.0
+    durationS: Double = 60.0,
+    isOver: Option[Known => Boolean] = None
 ):
   require(
     agents.size == roles.size && agents.size == assignment.rivals.size,
     s"${agents.size} agents, ${roles.size} roles, rivals of ${assignment.rivals.size}"
   )
   require(
-    agents.size >= 2 && agents.size <= Engagement.Most,
-    s"expected 2 to ${Engagement.Most} agents, came ${agents.size}"
+    agents.nonEmpty && agents.size <= Engagement.Most,
+    s"expected 1 to ${Engagement.Most} agents, came ${agents.size}"
   )
 
   val evaders: Vector[Int]  = roles.indices.filter(roles(_) == Role.Evader).toVector
@@ -35,6 +39,18 @@ final case class Engagement(
   /** The agents with outcomes: the evaders; in a team without sides, all. */
   val judged: Vector[Int] = if bothSides then evaders else agents.indices.toVector
 
+  /** Whether all policies are formulas. */
+  lazy val isTraced: Boolean =
+    agents.indices.forall(self => Level.formula(agents(self).policy, self, assignment, false).isRight)
+
+  def hasCars: Boolean = agents.exists(_.kind == VehicleKind.Car)
+
+  /** Why some vehicle may leave the altitude of its start, or turn; None if all are known to fly level. */
+  lazy val climbs: Option[String] = agents.indices.iterator
+    .filter(agents(_).kind != VehicleKind.Car)
+    .flatMap(self => Level.refusal(agents(self).policy, self, assignment, agents(self).altitudeDownM))
+    .nextOption()
+
   /** The agents from which an agent's distance is measured: the pursuers; in a team without sides, the
     * others.
     */
@@ -43,21 +59,32 @@ final case class Engagement(
 object Engagement:
   val Most = 64
 
-  /** The agents of a scenario, under its own assignment.
+  /** The agents of a fleet that flies level, under its own assignment.
     *
-    * @throws IllegalArgumentException if a policy may choose an action that forward simulation does not
-    *   support: anything but a horizontal velocity at the altitude of the start
+    * @throws IllegalArgumentException if a policy may choose another action than a horizontal velocity at the
+    *   altitude of its start, or reads sensors
     */
   def of(fleet: Fleet, durationS: Double = 60.0): Engagement =
-    val agents = fleet.agents.map(RolloutAgent.of)
-    for (agent, self) <- agents.zipWithIndex do
+    val flown = inSpace(fleet, durationS)
+    for (agent, self) <- flown.agents.zipWithIndex do
       for reason <- Level.refusal(agent.policy, self, fleet.assignment, agent.altitudeDownM) do
         throw IllegalArgumentException(s"vehicle ${fleet.agents(self).name}: $reason")
-    Engagement(
-      agents,
-      fleet.agents.map(_.role),
-      fleet.assignment,
-      durationS
+    flown
+
+  /** The agents of a fleet, under its own assignment.
+    *
+    * @throws IllegalArgumentException if a policy reads sensors
+    */
+  def inSpace(fleet: Fleet, durationS: Double = 60.0): Engagement =
+    Engagement(fleet.agents.map(RolloutAgent.of), fleet.agents.map(_.role), fleet.assignment, durationS)
+
+  /** The agents of a scenario, and its own end.
+    *
+    * @throws IllegalArgumentException if a policy reads sensors
+    */
+  def ofScenario(scenario: Scenario, durationS: Double): Engagement =
+    inSpace(scenario.fleet, durationS).copy(isOver =
+      Option.when(OwnEnd.has(scenario))(known => Scenario.told(scenario.name)(scenario.isOver(known)))
     )
 
   /** The agents of a duel; the evader is read first. */

@@ -1,6 +1,7 @@
 package skein.forward
 
 import java.util.concurrent.ConcurrentHashMap
+import skein.formula.Untraceable
 import skein.policy.{Policy, Assignment, PolicyFormula}
 import skein.simd.Forms
 import skein.units.Metres
@@ -21,14 +22,26 @@ private object Level:
     else
       Seq(false, true).iterator
         .flatMap: isPredicted =>
-          val forms = known.computeIfAbsent(
-            (self, assignment, isPredicted),
-            _ =>
-              Forms[Policy, PolicyFormula](_.fits(_, assignment)):
-                PolicyFormula.of(_, self, assignment, isPredicted)
-          )
-          forms(policy).fold(
+          formula(policy, self, assignment, isPredicted).fold(
             why => Some(s"it is not seen that its policy keeps the altitude of its start: ${why.getMessage}"),
             _.leaves(policy, Metres(startDownM))
           )
         .nextOption()
+
+  /** The formula of a policy, traced once for each form.
+    *
+    * @param self its place in a team
+    */
+  def formula(
+      policy: Policy,
+      self: Int,
+      assignment: Assignment,
+      isPredicted: Boolean
+  ): Either[Untraceable, PolicyFormula] =
+    val forms = known.computeIfAbsent(
+      (self, assignment, isPredicted),
+      _ =>
+        Forms[Policy, PolicyFormula](_.fits(_, assignment)):
+          PolicyFormula.of(_, self, assignment, isPredicted)
+    )
+    forms(policy)

@@ -17,11 +17,11 @@ private[skein] trait Grounds:
 
 /** Receives the events of a simulated loop; every method does nothing by default. */
 trait LoopObserver:
-  /** A vehicle was read at this time; position (north and east, m) as in the answer. */
-  def read(vehicle: Int, number: Int, atNs: Long, x: Double, y: Double): Unit = ()
+  /** A vehicle was read at this time; position (north, east and down, m) as in the answer. */
+  def read(vehicle: Int, number: Int, atNs: Long, x: Double, y: Double, z: Double): Unit = ()
 
-  /** A vehicle's position (north and east, m) when the world is scored, once a period. */
-  def scored(timeS: Double, vehicle: Int, x: Double, y: Double): Unit = ()
+  /** A vehicle's position (north, east and down, m) when the world is scored, once a period. */
+  def scored(timeS: Double, vehicle: Int, x: Double, y: Double, z: Double): Unit = ()
 
   /** A decision was made for a vehicle, the first one or some time after the previous one. */
   private[skein] def decided(vehicle: Int, atNs: Long, elapsedS: Double, upon: Grounds): Unit = ()

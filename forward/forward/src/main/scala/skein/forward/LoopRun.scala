@@ -1,5 +1,7 @@
 package skein.forward
 
+import skein.policy.Action
+
 /** A loop during simulation: its reactions to events. One implementation for each case of [[LoopTiming]].
   * Mutable.
   */
@@ -39,7 +41,8 @@ private[skein] trait LoopRun extends Controller.OnSent:
   /** Handles an event that was scheduled as `Due`. */
   def due(number: Int): Unit = ()
 
-  def sent(agent: Int, number: Int, northMps: Double, eastMps: Double): Unit = ()
+  def sent(agent: Int, number: Int, northMps: Double, eastMps: Double, action: Option[Action]): Unit =
+    ()
 
   /** A command was answered because a newer one has replaced it. */
   def replaced(agent: Int, number: Int): Unit = ()

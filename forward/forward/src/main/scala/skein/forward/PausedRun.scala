@@ -23,7 +23,8 @@ private[skein] final class PausedRun(timing: LoopTiming.Paused, protected val wo
         controller.decidedHeading,
         controller.decidedSpeed,
         controller.decidedNorth,
-        controller.decidedEast
+        controller.decidedEast,
+        controller.decidedAction
       )
     world.schedule((number + 1) * periodNs, RolloutWorld.Tick, 0, number + 1)
 

@@ -1,5 +1,6 @@
 package skein.forward
 
+import skein.policy.Action
 import skein.signal.Kinematics
 import skein.vehicle.{ConstantVelocity, ObservedPlant, Plant, PlantFlight, PlantModel, VehicleModel}
 
@@ -35,8 +36,13 @@ private[skein] final class PlantVehicle[S](plant: Plant[S]) extends Vehicle:
 
   def command(vx: Double, vy: Double): Unit = coming.put(nowS, vx, vy)
 
+  override def act(action: Action): Unit = action.byVelocity match
+    case Action.Velocity(velocity, _)         => command(velocity.x, velocity.y)
+    case Action.VelocityAt(north, east, _, _) => command(north, east)
+    case _                                    => command(0, 0)
+
   def advance(timeS: Double): Unit =
-    coming.until(timeS): (atS, vx, vy) =>
+    coming.until(timeS): (atS, vx, vy, _, _) =>
       if isCommanded then flight.act(atS, vx, vy) else flight.start(atS, plant.initial, vx, vy)
       isCommanded = true
     if isCommanded then
@@ -46,6 +52,7 @@ private[skein] final class PlantVehicle[S](plant: Plant[S]) extends Vehicle:
 
   def x: Double  = startX + reading.northM
   def y: Double  = startY + reading.eastM
+  def z: Double  = down
   def vx: Double = reading.northMps
   def vy: Double = reading.eastMps
 

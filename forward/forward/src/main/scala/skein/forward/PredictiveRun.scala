@@ -1,9 +1,10 @@
 package skein.forward
 
 import skein.forecast.{Commanded, ForecastEvent, Forecast}
+import skein.policy.{Action, ActionGuidance}
 import skein.signal.Stamped
 import skein.units.Instant
-import skein.vehicle.Setpoint
+import skein.vehicle.{Setpoint, VehicleKind}
 
 /** The loop [[LoopTiming.Predictive]] in virtual time. The forecast is an immutable value: this loop
   * allocates.
@@ -19,7 +20,8 @@ private[skein] final class PredictiveRun(timing: LoopTiming.Predictive, world: R
   private var forecast    = Forecast(Vector.empty)
 
   override def start(): Unit =
-    forecast = Forecast(Vector.fill(world.count)(timing.predictor))
+    forecast = Forecast(world.agents.toVector.zip(world.responses).map: (agent, response) =>
+      if agent.kind == VehicleKind.Car then response.predictor else timing.predictor)
     super.start()
     world.schedule(periodNs / 2, RolloutWorld.Due, 0, 0)
 
@@ -51,8 +53,16 @@ private[skein] final class PredictiveRun(timing: LoopTiming.Predictive, world: R
       observation.forecast = Some(forecast)
       for controller <- controllers do controller.offer(observation)
 
-  override def sent(agent: Int, number: Int, northMps: Double, eastMps: Double): Unit =
-    val setpoint = Setpoint.velocityZ(northMps, eastMps, world.agents(agent).altitudeDownM)
+  override def sent(
+      agent: Int,
+      number: Int,
+      northMps: Double,
+      eastMps: Double,
+      action: Option[Action]
+  ): Unit =
+    val setpoint = action.fold(
+      Setpoint.velocityZ(northMps, eastMps, world.agents(agent).altitudeDownM)
+    )(ActionGuidance.of)
     forecast = forecast.withEvent(
       ForecastEvent.Sent(agent, Commanded(number, setpoint, Instant.ofNanos(world.nowNs)))
     )

@@ -1,13 +1,15 @@
 package skein.forward
 
+import skein.policy.{Action, ActionGuidance, OnWire}
 import skein.port.Moves
 import skein.units.{Quaternion, Vector3}
-import skein.vehicle.{Environment, Quadrotor, QuadrotorState, Rotorcraft, Setpoint}
+import skein.vehicle.{Environment, Guidance, Quadrotor, QuadrotorState, Rotorcraft, Setpoint}
 
-/** AirSim's quadrotor, commanded by `moveByVelocityZ` at its start altitude, as in the built-in simulator
-  * (`skein.simulator.SimulatedVehicle`): physics advances in whole steps from the time at which the vehicle
-  * was placed at its start; a command takes effect at the first step after it. Commands are 32-bit floats on
-  * AirSim's wire; [[SteppedVehicle]] defines the readings.
+/** AirSim's quadrotor as in the built-in simulator (`skein.simulator.SimulatedMultirotor`), with any action:
+  * physics advances in whole steps from the time at which the vehicle was placed at its start; a command
+  * takes effect at the first step after it. Commands are 32-bit floats on AirSim's wire; [[SteppedVehicle]]
+  * defines the readings. A vehicle that turns in place or hovers holds the position at which the command
+  * arrived; the simulator's holds that of up to 60 ms later.
   */
 private[skein] final class QuadrotorResponse(val quadrotor: Quadrotor, val hoveredS: Double)
     extends VelocityResponse:
@@ -15,10 +17,14 @@ private[skein] final class QuadrotorResponse(val quadrotor: Quadrotor, val hover
 
   override def handoverS: Double = Moves.Handover.toSeconds
 
+  override def isSpatial: Boolean = true
+
 private[skein] final class QuadrotorVehicle(quadrotor: Rotorcraft, hoveredNs: Long) extends SteppedVehicle:
   private val stepNs             = Nanos.of(quadrotor.stepS)
   private val state              = QuadrotorState()
+  private var guidance: Guidance = Setpoint.Disarmed
   private var setpoint: Setpoint = Setpoint.Disarmed
+  private var renewedAt          = 0L
   private var down               = 0.0
 
   // Since it was put to its start, ns.
@@ -29,16 +35,30 @@ private[skein] final class QuadrotorVehicle(quadrotor: Rotorcraft, hoveredNs: Lo
     val hold = Vector3(0, 0, z - quadrotor.hoverSagM(z))
     quadrotor.hover(state, hold, 0, Environment.Calm)
     state.place(Vector3(0, 0, z), Quaternion.Identity)
-    setpoint = Setpoint.hold(hold)
+    fly(Setpoint.hold(hold))
     now = 0; steppedTo = 0
     advance(0)
 
   def command(vx: Double, vy: Double): Unit =
-    setpoint = Setpoint.velocityZ(vx.toFloat, vy.toFloat, down.toFloat)
+    fly(Setpoint.velocityZ(vx.toFloat, vy.toFloat, down.toFloat))
+
+  override def act(action: Action): Unit =
+    fly(OnWire.of(action) match
+      case Action.Hover     => Setpoint.hold(state.positionNed)
+      case Action.Turn(yaw) => ActionGuidance.turned(Setpoint.hold(state.positionNed), yaw, Vector3.Zero)
+      case other            => ActionGuidance.of(other))
+
+  private def fly(by: Guidance): Unit =
+    guidance = by
+    renewedAt = now
+    setpoint = OnWire.of(by.setpoint(state.kinematics))
 
   def advance(timeS: Double): Unit =
     now = hoveredNs + Nanos.of(timeS)
     while steppedTo + stepNs <= now do
+      for period <- guidance.period if steppedTo - renewedAt >= period.toNanos do
+        renewedAt += period.toNanos
+        setpoint = OnWire.of(guidance.setpoint(state.kinematics))
       quadrotor.step(state, setpoint, Environment.Calm)
       steppedTo += stepNs
 

@@ -73,7 +73,7 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
     while !isOver && world.nextNs < timeNs do handle(world.next())
     if isOver then Rollout.Never else world.nextNs
 
-  private def isOver: Boolean = tallies(0).count >= scores
+  private def isOver: Boolean = tallies(0).count >= scores || world.isOver
 
   /** The outcome of a team: of all evaders the least of the least distances, the means of the means, and the
     * time of the last capture; distances are to the nearest pursuer, efforts are summed over a side. In a
@@ -117,7 +117,8 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
   private def scoreNow(number: Int): Unit =
     for vehicle <- world.vehicles do vehicle.advance(world.nowS)
     for index <- world.vehicles.indices do
-      world.observer.scored(world.nowS, index, world.vehicles(index).x, world.vehicles(index).y)
+      val vehicle = world.vehicles(index)
+      world.observer.scored(world.nowS, index, vehicle.x, vehicle.y, vehicle.z)
     for index <- judged.indices do
       val evader  = world.vehicles(judged(index))
       var nearest = Double.PositiveInfinity

@@ -2,16 +2,18 @@ package skein.forward
 
 import skein.fusion.SensorModel
 import skein.policy.{Agent, Policy}
+import skein.vehicle.VehicleKind
 
 /** One vehicle of a duel or of a team in a rollout.
   *
   * @param speed of the commanded velocity, where its policy does not choose one, m/s
   * @param startX north, m
   * @param startY east, m
-  * @param altitudeDownM z of the whole flight, world NED, m
+  * @param altitudeDownM z of its start, and of the whole flight where it flies level, world NED, m
   * @param startHeadingRad assumed command before its first decision, from north
-  * @param policy one that chooses horizontal velocities at that altitude; must be a pure function
+  * @param policy must be a pure function; [[VelocityResponse]] says which actions it may choose
   * @param eye the camera that is its only knowledge of its one opponent, if any
+  * @param kind a car drives as [[CarResponse]] does, whatever the others are
   */
 final case class RolloutAgent(
     speed: Double,
@@ -20,7 +22,8 @@ final case class RolloutAgent(
     altitudeDownM: Double,
     startHeadingRad: Double,
     policy: Policy,
-    eye: Option[SensorModel] = None
+    eye: Option[SensorModel] = None,
+    kind: VehicleKind = VehicleKind.Multirotor
 )
 
 object RolloutAgent:
@@ -40,5 +43,6 @@ object RolloutAgent:
       agent.startPositionNed.y,
       agent.startPositionNed.z,
       agent.startHeading.value,
-      agent.policy
+      agent.policy,
+      kind = agent.kind
     )

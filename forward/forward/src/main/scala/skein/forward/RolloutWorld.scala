@@ -1,7 +1,10 @@
 package skein.forward
 
-import skein.policy.{Assignment, HeadingPolicy}
+import skein.policy.{Action, Assignment, HeadingPolicy, Seen}
+import skein.scenario.Known
 import skein.signal.{Kinematics, Stamped}
+import skein.units.Span
+import skein.vehicle.VehicleKind
 
 /** The environment of a simulated loop: the vehicles of an engagement, the time, and the messages on their
   * way to and from the vehicles. Mutable; during a flight only the vehicles allocate.
@@ -28,14 +31,16 @@ private[skein] final class RolloutWorld(
   val isAsked: Array[Boolean] = agents.map(!_.policy.isInstanceOf[HeadingPolicy])
 
   /** Whether readings are kept whole, with attitude and rates. */
-  val keepsKinematics: Boolean = keepsAll || isAsked.contains(true)
+  val keepsKinematics: Boolean = keepsAll || isAsked.contains(true) || engagement.isOver.isDefined
 
-  /** Whether a vehicle's motion depends on a commanded yaw. */
-  val regardsYaw: Boolean            = model.regardsYaw
+  /** By vehicle: how it responds. */
+  val responses: Array[VelocityResponse] = agents.map: agent =>
+    if agent.kind == VehicleKind.Car then CarResponse(agent.startHeadingRad) else model
+
   val count: Int                     = agents.length
-  val vehicles: Array[Vehicle]       = Array.fill(count)(model.create())
+  val vehicles: Array[Vehicle]       = responses.map(_.create())
   private val queue                  = EventQueue(MostWaiting * agents.length)
-  private val handoverNs             = Nanos.of(model.handoverS)
+  private val handoverNs             = responses.map(response => Nanos.of(response.handoverS))
   private val timeoutNs              = Nanos.of(asking.timeoutS)
   private var key                    = 0
   private var time                   = 0L
@@ -51,6 +56,7 @@ private[skein] final class RolloutWorld(
 
   // Commands by vehicle and number.
   private val norths, easts    = Array.ofDim[Double](count * ring)
+  private val actions          = Array.fill(count * ring)(Option.empty[Action])
   private val commandSteps     = Array.ofDim[Int](count * ring)
   private val commanded        = Array.ofDim[Int](count)
   private val commandAt, ackAt = Array.ofDim[Long](count)
@@ -63,10 +69,41 @@ private[skein] final class RolloutWorld(
     key = worldKey
     time = 0
     watching = listener
+    ended = false
+    begunAtNs = RolloutWorld.NotBegun
+    java.util.Arrays.fill(newest, RolloutWorld.Unread)
     queue.clear()
     for vehicle <- vehicles.indices do
       vehicles(vehicle).start(agents(vehicle).startX, agents(vehicle).startY, agents(vehicle).altitudeDownM)
       asked(vehicle) = firstQuestion; commanded(vehicle) = 0; commandAt(vehicle) = 0; ackAt(vehicle) = 0
+
+  private val isAwaited               = engagement.isOver.isDefined
+  private val newest                  = Array.ofDim[Int](count)
+  private val newestValid, newestCame = Array.ofDim[Long](count)
+  private var begunAtNs               = RolloutWorld.NotBegun
+  private var ended                   = false
+
+  /** Whether the engagement said that it is over. */
+  def isOver: Boolean = ended
+
+  /** Asks the engagement whether it is over, given the newest readings of all vehicles that came in. */
+  private def mayEnd(): Unit =
+    if begunAtNs == RolloutWorld.NotBegun then begunAtNs = time
+    if !newest.contains(RolloutWorld.Unread) then
+      val known = Known(
+        Span.ofNanos(time - begunAtNs),
+        Vector.tabulate(count): vehicle =>
+          val at = slot(vehicle, newest(vehicle))
+          Seen(kinematics(at), Span.ofNanos(time - validAtNs(at)), isPredicted = false)
+      )
+      ended = engagement.isOver.exists(_(known))
+
+  private def note(vehicle: Int, number: Int): Unit =
+    val at = slot(vehicle, number)
+    if newest(vehicle) == RolloutWorld.Unread || isNewer(at, newestValid(vehicle), newestCame(vehicle)) then
+      newest(vehicle) = number
+      newestValid(vehicle) = validAtNs(at)
+      newestCame(vehicle) = time
 
   /** Receives the events of the episode, such as readings and commands. */
   def observer: LoopObserver = watching
@@ -120,7 +157,9 @@ private[skein] final class RolloutWorld(
   private def timeOut(vehicle: Int, number: Int): Unit =
     schedule(sentAtNs(slot(vehicle, number)) + timeoutNs, TimedOut, vehicle, number)
 
-  def received(vehicle: Int, number: Int): Unit = receivedAtNs(slot(vehicle, number)) = time
+  def received(vehicle: Int, number: Int): Unit =
+    receivedAtNs(slot(vehicle, number)) = time
+    if isAwaited then note(vehicle, number)
 
   /** Whether a reading, by its [[slot]], is newer than one of these times. */
   def isNewer(slot: Int, thanValidAtNs: Long, thanReceivedAtNs: Long): Boolean =
@@ -131,6 +170,7 @@ private[skein] final class RolloutWorld(
     asked(vehicle) += 1
     steps(slot(vehicle, number)) = step
     read(vehicle, number)
+    if isAwaited then note(vehicle, number)
     number
 
   private def read(vehicle: Int, number: Int): Unit =
@@ -140,7 +180,7 @@ private[skein] final class RolloutWorld(
     x(at) = body.seenX; y(at) = body.seenY; vx(at) = body.seenVx; vy(at) = body.seenVy
     if keepsKinematics then kinematics(at) = body.seen
     validAtNs(at) = time
-    observer.read(vehicle, number, time, x(at), y(at))
+    observer.read(vehicle, number, time, x(at), y(at), body.seenZ)
 
   /** Sends a command; [[Acknowledged]] follows when a newer one has replaced it.
     *
@@ -152,12 +192,14 @@ private[skein] final class RolloutWorld(
       speedMps: Double,
       northMps: Double,
       eastMps: Double,
+      action: Option[Action],
       step: Int
   ): Int =
     val number = commanded(agent)
     commanded(agent) += 1
     norths(slot(agent, number)) = northMps
     easts(slot(agent, number)) = eastMps
+    actions(slot(agent, number)) = action
     commandSteps(slot(agent, number)) = step
     observer.commanded(agent, number, time, headingRad, speedMps)
     commandAt(agent) =
@@ -175,26 +217,39 @@ private[skein] final class RolloutWorld(
       val delay = link.delayNs(key, Delays.acknowledgement(agent), step, number - 1, time)
       ackAt(agent) = math.max(ackAt(agent), time + delay)
       schedule(ackAt(agent), Acknowledged, agent, number - 1)
-      if handoverNs == 0 then acts(agent, number) else schedule(time + handoverNs, Acts, agent, number)
+      if handoverNs(agent) == 0 then acts(agent, number)
+      else schedule(time + handoverNs(agent), Acts, agent, number)
 
   def acts(agent: Int, number: Int): Unit =
     observer.acts(agent, number, time)
-    command(agent, norths(slot(agent, number)), easts(slot(agent, number)))
+    val at = slot(agent, number)
+    command(agent, norths(at), easts(at), actions(at))
 
-  def commandNow(agent: Int, headingRad: Double, speedMps: Double, northMps: Double, eastMps: Double): Unit =
+  def commandNow(
+      agent: Int,
+      headingRad: Double,
+      speedMps: Double,
+      northMps: Double,
+      eastMps: Double,
+      action: Option[Action]
+  ): Unit =
     observer.commanded(agent, commanded(agent), time, headingRad, speedMps)
     observer.acts(agent, commanded(agent), time)
     commanded(agent) += 1
-    command(agent, northMps, eastMps)
+    command(agent, northMps, eastMps, action)
 
   def decided(agent: Int, elapsedS: Double, upon: Grounds): Unit =
     observer.decided(agent, time, elapsedS, upon)
+    if isAwaited then mayEnd()
 
-  private def command(agent: Int, northMps: Double, eastMps: Double): Unit =
+  private def command(agent: Int, northMps: Double, eastMps: Double, action: Option[Action]): Unit =
     vehicles(agent).advance(nowS)
-    vehicles(agent).command(northMps, eastMps)
+    action.fold(vehicles(agent).command(northMps, eastMps))(vehicles(agent).act)
 
 private[skein] object RolloutWorld:
+  private val NotBegun = -1L
+  private val Unread   = -1
+
   // Kinds of events.
   val ScoreNow      = 0
   val Tick          = 1

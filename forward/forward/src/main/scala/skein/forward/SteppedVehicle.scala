@@ -27,16 +27,18 @@ private[skein] abstract class SteppedVehicle extends Vehicle:
 
   final def x: Double  = originX + moved(stepX, stepVx, stepAx)
   final def y: Double  = originY + moved(stepY, stepVy, stepAy)
+  final def z: Double  = moved(stepZ, stepVz, stepAz)
   final def vx: Double = stepVx + stepAx * sinceStepS
   final def vy: Double = stepVy + stepAy * sinceStepS
 
   final override def seenX: Double  = moved(stepX, stepVx, stepAx).toFloat + originX
   final override def seenY: Double  = moved(stepY, stepVy, stepAy).toFloat + originY
+  final override def seenZ: Double  = z.toFloat
   final override def seenVx: Double = vx.toFloat
   final override def seenVy: Double = vy.toFloat
 
   final override def seen: Kinematics = Kinematics(
-    Vector3(seenX, seenY, moved(stepZ, stepVz, stepAz).toFloat),
+    Vector3(seenX, seenY, seenZ),
     Vector3(seenVx, seenVy, (stepVz + stepAz * sinceStepS).toFloat),
     orientation,
     angularVelocityFrd

@@ -1,20 +1,23 @@
 package skein.forward
 
+import skein.policy.Action
 import skein.signal.Kinematics
 import skein.units.{Quaternion, Vector3}
 import skein.vehicle.{QuadrotorModel, VehicleModel}
 
-/** One vehicle of a rollout that follows commanded horizontal velocities. Mutable; one per vehicle and
-  * thread.
-  */
+/** One vehicle of a rollout. Mutable; one per vehicle and thread. */
 trait Vehicle:
   /** Sets it to rest here, at time 0; world NED, m. */
   def start(x: Double, y: Double, z: Double): Unit
 
-  /** A command (m/s, north and east) that arrives now. It takes effect after the vehicle's dead time, until
-    * another does.
+  /** A horizontal velocity (m/s, north and east) at the altitude of the start, which arrives now. It takes
+    * effect after the vehicle's dead time, until another command does.
     */
   def command(vx: Double, vy: Double): Unit
+
+  /** Any other action that it [[VelocityResponse.performs performs]], which arrives now. */
+  def act(action: Action): Unit =
+    throw UnsupportedOperationException(s"this vehicle does not perform $action")
 
   /** Simulates until this time, s; times must not decrease. */
   def advance(timeS: Double): Unit
@@ -23,6 +26,9 @@ trait Vehicle:
 
   def y: Double
 
+  /** Down, m; world NED, as `x` and `y`. */
+  def z: Double
+
   def vx: Double
 
   def vy: Double
@@ -30,6 +36,7 @@ trait Vehicle:
   // The same as the vehicle tells it when it is asked.
   def seenX: Double  = x
   def seenY: Double  = y
+  def seenZ: Double  = z
   def seenVx: Double = vx
   def seenVy: Double = vy
 
@@ -47,6 +54,14 @@ trait VelocityResponse:
     * immediately.
     */
   def handoverS: Double = 0.0
+
+  /** Whether its vehicles perform every action. Others follow horizontal velocities at the altitude of their
+    * start.
+    */
+  def isSpatial: Boolean = false
+
+  /** Whether its vehicles perform an action, besides velocities at the altitude of their start. */
+  def performs: Action => Boolean = _ => isSpatial
 
   /** Whether its motion depends on a commanded yaw. */
   def regardsYaw: Boolean = true

@@ -7,6 +7,7 @@ import skein.forward.{
   Nanos,
   PlantResponse,
   QuadrotorResponse,
+  SpatialResponse,
   VelocityResponse
 }
 import skein.lanes.loop.{LagVehicles, LanePredictor, LaneVehicles, LoopLanes, PlantFlights}
@@ -50,8 +51,9 @@ private[skein] object LaneDynamics:
           s"the lanes know no ground and fly from $LeastAltitudeM m altitude on"
         lanes <- QuadrotorLanes.of(quadrotor.quadrotor)
       yield QuadrotorDynamics(quadrotor, lanes)
-    case PlantResponse(plant) => PlantLanes.of(plant).map(PlantDynamics(_))
-    case _                    => Left("the lanes do not know the vehicle")
+    case PlantResponse(plant)   => PlantLanes.of(plant).map(PlantDynamics(_))
+    case SpatialResponse(plant) => PlantLanes.of(plant).map(PlantDynamics(_))
+    case _                      => Left("the lanes do not know the vehicle")
 
   /** The dynamics of a model under a loop; if the loop predicts, SIMD must support its predictor too.
     *
@@ -68,6 +70,8 @@ private[skein] object LaneDynamics:
   ): Either[String, LaneDynamics] =
     of(model, vehicles).flatMap: vehicles =>
       timing match
+        case _: LoopTiming.Predictive if model.isInstanceOf[SpatialResponse] =>
+          Left("SIMD does not predict climbs")
         case predictive: LoopTiming.Predictive =>
           LanePredictor.of(predictive.predictor).map(PredictedDynamics(vehicles, _))
         case _ => Right(vehicles)

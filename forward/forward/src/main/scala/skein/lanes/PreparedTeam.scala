@@ -6,7 +6,7 @@ import skein.lanes.score.ScoreLanes
 
 /** What teams that are simulated side by side have in common.
   *
-  * @param altitudesDownM of the vehicles
+  * @param altitudesDownM of vehicles that fly level
   */
 private[lanes] final case class TeamForm(
     team: TeamLanes,
@@ -14,6 +14,9 @@ private[lanes] final case class TeamForm(
     durationS: Double,
     altitudesDownM: Vector[Double]
 )(val vehicles: LaneDynamics):
+  /** Whether vehicles climb. */
+  def inSpace: Boolean = team.inSpace
+
   /** Whether decisions need more than readings and their own times. */
   def asksMore: Boolean = team.asksMore.contains(true)
 

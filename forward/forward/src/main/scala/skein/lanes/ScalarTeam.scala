@@ -32,13 +32,13 @@ private[skein] final class ScalarTeam(timing: LoopTiming, model: => VelocityResp
     last._1.judged.zip(found).map((each, at) => each.of(at.toVector))
 
   private final class Judging(candidate: TeamCandidate) extends LoopObserver:
-    private val downM         = IArray.from(candidate.engagement.agents.map(_.altitudeDownM))
-    private val northM, eastM = Array.ofDim[Double](downM.length)
+    private val count                = candidate.engagement.agents.size
+    private val northM, eastM, downM = Array.ofDim[Double](count)
 
-    override def scored(timeS: Double, vehicle: Int, x: Double, y: Double): Unit =
-      northM(vehicle) = x; eastM(vehicle) = y
-      if vehicle == downM.length - 1 && candidate.judged.exists(_.counts(timeS)) then
-        val places = Positions(IArray.from(northM), IArray.from(eastM), downM)
+    override def scored(timeS: Double, vehicle: Int, x: Double, y: Double, z: Double): Unit =
+      northM(vehicle) = x; eastM(vehicle) = y; downM(vehicle) = z
+      if vehicle == count - 1 && candidate.judged.exists(_.counts(timeS)) then
+        val places = Positions(IArray.from(northM), IArray.from(eastM), IArray.from(downM))
         for (each, at) <- candidate.judged.zip(found) if each.counts(timeS) do
           at += ((timeS, Quantity.told(each.quantity, places)))
 

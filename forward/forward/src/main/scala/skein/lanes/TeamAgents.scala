@@ -138,10 +138,13 @@ private[lanes] final class TeamDecisions(self: Int, team: TeamViews, altitudesDo
     call.call.output(1, into.sin, at)
     call.call.output(2, newCos, 0)
     call.call.output(3, newSin, 0)
+    if lanes.inSpace then
+      call.call.output(4, into.third, at)
+      call.call.output(5, into.holds, at)
     var number = 0
     while number < memories do
       if asksMemory(number) >= 0 then call.call.input(asksMemory(number), memory, number * WORLDS)
-      call.call.output(4 + number, newMemory, number * WORLDS)
+      call.call.output(lanes.decided + number, newMemory, number * WORLDS)
       number += 1
     call.call.apply()
 

@@ -2,7 +2,7 @@ package skein.lanes
 
 import java.util.IdentityHashMap
 import scala.collection.mutable
-import skein.forward.{Delays, LoopTiming, TabledDelays, VelocityResponse}
+import skein.forward.{Delays, LoopTiming, SpatialResponse, TabledDelays, VelocityResponse}
 import skein.lanes.loop.{BySlowest, LaneAgents, LoopKernel, LoopLanes}
 import skein.lanes.policy.TeamLanes
 import skein.lanes.score.{ScoreLanes, Scoreboard}
@@ -65,7 +65,11 @@ final class TeamBatch(
     )
 
   private def steppedOf(candidate: TeamCandidate) =
-    SteppedRollouts.engine(model, candidate.engagement.agents).filterNot(_ => isReference)
+    SteppedRollouts
+      .engine(model, candidate.engagement.agents)
+      .filterNot(_ =>
+        isReference || candidate.engagement.hasCars || model.isSpatial && candidate.engagement.climbs.isDefined
+      )
 
   /** Whether worlds share episodes. A world that waits for its controller has no delays: all worlds share
     * their episode.
@@ -77,19 +81,22 @@ final class TeamBatch(
 
   private def lanesOf(candidate: TeamCandidate): Either[String, TeamForm] =
     val engagement = candidate.engagement
+    val inSpace    = model.isInstanceOf[SpatialResponse]
     for
       _        <- LaneSupport.present
       _        <- Expect.that(!isReference)("the reference was asked for")
+      _        <- Expect.that(!engagement.hasCars)("it has cars")
       vehicles <- LaneDynamics.under(timing, model, engagement.agents)
       team     <- TeamLanes
         .of(
           engagement.agents.map(_.policy),
           engagement.assignment,
-          timing.isInstanceOf[LoopTiming.Predictive]
+          timing.isInstanceOf[LoopTiming.Predictive],
+          inSpace
         )
         .left
         .map(refused => s"a policy is no formula: ${refused.getMessage}")
-      _ <- team.leaves(engagement.agents).toLeft(())
+      _ <- team.leaves(engagement.agents).filterNot(_ => inSpace).toLeft(())
       _ <- Expect.that(!team.looksUp || !model.regardsYaw):
         "a policy asks how high vehicles are, and the quadrotor's height is not told side by side"
       _ <- Expect.that(
@@ -103,7 +110,7 @@ final class TeamBatch(
       team,
       scores,
       engagement.durationS,
-      engagement.agents.map(_.altitudeDownM)
+      if inSpace then Vector.empty else engagement.agents.map(_.altitudeDownM)
     )(vehicles)
 
   /** Simulates all worlds, unless it is cancelled.
@@ -210,7 +217,7 @@ final class TeamBatch(
 
   /** A team in many worlds, with its scores. */
   private abstract class Team(form: TeamForm):
-    val scores: Scoreboard         = Scoreboard(form.scores)
+    val scores: Scoreboard         = Scoreboard(form.scores, form.inSpace)
     protected val views: TeamViews = TeamViews(form.team)
     def members: Array[? <: TeamMember]
 

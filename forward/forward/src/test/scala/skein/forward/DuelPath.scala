@@ -6,7 +6,7 @@ package skein.forward
 final class DuelPath(told: (Double, Double, Double, Double, Double) => Unit) extends LoopObserver:
   private var evaderX, evaderY = 0.0
 
-  override def scored(timeS: Double, vehicle: Int, x: Double, y: Double): Unit =
+  override def scored(timeS: Double, vehicle: Int, x: Double, y: Double, z: Double): Unit =
     if vehicle == 0 then
       evaderX = x; evaderY = y
     else told(timeS, evaderX, evaderY, x, y)

@@ -19,7 +19,7 @@ class EngagementSuite extends munit.FunSuite:
     val _    = rollout.fly(
       key,
       observer = new LoopObserver:
-        override def scored(timeS: Double, vehicle: Int, x: Double, y: Double): Unit =
+        override def scored(timeS: Double, vehicle: Int, x: Double, y: Double, z: Double): Unit =
           seen += ((vehicle, x, y))
     )
     seen.result()

@@ -75,5 +75,6 @@ private final class TappedVehicle(vehicle: Vehicle) extends Vehicle:
 
   def x: Double  = vehicle.x
   def y: Double  = vehicle.y
+  def z: Double  = vehicle.z
   def vx: Double = vehicle.vx
   def vy: Double = vehicle.vy

@@ -286,7 +286,7 @@ private[skein] object DuelAgreement:
       all += Event.Looked(looks, atNs * 1e-9, image)
       looks += 1
 
-    override def scored(timeS: Double, vehicle: Int, x: Double, y: Double): Unit =
+    override def scored(timeS: Double, vehicle: Int, x: Double, y: Double, z: Double): Unit =
       if vehicle == 0 then
         x0 = x; y0 = y
       else distances += timeS -> math.hypot(x - x0, y - y0)

@@ -7,7 +7,7 @@ import skein.lanes.score.Judged
 import skein.policy.{PaperEvader, PaperPursuer, HeadingPolicy}
 import skein.scenario.{OffRing, Reduction, Surround}
 import skein.simd.WorldRandom
-import skein.vehicle.ReducedModel
+import skein.vehicle.{ReducedModel, TiltModel}
 
 /** The table of docs/engines.md agrees with the engines, cell by cell; and worlds listed for SIMD or for
   * stepped vehicles have the scalar reference's results. Bodies of MuJoCo's have no column: they need a
@@ -18,11 +18,12 @@ class FlownByLanesSuite extends munit.FunSuite:
     Iterator.iterate(Path.of("").toAbsolutePath)(_.getParent).find(at => Files.exists(at.resolve("sbtw"))).get
 
   private val plants = Vector[(String, VelocityResponse)](
-    "no lag"           -> VelocityResponses.Ideal,
-    "lag"              -> VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05),
-    "drag"             -> PlantResponse(ReducedModel.AirSim),
-    "your own `Plant`" -> PlantResponse(Bicycle(1.2, 0.3, 4, 0.4)),
-    "the quadrotor"    -> VelocityResponses.quadrotor()
+    "no lag"            -> VelocityResponses.Ideal,
+    "lag"               -> VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05),
+    "drag"              -> PlantResponse(ReducedModel.AirSim),
+    "your own `Plant`"  -> PlantResponse(Bicycle(1.2, 0.3, 4, 0.4)),
+    "the quadrotor"     -> VelocityResponses.quadrotor(),
+    "in space (`tilt`)" -> SpatialResponse(TiltModel.AirSim)
   )
 
   private def loops(model: VelocityResponse): Vector[LoopTiming] = Vector(

@@ -68,7 +68,8 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
   private def scalar(of: Engagement, timing: LoopTiming, link: Delays, model: VelocityResponse, key: Int) =
     val places = ArrayBuffer.empty[(Double, Double)]
     val noting = new LoopObserver:
-      override def scored(timeS: Double, vehicle: Int, x: Double, y: Double): Unit = places += ((x, y))
+      override def scored(timeS: Double, vehicle: Int, x: Double, y: Double, z: Double): Unit =
+        places += ((x, y))
     Rollout(of, timing, link, model).fly(key, observer = noting): Unit
     places
 

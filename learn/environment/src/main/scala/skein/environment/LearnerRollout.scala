@@ -96,7 +96,7 @@ private final class LearnerRollout(side: ScenarioSide, learner: Int) extends Aut
   private object scores extends LoopObserver:
     private val northM, eastM = Array.ofDim[Double](side.count)
 
-    override def scored(timeS: Double, vehicle: Int, x: Double, y: Double): Unit =
+    override def scored(timeS: Double, vehicle: Int, x: Double, y: Double, z: Double): Unit =
       northM(vehicle) = x
       eastM(vehicle) = y
       if vehicle == side.count - 1 && timeS <= side.settings.episodeS + EnvironmentGroup.Tolerance then

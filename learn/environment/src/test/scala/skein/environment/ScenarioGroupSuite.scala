@@ -69,7 +69,7 @@ class ScenarioGroupSuite extends munit.FunSuite:
         var (paid, scores) = (0.0, 0)
         val observer       = new LoopObserver:
           private val north, east = Array.ofDim[Double](4)
-          override def scored(timeS: Double, vehicle: Int, x: Double, y: Double): Unit =
+          override def scored(timeS: Double, vehicle: Int, x: Double, y: Double, z: Double): Unit =
             north(vehicle) = x; east(vehicle) = y
             if vehicle == 3 && timeS <= 6 + 1e-6 then
               scores += 1

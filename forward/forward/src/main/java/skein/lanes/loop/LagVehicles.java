@@ -101,7 +101,7 @@ public final class LagVehicles extends LaneVehicles {
    */
   public LagVehicles(
       RolloutAgent agent, ReducedModel model, double periodS, double longestS, double earliestS) {
-    super(agent, NUMBERS);
+    super(agent, NUMBERS, false);
     this.periodS = periodS;
     this.earliestS = (float) earliestS;
     allocate(8);

@@ -94,10 +94,10 @@ public abstract class LaneAgents {
       arrives = new int[WORLDS];
 
   /** Commanded directions, or velocities over the vehicles' speed: the last and the previous command. */
-  public final Directions sent = new Directions(WORLDS), sentBefore = new Directions(WORLDS);
+  public final Directions sent, sentBefore = new Directions(WORLDS);
 
   /** The last decision, which equals the last command unless a decision waits; and the present decision. */
-  public final Directions decided, decidedNow = new Directions(WORLDS);
+  public final Directions decided, decidedNow;
 
   /** @param deadTimeS from a command's arrival until the vehicle follows it */
   public LaneAgents(int self, LoopLanes loop, double deadTimeS, LaneVehicles vehicles) {
@@ -106,6 +106,8 @@ public abstract class LaneAgents {
     forecast = loop.forecast();
     decidesFirst = loop.decidesFirst();
     together = loop.offers().together;
+    sent = new Directions(WORLDS, vehicles.inSpace);
+    decidedNow = new Directions(WORLDS, vehicles.inSpace);
     decided = decidesFirst ? new Directions(WORLDS) : sent;
     line = Delays.command(self);
     Steering steering = loop.steering();
@@ -126,6 +128,8 @@ public abstract class LaneAgents {
     Arrays.fill(decidedLong, NEVER);
     Arrays.fill(goesFirst, 0);
     vehicles.start();
+    if (vehicles.inSpace)
+      for (Directions each : new Directions[] {sent, decidedNow}) each.level(vehicles.startZ);
   }
 
   public abstract boolean needsVelocity();
@@ -340,6 +344,14 @@ public abstract class LaneAgents {
       }
       cos.blend(newCos, sending).intoArray(sent.cos, i);
       sin.blend(newSin, sending).intoArray(sent.sin, i);
+      if (sent.third != null) {
+        FloatVector.fromArray(SPECIES, sent.third, i)
+            .blend(FloatVector.fromArray(SPECIES, decidedNow.third, i), sending)
+            .intoArray(sent.third, i);
+        FloatVector.fromArray(SPECIES, sent.holds, i)
+            .blend(FloatVector.fromArray(SPECIES, decidedNow.holds, i), sending)
+            .intoArray(sent.holds, i);
+      }
       if (decidesFirst) {
         FloatVector.fromArray(SPECIES, decided.cos, i).blend(newCos, deciding).intoArray(decided.cos, i);
         FloatVector.fromArray(SPECIES, decided.sin, i).blend(newSin, deciding).intoArray(decided.sin, i);

@@ -22,8 +22,10 @@ import skein.lanes.policy.Directions;
  * since the episode's start, modulo 2³²; two compared times never differ by half of that.
  */
 public abstract class LaneFlights extends LaneVehicles {
-  /** Offsets of a piece's numbers: the command's direction, north, then east; the subclass adds others. */
-  static final int ALONG_X = 0, ALONG_Y = WORLDS;
+  /** Offsets of a piece's numbers: the command's direction, north, then east, in space its vertical part; the
+   * subclass adds others.
+   */
+  static final int ALONG_X = 0, ALONG_Y = WORLDS, THIRD = 2 * WORLDS, HOLDS = 3 * WORLDS;
 
   /** Longest duration of a piece, s: far less than the range in which times are compared. */
   public static final double MOST_PIECE_S = 1;
@@ -47,15 +49,16 @@ public abstract class LaneFlights extends LaneVehicles {
   // Pieces that end by themselves: where, when, and under which command others follow.
   private final LaneVectors over = new LaneVectors();
   private final int[] ends = new int[WORLDS], next = new int[WORLDS];
-  private final Directions along = new Directions(WORLDS);
+  private final Directions along;
 
   private static final LaneVectors ALL = LaneVectors.all();
 
   /** @param numbers count per piece
    * @param pieceS longest duration of a piece, at most {@link #MOST_PIECE_S}
    */
-  LaneFlights(RolloutAgent agent, int numbers, double pieceS, LoopLanes loop) {
-    super(agent, 0);
+  LaneFlights(RolloutAgent agent, int numbers, double pieceS, LoopLanes loop, boolean inSpace) {
+    super(agent, 0, inSpace);
+    along = new Directions(WORLDS, inSpace);
     size = numbers * WORLDS;
     keptRows = loop.keptRows();
     periodGrains = LaneViews.grains(loop.periodS());
@@ -81,7 +84,8 @@ public abstract class LaneFlights extends LaneVehicles {
 
   /** Simulates the {@link #chosen} pieces for {@link #sinceS}.
    *
-   * @param at offset of the resulting positions, north, then east, followed by the velocities
+   * @param at offset of the resulting positions, north, then east, followed by the velocities and, in space,
+   *     by position and velocity down; without velocities {@link #X}
    */
   abstract void fly(float[] into, int at, boolean withVelocity);
 
@@ -150,6 +154,10 @@ public abstract class LaneFlights extends LaneVehicles {
       flyOn();
       System.arraycopy(chosen, ALONG_X, along.cos, 0, WORLDS);
       System.arraycopy(chosen, ALONG_Y, along.sin, 0, WORLDS);
+      if (inSpace) {
+        System.arraycopy(chosen, THIRD, along.third, 0, WORLDS);
+        System.arraycopy(chosen, HOLDS, along.holds, 0, WORLDS);
+      }
       begin(over, fill(row, over, next), ends, along);
     }
   }

@@ -21,7 +21,9 @@ public abstract class LaneVehicles {
   static final int WORLDS = LanePolicy.WORLDS;
 
   /** Offsets of each world's numbers in {@link #state}: position at the period's start, m; position and
-   * velocity of the last reading, m and m/s; north, then east. Subclasses may keep more from {@link #OWN} on.
+   * velocity of the last reading, m and m/s; north, then east. Then, in space, position and velocity down of
+   * the last reading, and the position down at the period's start. Subclasses may keep more from {@link #OWN}
+   * on.
    * A single array, because passes over many arrays spend their time on addresses.
    */
   static final int X = 0,
@@ -30,15 +32,27 @@ public abstract class LaneVehicles {
       SEEN_Y = 3 * WORLDS,
       SEEN_VX = 4 * WORLDS,
       SEEN_VY = 5 * WORLDS,
-      OWN = 6 * WORLDS;
+      SEEN_Z = 6 * WORLDS,
+      SEEN_VZ = 7 * WORLDS,
+      Z = 8 * WORLDS,
+      OWN = 9 * WORLDS;
 
   final float[] state;
 
-  private final float[] kept = new float[4 * WORLDS];
+  private final float[] kept;
   private final float[] startX = new float[WORLDS], startY = new float[WORLDS];
 
+  /** Of each world's start, m down. */
+  final float[] startZ = new float[WORLDS];
+
+  /** Whether commands and readings have a vertical part. */
+  public final boolean inSpace;
+
+
   /** @param own count of numbers per world that the subclass keeps from {@link #OWN} on */
-  LaneVehicles(RolloutAgent agent, int own) {
+  LaneVehicles(RolloutAgent agent, int own, boolean inSpace) {
+    this.inSpace = inSpace;
+    kept = new float[(inSpace ? 6 : 4) * WORLDS];
     state = new float[OWN + own * WORLDS];
     for (int world = 0; world < WORLDS; world++) place(world, agent);
   }
@@ -47,6 +61,7 @@ public abstract class LaneVehicles {
   public final void place(int world, RolloutAgent agent) {
     startX[world] = (float) agent.startX();
     startY[world] = (float) agent.startY();
+    startZ[world] = (float) agent.altitudeDownM();
   }
 
   /** Resets to the start of an episode, where the vehicles rest. */
@@ -54,6 +69,7 @@ public abstract class LaneVehicles {
     Arrays.fill(state, 0f);
     for (int x : new int[] {X, SEEN_X}) System.arraycopy(startX, 0, state, x, WORLDS);
     for (int y : new int[] {Y, SEEN_Y}) System.arraycopy(startY, 0, state, y, WORLDS);
+    for (int z : new int[] {Z, SEEN_Z}) System.arraycopy(startZ, 0, state, z, WORLDS);
   }
 
   /** Reads the vehicles where {@code fresh} is 1, or wherever a view was joined.

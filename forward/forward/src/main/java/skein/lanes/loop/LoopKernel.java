@@ -56,6 +56,7 @@ public final class LoopKernel {
     for (LaneAgents each : agents) {
       float[] state = each.vehicles.state;
       scores.place(each.self, state, LaneVehicles.X, state, LaneVehicles.Y);
+      if (each.vehicles.inSpace) scores.placeDown(each.self, state, LaneVehicles.Z);
       needsVelocity |= each.needsVelocity();
       needsAges |= each.needsAges();
     }

@@ -21,7 +21,7 @@ import skein.vehicle.Plant;
  * none, and the vehicle rests. The scalar reference is {@code skein.forward.PlantVehicle}.
  */
 public final class PlantFlights extends LaneFlights {
-  private static final int STATE = PlantPieces.State() * WORLDS;
+  private final int firstOfState;
 
   private final PlantLanes lanes;
   private final int[] starts;
@@ -31,9 +31,10 @@ public final class PlantFlights extends LaneFlights {
   private final float[] reached;
 
   public PlantFlights(RolloutAgent agent, PlantLanes lanes, LoopLanes loop) {
-    super(agent, lanes.pieces().kept(), lanes.plant().stepS(), loop);
+    super(agent, lanes.pieces().kept(), lanes.plant().stepS(), loop, lanes.inSpace());
     PlantPieces pieces = lanes.pieces();
     this.lanes = lanes;
+    firstOfState = pieces.state() * WORLDS;
     starts = pieces.starts();
     reached = new float[lanes.count() * WORLDS];
     float[] parameters = pieces.parametersOf(lanes.plant(), agent.speed());
@@ -52,7 +53,8 @@ public final class PlantFlights extends LaneFlights {
 
   @Override
   void rest(float[] pieces) {
-    lanes.rest(pieces, STATE);
+    if (inSpace) lanes.restInSpace(pieces, firstOfState, startZ);
+    else lanes.rest(pieces, firstOfState);
     Arrays.fill(pieces, ALONG_X, ALONG_X + WORLDS, Float.NaN);
     for (int axis = 0; axis < 2; axis++)
       for (int world = 0; world < WORLDS; world++)
@@ -61,9 +63,16 @@ public final class PlantFlights extends LaneFlights {
 
   @Override
   public void fly(float[] into, int at, boolean withVelocity) {
-    LaneCall call = withVelocity ? look : position;
-    call.output(0, into, at, 0);
-    call.apply();
+    if (inSpace && at == X) {
+      position.output(0, into, X, 0);
+      position.output(1, into, Y, 0);
+      position.output(2, into, Z, 0);
+      position.apply();
+    } else {
+      LaneCall call = withVelocity || inSpace ? look : position;
+      call.output(0, into, at, 0);
+      call.apply();
+    }
   }
 
   @Override
@@ -74,7 +83,7 @@ public final class PlantFlights extends LaneFlights {
   @Override
   void begin(LaneVectors vectors, int at, int[] acts, Directions commanded) {
     IntVector none = IntVector.broadcast(INTS, LaneOffers.NONE);
-    int flown = STATE + reached.length, size = chosen.length;
+    int flown = firstOfState + reached.length, size = chosen.length;
     for (int k = 0; k < vectors.count; k++) {
       int i = vectors.first[k], to = at + i;
       VectorMask<Float> does = IntVector.fromArray(INTS, acts, i).compare(LT, none).cast(SPECIES);
@@ -84,9 +93,17 @@ public final class PlantFlights extends LaneFlights {
       FloatVector.fromArray(SPECIES, chosen, ALONG_Y + i)
           .blend(FloatVector.fromArray(SPECIES, commanded.sin, i), does)
           .intoArray(pieces, to + ALONG_Y);
-      for (int number = STATE; number < flown; number += WORLDS)
+      if (inSpace) {
+        FloatVector.fromArray(SPECIES, chosen, THIRD + i)
+            .blend(FloatVector.fromArray(SPECIES, commanded.third, i), does)
+            .intoArray(pieces, to + THIRD);
+        FloatVector.fromArray(SPECIES, chosen, HOLDS + i)
+            .blend(FloatVector.fromArray(SPECIES, commanded.holds, i), does)
+            .intoArray(pieces, to + HOLDS);
+      }
+      for (int number = firstOfState; number < flown; number += WORLDS)
         FloatVector.fromArray(SPECIES, chosen, number + i)
-            .blend(FloatVector.fromArray(SPECIES, reached, number - STATE + i), does)
+            .blend(FloatVector.fromArray(SPECIES, reached, number - firstOfState + i), does)
             .intoArray(pieces, to + number);
       for (int number = flown; number < size; number += WORLDS)
         FloatVector.fromArray(SPECIES, chosen, number + i).intoArray(pieces, to + number);

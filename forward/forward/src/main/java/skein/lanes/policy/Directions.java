@@ -6,9 +6,22 @@ import java.util.Arrays;
 public final class Directions {
   public float[] cos, sin;
 
+  /** In space, the commanded altitude, m down, where {@code holds} is 1, or the velocity down, m/s, where it
+   * is 0; null where vehicles fly level.
+   */
+  public float[] third, holds;
+
   public Directions(int count) {
+    this(count, false);
+  }
+
+  public Directions(int count, boolean inSpace) {
     cos = new float[count];
     sin = new float[count];
+    if (inSpace) {
+      third = new float[count];
+      holds = new float[count];
+    }
   }
 
   /** Ensures this capacity; discards all directions if it must grow. */
@@ -16,7 +29,18 @@ public final class Directions {
     if (cos.length < count) {
       cos = new float[count];
       sin = new float[count];
+      if (third != null) {
+        third = new float[count];
+        holds = new float[count];
+      }
     }
+  }
+
+  /** Holds each world's altitude, m down, with all commands in space. */
+  public void level(float[] down) {
+    for (int at = 0; at < third.length; at += down.length)
+      System.arraycopy(down, 0, third, at, down.length);
+    Arrays.fill(holds, 1f);
   }
 
   public void fill(int from, int to, double headingRad) {

@@ -21,6 +21,9 @@ public final class LaneObservation {
 
   public static final int READ = 4;
 
+  /** Rows of a reading in space: the same, then position and velocity down. */
+  public static final int DOWN = 4, IN_SPACE = 6;
+
   private static final float[] ZEROS = new float[WORLDS];
 
   /** Offsets of the opponent's readings and of the own ones, by row. */

@@ -12,10 +12,11 @@ public abstract class TimetableAgents {
   public final TimetableVehicles vehicles;
 
   /** Decided directions, or velocities over the vehicles' speed, by place. */
-  public final Directions headings = new Directions(0);
+  public final Directions headings;
 
   public TimetableAgents(TimetableVehicles vehicles) {
     this.vehicles = vehicles;
+    headings = new Directions(0, vehicles.inSpace());
   }
 
   /** Resets to the start of an episode.
@@ -25,6 +26,7 @@ public abstract class TimetableAgents {
   public void start(Timetable timetable, int worlds) {
     vehicles.start(timetable.readings(), worlds);
     headings.reserve(timetable.headings() * WORLDS);
+    if (vehicles.inSpace()) headings.level(vehicles.startZ);
   }
 
   public abstract boolean needsVelocity();

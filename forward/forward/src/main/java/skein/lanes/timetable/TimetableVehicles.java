@@ -14,20 +14,38 @@ public abstract class TimetableVehicles {
   /** The vehicles' readings, by place: positions, m, and velocities, m/s, north and east. */
   public float[] seenX = {}, seenY = {}, seenVx = {}, seenVy = {};
 
+  /** Their positions and velocities down; empty where they fly level. */
+  public float[] seenZ = {}, seenVz = {};
+
   /** Predicts from their readings, in loops that predict; else null. */
   public PredictedVehicles predicted;
 
-  /** Start of each world's vehicle, north and east, m. */
-  public final float[] startX = new float[WORLDS], startY = new float[WORLDS];
+  /** Start of each world's vehicle, north, east and down, m. */
+  public final float[] startX = new float[WORLDS],
+      startY = new float[WORLDS],
+      startZ = new float[WORLDS];
+
+  private final boolean inSpace;
 
   public TimetableVehicles(RolloutAgent agent) {
+    this(agent, false);
+  }
+
+  /** @param inSpace whether commands and readings have a vertical part */
+  public TimetableVehicles(RolloutAgent agent, boolean inSpace) {
+    this.inSpace = inSpace;
     for (int world = 0; world < WORLDS; world++) place(world, agent);
+  }
+
+  public final boolean inSpace() {
+    return inSpace;
   }
 
   /** Sets the start of a world's vehicle to this agent's. */
   public final void place(int world, RolloutAgent agent) {
     startX[world] = (float) agent.startX();
     startY[world] = (float) agent.startY();
+    startZ[world] = (float) agent.altitudeDownM();
   }
 
   /** Resets to the start of an episode.
@@ -41,6 +59,10 @@ public abstract class TimetableVehicles {
       seenY = new float[readings * WORLDS];
       seenVx = new float[readings * WORLDS];
       seenVy = new float[readings * WORLDS];
+      if (inSpace) {
+        seenZ = new float[readings * WORLDS];
+        seenVz = new float[readings * WORLDS];
+      }
     }
     start(worlds);
     if (predicted != null) predicted.start(worlds);

@@ -1,7 +1,7 @@
 package skein.lanes.plant
 
 import skein.formula.{Angles, Evaluation, Formula, Node, Trace}
-import skein.vehicle.Plant
+import skein.vehicle.PlantTiming
 
 /** A plant's step, and the reading at its end, as expressions. Their parameters are the speed of a command of
   * length 1, then the plant's own numbers.
@@ -9,6 +9,7 @@ import skein.vehicle.Plant
   * @param first the first parameter's number
   * @param state its numbers at the start of the step
   * @param north of the command, over the speed
+  * @param vertical the third number of a command in space, and whether it is an altitude
   * @param spanS duration of the step
   * @param taken which numbers of the final state are used
   */
@@ -21,6 +22,7 @@ private[lanes] final class PlantExpressions(
     north: Node,
     east: Node,
     spanS: Node,
+    vertical: Vector[Node],
     taken: Vector[Node] => Vector[Node] = identity
 ):
   private val count   = stepping.outputs.size
@@ -31,7 +33,7 @@ private[lanes] final class PlantExpressions(
 
   private val readOwn = angles(reading, first + 1 + stepOwn.derived.size, stepped)
 
-  /** Position and velocity at the end, north and east. */
+  /** Position and velocity at the end, north and east, and in space those down. */
   val seen: Vector[Node] = reading.outputs.map((_, node) => readOwn.convert(node))
 
   /** Position and velocity at the end, with the position relative to a start. */
@@ -46,8 +48,9 @@ private[lanes] final class PlantExpressions(
   private def leafOfStep(input: Int) =
     if input < count then state(input)
     else if input < count + 2 then trace.mul(if input == count then north else east, speed)
+    else if input < count + 2 + vertical.size then vertical(input - count - 2)
     else spanS
 
-  def parametersOf(plant: Plant[?], speedMps: Double): Array[Double] =
+  def parametersOf(plant: PlantTiming, speedMps: Double): Array[Double] =
     speedMps +: (Evaluation(stepOwn.derived)(Array.emptyDoubleArray, stepping.parametersOf(plant)) ++
       Evaluation(readOwn.derived)(Array.emptyDoubleArray, reading.parametersOf(plant)))

@@ -4,19 +4,39 @@ import java.util.Arrays
 import java.util.concurrent.ConcurrentHashMap
 import skein.formula.{Formula, Untraceable}
 import skein.simd.{FixedFormula, Forms, LaneFunction}
-import skein.vehicle.{PlaneReading, Plant, PlantState}
+import skein.vehicle.{PlaneReading, Plant, PlantState, PlantTiming, SpatialPlant}
 
-/** SIMD simulation of a [[skein.vehicle.Plant]] in many worlds, compiled from its methods. */
-private[skein] final class PlantLanes private (val plant: Plant[?], form: PlantForm):
+/** SIMD simulation of a [[skein.vehicle.Plant]] or a [[skein.vehicle.SpatialPlant]] in many worlds, compiled
+  * from its methods.
+  */
+private[skein] final class PlantLanes private (val plant: PlantTiming, form: PlantForm):
   def count: Int = form.count
 
-  /** The plant's initial state, number by number. */
-  val initial: Array[Float] = PlantState.numbers(plant.initial).map(_.toFloat).toArray
+  /** Whether commands and readings have a vertical part. */
+  val inSpace: Boolean = plant.isInstanceOf[SpatialPlant[?]]
+
+  /** The plant's initial state, number by number; in space, at z = 0. */
+  val initial: Array[Float] = initialAt(0)
   if initial.length != count then throw Untraceable(s"a state of $count doubles was expected")
 
-  /** The reading at rest, relative to its start. */
-  val resting: PlaneReading                 = readingOf(plant)
+  private def initialAt(downM: Double): Array[Float] =
+    val state = plant match
+      case spatial: SpatialPlant[?] => spatial.initial(downM)
+      case level: Plant[?]          => level.initial
+    PlantState.numbers(state).map(_.toFloat).toArray
+
+  /** The horizontal reading at rest, relative to its start. */
+  val resting: PlaneReading = plant match
+    case spatial: SpatialPlant[?] => PlantLanes.levelOf(spatial)
+    case level: Plant[?]          => readingOf(level)
   private def readingOf[S](plant: Plant[S]) = plant.read(plant.initial)
+
+  /** Fills in the numbers of a state at rest in space, at each world's altitude. */
+  def restInSpace(array: Array[Float], from: Int, downM: Array[Float]): Unit =
+    var initial = this.initial
+    for world <- downM.indices do
+      if world == 0 || downM(world) != downM(world - 1) then initial = initialAt(downM(world))
+      for i <- 0 until count do array(from + i * downM.length + world) = initial(i)
 
   /** Fills in the numbers of a state at rest, of all worlds. */
   def rest(array: Array[Float], from: Int): Unit =
@@ -40,29 +60,35 @@ private[skein] final class PlantLanes private (val plant: Plant[?], form: PlantF
   def pieces: PlantPieces = form.pieces
 
 /** The compiled code that plants of one form share. */
-private final class PlantForm(plant: Plant[?], stepping: Formula, reading: Formula):
+private final class PlantForm(plant: PlantTiming, stepping: Formula, reading: Formula):
   val count: Int = stepping.outputs.size
   if reading.inputs.size != count then throw Untraceable(s"a state of $count doubles was expected")
 
-  def fits(other: Plant[?]): Boolean = stepping.fits(other) && reading.fits(other)
+  private val inSpace = plant.isInstanceOf[SpatialPlant[?]]
 
-  val stages: PlantStages = PlantStages(stepping, reading)
+  def fits(other: PlantTiming): Boolean = stepping.fits(other) && reading.fits(other)
+
+  val stages: PlantStages = PlantStages(stepping, reading, inSpace)
 
   /** Compiled lazily, because searches, whose worlds share delays, do not need them. */
   lazy val step: FixedFormula  = FixedFormula(stepping, plant)
   lazy val read: FixedFormula  = FixedFormula(reading, plant)
   lazy val steps: PlantSteps   = PlantSteps(stepping, reading, stages.places)
-  lazy val pieces: PlantPieces = PlantPieces(stepping, reading, stages.places)
+  lazy val pieces: PlantPieces = PlantPieces(stepping, reading, stages.places, inSpace)
 
 private[skein] object PlantLanes:
-  private val known = ConcurrentHashMap[Class[?], Forms[Plant[?], PlantForm]]()
+  private def levelOf[S](plant: SpatialPlant[S]) =
+    val seen = plant.read(plant.initial(0))
+    PlaneReading(seen.northM, seen.eastM, seen.northMps, seen.eastMps)
+
+  private val known = ConcurrentHashMap[Class[?], Forms[PlantTiming, PlantForm]]()
 
   /** The lanes of a plant; plants of one form share compiled code.
     *
     * @return Left states why SIMD does not support such plants
     */
-  def of(plant: Plant[?]): Either[String, PlantLanes] =
-    val forms = known.computeIfAbsent(plant.getClass, _ => Forms[Plant[?], PlantForm](_.fits(_))(traced))
+  def of(plant: PlantTiming): Either[String, PlantLanes] =
+    val forms = known.computeIfAbsent(plant.getClass, _ => Forms[PlantTiming, PlantForm](_.fits(_))(traced))
     forms(plant)
       .flatMap: form =>
         try Right(PlantLanes(plant, form))
@@ -70,7 +96,7 @@ private[skein] object PlantLanes:
       .left
       .map(refused)
 
-  private def traced(plant: Plant[?]) =
+  private def traced(plant: PlantTiming) =
     for
       step <- Formula.of(plant, "step")
       read <- Formula.of(plant, "read")

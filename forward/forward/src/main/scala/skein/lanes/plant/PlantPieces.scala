@@ -2,21 +2,29 @@ package skein.lanes.plant
 
 import skein.formula.{Formula, Node, Trace}
 import skein.simd.BoundFunction
-import skein.vehicle.Plant
+import skein.vehicle.PlantTiming
 
 /** A plant's motion during one step, in worlds whose steps begin at different times. Compiled once for all
-  * plants of a form. Stored for a step are the command, north and east over the speed, then the state at its
-  * start, and then, unless the state contains it, the vehicle's start. A vehicle rests under a command that
-  * is NaN.
+  * plants of a form. Stored for a step are the command, north and east over the speed, in space its vertical
+  * part, then the state at its start, and then, unless the state contains it, the vehicle's start. A vehicle
+  * rests under a command that is NaN.
   *
   * @param places the state's numbers that initially equal the vehicle's start, north and east, if there are
   *   such
   */
-private[lanes] final class PlantPieces(stepping: Formula, reading: Formula, places: Option[Vector[Int]]):
+private[lanes] final class PlantPieces(
+    stepping: Formula,
+    reading: Formula,
+    places: Option[Vector[Int]],
+    inSpace: Boolean
+):
   import PlantPieces.*
 
   private val trace = Trace()
   private val count = stepping.outputs.size
+
+  /** The row of the state's first number. */
+  val state: Int = if inSpace then 4 else 2
 
   private val expressions =
     val (since, stepS) = (trace.input(Since), trace.param(0))
@@ -28,17 +36,18 @@ private[lanes] final class PlantPieces(stepping: Formula, reading: Formula, plac
       stepping,
       reading,
       first = 1,
-      number => trace.input(State + number),
+      number => trace.input(state + number),
       north,
       trace.input(East),
       trace.where(trace.lt(since, stepS), since, stepS),
-      _.zipWithIndex.map((node, number) => trace.where(flies, node, trace.input(State + number)))
+      if inSpace then Vector(trace.input(Third), trace.input(Holds)) else Vector.empty,
+      _.zipWithIndex.map((node, number) => trace.where(flies, node, trace.input(state + number)))
     )
 
-  val kept: Int = State + count + (if places.isDefined then 0 else 2)
+  val kept: Int = state + count + (if places.isDefined then 0 else 2)
 
   /** The rows that initially equal the vehicle's start, north and east. */
-  val starts: Array[Int] = places.getOrElse(Vector(count, count + 1)).map(State + _).toArray
+  val starts: Array[Int] = places.getOrElse(Vector(count, count + 1)).map(state + _).toArray
 
   private val seen =
     if places.isDefined then expressions.seen
@@ -47,20 +56,22 @@ private[lanes] final class PlantPieces(stepping: Formula, reading: Formula, plac
   /** The function for the state at a time after the start of the step, row by row. */
   val flown: BoundFunction = bound(expressions.stepped)
 
-  val position: BoundFunction = bound(seen.take(2))
+  /** The function for north and east, and in space also down, each where it is wanted. */
+  val position: BoundFunction = bound(seen.take(2) ++ seen.drop(4).take(1), areRows = !inSpace)
 
-  /** The function for position and velocity at that time. */
+  /** The function for position and velocity at that time, and in space also those down. */
   val look: BoundFunction = bound(seen)
 
-  private def bound(of: Vector[Node]) =
-    BoundFunction.of(of, { case row if row < Since => row }, areRows = true)
+  private def bound(of: Vector[Node], areRows: Boolean = true) =
+    BoundFunction.of(of, { case row if row < Since => row }, areRows)
 
-  def parametersOf(plant: Plant[?], speedMps: Double): Array[Float] =
+  def parametersOf(plant: PlantTiming, speedMps: Double): Array[Float] =
     (plant.stepS +: expressions.parametersOf(plant, speedMps)).map(_.toFloat)
 
 private[lanes] object PlantPieces:
   /** Inputs of the expressions: the stored numbers, by row, and the time since the start of the step, s. */
   val North: Int = 0
   val East: Int  = 1
-  val State: Int = 2
+  val Third: Int = 2
+  val Holds: Int = 3
   val Since: Int = 1 << 16

@@ -3,7 +3,7 @@ package skein.lanes.plant
 import scala.collection.mutable
 import skein.formula.{Evaluation, Formula, Node, Op, Trace}
 import skein.simd.BoundFunction
-import skein.vehicle.Plant
+import skein.vehicle.PlantTiming
 
 /** A plant's step, split by when its inputs are known, for worlds whose steps begin and end together. Values
   * of the state and the command alone are computed at the start of a step and stored; values of the time
@@ -13,11 +13,12 @@ import skein.vehicle.Plant
   * Parameters of all functions are the speed of a command of length 1, then the plant's own numbers, then
   * those of the time.
   */
-private[lanes] final class PlantStages(stepping: Formula, reading: Formula):
+private[lanes] final class PlantStages(stepping: Formula, reading: Formula, inSpace: Boolean):
   import PlantStages.*
 
   private val trace       = Trace()
   private val count       = stepping.outputs.size
+  private val vertical    = if inSpace then Vector(trace.input(Third), trace.input(Holds)) else Vector.empty
   private val expressions = PlantExpressions(
     trace,
     stepping,
@@ -26,7 +27,8 @@ private[lanes] final class PlantStages(stepping: Formula, reading: Formula):
     number => trace.input(State + number),
     trace.input(North),
     trace.input(East),
-    trace.input(Time)
+    trace.input(Time),
+    vertical
   )
   import expressions.{seen, stepped}
 
@@ -67,7 +69,7 @@ private[lanes] final class PlantStages(stepping: Formula, reading: Formula):
     val place = early.zipWithIndex.toMap
     (early, Trace.replaced(of, trace)(place.get(_).map(by)))
 
-  private val command = Vector(trace.input(North), trace.input(East))
+  private val command = Vector(trace.input(North), trace.input(East)) ++ vertical
 
   /** Values that depend on the command alone, by where they are stored: unchanged if the next step follows
     * without a new command.
@@ -128,26 +130,28 @@ private[lanes] final class PlantStages(stepping: Formula, reading: Formula):
   lazy val end: BoundFunction = BoundFunction.of(late.take(count), rowOf, areRows = true)
 
   /** The functions' parameters, without those of the time. */
-  def parametersOf(plant: Plant[?], speedMps: Double): Array[Float] =
+  def parametersOf(plant: PlantTiming, speedMps: Double): Array[Float] =
     expressions.parametersOf(plant, speedMps).map(_.toFloat) ++ Array.ofDim[Float](times)
 
   def firstOfTime: Int = expressions.parameters
 
   /** Converts times to the values by which they are passed in. */
-  def tell(plant: Plant[?]): Double => Array[Double] =
+  def tell(plant: PlantTiming): Double => Array[Double] =
     val own = expressions.parametersOf(plant, 0)
     dtS => timesOf(Array(dtS), own)
 
 private[lanes] object PlantStages:
-  /** Inputs of the expressions: the time, the command over the speed, the start, the state's numbers, the
-    * stored numbers.
+  /** Inputs of the expressions: the time, the start, the command over the speed and its vertical part, the
+    * state's numbers, the stored numbers.
     */
   val Time: Int   = 0
   val StartX: Int = 1
   val StartY: Int = 2
   val North: Int  = 3
   val East: Int   = 4
-  val State: Int  = 5
+  val Third: Int  = 5
+  val Holds: Int  = 6
+  val State: Int  = 7
   val Kept: Int   = 1 << 16
 
   /** Rows of inputs: the state's numbers share one array, and so do the stored numbers. */

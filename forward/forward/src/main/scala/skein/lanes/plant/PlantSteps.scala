@@ -25,7 +25,8 @@ private[skein] final class PlantSteps private[lanes] (
     trace.input,
     trace.input(count),
     trace.input(count + 1),
-    trace.param(0)
+    trace.param(0),
+    Vector.empty
   )
   private val seen =
     if places.isDefined then expressions.seen

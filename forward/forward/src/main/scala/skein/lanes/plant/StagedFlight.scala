@@ -15,7 +15,7 @@ private[lanes] final class StagedFlight(
     startX: Array[Float],
     startY: Array[Float]
 ):
-  import PlantStages.{East, North, StartX, StartY}
+  import PlantStages.{East, Holds, North, StartX, StartY, Third}
   private val stages               = lanes.stages
   private val parameters           = stages.parametersOf(lanes.plant, speedMps)
   private val (times, firstOfTime) = (stages.times, stages.firstOfTime)
@@ -28,12 +28,12 @@ private[lanes] final class StagedFlight(
   private val begun, atRest = Array.ofDim[Float](stages.kept * WORLDS)
   private val next          =
     if stages.isKeptInPlace then begun else Array.ofDim[Float](stages.kept * WORLDS)
-  private val (north, east)           = (stages.act.place(North), stages.act.place(East))
-  private val (firstNorth, firstEast) = (stages.begin.place(North), stages.begin.place(East))
-  private val beginning               = bound(stages.begin, state, begun)
-  private var moving                  = Moving(begun, next)
-  private var other                   = Moving(next, begun)
-  private val resting                 = bound(stages.begin, state, atRest)
+  private val acted     = Vector(North, East, Third, Holds).map(stages.act.place).toArray
+  private val begins    = Vector(North, East, Third, Holds).map(stages.begin.place).toArray
+  private val beginning = bound(stages.begin, state, begun)
+  private var moving    = Moving(begun, next)
+  private var other     = Moving(next, begun)
+  private val resting   = bound(stages.begin, state, atRest)
   lanes.rest(state, 0)
 
   private var worlds = WORLDS
@@ -57,10 +57,10 @@ private[lanes] final class StagedFlight(
     val call = LaneCall(of, parameters)
     for (input, place) <- of.inputs.zipWithIndex do
       input match
-        case StartX       => call.input(place, startX, 0)
-        case StartY       => call.input(place, startY, 0)
-        case North | East => call.input(place, still, 0)
-        case _            => call.input(place, rows, 0)
+        case StartX                       => call.input(place, startX, 0)
+        case StartY                       => call.input(place, startY, 0)
+        case North | East | Third | Holds => call.input(place, still, 0)
+        case _                            => call.input(place, rows, 0)
     if to != null then call.output(0, to, 0)
     call
 
@@ -75,16 +75,21 @@ private[lanes] final class StagedFlight(
     */
   def begin(commanded: Directions, from: Int): Unit =
     if moving.kept ne begun then turnOver()
-    beginning.inputIfAny(firstNorth, commanded.cos, from)
-    beginning.inputIfAny(firstEast, commanded.sin, from)
+    command(beginning, begins, commanded, from)
     beginning()
 
   /** Begins the next step at the present moment, under a command. */
   def act(commanded: Directions, from: Int): Unit =
-    moving.act.inputIfAny(north, commanded.cos, from)
-    moving.act.inputIfAny(east, commanded.sin, from)
+    command(moving.act, acted, commanded, from)
     moving.act()
     turnOver()
+
+  private def command(call: LaneCall, places: Array[Int], commanded: Directions, from: Int): Unit =
+    call.inputIfAny(places(0), commanded.cos, from)
+    call.inputIfAny(places(1), commanded.sin, from)
+    if lanes.inSpace then
+      call.inputIfAny(places(2), commanded.third, from)
+      call.inputIfAny(places(3), commanded.holds, from)
 
   /** Simulates up to a time.
     *
@@ -125,6 +130,25 @@ private[lanes] final class StagedFlight(
     if withVelocity then
       look.output(2, vx, into)
       look.output(3, vy, into)
+    look()
+
+  /** The present position and velocity in space. */
+  def lookInSpace(
+      x: Array[Float],
+      y: Array[Float],
+      vx: Array[Float],
+      vy: Array[Float],
+      z: Array[Float],
+      vz: Array[Float],
+      into: Int
+  ): Unit =
+    val look = moving.look
+    look.output(0, x, into)
+    look.output(1, y, into)
+    look.output(2, vx, into)
+    look.output(3, vy, into)
+    look.output(4, z, into)
+    look.output(5, vz, into)
     look()
 
   /** Writes the present state, number by number.

@@ -15,12 +15,16 @@ import skein.units.{Expect, Metres}
   * What several vehicles compute from one view is computed once for all of them: for example the bearings
   * that each pursuer needs.
   */
-private[lanes] final class TeamLanes private (formulas: Vector[PolicyFormula], assignment: Assignment):
+private[lanes] final class TeamLanes private (
+    formulas: Vector[PolicyFormula],
+    assignment: Assignment,
+    val inSpace: Boolean
+):
   import TeamLanes.*
 
   val count: Int = formulas.size
 
-  private val view  = 4 * count
+  private val view  = (if inSpace then LaneObservation.IN_SPACE else LaneObservation.DOWN) * count
   private val trace = Trace(MostOperations)
 
   /** By vehicle, the headings that it needs: its own previous one, or the known one of another vehicle. */
@@ -45,9 +49,11 @@ private[lanes] final class TeamLanes private (formulas: Vector[PolicyFormula], a
       formulas(self).formula.trace,
       trace,
       input(_) match
-        case PolicyInput.Position(vehicle, 2)    => own(Own.Altitude + vehicle)
+        case PolicyInput.Position(vehicle, 2) =>
+          if inSpace then trace.input(LaneObservation.DOWN * count + vehicle) else own(Own.Altitude + vehicle)
         case PolicyInput.Position(vehicle, axis) => trace.input(axis * count + vehicle)
-        case PolicyInput.Velocity(_, 2)          => trace.const(0)
+        case PolicyInput.Velocity(vehicle, 2)    =>
+          if inSpace then trace.input((LaneObservation.DOWN + 1) * count + vehicle) else trace.const(0)
         case PolicyInput.Velocity(vehicle, axis) => trace.input((2 + axis) * count + vehicle)
         case PolicyInput.Heading(vehicle)        =>
           val (cos, sin) = direction(vehicle)
@@ -67,7 +73,7 @@ private[lanes] final class TeamLanes private (formulas: Vector[PolicyFormula], a
     )
 
   /** By vehicle: the commanded velocity, north and east; cosine and sine of its heading, or anything where it
-    * is not needed; and the next memory.
+    * is not needed; in space the vertical part ([[PolicyFormula.Vertical]]); and the next memory.
     */
   val outputs: Vector[Vector[Node]] = Vector.tabulate(count): self =>
     val by     = angles(self)
@@ -80,7 +86,15 @@ private[lanes] final class TeamLanes private (formulas: Vector[PolicyFormula], a
         val (north, east) = (by.convert(by.factored(northMps)), by.convert(by.factored(eastMps)))
         val (cos, sin)    = if headings.exists(_(self)) then directionOf(self, north, east) else (north, east)
         Vector(north, east, cos, sin)
-    course ++ formulas(self).memory.map(by.convert)
+    val vertical = Vector.from(Option.when(inSpace):
+      formulas(self).vertical.fold(Vector(own(self, Own.StartDown), trace.const(1))): each =>
+        Vector(by.convert(each.third), by.convert(each.holds))).flatten
+    course ++ vertical ++ formulas(self).memory.map(by.convert)
+
+  /** Number of outputs before the memory. */
+  val decided: Int = if inSpace then 6 else 4
+
+  private def own(self: Int, number: Int) = trace.input(ownInput(self, number))
 
   /** Direction of a velocity; for a velocity near zero, the previous direction. */
   private def directionOf(self: Int, north: Node, east: Node): (Node, Node) =
@@ -107,7 +121,7 @@ private[lanes] final class TeamLanes private (formulas: Vector[PolicyFormula], a
     )
 
   /** The vehicle and the component of its reading that an input stands for, 0 to 3: position north and east,
-    * velocity north and east.
+    * velocity north and east; in space, 4 and 5: position and velocity down.
     */
   def reading(input: Int): Option[(Int, Int)] =
     Option.when(input < view)((input % count, input / count))
@@ -119,7 +133,7 @@ private[lanes] final class TeamLanes private (formulas: Vector[PolicyFormula], a
   private val sources = functions.map(_.inputs.toVector.filter(reading(_).isEmpty).map(source))
 
   val needsVelocity: Boolean =
-    (shared +: functions).exists(_.inputs.exists(reading(_).exists((_, field) => field >= 2)))
+    (shared +: functions).exists(_.inputs.exists(reading(_).exists((_, field) => field == 2 || field == 3)))
 
   /** By vehicle: whether it needs ages of readings, commands of others, or the time until its command takes
     * effect.
@@ -138,7 +152,7 @@ private[lanes] final class TeamLanes private (formulas: Vector[PolicyFormula], a
   val turns: Boolean = formulas.exists(_.turns)
 
   /** Whether all decide by positions, velocities, time and the own heading alone. */
-  val isPlain: Boolean = formulas.forall(_.memory.isEmpty) && sources.flatten.forall:
+  val isPlain: Boolean = !inSpace && formulas.forall(_.memory.isEmpty) && sources.flatten.forall:
     case Source.Cos | Source.Sin | Source.Elapsed | _: (Source.Parameter | Source.Shared) => true
     case _                                                                                => false
 
@@ -218,21 +232,23 @@ private[lanes] object TeamLanes:
     case Parameter(number: Int)
     case Shared(number: Int)
 
-  private final case class Team(policies: Vector[Policy], assignment: Assignment, isPredicted: Boolean)
+  private final case class Team(policies: Vector[Policy], assignment: Assignment)
 
-  private val known = ConcurrentHashMap[(Assignment, Boolean), Forms[Team, TeamLanes]]()
+  private val known = ConcurrentHashMap[(Assignment, Boolean, Boolean), Forms[Team, TeamLanes]]()
 
   /** The SIMD code of a team, or why there is none. Compiled once for each form.
     *
     * @param isPredicted whether readings are predicted
+    * @param inSpace whether vehicles climb
     */
   def of(
       policies: Vector[Policy],
       assignment: Assignment,
-      isPredicted: Boolean
+      isPredicted: Boolean,
+      inSpace: Boolean = false
   ): Either[Untraceable, TeamLanes] =
     val forms = known.computeIfAbsent(
-      (assignment, isPredicted),
+      (assignment, isPredicted, inSpace),
       _ =>
         Forms[Team, TeamLanes](_.fits(_)): team =>
           Expect
@@ -244,9 +260,9 @@ private[lanes] object TeamLanes:
                 .that(most <= MostMemories)(
                   Untraceable(s"it remembers $most numbers, more than $MostMemories")
                 )
-                .map(_ => TeamLanes(formulas, assignment))
+                .map(_ => TeamLanes(formulas, assignment, inSpace))
     )
-    forms(Team(policies, assignment, isPredicted))
+    forms(Team(policies, assignment))
 
 /** Subexpressions shared by several expressions, which depend on the first inputs alone.
   *

@@ -2,11 +2,15 @@ package skein.lanes.score
 
 import java.util.Arrays
 import skein.forward.RolloutAgent
+import skein.lanes.policy.LaneObservation
 import skein.lanes.timetable.{TimetableAgents, TimetableScores, ViewCall}
 import skein.scenario.Reduction
 
-/** Scores the flights of many worlds, once a period. Mutable. */
-private[lanes] final class Scoreboard(lanes: ScoreLanes) extends TimetableScores:
+/** Scores the flights of many worlds, once a period. Mutable.
+  *
+  * @param inSpace whether vehicles climb
+  */
+private[lanes] final class Scoreboard(lanes: ScoreLanes, inSpace: Boolean = false) extends TimetableScores:
   import ScoreLanes.Source
 
   private val worlds     = TimetableAgents.WORLDS
@@ -30,14 +34,19 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes) extends TimetableScores
     val judged: Array[Int] = of.judged.toArray
     val shown: ViewCall    = ViewCall(
       of.function,
-      input => Some(lanes.source(input)).collect { case Source.Reading(vehicle, field) => (vehicle, field) },
+      input =>
+        Some(lanes.source(input)).collect:
+          case Source.Reading(vehicle, field)      => (vehicle, field)
+          case Source.Altitude(vehicle) if inSpace => (vehicle, LaneObservation.DOWN)
+      ,
       shared
     )
     for (place, output) <- of.places.zipWithIndex do shown.call.output(output, kept, place * worlds)
     for (input, place) <- of.function.inputs.zipWithIndex do
       lanes.source(input) match
-        case Source.Reading(_, _)                => ()
-        case Source.Altitude(vehicle)            => shown.call.input(place, altitudes, vehicle * worlds)
+        case Source.Reading(_, _)     => ()
+        case Source.Altitude(vehicle) =>
+          if !inSpace then shown.call.input(place, altitudes, vehicle * worlds)
         case Source.Kept(from)                   => shown.call.input(place, kept, from * worlds)
         case Source.Parameter(number, parameter) =>
           shown.call.input(place, parameters(number), parameter * worlds)
@@ -72,6 +81,10 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes) extends TimetableScores
     for stage <- stages do
       stage.shown.show(vehicle, 0, north, northAt)
       stage.shown.show(vehicle, 1, east, eastAt)
+
+  /** Sets where a vehicle's positions down are stored, one of each world. */
+  def placeDown(vehicle: Int, down: Array[Float], at: Int): Unit =
+    for stage <- stages do stage.shown.show(vehicle, LaneObservation.DOWN, down, at)
 
   def counts(timeS: Float): Boolean = stageAt(timeS) != null
 

@@ -30,6 +30,7 @@ private[lanes] object StandingStill:
       def advance(timeS: Double): Unit                 = ()
       def x: Double                                    = 0
       def y: Double                                    = 0
+      def z: Double                                    = 0
       def vx: Double                                   = 0
       def vy: Double                                   = 0
 

@@ -44,7 +44,7 @@ private[lanes] final class TimetableNotes(
     if views.isEmpty || !Arrays.equals(views.last, seen) then views += seen
     views.size - 1
 
-  override def read(vehicle: Int, question: Int, atNs: Long, x: Double, y: Double): Unit =
+  override def read(vehicle: Int, question: Int, atNs: Long, x: Double, y: Double, z: Double): Unit =
     val seen = readingOf(vehicle)
     while seen.size <= question do seen += 0
     seen(question) = look(vehicle, atNs * 1e-9)
@@ -142,7 +142,7 @@ private[lanes] final class TimetableNotes(
   override def acts(vehicle: Int, number: Int, atNs: Long): Unit =
     all += Note.Act(vehicle, atNs * 1e-9 + model.deadTimeS, decisionOf(vehicle)(number)): Unit
 
-  override def scored(timeS: Double, vehicle: Int, x: Double, y: Double): Unit =
+  override def scored(timeS: Double, vehicle: Int, x: Double, y: Double, z: Double): Unit =
     placed(vehicle) = look(vehicle, timeS)
     if vehicle == vehicles - 1 then all += Note.Score(timeS, viewOf(placed.clone))
 

@@ -10,7 +10,7 @@ import skein.lanes.policy.Directions
   * reference is `skein.forward.PlantVehicle`.
   */
 private[lanes] final class TimetablePlants(agent: RolloutAgent, lanes: PlantLanes)
-    extends TimetableVehicles(agent):
+    extends TimetableVehicles(agent, lanes.inSpace):
   import TimetableVehicles.WORLDS
   private val flight      = StagedFlight(lanes, agent.speed, startX, startY)
   private val resting     = lanes.resting
@@ -18,6 +18,7 @@ private[lanes] final class TimetablePlants(agent: RolloutAgent, lanes: PlantLane
 
   def start(worlds: Int): Unit =
     flight.use(worlds)
+    if lanes.inSpace then lanes.restInSpace(flight.state, 0, startZ)
     isCommanded = false
 
   def rest(world: Int): Unit = flight.rest(world)
@@ -25,8 +26,12 @@ private[lanes] final class TimetablePlants(agent: RolloutAgent, lanes: PlantLane
   def look(times: Array[Float], at: Int, into: Int, withVelocity: Boolean): Unit =
     if isCommanded then
       flight.flyTo(times, at)
-      flight.look(seenX, seenY, seenVx, seenVy, into, withVelocity)
+      if lanes.inSpace then flight.lookInSpace(seenX, seenY, seenVx, seenVy, seenZ, seenVz, into)
+      else flight.look(seenX, seenY, seenVx, seenVy, into, withVelocity)
     else
+      if lanes.inSpace then
+        System.arraycopy(startZ, 0, seenZ, into, WORLDS)
+        Arrays.fill(seenVz, into, into + WORLDS, 0f)
       for world <- 0 until WORLDS do
         seenX(into + world) = startX(world) + resting.northM.toFloat
         seenY(into + world) = startY(world) + resting.eastM.toFloat

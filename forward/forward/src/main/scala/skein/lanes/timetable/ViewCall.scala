@@ -27,7 +27,7 @@ private[lanes] final class ViewCall(
 
   /** Sets where a vehicle's fields are stored, concatenated. */
   def show(vehicle: Int, array: Array[Float], from: Int): Unit =
-    for field <- 0 until LaneObservation.READ do
+    for field <- 0 until LaneObservation.IN_SPACE do
       show(vehicle, field, array, from + field * LaneFunction.COUNT)
 
   def look(all: Array[TimetableAgents], views: Array[Int], view: Int): Unit =
@@ -39,6 +39,8 @@ private[lanes] final class ViewCall(
         case 0 => body.seenX
         case 1 => body.seenY
         case 2 => body.seenVx
-        case _ => body.seenVy
+        case 3 => body.seenVy
+        case 4 => body.seenZ
+        case _ => body.seenVz
       call.input(places(i), from, views(view + vehicle) * LaneFunction.COUNT)
       i += 1

@@ -1,21 +1,20 @@
-package skein.loop
+package skein.policy
 
-import skein.policy.{Action, Yaw}
 import skein.signal.Kinematics
 import skein.units.*
 import skein.vehicle.Setpoint
 
 /** Predictions of a vehicle under an action. */
-class ActingSuite extends munit.FunSuite:
+class ActionGuidanceSuite extends munit.FunSuite:
   private val down = Metres(-20)
 
   test("a vehicle that hovers or turns is predicted to stay, one that lands to descend as AirSim does"):
     val stays = Setpoint.velocity(0, 0, 0)
-    assertEquals(Acting.guidance(Action.Hover), stays)
-    assertEquals(Acting.guidance(Action.Turn(Yaw.Forward)), stays)
-    assertEquals(Acting.guidance(Action.Turn(Yaw.Towards(Radians(0.3)))), stays.withYaw(0.3))
-    assertEquals(Acting.guidance(Action.Turn(Yaw.Turning(0.2))), stays.withYawRate(0.2))
-    assertEquals(Acting.guidance(Action.Land), Setpoint.velocity(0, 0, 0.2))
+    assertEquals(ActionGuidance.of(Action.Hover), stays)
+    assertEquals(ActionGuidance.of(Action.Turn(Yaw.Forward)), stays)
+    assertEquals(ActionGuidance.of(Action.Turn(Yaw.Towards(Radians(0.3)))), stays.withYaw(0.3))
+    assertEquals(ActionGuidance.of(Action.Turn(Yaw.Turning(0.2))), stays.withYawRate(0.2))
+    assertEquals(ActionGuidance.of(Action.Land), Setpoint.velocity(0, 0, 0.2))
 
   test(
     "it looks where it flies only above half a metre a second, " +
@@ -23,7 +22,7 @@ class ActingSuite extends munit.FunSuite:
   ):
     def yaw(north: Double, east: Double) =
       (
-        Acting.guidance(Action.VelocityAt(north, east, down, Yaw.Forward)),
+        ActionGuidance.of(Action.VelocityAt(north, east, down, Yaw.Forward)),
         Setpoint.velocityZ(north, east, -20)
       )
     for (north, east) <- Seq((0.0, 0.0), (0.5, 0.0)) do
@@ -34,8 +33,8 @@ class ActingSuite extends munit.FunSuite:
 
   private def towards(wayNed: Vector3, yaw: Yaw = Yaw.Still): Setpoint =
     val here = Vector3(10, 5, -20)
-    Acting
-      .guidance(Action.Position(here + wayNed, MetresPerSecond(4), yaw))
+    ActionGuidance
+      .of(Action.Position(here + wayNed, MetresPerSecond(4), yaw))
       .setpoint(Kinematics(here, Vector3.Zero, Quaternion.Identity, Vector3.Zero))
 
   test("on its way to a position it flies at its speed, and stops within half a metre of it"):

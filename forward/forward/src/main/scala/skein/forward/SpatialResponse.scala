@@ -1,0 +1,86 @@
+package skein.forward
+
+import skein.policy.Action
+import skein.signal.Kinematics
+import skein.units.{OwnFailure, Quaternion, Vector3}
+import skein.vehicle.SpatialPlant
+
+/** Forward simulation by a [[skein.vehicle.SpatialPlant]]: it performs velocities, at an altitude or not.
+  * Yaws are ignored; who hovers or turns is commanded to stand still.
+  */
+final case class SpatialResponse(plant: SpatialPlant[?]) extends VelocityResponse:
+  require(plant.stepS > 0, s"a plant's step must be positive, came ${plant.stepS} s")
+  require(plant.deadTimeS >= 0, s"a plant's dead time must not be negative, came ${plant.deadTimeS} s")
+
+  def create(): Vehicle = SpatialVehicle(plant)
+
+  override def isSpatial: Boolean = true
+
+  override def regardsYaw: Boolean = false
+
+  override def performs: Action => Boolean =
+    case _: (Action.Velocity | Action.VelocityAt | Action.Along | Action.Turn) | Action.Hover => true
+    case _: (Action.Position | Action.Attitude) | Action.Land                                 => false
+
+private final class SpatialVehicle[S](plant: SpatialPlant[S]) extends Vehicle:
+  private val coming                    = DeadTime(plant.deadTimeS)
+  private var startX, startY, down      = 0.0
+  private var north, east, third, holds = 0.0
+  private var from, state               = plant.initial(0)
+  private var stepAtS, nowS             = 0.0
+  private var isCommanded               = false
+  private var reading                   = plant.read(state)
+
+  def start(x: Double, y: Double, z: Double): Unit =
+    startX = x; startY = y; down = z
+    from = plant.initial(z)
+    reached(from)
+    nowS = 0; isCommanded = false
+    coming.clear()
+
+  def command(vx: Double, vy: Double): Unit = coming.put(nowS, vx, vy, down, 1)
+
+  override def act(action: Action): Unit = action.byVelocity match
+    case Action.Velocity(velocity, _)            => coming.put(nowS, velocity.x, velocity.y, velocity.z, 0)
+    case Action.VelocityAt(north, east, down, _) => coming.put(nowS, north, east, down.value, 1)
+    case _                                       => coming.put(nowS, 0, 0, 0, 0)
+
+  def advance(timeS: Double): Unit =
+    coming.until(timeS): (atS, vx, vy, third, holds) =>
+      if isCommanded then fly(atS)
+      north = vx; east = vy; this.third = third; this.holds = holds
+      beginStep(atS)
+      isCommanded = true
+    if isCommanded then fly(timeS)
+    nowS = timeS
+
+  private def fly(untilS: Double): Unit =
+    while untilS > stepAtS + plant.stepS do
+      step(plant.stepS)
+      beginStep(stepAtS + plant.stepS)
+    if untilS > stepAtS then step(untilS - stepAtS)
+
+  private def beginStep(atS: Double): Unit =
+    stepAtS = atS
+    from = state
+
+  private def step(spanS: Double): Unit =
+    reached(OwnFailure.told(OwnFailure.named("plant", plant)):
+      plant.step(from, north, east, third, holds, spanS))
+
+  private def reached(now: S): Unit =
+    state = now
+    reading = plant.read(now)
+
+  def x: Double  = startX + reading.northM
+  def y: Double  = startY + reading.eastM
+  def z: Double  = reading.downM
+  def vx: Double = reading.northMps
+  def vy: Double = reading.eastMps
+
+  override def seen: Kinematics = Kinematics(
+    Vector3(x, y, z),
+    Vector3(vx, vy, reading.downMps),
+    Quaternion.Identity,
+    Vector3.Zero
+  )
