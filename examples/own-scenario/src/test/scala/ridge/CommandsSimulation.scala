@@ -61,14 +61,14 @@ class CommandsSimulation extends munit.FunSuite:
     assertEquals(swept._1, 0, swept._2)
     assert(clue(Files.readString(out.resolve("map.csv"))).linesIterator.size > 2)
 
-  folder.test("search chooses settings by flights in virtual time, and states that"): out =>
+  folder.test("search chooses settings by forward simulation in space, until the scenario is over, and states that"): out =>
     val searched = run(
       ("search --objective lowest-view --vary cruise-mps=3..6 " +
         "--method random --candidates 4 --episodes 1 --fresh 2 " +
         "--duration 12s --out").split(' ') :+ out.toString*
     )
     assertEquals(searched._1, 0, searched._2)
-    assert(clue(searched._2).contains("engine: flights in virtual time: "))
+    assert(clue(searched._2).contains("engine: scalar: it says itself when it is over"))
     assert(searched._2.replaceAll("\\s+", " ").matches(".*; about [0-9,]+ a second.*"), searched._2)
     assert(clue(Files.readString(out.resolve("scenario.conf"))).contains("cruise-mps = "))
 

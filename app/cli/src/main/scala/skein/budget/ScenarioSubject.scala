@@ -25,14 +25,18 @@ final case class ScenarioQuestion(
     * @return Left states what was expected, what was given, and in which option
     */
   def subject(plantIsTold: Boolean)(using Scenarios): Either[String, BudgetSubject] =
-    WholeFlights.plane(scenario, conditions.durationS) match
+    WholeFlights.engagement(scenario, conditions.durationS) match
       case Left(reason) if plantIsTold => Left(WholeFlights.noPlant(reason))
       case Left(reason)                => conditions.checked.map(FlownSubject.virtual(this, _, reason))
-      case Right(plane)                =>
-        for flown <- conditions.copy(altitudeM = -plane.agents.head.altitudeDownM).resolved
-        yield
-          if objective.measures.forall(_.reduced.nonEmpty) then TeamSubject(this, plane, flown)
-          else FlownSubject.forward(this, flown)
+      case Right(engagement)           =>
+        for
+          plant <- WholeFlights.plant(engagement, WholeFlights.climbs(engagement), conditions.plant, plantIsTold)
+          flown <- conditions
+            .copy(plant = plant, altitudeM = -engagement.agents.head.altitudeDownM)
+            .resolved
+        yield WholeFlights
+          .whole(engagement, objective.measures)
+          .fold(TeamSubject(this, engagement, flown))(FlownSubject.forward(this, flown, _))
 
 object ScenarioQuestion:
 
@@ -55,11 +59,11 @@ object ScenarioQuestion:
         .map("--objective: " + _)
     yield ScenarioQuestion(scenario, asked, conditions, seed, threads)
 
-/** A scenario in forward simulation, with measures of quantities in the plane. */
-final class TeamSubject(question: ScenarioQuestion, plane: Engagement, flown: Conditions.Resolved)
+/** A scenario in forward simulation, with measures of quantities. */
+final class TeamSubject(question: ScenarioQuestion, engagement: Engagement, flown: Conditions.Resolved)
     extends ScenarioSubject(question, flown.vehicle.description):
   private val candidate =
-    TeamCandidate(plane, TeamObjective.judged(question.objective.measures, durationS, periodMs * 1e-3))
+    TeamCandidate(engagement, TeamObjective.judged(question.objective.measures, durationS, periodMs * 1e-3))
 
   private def batch(timing: LoopTiming, threads: Int) = TeamBatch(timing, flown.vehicle.response, threads)
 
@@ -128,8 +132,11 @@ final class FlownSubject private (
 
 object FlownSubject:
 
-  /** Simulates flights forward, world by world. */
-  def forward(question: ScenarioQuestion, flown: Conditions.Resolved): FlownSubject =
+  /** Simulates flights forward, world by world.
+    *
+    * @param why nothing faster flies them
+    */
+  def forward(question: ScenarioQuestion, flown: Conditions.Resolved, why: String): FlownSubject =
     def fly(timing: LoopTiming, link: Delays) = WholeFlights.forward(
       timing,
       link,
@@ -137,11 +144,10 @@ object FlownSubject:
       question.conditions.durationS,
       question.seed
     )(question.scenario, _)
-    val plain = question.objective.measures.filter(_.reduced.isEmpty).map(TeamObjective.keyOf)
     FlownSubject(
       question,
       flown.vehicle.description,
-      WholeFlights.ofMeasures(plain),
+      Engine.scalar(why),
       Effort.OfScalarFlights,
       _.fold(fly(flown.paused.timing, DelayTable.none))(roundTrip =>
         fly(flown.timing, DelayTable.of(roundTrip))

@@ -25,7 +25,7 @@ final case class ForwardOptions(
     )
     movesInFlight: Option[Int],
     @arg(doc =
-      "model that flies: reduced, drag, quadrotor, ideal, car, mujoco:FILE, a FILE of ./skein identify, or " +
+      "model that flies: reduced, drag, tilt, quadrotor, ideal, car, mujoco:FILE, a FILE of ./skein identify, or " +
         "reduced:FILE for its model of three parameters (default: reduced)"
     )
     plant: Option[String],

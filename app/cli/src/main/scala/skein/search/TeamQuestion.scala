@@ -84,31 +84,38 @@ final case class TeamQuestion(
     yield TeamSetup(this, kind, space, by, engine, method)
 
   /** Chooses the engine: SIMD, where forward simulation supports the policies and the measures; world by
-    * world, where it supports only the policies; else flights in virtual time.
+    * world, where the scenario says when it is over, or measures are of whole flights; else flights in
+    * virtual time.
     *
     * @param all the scenario with the plain settings, first, and with the bounds of the searched ones
     */
   private def engine(by: TeamObjective, all: Vector[Scenario], plantIsTold: Boolean)(using
       Scenarios
   ): Either[String, TeamEngine] =
-    val refused = all.map(WholeFlights.plane(_, conditions.durationS)).collectFirst { case Left(why) => why }
-    val moved   = Option.when(all.exists(altitudesM(_) != altitudesM(all.head))):
-      "what is searched changes how high they fly, and a model of a vehicle holds at its altitude"
-    refused.orElse(moved) match
-      case Some(reason) =>
+    Expect.each(all)(WholeFlights.engagement(_, conditions.durationS)) match
+      case Left(reason) =>
         for
           _       <- Expect.that(!plantIsTold)(WholeFlights.noPlant(reason))
           loop    <- conditions.checked
           profile <- LatencyProfile.parse(link, TextFile.read).left.map("--link: " + _.message)
         yield TeamEngine.Whole(WholeFlights.virtual(conditions, loop, profile, seed, reason))
-      case None =>
+      case Right(engagements) =>
+        val moved = Option.when(all.exists(altitudesM(_) != altitudesM(all.head)))(
+          "what is searched changes how high they fly, and models of level flight hold at one altitude"
+        )
         for
-          flown  <- conditions.copy(altitudeM = altitudesM(all.head).head).resolved
+          plant <- WholeFlights.plant(
+            engagements.head,
+            engagements.flatMap(WholeFlights.climbs).headOption.orElse(moved),
+            conditions.plant,
+            plantIsTold
+          )
+          flown  <- conditions.copy(plant = plant, altitudeM = altitudesM(all.head).head).resolved
           delays <- Conditions.delays(link).left.map("--link: " + _)
-        yield
-          val plain = by.measures.filter(_.reduced.isEmpty).map(TeamObjective.keyOf)
-          if plain.isEmpty then TeamEngine.Reduced(flown, delays)
-          else TeamEngine.Whole(WholeFlights.scalar(flown, delays, seed, plain))
+        yield WholeFlights
+          .whole(engagements.head, by.measures)
+          .fold(TeamEngine.Reduced(flown, delays)): why =>
+            TeamEngine.Whole(WholeFlights.scalar(flown, delays, seed, why))
 
 object TeamQuestion:
   /** The default plant: teams fly low, where the model of three parameters is not valid. */
@@ -277,7 +284,7 @@ final case class TeamSetup(
     val own      = scenario(values)
     val measures = TeamObjective.measures(own).values.map(measure => measure.name -> measure).toMap
     TeamCandidate(
-      Engagement.of(own.fleet, durationS),
+      Engagement.inSpace(own.fleet, durationS),
       TeamObjective.judged(objective.measures.map(each => measures(each.name)), durationS, periodMs * 1e-3)
     )
 

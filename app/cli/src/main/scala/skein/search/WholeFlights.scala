@@ -6,7 +6,7 @@ import skein.lanes.Engine
 import skein.loop.LoopKind
 import skein.optimise.{TeamObjective, ValueEvaluator}
 import skein.scenario.{Measure, Scenario, Track, Tracks}
-import skein.settings.FlySettings
+import skein.settings.{FlySettings, VehicleChoice}
 import skein.signal.LatencyProfile
 import skein.simd.WorldRandom
 import skein.units.*
@@ -67,15 +67,15 @@ object WholeFlights:
     *
     * @return Left states why it cannot be simulated
     */
-  def plane(scenario: Scenario, durationS: Double): Either[String, Engagement] =
-    try
-      val plane = Engagement.of(scenario.fleet, durationS)
-      if scenario.agents.exists(_.kind == VehicleKind.Car) then Left("it has cars")
-      else if OwnEnd.has(scenario) then Left("it says itself when it is over")
-      else if plane.agents.map(_.altitudeDownM).distinct.size > 1 then Left("not all fly at one altitude")
-      else Right(plane)
-    catch
-      case refused: IllegalArgumentException => Left(Expect.refused(refused))
+  def engagement(scenario: Scenario, durationS: Double): Either[String, Engagement] =
+    try Right(Engagement.ofScenario(scenario, durationS))
+    catch case refused: IllegalArgumentException => Left(Expect.refused(refused))
+
+  /** Why models of level flight do not fly a scenario; only the quadrotor does then. */
+  def climbs(flown: Engagement): Option[String] =
+    flown.climbs.orElse:
+      val altitudes = flown.agents.filter(_.kind != VehicleKind.Car).map(_.altitudeDownM)
+      Option.when(altitudes.distinct.size > 1)("not all fly at one altitude")
 
   /** One episode by forward simulation.
     *
@@ -84,18 +84,18 @@ object WholeFlights:
   def forward(timing: LoopTiming, link: Delays, response: VelocityResponse, durationS: Double, seed: Long)(
       scenario: Scenario,
       episode: Int
-  ): Either[String, Tracks] = plane(scenario, durationS).flatMap: plane =>
+  ): Either[String, Tracks] = engagement(scenario, durationS).flatMap: flown =>
     val agents  = scenario.agents
     val samples = agents.map(agent =>
       Vector.newBuilder[(Instant, Vector3)] += ((Instant.ofNanos(0), agent.startPositionNed))
     )
     val observer = new LoopObserver:
-      override def scored(timeS: Double, vehicle: Int, x: Double, y: Double): Unit =
+      override def scored(timeS: Double, vehicle: Int, x: Double, y: Double, z: Double): Unit =
         samples(vehicle) += ((
           Instant.ofNanos(0) + Span.ofSeconds(timeS),
-          Vector3(x, y, agents(vehicle).startPositionNed.z)
+          Vector3(x, y, z)
         )): Unit
-    Rollout(plane, timing, link, response).fly(WorldRandom.key(seed, 0, episode), observer = observer): Unit
+    Rollout(flown, timing, link, response).fly(WorldRandom.key(seed, 0, episode), observer = observer): Unit
     Tracks
       .of(agents.zip(samples).map((agent, places) =>
         Track.ofPositions(agent.name, agent.role.name, places.result())
@@ -126,24 +126,44 @@ object WholeFlights:
 
   /** Episodes by forward simulation, world by world.
     *
-    * @param plain measures that are not of a quantity
+    * @param why nothing faster flies them
     */
-  def scalar(flown: Conditions.Resolved, link: Delays, seed: Long, plain: Seq[String]): WholeFlights =
+  def scalar(flown: Conditions.Resolved, link: Delays, seed: Long, why: String): WholeFlights =
     WholeFlights(
       flown.vehicle.description,
       flown.vehicle.name,
-      ofMeasures(plain),
+      Engine.scalar(why),
       Effort.OfScalarFlights,
       blockEpisodes = 64,
       forward(flown.timing, link, flown.vehicle.response, flown.duel.durationS, seed)
     )
 
-  /** World by world.
+  /** Why a scenario's episodes are flown whole, world by world; None if its quantities suffice. */
+  def whole(flown: Engagement, measures: Vector[Measure]): Option[String] =
+    val plain = measures.filter(_.reduced.isEmpty).map(TeamObjective.keyOf)
+    if flown.isOver.nonEmpty then Some("it says itself when it is over")
+    else
+      Option.when(plain.nonEmpty)(
+        s"${plain.mkString(", ")} is of whole flights, not of a quantity by itself"
+      )
+
+  /** The plant for a scenario.
     *
-    * @param plain measures that are not of a quantity
+    * @param climbs why models of level flight do not fly it
+    * @param plant a user's, or the default
     */
-  def ofMeasures(plain: Seq[String]): Engine =
-    Engine.scalar(s"${plain.mkString(", ")} is of whole flights, not of a quantity by itself")
+  def plant(
+      flown: Engagement,
+      climbs: Option[String],
+      plant: String,
+      isTold: Boolean
+  ): Either[String, String] =
+    import VehicleChoice.{Spatial, Tilt}
+    climbs match
+      case None                                                      => Right(plant)
+      case Some(_) if isTold && (plant == Spatial || plant == Tilt) => Right(plant)
+      case Some(reason) if isTold => Left(s"--plant: expected $Tilt or $Spatial, came $plant: $reason")
+      case Some(_)                => Right(if flown.isTraced then Tilt else Spatial)
 
   /** @param why nothing faster flies them
     */

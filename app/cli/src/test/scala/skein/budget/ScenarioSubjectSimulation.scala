@@ -50,9 +50,9 @@ class ScenarioSubjectSimulation extends munit.FunSuite, Optimised:
     assertEqualsDouble(at(crossing, 0), truth, 0.1)
     assert(at(crossing, 400) > truth + 0.1, s"$truth")
 
-  test("policies in three dimensions run in virtual time, and the scenario's own end applies"):
+  test("a policy in three dimensions flies in space, whatever it is measured by"):
     val drifting = subject(Drift(), conditions = Conditions("stream", "drag", 100, 10))
-    assert(drifting.engine(Vector.empty).text.startsWith("flights in virtual time: vehicle Lone"))
+    assert(drifting.engine(Vector.empty).text.startsWith("scalar: furthest is of whole flights"))
     val truth = drifting.truth.fold(fail(_), identity)
     assert(at(drifting, 400) > truth, s"$truth")
 
@@ -79,10 +79,10 @@ class ScenarioSubjectSimulation extends munit.FunSuite, Optimised:
       )
     )
     assert(
-      question(Drift(), None, Conditions("stream", "quadrotor", 100, 20), 1)
+      question(Drift(), None, Conditions("stream", "drag", 100, 20), 1)
         .flatMap(_.subject(plantIsTold = true))
         .left
-        .exists(_.startsWith("--plant: expected none"))
+        .exists(_.startsWith("--plant: expected tilt or quadrotor, came drag: "))
     )
 
 /** Flies north until it is far enough, climbing: late commands overshoot. */
