@@ -92,6 +92,8 @@ private[skein] sealed class GraphPolicy(val graph: PolicyGraph, val values: Arra
 
   override def hashCode: Int = values.toSeq.hashCode
 
+  override def toString: String = values.mkString("GraphPolicy(", ", ", ")")
+
 private[skein] object GraphPolicy:
   def apply(graph: PolicyGraph, values: Array[Double]): GraphPolicy =
     if graph.goal.isEmpty then new GraphPolicy(graph, values) else WithGoal(graph, values)

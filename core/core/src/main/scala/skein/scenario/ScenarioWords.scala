@@ -80,11 +80,11 @@ private[scenario] final class ScenarioWords(line: String, nodes: ScenarioNodes):
       wrong(s"expected $what of small letters and digits, with dashes between words, came '${shown(word)}'")
     word
 
-  def number(what: String): Double =
+  def number(what: String, isRight: Double => Boolean = _.isFinite): Double =
     val word = text(what)
-    word.toDoubleOption.filter(
-      _.isFinite
-    ).getOrElse(wrong(s"expected $what, a number, came '${shown(word)}'"))
+    word.toDoubleOption
+      .filter(isRight)
+      .getOrElse(wrong(s"expected $what, a number, came '${shown(word)}'"))
 
   def whole(what: String, most: Int): Int =
     val word = text(what)
@@ -108,7 +108,8 @@ private[scenario] final class ScenarioWords(line: String, nodes: ScenarioNodes):
     val what = if isCondition then "a condition's node" else "a number's node"
     val word = text(what)
     val id   = word.toIntOption.filter(each => each >= 0 && each < nodes.size).getOrElse:
-      wrong(s"expected $what of an earlier line, from 0 to ${nodes.size - 1}, came '${shown(word)}'")
+      val which = if nodes.size == 0 then "of which there is none" else s"from 0 to ${nodes.size - 1}"
+      wrong(s"expected $what of an earlier line, $which, came '${shown(word)}'")
     if nodes.isCondition(id) != isCondition then
       wrong(s"expected $what, came node $id, which is a ${if isCondition then "number" else "condition"}")
     nodes(id)
