@@ -318,7 +318,8 @@ def budget(
     """
     _told_here("budget", options, set="settings")
     folder = _folder(out)
-    _ran("budget", scenario=_scenario(scenario, folder), set=_settings(settings), out=folder, verbose=verbose, **options)
+    given = {"scenario": _scenario(scenario, folder), "set": _settings(settings)}
+    _ran("budget", **given, out=folder, verbose=verbose, **options)
     return pd.read_csv(folder / "map.csv")
 
 
@@ -512,4 +513,7 @@ def _ms(seconds: float) -> str:
 
 
 def _settings(settings: Mapping[str, Any] | None) -> list[str]:
-    return [f"{_key(name)}={str(value).lower() if isinstance(value, bool) else value}" for name, value in (settings or {}).items()]
+    def text(value: Any) -> Any:
+        return str(value).lower() if isinstance(value, bool) else value
+
+    return [f"{_key(name)}={text(value)}" for name, value in (settings or {}).items()]

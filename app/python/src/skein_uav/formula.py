@@ -1,7 +1,7 @@
 """Ordinary arithmetic on numbers that are known in flight alone.
 
 A policy or a measure is an ordinary function. Called with floats, it computes with floats. A scenario (see
-`skein_uav.scenario`) calls it once with symbolic numbers and writes down what it computes; every engine then flies that.
+`skein_uav.scenario`) calls it once with symbolic numbers and writes down what it computes, which every engine flies.
 
 Operators, NumPy's functions and those of this module take both: ``sin``, ``cos``, ``tan``, ``asin``, ``acos``, ``atan``,
 ``atan2``, ``hypot``, ``sqrt``, ``exp``, ``tanh``, ``floor``, ``ceil``, ``rint``, ``sign``, ``remainder``, ``wrap``,
@@ -395,7 +395,7 @@ floor = _function("floor", lambda x: float(math.floor(x)), "floor", "Greatest wh
 ceil = _function("ceil", lambda x: float(math.ceil(x)), "ceil", "Least whole number that is not less.")
 rint = _function("rint", lambda x: float(round(x)), "rint", "Nearest whole number; of two, the even one.")
 sign = _function("signum", _sign, "sign", "1, 0 or -1 by the sign.")
-remainder = _function("remainder", math.remainder, "remainder", "x minus the nearest multiple of y, as `math.remainder`.")
+remainder = _function("remainder", math.remainder, "remainder", "x minus the nearest multiple of y.")
 _minimum = _function("min", min, "minimum", "The lesser of two numbers.")
 _maximum = _function("max", max, "maximum", "The greater of two numbers.")
 arctan2, arcsin, arccos, arctan = atan2, asin, acos, atan
