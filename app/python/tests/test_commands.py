@@ -1,8 +1,12 @@
+from dataclasses import dataclass
+
 import pandas as pd
 import pytest
 
 import skein_uav as skein
 from skein_uav import commands, installation
+from skein_uav.formula import atan2
+from skein_uav.scenario import Series, Vehicle, setting
 
 
 @pytest.fixture(scope="module")
@@ -105,3 +109,35 @@ def test_options_become_flags():
         *("--link", "vpn", "--link", "none"),
         "--as-paper",
     ]
+
+
+def test_a_scenario_in_python_is_flown_searched_and_budgeted(tmp_path):
+    @dataclass
+    class Chase(skein.Scenario):
+        pace_mps: float = setting(6.0, "speed of the chaser, m/s")
+        duration_s = 12.0
+
+        def vehicles(self):
+            yield Vehicle("Runner", lambda seen: seen.along(0.5, 4.0), start_ned_m=(20, 0, -5), role="Runner")
+            yield Vehicle("Chaser", self.chase, role="Chaser")
+
+        def chase(self, seen):
+            to = seen.opponent
+            return seen.along(atan2(to.east_m - seen.own.east_m, to.north_m - seen.own.north_m), self.pace_mps)
+
+        def measures(self):
+            return [Series("gap", "m", lambda now: now.distance_m(0, 1)).mean("mean gap", last_s=5)]
+
+    flights = skein.fly(Chase(), loop=["stream", "predictive"], link="vpn", out=tmp_path)
+    table = next(iter(flights.tables.values()))
+    assert table["loop"].tolist() == ["stream", "predictive"] and (tmp_path / "chase.scenario").exists()
+    faster = skein.fly(Chase(pace_mps=9.0), link="vpn")
+    assert next(iter(faster.tables.values()))["mean gap m"].iloc[0] < table["mean gap m"].iloc[0]
+    found = skein.search(
+        Chase(), vary={"pace_mps": (4, 9)}, objective="mean-gap", candidates=12, episodes=2, fresh=4, link="vpn"
+    )
+    assert "SIMD" in " ".join(found.result.astype(str).iloc[0])
+    cells = skein.budget(Chase(), episodes=16, means=2, jitters=2)
+    assert len(cells) >= 4
+    (spread,) = skein.spread(Chase(), seeds=2).values()
+    assert spread["flights"].tolist() == [2]

@@ -6,16 +6,19 @@ Examples
 >>> skein.spread(loop=["stream", "predictive"], link="vpn", seeds=20)       # doctest: +SKIP
 """
 
-from .commands import Flights, Found, fly, run, search, spread, to_onnx
+from .commands import Flights, Found, budget, fly, run, search, spread, to_onnx
 from .errors import NotFound, SkeinError
 from .recording import Recording, load
+from .scenario import Scenario
 
 __all__ = [
     "Flights",
     "Found",
     "NotFound",
     "Recording",
+    "Scenario",
     "SkeinError",
+    "budget",
     "fly",
     "load",
     "run",

@@ -21,6 +21,7 @@ from .errors import SkeinError
 from .installation import find
 from .policies import Policy, PolicyServer
 from .recording import Recording, load
+from .scenario import Scenario
 from .seeds import folded
 
 Tables = dict[str, pd.DataFrame]
@@ -91,13 +92,13 @@ class Found:
 
 
 def fly(
+    scenario: Scenario | str | os.PathLike[str] | None = None,
     *,
     loop: str | Iterable[str] = "stream",
     link: str | Iterable[str] = "direct",
-    duration_s: float = 60.0,
+    duration_s: float | None = None,
     seed: int = 1,
     clock: str = "virtual",
-    scenario: str | None = None,
     settings: Mapping[str, Any] | None = None,
     policy: str | os.PathLike[str] | None = None,
     pursuer: Policy | None = None,
@@ -111,18 +112,20 @@ def fly(
 
     Parameters
     ----------
+    scenario : Scenario, str or path, optional
+        One written in Python (`skein_uav.scenario`), its file, or a name: ``surround``, ``formation``, ``crossing``,
+        ``forest``, ``convoy``, ``blind-pursuit``; the paper's duel unless given. A file of one written in Python lies
+        beside the results.
     loop : str or iterable of str
         ``paused``, ``sequential``, ``futures``, ``stream``, ``predictive`` or ``plan``.
     link : str or iterable of str
         A latency profile: ``none``, ``direct``, ``vpn``, ``constant:200ms``, …
-    duration_s : float
-        Of each flight, s.
+    duration_s : float, optional
+        Of each flight, s; 60 s, or that of a scenario in Python, unless given.
     seed : int
         Of every random choice, of any size. In virtual time, equal seeds give equal flights, to the last bit.
     clock : str
         ``virtual`` (many times faster) or ``real``.
-    scenario : str, optional
-        The paper's duel unless named; ``surround``, ``formation``, ``crossing``, ``forest``, ``convoy``, ``blind-pursuit``.
     settings : mapping, optional
         Of the scenario, for example ``{"ring-m": 10}``.
     policy : path, optional
@@ -166,10 +169,10 @@ def fly(
             "fly",
             loop=loop,
             link=link,
-            duration=_ms(duration_s),
+            duration=_duration(duration_s, scenario),
             seed=seed if seed < 0 else folded(seed),
             clock=clock,
-            scenario=scenario,
+            scenario=_scenario(scenario, folder),
             set=_settings(settings),
             policy=[policy, *policies],
             only_policies=policy is not None or bool(policies),
@@ -182,12 +185,12 @@ def fly(
 
 
 def spread(
+    scenario: Scenario | str | os.PathLike[str] | None = None,
     *,
     loop: str | Iterable[str] = "stream",
     link: str | Iterable[str] = "direct",
     seeds: int = 20,
-    duration_s: float = 60.0,
-    scenario: str | None = None,
+    duration_s: float | None = None,
     settings: Mapping[str, Any] | None = None,
     verbose: bool = False,
     **options: Any,
@@ -209,26 +212,27 @@ def spread(
         Mean and spread over the seeds, by title; units stand in the columns' names.
     """
     _told_here("spread", options, duration="duration_s", set="settings")
-    return run(
-        "spread",
-        loop=loop,
-        link=link,
-        seeds=seeds,
-        duration=_ms(duration_s),
-        scenario=scenario,
-        set=_settings(settings),
-        verbose=verbose,
-        **options,
-    )
+    with tempfile.TemporaryDirectory(prefix="skein-") as folder:
+        return run(
+            "spread",
+            loop=loop,
+            link=link,
+            seeds=seeds,
+            duration=_duration(duration_s, scenario),
+            scenario=_scenario(scenario, Path(folder)),
+            set=_settings(settings),
+            verbose=verbose,
+            **options,
+        )
 
 
 def search(
+    scenario: Scenario | str | os.PathLike[str] | None = None,
     *,
     family: str | None = None,
     link: str = "vpn",
     candidates: int = 1000,
     episodes: int = 20,
-    scenario: str | None = None,
     settings: Mapping[str, Any] | None = None,
     vary: Mapping[str, tuple[float, float]] | None = None,
     out: str | os.PathLike[str] | None = None,
@@ -239,6 +243,8 @@ def search(
 
     Parameters
     ----------
+    scenario : Scenario, str or path, optional
+        Searches its settings, instead of a duel's policy; as in `fly`.
     family : str, optional
         Of the policies to choose from: ``paper-pursuer`` unless named, ``lead-pursuit``, ``neural:8x8``, …
     link : str
@@ -247,12 +253,10 @@ def search(
         To try in all.
     episodes : int
         That each candidate flies.
-    scenario : str, optional
-        Searches settings of a team's scenario, instead of a duel's policy.
     settings : mapping, optional
         Of the scenario, fixed.
     vary : mapping, optional
-        Settings to search, each with its least and its greatest value.
+        Settings to search, each with its least and its greatest value; ``ring_m`` and ``ring-m`` are one.
     out : path, optional
         Folder for state, policy and pictures; a new temporary one unless named.
     verbose : bool
@@ -272,9 +276,9 @@ def search(
         link=link,
         candidates=candidates,
         episodes=episodes,
-        scenario=scenario,
+        scenario=_scenario(scenario, folder),
         set=_settings(settings),
-        vary=[f"{name}={low}..{high}" for name, (low, high) in (vary or {}).items()],
+        vary=[f"{_key(name)}={low}..{high}" for name, (low, high) in (vary or {}).items()],
         out=folder,
         verbose=verbose,
         **options,
@@ -286,6 +290,37 @@ def search(
         pd.read_csv(landscape) if landscape.exists() else None,
         folder,
     )
+
+
+def budget(
+    scenario: Scenario | str | os.PathLike[str] | None = None,
+    *,
+    settings: Mapping[str, Any] | None = None,
+    out: str | os.PathLike[str] | None = None,
+    verbose: bool = False,
+    **options: Any,
+) -> pd.DataFrame:
+    """How much latency and jitter a scenario, or a duel's policy, tolerates.
+
+    Parameters
+    ----------
+    scenario, settings, verbose
+        As in `fly`.
+    out : path, optional
+        Folder for the map's files and picture; a new temporary one unless named.
+    **options
+        Any other option of ``./skein budget``, for example ``objective="off-ring"``.
+
+    Returns
+    -------
+    DataFrame
+        The map, a row for each cell.
+    """
+    _told_here("budget", options, set="settings")
+    folder = _folder(out)
+    given = {"scenario": _scenario(scenario, folder), "set": _settings(settings)}
+    _ran("budget", **given, out=folder, verbose=verbose, **options)
+    return pd.read_csv(folder / "map.csv")
 
 
 def _told_here(function: str, options: Mapping[str, Any], **names: str) -> None:
@@ -325,7 +360,7 @@ def run(command: str, *words: str, verbose: bool = False, **options: Any) -> Tab
     Parameters
     ----------
     command : str
-        One that has ``--json``: ``fly``, ``spread``, ``search``, ``report``, ``budget``, …
+        One that has ``--json``: ``fly``, ``spread``, ``search``, ``report``, …
     *words : str
         What stands behind the options, such as files.
     verbose : bool
@@ -343,6 +378,11 @@ def run(command: str, *words: str, verbose: bool = False, **options: Any) -> Tab
     SkeinError
         With what the command said, if it failed.
     """
+    return {table["title"]: _frame(table) for table in _ran(command, *words, verbose=verbose, **options)["tables"]}
+
+
+def _ran(command: str, *words: str, verbose: bool = False, **options: Any) -> Any:
+    """What a command prints with ``--json``."""
     installed = find()
     arguments = [command, "--json", *_flags(options), *words]
     environment = {**os.environ, "JAVA_HOME": str(installed.java)}
@@ -366,7 +406,7 @@ def run(command: str, *words: str, verbose: bool = False, **options: Any) -> Tab
         if process.returncode != 0:
             raise SkeinError(_reason(complained) or f"skein {command} ended with status {process.returncode}")
         tables.seek(0)
-        return {table["title"]: _frame(table) for table in json.load(tables)["tables"]}
+        return json.load(tables)
 
 
 def _heard(process: subprocess.Popen[str], verbose: bool) -> str:
@@ -450,9 +490,30 @@ def _folder(out: str | os.PathLike[str] | None) -> Path:
     return Path(tempfile.mkdtemp(prefix="skein-")) if out is None else Path(out)
 
 
+def _scenario(scenario: Scenario | str | os.PathLike[str] | None, folder: Path) -> str | None:
+    """What ``--scenario`` takes; one written in Python is written to a file in the folder."""
+    if not isinstance(scenario, Scenario):
+        return None if scenario is None else os.fspath(scenario)
+    folder.mkdir(parents=True, exist_ok=True)
+    return str(scenario.write(folder / f"{scenario.title}.scenario"))
+
+
+def _duration(duration_s: float | None, scenario: object) -> str | None:
+    if duration_s is None:
+        return None if isinstance(scenario, Scenario) or str(scenario).endswith(".scenario") else _ms(60)
+    return _ms(duration_s)
+
+
+def _key(name: str) -> str:
+    return name.replace("_", "-")
+
+
 def _ms(seconds: float) -> str:
     return f"{seconds * 1000:.12g}ms"
 
 
 def _settings(settings: Mapping[str, Any] | None) -> list[str]:
-    return [f"{name}={str(value).lower() if isinstance(value, bool) else value}" for name, value in (settings or {}).items()]
+    def text(value: Any) -> Any:
+        return str(value).lower() if isinstance(value, bool) else value
+
+    return [f"{_key(name)}={text(value)}" for name, value in (settings or {}).items()]

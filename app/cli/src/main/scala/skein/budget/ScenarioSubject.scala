@@ -30,7 +30,8 @@ final case class ScenarioQuestion(
       case Left(reason)                => conditions.checked.map(FlownSubject.virtual(this, _, reason))
       case Right(engagement)           =>
         for
-          plant <- WholeFlights.plant(engagement, WholeFlights.climbs(engagement), conditions.plant, plantIsTold)
+          plant <-
+            WholeFlights.plant(engagement, WholeFlights.climbs(engagement), conditions.plant, plantIsTold)
           flown <- conditions
             .copy(plant = plant, altitudeM = -engagement.agents.head.altitudeDownM)
             .resolved

@@ -4,6 +4,9 @@ import mainargs.{ArgSig, ParserForClass, Result, Util}
 import scala.annotation.unused
 import skein.flight.NotFlown
 import skein.record.{ClockKind, LoopKind}
+import skein.scenario.ScenarioFile
+import skein.settings.ScenarioSettings
+import skein.units.Expect
 
 /** A command of `./skein`; each has a file of its own.
   *
@@ -29,6 +32,12 @@ trait Command(val name: String, val summary: String):
   def help: String
 
   private[cli] def options: Seq[CommandOption]
+
+private object Command:
+  val Scenario = "--scenario"
+
+  def scenario(word: String): Either[String, List[String]] =
+    ScenarioSettings.named(word).left.map(s"$Scenario: " + _).map(List(Scenario, _))
 
 /** Values of options that several commands share. */
 private object OptionValues:
@@ -65,18 +74,32 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
       Console.out.println(help(Terminal.width.fold(100)(_.max(40).min(100))))
       0
     else
-      parsed(words).fold(
-        misused,
-        options =>
-          OutFolder.unlessRefused(done(options)) match
-            case Right(())    => 0
-            case Left(reason) =>
-              Console.err.println(s"skein $name: ${Complaint.text(reason)}")
-              1
+      scenarioRead(words).fold(
+        refused,
+        parsed(_).fold(
+          misused,
+          options => OutFolder.unlessRefused(done(options)).fold(refused, _ => 0)
+        )
       )
 
+  private def refused(reason: String): Int =
+    Console.err.println(s"skein $name: ${Complaint.text(reason)}")
+    1
+
   private[cli] final def checked(words: Seq[String]): Either[String, Unit] =
-    parsed(words).flatMap(check)
+    scenarioRead(words).flatMap(parsed).flatMap(check)
+
+  /** Replaces the name of a scenario's file by its text. */
+  private def scenarioRead(words: Seq[String]): Either[String, Seq[String]] =
+    if !names.contains(Command.Scenario) then Right(words)
+    else
+      val (arguments, behind) = words.span(_ != "--")
+      Expect
+        .each(parted(arguments)):
+          case List(Command.Scenario, word)       => Command.scenario(word)
+          case List(s"${Command.Scenario}=$word") => Command.scenario(word)
+          case other                              => Right(other)
+        .map(_.flatten ++ behind)
 
   /** Makes the settings that options state, without a file, a socket or a flight.
     *
@@ -87,10 +110,12 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
   /** What stands behind `--` is another program's. */
   private def parsed(words: Seq[String]): Either[String, A] =
     val (arguments, behind) = words.span(_ != "--")
-    val mistake = arguments.flatMap(Complaint.ofWord).headOption.orElse(strange(arguments).map(Misuse.noSuch(
-      _,
-      names
-    )))
+    val mistake = arguments.filterNot(ScenarioFile.isText).flatMap(Complaint.ofWord).headOption.orElse(
+      strange(arguments).map(Misuse.noSuch(
+        _,
+        names
+      ))
+    )
     mistake.toLeft(()).flatMap: _ =>
       parser.constructRaw(optionsFirst(arguments) ++ behind.drop(1)) match
         case failure: Result.Failure => Left(Misuse.text(failure, names))

@@ -123,10 +123,10 @@ final case class FlightOptions(
       _ <- Expect.that(loop.isEmpty || !asPaper.value):
         s"--as-paper flies the paper's loops: expected no --loop beside it, came ${loop.mkString(", ")}"
       file <- config.fold(Right(ConfigFactory.empty))(FlightOptions.read)
-      told   = FlightOptions.hovering(flags.withFallback(file))
-      merged = told.withFallback(ConfigFactory.load()).resolve()
-      _   <- ConfigMistakes.ofShape(merged, "skein.fly").toLeft(())
-      own <- ofScenario(merged)
+      told = FlightOptions.hovering(flags.withFallback(file))
+      merged <- FlightOptions.scenarioRead(told.withFallback(ConfigFactory.load()).resolve())
+      _      <- ConfigMistakes.ofShape(merged, "skein.fly").toLeft(())
+      own    <- ofScenario(merged)
     yield own.withFallback(merged).withOnlyPath("skein.fly")
 
   private def chosenLoops: Seq[String] =
@@ -176,6 +176,18 @@ final case class FlightOptions(
     yield FlightOptions.configured(known)
 
 object FlightOptions:
+  /** Replaces the name of a scenario's file by its text. */
+  private def scenarioRead(config: Config): Either[String, Config] =
+    val path = ScenarioSettings.Name
+    if !config.hasPath(path) then Right(config)
+    else
+      val told = config.getValue(path)
+      ScenarioSettings
+        .named(config.getString(path))
+        .left
+        .map(mistake => s"${ConfigMistakes.at(path, told.origin)}: $mistake")
+        .map(text => config.withValue(path, ConfigValueFactory.fromAnyRef(text).withOrigin(told.origin)))
+
   given ParserForClass[FlightOptions] = ParserForClass[FlightOptions]
 
   /** Defaults by flag name, from the configuration. */

@@ -3,7 +3,7 @@ package skein.cli
 import mainargs.{ParserForClass, arg}
 import skein.policy.Role
 import skein.port.Moves
-import skein.scenario.{PaperDuel, Scenario, Scenarios}
+import skein.scenario.{PaperDuel, Scenario, ScenarioFile, Scenarios}
 import skein.search.Conditions
 import skein.settings.{PolicyFile, ScenarioSettings}
 import skein.units.{Expect, Span}
@@ -94,7 +94,9 @@ object ForwardOptions:
     case Some(objective) => Right(objective)
     case None            =>
       stated(scenario, settings).flatMap: read =>
-        Left(s"--objective: expected a sum of the measures of $scenario: ${known(read).mkString(", ")}")
+        Left(
+          s"--objective: expected a sum of the measures of ${ScenarioFile.called(scenario)}: ${known(read).mkString(", ")}"
+        )
 
   given ParserForClass[ForwardOptions] = ParserForClass[ForwardOptions]
 

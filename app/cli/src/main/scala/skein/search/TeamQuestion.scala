@@ -13,7 +13,7 @@ import skein.optimise.{
   ValueEvaluator
 }
 import skein.policy.{Axis, SearchSpace}
-import skein.scenario.{Nearest, Scenario, ScenarioKind, Scenarios}
+import skein.scenario.{Nearest, Scenario, ScenarioFile, ScenarioKind, Scenarios}
 import skein.settings.{ConfigKeys, ScenarioSettings, TextFile}
 import skein.signal.LatencyProfile
 import skein.units.Decimals.significant
@@ -305,7 +305,9 @@ final case class TeamSetup(
         )} with ${baseline.label}
          |# found by ./skein search: ${question.method}, ${found.state.flown} episodes, $flown; $vehicles
          |skein.fly {
-         |  scenario = ${kind.name}
+         |  scenario = ${
+          if ScenarioFile.isText(question.scenario) then quoteString(question.scenario) else kind.name
+        }
          |  ${kind.name} {
          |${settings.map((key, value) => s"    $key = ${quoteString(value)}").mkString("\n")}
          |  }

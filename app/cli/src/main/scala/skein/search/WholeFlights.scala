@@ -160,7 +160,7 @@ object WholeFlights:
   ): Either[String, String] =
     import VehicleChoice.{Spatial, Tilt}
     climbs match
-      case None                                                      => Right(plant)
+      case None                                                     => Right(plant)
       case Some(_) if isTold && (plant == Spatial || plant == Tilt) => Right(plant)
       case Some(reason) if isTold => Left(s"--plant: expected $Tilt or $Spatial, came $plant: $reason")
       case Some(_)                => Right(if flown.isTraced then Tilt else Spatial)

@@ -72,7 +72,12 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
     val reduced = setup()
     val whole   = reduced.flownBy match
       case TeamEngine.Reduced(conditions, delays) =>
-        TeamEngine.Whole(WholeFlights.scalar(conditions, delays, question.seed, "the reference was asked for"))
+        TeamEngine.Whole(WholeFlights.scalar(
+          conditions,
+          delays,
+          question.seed,
+          "the reference was asked for"
+        ))
       case other => fail(other.toString)
     def mean(of: TeamSetup) =
       of.judges(1)(Judge.Candidates).tallies(Vector(Vector(8.0, 8.0)), 0 until 2).head.mean
@@ -88,7 +93,9 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
       high.copy(conditions = high.conditions.copy(plant = "reduced")).setup.swap.getOrElse("it was taken")
     assert(plant.startsWith("--plant: expected tilt or quadrotor, came reduced: "), plant)
     // Even if it is the default plant.
-    assert(clue(high.read(plantIsTold = true)).left.exists(_.startsWith("--plant: expected tilt or quadrotor")))
+    assert(clue(high.read(plantIsTold =
+      true
+    )).left.exists(_.startsWith("--plant: expected tilt or quadrotor")))
     // A candidate at its own altitude is the same by SIMD and by the scalar engine.
     def values(judge: Judge) = ready.judges(1)(judge).tallies(Vector(Vector(12.0), Vector(17.0)), 0 until 2)
     val reference            = ready.reference(Vector(17.0), 0 until 2).get
@@ -152,7 +159,8 @@ object TeamSearchSimulation:
     Rollout(engagement, conditions.timing, delays, conditions.vehicle.response).fly(
       WorldRandom.key(setup.question.seed, 0, episode),
       observer = new LoopObserver:
-        override def scored(timeS: Double, vehicle: Int, x: Double, y: Double, z: Double): Unit = seen += ((timeS, x, y))
+        override def scored(timeS: Double, vehicle: Int, x: Double, y: Double, z: Double): Unit =
+          seen += ((timeS, x, y))
     ): Unit
     seen
       .result()

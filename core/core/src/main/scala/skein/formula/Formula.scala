@@ -10,27 +10,21 @@ import skein.formula.Value.*
   *
   * @param inputs names of the numbers in the arguments
   * @param outputs nodes of the result, by name; a single number is called `answer`
-  * @param parameters paths, inside the object, of the doubles that the method reads
+  * @param parameters names of the doubles inside the object that the method reads, for example `.weights(3)`
   */
 final class Formula private (
     val trace: Trace,
     val inputs: Vector[String],
     val outputs: Vector[(String, Node)],
-    parameterPaths: Vector[Path],
-    guards: Vector[Guard],
-    of: Class[?]
+    val parameters: Vector[String],
+    isLike: AnyRef => Boolean,
+    numbersOf: AnyRef => Array[Double]
 ):
-  private val check  = FormCheck(guards)
-  private val reader = NumberReader(parameterPaths)
-
-  /** Names of the parameters, for example `.weights(3)`. */
-  val parameters: Vector[String] = parameterPaths.map(_.toString)
-
   /** Whether another object's method is this formula with other parameter values. */
-  def fits(other: AnyRef): Boolean = (other.getClass eq of) && check.fits(other)
+  def fits(other: AnyRef): Boolean = isLike(other)
 
   /** The parameters of an object that [[fits]]. */
-  def parametersOf(other: AnyRef): Array[Double] = reader.read(other)
+  def parametersOf(other: AnyRef): Array[Double] = numbersOf(other)
 
   /** Evaluates the formula on doubles: slow, and bit-identical to the method itself. */
   def evaluate(input: Array[Double], parameters: Array[Double]): Array[Double] =
@@ -53,6 +47,47 @@ object Formula:
       sizes: Map[String, Int] = Map.empty,
       arguments: Option[Seq[Class[?]]] = None,
       known: Map[String, Any] = Map.empty
+  ): Either[Untraceable, Formula] = target match
+    case known: KnownFormula => Right(known.formula)
+    case _                   => named(target, method, sizes, arguments, known)
+
+  /** A formula of which the graph exists.
+    *
+    * @param isLike whether an object has this graph
+    * @param numbersOf the parameters of such an object
+    */
+  private[skein] def ofGraph(
+      trace: Trace,
+      inputs: Vector[String],
+      outputs: Vector[(String, Node)],
+      parameters: Vector[String]
+  )(isLike: AnyRef => Boolean)(numbersOf: AnyRef => Array[Double]): Formula =
+    Formula(trace, inputs, outputs, parameters, isLike, numbersOf)
+
+  private def lifted(
+      trace: Trace,
+      inputs: Vector[String],
+      outputs: Vector[(String, Node)],
+      lifter: Lifter,
+      of: Class[?]
+  ): Formula =
+    val check  = FormCheck(lifter.guards)
+    val reader = NumberReader(lifter.parameters)
+    Formula(
+      trace,
+      inputs,
+      outputs,
+      lifter.parameters.map(_.toString),
+      other => (other.getClass eq of) && check.fits(other),
+      reader.read(_)
+    )
+
+  private def named(
+      target: AnyRef,
+      method: String,
+      sizes: Map[String, Int],
+      arguments: Option[Seq[Class[?]]],
+      known: Map[String, Any]
   ): Either[Untraceable, Formula] =
     val candidates = methodsOf(target.getClass).filter: each =>
       each.getName == method && !Modifier.isAbstract(each.getModifiers) && !each.isBridge &&
@@ -145,14 +180,7 @@ object Formula:
           .filter(fields.contains)
           .flatMap(each => outputsOf(fields(each), if name == Answer then each else s"$name.$each"))
 
-      Right(Formula(
-        trace,
-        names.result(),
-        outputsOf(answer, Answer),
-        lifter.parameters,
-        lifter.guards,
-        target.getClass
-      ))
+      Right(lifted(trace, names.result(), outputsOf(answer, Answer), lifter, target.getClass))
     catch
       case refused: Untraceable => Left(refused)
       case NonFatal(other)      => Left(Untraceable(s"${target.getClass.getName}.${method.getName}: $other"))
@@ -190,8 +218,7 @@ object Formula:
         .getOrElse(throw Untraceable(s"${target.getClass.getName} has no method $method"))
       val answer = lifter.call(code, Known(target, Some(Path(None, PathStep.Itself))) +: args.toVector)
       val (outputs, came) = read(trace, skein.formula.Answer(answer, lifter))
-      val made = Formula(trace, names.result(), outputs, lifter.parameters, lifter.guards, target.getClass)
-      Right((made, came))
+      Right((lifted(trace, names.result(), outputs, lifter, target.getClass), came))
     catch
       case refused: Untraceable => Left(refused)
       case NonFatal(other)      => Left(Untraceable(s"${target.getClass.getName}.$method: $other"))
@@ -212,3 +239,7 @@ object Formula:
       .toSeq
       .reverse
       .flatMap(_.getDeclaredFields.filterNot(each => Modifier.isStatic(each.getModifiers)))
+
+/** An object whose method is a formula already: its bytecode is not read. */
+private[skein] trait KnownFormula:
+  def formula: Formula

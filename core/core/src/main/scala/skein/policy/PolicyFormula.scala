@@ -102,15 +102,77 @@ object PolicyFormula:
   ): Either[Untraceable, PolicyFormula] =
     val count = assignment.rivals.size
     val seen  = Tagged(self, count, assignment.rivals(self), isPredicted)
+    policy match
+      case known: GraphPolicy => ofGraph(known, seen, assignment)
+      case _                  => lifted(policy, seen, assignment)
+
+  private def ofGraph(
+      policy: GraphPolicy,
+      seen: Tagged,
+      assignment: Assignment
+  ): Either[Untraceable, PolicyFormula] =
+    val graph  = policy.graph
+    val trace  = Trace()
+    val inputs = seen.inputs ++ graph.starts.indices.map(PolicyInput.Memory(_))
+    val moved  = Trace.replaced(graph.outputs, trace): node =>
+      Option.when(node.op == Op.Input)(trace.input(inputs.indexOf(graph.inputs(node.index))))
+    val reading         = Reading(seen)
+    val (choices, rest) = graph.choices(moved)
+
+    def part(of: GraphAction[Node]): Either[Untraceable, reading.Part] =
+      import of.numbers
+      def held                          = Vertical(numbers(2), trace.const(1))
+      def sinking(downMps: Node)        = Vertical(downMps, trace.const(0))
+      def still                         = trace.const(0)
+      val moved = of.kind match
+        case GraphAction.Kind.Along      => Right((Motion.Along(numbers(0), numbers(1)), held))
+        case GraphAction.Kind.VelocityAt => Right((Motion.With(numbers(0), numbers(1)), held))
+        case GraphAction.Kind.Velocity   => Right((Motion.With(numbers(0), numbers(1)), sinking(numbers(2))))
+        case GraphAction.Kind.Hover      => Right((Motion.With(still, still), sinking(still)))
+        case other                       => Left(Untraceable(unflown(s"Action.$other")))
+      moved.map((motion, vertical) => (motion, vertical, of.yaw != GraphAction.YawKind.Still))
+    for parts <- Expect.each(choices)((when, of) => part(of).map((when, _)))
+    yield
+      val part = parts.init.foldRight(parts.last._2):
+        case ((when, one), otherwise) => reading.chosen(trace)(when.getOrElse(trace.always), one, otherwise)
+      val (outputs, decided) = reading.decided(trace, part, rest.take(graph.starts.size))
+      val formula            = Formula.ofGraph(trace, inputs.map(_.toString), outputs, graph.settings)(
+        Deciding.graphOf(_).exists(_.graph eq graph)
+      )(Deciding.graphOf(_).fold(Array.emptyDoubleArray)(_.values))
+      new PolicyFormula(
+        formula,
+        inputs,
+        decided.motion,
+        decided.vertical,
+        decided.memory,
+        decided.turns,
+        memoryOf(policy),
+        assignment
+      )
+
+  private def unflown(action: String) =
+    s"it decides for $action; SIMD flies Action.Along, VelocityAt, Velocity and Hover"
+
+  private def lifted(
+      policy: Policy,
+      seen: Tagged,
+      assignment: Assignment
+  ): Either[Untraceable, PolicyFormula] =
     for
       _    <- Either.cond(policy.sensors.isEmpty, (), Untraceable("it reads sensors, which no model has"))
       kept <- startOf(policy)
       (memory, starts) = kept
       target           = Deciding(policy, assignment)
-      read             = Reading(seen, memory)
+      read             = Reading(seen)
       loader           = Option(policy.getClass.getClassLoader).getOrElse(ClassLoader.getSystemClassLoader)
       traced <-
-        Formula.ofExamples(target, "decide", Deciding.Descriptor, Seq(seen.example, memory), loader)(read.of)
+        Formula.ofExamples(
+          target,
+          "decide",
+          Deciding.Descriptor,
+          Seq(seen.example, memory),
+          loader
+        )(read.of(memory))
     yield
       val (formula, decided) = traced
       val inputs             = seen.inputs ++ starts.indices.map(PolicyInput.Memory(_))
@@ -144,10 +206,13 @@ object PolicyFormula:
       turns: Boolean
   )
 
-  private final class Reading(seen: Tagged, memory: Example):
-    def of(trace: Trace, answer: Answer): (Vector[(String, Node)], Decided) =
-      val next                      = answer.get("_2").numbersOf(memory)
-      val (motion, vertical, turns) = answer.get("_1").fold(one(trace))(chosen(trace))
+  private final class Reading(seen: Tagged):
+    def of(memory: Example)(trace: Trace, answer: Answer): (Vector[(String, Node)], Decided) =
+      val next = answer.get("_2").numbersOf(memory)
+      decided(trace, answer.get("_1").fold(one(trace))(chosen(trace)), next)
+
+    def decided(trace: Trace, part: Part, next: Vector[Node]): (Vector[(String, Node)], Decided) =
+      val (motion, vertical, turns) = part
       val ofMotion                  = motion match
         case Motion.Along(heading, speed) => Vector("heading" -> heading, "speed" -> speed)
         case Motion.With(north, east)     => Vector("north" -> north, "east" -> east)
@@ -160,9 +225,14 @@ object PolicyFormula:
         ) ++ next.zipWithIndex.map((node, i) => s"memory$i" -> node)
       (outputs, Decided(motion, leaving, next, turns))
 
-    private type Part = (Motion, Vertical, Boolean)
+    type Part = (Motion, Vertical, Boolean)
 
     private def one(trace: Trace)(of: String, answer: Answer): Part =
+      val still = trace.const(0)
+      if answer.isOne(Action.Hover) then (Motion.With(still, still), Vertical(still, still), false)
+      else moving(trace)(of, answer)
+
+    private def moving(trace: Trace)(of: String, answer: Answer): Part =
       def number(field: String) = answer.get(field, "D").number
       def held                  = Vertical(number("down"), trace.const(1))
       val (motion, vertical)    =
@@ -175,13 +245,11 @@ object PolicyFormula:
           (Motion.With(along("x"), along("y")), Vertical(along("z"), trace.const(0)))
         else
           val name = of.substring(of.lastIndexOf('.') + 1).replace('$', '.')
-          answer.refuse(
-            s"it decides for $name; SIMD flies Action.Along, Action.VelocityAt and Action.Velocity"
-          )
+          answer.refuse(unflown(name))
       val yaw = answer.get("yaw", s"L${classOf[Yaw].getName.replace('.', '/')};")
       (motion, vertical, !yaw.isOne(Yaw.Still))
 
-    private def chosen(trace: Trace)(condition: Node, a: Part, b: Part): Part =
+    def chosen(trace: Trace)(condition: Node, a: Part, b: Part): Part =
       def either(x: Node, y: Node) = trace.where(condition, x, y)
       val motion                   = (a._1, b._1) match
         case (Motion.With(x, v), Motion.With(y, w)) => Motion.With(either(x, y), either(v, w))
@@ -256,7 +324,7 @@ private object Tagged:
   )
 
 /** The traced method: decides against the opponent that is nearest at the moment. */
-private final class Deciding(policy: Policy, assignment: Assignment):
+private final class Deciding(val policy: Policy, assignment: Assignment):
   def decide(seen: Observation, memory: AnyRef): AnyRef =
     val own    = seen.own.kinematics.positionNed
     val facing = seen.copy(opponent =
@@ -268,4 +336,11 @@ private final class Deciding(policy: Policy, assignment: Assignment):
     policy.choose(facing, memory.asInstanceOf[policy.Memory])
 
 private object Deciding:
+  def graphOf(target: AnyRef): Option[GraphPolicy] = target match
+    case deciding: Deciding =>
+      deciding.policy match
+        case graph: GraphPolicy => Some(graph)
+        case _                  => None
+    case _ => None
+
   val Descriptor = "(Lskein/policy/Observation;Ljava/lang/Object;)Ljava/lang/Object;"

@@ -56,6 +56,11 @@ trait Scenario extends Product:
   /** The name, with settings that tables must show after a comma. */
   def title: String = name
 
+  /** The text that defines it, where that is data and not code, with the parameter of recordings that holds
+    * it.
+    */
+  private[skein] def document: Option[(String, String)] = None
+
   /** Index of a vehicle's colour within its role, in figures. */
   def shade(vehicle: Int): Int = (0 until vehicle).count(agents(_).role == agents(vehicle).role)
 

@@ -64,8 +64,13 @@ final case class Scenarios(
   def isPapersGame(name: String, set: Map[String, String]): Boolean =
     set.isEmpty && (kinds ++ Scenarios.ours.kinds).find(_.name == name).exists(_.standard.isPapersGame)
 
-  /** The kind of this name; Left states the names expected, the one given, and the nearest. */
+  /** The kind of this name, or of a [[ScenarioFile]] with this text; Left states the names expected, the one
+    * given, and the nearest.
+    */
   def kind(name: String): Either[String, ScenarioKind[?]] =
+    if ScenarioFile.isText(name) then ScenarioFile.read(name).map(_.kind) else named(name)
+
+  private def named(name: String) =
     kinds
       .find(_.name == name)
       .toRight(
@@ -81,7 +86,7 @@ final case class Scenarios(
     * @return Left states why it is not known here
     */
   def ofRecording(name: String, parameters: Map[String, String]): Either[String, Scenario] =
-    kind(name).left
+    kind(parameters.getOrElse(ScenarioFile.Recorded, name)).left
       .map("scenario: " + _)
       .flatMap(_.ofRecording(parameters).left.map(mistakes => s"scenario $name: ${mistakes.mkString("; ")}"))
 

@@ -134,9 +134,15 @@ class PolicyFormulaSuite extends munit.FunSuite:
           numbers = came.drop(2).toArray
       assertEquals(formula.leaves(draw(random), Metres(-20)), None)
 
+  test("velocities in space and hovering are formulas with a vertical part, which leave the altitude"):
+    for (policy, third, holds) <- Seq((Hovering, 0.0, 0.0), (Climbing, -1.5, 0.0), (Higher, -30.0, 1.0)) do
+      val formula = formulaOf(policy, 0).fold(throw _, identity)
+      assertEquals(formula.leaves(policy, Metres(-20)), Some("it leaves the altitude of its vehicle's start"))
+      val outputs = answered(formula, policy, drawn(SplitMix64(1), 0), Array.emptyDoubleArray)
+      assertEquals((outputs(2), outputs(3)), (third, holds), s"$policy")
+
   for
     (name, policy, reason) <- Seq(
-      ("Hover", Hovering, "it decides for Action.Hover"),
       ("a place", Going, "it decides for Action.Position"),
       ("one of two actions", Sometimes, "it decides for Action.Land"),
       ("the attitude", Tilted, "it reads the attitude"),
@@ -292,6 +298,10 @@ object PolicyFormulaSuite:
 
   case object Hovering extends Forgetful:
     def action(seen: Observation): Action = Action.Hover
+  case object Climbing extends Forgetful:
+    def action(seen: Observation): Action = Action.Velocity(Vector3(1, 2, -1.5))
+  case object Higher extends Forgetful:
+    def action(seen: Observation): Action = Action.VelocityAt(1, 2, Metres(-30))
   case object Going extends Forgetful:
     def action(seen: Observation): Action = Action.Position(Vector3(1, 2, -20), seen.cruise)
   case object Sometimes extends Forgetful:

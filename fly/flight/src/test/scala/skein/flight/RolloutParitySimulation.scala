@@ -36,7 +36,8 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
 
   /** One event: its vehicle, its index, its time, and its numbers. */
   private case class Note(vehicle: Int, number: Int, at: Span, values: Double*):
-    override def toString = f"vehicle $vehicle number $number at ${at.toSeconds}%.9f s: ${values.mkString(", ")}"
+    override def toString =
+      f"vehicle $vehicle number $number at ${at.toSeconds}%.9f s: ${values.mkString(", ")}"
 
   private def check(
       loop: LoopKind,
@@ -272,10 +273,22 @@ object AnyPolicies:
 final case class InSpace() extends Scenario:
   import InSpace.*
   private def agent(i: Int, policy: Policy) =
-    Agent(s"V$i", Role("Scout"), MetresPerSecond(4 + i), Vector3(9 * i, 5 * i, -12 - 3 * i), Radians(0), policy)
+    Agent(
+      s"V$i",
+      Role("Scout"),
+      MetresPerSecond(4 + i),
+      Vector3(9 * i, 5 * i, -12 - 3 * i),
+      Radians(0),
+      policy
+    )
 
   def agents: Vector[Agent] =
-    Vector(agent(0, Helix), agent(1, Above(0, Yaw.Forward)), agent(2, Above(1, Yaw.Turning(0.3))), agent(3, Stairs))
+    Vector(
+      agent(0, Helix),
+      agent(1, Above(0, Yaw.Forward)),
+      agent(2, Above(1, Yaw.Turning(0.3))),
+      agent(3, Stairs)
+    )
 
 object InSpace:
   /** Climbs and sinks along a circle, nose ahead. */
@@ -283,7 +296,7 @@ object InSpace:
     type Memory = Double
     def start: Double                                               = 0
     def choose(seen: Observation, memory: Double): (Action, Double) =
-      val angle = memory + 0.4 * seen.elapsed.toSeconds
+      val angle      = memory + 0.4 * seen.elapsed.toSeconds
       val (cos, sin) = (StrictMath.cos(angle), StrictMath.sin(angle))
       (Action.Velocity(Vector3(4 * cos, 4 * sin, -1.5 * sin - 0.5), Yaw.Forward), angle)
 
@@ -292,7 +305,8 @@ object InSpace:
     type Memory = Unit
     def start: Unit                                             = ()
     def choose(seen: Observation, memory: Unit): (Action, Unit) =
-      val way   = seen.vehicles(other).kinematics.positionNed + Vector3(0, 0, -3) - seen.own.kinematics.positionNed
+      val way =
+        seen.vehicles(other).kinematics.positionNed + Vector3(0, 0, -3) - seen.own.kinematics.positionNed
       val speed = seen.cruise.value.min(way.norm)
       (Action.Velocity(way * (speed / way.norm.max(1e-3)), yaw), ())
 

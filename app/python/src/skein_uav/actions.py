@@ -1,0 +1,112 @@
+"""What a policy decides: actions, and choices between them by what is known in flight alone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from . import formula
+from .formula import Condition, logical_and
+
+
+@dataclass(frozen=True)
+class Yaw:
+    """How an action controls the yaw: `Yaw()` keeps it, `Yaw.forward()` looks ahead."""
+
+    kind: str = "still"
+    number: Any = None
+
+    @staticmethod
+    def forward() -> Yaw:
+        return Yaw("forward")
+
+    @staticmethod
+    def towards(heading_rad: Any) -> Yaw:
+        return Yaw("towards", heading_rad)
+
+    @staticmethod
+    def turning(rad_per_s: Any) -> Yaw:
+        return Yaw("turning", rad_per_s)
+
+
+@dataclass(frozen=True)
+class Action:
+    """What a vehicle does until the next decision.
+
+    Attributes
+    ----------
+    kind : str
+        ``along``, ``velocity-at``, ``velocity``, ``position``, ``turn``, ``attitude``, ``hover`` or ``land``.
+    numbers : tuple
+        Those of the kind, as the function of its name takes them.
+    yaw : Yaw
+    """
+
+    kind: str
+    numbers: tuple[Any, ...] = ()
+    yaw: Yaw = Yaw()
+
+    def _where(self, condition: Condition, a: Any, b: Any) -> Any:
+        return Choice(cases(a, True), cases(b, True), condition)
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One of two actions, by a condition."""
+
+    a: list[tuple[Any, Action]]
+    b: list[tuple[Any, Action]]
+    condition: Condition
+
+    def _where(self, condition: Condition, a: Any, b: Any) -> Any:
+        return Choice(cases(a, True), cases(b, True), condition)
+
+
+def cases(of: Any, when: Any) -> list[tuple[Any, Action]]:
+    """Actions with their conditions; the first that holds is meant, and the last one holds."""
+    if isinstance(of, Choice):
+        first = [(logical_and(of.condition, condition), action) for condition, action in of.a]
+        return first + of.b
+    if not isinstance(of, Action):
+        raise formula.refused(f"where takes two actions, came {type(of).__name__}")
+    return [(when, of)]
+
+
+def along(heading_rad: Any, speed_mps: Any, down_m: Any, yaw: Yaw = Yaw()) -> Action:
+    """Flies on a heading at an altitude; `Observation.along` is at that of the start."""
+    return Action("along", (heading_rad, speed_mps, down_m), yaw)
+
+
+def velocity_at(north_mps: Any, east_mps: Any, down_m: Any, yaw: Yaw = Yaw()) -> Action:
+    """Flies by a horizontal velocity at an altitude."""
+    return Action("velocity-at", (north_mps, east_mps, down_m), yaw)
+
+
+def velocity(north_mps: Any, east_mps: Any, down_mps: Any, yaw: Yaw = Yaw()) -> Action:
+    """Flies by a velocity in space."""
+    return Action("velocity", (north_mps, east_mps, down_mps), yaw)
+
+
+def position(north_m: Any, east_m: Any, down_m: Any, speed_mps: Any, yaw: Yaw = Yaw()) -> Action:
+    """Flies to a place, no faster than a speed, and stays there."""
+    return Action("position", (north_m, east_m, down_m, speed_mps), yaw)
+
+
+def turn(yaw: Yaw) -> Action:
+    """Stays, and turns."""
+    return Action("turn", (), yaw)
+
+
+def attitude(roll_rad: Any, pitch_rad: Any, yaw_rad: Any, thrust: Any) -> Action:
+    """Holds three angles, by a share of full thrust from 0 to 1."""
+    return Action("attitude", (roll_rad, pitch_rad, yaw_rad, thrust))
+
+
+def hover() -> Action:
+    """Stays where it is."""
+    return Action("hover")
+
+
+def land() -> Action:
+    """Descends until it stands on the ground."""
+    return Action("land")

@@ -1,0 +1,255 @@
+"""Scenarios in Python: what is written down, and what cannot be. None of these tests needs Java."""
+
+import math
+import random
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from skein_uav import formula as f
+from skein_uav.formula import Untraceable
+from skein_uav.scenario import Action, Known, Moment, Observation, Scenario, Series, Vehicle, hover, setting
+
+EXAMPLES = Path(__file__).parents[3] / "examples" / "scenario-in-python"
+sys.path.insert(0, str(EXAMPLES))
+
+import pursuit  # noqa: E402
+import ring  # noqa: E402
+import tower  # noqa: E402
+
+
+def scenario(policy, memory=None, others=1):
+    """A scenario of a vehicle with this policy, and of others that stand."""
+
+    class One(Scenario):
+        pace_mps = 5.0
+
+        def vehicles(self):
+            yield Vehicle("Own", policy, memory=memory)
+            for other in range(others):
+                yield Vehicle(f"Other{other}", lambda seen: hover(), (20.0 + other, 0.0, -5.0))
+
+    return One()
+
+
+def interpreted(text):
+    """Evaluates the nodes of a file, by inputs such as ``north 0``: a second reader, of twenty lines."""
+    lines = [line for line in text.splitlines() if line[0].isdigit()]
+    operations = {
+        **{"add": lambda a, b: a + b, "sub": lambda a, b: a - b, "mul": lambda a, b: a * b, "div": lambda a, b: a / b},
+        **{"neg": lambda a: -a, "abs": abs, "sqrt": math.sqrt, "sin": math.sin, "cos": math.cos, "atan2": math.atan2},
+        **{"hypot": math.hypot, "min": min, "max": max, "lt": lambda a, b: a < b, "le": lambda a, b: a <= b},
+        **{"eq": lambda a, b: a == b, "not": lambda a: not a, "and": lambda a, b: a and b, "or": lambda a, b: a or b},
+        **{"where": lambda c, a, b: a if c else b, "always": lambda: True, "remainder": math.remainder},
+        **{"signum": lambda a: math.copysign(1, a) if a else a, "floor": math.floor, "tanh": math.tanh, "exp": math.exp},
+    }
+
+    def value(line, inputs):
+        op, *words = line.split()[1:]
+        if op == "const":
+            return float(words[0].replace("Infinity", "inf"))
+        if op in operations:
+            return operations[op](*(inputs[int(word)] for word in words))
+        return inputs[" ".join([op, *words])]
+
+    def evaluate(named):
+        values = dict(named)
+        for place, line in enumerate(lines):
+            values[place] = value(line, values)
+        return values
+
+    return evaluate
+
+
+def drawn(random_, count):
+    return [Known(*(random_.uniform(-20, 20) for _ in range(7)), random_.uniform(0, 1)) for _ in range(count)]
+
+
+def inputs_of(seen, scenario_, memory=()):
+    named = {"elapsed": seen.elapsed_s, "cruise": seen.cruise_mps, "start-down": seen.start_down_m}
+    named["acts-in"], named["ahead"] = seen.acts_in_s, 0.5
+    words = ("north", "east", "down", "north-mps", "east-mps", "down-mps", "heading", "age")
+    for place, one in enumerate(seen.vehicles):
+        fields = (one.north_m, one.east_m, one.down_m, one.north_mps, one.east_mps, one.down_mps)
+        for word, field in zip(words, (*fields, one.heading_rad, one.age_s), strict=True):
+            named[f"{word} {place}"] = field
+    named.update({f"memory {place}": number for place, number in enumerate(memory)})
+    for name in getattr(type(scenario_), "__dataclass_fields__", {}):
+        named[f"setting {name.replace('_', '-')}"] = getattr(scenario_, name)
+    return named
+
+
+@pytest.mark.parametrize("made", [ring.Ring(), pursuit.Pursuit(), tower.Tower()], ids=lambda one: type(one).__name__)
+def test_what_is_written_down_computes_what_the_function_computes(made):
+    text = made.text()
+    vehicles = list(made.vehicles())
+    does = [line.split() for line in text.splitlines() if line.startswith("does")]
+    remembers = [line.split() for line in text.splitlines() if line.startswith("remembers")]
+    evaluate, random_ = interpreted(text), random.Random(3)
+    rows = iter(does)
+    for place, vehicle in enumerate(vehicles):
+        cases = []
+        while not cases or cases[-1][1] == "when":
+            cases.append(next(rows))
+        for _ in range(30):
+            roles = [one.role for one in vehicles]
+            rivals = [one for one, role in enumerate(roles) if role != roles[place]] or None
+            seen = Observation(place, drawn(random_, len(vehicles)), 0.1, 0.2, 6.0, -5.0, rivals)
+            held = [] if vehicle.memory is None else [random_.uniform(-3, 3), float(random_.random() < 0.5)]
+            if vehicle.memory is None:
+                action, after = vehicle.policy(seen), None
+            else:
+                action, after = vehicle.policy(seen, tower.Turns(held[0], bool(held[1])))
+            values = evaluate(inputs_of(seen, made, held))
+            case = next(one for one in cases if one[1] != "when" or values[int(one[2])])
+            words = case[3:] if case[1] == "when" else case[1:]
+            assert isinstance(action, Action) and words[0] == action.kind
+            assert [values[int(word)] for word in words[1 : 1 + len(action.numbers)]] == list(action.numbers)
+            if after is not None:
+                numbers = [values[int(words[2])] for words in remembers[2 * place : 2 * place + 2]]
+                assert numbers == [after.angle_rad, float(after.is_up)]
+
+
+@pytest.mark.parametrize("name", ["ring", "pursuit"])
+def test_the_files_beside_the_examples_are_what_the_examples_write(name):
+    made = {"ring": ring.Ring(), "pursuit": pursuit.Pursuit()}[name]
+    assert (EXAMPLES / f"{name}.scenario").read_text(encoding="utf-8") == made.text()
+
+
+def test_settings_are_fields_that_are_floats_and_others_are_fixed():
+    text = ring.Ring(pursuers=3, ring_m=6).text()
+    assert 'setting ring-m 6.0 "radius of the ring, m"' in text and "setting pursuers" not in text
+    assert len([line for line in text.splitlines() if line.startswith("vehicle")]) == 4
+
+
+def test_a_policy_runs_with_plain_numbers_as_it_stands():
+    seen = Observation(1, [Known(north_m=10.0), Known(heading_rad=0.0)], rivals=[0], elapsed_s=0.1)
+    assert pursuit.Pursuit().pursue(seen).numbers == (0.0, 5.0, -5.0)
+    assert ring.Ring().gap(Moment([Known(), Known(north_m=1.0), Known(north_m=-1.0)])) == 180
+    assert f.where(True, 1, 2) == 1 and f.clip(5, 0, 3) == 3 and f.minimum(3.0, 2.0, 1.0) == 1.0
+    assert f.tanh(np.zeros(2)).tolist() == [0, 0] and f.pick(1, "abc") == "b"
+
+
+def test_numpy_and_its_arrays_are_written_down_too():
+    weights = np.arange(6.0).reshape(2, 3)
+
+    def network(seen):
+        own = seen.own
+        inner = np.tanh(weights @ np.array([own.north_m, own.east_m, 1.0]))
+        return seen.along(np.arctan2(inner[0], inner[1]), np.float64(2.0) * np.sqrt(np.abs(own.north_mps)))
+
+    text = scenario(network).text()
+    seen = Observation(0, drawn(random.Random(1), 2))
+    does = next(line for line in text.splitlines() if line.startswith("does"))
+    values = interpreted(text)(inputs_of(seen, None))
+    assert [values[int(word)] for word in does.split()[2:]] == pytest.approx(list(network(seen).numbers), abs=1e-12)
+
+
+def test_a_choice_between_actions_is_a_line_for_each():
+    def careful(seen):
+        near = seen.own.distance_m(seen.vehicles[1])
+        slow = f.where(near < 3, seen.along(0, 1.0), seen.along(0, 2.0))
+        return f.where(near < 1, hover(), slow)
+
+    does = [line.split()[1:4:2] for line in scenario(careful).text().splitlines() if line.startswith("does")]
+    assert does == [["when", "hover"], ["when", "along"], ["along", does[2][1]], ["hover"]]
+
+
+@dataclass
+class Kept:
+    rad: float = 0.0
+
+
+WRONG = [
+    ("if seen.own.north_m > 3: pass", "branches on a number .* write where\\(condition, a, b\\)"),
+    ("while seen.own.north_m > 3: pass", "branches .* write a loop over a range that is known"),
+    ("x = 1 if seen.own.north_m > 3 else 2", "branches .* write where\\(condition, a, b\\)"),
+    ("x = min(seen.own.north_m, 3)", "branches .* write minimum\\(a, b\\)"),
+    ("x = max(seen.own.north_m, 3)", "branches .* write maximum\\(a, b\\)"),
+    ("x = seen.own.north_m > 3 and seen.own.east_m > 3", "branches .* write logical_and\\(a, b\\)"),
+    ("x = seen.own.north_m > 3 or seen.own.east_m > 3", "branches .* write logical_or\\(a, b\\)"),
+    ("x = not seen.own.north_m > 3", "branches .* write logical_not\\(condition\\)"),
+    ("x = 1 < seen.own.north_m < 3", "branches .* write logical_and\\(a < b, b < c\\)"),
+    ("x = sorted([seen.own.north_m, seen.own.east_m])", "branches .* write smallest\\(items, key\\)"),
+    ("x = seen.own.north_m in (1.0, 2.0)", "branches .* write comparisons, joined by logical_or"),
+    ("x = math.sin(seen.own.north_m)", "needs the value .* write sin of skein_uav.formula"),
+    ("x = math.log(seen.own.north_m)", "needs the value .* there is no logarithm in formulas"),
+    ("x = float(seen.own.north_m)", "needs the value .* write it with the functions of skein_uav.formula"),
+    ("x = int(seen.own.north_m)", "needs the value .* leave it a number"),
+    ("x = round(seen.own.north_m)", "needs the value of a number"),
+    ("x = f'{seen.own.north_m:.2f}'", "needs the value of a number"),
+    ("x = [1, 2][seen.own.north_m]", "indexes by a number .* write pick\\(index, values\\)"),
+    ("x = range(seen.own.north_m)", "counts or indexes by a number"),
+    ("x = {1.0: 2}[seen.own.north_m]", "looks something up .* write pick\\(index, values\\)"),
+    ("x = math.dist((seen.own.north_m, 0.0), (1.0, 0.0))", "write hypot\\(x, y\\) of skein_uav.formula"),
+    ("x = np.cumsum(seen.own.north_m)", "there is no cumsum in formulas"),
+    ("x = seen.own.north_m ** seen.own.east_m", "raises to a power; write a product, or sqrt, or exp"),
+    ("x = (seen.own.north_m > 3) * 2.0", "computes with a condition; write where\\(condition, 1.0, 0.0\\)"),
+    ("x = f.where(seen.own.north_m, 1, 2)", "takes a number for a condition; write a comparison"),
+    ("x = f.sin('a') + f.hypot(seen.own.north_m, 'a')", "must be real number"),
+    ("x, y = seen.own.north_m", "one number, not several"),
+    ("return seen.own.north_m", "expected an action, such as seen.along\\(heading, speed\\), came Number"),
+    ("return", "expected an action, .* came None; is a return missing\\?"),
+    ("return seen.along(seen.own.north_m > 3, 1.0)", "expected a number as a number of along, .* came a condition"),
+    ("return seen.along('north', 1.0)", "expected a number as a number of along, .* came str 'north'"),
+]
+
+
+@pytest.mark.parametrize("line, told", WRONG, ids=[one[0] for one in WRONG])
+def test_what_cannot_be_written_down_is_told_with_its_line_and_what_to_write(line, told, tmp_path):
+    file = tmp_path / "patrol.py"
+    file.write_text(f"def policy(seen):\n    {line}\n    return seen.along(0.0, 1.0)\n")
+    names = {"math": math, "np": np, "f": f}
+    exec(compile(file.read_text(), str(file), "exec"), names)
+    expected = TypeError if "real number" in told else Untraceable
+    with pytest.raises(expected, match=f"(?s){told}") as caught:
+        scenario(names["policy"]).text()
+    if expected is Untraceable:
+        assert "patrol.py:" in str(caught.value)
+
+
+def test_a_memory_is_of_one_form_and_belongs_to_one_vehicle():
+    with pytest.raises(Untraceable, match="expected an action and the next memory, came Action"):
+        scenario(lambda seen, memory: seen.along(memory.rad, 1.0), Kept()).text()
+    with pytest.raises(Untraceable, match="a next memory of the form of the first, Kept\\(float\\), came float"):
+        scenario(lambda seen, memory: (seen.along(0.0, 1.0), memory.rad), Kept()).text()
+    with pytest.raises(Untraceable, match="expected a memory of floats, .* came str 'north'"):
+        scenario(lambda seen, memory: (seen.along(0.0, 1.0), memory), "north").text()
+    kept = []
+
+    def shared(seen):
+        kept.append(seen.own.north_m)
+        return seen.along(kept[0] - seen.own.east_m, 1.0)
+
+    class Two(Scenario):
+        def vehicles(self):
+            return [Vehicle("A", shared), Vehicle("B", shared)]
+
+    with pytest.raises(Untraceable, match="a number of another decision; what a policy keeps is in its memory alone"):
+        Two().text()
+
+
+def test_what_a_scenario_lacks_is_told():
+    class Empty(Scenario):
+        def vehicles(self):
+            return []
+
+    with pytest.raises(ValueError, match="expected a list of Vehicle"):
+        Empty().text()
+
+    @dataclass
+    class Odd(Scenario):
+        side: float = setting(1.0, "which side")
+
+        def vehicles(self):
+            return [Vehicle("A", lambda seen: seen.along(0.0, 1.0 if self.side > 0 else 2.0))]
+
+    with pytest.raises(Untraceable, match="write where"):
+        Odd().text()
+    with pytest.raises(ValueError, match="ends in .scenario, came patrol.txt"):
+        ring.Ring().write("patrol.txt")
+    with pytest.raises(ValueError, match="last_s or after_s, came both"):
+        Series("a", "m", lambda now: 0.0).mean("a", last_s=1, after_s=2)

@@ -1,0 +1,46 @@
+package skein.scenario
+
+import skein.formula.{Evaluation, Formula, KnownFormula, Node, Trace}
+
+/** A quantity that is data, such as one traced in Python.
+  *
+  * @param places input of each position: those north of all vehicles, then those east, then those down
+  */
+private[scenario] final class QuantityGraph(
+    trace: Trace,
+    value: Node,
+    vehicles: Int,
+    settings: Vector[String]
+):
+  private val evaluation = Evaluation(Vector(value))
+
+  def apply(
+      northM: Int => Double,
+      eastM: Int => Double,
+      downM: Int => Double
+  )(values: Array[Double]): Double =
+    val places = Seq(northM, eastM, downM).flatMap(of => (0 until vehicles).map(of))
+    evaluation(places.toArray, values)(0)
+
+  val formula: Formula = Formula.ofGraph(
+    trace,
+    Seq("north", "east", "down").toVector.flatMap(axis => (0 until vehicles).map(at => s"$axis($at)")),
+    Vector("answer" -> value),
+    settings
+  ) {
+    case same: GraphQuantity => same.graph eq this
+    case _                   => false
+  } {
+    case same: GraphQuantity => same.values
+    case _                   => Array.emptyDoubleArray
+  }
+
+/** A [[QuantityGraph]] with the settings' values. */
+private[skein] final class GraphQuantity private[scenario] (
+    private[scenario] val graph: QuantityGraph,
+    private[scenario] val values: Array[Double]
+) extends Quantity, KnownFormula:
+  def of(positions: Positions): Double =
+    graph(positions.northM(_), positions.eastM(_), positions.downM(_))(values)
+
+  def formula: Formula = graph.formula

@@ -1,0 +1,112 @@
+package skein.scenario
+
+import scala.deriving.Mirror
+import skein.formula.{Evaluation, Node}
+import skein.policy.PolicyGraph
+
+/** A scenario as a file of data, without code: `docs/scenario-file.md` says what each line means. Nodes of
+  * vehicles, limits and windows depend on settings alone.
+  *
+  * @param text the whole file
+  * @param over condition at which the flight ends, of positions, velocities and ages
+  */
+private[skein] final class ScenarioFile private[scenario] (
+    val text: String,
+    val name: String,
+    val note: String,
+    val scene: String,
+    val settings: Vector[ScenarioFile.Setting],
+    val durationS: Option[Node],
+    val vehicles: Vector[ScenarioFile.Vehicle],
+    val limits: Vector[ScenarioFile.Bounded],
+    val series: Vector[ScenarioFile.Drawn],
+    val over: Option[Watched]
+):
+  private val fixed = (durationS ++ vehicles.flatMap(_.numbers) ++ limits.flatMap(_.numbers) ++
+    series.flatMap(each =>
+      each.bound.map(_._2) ++ each.measures.flatMap(_.window.map(_._2))
+    )).toVector.distinct
+  private val places     = fixed.zipWithIndex.toMap
+  private val evaluation = Evaluation(fixed)
+
+  /** The values of the nodes that depend on settings alone. */
+  private[scenario] def numbers(values: Array[Double]): Node => Double =
+    val found = evaluation(Array.emptyDoubleArray, values)
+    node => found(places(node))
+
+  private def mirror = (new Mirror.Product:
+    type MirroredMonoType = FileScenario
+    def fromProduct(of: Product): FileScenario =
+      FileScenario(ScenarioFile.this, of.productIterator.map(_.asInstanceOf[Double]).toArray)
+  ).asInstanceOf[Mirror.ProductOf[FileScenario]]
+
+  val kind: ScenarioKind[FileScenario] =
+    ScenarioKind(FileScenario(this, settings.map(_.default).toArray))(using mirror)
+
+private[skein] object ScenarioFile:
+  /** Version of the format. */
+  val Version = 1
+
+  private[scenario] val Head = "skein-scenario"
+
+  /** The ending of such files' names. */
+  val Suffix = ".scenario"
+
+  /** The parameter of a recording that holds the file. */
+  val Recorded = "scenarioFile"
+
+  /** A setting, as `--set` knows it.
+    *
+    * @param meaning for people
+    */
+  final case class Setting(name: String, default: Double, meaning: String)
+
+  /** @param numbers speed, m/s; start north, east and down, m; heading, rad */
+  private[scenario] final case class Vehicle(
+      name: String,
+      role: String,
+      numbers: Vector[Node],
+      policy: PolicyGraph
+  )
+
+  /** A limit by the kind's word, with its numbers. */
+  private[scenario] final case class Bounded(kind: String, numbers: Vector[Node])
+
+  /** A quantity over time.
+    *
+    * @param graph of positions alone, which searches can optimise
+    */
+  private[scenario] final case class Drawn(
+      name: String,
+      unit: String,
+      watched: Watched,
+      graph: Option[QuantityGraph],
+      bound: Option[(String, Node)],
+      measures: Vector[Reduced]
+  )
+
+  /** @param window `last` or `after`, and how many seconds */
+  private[scenario] final case class Reduced(name: String, reduction: String, window: Option[(String, Node)])
+
+  /** Whether a text is a scenario's file, and not the name of a scenario. */
+  def isText(text: String): Boolean = text.startsWith(Head + " ")
+
+  /** What messages call a scenario: the name in its file, or itself where it is a name. */
+  def called(scenario: String): String =
+    if isText(scenario) then read(scenario).fold(_ => Head, _.name) else scenario
+
+  /** What `--scenario` takes for a scenario, as far as that is known. */
+  def fileOf(scenario: String): String = if isText(scenario) then called(scenario) + Suffix else scenario
+
+  @volatile private var last = Option.empty[ScenarioFile]
+
+  /** Reads a file's text. Repeated calls with one text return one object, so that it is compiled once.
+    *
+    * @return Left states in one line what was expected, what came, and in which line
+    */
+  def read(text: String): Either[String, ScenarioFile] = last.filter(_.text == text) match
+    case Some(same) => Right(same)
+    case None       =>
+      val made = ScenarioReader.read(text)
+      made.foreach(file => last = Some(file))
+      made

@@ -1,0 +1,33 @@
+package skein.scenario
+
+import skein.formula.{Evaluation, Node}
+import skein.policy.PolicyInput
+import skein.units.Vector3
+
+/** A number of what is known of all vehicles at one moment, as data.
+  *
+  * @param inputs meaning of the node's inputs: positions, velocities, ages and the time since the first
+  *   decision
+  */
+private[scenario] final class Watched(node: Node, inputs: Vector[PolicyInput]):
+  private val evaluation = Evaluation(Vector(node))
+
+  def apply(known: Known, values: Array[Double]): Double = at(values):
+    case PolicyInput.Position(vehicle, axis) => axisOf(known.vehicles(vehicle).kinematics.positionNed, axis)
+    case PolicyInput.Velocity(vehicle, axis) => axisOf(known.vehicles(vehicle).kinematics.velocityNed, axis)
+    case PolicyInput.Age(vehicle)            => known.vehicles(vehicle).age.toSeconds
+    case _                                   => known.elapsed.toSeconds
+
+  /** By tracks, at one instant; they have no ages. */
+  def apply(tracks: Tracks, instant: Int, values: Array[Double]): Double = at(values):
+    case PolicyInput.Position(vehicle, axis) => axisOf(tracks.positionNed(vehicle, instant), axis)
+    case PolicyInput.Velocity(vehicle, axis) => axisOf(tracks.velocityNed(vehicle, instant), axis)
+    case _                                   => tracks.timeS(instant)
+
+  private def at(values: Array[Double])(input: PolicyInput => Double): Double =
+    evaluation(inputs.iterator.map(input).toArray, values)(0)
+
+  private def axisOf(vector: Vector3, axis: Int) = axis match
+    case 0 => vector.x
+    case 1 => vector.y
+    case _ => vector.z
