@@ -4,7 +4,7 @@ import mainargs.{ArgSig, ParserForClass, Result, Util}
 import scala.annotation.unused
 import skein.flight.NotFlown
 import skein.record.{ClockKind, LoopKind}
-import skein.scenario.ScenarioFile
+import skein.scenario.ScenarioText
 import skein.settings.ScenarioSettings
 import skein.units.Expect
 
@@ -110,7 +110,7 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
   /** What stands behind `--` is another program's. */
   private def parsed(words: Seq[String]): Either[String, A] =
     val (arguments, behind) = words.span(_ != "--")
-    val mistake = arguments.filterNot(ScenarioFile.isText).flatMap(Complaint.ofWord).headOption.orElse(
+    val mistake = arguments.filterNot(ScenarioText.isText).flatMap(Complaint.ofWord).headOption.orElse(
       strange(arguments).map(Misuse.noSuch(
         _,
         names

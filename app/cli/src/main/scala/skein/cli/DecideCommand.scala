@@ -13,7 +13,7 @@ import skein.cluster.BuildId
 import skein.flight.{FlightAssembler, WarmUp}
 import skein.kafka.{KafkaSolver, KafkaTopics}
 import skein.link.{Address, BackgroundThread, ControlThreads, TcpTransport, TransportError}
-import skein.scenario.{ScenarioFile, Scenarios}
+import skein.scenario.{ScenarioText, Scenarios}
 import skein.settings.{PredictionModel, RecordedPlan, SolverChoice}
 import skein.signal.LatencyProfile
 import skein.solver.{Briefing, FlightDeciders, SolverDesk, SolverServer}
@@ -119,8 +119,8 @@ final class DecideCommand(using scenarios: Scenarios)
     for
       plan <- Briefing.plan(briefing)
       name = plan.settings.scenario.name
-      _ <- Expect.that(only.map(ScenarioFile.called).forall(_ == name)):
-        s"this solver decides for ${only.map(ScenarioFile.called).mkString} alone, the flight flies $name"
+      _ <- Expect.that(only.map(ScenarioText.called).forall(_ == name)):
+        s"this solver decides for ${only.map(ScenarioText.called).mkString} alone, the flight flies $name"
       _ = // Flights that connect meanwhile wait for it, too.
         warm.computeIfAbsent(
           s"$name ${briefing.loop} ${PredictionModel.text(plan.settings.predictor)}",

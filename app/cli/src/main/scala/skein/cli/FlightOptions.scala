@@ -178,7 +178,7 @@ final case class FlightOptions(
 object FlightOptions:
   /** Replaces the name of a scenario's file by its text. */
   private def scenarioRead(config: Config): Either[String, Config] =
-    val path = ScenarioSettings.Name
+    val path = ConfigKeys.Scenario
     if !config.hasPath(path) then Right(config)
     else
       val told = config.getValue(path)

@@ -3,7 +3,7 @@ package skein.cli
 import mainargs.{ParserForClass, arg}
 import skein.policy.Role
 import skein.port.Moves
-import skein.scenario.{PaperDuel, Scenario, ScenarioFile, Scenarios}
+import skein.scenario.{PaperDuel, Scenario, ScenarioText, Scenarios}
 import skein.search.Conditions
 import skein.settings.{PolicyFile, ScenarioSettings}
 import skein.units.{Expect, Span}
@@ -95,7 +95,7 @@ object ForwardOptions:
     case None            =>
       stated(scenario, settings).flatMap: read =>
         Left(
-          s"--objective: expected a sum of the measures of ${ScenarioFile.called(scenario)}: ${known(read).mkString(", ")}"
+          s"--objective: expected a sum of the measures of ${ScenarioText.called(scenario)}: ${known(read).mkString(", ")}"
         )
 
   given ParserForClass[ForwardOptions] = ParserForClass[ForwardOptions]

@@ -2,7 +2,7 @@ package skein.cli
 
 import mainargs.{Flag, ParserForClass, arg}
 import skein.report.{Section, TextTable}
-import skein.scenario.{ScenarioFile, Scenarios}
+import skein.scenario.{ScenarioText, Scenarios}
 import skein.settings.NamedScene
 import skein.torture.{FaultPlan, FaultVerdict}
 import skein.units.*
@@ -131,7 +131,7 @@ object TortureCommand:
         broken :+= verdict
         shown.say(verdict.faultPlan.toString)
         verdict.violations.foreach(line => shown.say(s"  $line"))
-        val scenario = options.scenario.fold("")(name => s" --scenario ${ScenarioFile.fileOf(name)}")
+        val scenario = options.scenario.fold("")(name => s" --scenario ${ScenarioText.fileOf(name)}")
         val scene    = options.scene.fold("")(name => s" --scene $name")
         shown.say(
           s"  again: ./skein torture --first ${verdict.faultPlan.seed} --seeds 1 " +

@@ -13,7 +13,7 @@ import skein.optimise.{
   ValueEvaluator
 }
 import skein.policy.{Axis, SearchSpace}
-import skein.scenario.{Nearest, Scenario, ScenarioFile, ScenarioKind, Scenarios}
+import skein.scenario.{Nearest, Scenario, ScenarioKind, ScenarioText, Scenarios}
 import skein.settings.{ConfigKeys, ScenarioSettings, TextFile}
 import skein.signal.LatencyProfile
 import skein.units.Decimals.significant
@@ -306,7 +306,7 @@ final case class TeamSetup(
          |# found by ./skein search: ${question.method}, ${found.state.flown} episodes, $flown; $vehicles
          |skein.fly {
          |  scenario = ${
-          if ScenarioFile.isText(question.scenario) then quoteString(question.scenario) else kind.name
+          if ScenarioText.isText(question.scenario) then quoteString(question.scenario) else kind.name
         }
          |  ${kind.name} {
          |${settings.map((key, value) => s"    $key = ${quoteString(value)}").mkString("\n")}

@@ -6,7 +6,7 @@ import skein.lanes.{Engine, TeamBatch, TeamCandidate}
 import skein.learn.{Algorithm, LearnerSettings, SideTask}
 import skein.optimise.{DuelEvaluator, Objective, TeamEvaluator, TeamObjective, ValueEvaluator, WeightedSum}
 import skein.policy.{Fleet, LearnedPolicy, PolicyFamily, Role}
-import skein.scenario.{PaperDuel, ScenarioFile, Scenarios}
+import skein.scenario.{PaperDuel, ScenarioText, Scenarios}
 import skein.search.{Baseline, Conditions, Judge}
 import skein.settings.{PolicyFile, ScenarioSettings}
 import skein.units.Decimals.significant
@@ -212,7 +212,7 @@ final case class LearnSetup(
     )
 
   def title: String =
-    val where = if isOfTeam then s" of ${ScenarioFile.called(question.scenario)}" else ""
+    val where = if isOfTeam then s" of ${ScenarioText.called(question.scenario)}" else ""
     s"${question.algorithm}, ${question.role}$where, ${question.conditions.loop} over ${question.link}"
 
   /** The objective with its unit, for the axis of a picture. */

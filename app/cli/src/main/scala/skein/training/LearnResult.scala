@@ -4,7 +4,7 @@ import com.typesafe.config.ConfigUtil.quoteString
 import skein.optimise.{Evaluator, RunningStats}
 import skein.plot.Drawing
 import skein.report.{Section, TextTable}
-import skein.scenario.ScenarioFile
+import skein.scenario.ScenarioText
 import skein.search.{Judge, SearchResult}
 import skein.settings.PolicyFile
 import skein.units.Interval
@@ -94,7 +94,7 @@ object LearnResult:
   private def file(setup: LearnSetup, state: LearnState, policy: PolicyFile, measured: String): String =
     import setup.question
     val scenario =
-      (ScenarioFile.called(question.scenario) +: question.set.toVector.sorted.map((key, value) =>
+      (ScenarioText.called(question.scenario) +: question.set.toVector.sorted.map((key, value) =>
         s"$key=$value"
       )).mkString(" ")
     policy.hocon(

@@ -1,6 +1,6 @@
 package skein.cli
 
-import java.nio.file.{Files, Path}
+import java.nio.file.Files
 import scala.jdk.CollectionConverters.*
 import skein.docs.Documentation
 import skein.testing.{TemporaryFolders, Unhurried}
@@ -62,7 +62,7 @@ class ScenarioFileSimulation extends munit.FunSuite, TemporaryFolders, Unhurried
       (s"budget --scenario $ring --objective off-ring --duration 12s --episodes 16 --means 2 --jitters 2 " +
         s"--out $path/budget").split(' ')*
     )
-    well(s"torture --scenario $ring --seeds 1 --duration 4s".split(' ')*)
+    well(s"torture --scenario $ring --seeds 1 --duration 7s".split(' ')*)
     val listed = well("scenarios", ring.toString)
     assert(listed.contains("ring: 6 vehicles, 60 s") && listed.contains("radius of the ring, m"), listed)
 

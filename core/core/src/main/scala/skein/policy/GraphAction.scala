@@ -11,7 +11,6 @@ private[skein] final case class GraphAction[A](
     numbers: Vector[A],
     yaw: GraphAction.YawKind
 ):
-  /** The action with these numbers. */
   def action(value: A => Double): Action =
     val of   = numbers.map(value)
     def last = of(kind.arity)
@@ -34,20 +33,23 @@ private[skein] final case class GraphAction[A](
       case GraphAction.Kind.Land  => Action.Land
 
 private[skein] object GraphAction:
-  /** @param word in a scenario's file */
+  /** The kinds of actions, with how many numbers each has.
+    *
+    * @param word in a scenario's file
+    */
   enum Kind(val word: String, val arity: Int, val hasYaw: Boolean):
-    /** Heading, speed, down. */
+    // Heading, speed, down.
     case Along extends Kind("along", 3, true)
 
-    /** North, east, down: two velocities and a place. */
+    // North, east, down: two velocities and a place.
     case VelocityAt extends Kind("velocity-at", 3, true)
     case Velocity   extends Kind("velocity", 3, true)
 
-    /** North, east, down, speed. */
+    // North, east, down, speed.
     case Position extends Kind("position", 4, true)
     case Turn     extends Kind("turn", 0, true)
 
-    /** Roll, pitch, yaw, thrust. */
+    // Roll, pitch, yaw, thrust.
     case Attitude extends Kind("attitude", 4, false)
     case Hover    extends Kind("hover", 0, false)
     case Land     extends Kind("land", 0, false)

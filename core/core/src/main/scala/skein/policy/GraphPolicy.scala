@@ -98,7 +98,6 @@ private[skein] object GraphPolicy:
   def apply(graph: PolicyGraph, values: Array[Double]): GraphPolicy =
     if graph.goal.isEmpty then new GraphPolicy(graph, values) else WithGoal(graph, values)
 
-  /** One that planners can decide for. */
   private final class WithGoal(graph: PolicyGraph, values: Array[Double])
       extends GraphPolicy(graph, values), Goal:
     private val limits = settled.drop(graph.starts.size)

@@ -1,5 +1,6 @@
 package skein.scenario
 
+import scala.deriving.Mirror
 import skein.policy.{Agent, GraphPolicy, Role}
 import skein.units.*
 
@@ -94,6 +95,14 @@ private[skein] object FileScenario:
   def apply(file: ScenarioFile, values: Array[Double]): FileScenario = file.over match
     case None       => new FileScenario(file, values)
     case Some(over) => Ending(file, values, over)
+
+  def kind(file: ScenarioFile): ScenarioKind[FileScenario] =
+    val mirror = (new Mirror.Product:
+      type MirroredMonoType = FileScenario
+      def fromProduct(of: Product): FileScenario =
+        FileScenario(file, of.productIterator.map(_.asInstanceOf[Double]).toArray)
+    ).asInstanceOf[Mirror.ProductOf[FileScenario]]
+    ScenarioKind(FileScenario(file, file.settings.map(_.default).toArray))(using mirror)
 
   /** One that may end before its duration. Forward simulation asks for it by the class that declares it. */
   private final class Ending(file: ScenarioFile, values: Array[Double], over: Watched)

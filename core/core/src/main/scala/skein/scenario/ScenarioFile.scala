@@ -1,6 +1,5 @@
 package skein.scenario
 
-import scala.deriving.Mirror
 import skein.formula.{Evaluation, Node}
 import skein.policy.PolicyGraph
 
@@ -34,22 +33,11 @@ private[skein] final class ScenarioFile private[scenario] (
     val found = evaluation(Array.emptyDoubleArray, values)
     node => found(places(node))
 
-  private def mirror = (new Mirror.Product:
-    type MirroredMonoType = FileScenario
-    def fromProduct(of: Product): FileScenario =
-      FileScenario(ScenarioFile.this, of.productIterator.map(_.asInstanceOf[Double]).toArray)
-  ).asInstanceOf[Mirror.ProductOf[FileScenario]]
-
-  val kind: ScenarioKind[FileScenario] =
-    ScenarioKind(FileScenario(this, settings.map(_.default).toArray))(using mirror)
-
 private[skein] object ScenarioFile:
-  /** Version of the format. */
-  val Version = 1
+  val Version: Int = 1
+  val Head: String = "skein-scenario"
 
-  private[scenario] val Head = "skein-scenario"
-
-  /** The ending of such files' names. */
+  /** The ending by which a command knows that it is not the name of a scenario. */
   val Suffix = ".scenario"
 
   /** The parameter of a recording that holds the file. */
@@ -87,26 +75,3 @@ private[skein] object ScenarioFile:
 
   /** @param window `last` or `after`, and how many seconds */
   private[scenario] final case class Reduced(name: String, reduction: String, window: Option[(String, Node)])
-
-  /** Whether a text is a scenario's file, and not the name of a scenario. */
-  def isText(text: String): Boolean = text.startsWith(Head + " ")
-
-  /** What messages call a scenario: the name in its file, or itself where it is a name. */
-  def called(scenario: String): String =
-    if isText(scenario) then read(scenario).fold(_ => Head, _.name) else scenario
-
-  /** What `--scenario` takes for a scenario, as far as that is known. */
-  def fileOf(scenario: String): String = if isText(scenario) then called(scenario) + Suffix else scenario
-
-  @volatile private var last = Option.empty[ScenarioFile]
-
-  /** Reads a file's text. Repeated calls with one text return one object, so that it is compiled once.
-    *
-    * @return Left states in one line what was expected, what came, and in which line
-    */
-  def read(text: String): Either[String, ScenarioFile] = last.filter(_.text == text) match
-    case Some(same) => Right(same)
-    case None       =>
-      val made = ScenarioReader.read(text)
-      made.foreach(file => last = Some(file))
-      made

@@ -8,7 +8,7 @@ import skein.policy.PolicyInput
 /** The nodes of a [[ScenarioFile]], as its lines state them: `7 add 3 5`. Their numbers are consecutive, and
   * arguments have smaller ones.
   */
-private[scenario] final class ScenarioNodes:
+private[scenario] final class ScenarioNodes extends ScenarioNumbers:
   import ScenarioMistake.*
   import ScenarioNodes.*
 
@@ -23,7 +23,6 @@ private[scenario] final class ScenarioNodes:
   def apply(id: Int): Node          = all(id)
   def isCondition(id: Int): Boolean = conditions(id)
 
-  /** Whether a node depends on inputs. */
   def reads(node: Node): Boolean = observing(node)
 
   /** Adds the node of a line.
@@ -38,11 +37,19 @@ private[scenario] final class ScenarioNodes:
     val isTruth = ofTruth(word)
     if isTruth then conditions += size
     all += node
-    for each <- Trace.needed(Seq(node)) if !depths.contains(each) do
-      depths(each) = each.args.map(depths).maxOption.fold(0)(_ + 1)
-      if each.op == Op.Input || each.args.exists(observing) then observing += each
-    if depths(node) > MostDepth then
+    if depth(node) > MostDepth then
       wrong(s"expected at most $MostDepth operations upon one another, came more")
+
+  /** The length of the longest chain of operations to a node; notes what depends on inputs. A line adds few
+    * nodes, so the recursion is not deep.
+    */
+  private def depth(node: Node): Int = depths.get(node) match
+    case Some(known) => known
+    case None        =>
+      val own = node.args.map(depth).maxOption.fold(0)(_ + 1)
+      depths(node) = own
+      if node.op == Op.Input || node.args.exists(observing) then observing += node
+      own
 
   private def leaf(word: String, words: ScenarioWords, setting: String => Int): Option[Node] =
     def vehicle = words.whole("a vehicle", MostVehicles)
@@ -80,7 +87,6 @@ private[scenario] final class ScenarioNodes:
       case one if isUnary(one) => trace.unary(one, words.value())
       case two                 => trace.binary(two, words.value(), words.value())
 
-  /** What nodes read, each once. */
   def inputsOf(of: Seq[Node]): Vector[Leaf] =
     val leaves = inputs.keysIterator.toVector
     Trace.needed(of).filter(_.op == Op.Input).map(node => leaves(node.index)).distinct

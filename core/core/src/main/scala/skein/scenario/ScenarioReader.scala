@@ -20,6 +20,9 @@ private[scenario] final class ScenarioReader private (text: String):
   private var duration = Option.empty[Node]
   private var over     = Option.empty[(Int, Node)]
 
+  /** How many nodes all policies have; each vehicle has those that it shares with others for itself. */
+  private var used = 0
+
   /** Number of the present line, for messages; 0: of no line. */
   private var line = 0
 
@@ -165,7 +168,10 @@ private[scenario] final class ScenarioReader private (text: String):
       case other                 => exists(other)
     val inputs = (read ++ sought).distinct.collect { case input: PolicyInput => input }
     val fixed  = starts ++ of.limits
-    val moved  = nodes.moved(decided ++ of.goal ++ fixed, inputs :+ Ahead)._2.iterator
+    val (trace, graph) = nodes.moved(decided ++ of.goal ++ fixed, inputs :+ Ahead)
+    val moved          = graph.iterator
+    used += trace.size
+    if used > MostUsed then wrong(s"expected at most $MostUsed nodes in what all vehicles do, came more")
     PolicyGraph(
       inputs,
       settings.map(_.name).toVector,
@@ -235,6 +241,7 @@ private[scenario] object ScenarioReader:
     val measures: mutable.ArrayBuffer[ScenarioFile.Reduced] = mutable.ArrayBuffer.empty
 
   private val MostLetters  = 400 << 10
+  private val MostUsed     = 200_000
   private val MostNote     = 1000
   private val MostSettings = 200
   private val MostActions  = 32
@@ -272,17 +279,13 @@ private[scenario] object ScenarioReader:
     "over"
   )
 
-  /** Reads a file, and evaluates what depends on the settings' defaults alone.
+  /** Reads a file.
     *
     * @return Left states the first mistake in one line
     */
   def read(text: String): Either[String, ScenarioFile] =
     val reader = ScenarioReader(text)
-    try
-      val file = reader.file()
-      file.kind.read(Map.empty).left.map(mistakes => s"by its defaults: ${mistakes.mkString("; ")}").map(_ =>
-        file
-      )
+    try Right(reader.file())
     catch
       case mistake: ScenarioMistake =>
         Left(if reader.line == 0 then mistake.getMessage else s"line ${reader.line}: ${mistake.getMessage}")

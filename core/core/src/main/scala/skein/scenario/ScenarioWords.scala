@@ -17,12 +17,19 @@ private[scenario] object ScenarioMistake:
     val cut = if text.length <= MostShown then text else text.take(MostShown) + "…"
     cut.map(letter => if letter.isControl then '?' else letter)
 
+/** The nodes of earlier lines, by their numbers. */
+private[scenario] trait ScenarioNumbers:
+  def size: Int
+  def apply(id: Int): Node
+  def isCondition(id: Int): Boolean
+  def reads(node: Node): Boolean
+
 /** The words of one line of a [[ScenarioFile]]: separated by spaces; `"…"` is one word, in which `\"` and
   * `\\` stand for the second letter.
   *
   * @param nodes of earlier lines
   */
-private[scenario] final class ScenarioWords(line: String, nodes: ScenarioNodes):
+private[scenario] final class ScenarioWords(line: String, nodes: ScenarioNumbers):
   import ScenarioMistake.*
   import ScenarioWords.*
 
@@ -59,7 +66,6 @@ private[scenario] final class ScenarioWords(line: String, nodes: ScenarioNodes):
 
   private def hasMore = at < words.size
 
-  /** The next word. */
   def text(what: String, most: Int = MostWord): String =
     if !hasMore then wrong(s"expected $what, came the line's end")
     val word = words(at)
@@ -67,7 +73,6 @@ private[scenario] final class ScenarioWords(line: String, nodes: ScenarioNodes):
     if word.length > most then wrong(s"expected $what of at most $most letters, came ${word.length}")
     word
 
-  /** The next word, if it is not empty. */
   def name(what: String): String =
     val word = text(what)
     if word.isBlank then wrong(s"expected $what, came an empty text")
@@ -92,7 +97,6 @@ private[scenario] final class ScenarioWords(line: String, nodes: ScenarioNodes):
       .filter(each => each >= 0 && each < most)
       .getOrElse(wrong(s"expected $what, a whole number from 0 to ${most - 1}, came '${shown(word)}'"))
 
-  /** Takes the next word if it is this one. */
   def isNext(word: String): Boolean =
     val same = hasMore && words(at) == word
     if same then at += 1
@@ -117,7 +121,7 @@ private[scenario] final class ScenarioWords(line: String, nodes: ScenarioNodes):
   def value(): Node     = node(isCondition = false)
   def condition(): Node = node(isCondition = true)
 
-  /** A number that depends on settings alone. */
+  /** A number that depends on settings alone, and not on what is observed. */
   def fixed(): Node =
     val one = value()
     if nodes.reads(one) then
@@ -126,7 +130,6 @@ private[scenario] final class ScenarioWords(line: String, nodes: ScenarioNodes):
       )
     one
 
-  /** [[fixed]] numbers up to the line's end. */
   def allFixed(): Vector[Node] =
     val found = Vector.newBuilder[Node]
     while hasMore do found += fixed()

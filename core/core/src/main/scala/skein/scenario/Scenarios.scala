@@ -68,7 +68,7 @@ final case class Scenarios(
     * given, and the nearest.
     */
   def kind(name: String): Either[String, ScenarioKind[?]] =
-    if ScenarioFile.isText(name) then ScenarioFile.read(name).map(_.kind) else named(name)
+    if ScenarioText.isText(name) then ScenarioText.read(name) else named(name)
 
   private def named(name: String) =
     kinds

@@ -10,10 +10,10 @@ import skein.units.*
 class ScenarioFileSuite extends munit.FunSuite:
   import ScenarioFileSuite.*
 
-  private def read(text: String) = ScenarioFile.read(text).fold(why => fail(why), identity)
+  private def read(text: String) = ScenarioText.read(text).fold(why => fail(why), identity)
 
   private def stated(set: (String, String)*): Scenario =
-    read(Patrol).kind.read(set.toMap).fold(why => fail(why.mkString), identity)
+    read(Patrol).read(set.toMap).fold(why => fail(why.mkString), identity)
 
   private def seen(random: SplitMix64, self: Int): Observation =
     def within(most: Double) = most * (2 * random.nextDouble() - 1)
@@ -66,17 +66,17 @@ class ScenarioFileSuite extends munit.FunSuite:
     assertEquals(policy.choose(beside, next)._1, Action.Hover)
 
   test("a file that ends its flight, or whose quantity is of velocities, is not simulated as if it did not"):
-    val ending               = read(Patrol + "over 12\n").kind.standard
+    val ending               = read(Patrol + "over 12\n").standard
     def known(north: Double) =
       val still = Kinematics(Vector3(0, 0, 0), Vector3.Zero, Quaternion.Identity, Vector3.Zero)
       val away  = still.copy(positionNed = Vector3(north, 0, 0))
       Known(Span.ofSeconds(1), Vector(still, away).map(Seen(_, Span.Zero, isPredicted = false)))
     assert(ending.isOver(known(4)) && !ending.isOver(known(6)))
-    val fast = read(Patrol + "20 north-mps 0\nseries speed m/s 20\nmeasure fastest most\n").kind.standard
+    val fast = read(Patrol + "20 north-mps 0\nseries speed m/s 20\nmeasure fastest most\n").standard
     assertEquals(fast.measures.last.reduced, None)
 
   test("the formula of a graph is the graph: equal bits, with no bytecode read"):
-    val level   = read(Patrol.replace("does when 12 hover\n", "")).kind
+    val level   = read(Patrol.replace("does when 12 hover\n", ""))
     val team    = level.standard.fleet
     val policy  = team.agents(1).policy.asInstanceOf[GraphPolicy]
     val formula =
@@ -94,8 +94,22 @@ class ScenarioFileSuite extends munit.FunSuite:
 
   for (name, change, expected) <- Mistakes do
     test(s"told in one line: $name"):
-      val came = ScenarioFile.read(change(Patrol)).left.toOption
+      val came = ScenarioText.read(change(Patrol)).left.toOption
       assertEquals(came, Some(expected))
+
+  test("a chain that is too deep, and vehicles that do too much, are refused"):
+    def file(nodes: Iterator[String], vehicles: Int, does: Int) =
+      val team = (0 until vehicles).map(one => s"vehicle V$one v 0 0 0 0 0\ndoes along $does $does $does\n")
+      s"skein-scenario 1\nname large\n0 const 0\n1 north 0\n${nodes.mkString("\n")}\n${team.mkString}"
+    def chain(count: Int) = Iterator.range(2, count).map(node => s"$node add 1 ${node - 1}")
+    assertEquals(
+      ScenarioText.read(file(chain(9_000), 1, 1)).left.toOption,
+      Some("line 5005: expected at most 5000 operations upon one another, came more")
+    )
+    assertEquals(
+      ScenarioText.read(file(chain(4_000), 100, 3_999)).left.toOption.map(_.replaceAll("line [0-9]+", "line")),
+      Some("line: expected at most 200000 nodes in what all vehicles do, came more")
+    )
 
   test("a mutated file is read or refused in one line (seed 5)"):
     val whole =

@@ -64,12 +64,12 @@ private object ScenarioMutants:
     for number <- 0 until count do
       val text = mutant(of, random)
       try
-        ScenarioFile.read(text) match
+        ScenarioText.read(text) match
           case Left(why) =>
             if why.isEmpty || why.length > 500 || why.exists(_.isControl) then wrong(text, s"$number: $why")
-          case Right(file) =>
+          case Right(kind) =>
             whole += 1
-            decide(file.kind.standard)
+            decide(kind.standard)
       catch case NonFatal(failure) => wrong(text, s"$number: $failure")
     whole
 

@@ -16,6 +16,9 @@ import scala.deriving.Mirror
   */
 private[skein] object ConfigKeys:
 
+  /** The path of the scenario in a configuration. */
+  val Scenario = "skein.fly.scenario"
+
   def ofField(name: String): String = name.replaceAll("([A-Z])", "-$1").toLowerCase(Locale.ROOT)
 
   /** Replaces the field's name at the beginning of a mistake by its key. */

@@ -3,7 +3,7 @@ package skein.settings
 import com.typesafe.config.*
 import pureconfig.error.*
 import scala.jdk.CollectionConverters.*
-import skein.scenario.{Nearest, Scenarios}
+import skein.scenario.{Nearest, ScenarioText, Scenarios}
 
 /** Describes mistakes in a configuration, a line for each value: `FILE: LINE: PATH: expected …, came …`. A
   * value from an option is identified by the option's name.
@@ -16,7 +16,7 @@ private[skein] object ConfigMistakes:
     * @return None if there is none
     */
   def ofShape(config: Config, path: String)(using Scenarios): Option[String] =
-    ofValue(config.getValue(path), known.getValue(path), path).reduceOption(_ + "\n" + _)
+    ofValue(config.getValue(path), known(config).getValue(path), path).reduceOption(_ + "\n" + _)
 
   /** Keys of a file beside `path` or above, none of which is read. */
   def besideInFile(file: Config, path: String): Option[String] =
@@ -138,8 +138,10 @@ private[skein] object ConfigMistakes:
   private lazy val ours = ConfigFactory.parseResources(getClass.getClassLoader, Ours).resolve()
 
   /** The known keys, with the scenarios' settings under their names. */
-  private def known(using scenarios: Scenarios): Config =
-    scenarios.kinds.foldLeft(ours): (known, kind) =>
+  private def known(config: Config)(using scenarios: Scenarios): Config =
+    val chosen = Option.when(config.hasPath(ConfigKeys.Scenario))(config.getString(ConfigKeys.Scenario))
+    val ofFile = chosen.filter(ScenarioText.isText).flatMap(scenarios.kind(_).toOption)
+    (scenarios.kinds ++ ofFile).foldLeft(ours): (known, kind) =>
       kind.standard.settings.foldLeft(known):
         case (known, (name, value)) =>
           known.withValue(

@@ -3,7 +3,7 @@ package skein.settings
 import com.typesafe.config.{Config, ConfigObject, ConfigValue}
 import scala.jdk.CollectionConverters.*
 import skein.record.ParameterRow
-import skein.scenario.{Scenario, ScenarioKind, Scenarios}
+import skein.scenario.{Scenario, ScenarioFile, ScenarioKind, ScenarioText, Scenarios}
 
 /** A scenario in configurations and recordings. `skein.fly.scenario` names it, and its settings are under its
   * name: `skein.fly { scenario = crossing, crossing { vehicles = 8, lane-m = 6 } }`.
@@ -52,9 +52,23 @@ object ScenarioSettings:
     )
 
   def recorded(scenario: Scenario): Seq[ParameterRow] =
-    scenario.settings.map((name, value) => ParameterRow(scenario.recordedAs(name), value))
+    scenario.settings.map((name, value) => ParameterRow(scenario.recordedAs(name), value)) ++
+      scenario.document.map(ParameterRow(_, _))
 
-  private val Name = "skein.fly.scenario"
+  /** What `--scenario` names: a scenario, or, by its ending, a file of data, of which the text stands for it
+    * from here on: in settings, questions to other processes, and recordings.
+    *
+    * @return Left states where the file is wrong
+    */
+  def named(word: String): Either[String, String] =
+    if ScenarioText.isText(word) || !word.endsWith(ScenarioFile.Suffix) then Right(word)
+    else
+      for
+        text <- TextFile.read(word)
+        _    <- ScenarioText.read(text).left.map(mistake => s"$word: $mistake")
+      yield text
+
+  private def Name = ConfigKeys.Scenario
 
   private def settingsAt(config: Config, path: String): Either[String, Map[String, ConfigValue]] =
     if !config.hasPath(path) then Right(Map.empty)

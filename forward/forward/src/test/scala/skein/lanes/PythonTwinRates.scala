@@ -18,7 +18,7 @@ object PythonTwinRates:
   def main(arguments: Array[String]): Unit =
     for (name, twin) <- Seq("ring" -> Surround(), "pursuit" -> PaperDuel()); share <- Seq(true, false) do
       val text   = Files.readString(Path.of(arguments(0)).resolve(s"$name.scenario"))
-      val python = ScenarioFile.read(text).fold(why => throw IllegalArgumentException(why), _.kind.standard)
+      val python = ScenarioText.read(text).fold(why => throw IllegalArgumentException(why), _.standard)
       val judged = TeamObjective.judged(TeamObjective.measures(python).values.toVector, 20, 0.1)
       val batch  = TeamBatch(LoopTiming.Stream(), lag, threads = 1)
       def seconds(of: Scenario): Double =

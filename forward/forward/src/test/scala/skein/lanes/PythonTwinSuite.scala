@@ -20,7 +20,7 @@ class PythonTwinSuite extends munit.FunSuite:
 
   private def written(name: String, set: (String, String)*): Scenario =
     val text = Files.readString(root.resolve(s"examples/scenario-in-python/$name.scenario"))
-    val kind = ScenarioFile.read(text).fold(why => fail(why), _.kind)
+    val kind = ScenarioText.read(text).fold(why => fail(why), identity)
     kind.read(set.toMap).fold(why => fail(why.mkString), identity)
 
   private val twins: Seq[(String, Scenario, Scenario)] = Seq(

@@ -6,7 +6,7 @@ import scala.util.Try
 import skein.lanes.Engine
 import skein.lanes.LearnerDuels.WORLDS
 import skein.policy.HeadingPolicy
-import skein.scenario.Scenarios
+import skein.scenario.{ScenarioText, Scenarios}
 import skein.settings.PolicyFile
 import skein.simd.LaneMath
 import skein.units.Expect
@@ -112,7 +112,9 @@ object EnvironmentBatch:
 
   /** What flies those of another scenario. */
   def engineOf(scenario: String): Engine =
-    Engine.scalar(s"environments of $scenario fly one by one; those of the duel fly by SIMD")
+    Engine.scalar(
+      s"environments of ${ScenarioText.called(scenario)} fly one by one; those of the duel fly by SIMD"
+    )
 
   /** @param opponent of the side that does not learn; without one, as the settings name it
     * @return Left states what was expected and what was given

@@ -1,0 +1,26 @@
+package skein.policy
+
+/** The meaning of an input of a [[PolicyFormula]]: where it is read. */
+enum PolicyInput:
+  /** Estimated position of a vehicle, m.
+    *
+    * @param axis 0 north, 1 east, 2 down
+    */
+  case Position(vehicle: Int, axis: Int)
+
+  case Velocity(vehicle: Int, axis: Int)
+
+  case Heading(vehicle: Int)
+
+  /** Age of the reading behind a vehicle's estimate, s. */
+  case Age(vehicle: Int)
+
+  case Elapsed
+
+  case ActsIn
+
+  case Cruise
+
+  case StartDown
+
+  case Memory(number: Int)

@@ -1,0 +1,34 @@
+package skein.scenario
+
+/** Scenarios by the text of their [[ScenarioFile]], which stands for the name of a scenario wherever one is
+  * stated.
+  */
+private[skein] object ScenarioText:
+
+  /** Whether a text is a scenario's file, and not the name of a scenario. */
+  def isText(text: String): Boolean = text.startsWith(ScenarioFile.Head + " ")
+
+  /** What messages call a scenario: the name in its file, or itself where it is a name. */
+  def called(scenario: String): String =
+    if isText(scenario) then read(scenario).fold(_ => ScenarioFile.Head, _.name) else scenario
+
+  /** What `--scenario` takes for a scenario, as far as that is known. */
+  def fileOf(scenario: String): String =
+    if isText(scenario) then called(scenario) + ScenarioFile.Suffix else scenario
+
+  @volatile private var last = Option.empty[(String, ScenarioKind[FileScenario])]
+
+  /** Reads a file's text. Repeated calls with one text return one object, so that it is compiled once.
+    *
+    * @return Left states in one line what was expected, what came, and in which line
+    */
+  def read(text: String): Either[String, ScenarioKind[FileScenario]] = last.filter(_._1 == text) match
+    case Some((_, same)) => Right(same)
+    case None            =>
+      for
+        file <- ScenarioReader.read(text)
+        kind = FileScenario.kind(file)
+        _ <- kind.read(Map.empty).left.map(mistakes => s"by its defaults: ${mistakes.mkString("; ")}")
+      yield
+        last = Some((text, kind))
+        kind
