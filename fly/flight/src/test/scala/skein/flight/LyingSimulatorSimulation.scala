@@ -186,25 +186,15 @@ class LyingSimulatorSimulation extends munit.FunSuite, Unhurried:
     test(s"${loop.label}: another client that $what ends the flight without result, and is reported"):
       fly(loop, acts = acts).assertNoResult(EventKind.VehicleTaken, words)
 
-  /** Disarms and arms a vehicle in turn, every 20 ms. */
-  private def disarms(times: Int)(client: AirSimClient)(using system: ActorSystem): Future[Any] =
-    import system.dispatcher
-    val vehicle = Multirotor(client, "Evader")
-    if times == 0 then Future.unit
-    else
-      for
-        answer <- if times % 2 == 0 then vehicle.disarm() else vehicle.arm()
-        _ = assertEquals(answer, Right(true))
-        _ <- after(Span.ofMillis(20).toDuration)(disarms(times - 1)(client))
-      yield ()
-
   test("stream: another client that disarms a vehicle takes nothing: moves drive it on, as in AirSim"):
     def flown(acts: AirSimClient => ActorSystem ?=> Future[Any]) =
       val flight = fly(LoopKind.Stream, acts = acts)
       assertEquals(flight.landed.outcome, FlightOutcome.Completed)
       val downM = flight.recording.readings.filter(_.vehicle == "Evader").map(_.state.value.positionNed.z)
       (downM.max, flight.summary.headline.get)
-    val (disarmed, alone) = (flown(disarms(200)(_)), flown(_ => Future.unit))
+    def disarms(client: AirSimClient)(using system: ActorSystem) =
+      Multirotor(client, "Evader").disarm().map(assertEquals(_, Right(true)))(using system.dispatcher)
+    val (disarmed, alone) = (flown(disarms(_)), flown(_ => Future.unit))
     assertEqualsDouble(disarmed._1, alone._1, 0.001, "it sank")
     assertEqualsDouble(disarmed._2, alone._2, 0.001, "it flew another way")
 
