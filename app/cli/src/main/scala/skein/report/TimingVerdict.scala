@@ -38,7 +38,7 @@ object TimingVerdict:
     val parts = words.flatMap: word =>
       val those = all.filter(_.verdict.exists(_.word == word))
       those.flatMap(_.verdict).maxByOption(_.share).map: worst =>
-        val most = if those.size > 1 then "at most " else ""
+        val most = if those.size > 1 then "at worst " else ""
         s"$word for ${named(those)} ($most${worst.why})"
     val judged = Option.when(parts.nonEmpty):
       s"With ${(100 * Limit).fixed(0)} % as the limit, timing is ${parts.mkString(" and ")}"
@@ -47,13 +47,16 @@ object TimingVerdict:
       Option.when(nothing.nonEmpty)(s"${named(nothing)} ${if are then "are" else "is"} not judged")
     (judged ++ unjudged).mkString("", "; ", ".")
 
-  /** Loops by link: `futures and stream over vpn, stream over direct`. */
+  /** Loops by their links: `futures and stream over direct and vpn`. */
   private def named(those: Vector[Judged]): String =
-    those.map(_.link).distinct.map(link =>
-      val loops = those.filter(_.link == link).map(_.name)
-      val first = loops.dropRight(1)
-      s"${if first.isEmpty then "" else first.mkString("", ", ", " and ")}${loops.last} over $link"
+    val loops = those.map(_.link).distinct.map(link => (link, those.filter(_.link == link).map(_.name)))
+    loops.map(_._2).distinct.map(same =>
+      s"${listed(same)} over ${listed(loops.collect { case (link, `same`) => link })}"
     ).mkString(", ")
+
+  private def listed(words: Vector[String]): String =
+    val first = words.dropRight(1)
+    (Option.when(first.nonEmpty)(first.mkString(", ")) ++ words.lastOption).mkString(" and ")
 
   /** @param same flights of one loop over one link
     * @return None where a flight has no result, the machine was too busy, or there is too little to judge by

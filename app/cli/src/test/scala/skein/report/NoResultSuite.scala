@@ -114,6 +114,13 @@ class NoResultSuite extends munit.FunSuite:
     assertEquals(said.count(_ == '\n'), 0)
     assert(ReportSections.text(Report.of(Seq(stream, none))).endsWith(said))
 
+  test("loops that have one verdict over several links are named once"):
+    val all =
+      for loop <- Seq("futures", "stream"); link <- Seq("vpn", "direct")
+      yield SyntheticFlight(loop, link, seed = 10, seconds = 12)
+    val said = TimingVerdict.sentence(Report.of(all)).getOrElse(fail("nothing was said"))
+    assert(said.contains(" for futures and stream over vpn and direct (at worst "), said)
+
   test("loops of one verdict are named together, by link, with the worst of them"):
     val all =
       for
@@ -122,8 +129,8 @@ class NoResultSuite extends munit.FunSuite:
       yield SyntheticFlight(loop, link, seed = 10L + index, seconds = 12)
     val said = TimingVerdict.sentence(Report.of(all)).getOrElse(fail("nothing was said"))
     assert(
-      said.contains("timing is probably bad for sequential, futures and stream over vpn (at most "),
+      said.contains("timing is probably bad for sequential, futures and stream over vpn (at worst "),
       said
     )
-    assert(said.contains(") and probably good for sequential, futures and stream over none (at most "), said)
+    assert(said.contains(") and probably good for sequential, futures and stream over none (at worst "), said)
     assertEquals(said.sliding("before a command answers".length).count(_ == "before a command answers"), 2)

@@ -34,8 +34,8 @@ object LongAttack:
     attack.begin()
     for minute <- 1 to (seconds + 59) / 60 do
       phase(clients, s"attack, minute $minute", math.min(60, seconds - (minute - 1) * 60))
+      println(attack.told)
     for client <- clients do println(client.row("the whole attack", client.all))
-    println(attack.told)
     attack.end()
     for second <- 1 to 10 do phase(clients, s"second $second after", 1)
     phase(clients, "nobody", 20)
@@ -48,6 +48,9 @@ object LongAttack:
     for client <- clients do println(client.row(name, client.latest))
 
   private val loopback = InetAddress.getLoopbackAddress
+
+  /** Connections held open at a time: more than any server lets in. */
+  private val MostHeld = 1500
 
   /** Waiting times in milliseconds, and how many requests were lost with their connection. */
   private final case class Waits(ms: Vector[Double] = Vector.empty, lost: Int = 0):
@@ -107,11 +110,14 @@ object LongAttack:
 final private class LongAttack(rpc: Int, hil: Int, udp: Int, view: Int, seed: Long):
   import LongAttack.{loopback, request}
   private val held           = ConcurrentLinkedQueue[AutoCloseable]()
+  private val failed         = java.util.concurrent.ConcurrentHashMap[String, Long]()
   @volatile private var ends = false
   private val rounds         = java.util.concurrent.ConcurrentHashMap[String, Long]()
 
   def told: String =
-    rounds.asScala.toSeq.sorted.map((name, count) => s"$name $count").mkString("rounds: ", ", ", "")
+    rounds.asScala.toSeq.sorted
+      .map((name, count) => s"$name $count (${failed.getOrDefault(name, 0L)} failed)")
+      .mkString("rounds: ", ", ", "")
 
   def end(): Unit =
     ends = true
@@ -123,7 +129,10 @@ final private class LongAttack(rpc: Int, hil: Int, udp: Int, view: Int, seed: Lo
         val random = Random(seed * 1000 + name.hashCode + thread)
         while !ends do
           try round(random)
-          catch case _: IOException => Thread.sleep(20)
+          catch
+            case _: IOException =>
+              failed.merge(name, 1L, _ + _): Unit
+              Thread.sleep(20)
           rounds.merge(name, 1L, _ + _): Unit
       : Unit
 
@@ -132,6 +141,8 @@ final private class LongAttack(rpc: Int, hil: Int, udp: Int, view: Int, seed: Lo
     socket.connect(InetSocketAddress(loopback, port), 2000)
     socket.setSoTimeout(2000)
     held.add(socket): Unit
+    // Closed ones take descriptors until they are closed here too: an attack that lasts runs out of them.
+    while held.size > LongAttack.MostHeld do Option(held.poll()).foreach(_.close())
     socket
 
   private def using(port: Int)(use: Socket => Unit): Unit =
