@@ -11,11 +11,17 @@ private[cli] object Complaint:
   val MostOfAWord = 200
   val MostOfALine = 1000
 
+  /** Lines that are shown: a setting in a wrong place makes a mistake of each below it. */
+  val MostLines = 12
+
   /** @param reason a line for each mistake
-    * @return as many lines, printable and cut
+    * @return as many lines, printable and cut; from [[MostLines]] on the last one counts the others
     */
   def text(reason: String): String =
-    TextTable.printable(reason).linesIterator.map(line => cut(words(line), MostOfALine)).mkString("\n")
+    val lines = TextTable.printable(reason).linesIterator.map(line => cut(words(line), MostOfALine)).toVector
+    val more  = lines.size - MostLines + 1
+    val shown = if more <= 1 then lines else lines.take(MostLines - 1) :+ s"and $more mistakes more"
+    shown.mkString("\n")
 
   /** Refuses words with line breaks or other control characters: no valid name or value has them, and a
     * message with them would not be one line.

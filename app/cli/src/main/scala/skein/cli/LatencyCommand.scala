@@ -87,7 +87,8 @@ object LatencyCommand
         _ = Console.err.println(f"$samples pings, one each ${period.toMillis}%.0f ms")
         answers <- measured(period, samples)
       yield Right(answers)
-    val answers = client(simulator).ping().flatMap:
+    val first   = AirSimClient(RpcClient(transport, simulator, Clock.system), AirSimError.FirstWithin)
+    val answers = first.ping().flatMap:
       case Left(error) => Future.successful(Left(AirSimError.ofFirst(error, simulator)))
       case Right(_) if link.profile == LinkProfile.none => pings(simulator)
       case Right(_)                                     =>

@@ -86,10 +86,11 @@ object DistanceFigure:
         if published.most <= panel.y.to then Vector.empty
         else
           val head = Vector(top.moved(-3, 5), top, top.moved(3, 5))
-          val text = if isMeanSeen then s"to ${published.most.brief} m" else s"◆ ${published.mean.brief} m"
+          val text = if isMeanSeen then s"to ${published.most.brief} m" else s"mean ${published.mean.brief} m"
           Vector(
             Mark.Path(head, Some(Stroke(FlightTheme.published, 1.2))),
-            Mark.Text(top.moved(5, 8), text, Theme.smallSize)
+            // Upright, as what stands beside it has a column of its own.
+            Mark.Text(top.moved(11, 2), text, Theme.smallSize, anchor = Anchor.End, upwards = true)
           )
       (Mark.line(low, top, Stroke(FlightTheme.published, 1.2)) +: goesOn) ++ diamond
     ours ++ paper

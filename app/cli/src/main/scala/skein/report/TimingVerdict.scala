@@ -17,39 +17,76 @@ object TimingVerdict:
   /** The sentence; None where only `paused` was run. */
   def sentence(set: FlightSet): Option[String] =
     val flights = set.flights.filterNot(_.flight.isPaused)
-    val said    = flights.groupBy(one => (one.name, one.flight.link)).toVector.sortBy((_, same) =>
-      flights.indexOf(same.head)
-    ).map: (key, same) =>
-      s"${key._1} over ${key._2} is ${of(set, same)}"
-    Option.when(said.nonEmpty)(
-      s"Timing, with ${(100 * Limit).fixed(0)} % as the limit: ${said.mkString("; ")}."
-    )
+    val all     = flights
+      .groupBy(one => (one.name, one.flight.link))
+      .toVector
+      .sortBy((_, same) => flights.indexOf(same.head))
+      .map { case ((name, link), same) => Judged(name, link, of(set, same)) }
+    Option.when(all.nonEmpty)(said(all))
 
-  /** @param same flights of one loop over one link */
-  private def of(set: FlightSet, same: Vector[FlightSummary]): String =
-    val measured = Distribution.of(same.flatMap(set.deviation)).map(_.mean)
-    same.head match
-      case one if one.noResult.isDefined || one.starved.isDefined => "not judged"
-      case one                                                    =>
-        measured
-          .map(share => s"${word(share.abs)}, ${percent(share.abs)} off the truth")
-          .orElse(estimated(one))
-          .getOrElse("not judged: too little was read, or there is one vehicle alone and no paused flight")
+  /** The flights of one loop over one link, with the verdict if they can be judged. */
+  private final case class Judged(name: String, link: String, verdict: Option[Verdict])
 
-  private def estimated(flight: FlightSummary): Option[String] =
+  /** @param share of the truth, or of the distance between vehicles
+    * @param why what the share is, in words
+    */
+  private final case class Verdict(isMeasured: Boolean, share: Double, why: String):
+    def word: String = (if isMeasured then "" else "probably ") + (if share > Limit then "bad" else "good")
+
+  private def said(all: Vector[Judged]): String =
+    val words = Vector("bad", "good", "probably bad", "probably good")
+    val parts = words.flatMap: word =>
+      val those = all.filter(_.verdict.exists(_.word == word))
+      those.flatMap(_.verdict).maxByOption(_.share).map: worst =>
+        val most = if those.size > 1 then "at worst " else ""
+        s"$word for ${named(those)} ($most${worst.why})"
+    val judged = Option.when(parts.nonEmpty):
+      s"With ${(100 * Limit).fixed(0)} % as the limit, timing is ${parts.mkString(" and ")}"
+    val (nothing, are) = (all.filter(_.verdict.isEmpty), all.count(_.verdict.isEmpty) > 1)
+    val unjudged       =
+      Option.when(nothing.nonEmpty)(s"${named(nothing)} ${if are then "are" else "is"} not judged")
+    (judged ++ unjudged).mkString("", "; ", ".")
+
+  /** Loops by their links: `futures and stream over direct and vpn`. */
+  private def named(those: Vector[Judged]): String =
+    val loops = those.map(_.link).distinct.map(link => (link, those.filter(_.link == link).map(_.name)))
+    loops.map(_._2).distinct.map(same =>
+      s"${listed(same)} over ${listed(loops.collect { case (link, `same`) => link })}"
+    ).mkString(", ")
+
+  private def listed(words: Vector[String]): String =
+    val first = words.dropRight(1)
+    (Option.when(first.nonEmpty)(first.mkString(", ")) ++ words.lastOption).mkString(" and ")
+
+  /** @param same flights of one loop over one link
+    * @return None where a flight has no result, the machine was too busy, or there is too little to judge by
+    */
+  private def of(set: FlightSet, same: Vector[FlightSummary]): Option[Verdict] =
+    val one = same.head
+    if one.noResult.isDefined || one.starved.isDefined then None
+    else
+      Distribution.of(same.flatMap(set.deviation))
+        .map(measured => Verdict(true, measured.mean.abs, s"${percent(measured.mean.abs)} off the truth"))
+        .orElse(estimated(one))
+
+  private def estimated(flight: FlightSummary): Option[Verdict] =
     for
       apartM <- separationM(flight) if apartM > 0
-      text   <- unforeseen(flight, apartM).orElse(unseen(flight, apartM))
-    yield text
+      found  <- unforeseen(flight, apartM).orElse(unseen(flight, apartM))
+    yield found
 
-  private def unforeseen(flight: FlightSummary, apartM: Double): Option[String] =
+  private def unforeseen(flight: FlightSummary, apartM: Double): Option[Verdict] =
     for
       errors <- flight.predictions.flatMap(all => (all.own ++ all.others).errors)
       share = errors.median / apartM
-    yield s"probably ${word(share)}: its predictions are off by ${errors.median.fixed(2)} m in the median, " +
-      s"${percent(share)} of the ${apartM.fixed(1)} m between vehicles"
+    yield Verdict(
+      false,
+      share,
+      s"predictions are off by ${errors.median.fixed(2)} m in the median, " +
+        s"${percent(share)} of the ${apartM.fixed(1)} m between vehicles"
+    )
 
-  private def unseen(flight: FlightSummary, apartM: Double): Option[String] =
+  private def unseen(flight: FlightSummary, apartM: Double): Option[Verdict] =
     for
       age    <- flight.commandAgesMs.map(_.mean)
       trip   <- flight.roundTripsMs.map(_.median)
@@ -59,8 +96,12 @@ object TimingVerdict:
       lateMs = age + trip / 2
       flownM = speeds.most * lateMs / 1000
       share  = flownM / apartM
-    yield s"probably ${word(share)}: a vehicle flies on for ${lateMs.fixed(0)} ms and ${flownM.fixed(2)} m, " +
-      s"${percent(share)} of the ${apartM.fixed(1)} m between vehicles, before a command answers to what was read"
+    yield Verdict(
+      false,
+      share,
+      s"a vehicle flies on for ${lateMs.fixed(0)} ms and ${flownM.fixed(2)} m, ${percent(share)} of the " +
+        s"${apartM.fixed(1)} m between vehicles, before a command answers to what was read"
+    )
 
   /** The median distance between the two vehicles that are nearest by it. */
   private def separationM(flight: FlightSummary): Option[Double] =
@@ -77,5 +118,4 @@ object TimingVerdict:
   /** Most vehicles of a large team that are compared. */
   private val MostCompared = 8
 
-  private def word(share: Double)    = if share > Limit then "bad" else "good"
   private def percent(share: Double) = s"${(100 * share).fixed(1)} %"

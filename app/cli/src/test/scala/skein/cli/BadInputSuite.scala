@@ -220,6 +220,10 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       "skein fly: expected no line breaks or other control characters, came 'a\\u000ab'"
     )
     assertEquals(Complaint.text("a short line\nand another"), "a short line\nand another")
+    val many = (1 to 40).map(number => s"mistake $number").toVector
+    assertEquals(Complaint.text(many.take(12).mkString("\n")).linesIterator.toVector, many.take(12))
+    val shown = Complaint.text(many.mkString("\n")).linesIterator.toVector
+    assertEquals(shown, many.take(11) :+ "and 29 mistakes more")
     assertEquals(Complaint.text("y " * 2000).length, Complaint.MostOfALine + "… 3000 letters more …".length)
 
   folder.test("a folder that cannot contain recordings is refused in a line, and is not created"): path =>

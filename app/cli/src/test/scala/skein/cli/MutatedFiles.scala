@@ -88,18 +88,17 @@ object MutatedFiles:
   /** Processor time of this thread, which reads everything. */
   private def cpuNanos: Long = threads.getCurrentThreadCpuTime
 
-  /** Most lines of a report on three mutations. */
-  private val MostLines = 12
-
   /** Why a message is not fit for a person, if so. */
   private def untold(reason: String, file: Path): Option[String] =
     val said  = Complaint.text(reason)
     val lines = said.linesIterator.toVector
     val where = Seq(file.toString, file.getFileName.toString, "skein.fly", "mutant.duckdb")
     if lines.isEmpty || lines.exists(_.isBlank) then Some("says nothing")
-    else if lines.sizeIs > MostLines then Some(s"says ${lines.size} lines: ${lines.take(3).mkString(" / ")}")
+    else if lines.sizeIs > Complaint.MostLines then
+      Some(s"says ${lines.size} lines: ${lines.take(3).mkString(" / ")}")
     else
       lines
+        .filterNot(_.endsWith(" mistakes more"))
         .find(line =>
           line.length > Complaint.MostOfALine + 40 || !where.exists(line.contains) || line.contains(
             "Exception"

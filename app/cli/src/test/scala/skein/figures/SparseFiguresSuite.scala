@@ -31,9 +31,18 @@ class SparseFiguresSuite extends munit.FunSuite:
       figure.shapes.collect { case Mark.Path(points, _, None, _) if points.size > 20 => points.map(_.y) }
     // The panel is 220 units high, from 34 on.
     assert(heights.flatten.min < 34 + 0.3 * 220, heights.flatten.min)
-    assert(texts(figure).contains("◆ 41 m") || texts(figure).contains("◆ 40 m"), texts(figure))
+    assert(texts(figure).contains("mean 41 m") || texts(figure).contains("mean 40 m"), texts(figure))
     val upright = figure.shapes.collect { case text: Mark.Text if text.upwards => text.content }
-    assertEquals(upright.toSet, Set("distance, m", "sequential"))
+    assertEquals(upright.filterNot(_.startsWith("mean ")).toSet, Set("distance, m", "sequential"))
+
+  test("what the arrows of neighbouring columns say does not overlap"):
+    val loops   = Seq("sequential", "futures", "stream")
+    val flights = Report.of(loops.map(SyntheticFlight(_, "vpn", seed = 2, 60)))
+    val arrows  = DistanceFigure(flights).get.shapes.collect:
+      case text: Mark.Text if text.content.startsWith("mean ") || text.content.startsWith("to ") => text
+    assert(arrows.size > 1 && arrows.forall(_.upwards), arrows)
+    val columns = arrows.map(_.at.x).sorted
+    assert(columns.zip(columns.tail).forall((one, next) => next - one > arrows.head.size), columns)
 
   test("a legend names what is drawn: of a link without a profile, the measured round trips alone"):
     val trips                = Distribution.of(Vector.tabulate(100)(index => 130 + index * 0.1)).get

@@ -100,7 +100,7 @@ class NoResultSuite extends munit.FunSuite:
     val said      = TimingVerdict.sentence(Report.of(Seq(paused, stream)))
     val word      = if deviation > 0.05 then "bad" else "good"
     assert(
-      said.exists(_.startsWith(s"Timing, with 5 % as the limit: stream over vpn is $word, ")),
+      said.exists(_.startsWith(s"With 5 % as the limit, timing is $word for stream over vpn (")),
       said.toString
     )
     assertEquals(TimingVerdict.sentence(Report.of(Seq(paused))), None)
@@ -108,8 +108,29 @@ class NoResultSuite extends munit.FunSuite:
   test("without a paused flight, timing is judged by the distance flown until a command answers a reading"):
     val none = SyntheticFlight("stream", "none", seed = 3, seconds = 12)
     val said = TimingVerdict.sentence(Report.of(Seq(stream, none))).getOrElse(fail("nothing was said"))
-    assert(said.contains("stream over vpn is probably bad: a vehicle flies on for "), said)
-    assert(said.contains("stream over none is probably good: "), said)
+    assert(said.contains("timing is probably bad for stream over vpn (a vehicle flies on for "), said)
+    assert(said.contains(" and probably good for stream over none ("), said)
     assert(said.contains(" between vehicles, before a command answers to what was read"), said)
     assertEquals(said.count(_ == '\n'), 0)
     assert(ReportSections.text(Report.of(Seq(stream, none))).endsWith(said))
+
+  test("loops that have one verdict over several links are named once"):
+    val all =
+      for loop <- Seq("futures", "stream"); link <- Seq("vpn", "direct")
+      yield SyntheticFlight(loop, link, seed = 10, seconds = 12)
+    val said = TimingVerdict.sentence(Report.of(all)).getOrElse(fail("nothing was said"))
+    assert(said.contains(" for futures and stream over vpn and direct (at worst "), said)
+
+  test("loops of one verdict are named together, by link, with the worst of them"):
+    val all =
+      for
+        (loop, index) <- Seq("sequential", "futures", "stream").zipWithIndex
+        link          <- Seq("vpn", "none")
+      yield SyntheticFlight(loop, link, seed = 10L + index, seconds = 12)
+    val said = TimingVerdict.sentence(Report.of(all)).getOrElse(fail("nothing was said"))
+    assert(
+      said.contains("timing is probably bad for sequential, futures and stream over vpn (at worst "),
+      said
+    )
+    assert(said.contains(") and probably good for sequential, futures and stream over none (at worst "), said)
+    assertEquals(said.sliding("before a command answers".length).count(_ == "before a command answers"), 2)

@@ -32,6 +32,22 @@ class CoordinatorSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(e.counts, Coordinator.Counts(accepted = 1, repeated = 1, doubled = 1, lost = 0, overdue = 0))
     assertEquals((e.workers("ben").accepted, e.workers("anna").repeated), (1L, 1L))
 
+  test("cores are those of the workers that are here, each as it last joined"):
+    assertEquals((Coordinator().cores, two.cores), (0, 4))
+    assertEquals(two.joined("anna", 7).cores, 9)
+    assertEquals(two.lost("ben").cores, 2)
+    assertEquals(two.lost("ben").joined("ben", 3).cores, 5)
+    assertEquals(two.lost("ben").lost("ben").cores, 2)
+
+  test("what waits is counted, whether it had a worker or not"):
+    def waits(state: Coordinator) = (state.waiting.size, state.waiting.isEmpty, state.waiting.nonEmpty)
+    assertEquals(waits(two), (0, true, false))
+    val (held, _) = take(two.offered(blocks(1)), "anna")
+    assertEquals(waits(held), (0, true, false))
+    assertEquals(waits(held.lost("anna")), (1, false, true))
+    assertEquals(waits(held.lost("anna").offered(blocks(3).drop(1))), (3, false, true))
+    assertEquals(waits(two.offered(blocks(2))), (2, false, true))
+
   test("no worker holds a block twice"):
     val (a, _) = take(two.offered(blocks(1)), "anna")
     assertEquals(take(a, "anna", holding = Set(0))._2, None)

@@ -183,7 +183,8 @@ object AirSimFleet:
       system: ActorSystem
   ): Future[Either[String, Unit]] =
     import system.dispatcher
-    val client = AirSimClient(RpcClient(transport, at, clock, RpcSettings(controlConnections = 1)))
+    val rpc    = RpcClient(transport, at, clock, RpcSettings(controlConnections = 1))
+    val client = AirSimClient(rpc, AirSimError.FirstWithin)
     client
       .vehicles()
       .map:

@@ -56,7 +56,7 @@ final class FlightAssembler(
     case _           => true
 
   /** Whether other clients may command the vehicles too. */
-  private val isShared = simulator.isDefined && settings.wire == Wire.AirSim
+  private val isShared = simulator.isDefined
 
   private val airSim = AirSimFleet(
     transport,
@@ -109,11 +109,15 @@ final class FlightAssembler(
       for
         server <- serve()
         _       = server.foreach(opened.closing(_)(_.close()))
-        monitor = FlightMonitor(recorder, isStepped = plan.loop == LoopKind.Paused, isShared)
+        monitor = FlightMonitor(
+          recorder,
+          isStepped = plan.loop == LoopKind.Paused,
+          hasPlaces = isShared && settings.wire == Wire.AirSim
+        )
         solver  <- solverOf(plan, opened, monitor)
         reached <- settings.wire match
           case Wire.AirSim  => airSim.connect(plan, server.fold(simulator.get)(_.address), opened, monitor)
-          case Wire.Mavlink => overMavlink(plan, server, opened)
+          case Wire.Mavlink => overMavlink(plan, server, opened, monitor)
         _ <- Team.missingSensor(fleet, reached.vehicles).fold(reached.ping())(missing =>
           Future.failed(CannotFly(missing))
         )
@@ -245,7 +249,8 @@ final class FlightAssembler(
   private def overMavlink(
       plan: FlightPlan,
       server: Option[SimulatorServer],
-      opened: Opened
+      opened: Opened,
+      monitor: FlightMonitor
   ): Future[ConnectedFleet] =
     val at      = server.flatMap(_.peerAddresses.headOption).orElse(simulator).get
     val isTcp   = server.isDefined || isMavlinkByTcp
@@ -268,13 +273,17 @@ final class FlightAssembler(
       _                <- mavlink.prepare().map(right)
       (link, vehicles) <- mavlink.open(linked, isStream = plan.link != LatencyProfile.none).map(right)
     yield
-      val _ = opened.closing(link)(_.close())
+      val _       = opened.closing(link)(_.close())
+      val custody = MavlinkCustody(
+        fleet.agents.map(_.name).zip(vehicles).map((name, vehicle) => (name, () => vehicle.taken)),
+        monitor.isLanding
+      )
       ConnectedFleet(
         vehicles,
         None,
         at.toString,
         () => Future.unit,
-        () => Future.successful(Right(None)),
+        () => Future.successful(Right(custody.check())),
         clocks = link.clocks
       )
 

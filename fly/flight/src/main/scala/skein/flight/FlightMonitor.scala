@@ -11,10 +11,10 @@ import skein.units.*
   *
   * @param isStepped whether the simulator stands still between steps, so that its clock is not compared with
   *   the controller's
-  * @param isShared whether other clients may move the vehicles, so that implausible displacements are
-  *   detected
+  * @param hasPlaces whether readings are the vehicles' true places, which other clients may change, so that
+  *   implausible displacements are detected: an autopilot's estimates may jump
   */
-final class FlightMonitor(recorder: Recorder, isStepped: Boolean = false, isShared: Boolean = false)
+final class FlightMonitor(recorder: Recorder, isStepped: Boolean = false, hasPlaces: Boolean = false)
     extends Recorder:
   @volatile private var newest     = Option.empty[LaterDecision]
   private val heard                = AtomicLong(Long.MinValue)
@@ -51,7 +51,7 @@ final class FlightMonitor(recorder: Recorder, isStepped: Boolean = false, isShar
     firstAt.accumulateAndGet(state.validAt.toNanos, math.min): Unit
     lastAt.accumulateAndGet(state.validAt.toNanos, math.max): Unit
     if !isStepped then clocks.updateAndGet(_.updated(vehicle, state)): Unit
-    if isShared && clocks.get.fault.isEmpty then
+    if hasPlaces && clocks.get.fault.isEmpty then
       val before = places.getAndUpdate(all =>
         if all.get(vehicle).exists(_.validAt > state.validAt) then all else all.updated(vehicle, state)
       )

@@ -73,7 +73,7 @@ class LyingSimulatorSimulation extends munit.FunSuite, Unhurried:
   private def fly(
       loop: LoopKind,
       shows: Option[Double => Double] = None,
-      acts: AirSimClient => Future[Any] = _ => Future.unit
+      acts: AirSimClient => ActorSystem ?=> Future[Any] = _ => Future.unit
   ): Flown = VirtualTime
     .run(seed = 1): system =>
       given ActorSystem = system
@@ -164,7 +164,7 @@ class LyingSimulatorSimulation extends munit.FunSuite, Unhurried:
       )
       assert(flown.summary.distance.isDefined)
 
-  private val taken = Vector[(String, AirSimClient => Future[Any], String)](
+  private val taken = Vector[(String, AirSimClient => ActorSystem ?=> Future[Any], String)](
     ("resets the simulator", _.reset(), ""),
     ("takes api control away", Multirotor(_, "Pursuer").enableApiControl(false), "no longer gives Pursuer"),
     (
@@ -185,6 +185,18 @@ class LyingSimulatorSimulation extends munit.FunSuite, Unhurried:
   do
     test(s"${loop.label}: another client that $what ends the flight without result, and is reported"):
       fly(loop, acts = acts).assertNoResult(EventKind.VehicleTaken, words)
+
+  test("stream: another client that disarms a vehicle takes nothing: moves drive it on, as in AirSim"):
+    def flown(acts: AirSimClient => ActorSystem ?=> Future[Any]) =
+      val flight = fly(LoopKind.Stream, acts = acts)
+      assertEquals(flight.landed.outcome, FlightOutcome.Completed)
+      val downM = flight.recording.readings.filter(_.vehicle == "Evader").map(_.state.value.positionNed.z)
+      (downM.max, flight.summary.headline.get)
+    def disarms(client: AirSimClient)(using system: ActorSystem) =
+      Multirotor(client, "Evader").disarm().map(assertEquals(_, Right(true)))(using system.dispatcher)
+    val (disarmed, alone) = (flown(disarms(_)), flown(_ => Future.unit))
+    assertEqualsDouble(disarmed._1, alone._1, 0.001, "it sank")
+    assertEqualsDouble(disarmed._2, alone._2, 0.001, "it flew another way")
 
   test("stream: another client that pauses the simulator ends the flight without result"):
     fly(LoopKind.Stream, acts = _.pause()).assertNoResult(EventKind.ClockBroken, "stood still")

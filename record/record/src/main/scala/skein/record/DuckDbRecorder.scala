@@ -12,7 +12,8 @@ import scala.util.{Failure, Success}
 /** Writes a flight into one DuckDB file while it runs, and passes its rows to other sinks. Records wait in a
   * bounded queue; a thread of its own commits them immediately, but not more often than every
   * [[DuckDbRecorder.commitInterval]], and at most [[DuckDbRecorder.batchSize]] rows at a time. Committed rows
-  * survive a kill of the process.
+  * survive a kill of the process; a power cut may damage the file until it is closed, since no commit waits
+  * for the disk.
   */
 final class DuckDbRecorder private (
     capacity: Int,

@@ -13,7 +13,9 @@ private[record] final class RecordingFile private (val path: Path, connection: D
   private var written = Written.nothing
   private var broken  = false
 
-  /** Appends records in order and commits them: they survive a kill of the process from here on. */
+  /** Appends records in order and commits them: they survive a kill of the process from here on, and a power
+    * cut once the file is closed.
+    */
   def write(records: Seq[Record]): Either[RecordError, Unit] =
     // Data written to a deleted file are lost when it is closed, without any other sign.
     if !Files.exists(path) then
@@ -43,10 +45,13 @@ private[record] final class RecordingFile private (val path: Path, connection: D
       val _ = RecordingFile.attempt(RecordError.WriteFailed(path, _))(execute("ROLLBACK"))
     write(Seq(record))
 
-  /** Moves the write-ahead log into the file and closes it, even if that fails. */
+  /** Moves the write-ahead log into the file, waits until the disk has it, and closes it, even if that fails.
+    */
   def close(): Either[RecordError, Written] =
     RecordingFile.attempt(RecordError.WriteFailed(path, _)):
-      Using.resource(connection)(_ => execute("CHECKPOINT"))
+      Using.resource(connection): _ =>
+        execute("SET fsync_mode = 'STANDARD'")
+        execute("CHECKPOINT")
       written
 
   private def execute(sql: String): Unit = RecordingFile.execute(connection, sql)
@@ -61,6 +66,10 @@ private[record] object RecordingFile:
       attempt(RecordError.CannotCreate(file, _)):
         val connection = connect(file, readOnly = false)
         createTables(connection)
+        // A kill of the process loses nothing that the operating system has: no commit waits for the disk.
+        execute(connection, "SET fsync_mode = 'NONE'")
+        // Appending leaves nothing to optimise, and each batch would be planned again.
+        execute(connection, "SET enable_optimizer = false")
         RecordingFile(file, connection)
       .flatMap: opened =>
         val begun = opened.write(heading.records)

@@ -68,6 +68,15 @@ class DuckDbRecorderLiveSuite extends munit.FunSuite, TemporaryFolders:
       case other                                => fail(s"expected WriteFailed, got $other")
     assertEquals(Await.result(recorder.close(), 10.seconds), Left(failed))
 
+  folder.test("no commit waits for the disk, which may take longer than a kill may cost"): folder =>
+    val file     = folder.resolve("flight.duckdb")
+    val recorder = open(file, capacity = 1024)
+    Using.resource(RecordingFile.connect(file, readOnly = false)): beside =>
+      val mode = beside.createStatement().executeQuery("SELECT current_setting('fsync_mode')")
+      assert(mode.next())
+      assertEquals(mode.getString(1), "NONE")
+    assert(Await.result(recorder.close(), 10.seconds).isRight)
+
   folder.test(
     "a deleted file fails the recording immediately, which would otherwise end without a file"
   ): folder =>

@@ -1,5 +1,6 @@
 package skein.record
 
+import java.util.concurrent.CountDownLatch
 import scala.concurrent.Await
 import scala.concurrent.duration.*
 
@@ -19,3 +20,21 @@ class RecordWriterSuite extends munit.FunSuite:
     Await.result(writer.ended, 30.seconds)
     assertEquals(batches.result(), rows)
     assert(who.exists(_ != Thread.currentThread), "it was made by the thread that offered it")
+
+  test("rows offered while a batch is written are all in the next one"):
+    val (begun, goesOn) = (CountDownLatch(1), CountDownLatch(1))
+    val batches         = Vector.newBuilder[Vector[Record]]
+    val writer          = RecordWriter(8, 0, 8, Thread.ofPlatform().daemon().factory()): rows =>
+      begun.countDown()
+      goesOn.await()
+      batches += rows
+      true
+    val rows = Samples.oneOfEach.take(3)
+    assert(writer.offer(rows(0)))
+    begun.await()
+    assert(writer.offer(rows(1)))
+    assert(writer.offer(rows(2)))
+    goesOn.countDown()
+    writer.end()
+    Await.result(writer.ended, 30.seconds)
+    assertEquals(batches.result(), Vector(rows.take(1), rows.drop(1)))

@@ -38,6 +38,13 @@ class OutboxSuite extends munit.FunSuite:
       ).noticed("info", "i").noticed("time", "6")
     assertEquals(drained(outbox), Vector("i", "6", "row"))
 
+  test("it is empty once neither a notice nor a row waits"):
+    val empty = Outbox.empty[String](limits)
+    assert(empty.isEmpty)
+    for one <- Seq(empty.offered(1, "row", 1), empty.noticed("time", "5")) do
+      assert(!one.isEmpty)
+      assert(one.taken.exists(_._2.isEmpty))
+
   test("nothing of a subscription that has ended is sent, and it is not counted as lost"):
     val outbox = Outbox.empty[String](limits).offered(1, "a", 1).offered(2, "b", 1).unsubscribed(1)
     assertEquals((drained(outbox), outbox.lost, outbox.bytes), (Vector("b"), 0L, 1L))

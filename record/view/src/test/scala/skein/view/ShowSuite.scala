@@ -219,6 +219,22 @@ class ShowSuite extends munit.FunSuite:
       Vector(1.0)
     )
 
+  test("after a seek backwards the first row is shown again too"):
+    val show         = replay
+    val Some((a, b)) = show.recorded: @unchecked
+    val viewer       = watching(show, "/skein/flight")
+    show.control(ClientMessage.Playback(playing = false, 1, Some(b), ""), at(1)): Unit
+    assertEquals(seen(show, viewer).size, 1)
+    show.control(ClientMessage.Playback(playing = false, 1, Some(a), ""), at(1)): Unit
+    assertEquals(seen(show, viewer).size, 1)
+
+  test("a running flight of which every record was shown says nothing of lost ones"):
+    val show   = LiveShow(heading, Feed())
+    val viewer = watching(show)
+    show.turn(at(1))
+    val told = Vector.unfold(())(_ => viewer.take().map((_, ()))).collect { case ServerText(text) => text }
+    assert(!told.exists(_.contains("too many to be shown")), told)
+
   test("the answer to a seek names the request and the time"):
     val show         = replay
     val Some((a, _)) = show.recorded: @unchecked

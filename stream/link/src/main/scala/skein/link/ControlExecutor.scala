@@ -41,6 +41,6 @@ private object ControlExecutor:
         def block(): Boolean =
           result = Some(thunk)
           true
-        def isReleasable: Boolean = result.isDefined
+        def isReleasable: Boolean = false
       ForkJoinPool.managedBlock(blocker)
       result.get

@@ -3,6 +3,7 @@ package skein.airsim
 import skein.link.Address
 import skein.rpc.RpcError
 import skein.units.Decimals.brief
+import skein.units.Span
 
 /** Why a simulator's vehicle is not available: an expected failure, returned as a value. */
 enum AirSimError:
@@ -27,6 +28,9 @@ object AirSimError:
     def listed(all: Seq[String]) = all.map(name => s"'$name'").mkString(", ")
     val has                      = if existing.isEmpty then "it has none" else s"it has ${listed(existing)}"
     s"the simulator has no vehicle ${listed(names)}; $has"
+
+  /** Time-out of a first call: on a busy machine, a link that was just started needs seconds for it. */
+  val FirstWithin: Span = Span.ofSeconds(15)
 
   /** Explains a failed first call, when it is not yet known what listens at the address. */
   def ofFirst(error: RpcError, at: Address): String = error match

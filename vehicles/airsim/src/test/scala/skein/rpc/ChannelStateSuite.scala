@@ -226,6 +226,11 @@ class ChannelStateSuite extends munit.FunSuite:
     l.open(1)
     l.submit("after")
     assertEquals(l.sentNames, Seq("after"))
+    // Those that failed wait no longer: the queue has place for two others.
+    l.submit("second")
+    for name <- Seq("third", "fourth", "fifth") do l.submit(name, CallOptions(whenFull = WhenFull.Wait))
+    assertEquals(l.sentNames, Seq("after", "second"))
+    assertEquals(l.ends.keySet, Set("waiting", "keyed", "later", "fifth"))
 
   test("attempts to connect back off, doubling up to the longest, and start anew after an answer"):
     val l = channel(connections = 1)

@@ -72,6 +72,7 @@ class ServerConnectionSuite extends munit.FunSuite:
     r.ask(2, "fast")
     val slow = r.next()
     val fast = r.next()
+    assertEquals((slow._1.connection, fast._1.connection), (1L, 1L))
     fast._2.success(Right(Str("fast")))
     assertEquals(r.reply(), RpcMessage.Reply(2, Null, Str("fast")))
     slow._2.success(Left("no"))

@@ -80,6 +80,13 @@ final case class Control(
         Option.when(estimate.newest.isEmpty)("ODOMETRY, or LOCAL_POSITION_NED and ATTITUDE_QUATERNION")
       ).flatten
 
+  /** Why it follows no setpoints, if it does not: it is disarmed, or in a mode that somebody else chose. */
+  def taken: Option[String] = firmware.toOption.flatMap: own =>
+    if !isArmed then Some(s"$name is disarmed")
+    else
+      Option.unless(own.flyable(mode)):
+        s"$name is in ${own.modeName(mode)}: somebody else has taken it over"
+
   private def exchanged = clock.fold(0)(_.exchanges)
 
   private def isAligned = exchanged >= settings.exchanges
@@ -98,15 +105,13 @@ final case class Control(
 
   def act(token: Long, action: Action, lasts: Span, now: Instant): Step = known(token): own =>
     if isOut then refused(token, s"$name is outside of the geofence: it holds its position")
-    else if !isArmed then refused(token, s"$name is disarmed")
-    else if !own.flyable(mode) then
-      refused(token, s"$name is in ${own.modeName(mode)}: somebody else has taken it over")
     else
-      action match
-        case Action.Hover => hover(token, now)
-        case Action.Land  =>
+      (taken, action) match
+        case (Some(why), _)    => refused(token, why)
+        case (_, Action.Hover) => hover(token, now)
+        case (_, Action.Land)  =>
           givenUp(order(token, Command.Land, now, Vector.fill(7)(Float.NaN)))
-        case _ =>
+        case (None, _) =>
           val next = copy(
             asked = asked :+ Asked(token, lastSync.max(now), now + lasts, replacedAt = None),
             flown = Some(action),

@@ -41,6 +41,9 @@ final class MavlinkVehicle(link: MavlinkLink, number: Int)(using system: ActorSy
   def isArmed: Boolean    = link.control(number).isArmed
   def isOnGround: Boolean = link.control(number).isOnGround
 
+  /** Why it follows no setpoints, if it does not. */
+  def taken: Option[String] = link.control(number).taken
+
   private def done(what: (Control, Long, Instant) => Control.Step): Future[Either[VehicleError, Boolean]] =
     link
       .ask(number)(what)

@@ -14,34 +14,56 @@ import upickle.default.writeMsg
 
 /** All known attacks on `./skein serve`, simultaneously and for any duration, beside an honest client that
   * requests a vehicle's state 20 times a second: its waiting times without attackers, with them, and in the
-  * seconds after they had left.
+  * seconds after they had left. A second honest client, of a second `serve` without attackers, shows what the
+  * machine's load alone does to these times.
   *
-  * Arguments: the port of RPC, that of an autopilot (`--hil px4`) or 0, that of MAVLink by UDP (`--mavlink`)
-  * or 0, seconds of the attack, and a seed (default 1).
+  * Arguments: the ports of RPC, of an autopilot (`--hil px4`), of MAVLink by UDP (`--mavlink`, which is of
+  * another `serve`, for one process refuses both) and of `--view`, each 0 for none; seconds of the attack; a
+  * seed; and of each further honest client `NAME=PORT`, for example `beside=42200`.
   */
 object LongAttack:
   def main(arguments: Array[String]): Unit =
-    val Array(rpc, hil, udp, seconds) = arguments.take(4).map(_.toInt): @unchecked
-    val attack                        = LongAttack(rpc, hil, udp, arguments.lift(4).fold(1L)(_.toLong))
-    val honest                        = Honest(rpc)
-    println(f"${"phase"}%-22s ${"asked"}%7s ${"p50"}%8s ${"p99"}%8s ${"max"}%8s ms  lost")
-    honest.phase("nobody", 20)
+    val Array(rpc, hil, udp, view, seconds, seed) = arguments.take(6).map(_.toInt): @unchecked
+    val attack                                    = LongAttack(rpc, hil, udp, view, seed)
+    val clients = Honest("attacked", rpc) +: arguments.drop(6).map { case s"$name=$port" =>
+      Honest(name, port.toInt)
+    }.toSeq
+    println(f"${"phase"}%-22s ${"client"}%-8s ${"asked"}%7s ${"p50"}%8s ${"p99"}%8s ${"max"}%8s ms  lost")
+    phase(clients, "nobody", 20)
+    clients.foreach(_.forget())
     attack.begin()
     for minute <- 1 to (seconds + 59) / 60 do
-      honest.phase(s"attack, minute $minute", math.min(60, seconds - (minute - 1) * 60))
-    println(attack.told)
+      phase(clients, s"attack, minute $minute", math.min(60, seconds - (minute - 1) * 60))
+      println(attack.told)
+    for client <- clients do println(client.row("the whole attack", client.all))
     attack.end()
-    for second <- 1 to 5 do honest.phase(s"second $second after", 1)
-    honest.phase("nobody", 20)
+    for second <- 1 to 10 do phase(clients, s"second $second after", 1)
+    phase(clients, "nobody", 20)
     sys.exit(0)
+
+  private def phase(clients: Seq[Honest], name: String, seconds: Int): Unit =
+    val end     = System.nanoTime() + seconds * 1_000_000_000L
+    val threads = clients.map(client => Thread.ofPlatform().start(() => client.phase(end)))
+    threads.foreach(_.join())
+    for client <- clients do println(client.row(name, client.latest))
 
   private val loopback = InetAddress.getLoopbackAddress
 
+  /** Connections held open at a time: more than any server lets in. */
+  private val MostHeld = 1500
+
+  /** Waiting times in milliseconds, and how many requests were lost with their connection. */
+  private final case class Waits(ms: Vector[Double] = Vector.empty, lost: Int = 0):
+    def ++(other: Waits): Waits = Waits(ms ++ other.ms, lost + other.lost)
+
   /** A client that connects again whenever it is disconnected. */
-  private final class Honest(port: Int):
+  private final class Honest(name: String, port: Int):
     private var socket = Option.empty[Socket]
-    private var lost   = 0
     private var id     = 0
+    var latest         = Waits()
+    var all            = Waits()
+
+    def forget(): Unit = all = Waits()
 
     private def ask(): Unit =
       val one = socket.filterNot(_.isClosed).getOrElse:
@@ -59,38 +81,43 @@ object LongAttack:
       Thread.sleep(1)
       in.skipNBytes(in.available.toLong)
 
-    def phase(name: String, seconds: Int): Unit =
-      lost = 0
-      val waits = scala.collection.mutable.ArrayBuffer.empty[Double]
-      val end   = System.nanoTime() + seconds * 1_000_000_000L
+    /** Asks until `end`, in nanoseconds of `System.nanoTime`. */
+    def phase(end: Long): Unit =
+      latest = Waits()
       while System.nanoTime() < end do
         val begun = System.nanoTime()
         try
           ask()
-          waits += (System.nanoTime() - begun) * 1e-6 - 1
+          latest = latest.copy(ms = latest.ms :+ ((System.nanoTime() - begun) * 1e-6 - 1))
         catch
           case _: IOException =>
-            lost += 1
+            latest = latest.copy(lost = latest.lost + 1)
             socket.foreach(_.close())
             socket = None
         Thread.sleep(math.max(0, 50 - (System.nanoTime() - begun) / 1_000_000))
-      val sorted            = waits.sorted
+      all ++= latest
+
+    def row(phase: String, waits: Waits): String =
+      val sorted            = waits.ms.sorted
       def at(share: Double) = if sorted.isEmpty then Double.NaN else sorted(((sorted.size - 1) * share).toInt)
-      println(f"$name%-22s ${sorted.size}%7d ${at(0.5)}%8.2f ${at(0.99)}%8.2f ${at(1)}%8.2f     $lost")
+      f"$phase%-22s $name%-8s ${sorted.size}%7d ${at(0.5)}%8.2f ${at(0.99)}%8.2f ${at(1)}%8.2f     ${waits.lost}"
 
   private def request(calls: (Int, (String, Seq[Msg]))*): Array[Byte] =
     val writer = new MessageWriter
     for (id, (method, params)) <- calls do writer.request(id, method, params)
     writer.take().toArray
 
-final private class LongAttack(rpc: Int, hil: Int, udp: Int, seed: Long):
+final private class LongAttack(rpc: Int, hil: Int, udp: Int, view: Int, seed: Long):
   import LongAttack.{loopback, request}
   private val held           = ConcurrentLinkedQueue[AutoCloseable]()
+  private val failed         = java.util.concurrent.ConcurrentHashMap[String, Long]()
   @volatile private var ends = false
   private val rounds         = java.util.concurrent.ConcurrentHashMap[String, Long]()
 
   def told: String =
-    rounds.asScala.toSeq.sorted.map((name, count) => s"$name $count").mkString("rounds: ", ", ", "")
+    rounds.asScala.toSeq.sorted
+      .map((name, count) => s"$name $count (${failed.getOrDefault(name, 0L)} failed)")
+      .mkString("rounds: ", ", ", "")
 
   def end(): Unit =
     ends = true
@@ -102,7 +129,10 @@ final private class LongAttack(rpc: Int, hil: Int, udp: Int, seed: Long):
         val random = Random(seed * 1000 + name.hashCode + thread)
         while !ends do
           try round(random)
-          catch case _: IOException => Thread.sleep(20)
+          catch
+            case _: IOException =>
+              failed.merge(name, 1L, _ + _): Unit
+              Thread.sleep(20)
           rounds.merge(name, 1L, _ + _): Unit
       : Unit
 
@@ -111,6 +141,8 @@ final private class LongAttack(rpc: Int, hil: Int, udp: Int, seed: Long):
     socket.connect(InetSocketAddress(loopback, port), 2000)
     socket.setSoTimeout(2000)
     held.add(socket): Unit
+    // Closed ones take descriptors until they are closed here too: an attack that lasts runs out of them.
+    while held.size > LongAttack.MostHeld do Option(held.poll()).foreach(_.close())
     socket
 
   private def using(port: Int)(use: Socket => Unit): Unit =
@@ -149,7 +181,7 @@ final private class LongAttack(rpc: Int, hil: Int, udp: Int, seed: Long):
     )
     again("pages", 2): random =>
       val methods = Seq("POST", "GET", "OPTIONS", "PUT")
-      val ports   = Seq(rpc, hil).filter(_ > 0)
+      val ports   = Seq(rpc, hil, view).filter(_ > 0)
       using(ports(random.nextInt(ports.size))): page =>
         val head = s"${methods(random.nextInt(4))} / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n".getBytes
         page.getOutputStream.write(head ++ request(1 -> ("simPause", Seq(Bool(true)))))
@@ -210,6 +242,22 @@ final private class LongAttack(rpc: Int, hil: Int, udp: Int, seed: Long):
     again("calls", 2)(_ =>
       using(rpc)(one => ask(one, Seq.fill(200)("getMultirotorState" -> Seq[Msg](Str("")))*))
     )
+    if view > 0 then
+      again("silent viewers")(_ =>
+        connected(view)
+        Thread.sleep(20)
+      )
+      again("deaf viewers", 2): random =>
+        using(view): one =>
+          val key  = java.util.Base64.getEncoder.encodeToString(random.nextBytes(16))
+          val head =
+            s"GET / HTTP/1.1\r\nHost: 127.0.0.1:$view\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n" +
+              s"Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: $key\r\n" +
+              "Sec-WebSocket-Protocol: foxglove.websocket.v1\r\n\r\n"
+          one.getOutputStream.write(head.getBytes)
+          one.getInputStream.read(): Unit
+          one.getOutputStream.write(random.nextBytes(random.nextInt(2000)))
+          Thread.sleep(500)
     if hil > 0 then
       again("autopilots", 2): random =>
         using(hil): one =>

@@ -1,0 +1,29 @@
+package skein.flight
+
+class MavlinkCustodySuite extends munit.FunSuite:
+  /** What the last check finds, of checks that see these vehicles taken. */
+  private def found(lands: Set[String], taken: Set[String]*): Option[String] =
+    var now     = Set.empty[String]
+    val custody = MavlinkCustody(
+      Vector("a", "b").map(name => (name, () => Option.when(now(name))(s"system of $name is disarmed"))),
+      lands
+    )
+    taken.map { seen =>
+      now = seen; custody.check()
+    }.last
+
+  test("vehicles that follow setpoints are the flight's"):
+    assertEquals(found(Set.empty, Set.empty, Set.empty), None)
+
+  test("one that follows none is not, once two checks in a row say so, and is named with the reason"):
+    assertEquals(found(Set.empty, Set("b")), None)
+    assertEquals(found(Set.empty, Set("b"), Set.empty, Set("b")), None)
+    assertEquals(found(Set.empty, Set("a"), Set("b")), None)
+    assertEquals(
+      found(Set.empty, Set("b"), Set("b")),
+      Some("b is no longer this flight's: system of b is disarmed")
+    )
+
+  test("one that the flight lands is the flight's"):
+    assertEquals(found(Set("b"), Set("b"), Set("b")), None)
+    assert(found(Set("b"), Set("a", "b"), Set("a", "b")).exists(_.startsWith("a is")))
