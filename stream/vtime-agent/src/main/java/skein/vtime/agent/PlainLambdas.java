@@ -23,10 +23,10 @@ final class PlainLambdas {
   /** Number of constants that are added to a class. */
   private static final int ADDED = 5;
 
-  /** Largest number of constants, and one. */
+  /** One more than the largest number of constants of a class file. */
   private static final int MOST = 65_535;
 
-  /** Flags of {@code altMetafactory}. */
+  /** Bits of the flags, which are an argument of {@code altMetafactory}. */
   private static final int MARKERS = 2;
 
   private static final int BRIDGES = 4;
@@ -59,7 +59,7 @@ final class PlainLambdas {
   }
 
   /**
-   * Rewrites a class.
+   * Rewrites a class, if it makes lambdas by {@code altMetafactory}.
    *
    * @return null if it remains as it is
    */
