@@ -90,7 +90,7 @@ object Packaging {
     * @param sources
     *   the folder of what only this needs
     * @param agent
-    *   rewrites jars for virtual time
+    *   rewrites jars for virtual time, and for the cache
     */
   def build(stage: File, sources: File, notices: Seq[File], agent: File, home: File, log: Logger): File = {
     def run(in: File, command: String*): Unit = {
@@ -123,11 +123,15 @@ object Packaging {
     launcher.setExecutable(true, false)
     notices.foreach(notice => IO.copyFile(notice, home / notice.getName))
 
+    val classPath = jars.map(_.getPath).mkString(":")
+    val program   = (runtime / "bin" / "java").getPath +: (Jvm.nativeAccess ++ vectors ++ Jvm.control) :+ "-cp" :+ classPath
     IO.withTemporaryDirectory { folder =>
-      val classPath = jars.map(_.getPath).mkString(":")
-      val options   = Jvm.nativeAccess ++ vectors ++ Jvm.control :+ s"-XX:AOTCacheOutput=${lib / "skein.aot"}"
-      val flight    = Seq("fly", "--clock", "virtual", "--duration", "10s")
-      run(folder, (runtime / "bin" / "java").getPath +: (options ++ Seq("-cp", classPath, "skein.cli.Main") ++ flight): _*)
+      val cache = program :+ s"-XX:AOTCacheOutput=${lib / "skein.aot"}"
+      run(folder, cache :+ "skein.cli.Rehearsal" :+ (sources / "rehearsed").getPath: _*)
+    }
+    for (words <- Seq("--version", "--help", "completion bash", "completion zsh")) {
+      val answer = lib / "answers" / words.split("[ -]+").last
+      IO.write(answer, Process(program ++ ("skein.cli.Main" +: words.split(' ').toSeq)).!!(log))
     }
     home
   }

@@ -14,6 +14,7 @@ import skein.scenario.Scenarios
 import skein.scene.Scene
 import skein.settings.{FlightPlan, FlySettings, Wire}
 import skein.units.{Clock, Decimals, Expect}
+import skein.units.Decimals.brief
 import skein.view.Shows
 
 /** Command-line options of `./skein fly`, with their help texts. */
@@ -99,7 +100,15 @@ final class FlyCommand(using Scenarios)
             _ <- nothingToOverwrite(plans ++ plans.flatMap(_.twins(twins)), out)
             _ <- OpenFiles.enoughFor(plans.size)
             _ <- FlyCommand.vehiclesThere(settings, simulator)
-            _ <- warmUp(settings.copy(policies = settings.policies ++ learning.map(_.file), images = Nil))
+            _ = Console.err.println(
+              s"warming up for ${Decimals.counted(plans.size, "live flight")} of " +
+                s"${settings.duration.toSeconds.brief} s${if simulator.isEmpty then ", side by side" else ""}"
+            )
+            unlearned = if learning.isEmpty then plans.filter(Preview.isPossible) else Vector.empty
+            ahead <- warmUp(
+              settings.copy(policies = settings.policies ++ learning.map(_.file), images = Nil),
+              unlearned.flatMap(_.twins(twins))
+            )
             shows    = Shows()
             requests = OutsideRequests()
             shown    =
@@ -108,10 +117,16 @@ final class FlyCommand(using Scenarios)
               )
             live = LiveCommand(settings, simulator, out, shown, sinks, requests, secured, isTcp)
             flown <- options.view.serving(shows, controlled = true)(live.fly(plans))
-          yield flown.and(kept(out)(flyTwins(flown.landed, settings.copy(images = Nil), twins, out)))
+          yield
+            if shown.isEmpty then Console.err.println(FlyCommand.Viewing)
+            flown.and(kept(out)(flyTwins(flown.landed, settings.copy(images = Nil), twins, ahead, out)))
         case ClockKind.Virtual =>
           for
-            _      <- nothingToOverwrite(plans, out)
+            _ <- nothingToOverwrite(plans, out)
+            _ = Console.err.println(
+              s"flying ${Decimals.counted(plans.size, "flight")} of " +
+                s"${settings.duration.toSeconds.brief} s in virtual time"
+            )
             landed <- flyVirtual(settings, plans, out)
             _      <- Expect.all(landed)(one => options.beside.exported(one.plan, out))
           yield LiveCommand.Flown(landed, None)
@@ -131,38 +146,49 @@ final class FlyCommand(using Scenarios)
     }
     twice.orElse(there).toLeft(())
 
-  private def warmUp(settings: FlySettings): Either[String, Unit] =
-    if settings.loops.forall(FlyCommand.warm) then Right(())
+  /** @param twins of the live flights; simulated here if there is time */
+  private def warmUp(settings: FlySettings, twins: Vector[FlightPlan]): Either[String, Preview.Flown] =
+    if settings.loops.forall(FlyCommand.warm) then Right(Map.empty)
     else
+      val (clock, started)      = (Clock.system, Clock.system.now())
       given system: ActorSystem = ActorSystem("skein-warm-up")
       try
         for
-          flights   <- WarmUp.fly(settings, WarmUp.Flights, Clock.system)
-          decisions <- Edge.await(WarmUp.rehearse(settings, TcpTransport(), Clock.system))
+          flights <- WarmUp.fly(settings, WarmUp.Flights, clock)
+          isQuick = Preview.fits(flights, clock.now().since(started), settings.duration)
+          ahead   = Preview.fly(settings, if isQuick then twins else Vector.empty, clock)(Console.err.println)
+          decisions <- Edge.await(WarmUp.rehearse(settings, TcpTransport(), clock))
         yield
           FlyCommand.warm ++= settings.loops
           Console.err.println(
             s"warmed up by ${Decimals.counted(flights, "virtual flight")} and $decisions decisions " +
               "over loopback, so that none waits for the compiler"
           )
+          ahead
       finally
         val _ = Edge.await(system.terminate())
 
-  /** Runs virtual twins of the completed live flights. */
+  /** Records the virtual twins of the completed live flights, and simulates those that are not in `ahead`. */
   private def flyTwins(
       landed: Vector[FlightResult],
       settings: FlySettings,
       count: Int,
+      ahead: Preview.Flown,
       out: Path
   ): Either[String, Vector[FlightResult]] =
     val twins = landed.filter(_.outcome == FlightOutcome.Completed).flatMap(SolverOptions.twins(_, count))
+    val (known, due) = twins.partition(ahead.contains)
     if twins.isEmpty || Edge.isInterrupted then Right(Vector.empty)
     else
-      val seeds = twins.map(_.seed)
-      Console.err.println(
-        s"virtual twins of the live flights: ${twins.size}, seeds ${seeds.min} to ${seeds.max}"
-      )
-      VirtualFlights.fly(settings, twins, out)((_, _) => ())
+      val flown = known.map: plan =>
+        ahead(plan).landed.copy(written = ahead(plan).recorder.writeTo(plan.file(out)))
+      if due.isEmpty then Right(flown)
+      else
+        val seeds = due.map(_.seed)
+        Console.err.println(
+          s"virtual twins of the live flights: ${due.size}, seeds ${seeds.min} to ${seeds.max}"
+        )
+        VirtualFlights.fly(settings, due, out)((_, _) => ()).map(flown ++ _)
 
   private def flyVirtual(
       settings: FlySettings,
@@ -212,6 +238,8 @@ private[cli] object FlyCommand:
 
   /** Number of virtual twins for each live flight. */
   private val Twins = 1
+
+  private val Viewing = "./skein fly --view shows flights while they fly, in the browser"
 
   /** Loops that this process has already warmed up: its next command can skip them. */
   @volatile private var warm = Set.empty[AnyLoop]

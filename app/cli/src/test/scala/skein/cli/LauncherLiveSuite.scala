@@ -78,6 +78,26 @@ class LauncherLiveSuite extends munit.FunSuite, TemporaryFolders:
       assert(started(), taken)
       assert(!started(), taken)
 
+  copy.test("a build makes a flight first, and prints once what is always the same"): folder =>
+    val said = folder.resolve("app/cli/target/universal/stage/answers")
+    assertEquals(run(folder, Map.empty, "./skein", "fly")._1, 0)
+    assertEquals(said.toFile.list.toSet, Set("version", "help", "bash", "zsh"))
+    val log = Files.readString(folder.resolve("target/build.log"))
+    assert(clue(log).contains("stage/bin/skein: fly --clock virtual"))
+    Files.writeString(said.resolve("bash"), "completes\n")
+    Files.writeString(said.resolve("help"), "helps\n")
+    for (words, answer) <-
+        Seq(Seq("completion", "bash") -> "completes\n", Seq("--help") -> "helps\n", Nil -> "helps\n")
+    do
+      assertEquals(run(folder, Map.empty, ("./skein" +: words)*), (0, answer))
+    assert(clue(run(
+      folder,
+      Map.empty,
+      "./skein",
+      "fly",
+      "--help"
+    )._2).endsWith("stage/bin/skein: fly --help\n"))
+
   copy.test("it is started without HOME"): folder =>
     val (status, said) = run(folder, Map("HOME" -> ""), "./skein", "--help")
     assertEquals(status, 0, said)
@@ -142,6 +162,17 @@ class LauncherLiveSuite extends munit.FunSuite, TemporaryFolders:
       run(folder, Map.empty, "./launcher", "./none"),
       (1, "skein: Skein needs Java 25, and there is none as ./none; set JAVA_HOME\n")
     )
+
+    // The file beside a JVM is believed, and the JVM not started for it.
+    Files.createDirectories(folder.resolve("jdk/bin"))
+    script(folder.resolve("jdk/bin/java"), "echo started for its version; exit 1")
+    for (version, expected) <- Seq(
+        "25.0.3"  -> (0, "started\n"),
+        "17.0.15" -> (1, "skein: Skein needs Java 25, this is 17 (jdk/bin/java); set JAVA_HOME\n")
+      )
+    do
+      Files.writeString(folder.resolve("jdk/release"), s"IMPLEMENTOR=\"Any\"\nJAVA_VERSION=\"$version\"\n")
+      assertEquals(run(folder, Map.empty, "./launcher", "jdk/bin/java"), expected)
 
   test("the last output on standard error is kept when a whole process group is ended"):
     val folder = temporaryFolder()

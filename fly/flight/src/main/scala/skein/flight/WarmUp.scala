@@ -23,7 +23,7 @@ object WarmUp:
   val AtMost: Span = Span.ofSeconds(3)
 
   /** Duration of each virtual flight: short, so that every loop and link has its turn. */
-  private val Flown = Span.ofSeconds(5)
+  val Flown: Span = Span.ofSeconds(5)
 
   /** Duration, period and vehicles of the rehearsal, in real time: as many decisions as a duel makes in two
     * minutes.

@@ -10,13 +10,12 @@ import java.nio.file.StandardCopyOption;
 import java.util.List;
 import java.util.stream.Stream;
 import java.util.zip.ZipEntry;
-import java.util.zip.ZipFile;
 import java.util.zip.ZipInputStream;
 import java.util.zip.ZipOutputStream;
 
 /**
  * Rewrites the jars of a program once, in place, as {@link Agent} would at run time: such a program needs no
- * agent, which would prevent a JVM from using an ahead-of-time cache.
+ * agent, which would prevent a JVM from using an ahead-of-time cache. That cache can hold its lambdas, too.
  */
 public final class RewriteJars {
   private static final String AGENT = "skein/vtime/agent/Agent.class";
@@ -37,34 +36,34 @@ public final class RewriteJars {
     // Stack map frames are recomputed, which needs the class hierarchy.
     try (var classes = new URLClassLoader(jars.stream().map(RewriteJars::url).toArray(URL[]::new))) {
       var rewriter = new Rewriter(Rewriter.PACKAGES, RewriteJars::fail);
-      for (var jar : jars) if (holdsAny(jar)) rewrite(jar, rewriter, classes);
+      for (var jar : jars) rewrite(jar, rewriter, classes);
     }
   }
 
-  private static boolean holdsAny(Path jar) throws IOException {
-    try (var zip = new ZipFile(jar.toFile())) {
-      return zip.stream()
-          .map(ZipEntry::getName)
-          .anyMatch(name -> name.equals(AGENT) || Rewriter.PACKAGES.stream().anyMatch(name::startsWith));
-    }
-  }
-
+  /** Rewrites a jar; one without any class to rewrite stays as it is. */
   private static void rewrite(Path jar, Rewriter rewriter, ClassLoader classes) throws IOException {
     var rewritten = jar.resolveSibling(jar.getFileName() + ".rewritten");
+    var hasChanged = false;
     try (var in = new ZipInputStream(Files.newInputStream(jar));
         var out = new ZipOutputStream(Files.newOutputStream(rewritten))) {
       for (var entry = in.getNextEntry(); entry != null; entry = in.getNextEntry()) {
         var name = entry.getName();
-        var bytes = in.readAllBytes();
-        if (name.endsWith(".class")) {
-          var better = rewriter.transform(classes, name.substring(0, name.length() - 6), null, null, bytes);
-          if (better != null) bytes = better;
-        }
-        write(out, name, entry.getTime(), bytes);
+        var before = in.readAllBytes();
+        var after = name.endsWith(".class") ? rewrite(name, before, rewriter, classes) : before;
+        hasChanged |= after != before || name.equals(AGENT);
+        write(out, name, entry.getTime(), after);
         if (name.equals(AGENT)) write(out, DRAWS, entry.getTime(), Rewriter.DRAWS_CLASS);
       }
     }
-    Files.move(rewritten, jar, StandardCopyOption.REPLACE_EXISTING);
+    if (hasChanged) Files.move(rewritten, jar, StandardCopyOption.REPLACE_EXISTING);
+    else Files.delete(rewritten);
+  }
+
+  private static byte[] rewrite(String name, byte[] bytes, Rewriter rewriter, ClassLoader classes) {
+    var governed = rewriter.transform(classes, name.substring(0, name.length() - 6), null, null, bytes);
+    var better = governed == null ? bytes : governed;
+    var plain = PlainLambdas.rewrite(better);
+    return plain == null ? better : plain;
   }
 
   private static void write(ZipOutputStream out, String name, long time, byte[] bytes) throws IOException {
