@@ -26,7 +26,7 @@ enum SchedulingPolicy(private val number: Int, priority: Int):
     */
   case RealTime extends SchedulingPolicy(2, 2)
 
-  /** Preempts every thread but those of [[RealTime]], with the same privilege. */
+  /** Preempts every thread but those of [[RealTime]], and needs its privilege. */
   case Favoured extends SchedulingPolicy(2, 1)
 
   /** Applies this policy to one of this process's threads.
