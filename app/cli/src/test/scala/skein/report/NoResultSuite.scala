@@ -119,7 +119,7 @@ class NoResultSuite extends munit.FunSuite:
       for loop <- Seq("futures", "stream"); link <- Seq("vpn", "direct")
       yield SyntheticFlight(loop, link, seed = 10, seconds = 12)
     val said = TimingVerdict.sentence(Report.of(all)).getOrElse(fail("nothing was said"))
-    assert(said.contains(" for futures and stream over vpn and direct (at worst "), said)
+    assert(said.contains(" for futures and stream over direct and vpn (at worst "), said)
 
   test("loops of one verdict are named together, by link, with the worst of them"):
     val all =

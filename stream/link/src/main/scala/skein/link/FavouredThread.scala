@@ -7,8 +7,9 @@ import scala.util.Try
 
 /** Threads that take precedence over all others except [[ControlThreads]], where the system allows it: for
   * work that takes milliseconds and must not wait for a busy machine, such as writing a recording. They have
-  * the largest share of a processor that Linux grants by niceness, see setpriority(2). It needs a privilege:
-  * root, `CAP_SYS_NICE`, or a limit of `ulimit -e 40`.
+  * the policy [[SchedulingPolicy.Favoured]]. Where it is refused, they have the largest share of a processor
+  * that Linux grants by niceness, see setpriority(2), which needs a limit of `ulimit -e 40`; it counts among
+  * the threads of the user's session alone.
   */
 object FavouredThread:
 
@@ -17,7 +18,8 @@ object FavouredThread:
     (work: Runnable) =>
       val thread = Thread(
         () =>
-          SchedulingPolicy.thisThread.foreach(favour)
+          for thread <- SchedulingPolicy.thisThread do
+            if !SchedulingPolicy.Favoured.schedule(thread) then favour(thread): Unit
           work.run()
         ,
         s"$name-${count.incrementAndGet()}"

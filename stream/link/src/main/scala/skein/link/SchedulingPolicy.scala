@@ -21,10 +21,13 @@ enum SchedulingPolicy(private val number: Int, priority: Int):
   case Idle extends SchedulingPolicy(5, 0)
 
   /** Preempts every other thread immediately. Needs a privilege: root, `CAP_SYS_NICE`, or a limit of `ulimit
-    * -r 1`. Threads that it starts have the ordinary policy. The system reserves a twentieth of the time for
+    * -r 2`. Threads that it starts have the ordinary policy. The system reserves a twentieth of the time for
     * other threads.
     */
-  case RealTime extends SchedulingPolicy(2, 1)
+  case RealTime extends SchedulingPolicy(2, 2)
+
+  /** Preempts every thread but those of [[RealTime]], and needs its privilege. */
+  case Favoured extends SchedulingPolicy(2, 1)
 
   /** Applies this policy to one of this process's threads.
     *
@@ -34,7 +37,7 @@ enum SchedulingPolicy(private val number: Int, priority: Int):
   def schedule(thread: Int): Boolean = SchedulingPolicy.isLinux && Try:
     Using.resource(Arena.ofConfined()): arena =>
       val parameter      = arena.allocateFrom(ValueLayout.JAVA_INT, priority)
-      val flags          = if this == RealTime then SchedulingPolicy.ResetOnFork else 0
+      val flags          = if this != Idle then SchedulingPolicy.ResetOnFork else 0
       val result: AnyRef =
         SchedulingPolicy.setScheduler.invokeWithArguments(Int.box(thread), Int.box(number | flags), parameter)
       result == Int.box(0)
