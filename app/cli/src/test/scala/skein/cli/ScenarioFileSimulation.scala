@@ -24,14 +24,19 @@ class ScenarioFileSimulation extends munit.FunSuite, TemporaryFolders, Unhurried
     )
     assert(told.contains("off ring"), told)
     Files.delete(file)
-    val recording = Files.list(path.resolve("flights")).iterator.asScala.map(_.toString).filter(_.endsWith(".duckdb")).toSeq
+    val recording =
+      Files.list(path.resolve("flights")).iterator.asScala.map(_.toString).filter(_.endsWith(".duckdb")).toSeq
     assertEquals(recording.size, 1)
     val replayed = well("replay" +: recording*)
     assertEquals("all the same".r.findAllIn(replayed).size, 2, replayed)
     val reported = well(Seq("report", "--out", s"$path/report") ++ recording*)
     assert(reported.contains("off ring"), reported)
     val other = Files.copy(ring, path.resolve("again.scenario"))
-    val again = well(s"fly --clock virtual --loop predictive --link vpn --duration 6s --set ring-m=6 --scenario=$other --out $path/again".split(' ')*)
+    val again = well(
+      s"fly --clock virtual --loop predictive --link vpn --duration 6s --set ring-m=6 --scenario=$other --out $path/again".split(
+        ' '
+      )*
+    )
     def digest(said: String) = "SHA-256 of its recording: (\\w+)".r.findFirstMatchIn(said).map(_.group(1))
     assertEquals(digest(again), digest(told))
     assert(digest(told).isDefined, told)
@@ -48,7 +53,9 @@ class ScenarioFileSimulation extends munit.FunSuite, TemporaryFolders, Unhurried
     )
     val found = Files.readString(path.resolve("search/scenario.conf"))
     assert(found.contains("ring-m = "), found)
-    well(s"fly --clock virtual --duration 4s --config $path/search/scenario.conf --out $path/found".split(' ')*)
+    well(
+      s"fly --clock virtual --duration 4s --config $path/search/scenario.conf --out $path/found".split(' ')*
+    )
 
   folder.test("budget, torture and scenarios take it"): path =>
     well(
@@ -71,4 +78,7 @@ class ScenarioFileSimulation extends munit.FunSuite, TemporaryFolders, Unhurried
     val absent = ran("fly", "--scenario", s"$path/no.scenario")
     assert(absent.err.startsWith(s"skein fly: --scenario: there is no file $path/no.scenario"), absent.err)
     val unknown = ran("fly", "--clock", "virtual", "--scenario", ring.toString, "--set", "rings=3")
-    assert(unknown.err.contains("the scenario ring has no setting 'rings'; expected one of ring-m, "), unknown.err)
+    assert(
+      unknown.err.contains("the scenario ring has no setting 'rings'; expected one of ring-m, "),
+      unknown.err
+    )
