@@ -166,8 +166,8 @@ private[scenario] final class ScenarioReader private (text: String):
     sought.foreach:
       case PolicyInput.Memory(_) => wrong("expected no memory in what a vehicle wants, came it")
       case other                 => exists(other)
-    val inputs = (read ++ sought).distinct.collect { case input: PolicyInput => input }
-    val fixed  = starts ++ of.limits
+    val inputs         = (read ++ sought).distinct.collect { case input: PolicyInput => input }
+    val fixed          = starts ++ of.limits
     val (trace, graph) = nodes.moved(decided ++ of.goal ++ fixed, inputs :+ Ahead)
     val moved          = graph.iterator
     used += trace.size

@@ -4,7 +4,7 @@ import scala.collection.mutable
 import scala.util.control.NoStackTrace
 import skein.formula.Node
 
-/** A mistake in a line of a [[ScenarioFile]]: what was expected, and what came. */
+/** A mistake in a line of a [[ScenarioFile]]: what was expected, and what was given. */
 private[scenario] final class ScenarioMistake(what: String) extends RuntimeException(what), NoStackTrace
 
 private[scenario] object ScenarioMistake:

@@ -107,7 +107,10 @@ class ScenarioFileSuite extends munit.FunSuite:
       Some("line 5005: expected at most 5000 operations upon one another, came more")
     )
     assertEquals(
-      ScenarioText.read(file(chain(4_000), 100, 3_999)).left.toOption.map(_.replaceAll("line [0-9]+", "line")),
+      ScenarioText.read(file(chain(4_000), 100, 3_999)).left.toOption.map(_.replaceAll(
+        "line [0-9]+",
+        "line"
+      )),
       Some("line: expected at most 200000 nodes in what all vehicles do, came more")
     )
 

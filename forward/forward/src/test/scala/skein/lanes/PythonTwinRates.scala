@@ -34,6 +34,8 @@ object PythonTwinRates:
         println(s"  $sum")
         (system.getProcessCpuTime - from) * 1e-9
       for _ <- 1 to 3 do Seq(python, twin).foreach(seconds)
-      val rounds = Vector.fill(7)((seconds(python), seconds(twin)))
+      val rounds       = Vector.fill(7)((seconds(python), seconds(twin)))
       val (one, other) = (rounds.map(_._1).min, rounds.map(_._2).min)
-      println(f"$name, shared $share: python ${4096 / one}%.0f, scala ${4096 / other}%.0f episodes a second of one core, ratio ${other / one}%.3f")
+      println(
+        f"$name, shared $share: python ${4096 / one}%.0f, scala ${4096 / other}%.0f episodes a second of one core, ratio ${other / one}%.3f"
+      )

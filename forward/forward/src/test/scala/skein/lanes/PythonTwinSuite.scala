@@ -25,7 +25,11 @@ class PythonTwinSuite extends munit.FunSuite:
 
   private val twins: Seq[(String, Scenario, Scenario)] = Seq(
     ("a ring around an evader", written("ring"), Surround()),
-    ("a wider ring", written("ring", "ring-m" -> "11.5", "pursuer-mps" -> "9"), Surround(ringM = 11.5, pursuerMps = 9)),
+    (
+      "a wider ring",
+      written("ring", "ring-m" -> "11.5", "pursuer-mps" -> "9"),
+      Surround(ringM = 11.5, pursuerMps = 9)
+    ),
     ("the paper's duel", written("pursuit"), PaperDuel())
   )
 
@@ -69,15 +73,19 @@ class PythonTwinSuite extends munit.FunSuite:
             other.policy.choose(seen, other.policy.start)._1
           )
 
-    for timing <- loops if !name.contains("wider"); share <- Seq(true, false); isReference <- Seq(false, true) do
+    for timing <- loops if !name.contains("wider"); share <- Seq(true, false); isReference <- Seq(false, true)
+    do
       val by = if isReference then "by the scalar engine" else "by SIMD"
       test(s"$name, $timing, shared episodes: $share, $by: the same results, to the bit"):
-        val batch         = TeamBatch(timing, lag, threads = 1, isReference = isReference)
+        val batch               = TeamBatch(timing, lag, threads = 1, isReference = isReference)
         def flown(of: Scenario) =
-          val judged = Vector(Judged(Separation, Reduction.Mean, 0), Judged(Separation, Reduction.Least, 2)) ++
-            Vector("off ring", "gap").flatMap(name => of.measures.find(_.name == name).flatMap(_.reduced)).map(each =>
-              Judged(each.quantity, each.reduction, 3)
-            )
+          val judged =
+            Vector(Judged(Separation, Reduction.Mean, 0), Judged(Separation, Reduction.Least, 2)) ++
+              Vector("off ring", "gap").flatMap(name =>
+                of.measures.find(_.name == name).flatMap(_.reduced)
+              ).map(each =>
+                Judged(each.quantity, each.reduction, 3)
+              )
           val team   = TeamCandidate(Engagement.of(of.fleet, durationS = 6), judged)
           val worlds = new TeamWorlds:
             def size: Int                            = 8
