@@ -96,10 +96,10 @@ object PolicyFormula:
 
     def part(of: GraphAction[Node]): Either[Untraceable, reading.Part] =
       import of.numbers
-      def held                          = Vertical(numbers(2), trace.const(1))
-      def sinking(downMps: Node)        = Vertical(downMps, trace.const(0))
-      def still                         = trace.const(0)
-      val moved = of.kind match
+      def held                   = Vertical(numbers(2), trace.const(1))
+      def sinking(downMps: Node) = Vertical(downMps, trace.const(0))
+      def still                  = trace.const(0)
+      val moved                  = of.kind match
         case GraphAction.Kind.Along      => Right((Motion.Along(numbers(0), numbers(1)), held))
         case GraphAction.Kind.VelocityAt => Right((Motion.With(numbers(0), numbers(1)), held))
         case GraphAction.Kind.Velocity   => Right((Motion.With(numbers(0), numbers(1)), sinking(numbers(2))))

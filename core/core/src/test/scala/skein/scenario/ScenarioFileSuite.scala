@@ -90,7 +90,10 @@ class ScenarioFileSuite extends munit.FunSuite:
     def formulaOf(text: String) =
       PolicyFormula.of(read(text).kind.standard.agents(1).policy, 1, team.assignment, isPredicted = false)
     assert(formulaOf(Patrol).exists(_.vertical.nonEmpty))
-    assert(formulaOf(Patrol.replace("does when 12 hover", "does when 12 land")).left.exists(_.getMessage.contains("it decides for Action.Land")))
+    assert(formulaOf(Patrol.replace(
+      "does when 12 hover",
+      "does when 12 land"
+    )).left.exists(_.getMessage.contains("it decides for Action.Land")))
 
   for (name, change, expected) <- Mistakes do
     test(s"told in one line: $name"):
