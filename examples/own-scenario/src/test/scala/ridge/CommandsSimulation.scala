@@ -61,7 +61,9 @@ class CommandsSimulation extends munit.FunSuite:
     assertEquals(swept._1, 0, swept._2)
     assert(clue(Files.readString(out.resolve("map.csv"))).linesIterator.size > 2)
 
-  folder.test("search chooses settings by forward simulation in space, until the scenario is over, and states that"): out =>
+  folder.test(
+    "search chooses settings by forward simulation in space, until the scenario is over, and states that"
+  ): out =>
     val searched = run(
       ("search --objective lowest-view --vary cruise-mps=3..6 " +
         "--method random --candidates 4 --episodes 1 --fresh 2 " +
