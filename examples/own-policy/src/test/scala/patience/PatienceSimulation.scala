@@ -1,5 +1,6 @@
 package patience
 
+import scala.concurrent.duration.*
 import skein.flight.VirtualFlights
 import skein.loop.LoopKind
 import skein.policy.*
@@ -7,6 +8,8 @@ import skein.signal.{Kinematics, LatencyProfile}
 import skein.units.*
 
 class PatienceSimulation extends munit.FunSuite:
+  override val munitTimeout: Duration = 3.minutes
+
   private def seen(age: Span) =
     def at(north: Double, speed: Double) = Seen(
       Kinematics(Vector3(north, 0, -20), Vector3(speed, 0, 0), Quaternion.Identity, Vector3.Zero),

@@ -179,7 +179,7 @@ object FlightOptions:
   /** Replaces the name of a scenario's file by its text. */
   private def scenarioRead(config: Config): Either[String, Config] =
     val path = ConfigKeys.Scenario
-    if !config.hasPath(path) then Right(config)
+    if !ConfigKeys.hasText(config, path) then Right(config)
     else
       val told = config.getValue(path)
       ScenarioSettings

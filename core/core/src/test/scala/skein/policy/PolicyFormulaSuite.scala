@@ -135,11 +135,17 @@ class PolicyFormulaSuite extends munit.FunSuite:
       assertEquals(formula.leaves(draw(random), Metres(-20)), None)
 
   test("velocities in space and hovering are formulas with a vertical part, which leave the altitude"):
-    for (policy, third, holds) <- Seq((Hovering, 0.0, 0.0), (Climbing, -1.5, 0.0), (Higher, -30.0, 1.0)) do
+    for (policy, third, holds) <-
+        Seq((Hovering, 0.0, 0.0), (Rising, -1.5, 0.0), (Higher(Metres(-30)), -30.0, 1.0))
+    do
       val formula = formulaOf(policy, 0).fold(throw _, identity)
       assertEquals(formula.leaves(policy, Metres(-20)), Some("it leaves the altitude of its vehicle's start"))
-      val outputs = answered(formula, policy, drawn(SplitMix64(1), 0), Array.emptyDoubleArray)
-      assertEquals((outputs(2), outputs(3)), (third, holds), s"$policy")
+      val vertical = formula.vertical.getOrElse(fail(s"$policy: it has no vertical part"))
+      val numbers  = Evaluation(Vector(vertical.third, vertical.holds))(
+        Array.ofDim[Double](formula.inputs.size),
+        formula.parametersOf(policy)
+      )
+      assertEquals(numbers.toSeq, Seq(third, holds), s"$policy")
 
   for
     (name, policy, reason) <- Seq(
@@ -298,10 +304,8 @@ object PolicyFormulaSuite:
 
   case object Hovering extends Forgetful:
     def action(seen: Observation): Action = Action.Hover
-  case object Climbing extends Forgetful:
+  case object Rising extends Forgetful:
     def action(seen: Observation): Action = Action.Velocity(Vector3(1, 2, -1.5))
-  case object Higher extends Forgetful:
-    def action(seen: Observation): Action = Action.VelocityAt(1, 2, Metres(-30))
   case object Going extends Forgetful:
     def action(seen: Observation): Action = Action.Position(Vector3(1, 2, -20), seen.cruise)
   case object Sometimes extends Forgetful:

@@ -88,7 +88,7 @@ class ScenarioFileSuite extends munit.FunSuite:
     assertEquals(formula.leaves(other, Metres(-5)), None)
     assertEquals(formula.turns, true)
     def formulaOf(text: String) =
-      PolicyFormula.of(read(text).kind.standard.agents(1).policy, 1, team.assignment, isPredicted = false)
+      PolicyFormula.of(read(text).standard.agents(1).policy, 1, team.assignment, isPredicted = false)
     assert(formulaOf(Patrol).exists(_.vertical.nonEmpty))
     assert(formulaOf(Patrol.replace(
       "does when 12 hover",

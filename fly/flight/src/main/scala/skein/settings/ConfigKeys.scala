@@ -1,6 +1,6 @@
 package skein.settings
 
-import com.typesafe.config.ConfigOrigin
+import com.typesafe.config.{Config, ConfigOrigin, ConfigValueType}
 import java.util.Locale
 import pureconfig.generic.derivation.{
   ConfigReaderDerivation,
@@ -18,6 +18,10 @@ private[skein] object ConfigKeys:
 
   /** The path of the scenario in a configuration. */
   val Scenario = "skein.fly.scenario"
+
+  /** Whether there is a text at a path. */
+  def hasText(config: Config, path: String): Boolean =
+    config.hasPath(path) && config.getValue(path).valueType == ConfigValueType.STRING
 
   def ofField(name: String): String = name.replaceAll("([A-Z])", "-$1").toLowerCase(Locale.ROOT)
 

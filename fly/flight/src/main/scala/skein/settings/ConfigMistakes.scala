@@ -139,7 +139,8 @@ private[skein] object ConfigMistakes:
 
   /** The known keys, with the scenarios' settings under their names. */
   private def known(config: Config)(using scenarios: Scenarios): Config =
-    val chosen = Option.when(config.hasPath(ConfigKeys.Scenario))(config.getString(ConfigKeys.Scenario))
+    val chosen = Option.when(ConfigKeys.hasText(config, ConfigKeys.Scenario)):
+      config.getString(ConfigKeys.Scenario)
     val ofFile = chosen.filter(ScenarioText.isText).flatMap(scenarios.kind(_).toOption)
     (scenarios.kinds ++ ofFile).foldLeft(ours): (known, kind) =>
       kind.standard.settings.foldLeft(known):

@@ -5,7 +5,7 @@ import skein.forward.{Engagement, LoopObserver, Rollout, VelocityResponses}
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
 import skein.record.ReadingRow
 import skein.policy.*
-import skein.scenario.{Crossing, Formation, PaperDuel, Scenario, Surround}
+import skein.scenario.{Crossing, Formation, Known, PaperDuel, Scenario, Surround}
 import skein.settings.{FlightPlan, FlySettings}
 import skein.signal.LatencyProfile
 import skein.testing.Unhurried
@@ -198,6 +198,30 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
   test("paused in three dimensions"):
     check(LoopKind.Paused, LatencyProfile.none, 3, InSpace(), Span.ofSeconds(8))
 
+  for loop <- Seq(LoopKind.Sequential, LoopKind.Stream) do
+    test(s"${loop.label} over vpn: a scenario ends in forward simulation when its flight does, to a period"):
+      val asked   = settings(loop, LatencyProfile.vpn, EndsInSpace(), Span.ofSeconds(12))
+      val flown   = TappedFlight.fly(asked, FlightPlan("parity", loop, LatencyProfile.vpn, 4))
+      val timing  = LoopTimings.of(loop, LoopSettings.every(Span.ofMillis(100))).get
+      val model   = VelocityResponses.quadrotor(hoveredS = flown.hovered.toSeconds)
+      var last    = Span.Zero
+      val rollout = Rollout(Engagement.ofScenario(asked.scenario, 12), timing, flown.delays, model)
+      rollout.fly(
+        0,
+        observer = new LoopObserver:
+          override def commanded(
+              vehicle: Int,
+              number: Int,
+              atNs: Long,
+              headingRad: Double,
+              speedMps: Double
+          ) =
+            last = Span.ofNanos(atNs)
+      ): Unit
+      val sent = flown.recording.commands.map(_.sentAt.since(flown.startedAt).toSeconds).max
+      assert(sent > 2 && sent < 8, s"it was flown for $sent s")
+      assertEqualsDouble(last.toSeconds, sent, 0.1)
+
   // Where delays are equal in both directions, a flight knows the ages of its readings as they are.
   for loop <- Seq(LoopKind.Sequential, LoopKind.Stream) do
     test(s"${loop.label} over 100 ms, a policy that goes by ages"):
@@ -289,6 +313,11 @@ final case class InSpace() extends Scenario:
       agent(2, Above(1, Yaw.Turning(0.3))),
       agent(3, Stairs)
     )
+
+/** Ends when the first vehicle has climbed by four metres. */
+final case class EndsInSpace() extends Scenario:
+  def agents: Vector[Agent]                  = InSpace().agents
+  override def isOver(known: Known): Boolean = known.vehicles.head.kinematics.positionNed.z < -16
 
 object InSpace:
   /** Climbs and sinks along a circle, nose ahead. */
