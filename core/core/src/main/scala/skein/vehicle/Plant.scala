@@ -20,7 +20,7 @@ trait Plant[S] extends PlantTiming:
 
   def read(state: S): PlaneReading
 
-/** The times of a plant. */
+/** How finely a plant is simulated, and how long its commands wait. */
 trait PlantTiming:
   /** Longest step, s. Steps begin when a command takes effect, and every `stepS` after that. */
   def stepS: Double

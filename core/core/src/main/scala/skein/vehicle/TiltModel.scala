@@ -123,7 +123,7 @@ object TiltModel:
       quadrotor.gains
     )
 
-  /** Fitted to steps of climb and of speed. */
+  /** Dead time, s; fitted to steps of climb and of speed (`TiltModelSuite`). */
   private val RotorsS = 0.03
 
   val AirSim: TiltModel = of(Quadrotor.AirSim)

@@ -19,7 +19,6 @@ private[skein] object ConfigKeys:
   /** The path of the scenario in a configuration. */
   val Scenario = "skein.fly.scenario"
 
-  /** Whether there is a text at a path. */
   def hasText(config: Config, path: String): Boolean =
     config.hasPath(path) && config.getValue(path).valueType == ConfigValueType.STRING
 

@@ -39,7 +39,6 @@ final case class Engagement(
   /** The agents with outcomes: the evaders; in a team without sides, all. */
   val judged: Vector[Int] = if bothSides then evaders else agents.indices.toVector
 
-  /** Whether all policies are formulas. */
   lazy val isTraced: Boolean =
     agents.indices.forall(self => Level.formula(agents(self).policy, self, assignment, false).isRight)
 

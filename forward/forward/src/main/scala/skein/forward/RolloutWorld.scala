@@ -33,7 +33,6 @@ private[skein] final class RolloutWorld(
   /** Whether readings are kept whole, with attitude and rates. */
   val keepsKinematics: Boolean = keepsAll || isAsked.contains(true) || engagement.isOver.isDefined
 
-  /** By vehicle: how it responds. */
   val responses: Array[VelocityResponse] = agents.map: agent =>
     if agent.kind == VehicleKind.Car then CarResponse(agent.startHeadingRad) else model
 

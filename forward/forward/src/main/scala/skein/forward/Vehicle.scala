@@ -26,7 +26,6 @@ trait Vehicle:
 
   def y: Double
 
-  /** Down, m; world NED, as `x` and `y`. */
   def z: Double
 
   def vx: Double

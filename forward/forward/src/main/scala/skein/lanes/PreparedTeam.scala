@@ -14,7 +14,6 @@ private[lanes] final case class TeamForm(
     durationS: Double,
     altitudesDownM: Vector[Double]
 )(val vehicles: LaneDynamics):
-  /** Whether vehicles climb. */
   def inSpace: Boolean = team.inSpace
 
   /** Whether decisions need more than readings and their own times. */

@@ -42,7 +42,6 @@ public abstract class LaneVehicles {
   private final float[] kept;
   private final float[] startX = new float[WORLDS], startY = new float[WORLDS];
 
-  /** Of each world's start, m down. */
   final float[] startZ = new float[WORLDS];
 
   /** Whether commands and readings have a vertical part. */

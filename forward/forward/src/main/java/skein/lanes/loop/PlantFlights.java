@@ -34,7 +34,7 @@ public final class PlantFlights extends LaneFlights {
     super(agent, lanes.pieces().kept(), lanes.plant().stepS(), loop, lanes.inSpace());
     PlantPieces pieces = lanes.pieces();
     this.lanes = lanes;
-    firstOfState = pieces.state() * WORLDS;
+    firstOfState = pieces.firstOfState() * WORLDS;
     starts = pieces.starts();
     reached = new float[lanes.count() * WORLDS];
     float[] parameters = pieces.parametersOf(lanes.plant(), agent.speed());

@@ -23,8 +23,7 @@ private[lanes] final class PlantPieces(
   private val trace = Trace()
   private val count = stepping.outputs.size
 
-  /** The row of the state's first number. */
-  val state: Int = if inSpace then 4 else 2
+  val firstOfState: Int = if inSpace then 4 else 2
 
   private val expressions =
     val (since, stepS) = (trace.input(Since), trace.param(0))
@@ -36,18 +35,18 @@ private[lanes] final class PlantPieces(
       stepping,
       reading,
       first = 1,
-      number => trace.input(state + number),
+      number => trace.input(firstOfState + number),
       north,
       trace.input(East),
       trace.where(trace.lt(since, stepS), since, stepS),
       if inSpace then Vector(trace.input(Third), trace.input(Holds)) else Vector.empty,
-      _.zipWithIndex.map((node, number) => trace.where(flies, node, trace.input(state + number)))
+      _.zipWithIndex.map((node, number) => trace.where(flies, node, trace.input(firstOfState + number)))
     )
 
-  val kept: Int = state + count + (if places.isDefined then 0 else 2)
+  val kept: Int = firstOfState + count + (if places.isDefined then 0 else 2)
 
   /** The rows that initially equal the vehicle's start, north and east. */
-  val starts: Array[Int] = places.getOrElse(Vector(count, count + 1)).map(state + _).toArray
+  val starts: Array[Int] = places.getOrElse(Vector(count, count + 1)).map(firstOfState + _).toArray
 
   private val seen =
     if places.isDefined then expressions.seen

@@ -91,7 +91,6 @@ private[lanes] final class TeamLanes private (
         Vector(by.convert(each.third), by.convert(each.holds))).flatten
     course ++ vertical ++ formulas(self).memory.map(by.convert)
 
-  /** Number of outputs before the memory. */
   val decided: Int = if inSpace then 6 else 4
 
   private def own(self: Int, number: Int) = trace.input(ownInput(self, number))
