@@ -138,7 +138,7 @@ object WholeFlights:
       forward(flown.timing, link, flown.vehicle.response, flown.duel.durationS, seed)
     )
 
-  /** Why a scenario's episodes are flown whole, world by world; None if its quantities suffice. */
+  /** Why a scenario needs whole flights, world by world; None if its quantities suffice. */
   def whole(flown: Engagement, measures: Vector[Measure]): Option[String] =
     val plain = measures.filter(_.reduced.isEmpty).map(TeamObjective.keyOf)
     if flown.isOver.nonEmpty then Some("it says itself when it is over")

@@ -4,7 +4,7 @@ import skein.signal.Kinematics
 import skein.units.*
 import skein.vehicle.{Guidance, PathFollowing, Setpoint}
 
-/** What AirSim's flight controller is told for an action. */
+/** The goals of AirSim's flight controller for an action. */
 object ActionGuidance:
   def of(action: Action): Guidance = action match
     case Action.Velocity(velocity, yaw) =>

@@ -1,10 +1,10 @@
 package skein.vehicle
 
 /** AirSim's quadrotor without its fastest parts: the cascade of [[FlightController]] from velocities to tilt
-  * and throttle, where rotors and rotation rates follow at once; nose to north. In each horizontal axis
+  * and throttle, where rotors and rotation rates have no lag; nose to north. In each horizontal axis
   *
-  *   - the wanted tilt is k · (u − v + tilt · third), at most `maxTilt`, with k = velocityP · maxTilt: the
-  *     quirk by which the third goal counts as wanted speed once the vehicle tilts;
+  *   - the wanted tilt is k · (u − v + tilt · (third − sink rate)), at most `maxTilt`, with k = velocityP ·
+  *     maxTilt: the quirk by which the third goal counts as wanted speed once the vehicle tilts;
   *   - the tilt follows it by `angleP` · `maxRate`, at most at `maxRate`;
   *   - v' = g · throttle / hover · sin(tilt) − drag · |v| · v.
   *

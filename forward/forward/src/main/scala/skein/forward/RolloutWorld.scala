@@ -85,7 +85,7 @@ private[skein] final class RolloutWorld(
   /** Whether the engagement said that it is over. */
   def isOver: Boolean = ended
 
-  /** Asks the engagement whether it is over, given the newest readings of all vehicles that came in. */
+  /** Asks the engagement whether it is over, given the newest reading received from each vehicle. */
   private def mayEnd(): Unit =
     if begunAtNs == RolloutWorld.NotBegun then begunAtNs = time
     if !newest.contains(RolloutWorld.Unread) then

@@ -21,7 +21,7 @@ public final class LaneObservation {
 
   public static final int READ = 4;
 
-  /** Rows of a reading in space: the same, then position and velocity down. */
+  /** Rows of a reading in space: position and velocity down follow those rows. */
   public static final int DOWN = 4, IN_SPACE = 6;
 
   private static final float[] ZEROS = new float[WORLDS];
