@@ -71,7 +71,7 @@ object WholeFlights:
     try Right(Engagement.ofScenario(scenario, durationS))
     catch case refused: IllegalArgumentException => Left(Expect.refused(refused))
 
-  /** Why models of level flight do not fly a scenario; only the quadrotor does then. */
+  /** Why models of level flight do not fly a scenario; `tilt` and `quadrotor` do then. */
   def climbs(flown: Engagement): Option[String] =
     flown.climbs.orElse:
       val altitudes = flown.agents.filter(_.kind != VehicleKind.Car).map(_.altitudeDownM)

@@ -114,16 +114,17 @@ object PolicyFormula:
       val formula            = Formula.ofGraph(trace, inputs.map(_.toString), outputs, graph.settings)(
         Deciding.graphOf(_).exists(_.graph eq graph)
       )(Deciding.graphOf(_).fold(Array.emptyDoubleArray)(_.values))
-      new PolicyFormula(
-        formula,
-        inputs,
-        decided.motion,
-        decided.vertical,
-        decided.memory,
-        decided.turns,
-        memoryOf(policy),
-        assignment
-      )
+      made(formula, inputs, decided, memoryOf(policy), assignment)
+
+  private def made(
+      formula: Formula,
+      inputs: Vector[PolicyInput],
+      decided: Decided,
+      start: Example,
+      assignment: Assignment
+  ): PolicyFormula =
+    import decided.*
+    new PolicyFormula(formula, inputs, motion, vertical, memory, turns, start, assignment)
 
   private def unflown(action: String) =
     s"it decides for $action; SIMD flies Action.Along, VelocityAt, Velocity and Hover"
@@ -151,16 +152,7 @@ object PolicyFormula:
     yield
       val (formula, decided) = traced
       val inputs             = seen.inputs ++ starts.indices.map(PolicyInput.Memory(_))
-      new PolicyFormula(
-        formula,
-        inputs,
-        decided.motion,
-        decided.vertical,
-        decided.memory,
-        decided.turns,
-        memory,
-        assignment
-      )
+      made(formula, inputs, decided, memory, assignment)
 
   /** A policy's initial memory, as an example and as numbers. */
   private def startOf(policy: Policy): Either[Untraceable, (Example, Vector[Double])] =
