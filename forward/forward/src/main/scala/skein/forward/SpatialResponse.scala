@@ -2,8 +2,8 @@ package skein.forward
 
 import skein.policy.Action
 import skein.signal.Kinematics
-import skein.units.{OwnFailure, Quaternion, Vector3}
-import skein.vehicle.SpatialPlant
+import skein.units.{Quaternion, Vector3}
+import skein.vehicle.{SpaceReading, SpatialPlant, StepwiseFlight}
 
 /** Forward simulation by a [[skein.vehicle.SpatialPlant]]: it performs velocities, at an altitude or not.
   * Yaws are ignored; who hovers or turns is commanded to stand still.
@@ -23,18 +23,17 @@ final case class SpatialResponse(plant: SpatialPlant[?]) extends VelocityRespons
     case _: (Action.Position | Action.Attitude) | Action.Land                                 => false
 
 private final class SpatialVehicle[S](plant: SpatialPlant[S]) extends Vehicle:
-  private val coming                    = DeadTime(plant.deadTimeS)
-  private var startX, startY, down      = 0.0
-  private var north, east, third, holds = 0.0
-  private var from, state               = plant.initial(0)
-  private var stepAtS, nowS             = 0.0
-  private var isCommanded               = false
-  private var reading                   = plant.read(state)
+  private val coming               = DeadTime(plant.deadTimeS)
+  private val flight               = SpatialFlight(plant)
+  private var startX, startY, down = 0.0
+  private var nowS                 = 0.0
+  private var isCommanded          = false
+  private var reading              = flight.reading
 
   def start(x: Double, y: Double, z: Double): Unit =
     startX = x; startY = y; down = z
-    from = plant.initial(z)
-    reached(from)
+    flight.rest(z)
+    reading = flight.reading
     nowS = 0; isCommanded = false
     coming.clear()
 
@@ -47,30 +46,13 @@ private final class SpatialVehicle[S](plant: SpatialPlant[S]) extends Vehicle:
 
   def advance(timeS: Double): Unit =
     coming.until(timeS): (atS, vx, vy, third, holds) =>
-      if isCommanded then fly(atS)
-      north = vx; east = vy; this.third = third; this.holds = holds
-      beginStep(atS)
+      if isCommanded then flight.advance(atS)
+      flight.act(atS, vx, vy, third, holds)
       isCommanded = true
-    if isCommanded then fly(timeS)
+    if isCommanded then
+      flight.advance(timeS)
+      reading = flight.reading
     nowS = timeS
-
-  private def fly(untilS: Double): Unit =
-    while untilS > stepAtS + plant.stepS do
-      step(plant.stepS)
-      beginStep(stepAtS + plant.stepS)
-    if untilS > stepAtS then step(untilS - stepAtS)
-
-  private def beginStep(atS: Double): Unit =
-    stepAtS = atS
-    from = state
-
-  private def step(spanS: Double): Unit =
-    reached(OwnFailure.told(OwnFailure.named("plant", plant)):
-      plant.step(from, north, east, third, holds, spanS))
-
-  private def reached(now: S): Unit =
-    state = now
-    reading = plant.read(now)
 
   def x: Double  = startX + reading.northM
   def y: Double  = startY + reading.eastM
@@ -84,3 +66,19 @@ private final class SpatialVehicle[S](plant: SpatialPlant[S]) extends Vehicle:
     Quaternion.Identity,
     Vector3.Zero
   )
+
+private final class SpatialFlight[S](plant: SpatialPlant[S])
+    extends StepwiseFlight[S](plant, plant.initial(0)):
+  private var north, east, third, holds = 0.0
+
+  def reading: SpaceReading = plant.read(state)
+
+  def rest(downM: Double): Unit = begin(0, plant.initial(downM))
+
+  /** Sets the command in effect from now on; the caller has simulated up to it. */
+  def act(atS: Double, northMps: Double, eastMps: Double, third: Double, holds: Double): Unit =
+    north = northMps; east = eastMps
+    this.third = third; this.holds = holds
+    beginStep(atS)
+
+  protected def stepped(from: S, spanS: Double): S = plant.step(from, north, east, third, holds, spanS)
