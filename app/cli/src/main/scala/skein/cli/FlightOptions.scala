@@ -64,12 +64,13 @@ final case class FlightOptions(
     )
     altitude: Option[Double],
     @arg(doc =
-      "model that flies in the built-in simulator: airsim, or mujoco:FILE"
+      "model that flies in the built-in simulator: airsim, airsim:DEVIATION such as " +
+        "airsim:mass=1.3,drag=2,wind=8/0/0, or mujoco:FILE"
     )
     plant: Option[String],
     @arg(doc =
       "model that predicts, in `predictive` and `plan`: reduced, drag, quadrotor, constant-velocity, " +
-        "constant-turn, a model file of `skein identify`, or reduced:FILE for its model of three parameters"
+        "constant-turn, adaptive, a model file of `skein identify`, or reduced:FILE for its model of three parameters"
     )
     predictor: Option[String],
     @arg(

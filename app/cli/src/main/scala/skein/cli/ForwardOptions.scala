@@ -25,7 +25,7 @@ final case class ForwardOptions(
     )
     movesInFlight: Option[Int],
     @arg(doc =
-      "model that flies: reduced, drag, tilt, quadrotor, ideal, car, mujoco:FILE, a FILE of ./skein identify, or " +
+      "model that flies: reduced, drag, tilt, quadrotor, quadrotor:mass=1.3,drag=2,lag=1.5 (tilt: likewise), ideal, car, mujoco:FILE, a FILE of ./skein identify, or " +
         "reduced:FILE for its model of three parameters (default: reduced)"
     )
     plant: Option[String],

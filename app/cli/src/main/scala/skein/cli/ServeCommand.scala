@@ -40,7 +40,7 @@ final case class ServeOptions(
     @arg(doc = "scene: empty, forest, pursuit, street, or a file")
     scene: String = "empty",
     @arg(doc =
-      "model that flies: airsim, or mujoco:FILE"
+      "model that flies: airsim, airsim:DEVIATION such as airsim:mass=1.3,drag=2,wind=8/0/0, or mujoco:FILE"
     )
     plant: String = "airsim",
     @arg(doc =
@@ -88,7 +88,7 @@ object ServeCommand
       address   <- addressOf(options.listen, world)
       scene     <- NamedScene.read(options.scene).left.map("--scene: " + _)
       plant     <- SimulatedBody.parse(options.plant).left.map("--plant: " + _)
-      kind      <- plant.kind
+      kind      <- plant.kind(seed = 1)
       autopilot <-
         options.hil.map(autopilotOf).fold[Either[String, Option[AutopilotKind]]](Right(None))(_.map(Some(_)))
       _ <- Expect.that(autopilot.isEmpty || !options.mavlink.value):

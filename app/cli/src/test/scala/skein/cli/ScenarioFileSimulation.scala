@@ -46,7 +46,7 @@ class ScenarioFileSimulation extends munit.FunSuite, TemporaryFolders, Unhurried
       path.resolve("ring.conf"),
       s"""skein.fly { scenario = "$ring", ring { ring-m = 7 }, duration = 4s }"""
     )
-    well(s"fly --clock virtual --config $config --out $path/flights".split(' ')*)
+    well(s"fly --clock virtual --loop stream --link vpn --config $config --out $path/flights".split(' ')*)
     well(
       (s"search --scenario $ring --vary ring-m=4..12 --objective off-ring --candidates 12 --episodes 2 --fresh 4 " +
         s"--duration 12s --link vpn --out $path/search").split(' ')*
@@ -54,7 +54,8 @@ class ScenarioFileSimulation extends munit.FunSuite, TemporaryFolders, Unhurried
     val found = Files.readString(path.resolve("search/scenario.conf"))
     assert(found.contains("ring-m = "), found)
     well(
-      s"fly --clock virtual --duration 4s --config $path/search/scenario.conf --out $path/found".split(' ')*
+      (s"fly --clock virtual --loop stream --link vpn --duration 4s --config $path/search/scenario.conf " +
+        s"--out $path/found").split(' ')*
     )
 
   folder.test("budget, torture and scenarios take it"): path =>

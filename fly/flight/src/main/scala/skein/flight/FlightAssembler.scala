@@ -107,7 +107,7 @@ final class FlightAssembler(
     val opened   = Opened()
     val starting =
       for
-        server <- serve()
+        server <- serve(plan.seed)
         _       = server.foreach(opened.closing(_)(_.close()))
         monitor = FlightMonitor(
           recorder,
@@ -287,11 +287,11 @@ final class FlightAssembler(
         clocks = link.clocks
       )
 
-  private def serve(): Future[Option[SimulatorServer]] =
+  private def serve(seed: Long): Future[Option[SimulatorServer]] =
     if simulator.isDefined then Future.successful(None)
     else
       val vehicles = fleet.agents.map(Vehicles.settings)
-      val kind     = settings.plant.kind.fold(reason => throw CannotFly(reason), identity)
+      val kind     = settings.plant.kind(seed).fold(reason => throw CannotFly(reason), identity)
       SimulatorServer
         .start(
           SimulatorSettings(

@@ -28,8 +28,8 @@ private object ForeseenVehicle:
     */
   def of(agent: Agent, model: VehicleModel[?], settings: PlanSettings): Either[String, ForeseenVehicle] =
     val plant = model match
-      case PlantModel(plant)                                                => Right(plant)
-      case _: (QuadrotorModel | CarModel) | ConstantVelocity | ConstantTurn => Right(
+      case PlantModel(plant) => Right(plant)
+      case _: (QuadrotorModel | CarModel) | AdaptiveQuadrotor | ConstantVelocity | ConstantTurn => Right(
           ReducedModel.airSimAt(settings.altitudeM(-agent.startPositionNed.z))
         )
       case other => Left(s"expected a model of a plant (skein.vehicle.PlantModel) to plan by, came $other")

@@ -28,12 +28,16 @@ enum PredictionModel:
 
   case ConstantTurn
 
+  /** The whole quadrotor, with what it lacks learned in flight. */
+  case Adaptive
+
   def at(altitudeM: Double): VehicleModel[?] = this match
     case Named(name)            => VehicleChoice.named(name, altitudeM).get.response.predictor
     case Fitted(model, _)       => PlantModel(model)
     case Own(structure, values) => PlantModel(structure.plant(values))
     case ConstantVelocity       => skein.vehicle.ConstantVelocity
     case ConstantTurn           => skein.vehicle.ConstantTurn
+    case Adaptive               => AdaptiveQuadrotor
 
   def forAgent(agent: Agent): VehicleModel[?] = agent.kind match
     case VehicleKind.Multirotor => at(-agent.startPositionNed.z)
@@ -53,7 +57,8 @@ object PredictionModel:
     "drag"              -> AirSimDrag,
     "quadrotor"         -> Quadrotor,
     "constant-velocity" -> ConstantVelocity,
-    "constant-turn"     -> ConstantTurn
+    "constant-turn"     -> ConstantTurn,
+    "adaptive"          -> Adaptive
   )
 
   val forms: String =

@@ -3,22 +3,32 @@ package skein.settings
 import java.nio.file.Path
 import skein.hil.AutopilotInterface
 import skein.mujoco.{MujocoModel, MujocoRotorcraft}
-import skein.vehicle.RotorcraftKind
+import skein.vehicle.{Deviation, RotorcraftKind}
 
 /** The bodies of the built-in simulator's multirotors, as users name them.
   *
-  * @param text `airsim`, or `mujoco:FILE`
+  * @param text `airsim`, `airsim:` and how it deviates, or `mujoco:FILE`
   */
-final class SimulatedBody private (val text: String, read: => Either[String, Option[MujocoModel]]):
+final class SimulatedBody private (
+    val text: String,
+    read: => Either[String, Option[MujocoModel]],
+    deviation: Option[Deviation] = None
+):
   private lazy val model = read
 
   def isAirSim: Boolean = this == SimulatedBody.AirSim
 
-  /** The kind for the simulator; None means its own. Left states why it cannot be simulated here. */
-  def kind: Either[String, Option[RotorcraftKind]] = model.map(_.map(MujocoRotorcraft.kind))
+  /** The kind for the simulator; None means its own. Left states why it cannot be simulated here.
+    *
+    * @param seed of the gusts
+    */
+  def kind(seed: Long): Either[String, Option[RotorcraftKind]] =
+    model.map(_.map(MujocoRotorcraft.kind).orElse(deviation.map(_.kind(seed))))
 
   /** Why external autopilots cannot fly it, if so. */
   def refusesAutopilots: Option[String] = model match
+    case _ if deviation.isDefined =>
+      Some(s"$text: expected airsim or mujoco:FILE, whose physics has steps of whole milliseconds")
     case Right(Some(body)) =>
       val steps = AutopilotInterface.Step.toSeconds / body.stepS
       if !body.hasRotors then
@@ -35,7 +45,7 @@ final class SimulatedBody private (val text: String, read: => Either[String, Opt
 object SimulatedBody:
   val AirSim: SimulatedBody = SimulatedBody("airsim", Right(None))
 
-  val forms: String = s"${AirSim.text}, or mujoco:FILE"
+  val forms: String = s"${AirSim.text}, airsim:DEVIATION, or mujoco:FILE"
 
   /** Reads the user's text; Left states what was expected, or why the model cannot be simulated. */
   def parse(text: String): Either[String, SimulatedBody] =
@@ -44,6 +54,8 @@ object SimulatedBody:
 
   /** Reads a recording's text, whose file may be gone. */
   def recorded(text: String): Either[String, SimulatedBody] = text match
-    case AirSim.text     => Right(AirSim)
+    case AirSim.text          => Right(AirSim)
+    case s"airsim:$deviation" =>
+      Deviation.parse(deviation).map(read => SimulatedBody(text, Right(None), Some(read)))
     case s"mujoco:$path" => Right(SimulatedBody(text, MujocoModel.read(Path.of(path)).map(Some(_))))
     case other           => Left(s"expected $forms, came '$other'")

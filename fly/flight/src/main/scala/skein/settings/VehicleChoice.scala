@@ -13,7 +13,8 @@ import skein.forecast.Structure
 import skein.scenario.Scenarios
 import skein.mujoco.{MujocoModel, MujocoResponse}
 import skein.units.Decimals.fixed
-import skein.vehicle.{DrivenCar, ReducedModel, TiltModel}
+import skein.units.Expect
+import skein.vehicle.{Deviation, DrivenCar, Quadrotor, ReducedModel, TiltModel, Wind}
 
 /** Models of vehicles by the names that users give: one list for simulated vehicles (`--plant`) and, as far
   * as they predict, for predictions (`--predictor`, [[PredictionModel]]).
@@ -83,7 +84,17 @@ object VehicleChoice:
 
   val forms: String =
     s"${all(ReducedModel.IdentifiedAtM).map(_.name).mkString(", ")}, " +
-      "mujoco:FILE, a FILE of ./skein identify, or reduced:FILE"
+      "quadrotor:DEVIATION or tilt:DEVIATION such as mass=1.3,drag=2,lag=1.5, mujoco:FILE, " +
+      "a FILE of ./skein identify, or reduced:FILE"
+
+  private def deviating(text: String, deviation: String)(
+      response: Quadrotor => VelocityResponse
+  ): Either[String, VehicleChoice] =
+    for
+      read <- Deviation.parse(deviation)
+      _    <- Expect.that(read.copy(wind = Wind.None, rotors = Deviation().rotors) == read):
+        s"expected mass, drag and lag; wind, gusts, shear and rotors are for fly and spread, came '$text'"
+    yield VehicleChoice(text, s"AirSim's quadrotor with $deviation", response(read.quadrotor))
 
   /** Reads one of the names, or a model file: then the structure that the file says to use, or after
     * `reduced:` the file's model of three parameters, which SIMD supports.
@@ -97,6 +108,9 @@ object VehicleChoice:
     case Some(known) => known.mistakeAt(altitudeM).toLeft(known)
     case None        =>
       text match
+        case s"$Spatial:$deviation" => deviating(text, deviation)(VelocityResponses.quadrotor(_))
+        case s"$Tilt:$deviation"    =>
+          deviating(text, deviation)(quadrotor => SpatialResponse(TiltModel.of(quadrotor)))
         case s"mujoco:$path" =>
           MujocoModel.read(Path.of(path)).map(model =>
             VehicleChoice(text, s"MuJoCo's $path in steps of ${model.stepS} s", MujocoResponse(model))

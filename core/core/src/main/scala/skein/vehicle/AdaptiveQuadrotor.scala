@@ -1,0 +1,133 @@
+package skein.vehicle
+
+import skein.signal.Kinematics
+import skein.units.*
+
+/** AirSim's quadrotor as a model that learns in flight how vehicle and air differ from it: wind to north and
+  * east, and factors on drag, on the lag of the velocity and on the mass ([[Deviation]]).
+  *
+  * At each reading, velocity and tilt are compared with those predicted, and an extended Kalman filter over
+  * the five parameters ([[ParameterBelief]]) explains the difference; their effects are found by flying the
+  * model with each of them moved a little. So a prediction costs seven times that of [[QuadrotorModel]].
+  *
+  * Guarded: the nominal model flies beside it, and predicts as long as its errors over the last
+  * [[AdaptiveQuadrotor.MemoryS]] were not clearly larger. Bounded: parameters stay within
+  * [[AdaptiveQuadrotor.most]].
+  */
+object AdaptiveQuadrotor extends VehicleModel[AdaptiveQuadrotor.Learning]:
+
+  /** Time over which the guard forgets, s. */
+  val MemoryS = 2.0
+
+  /** Longest time between two readings from which it learns. */
+  val LongestGap: Span = Span.ofSeconds(1)
+
+  /** Share of the nominal model's squared error below which the learned one predicts, and the squared error
+    * up to which the nominal one is taken to be right, m²/s².
+    */
+  private val Better = 0.7
+  private val Right  = 1e-6
+
+  /** The parameters: wind to north and to east, m/s, and the logarithms of the factors on drag, lag and mass:
+    * before any reading their standard deviations, by how much they may change in a second, how far they are
+    * moved to find their effects, and their greatest sizes.
+    */
+  private val priors = Vector(5.0, 5.0, 0.5, 0.3, 0.2)
+  private val drifts = Vector(0.3, 0.3, 0.01, 0.01, 0.01)
+  private val moves  = Vector(0.5, 0.5, 0.05, 0.05, 0.05)
+
+  /** Greatest size of each parameter: winds, m/s, and logarithms of factors on drag, lag and mass. */
+  val most: Vector[Double] = Vector(20, 20, StrictMath.log(5), StrictMath.log(2.5), StrictMath.log(1.6))
+
+  /** Standard deviations of what a model that is right predicts wrongly in a tenth of a second, by the times
+    * at which commands arrive: of velocities, m/s, and of the sines of tilts.
+    */
+  private val Noises = Vector(0.005, 0.005, 0.005, 0.003, 0.003)
+
+  /** The state of a prediction, and what was learned.
+    *
+    * @param flights by the models with the parameters learned, then with each of them moved
+    * @param nominalError sum of the squared errors of the nominal model's velocities, fading over
+    *   [[MemoryS]], m²/s²; `learnedError` likewise
+    */
+  final case class Learning private[vehicle] (
+      belief: ParameterBelief,
+      models: Vector[QuadrotorModel],
+      nominal: QuadrotorModel.Flying,
+      flights: Vector[QuadrotorModel.Flying],
+      nominalError: Double,
+      learnedError: Double
+  ):
+    /** Whether the learned parameters are used. */
+    def helps: Boolean = nominalError > Right && learnedError < Better * nominalError
+
+    def deviation: Deviation = deviationOf(belief.mean)
+
+  def start(seen: Kinematics): Learning =
+    val belief = ParameterBelief(priors)
+    val models = modelsOf(belief)
+    Learning(belief, models, QuadrotorModel.AirSim.start(seen), models.map(_.start(seen)), 0, 0)
+
+  def advanced(learning: Learning, setpoint: Setpoint, span: Span): Learning =
+    learning.copy(
+      nominal = QuadrotorModel.AirSim.advanced(learning.nominal, setpoint, span),
+      flights = learning.models.lazyZip(learning.flights).map(_.advanced(_, setpoint, span))
+    )
+
+  def corrected(learning: Learning, seen: Kinematics, sinceSeen: Span): Learning =
+    val learned =
+      if sinceSeen <= Span.Zero || sinceSeen > LongestGap then learning else learnt(learning, seen, sinceSeen)
+    val base = learning.flights.head
+    learned.copy(
+      nominal = QuadrotorModel.AirSim.corrected(learning.nominal, seen, sinceSeen),
+      // Rotors and integrators are those of the learned parameters.
+      flights = learned.models.map(_.corrected(base, seen, sinceSeen))
+    )
+
+  def kinematics(learning: Learning): Kinematics =
+    QuadrotorModel.AirSim.kinematics(if learning.helps then learning.flights.head else learning.nominal)
+
+  private def learnt(learning: Learning, seen: Kinematics, sinceSeen: Span): Learning =
+    val measured  = outputs(seen)
+    val predicted = learning.flights.map(flight => outputs(QuadrotorModel.AirSim.kinematics(flight)))
+    val before    = learning.belief.drifted(drifts, sinceSeen.toSeconds, priors)
+    val after     = measured.indices.foldLeft(before): (belief, i) =>
+      val effects = Vector.tabulate(moves.size)(j => (predicted(j + 1)(i) - predicted.head(i)) / moves(j))
+      // What earlier outputs of this reading have changed already changes what is predicted of this one.
+      val explained = (belief.mean.lazyZip(before.mean).map(_ - _)).lazyZip(effects).map(_ * _).sum
+      belief.updated(effects, measured(i) - predicted.head(i) - explained, Noises(i))
+    val belief                    = after.within(most)
+    val keeps                     = StrictMath.exp(-sinceSeen.toSeconds / MemoryS)
+    def off(from: Vector[Double]) = measured.lazyZip(from).map(_ - _).take(3).map(x => x * x).sum
+    learning.copy(
+      belief = belief,
+      models = modelsOf(belief),
+      nominalError =
+        learning.nominalError * keeps + off(outputs(QuadrotorModel.AirSim.kinematics(learning.nominal))),
+      learnedError = learning.learnedError * keeps + off(predicted.head)
+    )
+
+  private def outputs(of: Kinematics): Vector[Double] =
+    import of.orientation.{w, x, y, z}
+    Vector(
+      of.velocityNed.x,
+      of.velocityNed.y,
+      of.velocityNed.z,
+      2 * (x * z + w * y),
+      2 * (y * z - w * x)
+    )
+
+  private def modelsOf(belief: ParameterBelief): Vector[QuadrotorModel] =
+    model(belief.mean) +: moves.indices.toVector.map: j =>
+      model(belief.mean.updated(j, belief.mean(j) + moves(j)))
+
+  private def model(parameters: Vector[Double]): QuadrotorModel =
+    val deviation = deviationOf(parameters)
+    QuadrotorModel(deviation.quadrotor, Environment(windNed = deviation.wind.steadyNed))
+
+  private def deviationOf(parameters: Vector[Double]) = Deviation(
+    mass = StrictMath.exp(parameters(4)),
+    drag = StrictMath.exp(parameters(2)),
+    lag = StrictMath.exp(parameters(3)),
+    wind = Wind(Vector3(parameters(0), parameters(1), 0))
+  )

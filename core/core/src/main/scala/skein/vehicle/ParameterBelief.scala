@@ -1,0 +1,46 @@
+package skein.vehicle
+
+/** What is believed of a few parameters: their mean and covariance, as a Kalman filter has them. A value.
+  *
+  * Source of the update: Gelb (ed.), "Applied Optimal Estimation", 1974, section 4.2, for one measurement at
+  * a time.
+  */
+final case class ParameterBelief private (mean: Vector[Double], covariance: Vector[Vector[Double]]):
+
+  /** Adds a measurement.
+    *
+    * @param effects by how much it grows with each parameter
+    * @param error measured minus predicted by the mean
+    * @param noise its standard deviation
+    */
+  def updated(effects: Vector[Double], error: Double, noise: Double): ParameterBelief =
+    val spread = covariance.map(row => row.lazyZip(effects).map(_ * _).sum)
+    val gain   = spread.map(_ / (noise * noise + spread.lazyZip(effects).map(_ * _).sum))
+    ParameterBelief(
+      mean.lazyZip(gain).map(_ + _ * error),
+      Vector.tabulate(mean.size, mean.size)((i, j) => covariance(i)(j) - gain(i) * spread(j))
+    )
+
+  /** Lets parameters have changed in a time, each by a random walk.
+    *
+    * @param drifts standard deviations of the changes in a second
+    * @param most standard deviations that none exceeds
+    */
+  def drifted(drifts: Vector[Double], s: Double, most: Vector[Double]): ParameterBelief =
+    val added = Vector.tabulate(mean.size): i =>
+      (drifts(i) * drifts(i) * s).min((most(i) * most(i) - covariance(i)(i)).max(0))
+    copy(covariance =
+      Vector.tabulate(mean.size, mean.size)((i, j) => covariance(i)(j) + (if i == j then added(i) else 0))
+    )
+
+  /** The mean, cut off at these sizes. */
+  def within(most: Vector[Double]): ParameterBelief =
+    copy(mean = mean.lazyZip(most).map((x, limit) => x.max(-limit).min(limit)))
+
+object ParameterBelief:
+  /** Means of 0 and independent standard deviations. */
+  def apply(deviations: Vector[Double]): ParameterBelief = new ParameterBelief(
+    deviations.map(_ => 0.0),
+    Vector.tabulate(deviations.size, deviations.size): (i, j) =>
+      if i == j then deviations(i) * deviations(i) else 0.0
+  )
