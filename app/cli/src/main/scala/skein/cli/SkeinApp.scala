@@ -51,6 +51,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
       FlyCommand(),
       SpreadCommand(program),
       TortureCommand(program),
+      BenchmarkCommand(),
       ScenariosCommand(),
       NewCommand
     ),

@@ -1,0 +1,62 @@
+package skein.benchmark
+
+import skein.measure.{Distribution, FlightSummary}
+
+/** What one flight came to.
+  *
+  * @param headline the value of the scenario's first measure; absent where the flight has none
+  * @param ageMs mean age of the own vehicle's reading at a decision
+  * @param errorsM of predictions of the own vehicle
+  */
+final case class BenchmarkFlight(
+    headline: Option[Double],
+    violations: Int,
+    ageMs: Option[Double],
+    errorsM: Vector[Double]
+)
+
+object BenchmarkFlight:
+  def of(flown: FlightSummary): BenchmarkFlight = BenchmarkFlight(
+    flown.headline,
+    flown.result.fold(0)(_.violations.size),
+    Distribution.of(flown.roles.flatMap(_.ownTrueAgeMs).map(_.mean)).map(_.mean),
+    flown.predictions.fold(Vector.empty)(_.own.samples.map(_._2))
+  )
+
+/** The flights of one entry in one cell, beside those of the truth.
+  *
+  * @param truths by the paused loop, in the same world
+  * @param notFlown why flights failed
+  */
+final case class BenchmarkRow(
+    cell: BenchmarkSet.Cell,
+    entry: BenchmarkSet.Entry,
+    truths: Vector[BenchmarkFlight],
+    flights: Vector[BenchmarkFlight],
+    notFlown: Vector[String]
+):
+  private def mean(values: Vector[Double]) = Distribution.of(values).map(_.mean)
+
+  val truth: Option[Double] = mean(truths.flatMap(_.headline))
+
+  /** By how much each flight's measure deviates from the truth's mean, as a share of it. */
+  val off: Vector[Double] =
+    truth.filter(_ != 0).toVector.flatMap(truth => flights.flatMap(_.headline).map(_ / truth - 1))
+
+  val meanOff: Option[Double] = mean(off)
+
+  /** Half of the 95 % interval of [[meanOff]]; absent with fewer than two flights. Normal: the interval of
+    * few flights is too narrow.
+    */
+  val halfOff: Option[Double] = Option.when(off.sizeIs > 1):
+    val centre = off.sum / off.size
+    1.96 * math.sqrt(off.map(x => (x - centre) * (x - centre)).sum / (off.size - 1) / off.size)
+
+  /** Violations of a flight, beyond those of the truth. */
+  val violations: Double =
+    def each(of: Vector[BenchmarkFlight]) = mean(of.map(_.violations.toDouble)).getOrElse(0.0)
+    each(flights) - each(truths)
+
+  val ageMs: Option[Double] = mean(flights.flatMap(_.ageMs))
+
+  val errorP95M: Option[Double] = Distribution.of(flights.flatMap(_.errorsM)).map(_.quantile(0.95))

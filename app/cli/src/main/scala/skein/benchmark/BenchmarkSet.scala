@@ -1,0 +1,68 @@
+package skein.benchmark
+
+import com.typesafe.config.ConfigFactory
+import skein.scenario.Scenarios
+import skein.settings.FlySettings
+
+/** What a benchmark flies: every entry in every task, over every link, in every world.
+  *
+  * @param tasks scenarios with their settings, as HOCON of `skein.fly`
+  * @param worlds how vehicle and air differ from the model: `plant` of `skein.fly`
+  */
+final case class BenchmarkSet(
+    tasks: Vector[BenchmarkSet.Named],
+    links: Vector[String],
+    worlds: Vector[BenchmarkSet.Named],
+    entries: Vector[BenchmarkSet.Entry]
+):
+  /** The cells of the result, in the order of its rows. */
+  def cells: Vector[BenchmarkSet.Cell] =
+    for task <- tasks; world <- worlds; link <- links yield BenchmarkSet.Cell(task, world, link)
+
+object BenchmarkSet:
+  /** Changes whenever a figure may change: results of different versions are not compared. */
+  val Version = 1
+
+  /** A name in the table, and the text of its settings. */
+  final case class Named(name: String, text: String)
+
+  /** A loop, and the model by which it predicts. */
+  final case class Entry(name: String, loop: String, predictor: String = "quadrotor")
+
+  final case class Cell(task: Named, world: Named, link: String):
+    /** The settings of an entry's flights; those of the truth without an entry.
+      *
+      * @return Left states the mistake in the cell's texts
+      */
+    def settings(entry: Option[Entry], seed: Long)(using Scenarios): Either[String, FlySettings] =
+      val text =
+        s"""skein.fly { ${task.text}, plant = "${world.text}", links = ["$link"], seed = $seed
+           |  loops = [${entry.fold("paused")(_.loop)}], predictor = ${entry.fold("quadrotor")(
+            _.predictor
+          )} }""".stripMargin
+      FlySettings.read(
+        ConfigFactory.parseString(text).withFallback(ConfigFactory.load()).resolve.withOnlyPath("skein.fly")
+      )
+
+  /** The published set. */
+  val Published: BenchmarkSet = BenchmarkSet(
+    tasks = Vector(
+      Named("duel", "scenario = duel"),
+      Named("surround", "scenario = surround"),
+      Named("formation", "scenario = formation"),
+      Named("crossing", "scenario = crossing")
+    ),
+    links = Vector("direct", "vpn", "constant:200ms", "constant:400ms"),
+    worlds = Vector(
+      Named("as modelled", "airsim"),
+      Named("wind", "airsim:wind=8/0/0,gusts=7.7"),
+      Named("another vehicle", "airsim:mass=1.3,drag=2,lag=1.5,wind=8/0/0")
+    ),
+    entries = Vector(
+      Entry("sequential", "sequential"),
+      Entry("stream", "stream"),
+      Entry("straight on", "predictive", "constant-velocity"),
+      Entry("model", "predictive"),
+      Entry("adaptive", "predictive", "adaptive")
+    )
+  )

@@ -1,0 +1,67 @@
+package skein.benchmark
+
+import skein.report.{Section, TextTable}
+import skein.units.Decimals.{fixed, signed}
+
+/** A benchmark's result as tables. */
+object BenchmarkTables:
+
+  /** The entries in short, then every cell. */
+  def of(rows: Vector[BenchmarkRow]): Vector[Section] = Vector(
+    Section(
+      s"Entries, benchmark ${BenchmarkSet.Version}",
+      "Off the truth: by how much the scenario's first measure deviates from that of flights by `paused` in " +
+        "the same world. Violations: of the scenario's limits, a flight, beyond those of `paused`.",
+      Some(entries(rows))
+    ),
+    Section("Cells", "± is half of the 95 % interval over seeds.", Some(cells(rows)))
+  )
+
+  private def entries(rows: Vector[BenchmarkRow]) = TextTable(
+    Vector("<entry", "mean |off| %", "worst %", "<where", "within 5 %", "of", "violations"),
+    rows.map(_.entry).distinct.map: entry =>
+      val own   = rows.filter(_.entry == entry)
+      val off   = own.flatMap(row => row.meanOff.map(row -> _.abs))
+      val worst = off.maxByOption(_._2)
+      Vector(
+        entry.name,
+        if off.isEmpty then "" else (100 * off.map(_._2).sum / off.size).fixed(1),
+        worst.fold("")(found => (100 * found._2).fixed(1)),
+        worst.fold("")((row, _) => s"${row.cell.task.name}, ${row.cell.world.name}, ${row.cell.link}"),
+        off.count(_._2 <= 0.05).toString,
+        off.size.toString,
+        (own.map(_.violations).sum / own.size).fixed(2)
+      )
+  )
+
+  private def cells(rows: Vector[BenchmarkRow]) = TextTable(
+    Vector(
+      "<task",
+      "<world",
+      "<link",
+      "<entry",
+      "flights",
+      "truth",
+      "off %",
+      "±",
+      "violations",
+      "age ms",
+      "error p95 mm",
+      "<not flown"
+    ),
+    rows.map: row =>
+      Vector(
+        row.cell.task.name,
+        row.cell.world.name,
+        row.cell.link,
+        row.entry.name,
+        row.flights.size.toString,
+        row.truth.fold("")(_.fixed(3)),
+        row.meanOff.fold("")(off => (100 * off).signed(1)),
+        row.halfOff.fold("")(half => (100 * half).fixed(1)),
+        row.violations.fixed(2),
+        row.ageMs.fold("")(_.fixed(0)),
+        row.errorP95M.fold("")(error => (1000 * error).fixed(1)),
+        row.notFlown.headOption.getOrElse("")
+      )
+  )

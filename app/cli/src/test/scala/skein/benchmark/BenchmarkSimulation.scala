@@ -1,0 +1,59 @@
+package skein.benchmark
+
+import skein.report.Section
+import skein.scenario.Scenarios
+import skein.testing.Unhurried
+
+class BenchmarkSimulation extends munit.FunSuite, Unhurried:
+  private given Scenarios = Scenarios.ours
+
+  private val few = BenchmarkSet(
+    Vector(BenchmarkSet.Named("duel", "scenario = duel, duration = 14s")),
+    Vector("vpn"),
+    Vector(
+      BenchmarkSet.Named("as modelled", "airsim"),
+      BenchmarkSet.Named("wind", "airsim:wind=8/0/0")
+    ),
+    Vector(
+      BenchmarkSet.Entry("stream", "stream"),
+      BenchmarkSet.Entry("model", "predictive"),
+      BenchmarkSet.Entry("adaptive", "predictive", "adaptive")
+    )
+  )
+
+  test("each entry flies each cell once for each seed, beside the truth of the same world"):
+    val benchmark = Benchmark(few, seeds = 2)
+    var landed    = 0
+    val rows      = benchmark.fly(more => landed += more).fold(fail(_), identity)
+    assertEquals(landed, benchmark.flights)
+    assertEquals(
+      rows.map(row => (row.cell.world.name, row.entry.name)),
+      few.cells.flatMap(cell =>
+        few.entries.map(entry => (cell.world.name, entry.name))
+      )
+    )
+    assertEquals(rows.map(_.flights.size).distinct, Vector(2))
+    val Vector(calm, windy) = rows.map(_.truth).distinct: @unchecked
+    assertNotEquals(calm, windy)
+    def row(world: String, entry: String) =
+      rows.find(r => r.cell.world.name == world && r.entry.name == entry).get
+    for world <- few.worlds.map(_.name) do
+      assert(row(world, "model").meanOff.get.abs < row(world, "stream").meanOff.get.abs, world)
+      assertEquals(row(world, "stream").errorP95M, None)
+    assert(row("wind", "adaptive").errorP95M.get < row("wind", "model").errorP95M.get / 2)
+    val again = Benchmark(few, seeds = 2).fly().fold(fail(_), identity)
+    assertEquals(Section.json(BenchmarkTables.of(again)), Section.json(BenchmarkTables.of(rows)))
+
+  test("every cell of the published set has settings"):
+    for cell <- BenchmarkSet.Published.cells; entry <- BenchmarkSet.Published.entries do
+      assertEquals(cell.settings(Some(entry), 1).map(_.plans.size), Right(1))
+
+  test("an interval is that of the mean over seeds, and a truth of 0 gives no share"):
+    def flights(values: Double*) =
+      values.toVector.map(value => BenchmarkFlight(Some(value), violations = 2, None, Vector.empty))
+    val cell = few.cells.head
+    val row  = BenchmarkRow(cell, few.entries.head, flights(10, 10), flights(11, 13), Vector.empty)
+    assertEqualsDouble(row.meanOff.get, 0.2, 1e-12)
+    assertEqualsDouble(row.halfOff.get, 1.96 * 0.1, 1e-12)
+    assertEqualsDouble(row.violations, 0, 0)
+    assertEquals(BenchmarkRow(cell, few.entries.head, flights(0), flights(1), Vector.empty).meanOff, None)
