@@ -312,7 +312,12 @@ object DocumentedCommands:
 
   def of(kind: Kind): Vector[String] = documented
     .map(inVirtualTime(_, readme))
-    .filter(command => kindOf(command) == kind && !runElsewhere.contains(command))
+    .filter(command => kindOf(command) == kind && !runElsewhere.contains(command) && !isOfReaders(command))
+
+  /** A command that runs a program of the reader's, for minutes and by the clock; [[MarginCommandLiveSuite]] runs
+    * others.
+    */
+  private def isOfReaders(command: String) = command.startsWith("margin ")
 
   /** The first of those that differ in nothing that chooses an engine; flights by the clock but one, and
     * processes, are for the nightly run.

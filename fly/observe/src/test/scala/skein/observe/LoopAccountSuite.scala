@@ -46,6 +46,24 @@ class LoopAccountSuite extends munit.FunSuite:
     def found: Set[String]       = Diagnosis.of(observed).map(_.name).toSet
     def vehicle(name: String)    = observed.vehicles.find(_.name == name).get
 
+  test("each command is logged with what was known when it passed"):
+    val program = Program()
+    program.move("A", 0)
+    program.called("getMultirotorState", "B", 10, 30, Some(20))
+    program.called("getMultirotorState", "A", 40, 60, Some(50))
+    program.move("A", 70)
+    program.move("B", 75)
+    val log = program.observed.log
+    assertEquals(log.map(_.vehicle), Vector("A", "A", "B"))
+    assertEquals(log.head.ownAgeMs, None)
+    assertEquals(log.head.sinceOwnMs, None)
+    assertEquals(log(1).sinceOwnMs, Some(70.0))
+    assertEquals(log(1).sinceOthersMs, None)
+    assertEqualsDouble(log(1).ownAgeMs.get, 20, 1e-6)
+    assertEqualsDouble(log(1).othersAgeMs.get, 50, 1e-6)
+    assertEquals(log(2).sinceOthersMs, Some(5.0))
+    assertEqualsDouble(log(2).at.toMillis, 75, 1e-6)
+
   test("the age of a command's data counts from when it was sampled, by the clocks' offset"):
     val program = Program()
     for tick <- 0 until 50 do
