@@ -81,7 +81,6 @@ final class MarginCommand(using scenarios: Scenarios)
 
   override protected def check(options: MarginOptions): Either[String, Unit] = asked(options).map(_ => ())
 
-  /** The options, read. */
   private final case class Asked(
       command: Seq[String],
       scenario: Option[Scenario],

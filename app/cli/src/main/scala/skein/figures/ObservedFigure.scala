@@ -14,7 +14,6 @@ object ObservedFigure:
   private val place    = 72.0
   private val height   = 150.0
 
-  /** None where nothing was commanded. */
   def apply(observed: Observed): Option[Drawing] =
     val vehicles = observed.vehicles.filter(_.commands > 0).take(Most)
     Option.when(vehicles.nonEmpty):
@@ -23,7 +22,6 @@ object ObservedFigure:
         Legend(46, Legend.box("mean", colour), Legend.line("99 % are shorter", whisker))
       )
 
-  /** Most vehicles that are drawn. */
   private val Most = 20
 
   private val quantities: Vector[(String, ObservedVehicle => Option[Distribution])] = Vector(

@@ -6,7 +6,7 @@ import skein.optimise.{LatencyBudget, RunningStats}
 import skein.signal.LatencyProfile
 import skein.units.Decimals.{fixed, significant}
 
-/** The runs over one link. */
+/** The runs over one link, and what they come to together. */
 final case class MarginPoint(link: LatencyProfile, runs: Vector[MarginRun]):
   def meanMs: Double = link.mean.toMillis
 
@@ -14,7 +14,6 @@ final case class MarginPoint(link: LatencyProfile, runs: Vector[MarginRun]):
     val values = runs.flatMap(_.value.toOption)
     RunningStats.of(values.size)(values)
 
-  /** Why runs have no value. */
   def without: Vector[MarginRun.NoResult] = runs.flatMap(_.value.left.toOption)
 
   def violations: Int = runs.filter(_.value.isRight).map(_.violations).sum
@@ -89,7 +88,6 @@ object MarginCurve:
           )
           .map(MarginCurve(judge, tolerance, reference, points.sortBy(_.meanMs), _))
 
-  /** A bound in ms, as text. */
   def text(bound: Bound): String = bound match
     case Bound.At(ms)     => s"${ms.fixed(0)} ms"
     case Bound.Beyond(ms) => s"more than ${ms.fixed(0)} ms"

@@ -26,7 +26,7 @@ object MarginJudge:
     *
     * @param scenario whose first measure is the default
     * @param vehicles their number
-    * @return Left states what was expected, and what came
+    * @return Left states what was expected, and the word
     */
   def read(
       text: Option[String],
@@ -60,11 +60,9 @@ object MarginJudge:
       case Vector(Some(north), Some(east), Some(down)) => Some(Vector3(north, east, down))
       case _                                           => None
 
-  /** Least distance between any two vehicles. */
   private val separation = Series("separation", "m"): tracks =>
     instant => tracks.vehicles.combinations(2).map(two => tracks.separationM(two(0), two(1), instant)).min
 
-  /** Distance between the first two vehicles. */
   private val distance = Series("distance", "m")(tracks => tracks.separationM(0, 1, _))
 
   private def to(place: Vector3): Measure =

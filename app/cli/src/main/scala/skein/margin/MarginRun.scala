@@ -19,12 +19,11 @@ final case class MarginRun(
 )
 
 object MarginRun:
-  /** Why a run counts for nothing. */
+  /** Why a run counts for nothing: the program's fault, or the machine's. */
   enum NoResult(val why: String):
     /** The program did not do what could be judged. */
     case OfProgram(reason: String) extends NoResult(reason)
 
-    /** The machine was too busy to tell. */
     case Starved(reason: String) extends NoResult(reason)
 
   /** How a run went, seen from outside.
@@ -50,7 +49,7 @@ object MarginRun:
       starved: Option[String]
   )
 
-  /** The value of a run, or why it has none. */
+  /** The value of a run; its program's failure precedes the machine's. */
   def judged(by: MarginJudge, ended: Ended): Either[NoResult, Double] =
     died(ended)
       .orElse(hung(by, ended))

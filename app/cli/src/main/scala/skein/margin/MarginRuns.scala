@@ -6,9 +6,9 @@ import skein.units.Decimals.brief
 
 /** All runs of a margin, in turns over the links, so that a change of the machine's load meets all alike.
   *
-  * @param atOnce runs at once
+  * @param atOnce most runs side by side
   * @param isStopped whether no more runs are to begin
-  * @param tell gets a line for each run that has ended
+  * @param onEnded receives a line for each run that has ended
   */
 final class MarginRuns(
     trial: MarginTrial,
@@ -17,7 +17,7 @@ final class MarginRuns(
     atOnce: Int,
     seed: Long,
     isStopped: () => Boolean,
-    tell: String => Unit
+    onEnded: String => Unit
 ):
   import MarginRuns.*
 
@@ -25,7 +25,7 @@ final class MarginRuns(
     *
     * @param links the first one is the reference: if the program fails in its first run there, no other
     *   follows
-    * @return Left states why nothing can be told
+    * @return Left states why there are none
     */
   def fly(links: Vector[LatencyProfile]): Either[String, Flown] =
     one(links, Run(0, 0)).flatMap: first =>
@@ -50,7 +50,7 @@ final class MarginRuns(
     val link = links(which.link)
     trial.run(link, SplitMix64.seedOf(seed, which.repeat * links.size + which.link), isStopped).map: ended =>
       val came = ended.run.value.fold(_.why, value => s"${judge.name} ${value.brief} ${judge.unit}".trim)
-      if !isStopped() then tell(s"${link.name}, run ${which.repeat + 1} of $repeats: $came")
+      if !isStopped() then onEnded(s"${link.name}, run ${which.repeat + 1} of $repeats: $came")
       Done(which, ended.run, ended.printed)
 
   private def flown(links: Vector[LatencyProfile], done: Vector[Done]) =

@@ -4,7 +4,7 @@ import skein.report.{Section, TextTable}
 import skein.units.Decimals.{brief, counted, fixed, signed}
 import skein.units.Interval
 
-/** A margin, as tables and sentences. */
+/** A margin as tables and sentences, for people and for scripts. */
 object MarginTables:
 
   /** @param hasLimits whether violations can be counted */

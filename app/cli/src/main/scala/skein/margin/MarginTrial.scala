@@ -184,7 +184,6 @@ final class MarginTrial(
           ))
 
 object MarginTrial:
-  /** Placeholder of the port in a command. */
   val Port = "{port}"
 
   private val AnyPort = Address("127.0.0.1", 0)

@@ -11,10 +11,8 @@ import skein.units.Span
 final class OutsideProgram private (process: Process, out: OutsideProgram.Tail, err: OutsideProgram.Tail):
   import OutsideProgram.*
 
-  /** Its exit status, once it has ended. */
   def exit: Option[Int] = Option.when(!process.isAlive)(process.exitValue)
 
-  /** Waits for its end, at most for so long. */
   def await(most: Span): Unit = process.waitFor(most.toNanos.max(0), TimeUnit.NANOSECONDS): Unit
 
   /** The last line of its standard output that is not blank. Complete after [[stop]]. */

@@ -88,7 +88,6 @@ private[simulator] abstract class SimulatedVehicle(val settings: VehicleSettings
     */
   def contacts: Long = met
 
-  /** Notes a touch of an object. */
   protected def meets(touch: Touch): Unit =
     if !lastMet.exists(last =>
         last.name == touch.name && touch.at.since(last.at) <= SimulatedVehicle.OneContact
@@ -130,5 +129,5 @@ private object SimulatedVehicle:
   /** Time from the start until the GPS reports, as in AirSim. */
   val GpsStartup: Span = Span.ofSeconds(1)
 
-  /** As a flight's recording counts contacts. */
+  /** Touches of one object within this time of each other are one contact, as in a flight's recording. */
   val OneContact: Span = Span.ofMillis(500)
