@@ -33,10 +33,10 @@ async def look():
     with ThreadPoolExecutor(1) as own:
         loop = asyncio.get_running_loop()
         client = await loop.run_in_executor(own, lambda: airsim.MultirotorClient(port=port))
-        wanted = [airsim.ImageRequest("0", airsim.ImageType.Scene, False, False)] * 4
+        wanted = [airsim.ImageRequest("0", airsim.ImageType.Scene, False, False)] * 6
         while time.monotonic() < until:
             await loop.run_in_executor(own, client.simGetImages, wanted, "Evader1")
-            await asyncio.sleep(0.5)
+            await asyncio.sleep(0.3)
 
 
 async def main():

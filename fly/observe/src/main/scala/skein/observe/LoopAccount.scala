@@ -161,7 +161,8 @@ final class LoopAccount:
       if isAlone && roundTrip > JoinedFor then commanded.joined += 1
       // A later command has replaced this one in its time; one that was sent before and still flies came after.
       val isLast = !commanded.inFlight.exists(_.at > pending.at)
-      if hasFlown && isLast && commanded.inFlight.exists(_.at < pending.at) then commanded.overtaken += 1
+      if hasFlown && isLast && !Immediate(pending.method) && commanded.inFlight.exists(_.at < pending.at) then
+        commanded.overtaken += 1
 
   private def read(pending: Pending, answered: Passed.Answered): Unit =
     val sampled = answered.sampledAt.map(Stamped((), _, pending.at, answered.at))
@@ -267,6 +268,9 @@ object LoopAccount:
 
   /** Duration from which a move counts as awaited by the program. */
   private val JoinedFor = Span.ofMillis(50)
+
+  /** Commands that are answered before the end of the move that they replace. */
+  private val Immediate = Set("hover", "setCarControls")
 
   private val LeastStall  = Span.ofMillis(250)
   private val UsualAfter  = 20L

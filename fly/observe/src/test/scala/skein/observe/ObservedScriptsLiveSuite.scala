@@ -114,7 +114,7 @@ class ObservedScriptsLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Wait
         assert(math.abs(told.median - inside.median) <= vehicle.boundMs.get + Apart, s"$told $inside")
         assertEquals(observed.lost, Vector.empty)
 
-  private val Seconds = 8
+  private val Seconds = 10
 
   /** From the script's look at the clock to the command's passing, ms. */
   private val Apart = 5.0
