@@ -33,3 +33,22 @@ enum Tolerance:
   def text(unit: String): String =
     val (factor, shownUnit) = shown(unit)
     s"${(value * factor).significant(4)} $shownUnit".trim
+
+object Tolerance:
+  /** Reads the options `--tolerance`, in per cent, and `--within`; without either, 5 %. */
+  def read(percent: Option[Double], within: Option[Double]): Either[String, Tolerance] =
+    (percent, within) match
+      case (None, Some(distance)) =>
+        Either.cond(
+          distance > 0 && distance.isFinite,
+          Tolerance.Within(distance),
+          s"--within: expected a number above 0, came $distance"
+        )
+      case (share, None) =>
+        val percent = share.getOrElse(5.0)
+        Either.cond(
+          percent > 0 && percent <= 1000,
+          Tolerance.Share(percent / 100),
+          s"--tolerance: expected more than 0 %, came $percent"
+        )
+      case _ => Left("--tolerance, --within: expected one of them")

@@ -71,7 +71,7 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
   protected def execute(options: BudgetOptions): Either[String, Unit] =
     val legs = if options.oneWay.value then Legs.OneWay else Legs.RoundTrip
     for
-      tolerance  <- toleranceOf(options)
+      tolerance  <- Tolerance.read(options.tolerance, options.within)
       atJitterMs <- milliseconds("--at-jitter", options.atJitter, 20, legs)
       axes       <- axesOf(options, legs)
       _          <- Expect.that(options.atJitter.isEmpty || atJitterMs <= axes.jittersMs.last):
@@ -113,23 +113,6 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
     scenario(options).fold(duel(options, period))(team(options, _, period))
 
   private def scenario(options: BudgetOptions) = options.scenario.orElse(scenarios.firstWithoutGame)
-
-  private def toleranceOf(options: BudgetOptions): Either[String, Tolerance] =
-    (options.tolerance, options.within) match
-      case (None, Some(within)) =>
-        Either.cond(
-          within > 0 && within.isFinite,
-          Tolerance.Within(within),
-          s"--within: expected a number above 0, came $within"
-        )
-      case (share, None) =>
-        val percent = share.getOrElse(5.0)
-        Either.cond(
-          percent > 0 && percent <= 1000,
-          Tolerance.Share(percent / 100),
-          s"--tolerance: expected more than 0 %, came $percent"
-        )
-      case _ => Left("--tolerance, --within: expected one of them")
 
   private def duel(options: BudgetOptions, period: Span): Either[String, BudgetQuestion] =
     import options.forward

@@ -117,9 +117,13 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
       ))
     )
     mistake.toLeft(()).flatMap: _ =>
-      parser.constructRaw(optionsFirst(arguments) ++ behind.drop(1)) match
+      val others = behind.drop(1)
+      val words  = if startsProgram then others.map(Behind.marked) else others
+      parser.constructRaw(optionsFirst(arguments) ++ words) match
         case failure: Result.Failure => Left(Misuse.text(failure, names))
         case Result.Success(options) => Right(options)
+
+  private def startsProgram = parser.main.flattenedArgSigs.exists(_._2 == Behind.Reader)
 
   private def misused(mistakes: String): Int =
     Complaint.text(mistakes).linesIterator.foreach(mistake => Console.err.println(s"skein $name: $mistake"))

@@ -1,12 +1,14 @@
 package skein.cli
 
 import java.io.IOException
-import java.util.concurrent.{CountDownLatch, Executors, TimeUnit}
-import mainargs.{Flag, Leftover, ParserForClass, arg}
+import java.nio.file.Path
+import java.util.concurrent.{CountDownLatch, Executors}
+import mainargs.{Flag, ParserForClass, arg}
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.duration.DurationInt
+import skein.figures.ObservedFigure
 import skein.link.*
-import skein.observe.{Observed, ObservingProxy}
+import skein.observe.{Observed, ObservingProxy, OutsideProgram}
 import skein.report.{ObservedTables, Paragraph, Section}
 import skein.units.{Clock, Expect}
 
@@ -22,13 +24,18 @@ final case class ObserveOptions(
     link: String = "none",
     @arg(doc = "seed of every random choice")
     seed: Long = 1,
+    @arg(doc =
+      "folder for observed.json with the tables, commands.csv with a row for each command, and the figure " +
+        "ages.svg, ages.png; without it, the tables are only shown"
+    )
+    out: Option[String],
     @arg(doc = Shown.Doc)
     json: Flag,
     @arg(doc =
       "the program and its arguments, behind --: it is started, and observed until it ends; " +
         "without one, until Ctrl-C"
     )
-    command: Leftover[String]
+    command: Behind
 )
 
 /** `./skein observe`: measures the control loop of any program that flies by AirSim's interface. */
@@ -45,16 +52,31 @@ object ObserveCommand
       simulator <- Address.parse(options.simulator).left.map("--simulator: " + _)
       _         <- Expect.that(listenAt.port == 0 || listenAt != simulator):
         s"--listen: expected another address than the simulator's, came $listenAt twice"
-      profile <- Arguments.latency(options.link).left.map("--link: " + _)
-      _       <- observe(listenAt, simulator, LinkProfile.symmetric(profile), options)
+      profile  <- Arguments.latency(options.link).left.map("--link: " + _)
+      folder   <- options.out.fold(Right(None))(OutFolder.made("--out", _).map(Some(_)))
+      observed <- observe(listenAt, simulator, LinkProfile.symmetric(profile), options)
+      _        <- folder.fold(Right(()))(write(observed, _, Shown(options.json.value)))
     yield ()
+
+  private def write(observed: Observed, folder: Path, shown: Shown): Either[String, Unit] =
+    val picture =
+      ObservedFigure(observed).fold(Vector.empty)(OutFolder.picture("ages", _, "how old a loop's data is"))
+    OutFolder
+      .write(
+        folder,
+        Vector(
+          OutFolder.text("observed.json", Section.json(ObservedTables.data(observed))),
+          OutFolder.text("commands.csv", ObservedTables.csv(observed))
+        ) ++ picture
+      )
+      .map(files => shown.say(s"written: ${files.mkString(", ")}"))
 
   private def observe(
       listenAt: Address,
       simulator: Address,
       profile: LinkProfile,
       options: ObserveOptions
-  ): Either[String, Unit] =
+  ): Either[String, Observed] =
     given system: ActorSystem   = ActorSystem("skein")
     val reader                  = Executors.newSingleThreadExecutor(Thread.ofPlatform().daemon().factory())
     val shown                   = Shown(options.json.value)
@@ -72,7 +94,7 @@ object ObserveCommand
           unreachable = warn
         )
       )
-      val command = options.command.value
+      val command = options.command.words
       shown.say(
         s"${proxy.address} leads to $simulator" +
           (if profile == LinkProfile.none then "" else s" over ${profile.toServer.name}") +
@@ -86,7 +108,7 @@ object ObserveCommand
       Edge.await(proxy.close())
       val observed = proxy.observed
       shown.tables(ObservedTables.data(observed), text(observed))
-      ended
+      ended.map(_ => observed)
     catch case error: TransportError => Left(error.getMessage)
     finally
       reader.shutdown()
@@ -101,20 +123,15 @@ object ObserveCommand
   private def runToEnd(command: Seq[String]): Either[String, Unit] =
     try
       val program = ProcessBuilder(command*).inheritIO().start()
-      Edge.untilInterrupted(() => stop(program)):
+      Edge.untilInterrupted(() => OutsideProgram.stop(program)):
         val status = program.waitFor()
         if status != 0 then
           Console.err.println(s"skein observe: ${command.head} ended with exit status $status")
       Right(())
     catch case absent: IOException => Left(s"cannot start ${command.head}: ${absent.getMessage}")
 
-  private def stop(program: Process): Unit =
-    program.destroy()
-    if !program.waitFor(GraceS, TimeUnit.SECONDS) then program.destroyForcibly(): Unit
-
   private def text(observed: Observed): String =
     val findings = ObservedTables.findings(observed).flatMap(Paragraph.lines(_, 100))
     (Section.text(ObservedTables.tables(observed)) +: "" +: findings).mkString("\n")
 
   private val TellEvery = 5.seconds
-  private val GraceS    = 5L

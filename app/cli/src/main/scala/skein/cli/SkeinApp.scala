@@ -61,8 +61,9 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
       BudgetCommand(program),
       PolicyCommand()
     ),
-    "Simulator and network" -> Seq(ServeCommand, LinkCommand, LatencyCommand, ObserveCommand),
-    "Work with recordings"  -> Seq(
+    "Simulator and network"       -> Seq(ServeCommand, LinkCommand, LatencyCommand),
+    "Judge a program of your own" -> Seq(ObserveCommand, MarginCommand()),
+    "Work with recordings"        -> Seq(
       ReportCommand(),
       ReplayCommand(),
       IdentifyCommand(),

@@ -26,8 +26,8 @@ private[cli] object TruthOnShow:
       server.truth().foreach: truth =>
         val now    = clock.now()
         val number = sequence.getAndIncrement()
-        for (name, kinematics) <- truth.vehicles do
-          feed.offer(ReadingRow(number, name, Stamped(kinematics, truth.at, now, now)))
+        for vehicle <- truth.vehicles do
+          feed.offer(ReadingRow(number, vehicle.name, Stamped(vehicle.kinematics, truth.at, now, now)))
     )
 
   private def heading(settings: SimulatorSettings, server: SimulatorServer, now: Instant) = RecordingHeader(

@@ -95,6 +95,20 @@ object ObservedTables:
     )
     sentence ++ paused ++ lost ++ more
 
+  private val columns = Vector("atS", "vehicle", "method", "connection", "ownAgeMs", "othersAgeMs") ++
+    Vector("boundMs", "sinceOwnMs", "sinceOthersMs")
+
+  /** A row for each command that the log holds, as comma-separated values; an empty cell is unknown. */
+  def csv(observed: Observed): String =
+    def text(word: String) =
+      if word.matches("[^\",\n\r]*") then word else s"\"${word.replace("\"", "\"\"")}\""
+    def number(value: Option[Double]) = value.fold("")(_.fixed(3))
+    val rows                          = observed.log.map: command =>
+      import command.*
+      (Vector(at.toSeconds.fixed(6), text(vehicle), text(method), connection.toString) ++
+        Vector(ownAgeMs, othersAgeMs, boundMs, sinceOwnMs, sinceOthersMs).map(number)).mkString(",")
+    (columns.mkString(",") +: rows).mkString("", "\n", "\n")
+
   /** Progress in one line; None before the first command. */
   def line(progress: Progress): Option[String] =
     Option.when(progress.commands > 0):

@@ -312,7 +312,12 @@ object DocumentedCommands:
 
   def of(kind: Kind): Vector[String] = documented
     .map(inVirtualTime(_, readme))
-    .filter(command => kindOf(command) == kind && !runElsewhere.contains(command))
+    .filter(command => kindOf(command) == kind && !runElsewhere.contains(command) && !isOfReaders(command))
+
+  /** A command that runs a program of the reader's, for minutes and by the clock; [[MarginCommandLiveSuite]]
+    * runs others.
+    */
+  private def isOfReaders(command: String) = command.startsWith("margin ")
 
   /** The first of those that differ in nothing that chooses an engine; flights by the clock but one, and
     * processes, are for the nightly run.
@@ -345,14 +350,14 @@ object DocumentedCommands:
     if !command.startsWith("fly ") || isLive || readme.contains(command) then command
     else s"$command --clock virtual"
 
-  /** Commands that are not run: placeholders for many commands, and `identify` without the name of a
-    * recording. Examples also show `./sbtw …` and `python …`. The tests of those projects run these programs
-    * (`./sbtw NAME/test`), `PythonPackageLiveSuite` runs `learn.py`; the other Python programs need
-    * frameworks that are not installed here.
+  /** Commands that are not run: placeholders for many commands, `identify` without the name of a recording,
+    * and `margin` without a program. Examples also show `./sbtw …` and `python …`. The tests of those
+    * projects run these programs (`./sbtw NAME/test`), `PythonPackageLiveSuite` runs `learn.py`; the other
+    * Python programs need frameworks that are not installed here.
     */
   private def leftOut(command: String): Boolean =
     val standsForMany = Seq("--algorithm …", "--scenario NAME", "--loop …").exists(command.contains)
-    standsForMany || command == "identify"
+    standsForMany || Set("identify", "margin")(command)
 
   /** Commands that other suites run, with options that make them short. */
   private val runElsewhere: Map[String, Class[?]] = Map(

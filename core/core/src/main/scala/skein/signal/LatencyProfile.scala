@@ -37,6 +37,15 @@ enum LatencyProfile:
   /** The text that [[LatencyProfile.parse]] reads back as this profile. */
   def name: String
 
+  /** The mean round trip over a long time, without waits for a limited rate. */
+  def mean: Span = this match
+    case Steady(_, roundTrip)                               => roundTrip.mean
+    case Alternating(_, busy, quiet, busyLasts, quietLasts) =>
+      val share = busyLasts.toSeconds / (busyLasts + quietLasts).toSeconds
+      Span.ofMillis(busy.mean.toMillis * share + quiet.mean.toMillis * (1 - share))
+    case Correlated(_, latency, _) => latency.mean
+    case Limited(_, latency, _)    => latency.mean
+
 object LatencyProfile:
   val none: LatencyProfile   = Steady("none", LatencyDistribution.Constant(Span.Zero))
   val direct: LatencyProfile = Steady("direct", LatencyDistribution.Direct)

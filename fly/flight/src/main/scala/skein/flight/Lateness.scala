@@ -10,7 +10,7 @@ import skein.units.Decimals.fixed
   * @param late of them, by more than [[Lateness.Allowed]]
   * @param most the largest lateness
   */
-private[flight] final case class Lateness(ticks: Int = 0, late: Int = 0, most: Span = Span.Zero):
+private[skein] final case class Lateness(ticks: Int = 0, late: Int = 0, most: Span = Span.Zero):
   import Lateness.*
 
   /** Adds a tick.
@@ -25,7 +25,7 @@ private[flight] final case class Lateness(ticks: Int = 0, late: Int = 0, most: S
     s"the machine was too busy: ${(100.0 * late / ticks).fixed(0)} % of $ticks ticks came more than " +
       s"${Allowed.toMillis.fixed(0)} ms late, one ${most.toMillis.fixed(0)} ms"
 
-private[flight] object Lateness:
+private[skein] object Lateness:
   /** Tolerance of a tick's lateness: two ticks of the scheduler. A vehicle at 10 m/s moves 0.2 m in it. */
   val Allowed: Span = Span.ofMillis(20)
 

@@ -24,6 +24,11 @@ object Diagnosis:
   /** Factor by which images slow small calls on a link that they fill. */
   private val SlowedBy = 2.0
 
+  /** Quantile by which small calls are compared. A program that waits for each sends few while an image's
+    * bytes are ahead of them, and more before these are sent.
+    */
+  private val Slow = 0.75
+
   /** One physics step of AirSim: readings of one moment differ by up to this. */
   private val LeastSkewMs = 3.0
 
@@ -83,10 +88,11 @@ object Diagnosis:
     for
       quiet  <- observed.smallCallMs.quiet
       beside <- observed.smallCallMs.besideImages
-      if beside.count >= 10 && beside.median > SlowedBy * quiet.median && beside.median - quiet.median > 2
+      (slow, usual) = (beside.quantile(Slow), quiet.quantile(Slow))
+      if beside.count >= 10 && slow > SlowedBy * usual && slow - usual > 2
     yield Finding(
       "images fill the link",
-      s"small calls take ${beside.median.brief} ms while an image is under way, ${quiet.median.brief} ms else",
+      s"a quarter of small calls take ${slow.brief} ms or more while an image is under way, ${usual.brief} ms else",
       "ask for fewer, smaller or compressed images; a faster link helps, more threads do not"
     )
 

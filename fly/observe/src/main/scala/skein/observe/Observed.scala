@@ -15,6 +15,7 @@ import skein.units.Span
   * @param smallCallMs round trips of small calls, without and with a simultaneous transfer of an image
   * @param lost connections whose bytes could not be parsed
   * @param notKept messages that passed while the observer had no room for them
+  * @param log of the first [[LoopAccount.MostLogged]] commands
   */
 final case class Observed(
     lasted: Span,
@@ -29,9 +30,29 @@ final case class Observed(
     imagesOnCommandConnections: Long,
     pauses: Long,
     lost: Vector[String],
-    notKept: Long
+    notKept: Long,
+    log: Vector[ObservedCommand]
 ):
   def commands: Long = vehicles.map(_.commands).sum
+
+/** One command. Ages and times since are in milliseconds; absent where there was no reading or command
+  * before.
+  *
+  * @param at since the first call
+  * @param boundMs half width of the own age's uncertainty
+  * @param sinceOwnMs since the last command to the vehicle; `sinceOthersMs`: to any other
+  */
+final case class ObservedCommand(
+    at: Span,
+    vehicle: String,
+    method: String,
+    connection: Int,
+    ownAgeMs: Option[Double],
+    othersAgeMs: Option[Double],
+    boundMs: Option[Double],
+    sinceOwnMs: Option[Double],
+    sinceOthersMs: Option[Double]
+)
 
 /** The commands to one vehicle.
   *

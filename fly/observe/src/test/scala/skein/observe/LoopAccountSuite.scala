@@ -46,6 +46,32 @@ class LoopAccountSuite extends munit.FunSuite:
     def found: Set[String]       = Diagnosis.of(observed).map(_.name).toSet
     def vehicle(name: String)    = observed.vehicles.find(_.name == name).get
 
+  test("to hover, which is answered before the end of the move that it replaces, has overtaken nothing"):
+    val program = Program()
+    val moved   = program.move("A", 0)
+    val hovers  = program.call("hover", "A", 100)
+    program.answer(hovers, 102)
+    program.answer(moved, 104)
+    assertEquals(program.vehicle("A").overtaken, 0L)
+
+  test("each command is logged with what was known when it passed"):
+    val program = Program()
+    program.move("A", 0)
+    program.called("getMultirotorState", "B", 10, 30, Some(20))
+    program.called("getMultirotorState", "A", 40, 60, Some(50))
+    program.move("A", 70)
+    program.move("B", 75)
+    val log = program.observed.log
+    assertEquals(log.map(_.vehicle), Vector("A", "A", "B"))
+    assertEquals(log.head.ownAgeMs, None)
+    assertEquals(log.head.sinceOwnMs, None)
+    assertEquals(log(1).sinceOwnMs, Some(70.0))
+    assertEquals(log(1).sinceOthersMs, None)
+    assertEqualsDouble(log(1).ownAgeMs.get, 20, 1e-6)
+    assertEqualsDouble(log(1).othersAgeMs.get, 50, 1e-6)
+    assertEquals(log(2).sinceOthersMs, Some(5.0))
+    assertEqualsDouble(log(2).at.toMillis, 75, 1e-6)
+
   test("the age of a command's data counts from when it was sampled, by the clocks' offset"):
     val program = Program()
     for tick <- 0 until 50 do
@@ -135,6 +161,19 @@ class LoopAccountSuite extends munit.FunSuite:
       val image = program.call("simGetImages", "A", ms + 30, connection = 1)
       program.called("getMultirotorState", "A", ms + 40, ms + 120, Some(ms + 50))
       program.answer(image, ms + 130, connection = 1, bytes = 900_000)
+    assert(program.found("images fill the link"))
+
+  test("a link that images fill is found by few slow calls, for a program that waits sends no more of them"):
+    val program = Program()
+    for tick <- 0 until 20 do
+      val ms    = tick * 1_000.0
+      val image = program.call("simGetImages", "A", ms, connection = 1)
+      // These pass before the image's bytes.
+      for call <- 0 to 1 do
+        program.called("getMultirotorState", "A", ms + 10 + 30 * call, ms + 30 + 30 * call)
+      program.called("getMultirotorState", "A", ms + 80, ms + 400)
+      program.answer(image, ms + 410, connection = 1, bytes = 900_000)
+      program.called("getMultirotorState", "A", ms + 500, ms + 520)
     assert(program.found("images fill the link"))
 
   test("a call that takes much longer than its like is a stall, once for all that waited"):

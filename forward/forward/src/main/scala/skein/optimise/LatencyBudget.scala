@@ -33,16 +33,10 @@ final case class LatencyBudget(
     *
     * @param tolerance of [[deviation]], for example 0.05
     */
-  def holdsUpTo(jitter: Int, tolerance: Double): LatencyBudget.Bound =
-    val known = meansMs.indices.flatMap(mean => deviation(jitter, mean).map(meansMs(mean) -> _.abs)).toVector
-    known.indexWhere((_, off) => !(off <= tolerance)) match
-      case -1 if known.isEmpty => LatencyBudget.Bound.Unknown
-      case -1                  => LatencyBudget.Bound.Beyond(known.last._1)
-      case 0                   => LatencyBudget.Bound.Below(known.head._1)
-      case first               =>
-        val ((fromMs, fromOff), (toMs, toOff)) = (known(first - 1), known(first))
-        if !toOff.isFinite then LatencyBudget.Bound.At(fromMs)
-        else LatencyBudget.Bound.At(fromMs + (toMs - fromMs) * (tolerance - fromOff) / (toOff - fromOff))
+  def holdsUpTo(jitter: Int, tolerance: Double): LatencyBudget.Bound = LatencyBudget.holdsUpTo(
+    meansMs.indices.flatMap(mean => deviation(jitter, mean).map(meansMs(mean) -> _.abs)).toVector,
+    tolerance
+  )
 
 object LatencyBudget:
   /** The largest mean latency, ms, at which the tolerance holds. */
@@ -56,6 +50,21 @@ object LatencyBudget:
     case Below(meanMs: Double)
 
     case Unknown
+
+  /** The mean latency up to which deviations stay within a tolerance, on straight lines between them.
+    *
+    * @param known mean latencies, ms, ascending, each with the size of its deviation; not a finite number
+    *   where there is no value
+    */
+  def holdsUpTo(known: Vector[(Double, Double)], tolerance: Double): Bound =
+    known.indexWhere((_, off) => !(off <= tolerance)) match
+      case -1 if known.isEmpty => Bound.Unknown
+      case -1                  => Bound.Beyond(known.last._1)
+      case 0                   => Bound.Below(known.head._1)
+      case first               =>
+        val ((fromMs, fromOff), (toMs, toOff)) = (known(first - 1), known(first))
+        if !toOff.isFinite then Bound.At(fromMs)
+        else Bound.At(fromMs + (toMs - fromMs) * (tolerance - fromOff) / (toOff - fromOff))
 
   /** The link of a cell: round trips are log-normal with this mean and jitter; constant without jitter.
     *

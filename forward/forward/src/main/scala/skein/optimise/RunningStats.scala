@@ -31,7 +31,25 @@ final case class RunningStats(count: Int, mean: Double, squares: Double):
   def halfWidth95: Double =
     if count == 0 then Double.PositiveInfinity else NormalQuantile.TwoSided95 * sd / math.sqrt(count)
 
+  /** Half width of the 95 % confidence interval of the mean of few normal values, by Student's distribution;
+    * infinite for fewer than two.
+    */
+  def studentHalfWidth95: Double =
+    if count < 2 then Double.PositiveInfinity
+    else if count - 2 < RunningStats.student.length then
+      RunningStats.student(count - 2) * sd / math.sqrt(count)
+    else halfWidth95
+
 object RunningStats:
+  /** The 97.5 % quantiles of Student's distribution for 1, 2, … degrees of freedom (Abramowitz and Stegun,
+    * "Handbook of mathematical functions", table 26.10).
+    */
+  private val student = Vector(
+    12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201,
+    2.179, 2.160, 2.145, 2.131, 2.120, 2.110, 2.101, 2.093, 2.086, 2.080, 2.074, 2.069, 2.064, 2.060, 2.056,
+    2.052, 2.048, 2.045, 2.042
+  )
+
   /** Whether all pairs are [[RunningStats.isSame identical]]. */
   def areSame(some: Seq[RunningStats], others: Seq[RunningStats]): Boolean =
     some.corresponds(others)(_.isSame(_))

@@ -80,6 +80,15 @@ class ObjectiveSuite extends munit.FunSuite:
     val mean = values.sum / 20
     assertEqualsDouble(whole.sd, math.sqrt(values.map(v => (v - mean) * (v - mean)).sum / 19), 1e-12)
 
+  test("the interval of few values is Student's, that of many the normal distribution's"):
+    def width(count: Int) =
+      val stats = RunningStats.of(count)(_ % 2)
+      stats.studentHalfWidth95 / stats.halfWidth95
+    assertEquals(RunningStats.of(1)(_ => 3).studentHalfWidth95, Double.PositiveInfinity)
+    assertEqualsDouble(width(2), 12.706 / 1.959964, 1e-9)
+    assertEqualsDouble(width(31), 2.042 / 1.959964, 1e-9)
+    assertEqualsDouble(width(32), 1, 1e-9)
+
   test("a capture at the last moment that counts is one, and one a score later is none"):
     val outcomes = DuelOutcomes(1)
     for (captureS, expected) <- Seq(7.2 -> 1.0, 7.3 -> 1.0, 73 * 0.1 -> 1.0, 7.4 -> 0.0) do

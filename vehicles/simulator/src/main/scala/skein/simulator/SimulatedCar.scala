@@ -71,7 +71,7 @@ final private[simulator] class SimulatedCar(settings: VehicleSettings, worldOrig
     val centre = worldPosition(at) + middleFrd
     for contact <- obstacles.touched(scene, centre, halfLengths)(orientation) do
       val back = contact.normal * contact.depthM
-      touched = Some(obstacles.told(scene, contact, at, positionAt(at)))
+      meets(obstacles.told(scene, contact, at, positionAt(at)))
       if hits(contact, velocityOf(state)) then
         state = CarState(state.northM + back.x, state.eastM + back.y, state.headingRad)
         acceleration = Vector3.Zero

@@ -77,7 +77,7 @@ final private[simulator] class SimulatedMultirotor(
     val centre = settings.startNed + state.positionNed
     for contact <- obstacles.touched(scene, centre, halfLengths)(state.orientation) do
       bounce(contact)
-      touched = Some(obstacles.told(scene, contact, at, state.positionNed))
+      meets(obstacles.told(scene, contact, at, state.positionNed))
 
   private def bounce(contact: Contact): Unit =
     val n        = contact.normal

@@ -19,6 +19,8 @@ private[simulator] abstract class SimulatedVehicle(val settings: VehicleSettings
   private var gpsFrom: Instant         = Instant.Epoch
   protected var controlled: Boolean    = false
   protected var touched: Option[Touch] = None
+  private var lastMet: Option[Touch]   = None
+  private var met                      = 0L
   protected val obstacles: Obstacles   = Obstacles(settings.startNed)
 
   /** The vehicle's kind as a word, for messages. */
@@ -81,6 +83,19 @@ private[simulator] abstract class SimulatedVehicle(val settings: VehicleSettings
 
   def worldPosition(at: Instant): Vector3 = settings.startNed + positionAt(at)
 
+  /** Contacts with objects of the scene so far, the ground aside. Touches of one object within
+    * [[SimulatedVehicle.OneContact]] of each other are one contact.
+    */
+  def contacts: Long = met
+
+  protected def meets(touch: Touch): Unit =
+    if !lastMet.exists(last =>
+        last.name == touch.name && touch.at.since(last.at) <= SimulatedVehicle.OneContact
+      )
+    then met += 1
+    lastMet = Some(touch)
+    touched = lastMet
+
   /** Takes the last touch of the ground or of an object since the last call. */
   def takeTouch(): Option[Touch] =
     val last = touched
@@ -113,3 +128,6 @@ private[simulator] abstract class SimulatedVehicle(val settings: VehicleSettings
 private object SimulatedVehicle:
   /** Time from the start until the GPS reports, as in AirSim. */
   val GpsStartup: Span = Span.ofSeconds(1)
+
+  /** Touches of one object within this time of each other are one contact, as in a flight's recording. */
+  val OneContact: Span = Span.ofMillis(500)

@@ -80,9 +80,12 @@ final class SimulatorServer private (
 object SimulatorServer:
 
   /** @param at on the simulator's clock
-    * @param vehicles world NED
+    * @param vehicles world NED; contacts with objects of the scene since the start
     */
-  final case class Truth(at: Instant, vehicles: Vector[(name: String, kinematics: Kinematics)])
+  final case class Truth(
+      at: Instant,
+      vehicles: Vector[(name: String, kinematics: Kinematics, contacts: Long)]
+  )
 
   /** Starts a simulator. The future fails with the transport's error if it cannot listen there, such as
     * [[skein.link.TransportError.PortTaken]].
@@ -267,7 +270,8 @@ object SimulatorServer:
               vehicle.velocityAt(world.now),
               vehicle.orientation,
               vehicle.angularVelocityFrd
-            )
+            ),
+            contacts = vehicle.contacts
           )
       )
 

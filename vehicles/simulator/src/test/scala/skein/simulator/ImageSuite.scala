@@ -189,6 +189,31 @@ class ImageSuite extends munit.FunSuite:
     assertEquals(told.map(_.object_name), Some("House"))
     assertEquals(told.map(_.normal), Some(Vector3r(-1, 0, 0)))
 
+  test("contacts with objects are counted, one for touches in a row, and the ground is none"):
+    val bench                   = Bench(scene = scene).hovering(-3)
+    def contacts                = bench.simulation.world.vehicles.head.contacts
+    def fly(north: Float): Unit =
+      bench.call(
+        "moveByVelocityZ",
+        Float32(north),
+        Float32(0),
+        Float32(-3),
+        Float32(2),
+        Int32(0),
+        writeMsg(YawMode.Still),
+        Str("Evader")
+      )
+      bench.pass(3)
+    assertEquals(contacts, 0L)
+    fly(5)
+    assertEquals(contacts, 1L)
+    fly(-5)
+    fly(5)
+    assertEquals(contacts, 2L)
+    bench.call("land", Float32(60), Str("Evader"))
+    bench.pass(60)
+    assertEquals(contacts, 2L)
+
   test("an invalid value in the settings is reported with its key"):
     def error(text: String) = SensorSettings.read(text).fold(_.message, equipment => fail(s"$equipment"))
     assert(error(

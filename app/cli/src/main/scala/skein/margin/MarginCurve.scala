@@ -1,0 +1,95 @@
+package skein.margin
+
+import skein.budget.Tolerance
+import skein.optimise.LatencyBudget.Bound
+import skein.optimise.{LatencyBudget, RunningStats}
+import skein.signal.LatencyProfile
+import skein.units.Decimals.{fixed, significant}
+
+/** The runs over one link, and what they come to together. */
+final case class MarginPoint(link: LatencyProfile, runs: Vector[MarginRun]):
+  def meanMs: Double = link.mean.toMillis
+
+  val stats: RunningStats =
+    val values = runs.flatMap(_.value.toOption)
+    RunningStats.of(values.size)(values)
+
+  def without: Vector[MarginRun.NoResult] = runs.flatMap(_.value.left.toOption)
+
+  def violations: Int = runs.filter(_.value.isRight).map(_.violations).sum
+
+  /** Whether it says anything: unlike runs that the machine spoiled, a program that fails does. */
+  def counts: Boolean = stats.count > 0 || without.exists:
+    case MarginRun.NoResult.OfProgram(_) => true
+    case MarginRun.NoResult.Starved(_)   => false
+
+/** How a program's result changes with the link's mean round trip.
+  *
+  * @param reference without an emulated link
+  * @param points over links, by ascending mean round trips
+  * @param per the unit of deviations: the reference's size, or 1
+  */
+final case class MarginCurve private (
+    judge: MarginJudge,
+    tolerance: Tolerance,
+    reference: MarginPoint,
+    points: Vector[MarginPoint],
+    per: Double
+):
+  /** Deviation from the reference: 0.05 is 5 % more with a tolerance in per cent; NaN without a value. */
+  def deviation(point: MarginPoint): Double =
+    if point.stats.count == 0 then Double.NaN else (point.stats.mean - reference.stats.mean) / per
+
+  /** Half width of its 95 % interval, by the spread of the runs at both. */
+  def halfWidth(point: MarginPoint): Double =
+    math.hypot(point.stats.studentHalfWidth95, reference.stats.studentHalfWidth95) / per
+
+  /** The mean round trip, ms, up to which the result stays within the tolerance, by straight lines. */
+  def margin: Bound = holds((off, _) => off)
+
+  /** The margin's 95 % interval: where the result may have left the tolerance first, and where it must have.
+    */
+  def interval: (from: Bound, to: Bound) =
+    (from = holds((off, half) => off + half), to = holds((off, half) => (off - half).max(0)))
+
+  private def holds(off: (Double, Double) => Double): Bound =
+    val known = points.filter(_.counts).map: point =>
+      (point.meanMs, off(deviation(point).abs, halfWidth(point)))
+    LatencyBudget.holdsUpTo((0.0, 0.0) +: known, tolerance.value)
+
+  def sentence: String =
+    val value = s"${reference.stats.mean.significant(4)} ${judge.unit}".trim
+    val what  =
+      s"${judge.name} stays within ${tolerance.text(judge.unit)} of what it is without a link, $value,"
+    val before = margin match
+      case Bound.At(ms)     => s"$what up to a mean round trip of ${ms.fixed(0)} ms"
+      case Bound.Beyond(ms) => s"$what as far as it was flown, to a mean round trip of ${ms.fixed(0)} ms"
+      case _                => s"$what over none of these links"
+    s"$before (95 %: ${MarginCurve.text(interval.from)} to ${MarginCurve.text(interval.to)})"
+
+object MarginCurve:
+  /** @return Left states why there is no curve */
+  def of(
+      judge: MarginJudge,
+      tolerance: Tolerance,
+      reference: MarginPoint,
+      points: Vector[MarginPoint]
+  ): Either[String, MarginCurve] =
+    reference.without match
+      case why +: _ if reference.stats.count == 0 =>
+        Left(s"no run without a link has a result, to compare with: ${why.why}")
+      case _ if reference.stats.count == 0 => Left("no run without a link has ended")
+      case _                               =>
+        tolerance
+          .per(reference.stats.mean)
+          .left.map(_ =>
+            s"${judge.name} is 0 without a link, so no percentage of it can be given; " +
+              "--within takes a difference instead"
+          )
+          .map(MarginCurve(judge, tolerance, reference, points.sortBy(_.meanMs), _))
+
+  def text(bound: Bound): String = bound match
+    case Bound.At(ms)     => s"${ms.fixed(0)} ms"
+    case Bound.Beyond(ms) => s"more than ${ms.fixed(0)} ms"
+    case Bound.Below(ms)  => s"less than ${ms.fixed(0)} ms"
+    case Bound.Unknown    => "unknown"

@@ -1,0 +1,96 @@
+package skein.margin
+
+import skein.scenario.{Limit, Tracks}
+import skein.units.Decimals.fixed
+import skein.units.Span
+
+/** One run of a program over a link.
+  *
+  * @param value by the judge
+  * @param violations of the scenario's limits
+  * @param callMs median round trip of calls that read states
+  * @param ageMs mean age of the vehicle's own data at its commands
+  */
+final case class MarginRun(
+    value: Either[MarginRun.NoResult, Double],
+    violations: Int,
+    callMs: Option[Double],
+    ageMs: Option[Double]
+)
+
+object MarginRun:
+  /** Why a run counts for nothing: the program's fault, or the machine's. */
+  enum NoResult(val why: String):
+    /** The program did not do what could be judged. */
+    case OfProgram(reason: String) extends NoResult(reason)
+
+    case Starved(reason: String) extends NoResult(reason)
+
+  /** How a run went, seen from outside.
+    *
+    * @param exit the program's exit status, if it ended by itself
+    * @param commands to vehicles
+    * @param silentFor time since anything had passed, at the end
+    * @param lastLine of its standard output, not blank; `lastError`: of its standard error
+    * @param contacts while it was judged
+    * @param tracks of the judged part; absent if that is too short
+    * @param starved why the machine was too busy, if it was
+    */
+  final case class Ended(
+      exit: Option[Int],
+      lasted: Span,
+      connections: Int,
+      commands: Long,
+      silentFor: Span,
+      lastLine: Option[String],
+      lastError: Option[String],
+      contacts: Long,
+      tracks: Option[Tracks],
+      starved: Option[String]
+  )
+
+  /** The value of a run; its program's failure precedes the machine's. */
+  def judged(by: MarginJudge, ended: Ended): Either[NoResult, Double] =
+    died(ended)
+      .orElse(hung(by, ended))
+      .map(NoResult.OfProgram(_))
+      .orElse(ended.starved.map(NoResult.Starved(_)))
+      .toLeft(())
+      .flatMap(_ => value(by, ended).left.map(NoResult.OfProgram(_)))
+
+  /** Violations of limits by a run that has a value. */
+  def violations(limits: Vector[Limit], ended: Ended): Int =
+    ended.tracks.fold(0)(tracks => limits.map(_.violations(tracks).size).sum)
+
+  private def died(ended: Ended): Option[String] = ended.exit.filter(_ != 0).map: status =>
+    s"it ended with exit status $status after ${seconds(ended.lasted)}" +
+      ended.lastError.fold("")(line => s": ${line.take(MostOfLine)}")
+
+  private def hung(by: MarginJudge, ended: Ended): Option[String] =
+    if ended.connections == 0 then
+      Some("it never connected to the port that {port} in its arguments, and SKEIN_PORT, stand for")
+    else if by == MarginJudge.Printed then
+      Option.when(
+        ended.exit.isEmpty
+      )(s"it still ran after ${seconds(ended.lasted)}, and had no last line yet")
+    else if ended.commands == 0 then Some("it connected, and commanded nothing")
+    else
+      Option.when(ended.exit.isEmpty && ended.silentFor * 2 > ended.lasted):
+        s"it hung: nothing passed in the last ${seconds(ended.silentFor)} of ${seconds(ended.lasted)}"
+
+  private def value(by: MarginJudge, ended: Ended): Either[String, Double] = by match
+    case MarginJudge.Printed =>
+      val came = ended.lastLine.fold("nothing")(line => s"'${line.take(MostOfLine)}'")
+      ended.lastLine
+        .flatMap(_.toDoubleOption)
+        .filter(_.isFinite)
+        .toRight(s"expected a number as the last line that it prints, came $came")
+    case MarginJudge.Contacts       => Right(ended.contacts.toDouble)
+    case MarginJudge.Flown(measure) =>
+      ended.tracks.flatMap(measure.of).toRight(
+        s"it has no value of '${measure.name}' after ${seconds(ended.lasted)}"
+      )
+
+  private def seconds(span: Span) = s"${span.toSeconds.fixed(1)} s"
+
+  private val MostOfLine = 200

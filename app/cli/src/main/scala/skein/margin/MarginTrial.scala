@@ -1,0 +1,196 @@
+package skein.margin
+
+import java.util.concurrent.Executors
+import org.apache.pekko.actor.ActorSystem
+import scala.collection.mutable.ArrayBuffer
+import scala.concurrent.duration.Duration
+import scala.concurrent.{Await, ExecutionContext, Future}
+import skein.airsim.{AirSimClient, Multirotor, WorldSettings}
+import skein.flight.{Lateness, Preparation}
+import skein.link.*
+import skein.observe.{CallKind, Observed, ObservingProxy, OutsideProgram}
+import skein.rpc.RpcClient
+import skein.scenario.{Scenario, Track, Tracks}
+import skein.scene.Scene
+import skein.signal.LatencyProfile
+import skein.simulator.{SimulatorServer, SimulatorSettings}
+import skein.units.*
+
+/** Runs a program against a simulator of its own, by the clock.
+  *
+  * @param command `{port}` in its words stands for the simulator's port
+  * @param scenario whose vehicles hover at their starts when the program begins
+  * @param lasts most time for a run; a program that still runs is stopped then
+  * @param skip time after the first command that is not judged
+  */
+final class MarginTrial(
+    command: Seq[String],
+    world: WorldSettings,
+    scene: Scene,
+    scenario: Option[Scenario],
+    judge: MarginJudge,
+    lasts: Span,
+    skip: Span,
+    clock: Clock
+)(using ActorSystem):
+  import MarginTrial.*
+  private given ExecutionContext = ExecutionContext.parasitic
+
+  /** Blocks until the run has ended.
+    *
+    * @param isStopped whether it is to end early; its result counts for nothing then
+    * @return the run, and what the program printed; Left states why no program can be run
+    */
+  def run(
+      link: LatencyProfile,
+      seed: Long,
+      isStopped: () => Boolean
+  ): Either[String, (run: MarginRun, printed: String)] =
+    val transport = TcpTransport()
+    val settings  = SimulatorSettings(world, AnyPort, scene = scene)
+    val server    = awaited(SimulatorServer.start(settings, transport, clock))
+    val reader    = Executors.newSingleThreadExecutor(Thread.ofPlatform().daemon().factory())
+    try
+      for
+        _ <- scenario.fold(Right(()))(place(_, server.address, transport))
+        proxy = awaited(ObservingProxy.start(
+          AnyPort,
+          server.address,
+          EmulatedLink(LinkProfile.symmetric(link), seed, clock),
+          transport,
+          clock,
+          reader
+        ))
+        run <- flown(server, proxy, isStopped)
+      yield run
+    finally
+      awaited(server.close()): Unit
+      reader.shutdown()
+
+  /** Calls the simulator through an observer for a while, so that their code is compiled before a run counts;
+    * then their threads precede others, where the system allows it. Blocks.
+    */
+  def warmUp(): Unit =
+    val transport = TcpTransport()
+    val server    = awaited(SimulatorServer.start(SimulatorSettings(address = AnyPort), transport, clock))
+    val link      = EmulatedLink(LinkProfile.none, 0, clock)
+    val reader    = Executors.newSingleThreadExecutor(Thread.ofPlatform().daemon().factory())
+    val proxy     = awaited(ObservingProxy.start(AnyPort, server.address, link, transport, clock, reader))
+    val client    = AirSimClient(RpcClient(transport, proxy.address, clock))
+    val until     = clock.now() + Warming
+    awaited(Multirotor.named(client, WorldSettings.Default.vehicles.head.name)).foreach: vehicle =>
+      while clock.now() < until do
+        awaited(vehicle.status()): Unit
+        vehicle.moveByVelocityZ(Vector3(1, 0, 0), Metres(-20), Span.ofSeconds(1)): Unit
+    Seq(client.close(), proxy.close(), server.close()).foreach(awaited(_): Unit)
+    reader.shutdown()
+    BackgroundThread.compilersGiveWay(): Unit
+    ControlThreads.lead(): Unit
+
+  private def flown(server: SimulatorServer, proxy: ObservingProxy, isStopped: () => Boolean) =
+    val port    = proxy.address.port.toString
+    val watched =
+      try
+        for program <- OutsideProgram.start(command.map(_.replace(Port, port)), Map("SKEIN_PORT" -> port))
+        yield
+          val watch = Watch(server, proxy, program, isStopped)
+          try watch.untilEnd()
+          finally program.stop()
+          (watch, program)
+      finally awaited(proxy.close()): Unit
+    watched.map((watch, program) => (run = watch.judged(proxy.observed), printed = program.printed))
+
+  private def place(scenario: Scenario, at: Address, transport: Transport): Either[String, Unit] =
+    val client = AirSimClient(RpcClient(transport, at, clock))
+    try awaited(Preparation(client, clock).place(scenario.fleet)).map(_ => ())
+    finally awaited(client.close()): Unit
+
+  /** Watches one run: where the vehicles truly are, and how busy the machine is. */
+  private final class Watch(
+      server: SimulatorServer,
+      proxy: ObservingProxy,
+      program: OutsideProgram,
+      isStopped: () => Boolean
+  ):
+    private val startedAt = clock.now()
+    private val truths    = ArrayBuffer.empty[SimulatorServer.Truth]
+    private var lateness  = Lateness()
+    private var begun     = Option.empty[Instant]
+    private var passed    = Span.Zero
+    private var passedAt  = startedAt
+    private var exit      = Option.empty[Int]
+    private var lasted    = Span.Zero
+
+    def untilEnd(): Unit =
+      var ticks = 0L
+      while exit.isEmpty && lasted < MarginTrial.this.lasts && !isStopped() do
+        val due = startedAt + Every * ticks
+        program.await(due.since(clock.now()))
+        val now = clock.now()
+        lateness = lateness.ticked(now.since(due).max(Span.Zero))
+        look(now)
+        ticks += 1
+
+    private def look(now: Instant): Unit =
+      exit = program.exit
+      lasted = now.since(startedAt)
+      val progress = proxy.progress
+      if progress.lasted > passed then
+        passed = progress.lasted
+        passedAt = now
+      if progress.commands > 0 then
+        val truth = awaited(Future.firstCompletedOf(Seq(server.truth(), server.failed.map(throw _))))
+        if begun.isEmpty then begun = Some(truth.at + skip)
+        if begun.exists(truth.at >= _) then truths += truth
+
+    def judged(observed: Observed): MarginRun =
+      val behind = server.behind
+      val ended  = MarginRun.Ended(
+        exit,
+        lasted,
+        observed.connections,
+        observed.commands,
+        clock.now().since(passedAt).min(lasted),
+        program.lastLine,
+        program.lastError,
+        contacts,
+        tracks,
+        lateness.starved.orElse(Option.when(behind > Span.Zero)(
+          s"the machine was too busy: the simulator skipped ${behind.toMillis.round} ms"
+        ))
+      )
+      val states = observed.methods.filter(_.kind == CallKind.State).flatMap(_.roundTripMs)
+      MarginRun(
+        MarginRun.judged(judge, ended),
+        MarginRun.violations(scenario.fold(Vector.empty)(_.limits), ended),
+        states.maxByOption(_.count).map(_.median),
+        observed.vehicles.flatMap(_.ownAgeMs).map(_.mean).maxOption
+      )
+
+    private def contacts: Long =
+      val counts = truths.map(_.vehicles.map(_.contacts).sum)
+      counts.lastOption.zip(counts.headOption).fold(0L)(_ - _)
+
+    private def tracks: Option[Tracks] =
+      Option.when(truths.nonEmpty)(truths.head.vehicles.indices.toVector).flatMap: vehicles =>
+        Tracks.of(vehicles.map: vehicle =>
+          val role = scenario.fold("")(_.agents(vehicle).role.toString)
+          Track.of(
+            truths.head.vehicles(vehicle).name,
+            role,
+            truths.toVector.map: truth =>
+              val at = truth.vehicles(vehicle).kinematics
+              (truth.at, at.positionNed, at.velocityNed)
+          ))
+
+object MarginTrial:
+  val Port = "{port}"
+
+  private val AnyPort = Address("127.0.0.1", 0)
+
+  private val Warming = Span.ofSeconds(3)
+
+  /** Time from one look at the vehicles to the next: the step of [[skein.scenario.Tracks]]. */
+  private val Every = Span.ofMillis(20)
+
+  private def awaited[A](future: Future[A]): A = Await.result(future, Duration.Inf)

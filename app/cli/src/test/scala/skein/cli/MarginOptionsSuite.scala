@@ -1,0 +1,44 @@
+package skein.cli
+
+import skein.report.DuelReport
+import skein.scenario.Scenarios
+
+class MarginOptionsSuite extends munit.FunSuite:
+  private given Scenarios = DuelReport.scenarios
+
+  private val program = Seq("--", "python", "my.py", "{port}")
+
+  private def mistake(words: String*) = MarginCommand().checked(words).left.toOption
+
+  test("what stands behind -- is the program's, options included"):
+    assertEquals(mistake("--scenario", "duel", "--", "sh", "-c", "--judge", "--nothing"), None)
+    assertEquals(ObserveCommand.checked(Seq("--", "sh", "-c", "exit 3")), Right(()))
+
+  test("a mistake is a line that names the option"):
+    for
+      (words, line) <- Seq(
+        Seq("--scenario", "duel") -> "expected a program behind --, for example -- python my.py {port}",
+        (Seq("--set", "pairs=2") ++ program)   -> "--set: expected with --scenario, whose settings they are",
+        (Seq("--judge", "closest") ++ program) ->
+          "--judge: expected one of printed, contacts, separation, distance, distance:NORTH,EAST,DOWN, came 'closest'",
+        (Seq(
+          "--judge",
+          "distance"
+        ) ++ program) -> "--judge: expected two vehicles or more for distance, came 1",
+        (Seq(
+          "--scenario",
+          "duel",
+          "--settings",
+          "x.json"
+        ) ++ program) -> "--settings: expected without --scenario",
+        (Seq("--scenario", "duel", "--link", "vpn", "--link", "vpn") ++ program) ->
+          "--link, --delays: expected each link once, came 'vpn' twice",
+        (Seq("--scenario", "duel", "--repeats", "0") ++ program) -> "--repeats: expected 1 to 100, came 0",
+        (Seq("--scenario", "duel", "--skip", "60s") ++ program)  ->
+          "--skip: expected less than the 60 s of --seconds, came '60s'",
+        (Seq("--scenario", "duel", "--tolerance", "5", "--within", "1") ++ program) ->
+          "--tolerance, --within: expected one of them",
+        (Seq("--scenario", "duel", "--delays", "1..2") ++ program) ->
+          "--delays: expected FROM..TO/COUNT, for example 50ms..200ms/4, came '1..2'"
+      )
+    do assertEquals(mistake(words*), Some(line))

@@ -1,0 +1,90 @@
+package skein.margin
+
+import skein.scenario.{PaperDuel, Track, Tracks}
+import skein.units.*
+
+class MarginRunSuite extends munit.FunSuite:
+  import MarginRun.{Ended, NoResult}
+
+  /** Two vehicles at rest, 30 m apart, for 20 s. */
+  private val tracks =
+    def at(north: Double) = Vector(0, 20).map(second =>
+      (Instant.Epoch + Span.ofSeconds(second), Vector3(north, 0, -20), Vector3.Zero)
+    )
+    Tracks.of(Vector(Track.of("Evader", "Evader", at(30)), Track.of("Pursuer", "Pursuer", at(0))))
+
+  private val flown = MarginJudge.read(None, Some(PaperDuel()), 2).toOption.get
+
+  private val fine = Ended(
+    exit = None,
+    lasted = Span.ofSeconds(20),
+    connections = 1,
+    commands = 100,
+    silentFor = Span.ofMillis(50),
+    lastLine = None,
+    lastError = None,
+    contacts = 2,
+    tracks = tracks,
+    starved = None
+  )
+
+  private def why(by: MarginJudge, ended: Ended) = MarginRun.judged(by, ended).left.toOption.map(_.why)
+
+  test("a program that still flies at the end is judged by where its vehicles were"):
+    assertEquals(MarginRun.judged(flown, fine), Right(30.0))
+    assertEquals(MarginRun.judged(flown, fine.copy(exit = Some(0))), Right(30.0))
+    assertEquals(MarginRun.judged(MarginJudge.Contacts, fine), Right(2.0))
+
+  test("a program that dies has no result, and its own last words are told"):
+    val died = fine.copy(exit = Some(1), lastError = Some("ValueError: no"))
+    assertEquals(why(flown, died), Some("it ended with exit status 1 after 20.0 s: ValueError: no"))
+
+  test("a program that never connects, or never commands, has no result"):
+    assert(why(flown, fine.copy(connections = 0)).exists(_.startsWith("it never connected")))
+    assert(why(MarginJudge.Printed, fine.copy(connections = 0)).exists(_.startsWith("it never connected")))
+    assertEquals(why(flown, fine.copy(commands = 0)), Some("it connected, and commanded nothing"))
+
+  test("a program that says nothing for half of its time has hung; one that waits for a move has not"):
+    assert(why(flown, fine.copy(silentFor = Span.ofSeconds(11))).exists(_.startsWith("it hung")))
+    assertEquals(why(flown, fine.copy(silentFor = Span.ofSeconds(9))), None)
+
+  test("a flight too short for the measure has no result"):
+    assertEquals(why(flown, fine.copy(tracks = None)), Some("it has no value of 'last 10 s' after 20.0 s"))
+
+  test("a starved machine spoils a run; a program that dies meanwhile has died"):
+    val starved = fine.copy(starved = Some("the machine was too busy"))
+    assertEquals(MarginRun.judged(flown, starved), Left(NoResult.Starved("the machine was too busy")))
+    assert(why(flown, starved.copy(exit = Some(2))).exists(_.contains("exit status 2")))
+
+  test("a printed number is the last line, of a program that has ended"):
+    def printed(line: String) = fine.copy(exit = Some(0), lastLine = Some(line), commands = 0)
+    assertEquals(MarginRun.judged(MarginJudge.Printed, printed("4.25")), Right(4.25))
+    assertEquals(
+      why(MarginJudge.Printed, printed("done")),
+      Some("expected a number as the last line that it prints, came 'done'")
+    )
+    assert(why(MarginJudge.Printed, printed("NaN")).exists(_.contains("came 'NaN'")))
+    assert(why(MarginJudge.Printed, fine.copy(lastLine = Some("4"))).exists(_.contains("still ran")))
+
+  test("judges are read by the scenario's measures and the built-in ones"):
+    def read(text: String, vehicles: Int = 2) = MarginJudge.read(Some(text), Some(PaperDuel()), vehicles)
+    assertEquals(read("last-10-s").map(_.name), Right("last 10 s"))
+    assertEquals(read("separation").map(MarginRun.judged(_, fine)), Right(Right(30.0)))
+    assertEquals(read("distance").map(MarginRun.judged(_, fine)), Right(Right(30.0)))
+    assertEquals(read("distance:30,0,-16").map(MarginRun.judged(_, fine)), Right(Right(4.0)))
+    assertEquals(read("distance:0,0").isLeft, true)
+    assert(read("speed").left.exists(_.contains("expected one of last-10-s, sd, closest, at, printed")))
+    assert(read("separation", vehicles = 1).left.exists(_.contains("two vehicles or more")))
+    assert(MarginJudge.read(None, None, 1).left.exists(_.contains("came nothing")))
+
+  test("delays are read as even steps"):
+    assertEquals(
+      MarginDelays.read("50ms..0.2s/4").map(_.map(_.name)),
+      Right(Vector("constant:50ms", "constant:100ms", "constant:150ms", "constant:200ms"))
+    )
+    assertEquals(MarginDelays.read("50ms..50ms/1").map(_.size), Right(1))
+    for wrong <- Seq("50ms", "200ms..50ms/4", "50ms..200ms/0", "50..200/4", "50ms..200ms/x") do
+      assertEquals(
+        MarginDelays.read(wrong),
+        Left(s"expected FROM..TO/COUNT, for example 50ms..200ms/4, came '$wrong'")
+      )

@@ -1,0 +1,80 @@
+package skein.observe
+
+import java.io.{IOException, InputStream}
+import java.nio.charset.StandardCharsets.UTF_8
+import java.util.concurrent.{CompletableFuture, TimeUnit, TimeoutException}
+import scala.jdk.CollectionConverters.*
+import scala.jdk.StreamConverters.*
+import skein.units.Span
+
+/** A program that was started from here, without input. Of what it prints the ends are kept. */
+final class OutsideProgram private (process: Process, out: OutsideProgram.Tail, err: OutsideProgram.Tail):
+  import OutsideProgram.*
+
+  def exit: Option[Int] = Option.when(!process.isAlive)(process.exitValue)
+
+  def await(most: Span): Unit = process.waitFor(most.toNanos.max(0), TimeUnit.NANOSECONDS): Unit
+
+  /** The last line of its standard output that is not blank. Complete after [[stop]]. */
+  def lastLine: Option[String] = out.lastLine
+
+  def lastError: Option[String] = err.lastLine
+
+  /** The ends of its standard output and of its standard error, at most 64 KiB of each. */
+  def printed: String = Seq(out.text, err.text).filter(_.nonEmpty).mkString("\n")
+
+  /** Ends it, if it has not ended, with all processes that it started, and waits for the rest of what it
+    * printed.
+    */
+  def stop(): Unit =
+    OutsideProgram.stop(process)
+    Seq(out, err).foreach(_.await(RestMillis))
+
+object OutsideProgram:
+  private val KeptBytes  = 64 << 10
+  private val GraceS     = 5L
+  private val RestMillis = 1_000L
+
+  /** @return Left states in a line why it cannot be started */
+  def start(command: Seq[String], environment: Map[String, String]): Either[String, OutsideProgram] =
+    try
+      val builder = ProcessBuilder(command*)
+      builder.environment.putAll(environment.asJava)
+      val process = builder.start()
+      process.getOutputStream.close()
+      Right(OutsideProgram(process, Tail(process.getInputStream), Tail(process.getErrorStream)))
+    catch case absent: IOException => Left(s"cannot start ${command.head}: ${absent.getMessage}")
+
+  /** Asks a process and all that it started to end; whichever has not ended 5 s later is killed. */
+  def stop(process: Process): Unit =
+    val all = process.descendants().toScala(Vector) :+ process.toHandle
+    all.foreach(_.destroy(): Unit)
+    val ended = CompletableFuture.allOf(all.map(_.onExit())*)
+    try ended.get(GraceS, TimeUnit.SECONDS): Unit
+    catch
+      case _: TimeoutException =>
+        all.foreach(_.destroyForcibly(): Unit)
+        ended.get(): Unit
+
+  /** Reads a stream to its end and keeps the last [[KeptBytes]]. */
+  private final class Tail(stream: InputStream):
+    private val kept  = Array.ofDim[Byte](KeptBytes)
+    private var count = 0L
+
+    private val reading = Thread.ofVirtual().start: () =>
+      val piece = Array.ofDim[Byte](8 << 10)
+      try Iterator.continually(stream.read(piece)).takeWhile(_ >= 0).foreach(keep(piece, _))
+      catch case _: IOException => () // its end closed the pipe
+
+    private def keep(piece: Array[Byte], size: Int): Unit = synchronized:
+      for index <- 0 until size do
+        kept((count % KeptBytes).toInt) = piece(index)
+        count += 1
+
+    def await(millis: Long): Unit = reading.join(millis)
+
+    def text: String = synchronized:
+      val from = (count - KeptBytes).max(0)
+      String(Array.tabulate((count - from).toInt)(index => kept(((from + index) % KeptBytes).toInt)), UTF_8)
+
+    def lastLine: Option[String] = text.linesIterator.map(_.trim).filter(_.nonEmpty).toSeq.lastOption
