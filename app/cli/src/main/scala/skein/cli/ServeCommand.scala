@@ -213,11 +213,12 @@ object ServeCommand
       telling.cancel()
       leading.cancel()
       shown.foreach(_.cancel())
-      ros.foreach(_.close())
       Edge.await(server.close())
       outcome
     catch case error: TransportError => Left(error.getMessage)
-    finally Edge.await(system.terminate()): Unit
+    finally
+      ros.foreach(_.close())
+      Edge.await(system.terminate()): Unit
 
   /** How long clients' moves may hold all workers, as in AirSim. */
   private val Patience = Span.ofSeconds(30)

@@ -144,7 +144,7 @@ final class RosNode private (
     if !noted.get.exists(_.startsWith(begin)) then note(begin + why)
     malformed.incrementAndGet(): Unit
 
-  /** Topics of ours that others publish, or read, as another type: ROS 2 connects them with nobody and says
+  /** Topics of ours that others publish, or read, as another type: ROS 2 does not connect them and says
     * nothing.
     */
   private def lookForOtherTypes(all: Vector[Reader], own: Arena): Unit =

@@ -9,7 +9,7 @@ import skein.vehicle.GoTo
 
 /** Commands of ROS as actions. Left states what was expected, and what was received. */
 private[ros] object VehicleCommands:
-  /** How long a velocity is flown after it arrived, by the simulator's clock. */
+  /** How long a velocity lasts after it has arrived, by the simulator's clock. */
   val VelocityLasts: Span = Span.ofSeconds(0.5)
 
   /** The most that a vehicle flies to a pose with. */

@@ -46,3 +46,24 @@ class RosLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
           "/c/cmd_vel: expected geometry_msgs/msg/TwistStamped, a node uses geometry_msgs/msg/Twist"
         )
       do assert(ended.contains(line), ended)
+
+  test(
+    "a vehicle port over remapped topics climbs, knows its ages, and a vehicle that is not there is named"
+  ):
+    conclusive:
+      val ended = serving(speed = 1):
+        val process = ServedProcess.program(RosHere.variables(), "flyOnRos").start()
+        val output  = String(process.getInputStream.readAllBytes())
+        println(output)
+        assertEquals(process.waitFor, 0)
+        assert(
+          output.contains("missing: expected odometry on /nowhere/odom within 15 s, none arrived"),
+          output
+        )
+        val Array(rise, age, unsure) =
+          output.linesIterator.find(
+            _.startsWith("climbed ")
+          ).get.split(' ').drop(1).map(_.toDouble): @unchecked
+        assert(rise > 1, output)
+        assert(age >= 0 && age < 500 && unsure <= 10, output)
+      assert(ended.contains("refused 0, failed 0"), ended)

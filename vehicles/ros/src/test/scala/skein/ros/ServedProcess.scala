@@ -30,11 +30,7 @@ private[ros] object ServedProcess:
     * @param port of AirSim's wire
     */
   def start(variables: Map[String, String], speed: Double, port: Int): ServedProcess =
-    val java    = Path.of(sys.props("java.home"), "bin", "java").toString
-    val command = Seq(java, "--enable-native-access=ALL-UNNAMED", "-Xmx512m") ++
-      Seq("-cp", sys.props("java.class.path"), "skein.ros.serveOnRos", speed.toString, port.toString)
-    val builder = ProcessBuilder(command*).redirectErrorStream(true)
-    builder.environment.putAll(variables.asJava)
+    val builder = program(variables, "serveOnRos", speed.toString, port.toString)
     val process = builder.start()
     val lines   = ConcurrentLinkedQueue[String]()
     val serving = scala.concurrent.Promise[Boolean]()
@@ -47,6 +43,15 @@ private[ros] object ServedProcess:
     if !Await.result(serving.future, 60.seconds) then
       throw IllegalStateException(s"it did not start: ${log()}")
     ServedProcess(process, log)
+
+  /** One of the programs of these tests, with a node's environment. */
+  def program(variables: Map[String, String], name: String, arguments: String*): ProcessBuilder =
+    val java    = Path.of(sys.props("java.home"), "bin", "java").toString
+    val command = Seq(java, "--enable-native-access=ALL-UNNAMED", "-Xmx512m") ++
+      Seq("-cp", sys.props("java.class.path"), s"skein.ros.$name") ++ arguments
+    val builder = ProcessBuilder(command*).redirectErrorStream(true)
+    builder.environment.putAll(variables.asJava)
+    builder
 
 /** Serves three vehicles to ROS 2 until its input ends. */
 @main def serveOnRos(speed: Double, port: Int): Unit =
