@@ -48,7 +48,7 @@ lazy val root =
   project
     .in(file("."))
     .aggregate(core, testing, onnx, flow, link, vtime, vtimeAgent, forward, gpu)
-    .aggregate(airsim, mavlink, autopilot, hil, offboard, mujoco, scene, simulator, mcap, record, view)
+    .aggregate(airsim, mavlink, autopilot, hil, offboard, mujoco, scene, simulator, ros, mcap, record, view)
     .aggregate(flight, kafka, observe, torture, environment, learn, recognition, blocks, cluster, cli, python)
     .aggregate(bench, benchJmh, docs, chase, ownPolicy, ownScenario, ownGraph, ownVehicle, foreignEnvironment, virtualTime)
     .settings(publish / skip := true, publishCheck := Publishing.check.value, Installing.settings)
@@ -174,6 +174,12 @@ lazy val simulator = project.in(file("vehicles/simulator"))
   .dependsOn(vtime % Test, testing % Test)
   .settings(underAgent, Test / run / javaOptions ++= Jvm.control, libraryDependencies ++= pekkoTyped ++ munit)
 
+/** The simulator's vehicles as a part of ROS 2, by the C library of an installed one. */
+lazy val ros = project.in(file("vehicles/ros"))
+  .settings(artifact("ros", "ROS 2 without its build: messages, a node, simulated vehicles behind topics"))
+  .dependsOn(simulator % "compile->compile;test->test", testing % Test)
+  .settings(underAgent, libraryDependencies ++= munit)
+
 /** The container format of the field's viewers, read and written. Depends on nothing of ours. */
 lazy val mcap = project.in(file("record/mcap"))
   .settings(artifact("mcap", "MCAP files, read and written"))
@@ -274,7 +280,7 @@ lazy val kafka = project.in(file("fly/kafka"))
 lazy val cli = project.in(file("app/cli"))
   .settings(artifact("cli", "Commands and reports"))
   .dependsOn(flight % "compile->compile;test->test", kafka % "compile->compile;test->test")
-  .dependsOn(view, learn, cluster, recognition, gpu, observe, torture)
+  .dependsOn(view, learn, cluster, recognition, gpu, observe, torture, ros)
   .enablePlugins(JavaAppPackaging)
   .settings(underAgent)
   .settings(

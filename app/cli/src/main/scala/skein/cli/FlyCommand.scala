@@ -26,6 +26,16 @@ final case class FlyOptions(
     )
     simulator: Option[String],
     @arg(doc =
+      "flies vehicles behind topics of ROS 2, which must be installed: /NAME/odom is read, /NAME/cmd_vel is sent; " +
+        "with --link none, not for paused"
+    )
+    ros: Flag,
+    @arg(
+      name = "ros-remap",
+      doc = "another name of a topic for --ros, as ROS 2 remaps it: FROM:=TO; can be repeated"
+    )
+    rosRemap: Seq[String],
+    @arg(doc =
       "real, or virtual: the same flights in virtual time, many times faster, the same for the same seed"
     )
     clock: String = "real",
@@ -78,8 +88,16 @@ final class FlyCommand(using Scenarios)
       _     <- Expect.that(twins >= 0)(s"--twins: expected 0 or more, came $twins")
       _     <- options.view.mistake.toLeft(())
       clock <- ClockKind.parse(options.clock).left.map("--clock: " + _)
-      _     <- options.beside.checked(clock)
-      _     <-
+      _     <- Expect.that(
+        options.ros.value || options.rosRemap.isEmpty
+      )("--ros-remap: expected together with --ros")
+      _ <-
+        if options.ros.value then
+          RosSource.mistake(settings, clock == ClockKind.Real, simulator.isDefined).toLeft(())
+        else Right(())
+      isShared = simulator.isDefined || options.ros.value
+      _ <- options.beside.checked(clock)
+      _ <-
         if clock == ClockKind.Virtual then SolverOptions.virtual(settings) else SolverOptions.real(settings)
       secured <- options.secured.checked(settings.solver)
       _       <- Expect.that(settings.solver.isEmpty || learning.isEmpty):
@@ -92,7 +110,7 @@ final class FlyCommand(using Scenarios)
       _ <- Expect.that(clock == ClockKind.Real || simulator.isEmpty):
         "--clock virtual flies the built-in simulator; not together with --simulator"
       out <- OutFolder.made("--out", options.out.getOrElse(OutFolder.dated("flights")))
-      scene = if simulator.isEmpty then settings.world.scene else Scene.Empty
+      scene = if isShared then Scene.Empty else settings.world.scene
       sinks = RecordOptions.Sinks(options.beside, out, scene)
       flown <- clock match
         case ClockKind.Real =>
@@ -102,7 +120,7 @@ final class FlyCommand(using Scenarios)
             _ <- FlyCommand.vehiclesThere(settings, simulator)
             _ = Console.err.println(
               s"warming up for ${Decimals.counted(plans.size, "live flight")} of " +
-                s"${settings.duration.toSeconds.brief} s${if simulator.isEmpty then ", side by side" else ""}"
+                s"${settings.duration.toSeconds.brief} s${if isShared then "" else ", side by side"}"
             )
             unlearned = if learning.isEmpty then plans.filter(Preview.isPossible) else Vector.empty
             ahead <- warmUp(
@@ -115,7 +133,8 @@ final class FlyCommand(using Scenarios)
               Option.when(options.view.view.value)(
                 OnShow(shows, requests, scene, settings.imagingSensors, settings.scenario)
               )
-            live = LiveCommand(settings, simulator, out, shown, sinks, requests, secured, isTcp)
+            ros  = Option.when(options.ros.value)(options.rosRemap)
+            live = LiveCommand(settings, simulator, out, shown, sinks, requests, secured, isTcp, ros)
             flown <- options.view.serving(shows, controlled = true)(live.fly(plans))
           yield
             if shown.isEmpty then Console.err.println(FlyCommand.Viewing)

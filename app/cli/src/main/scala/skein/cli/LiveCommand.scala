@@ -18,6 +18,7 @@ import skein.units.Clock
   * @param sinks further outputs besides the recordings
   * @param requests that end or hold flights from outside
   * @param isMavlinkByTcp see [[FlightAssembler]]
+  * @param ros remappings of topics, if the vehicles are behind ROS 2
   */
 private[cli] final class LiveCommand(
     settings: FlySettings,
@@ -27,7 +28,8 @@ private[cli] final class LiveCommand(
     sinks: RecordOptions.Sinks,
     requests: OutsideRequests,
     secured: SolverSecurity.Checked,
-    isMavlinkByTcp: Boolean
+    isMavlinkByTcp: Boolean,
+    ros: Option[Seq[String]]
 ):
   import LiveCommand.*
 
@@ -43,9 +45,11 @@ private[cli] final class LiveCommand(
       calledOff = requests.calledOff,
       solvers = SolverOptions.reached(settings, secured),
       isWatched = shown.isDefined,
-      isMavlinkByTcp = isMavlinkByTcp
+      isMavlinkByTcp = isMavlinkByTcp,
+      elsewhere = ros.map(RosSource(_, Clock.system))
     )
-    try if simulator.isEmpty then together(assembler, plans).map(Flown(_, None)) else inTurn(assembler, plans)
+    val isOwn = simulator.isEmpty && ros.isEmpty
+    try if isOwn then together(assembler, plans).map(Flown(_, None)) else inTurn(assembler, plans)
     finally
       val _ = Edge.await(system.terminate())
 

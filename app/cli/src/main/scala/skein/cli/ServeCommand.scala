@@ -56,6 +56,11 @@ final case class ServeOptions(
     )
     mavlinkInstance: Option[Int],
     @arg(doc =
+      "makes the vehicles part of ROS 2, which must be installed: /NAME/odom, /NAME/imu, /tf and /clock go out, " +
+        "/NAME/cmd_vel and /NAME/setpoint_pose fly them"
+    )
+    ros: Flag,
+    @arg(doc =
       "lets an external autopilot fly each vehicle: px4 (TCP 4560, 4561, …, in lockstep), " +
         "ardupilot (JSON, UDP 9002, 9012, …) or betaflight (UDP 9002, one vehicle)"
     )
@@ -94,9 +99,11 @@ object ServeCommand
       _ <- Expect.that(autopilot.isEmpty || !options.mavlink.value):
         "--hil: not together with --mavlink, which is an autopilot itself"
       _ <- autopilot.flatMap(_ => plant.refusesAutopilots).map("--plant: " + _).toLeft(())
-      flies = if autopilot.isDefined then "--hil" else "--mavlink"
+      _ <- Expect.that(!options.ros.value || autopilot.isEmpty && !options.mavlink.value):
+        "--ros: not together with --mavlink or --hil, which fly the vehicles themselves"
+      flies = if options.ros.value then "--ros" else if autopilot.isDefined then "--hil" else "--mavlink"
       other = world.vehicles.find(vehicle => vehicle.isCar || vehicle.isCamera)
-      _ <- Expect.that(autopilot.isEmpty && !options.mavlink.value || other.isEmpty):
+      _ <- Expect.that(autopilot.isEmpty && !options.mavlink.value && !options.ros.value || other.isEmpty):
         s"$flies: expected multirotors alone, came ${other.fold("")(it =>
             s"the ${if it.isCar then "car" else "camera"} ${it.name}"
           )}"
@@ -111,6 +118,10 @@ object ServeCommand
       hil = autopilot.map(HilSettings.usual(_, world.vehicles.size, address.host))
       grids <- options.grids.fold[Either[String, Option[Path]]](Right(None))(gridsOf(_).map(Some(_)))
       shows = Shows()
+      ros <-
+        if options.ros.value then
+          RosSide.open(world.vehicles.map(_.name)).left.map("--ros: " + _).map(Some(_))
+        else Right(None)
       _ <- options.view.serving(shows)(
         serve(
           SimulatorSettings(
@@ -126,6 +137,7 @@ object ServeCommand
             grids = grids
           ),
           Option.when(options.view.view.value)(shows),
+          ros,
           file.notice.map(notice => s"${options.settings.getOrElse("")}: $notice")
         )
       )
@@ -165,11 +177,14 @@ object ServeCommand
   private def serve(
       settings: SimulatorSettings,
       shows: Option[Shows],
+      ros: Option[RosSide],
       notice: Option[String]
   ): Either[String, Unit] =
     given system: ActorSystem = ActorSystem("skein")
     try
-      val server   = Edge.await(SimulatorServer.start(settings, TcpTransport(), Clock.system))
+      val server =
+        Edge.await(SimulatorServer.start(settings, TcpTransport(), Clock.system, ros.map(_.topics)))
+      ros.foreach(_.fly(server))
       val vehicles = settings.world.vehicles.map(vehicle => TextTable.printable(vehicle.name)).mkString(", ")
       val mavlink  = settings.mavlink.fold(""): open =>
         s", and by MAVLink from UDP ports ${open.udp.map(port =>
@@ -177,14 +192,15 @@ object ServeCommand
           ).mkString(", ")}"
       val hil = settings.hil.fold(""): open =>
         s", for ${open.autopilot.label} at ${server.peerAddresses.mkString(", ")}"
-      Console.out.println(s"serving $vehicles at ${server.address}$mavlink$hil; Ctrl-C ends it")
+      val ofRos = ros.fold("")(_ => ", and to ROS 2")
+      Console.out.println(s"serving $vehicles at ${server.address}$mavlink$hil$ofRos; Ctrl-C ends it")
       notice.foreach(line => Console.out.println(line))
       val ended = Promise[Either[String, Unit]]()
       server.failed.foreach(failure =>
         ended.trySuccess(Left(s"the simulator at ${server.address} has failed and closed its port: $failure"))
       )(using ExecutionContext.parasitic)
       val telling =
-        system.scheduler.scheduleWithFixedDelay(NewsEvery, NewsEvery)(tellNews(server, settings))(using
+        system.scheduler.scheduleWithFixedDelay(NewsEvery, NewsEvery)(tellNews(server, settings, ros))(using
           system.dispatcher
         )
       // The code it runs is compiled by then.
@@ -200,7 +216,9 @@ object ServeCommand
       Edge.await(server.close())
       outcome
     catch case error: TransportError => Left(error.getMessage)
-    finally Edge.await(system.terminate()): Unit
+    finally
+      ros.foreach(_.close())
+      Edge.await(system.terminate()): Unit
 
   /** How long clients' moves may hold all workers, as in AirSim. */
   private val Patience = Span.ofSeconds(30)
@@ -212,11 +230,13 @@ object ServeCommand
   private val LeadsAfter = 10.seconds
 
   /** Prints newly refused requests of clients, as they occur. */
-  private def tellNews(server: SimulatorServer, settings: SimulatorSettings): Runnable = new Runnable:
-    private var told   = Option.empty[String]
-    private val called = settings.hil.fold("MAVLink")(_.autopilot.label)
-    def run(): Unit    =
-      val news = ServerNews.line(server.stats, settings.limits, server.peerStats, called, server.hasHeldUp)
-      if news != told then
-        told = news
-        news.foreach(Console.out.println)
+  private def tellNews(server: SimulatorServer, settings: SimulatorSettings, ros: Option[RosSide]) =
+    new Runnable:
+      private var told   = Option.empty[String]
+      private val called = settings.hil.fold("MAVLink")(_.autopilot.label)
+      def run(): Unit    =
+        val news = ServerNews.line(server.stats, settings.limits, server.peerStats, called, server.hasHeldUp)
+        if news != told then
+          told = news
+          news.foreach(Console.out.println)
+        ros.foreach(_.news().foreach(line => Console.out.println(line)))

@@ -34,6 +34,8 @@ import skein.units.Decimals.brief
   * @param isWatched whether its records are shown, so that images and clouds that are not recorded are still
   *   offered
   * @param isMavlinkByTcp whether `simulator`, if it speaks MAVLink, is reached by TCP instead of datagrams
+  * @param elsewhere vehicles to fly instead of a simulator's; not in `paused`, and over no emulated
+  *   link
   */
 final class FlightAssembler(
     transport: Transport,
@@ -46,7 +48,8 @@ final class FlightAssembler(
     calledOff: String => Option[String] = _ => None,
     solvers: Solvers = Solvers.none,
     isWatched: Boolean = false,
-    isMavlinkByTcp: Boolean = false
+    isMavlinkByTcp: Boolean = false,
+    elsewhere: Option[VehicleSource] = None
 )(using system: ActorSystem):
   import system.dispatcher
 
@@ -56,7 +59,7 @@ final class FlightAssembler(
     case _           => true
 
   /** Whether other clients may command the vehicles too. */
-  private val isShared = simulator.isDefined
+  private val isShared = simulator.isDefined || elsewhere.isDefined
 
   private val airSim = AirSimFleet(
     transport,
@@ -81,7 +84,7 @@ final class FlightAssembler(
       settings.period,
       settings.duration,
       clockKind,
-      simulator.fold(Simulator.BuiltIn)(address => Simulator.Other(address.toString)),
+      elsewhere.map(_.where).orElse(simulator.map(_.toString)).fold(Simulator.BuiltIn)(Simulator.Other(_)),
       settings.scenario.title +
         plan.policy.fold("")(chosen => s", ${PolicyFile.name(chosen.file.role)} ${chosen.file.label}"),
       FlightAssembler.version,
@@ -112,12 +115,15 @@ final class FlightAssembler(
         monitor = FlightMonitor(
           recorder,
           isStepped = plan.loop == LoopKind.Paused,
-          hasPlaces = isShared && settings.wire == Wire.AirSim
+          hasPlaces = simulator.isDefined && settings.wire == Wire.AirSim
         )
         solver  <- solverOf(plan, opened, monitor)
-        reached <- settings.wire match
-          case Wire.AirSim  => airSim.connect(plan, server.fold(simulator.get)(_.address), opened, monitor)
-          case Wire.Mavlink => overMavlink(plan, server, opened, monitor)
+        reached <- elsewhere match
+          case Some(source) => fromSource(plan, source, opened)
+          case None         =>
+            settings.wire match
+              case Wire.AirSim => airSim.connect(plan, server.fold(simulator.get)(_.address), opened, monitor)
+              case Wire.Mavlink => overMavlink(plan, server, opened, monitor)
         _ <- Team.missingSensor(fleet, reached.vehicles).fold(reached.ping())(missing =>
           Future.failed(CannotFly(missing))
         )
@@ -268,7 +274,7 @@ final class FlightAssembler(
     def right[A](answer: Either[String, A]): A = answer.fold(reason => throw CannotFly(reason), identity)
     for
       _ <-
-        if plan.loop == LoopKind.Paused then Future.failed(CannotFly(FlightAssembler.noSteps))
+        if plan.loop == LoopKind.Paused then Future.failed(CannotFly(FlightAssembler.noSteps("MAVLink")))
         else Future.unit
       _                <- mavlink.prepare().map(right)
       (link, vehicles) <- mavlink.open(linked, isStream = plan.link != LatencyProfile.none).map(right)
@@ -287,8 +293,14 @@ final class FlightAssembler(
         clocks = link.clocks
       )
 
+  private def fromSource(plan: FlightPlan, source: VehicleSource, opened: Opened): Future[ConnectedFleet] =
+    if plan.loop == LoopKind.Paused then Future.failed(CannotFly(FlightAssembler.noSteps(source.where)))
+    else if plan.link != LatencyProfile.none then
+      Future.failed(CannotFly(s"expected the link none to ${source.where}, came ${plan.link.name}"))
+    else SourceFleet(source, fleet, clock, () => calledOff(plan.id)).connect(opened)
+
   private def serve(seed: Long): Future[Option[SimulatorServer]] =
-    if simulator.isDefined then Future.successful(None)
+    if isShared then Future.successful(None)
     else
       val vehicles = fleet.agents.map(Vehicles.settings)
       val kind     = settings.plant.kind(seed).fold(reason => throw CannotFly(reason), identity)
@@ -329,8 +341,8 @@ object FlightAssembler:
   /** Planning in virtual time, where a search has a fixed number of slices. */
   def counted(planning: PlanSettings): PlanWorkers = CountedPlanWorkers(planning.searches, planning.slices)
 
-  private val noSteps =
-    "paused needs a simulator whose time passes in steps, which MAVLink's vehicles have not"
+  private def noSteps(where: String) =
+    s"paused needs a simulator whose time passes in steps, which vehicles of $where have not"
 
   /** The events of a solver that are reported to the user immediately. */
   private val told = Set(EventKind.Disconnected, EventKind.Reconnected, EventKind.Refused)

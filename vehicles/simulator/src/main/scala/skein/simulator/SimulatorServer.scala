@@ -14,6 +14,7 @@ import scala.concurrent.{ExecutionContext, Future, Promise}
 import scala.util.Try
 import scala.util.control.NonFatal
 import skein.link.{Address, Transport}
+import skein.policy.Action
 import skein.rpc.{CallLines, Encoded, RpcRequest, RpcServer, ServerEvent, ServerStats}
 import skein.signal.Kinematics
 import skein.units.*
@@ -70,6 +71,17 @@ final class SimulatorServer private (
     simulator ! SimulatorServer.Message.Look(answer)
     answer.future
 
+  /** Lets a multirotor perform an action from now on, if the server has an [[Onlooker]]; it takes off, too. A
+    * move that a client has begun ends.
+    *
+    * @param vehicle its number in the settings
+    * @param action by the vehicle's present motion, world NED; evaluated every 20 ms of simulated time
+    * @param lasts simulated time after which a vehicle in the air holds its position; None: until the next
+    *   action, or until a client moves or resets it
+    */
+  def act(vehicle: Int, action: Kinematics => Action, lasts: Option[Span]): Unit =
+    simulator ! SimulatorServer.Message.Act(vehicle, action, lasts)
+
   /** Stops listening and closes all connections; moves in progress are not answered. */
   def close(): Future[Done] =
     simulator ! SimulatorServer.Message.Stop
@@ -89,10 +101,15 @@ object SimulatorServer:
 
   /** Starts a simulator. The future fails with the transport's error if it cannot listen there, such as
     * [[skein.link.TransportError.PortTaken]].
+    *
+    * @param onlooker sees the vehicles of the settings, which must be multirotors
     */
-  def start(settings: SimulatorSettings, transport: Transport, clock: Clock)(using
-      system: ActorSystem
-  ): Future[SimulatorServer] =
+  def start(
+      settings: SimulatorSettings,
+      transport: Transport,
+      clock: Clock,
+      onlooker: Option[Onlooker] = None
+  )(using system: ActorSystem): Future[SimulatorServer] =
     given ExecutionContext = ExecutionContext.parasitic
     val behind             = AtomicLong()
     val heldUp             = AtomicBoolean()
@@ -104,6 +121,7 @@ object SimulatorServer:
     val simulator          = system.spawnAnonymous(
       Behaviors.withTimers(Running(
         Simulation(settings, clock.now()),
+        onlooker,
         counters,
         clock,
         lines,
@@ -153,6 +171,7 @@ object SimulatorServer:
     case Work
     case Wake
     case Look(answer: Promise[Truth])
+    case Act(vehicle: Int, action: Kinematics => Action, lasts: Option[Span])
     case Stop
 
     case Gone(connection: Long, isForgotten: Boolean)
@@ -170,6 +189,7 @@ object SimulatorServer:
   /** @param work whether a [[Message.Work]] has been sent and not handled */
   final private class Running(
       simulation: Simulation,
+      onlooker: Option[Onlooker],
       counters: PeerCounters,
       clock: Clock,
       lines: CallLines[Call],
@@ -185,7 +205,8 @@ object SimulatorServer:
     private val protocol: Option[PeerProtocol] =
       simulation.settings.mavlink.map(MavlinkVehicles(simulation, _))
         .orElse(simulation.settings.hil.map(HilVehicles(simulation, _)))
-    private val outs = mutable.LongMap.empty[BoundedSourceQueue[ByteString]]
+    private val inProcess = onlooker.map(InProcess(simulation, _))
+    private val outs      = mutable.LongMap.empty[BoundedSourceQueue[ByteString]]
 
     def behavior(timers: TimerScheduler[Message]): Behavior[Message] = Behaviors.setup: context =>
       def goOn(): Behavior[Message] =
@@ -198,9 +219,9 @@ object SimulatorServer:
               counters.dropped.incrementAndGet(): Unit
         behind.set(simulation.behind.toNanos)
         heldUp.set(simulation.hasHeldUp)
-        val now  = clock.now()
-        val told = protocol.flatMap(_.nextDue).flatMap(simulation.comesTo)
-        for at <- (simulation.nextWake(now) ++ told.map(_.max(now))).minOption if wakeAt.forall(at < _) do
+        val now = clock.now()
+        val due = (protocol.flatMap(_.nextDue) ++ inProcess.map(_.nextDue)).flatMap(simulation.comesTo)
+        for at <- (simulation.nextWake(now) ++ due.map(_.max(now))).minOption if wakeAt.forall(at < _) do
           wakeAt = Some(at)
           // A timer is late by up to its scheduler's tick.
           if at <= now then context.self ! Message.Wake
@@ -230,6 +251,13 @@ object SimulatorServer:
           orEnd:
             simulation.advance(clock.now())
             answer.success(truth): Unit
+            goOn()
+        case Message.Act(vehicle, action, lasts) =>
+          orEnd:
+            simulation.advance(clock.now())
+            inProcess.foreach(_.act(vehicle, action, lasts))
+            // Answers the move that it has ended.
+            simulation.advance(clock.now())
             goOn()
         case Message.Gone(connection, isForgotten) =>
           orEnd:

@@ -119,6 +119,8 @@ final class World(
   /** Ends the vehicle's move, if there is one, with false. */
   def cancelMove(vehicle: Int): Unit = end(vehicle, result = false)
 
+  private[simulator] def isMoving(vehicle: Int): Boolean = moves(vehicle).nonEmpty
+
   /** Takes the moves that have ended since the last call. */
   def takeEnded(): Seq[Ended] =
     val all = ended.toSeq

@@ -1,0 +1,46 @@
+package skein.cli
+
+import skein.ros.{RosNode, SimulatedTopics}
+import skein.simulator.SimulatorServer
+import skein.units.Clock
+
+/** The node of `./skein serve --ros`, and what a person learns of it. */
+private[cli] final class RosSide private (node: RosNode, val topics: SimulatedTopics):
+  private var said   = Set.empty[String]
+  private var counts = (skipped = 0L, refused = 0L, failed = 0L)
+
+  /** Lets the topics fly the vehicles, and prints what is missing. */
+  def fly(server: SimulatorServer): Unit =
+    for line <- topics.missing ++ topics.fly(server).left.toOption do Console.out.println(s"ROS 2: $line")
+
+  /** Lines about what has gone wrong since the last call. */
+  def news(): Seq[String] =
+    val now   = (skipped = topics.skipped, refused = node.refused, failed = node.failed)
+    val lines = node.notes.filterNot(said)
+    val count = Option.when(now != counts):
+      Seq(
+        now.skipped -> "moments not published, the machine is too slow",
+        now.refused -> "messages refused",
+        now.failed  -> "messages not sent"
+      ).collect { case (count, what) if count > 0 => s"$count $what" }.mkString(", ")
+    said ++= lines
+    counts = now
+    (lines ++ count).map("ROS 2: " + _)
+
+  def close(): Unit =
+    topics.close()
+    node.close()
+
+private[cli] object RosSide:
+  /** Opens the node `skein` and the topics of vehicles with these names.
+    *
+    * @return Left if ROS 2 is not installed, or does not allow it
+    */
+  def open(names: Vector[String]): Either[String, RosSide] =
+    for
+      _      <- SimulatedTopics.mistake(names).toLeft(())
+      node   <- RosNode.open("skein", Clock.system)
+      topics <- SimulatedTopics.open(node, names).left.map: why =>
+        node.close()
+        why
+    yield RosSide(node, topics)

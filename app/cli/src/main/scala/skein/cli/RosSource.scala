@@ -1,0 +1,59 @@
+package skein.cli
+
+import org.apache.pekko.Done
+import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.{Future, blocking}
+import skein.flight.VehicleSource
+import skein.loop.LoopKind
+import skein.ros.{RosFleet, RosNode}
+import skein.settings.{FlySettings, Wire}
+import skein.units.{Clock, Expect}
+import skein.vehicle.VehicleKind
+
+/** The vehicles of `./skein fly --ros`: those behind ROS 2's topics.
+  *
+  * @param remappings of topics, by ROS's rules
+  */
+private[cli] final class RosSource(remappings: Seq[String], clock: Clock)(using system: ActorSystem)
+    extends VehicleSource:
+  import system.dispatcher
+
+  val where: String = "ROS 2"
+
+  def open(names: Vector[String]): Future[Either[String, VehicleSource.Opened]] =
+    RosFleet
+      .open(names, remappings, clock)
+      .map(_.map: fleet =>
+        VehicleSource.Opened(
+          fleet.vehicles,
+          () => fleet.vehicles.head.clocks,
+          () =>
+            Future:
+              blocking(fleet.close())
+              fleet.node.notes.foreach(line => Console.err.println(s"ROS 2: $line"))
+              Done
+        ))
+
+private[cli] object RosSource:
+  /** Why flights with these settings cannot use vehicles behind ROS 2's topics, if they cannot. */
+  def mistake(settings: FlySettings, isLive: Boolean, hasSimulator: Boolean): Option[String] =
+    val paused = settings.loops.contains(LoopKind.Paused)
+    val cars   = settings.fleet.agents.filter(_.kind == VehicleKind.Car).map(_.name)
+    val others = settings.links.filter(_.name != "none")
+    val all    =
+      for
+        _ <- Expect.that(
+          !hasSimulator && settings.wire == Wire.AirSim
+        )("not together with --simulator or --mavlink")
+        _ <- Expect.that(isLive)("expected --clock real, since other programs' nodes run by it")
+        _ <-
+          Expect.that(!paused)("expected loops other than paused, whose simulator stands still between steps")
+        _ <- Expect.that(others.isEmpty):
+          s"expected --link none, since no network is emulated between nodes, came ${others.map(_.name).mkString(", ")}"
+        _ <- Expect.that(cars.isEmpty)(s"expected multirotors alone, came the car ${cars.mkString(", ")}")
+        _ <- Expect.that(settings.images.isEmpty)("expected no --images")
+        _ <- Expect.that(settings.scene.isEmpty && settings.plant.isAirSim):
+          "--scene and --plant are for the built-in simulator"
+        _ <- RosNode.missing.toLeft(())
+      yield ()
+    all.left.toOption.map("--ros: " + _)

@@ -1,0 +1,31 @@
+package skein.flight
+
+import org.apache.pekko.Done
+import scala.concurrent.Future
+import skein.port.VehiclePort
+import skein.signal.ClockAlignment
+
+/** Vehicles that neither AirSim's protocol nor MAVLink reaches, as another part of the program connects to
+  * them.
+  */
+trait VehicleSource:
+  /** Where the vehicles are, as a word for a person. */
+  def where: String
+
+  /** Connects to the vehicles of a flight.
+    *
+    * @param names in the flight's order
+    * @return Left states what is missing
+    */
+  def open(names: Vector[String]): Future[Either[String, VehicleSource.Opened]]
+
+object VehicleSource:
+  /** Connected vehicles.
+    *
+    * @param clocks the vehicles' clock against the controller's
+    */
+  final case class Opened(
+      vehicles: Vector[VehiclePort],
+      clocks: () => Option[ClockAlignment],
+      close: () => Future[Done]
+  )

@@ -1,0 +1,75 @@
+package skein.ros
+
+import skein.policy.{Action, Yaw}
+import skein.port.VehicleError
+import skein.ros.message.{Odometry, Twist, Vector3 as RosVector}
+import skein.signal.Kinematics
+import skein.units.{Quaternion, Vector3}
+import skein.vehicle.GoTo
+
+/** A vehicle behind ROS topics, in Skein's terms. */
+private[ros] object TwistCommand:
+
+  /** Odometry as a motion in NED. Left states which numbers are no motion. */
+  def kinematics(odometry: Odometry): Either[String, Kinematics] =
+    val (at, q) = (odometry.pose.pose.position, odometry.pose.pose.orientation)
+    val twist   = odometry.twist.twist
+    val norm    = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w
+    val enu     = Quaternion(q.w, q.x, q.y, q.z).normalized
+    val motion  = Kinematics(
+      RosFrames.swapWorld(Vector3(at.x, at.y, at.z)),
+      RosFrames.swapWorld(enu.toWorld(Vector3(twist.linear.x, twist.linear.y, twist.linear.z))),
+      RosFrames.toNed(enu),
+      RosFrames.swapBody(Vector3(twist.angular.x, twist.angular.y, twist.angular.z))
+    )
+    Either.cond(
+      motion.isFinite && math.abs(norm - 1) < 0.1,
+      motion,
+      s"expected finite numbers and a unit quaternion, came the position ${at.x}, ${at.y}, ${at.z} and a " +
+        s"quaternion of the squared length $norm"
+    )
+
+  /** The velocity in ENU, and the turn about its z axis, that perform an action from a motion. Altitudes and
+    * headings are reached by feedback: each call answers for the present motion.
+    */
+  def of(action: Action, now: Kinematics): Either[VehicleError, Twist] =
+    def velocity(ned: Vector3, yaw: Yaw) = Right(twist(ned, turn(yaw, ned, now.orientation.yawRad)))
+    action match
+      case Action.Velocity(ned, yaw)                 => velocity(ned, yaw)
+      case Action.VelocityAt(north, east, down, yaw) =>
+        val vertical = bounded(PerMetre * (down.value - now.positionNed.z), ClimbMps)
+        velocity(Vector3(north, east, vertical), yaw)
+      case along: Action.Along                => of(along.byVelocity, now)
+      case Action.Position(place, speed, yaw) =>
+        velocity(GoTo.velocityNed(now.positionNed, now.velocityNed, place, speed), yaw)
+      case Action.Turn(yaw)            => velocity(Vector3.Zero, yaw)
+      case Action.Hover                => velocity(Vector3.Zero, Yaw.Still)
+      case Action.Land                 => velocity(Vector3(0, 0, LandingMps), Yaw.Still)
+      case Action.Attitude(_, _, _, _) =>
+        Left(
+          VehicleError.Unsupported("expected an action by velocity or position, cmd_vel takes no attitude")
+        )
+
+  private def twist(ned: Vector3, turnRadps: Double) =
+    val enu = RosFrames.swapWorld(ned)
+    Twist(RosVector(enu.x, enu.y, enu.z), RosVector(0, 0, -turnRadps))
+
+  /** The rate by which to turn, rad/s, clockwise seen from above. */
+  private def turn(yaw: Yaw, travelNed: Vector3, headingRad: Double): Double = yaw match
+    case Yaw.Turning(rate)    => rate
+    case Yaw.Towards(heading) => towards(heading.value, headingRad)
+    case Yaw.Forward if StrictMath.hypot(travelNed.x, travelNed.y) > ForwardMps =>
+      towards(StrictMath.atan2(travelNed.y, travelNed.x), headingRad)
+    case Yaw.Forward | Yaw.Still => 0
+
+  private def towards(goalRad: Double, headingRad: Double) =
+    bounded(PerRadian * StrictMath.IEEEremainder(goalRad - headingRad, 2 * math.Pi), TurnRadps)
+
+  private def bounded(value: Double, most: Double) = value.max(-most).min(most)
+
+  private val PerMetre   = 1.0
+  private val ClimbMps   = 3.0
+  private val PerRadian  = 2.0
+  private val TurnRadps  = 1.5
+  private val ForwardMps = 0.5
+  private val LandingMps = 0.3

@@ -1,0 +1,94 @@
+package skein.ros.message
+
+import java.nio.charset.StandardCharsets.UTF_8
+import java.nio.{ByteBuffer, ByteOrder}
+import scala.collection.immutable.ArraySeq
+
+/** Reads CDR (XCDR1, plain) in either byte order. Positions count from the first byte after the four that
+  * state the encoding, and numbers are aligned to their own size. A count never exceeds the bytes that are
+  * left, so that no message makes it allocate more than a few times its own length.
+  */
+final class CdrReader private (body: ByteBuffer):
+
+  private def need(bytes: Int, aligned: Int): Unit =
+    val at = (body.position + aligned - 1) & -aligned
+    if body.limit - at < bytes then
+      throw CdrError(s"expected $bytes more bytes at byte $at, the message ends at ${body.limit}")
+    val _ = body.position(at)
+
+  def byte(): Byte =
+    need(1, 1)
+    body.get()
+
+  def short(): Short =
+    need(2, 2)
+    body.getShort()
+
+  def int(): Int =
+    need(4, 4)
+    body.getInt()
+
+  def float(): Float =
+    need(4, 4)
+    body.getFloat()
+
+  def double(): Double =
+    need(8, 8)
+    body.getDouble()
+
+  def boolean(): Boolean = byte() match
+    case 0    => false
+    case 1    => true
+    case came => throw CdrError(s"expected 0 or 1 at byte ${body.position - 1}, came $came")
+
+  /** A number of elements, each of which takes at least `leastBytes`. */
+  def count(leastBytes: Int): Int =
+    val came = int()
+    val most = body.remaining / leastBytes
+    if came < 0 || came > most then
+      throw CdrError(
+        s"expected a count of 0 to $most at byte ${body.position - 4}, came ${came & 0xffffffffL}"
+      )
+    came
+
+  /** A text, which ends with a zero byte. An empty text may lack it, as some vendors send it. */
+  def text(): String =
+    val length = count(1)
+    if length == 0 then ""
+    else
+      val chars = new Array[Byte](length)
+      val _     = body.get(chars)
+      if chars(length - 1) != 0 then
+        throw CdrError(s"expected a text that ends with 0 at byte ${body.position - 1}")
+      String(chars, 0, length - 1, UTF_8)
+
+  def bytes(count: Int): ArraySeq[Byte] =
+    need(count, 1)
+    val read = new Array[Byte](count)
+    val _    = body.get(read)
+    ArraySeq.unsafeWrapArray(read)
+
+  def floats(count: Int): ArraySeq[Float] =
+    if count > 0 then need(4 * count, 4)
+    ArraySeq.unsafeWrapArray(Array.fill(count)(body.getFloat()))
+
+  def doubles(count: Int): ArraySeq[Double] =
+    if count > 0 then need(8 * count, 8)
+    ArraySeq.unsafeWrapArray(Array.fill(count)(body.getDouble()))
+
+  private[message] def rest: Int = body.remaining
+
+private[message] object CdrReader:
+  /** Bytes that state the encoding, before the message. */
+  val HeaderBytes = 4
+
+  /** @throws CdrError if the bytes begin with another encoding */
+  def of(bytes: Array[Byte]): CdrReader =
+    if bytes.length < HeaderBytes then
+      throw CdrError(s"expected at least $HeaderBytes bytes, came ${bytes.length}")
+    val order = (bytes(0), bytes(1)) match
+      case (0, 0) => ByteOrder.BIG_ENDIAN
+      case (0, 1) => ByteOrder.LITTLE_ENDIAN
+      case (a, b) =>
+        throw CdrError(f"expected plain CDR, 0x0000 or 0x0001, came 0x${a & 0xff}%02x${b & 0xff}%02x")
+    CdrReader(ByteBuffer.wrap(bytes, HeaderBytes, bytes.length - HeaderBytes).slice().order(order))

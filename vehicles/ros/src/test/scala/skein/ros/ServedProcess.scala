@@ -1,0 +1,85 @@
+package skein.ros
+
+import java.nio.file.Path
+import java.util.concurrent.{ConcurrentLinkedQueue, TimeUnit}
+import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.Await
+import scala.concurrent.duration.DurationInt
+import scala.jdk.CollectionConverters.*
+import skein.airsim.{VehicleSettings, WorldSettings}
+import skein.link.{Address, TcpTransport}
+import skein.simulator.{SimulatorServer, SimulatorSettings}
+import skein.units.{Clock, Vector3}
+
+/** A simulator behind ROS 2 in a process of its own, whose environment has the libraries. */
+private[ros] final class ServedProcess private (process: Process, val log: () => String):
+
+  /** Ends it, and returns its last words. */
+  def close(): String =
+    process.getOutputStream.close()
+    if !process.waitFor(30, TimeUnit.SECONDS) then
+      process.destroyForcibly(): Unit
+      throw IllegalStateException(s"it did not end: ${log()}")
+    log()
+
+private[ros] object ServedProcess:
+  val Names: Vector[String] = Vector("a", "b", "c")
+
+  /** Starts it, and waits until it serves.
+    *
+    * @param port of AirSim's wire
+    */
+  def start(variables: Map[String, String], speed: Double, port: Int): ServedProcess =
+    val builder = program(variables, "serveOnRos", speed.toString, port.toString)
+    val process = builder.start()
+    val lines   = ConcurrentLinkedQueue[String]()
+    val serving = scala.concurrent.Promise[Boolean]()
+    Thread.ofPlatform().daemon().start: () =>
+      process.inputReader.lines.iterator.asScala.foreach: line =>
+        lines.add(line)
+        if line == "serving" then serving.trySuccess(true): Unit
+      serving.trySuccess(false): Unit
+    def log() = lines.asScala.mkString("\n")
+    if !Await.result(serving.future, 60.seconds) then
+      throw IllegalStateException(s"it did not start: ${log()}")
+    ServedProcess(process, log)
+
+  /** One of the programs of these tests, with a node's environment. */
+  def program(variables: Map[String, String], name: String, arguments: String*): ProcessBuilder =
+    val java    = Path.of(sys.props("java.home"), "bin", "java").toString
+    val command = Seq(java, "--enable-native-access=ALL-UNNAMED", "-Xmx512m") ++
+      Seq("-cp", sys.props("java.class.path"), s"skein.ros.$name") ++ arguments
+    val builder = ProcessBuilder(command*).redirectErrorStream(true)
+    builder.environment.putAll(variables.asJava)
+    builder
+
+/** Serves three vehicles to ROS 2 until its input ends. */
+@main def serveOnRos(speed: Double, port: Int): Unit =
+  given system: ActorSystem = ActorSystem("ros")
+  val vehicles              = ServedProcess.Names.zipWithIndex.map((name, index) =>
+    VehicleSettings(name, Vector3(0, 4.0 * index, 0))
+  )
+  val opened =
+    for
+      node   <- RosNode.open("skein", Clock.system)
+      topics <- SimulatedTopics.open(node, ServedProcess.Names)
+    yield (node, topics)
+  opened match
+    case Left(why) =>
+      println(why)
+      sys.exit(1)
+    case Right((node, topics)) =>
+      val settings = SimulatorSettings(WorldSettings(vehicles), Address("127.0.0.1", port), speed = speed)
+      val started  = SimulatorServer.start(settings, TcpTransport(), Clock.system, Some(topics))
+      val server   = Await.result(started, 20.seconds)
+      topics.fly(server).left.foreach(println)
+      println("serving")
+      while System.in.read() >= 0 do ()
+      topics.close()
+      node.close()
+      println(s"missing: ${topics.missing.mkString("; ")}")
+      println(s"notes: ${node.notes.mkString("; ")}")
+      println(s"skipped ${topics.skipped}, refused ${node.refused}, failed ${node.failed}")
+      Await.result(server.close(), 10.seconds): Unit
+      Await.result(system.terminate(), 10.seconds): Unit
+      println("ended")

@@ -1,0 +1,75 @@
+package skein.simulator
+
+import skein.policy.{Action, ActionGuidance}
+import skein.signal.Kinematics
+import skein.units.*
+import skein.vehicle.{PathFollowing, Setpoint}
+
+/** The simulation as other parts of this process use it: it reports to an onlooker, and vehicles perform
+  * actions until these end, another one replaces them, or a client moves or resets the vehicle. Then, or once
+  * no action is left, a vehicle in the air holds its position, as after any move.
+  */
+private[simulator] final class InProcess(simulation: Simulation, onlooker: Onlooker):
+  private val world  = simulation.world
+  private val pilots = world.vehicles.indices.map(OnBoard(_)).toVector
+  private var seenAt = Option.empty[Instant]
+
+  pilots.foreach(pilot => world.attach(pilot.index, pilot))
+
+  /** When the onlooker sees the vehicles next, on the simulator's clock. */
+  def nextDue: Instant = seenAt.fold(world.now)(_ + PathFollowing.Period)
+
+  /** Lets a vehicle perform an action; see [[SimulatorServer.act]]. */
+  def act(vehicle: Int, action: Kinematics => Action, lasts: Option[Span]): Unit =
+    pilots(vehicle).act(action, lasts)
+
+  private def see(at: Instant): Unit =
+    seenAt = Some(at)
+    onlooker.see(at, world.vehicles.map(motionOf(_, at)))
+
+  private def motionOf(vehicle: SimulatedVehicle, at: Instant) = SeenVehicle(
+    vehicle.settings.name,
+    kinematicsOf(vehicle, at),
+    vehicle.accelerationNed,
+    vehicle.locationAt(at)
+  )
+
+  private def kinematicsOf(vehicle: SimulatedVehicle, at: Instant) = Kinematics(
+    vehicle.worldPosition(at),
+    vehicle.velocityAt(at),
+    vehicle.orientation,
+    vehicle.angularVelocityFrd
+  )
+
+  private final class OnBoard(val index: Int) extends Pilot:
+    private var ordered = Option.empty[(action: Kinematics => Action, until: Option[Instant])]
+
+    def act(action: Kinematics => Action, lasts: Option[Span]): Unit =
+      val vehicle = world.multirotor(index)
+      world.cancelMove(index)
+      if !vehicle.apiControl then vehicle.setApiControl(true)
+      val _ = vehicle.arm(true)
+      ordered = Some((action = action, until = lasts.map(world.now + _)))
+      setpoint(vehicle, world.now).foreach(vehicle.command(_, world.now))
+
+    def turn(vehicle: SimulatedMultirotor, at: Instant): Option[Setpoint] =
+      if index == 0 then see(at)
+      if world.isMoving(index) || !vehicle.apiControl || ordered.exists(_.until.exists(_ <= at)) then
+        ordered = None
+      setpoint(vehicle, at)
+
+    private def setpoint(vehicle: SimulatedMultirotor, at: Instant): Option[Setpoint] =
+      ordered.map: (action, _) =>
+        val now = kinematicsOf(vehicle, at)
+        ActionGuidance.of(own(action(now), vehicle.settings.startNed)).setpoint(
+          now.copy(positionNed = vehicle.positionAt(at))
+        )
+
+    /** An action in the vehicle's own frame, which begins at its start. */
+    private def own(action: Action, start: Vector3): Action = action match
+      case Action.Position(position, speed, yaw)     => Action.Position(position - start, speed, yaw)
+      case Action.VelocityAt(north, east, down, yaw) =>
+        Action.VelocityAt(north, east, Metres(down.value - start.z), yaw)
+      case Action.Along(heading, speed, down, yaw) =>
+        Action.Along(heading, speed, Metres(down.value - start.z), yaw)
+      case other => other

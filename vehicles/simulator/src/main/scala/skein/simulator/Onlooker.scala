@@ -1,0 +1,26 @@
+package skein.simulator
+
+import skein.signal.Kinematics
+import skein.units.*
+
+/** A part of this process that watches a simulator's vehicles without asking: see [[SimulatorServer.start]].
+  */
+trait Onlooker:
+  /** Takes the vehicles' true motions every 20 ms of simulated time, at exactly that time, on the
+    * simulation's own thread, so it must return soon. Nothing is taken while the simulator is paused.
+    *
+    * @param at on the simulator's clock
+    */
+  def see(at: Instant, vehicles: Vector[SeenVehicle]): Unit
+
+/** A vehicle's true motion.
+  *
+  * @param kinematics world NED
+  * @param accelerationNed m/s², without gravity
+  */
+final case class SeenVehicle(
+    name: String,
+    kinematics: Kinematics,
+    accelerationNed: Vector3,
+    location: GeoLocation
+)
