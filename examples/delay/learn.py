@@ -9,13 +9,15 @@ from stable_baselines3.common.env_util import make_vec_env
 
 from skein_uav.delay import DelayEnv
 
-# Delays of up to four steps each way. They hold for a second on the mean, so that a policy can make use of what it knows.
+# Delays of up to four steps each way, of two in InvertedPendulum. They hold for a second on the mean, so that a policy can make use of what it knows.
 LINKS = {
     "Pendulum-v1": {"step_s": 0.05, "link": "correlated:1s,uniform:0ms..400ms"},
+    "InvertedPendulum-v5": {"step_s": 0.04, "link": "correlated:1s,uniform:0ms..160ms"},
     "CartPole-v1": {"step_s": 0.02, "link": "correlated:1s,uniform:0ms..160ms"},
 }
 LEARNING = {
     "Pendulum-v1": dict(n_steps=256, batch_size=128, gamma=0.9, learning_rate=1e-3, use_sde=True, sde_sample_freq=4),
+    "InvertedPendulum-v5": dict(n_steps=64, batch_size=128, gamma=0.98, learning_rate=1e-3),
     "CartPole-v1": dict(n_steps=128, batch_size=256, n_epochs=8, gamma=0.98),
 }
 TOLD = {

@@ -42,6 +42,14 @@ def test_columns_have_names_of_their_own_and_hold_numbers(flights):
         flights["nothing"]
 
 
+def test_a_notebook_shows_the_first_table_and_the_reports_figures(flights):
+    page = flights._repr_html_()
+    assert "closest m" in page and page.count("<img") >= 3
+    assert page.index("<details>") < page.index("What happened")
+    assert flights.figures["trajectories"]._repr_svg_().startswith("<svg")
+    assert list(flights.figures)[-1] == "graph-stream"
+
+
 def test_a_recording_says_how_old_each_decision_was(flights):
     with flights.load() as recording:
         decisions = recording["decision"]
@@ -66,6 +74,7 @@ def test_spread_and_search_come_as_frames(tmp_path):
     assert found.result["policy"].iloc[0] == "paper-pursuer"
     assert found.policy is not None and found.policy.exists()
     assert found.landscape is not None and len(found.landscape) > 1
+    assert list(found.figures) == ["landscape"] and "paper-pursuer" in found._repr_html_()
 
 
 def test_what_a_command_refuses_is_an_exception_with_its_words():
@@ -138,6 +147,7 @@ def test_a_scenario_in_python_is_flown_searched_and_budgeted(tmp_path):
     )
     assert "SIMD" in " ".join(found.result.astype(str).iloc[0])
     cells = skein.budget(Chase(), episodes=16, means=2, jitters=2)
-    assert set(cells["meanMs"]) == {0.0, 100.0}
+    assert set(cells.map["meanMs"]) == {0.0, 100.0}
+    assert cells._repr_html_().count("<img") == 1 and list(cells.figures) == ["map"]
     (spread,) = skein.spread(Chase(), seeds=2).values()
     assert spread["flights"].tolist() == [2]

@@ -7,11 +7,9 @@ import os
 import re
 import signal
 import subprocess
-import sys
 import tempfile
 from collections.abc import Iterable, Mapping
-from contextlib import ExitStack
-from dataclasses import dataclass
+from contextlib import ExitStack, nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -20,75 +18,13 @@ import pandas as pd
 from .errors import SkeinError
 from .installation import find
 from .policies import Policy, PolicyServer
-from .recording import Recording, load
+from .progress import Progress
+from .results import Budget, Flights, Found, Tables
 from .scenario import Scenario
 from .seeds import folded
 
-Tables = dict[str, pd.DataFrame]
-
 #: For policies in Python in flights in real time.
 _DEADLINE_MS = 20.0
-
-
-@dataclass(frozen=True)
-class Flights:
-    """The result of `fly`.
-
-    Attributes
-    ----------
-    tables : dict of str to DataFrame
-        What the report shows, by title; units stand in the columns' names.
-    recordings : list of Path
-        One DuckDB file a flight; `skein_uav.load` opens one.
-    report : Path
-        A page with tables and pictures.
-    """
-
-    tables: Tables
-    recordings: list[Path]
-    report: Path
-
-    def load(self, number: int = 0) -> Recording:
-        """Opens one of the recordings."""
-        return load(self.recordings[number])
-
-    def __getitem__(self, title: str) -> pd.DataFrame:
-        """The table of this title."""
-        if title not in self.tables:
-            raise KeyError(f"expected one of {', '.join(map(repr, self.tables))}, came {title!r}")
-        return self.tables[title]
-
-    def __repr__(self) -> str:
-        """The names of its parts: whole tables would fill pages."""
-        titles = ", ".join(repr(title) for title in self.tables)
-        files = ", ".join(path.name for path in self.recordings)
-        return f"Flights(tables: {titles}; recordings: {files}; report: {self.report})"
-
-
-@dataclass(frozen=True)
-class Found:
-    """The result of `search`.
-
-    Attributes
-    ----------
-    result : DataFrame
-        The policy found and the one it started from, each with its mean on fresh episodes and a 95 % interval.
-    policy : Path or None
-        A policy file in `folder`, for ``fly(policy=…)``; None for a team's scenario, whose settings are in `result`.
-    landscape : DataFrame or None
-        The objective around the policy found; None if the search was stopped before.
-    folder : Path
-        State, policy and pictures; temporary, unless ``search(out=…)`` named it.
-    """
-
-    result: pd.DataFrame
-    policy: Path | None
-    landscape: pd.DataFrame | None
-    folder: Path
-
-    def __repr__(self) -> str:
-        """The result, and the folder of the other files."""
-        return f"Found(policy: {self.policy}; folder: {self.folder}; result:\n{self.result.to_string()})"
 
 
 def fly(
@@ -145,7 +81,7 @@ def fly(
     out : path, optional
         Folder for recordings and report; a new temporary one unless named.
     verbose : bool
-        Prints the command's progress on ``stderr``.
+        Shows the command's progress on ``stderr``: a bar where tqdm is installed, else the lines that it prints.
     **options
         Any other option of ``./skein fly``, for example ``moves_in_flight=6``.
 
@@ -260,7 +196,7 @@ def search(
     out : path, optional
         Folder for state, policy and pictures; a new temporary one unless named.
     verbose : bool
-        Prints the command's progress on ``stderr``.
+        Shows the command's progress on ``stderr``: a bar where tqdm is installed, else the lines that it prints.
     **options
         Any other option of ``./skein search``, for example ``objective="0.7*last10s + 0.3*effort"``.
 
@@ -299,7 +235,7 @@ def budget(
     out: str | os.PathLike[str] | None = None,
     verbose: bool = False,
     **options: Any,
-) -> pd.DataFrame:
+) -> Budget:
     """How much latency and jitter a scenario, or a duel's policy, tolerates.
 
     Parameters
@@ -313,14 +249,13 @@ def budget(
 
     Returns
     -------
-    DataFrame
-        The map, a row for each cell.
+    Budget
     """
     _told_here("budget", options, set="settings")
     folder = _folder(out)
     given = {"scenario": _scenario(scenario, folder), "set": _settings(settings)}
     _ran("budget", **given, out=folder, verbose=verbose, **options)
-    return pd.read_csv(folder / "map.csv")
+    return Budget(pd.read_csv(folder / "map.csv"), folder)
 
 
 def _told_here(function: str, options: Mapping[str, Any], **names: str) -> None:
@@ -378,7 +313,8 @@ def run(command: str, *words: str, verbose: bool = False, **options: Any) -> Tab
     SkeinError
         With what the command said, if it failed.
     """
-    return {table["title"]: _frame(table) for table in _ran(command, *words, verbose=verbose, **options)["tables"]}
+    printed = _ran(command, *words, verbose=verbose, **options)["tables"]
+    return Tables({table["title"]: _frame(table) for table in printed})
 
 
 def _ran(command: str, *words: str, verbose: bool = False, **options: Any) -> Any:
@@ -413,11 +349,11 @@ def _heard(process: subprocess.Popen[str], verbose: bool) -> str:
     """Reads a command's progress and error messages, until it ends."""
     assert process.stderr is not None
     lines = []
-    with process.stderr:
+    with process.stderr, Progress() if verbose else nullcontext() as progress:
         for line in process.stderr:
             lines.append(line)
-            if verbose:
-                sys.stderr.write(line)
+            if progress is not None:
+                progress.show(line.rstrip("\n"))
     process.wait()
     return "".join(lines)
 

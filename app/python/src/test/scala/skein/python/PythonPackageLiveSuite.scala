@@ -60,14 +60,25 @@ class PythonPackageLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
     assert(distances.last < distances.head - 2, distances.mkString(", "))
 
   test("the package passes its own tests, where python3 has what they need"):
+    assumeTestable()
+    val passed = ran("python3", "-m", "pytest", "-q", ".", "--ignore=tests/test_notebooks.py")
+    assert(passed.isRight, passed.left.getOrElse(""))
+
+  for name <- Seq("measure-my-loop", "write-and-search", "train-under-delay", "delay-anywhere") do
+    test(s"the notebook $name runs from top to bottom, where python3 has what it needs"):
+      assumeTestable()
+      val passed = ran("python3", "-m", "pytest", "-q", "-rs", "-k", name, "tests/test_notebooks.py")
+      assert(passed.isRight, passed.left.getOrElse(""))
+      val skipped = passed.fold(fail(_), identity).linesIterator.find(_.startsWith("SKIPPED"))
+      assume(skipped.isEmpty, skipped.getOrElse(""))
+
+  private def assumeTestable(): Unit =
     val needed = ran("python3", "-c", "import duckdb, gymnasium, jpype, pandas, pettingzoo, pytest")
     assume(needed.isRight, needed.left.getOrElse("").linesIterator.toSeq.lastOption.getOrElse(""))
     assume(
       Files.exists(root.resolve("app/cli/target/universal/stage/bin/skein")),
       "./sbtw cli/stage was not run before"
     )
-    val passed = ran("python3", "-m", "pytest", "-q", ".")
-    assert(passed.isRight, passed.left.getOrElse(""))
 
   private def ran(command: String*): Either[String, String] =
     val output = StringBuilder()

@@ -1,0 +1,167 @@
+"""What the commands return: data frames, files, and how a notebook shows them."""
+
+from __future__ import annotations
+
+import base64
+from dataclasses import dataclass
+from html import escape
+from pathlib import Path
+
+import pandas as pd
+
+from .recording import Recording, load
+
+
+class Tables(dict[str, pd.DataFrame]):
+    """What a command printed: data frames by their titles, which a notebook shows one below the other."""
+
+    def _repr_html_(self) -> str:
+        return "".join(_table(title, frame) for title, frame in self.items())
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A figure of a command, which a notebook shows.
+
+    Attributes
+    ----------
+    path : Path
+        Of the SVG file.
+    """
+
+    path: Path
+
+    def _repr_svg_(self) -> str:
+        text = self.path.read_text(encoding="utf-8")
+        return text[text.index("<svg") :]  # some notebooks put it into their page, where XML's declaration is wrong
+
+
+@dataclass(frozen=True)
+class Flights:
+    """The result of `fly`. A notebook shows its first table and its figures.
+
+    Attributes
+    ----------
+    tables : dict of str to DataFrame
+        What the report shows, by title; units stand in the columns' names.
+    recordings : list of Path
+        One DuckDB file a flight; `skein_uav.load` opens one.
+    report : Path
+        A page with tables and pictures.
+    """
+
+    tables: Tables
+    recordings: list[Path]
+    report: Path
+
+    @property
+    def figures(self) -> dict[str, Figure]:
+        """The report's, by the names of their files: ``trajectories``, ``latency``, …; graphs of loops come last."""
+        return _figures(self.report.parent / "figures")
+
+    def load(self, number: int = 0) -> Recording:
+        """Opens one of the recordings."""
+        return load(self.recordings[number])
+
+    def __getitem__(self, title: str) -> pd.DataFrame:
+        """The table of this title."""
+        if title not in self.tables:
+            raise KeyError(f"expected one of {', '.join(map(repr, self.tables))}, came {title!r}")
+        return self.tables[title]
+
+    def __repr__(self) -> str:
+        """The names of its parts: whole tables would fill pages."""
+        titles = ", ".join(repr(title) for title in self.tables)
+        files = ", ".join(path.name for path in self.recordings)
+        return f"Flights(tables: {titles}; recordings: {files}; report: {self.report})"
+
+    def _repr_html_(self) -> str:
+        first, *others = [_table(title, frame) for title, frame in self.tables.items()] or [""]
+        shown = {name: figure for name, figure in self.figures.items() if not name.startswith("graph-")}
+        return first + _pictures(shown) + _folded("More tables", "".join(others))
+
+
+@dataclass(frozen=True)
+class Found:
+    """The result of `search`. A notebook shows the result and the picture of the landscape.
+
+    Attributes
+    ----------
+    result : DataFrame
+        The policy found and the one it started from, each with its mean on fresh episodes and a 95 % interval.
+    policy : Path or None
+        A policy file in `folder`, for ``fly(policy=…)``; None for a team's scenario, whose settings are in `result`.
+    landscape : DataFrame or None
+        The objective around the policy found; None if the search was stopped before.
+    folder : Path
+        State, policy and pictures; temporary, unless ``search(out=…)`` named it.
+    """
+
+    result: pd.DataFrame
+    policy: Path | None
+    landscape: pd.DataFrame | None
+    folder: Path
+
+    @property
+    def figures(self) -> dict[str, Figure]:
+        """``landscape``, if one was drawn."""
+        return _figures(self.folder, "landscape")
+
+    def __repr__(self) -> str:
+        """The result, and the folder of the other files."""
+        return f"Found(policy: {self.policy}; folder: {self.folder}; result:\n{self.result.to_string()})"
+
+    def _repr_html_(self) -> str:
+        return _table("", self.result) + _pictures(self.figures)
+
+
+@dataclass(frozen=True)
+class Budget:
+    """The result of `budget`. A notebook shows the picture of the map.
+
+    Attributes
+    ----------
+    map : DataFrame
+        A row for each cell: mean and jitter of the latency in ms, the objective there, its deviation from the truth.
+    folder : Path
+        The map's files; temporary, unless ``budget(out=…)`` named it.
+    """
+
+    map: pd.DataFrame
+    folder: Path
+
+    @property
+    def figures(self) -> dict[str, Figure]:
+        """``map``."""
+        return _figures(self.folder, "map")
+
+    def _repr_html_(self) -> str:
+        return _pictures(self.figures) + _folded("Cells", _table("", self.map))
+
+
+def _figures(folder: Path, name: str = "*") -> dict[str, Figure]:
+    files = sorted(folder.glob(f"{name}.svg"), key=lambda file: (file.stem.startswith("graph-"), file.stem))
+    return {file.stem: Figure(file) for file in files}
+
+
+def _table(title: str, frame: pd.DataFrame) -> str:
+    note = frame.attrs.get("note", "")
+    return (
+        (f"<h4>{escape(title)}</h4>" if title else "")
+        + frame.astype(object).where(frame.notna(), "").to_html(index=False, border=0, max_rows=60)
+        + (f"<p><small>{escape(note)}</small></p>" if note else "")
+    )
+
+
+def _pictures(figures: dict[str, Figure]) -> str:
+    """As images rather than inline: a page then has no style of one figure in another."""
+
+    def picture(name: str, figure: Figure) -> str:
+        coded = base64.b64encode(figure.path.read_bytes()).decode()
+        return f'<p><img alt="{escape(name)}" style="max-width: 100%" src="data:image/svg+xml;base64,{coded}"></p>'
+
+    return "".join(picture(name, figure) for name, figure in figures.items())
+
+
+def _folded(summary: str, content: str) -> str:
+    return f"<details><summary>{escape(summary)}</summary>{content}</details>" if content else ""
