@@ -34,8 +34,7 @@ import skein.units.Decimals.brief
   * @param isWatched whether its records are shown, so that images and clouds that are not recorded are still
   *   offered
   * @param isMavlinkByTcp whether `simulator`, if it speaks MAVLink, is reached by TCP instead of datagrams
-  * @param elsewhere vehicles to fly instead of a simulator's; not in `paused`, and over no emulated
-  *   link
+  * @param elsewhere vehicles to fly instead of a simulator's; not in `paused`, and over no emulated link
   */
 final class FlightAssembler(
     transport: Transport,
