@@ -335,7 +335,14 @@ lazy val cli = project.in(file("app/cli"))
       """  *-Xm[nsx]*|*-XX:+Use*GC*) ;;""",
       s"""  *) ${Jvm.control.map(option => s"addJava $option").mkString("; ")} ;;""",
       """esac""",
-      """addJava "-Xlog:disable""""
+      """addJava "-Xlog:disable"""",
+      // The packager's script takes the first -- for its own.
+      """words=() behind=""",
+      """for word in "$@"; do""",
+      """  if [ -z "$behind" ] && [ "$word" = -- ]; then behind=1; words+=(--); fi""",
+      """  words+=("$word")""",
+      """done""",
+      """set -- ${words[@]+"${words[@]}"}"""
     )
   )
 
