@@ -5,6 +5,7 @@ import org.apache.pekko.stream.SubscriptionWithCancelException.NonFailureCancell
 import org.apache.pekko.stream.stage.*
 import org.apache.pekko.util.ByteString
 import scala.collection.mutable
+import skein.signal.Retransmission
 import skein.units.*
 
 /** One direction of one connection over an emulated link: bytes, the end of sending and failures come out in
@@ -23,6 +24,9 @@ import skein.units.*
   * With a bottleneck before it, bytes enter piece by piece, as the bottleneck has room, and have its delay in
   * addition.
   *
+  * Lost bytes of a stream are sent again, and later ones wait for them ([[Packets.Tcp]]). The rate does not
+  * fall by losses, as a congestion window would let it.
+  *
   * Bytes sent into a silence count as lost; neither side learns of it before the link breaks.
   *
   * @param open makes the delivery of a line that opens at this time
@@ -36,7 +40,7 @@ private[link] final class DelayLine(
     maxBytes: Int,
     broken: TransportError,
     counts: LineCounters,
-    isDatagrams: Boolean = false
+    packets: Packets = Packets.Whole
 ) extends GraphStage[FlowShape[ByteString, ByteString]]:
   import DelayLine.*
 
@@ -52,10 +56,12 @@ private[link] final class DelayLine(
       private val atSender      = mutable.Queue.empty[Waiting] // for the bottleneck
       private var roomAt        = Span.Zero
       private var wakesAt       = Span.Zero
+      private var repeatsAt     = Span.Zero
       private var bytesUnderWay = 0                            // and at the sender
       private var ending: Option[Option[Throwable]] = None // once all bytes have left the sender
       private var end: Option[End]                  = None
       private var cancellation: Option[Throwable]   = None
+      private val isDatagrams                       = packets.isDatagrams
 
       setHandlers(in, out, this)
 
@@ -77,13 +83,65 @@ private[link] final class DelayLine(
           deliver()
 
       /** Takes bytes that leave their sender's side. */
-      private def enter(waiting: Waiting, leave: Span): Unit = delivery.due(leave, waiting.delay) match
-        case Some(due) =>
+      private def enter(waiting: Waiting, leave: Span): Unit = packets match
+        case Packets.Whole                               => travel(waiting.bytes, leave, waiting.delay)
+        case Packets.Datagrams(loss, duplicates, random) =>
+          if loss.loses(leave) then
+            counts.packets.lost.increment()
+            lose(waiting.bytes)
+          else
+            travel(waiting.bytes, leave, waiting.delay)
+            if duplicates > 0 && random.nextDouble() < duplicates then
+              counts.packets.duplicates.increment()
+              bytesUnderWay += waiting.bytes.size
+              travel(waiting.bytes, leave, delivery.delay(leave.max(sinceStart())))
+        case tcp: Packets.Tcp =>
+          for bytes <- Packets.of(waiting.bytes) do
+            if tcp.loss.loses(leave) then
+              counts.packets.lost.increment()
+              val segment = Segment(bytes, Segment.Never)
+              segment.waits = tcp.timeout
+              segment.againAt = leave + tcp.timeout
+              underWay.enqueue(segment)
+            else
+              travel(bytes, leave, waiting.delay)
+              // Its acknowledgement reports what was lost before it.
+              val known = leave + waiting.delay * 2 + tcp.reordering
+              for segment <- underWay if segment.isLost && segment.isFirst do
+                segment.againAt = segment.againAt.min(known)
+          repeatInTime()
+
+      private def travel(bytes: ByteString, leave: Span, delay: Span): Unit =
+        delivery.due(leave, delay) match
           // Anything but a datagram is due after earlier bytes.
-          underWay.insert(underWay.lastIndexWhere(_.due <= due) + 1, Segment(waiting.bytes, due))
-        case None =>
-          bytesUnderWay -= waiting.bytes.size
-          counts.bytesLost.add(waiting.bytes.size)
+          case Some(due) if isDatagrams =>
+            underWay.insert(underWay.lastIndexWhere(_.due <= due) + 1, Segment(bytes, due))
+          case Some(due) => underWay.enqueue(Segment(bytes, due))
+          case None      => lose(bytes)
+
+      private def lose(bytes: ByteString): Unit =
+        bytesUnderWay -= bytes.size
+        counts.bytesLost.add(bytes.size)
+
+      /** Sends again what is due to be. */
+      private def repeat(tcp: Packets.Tcp): Unit =
+        val now = sinceStart()
+        for segment <- underWay if segment.isLost && segment.againAt <= now do
+          counts.packets.sentAgain.increment()
+          if tcp.loss.loses(now) then
+            counts.packets.lost.increment()
+            segment.isFirst = false
+            segment.waits = Retransmission.next(segment.waits)
+            segment.againAt = now + segment.waits
+          else segment.due = delivery.dueAgain(now, delivery.delay(now)).getOrElse(Segment.Gone)
+        underWay.removeAll(_.due == Segment.Gone).foreach(segment => lose(segment.bytes))
+        repeatInTime()
+
+      private def repeatInTime(): Unit =
+        val next = underWay.iterator.filter(_.isLost).map(_.againAt).minOption
+        for at <- next if !isTimerActive(Timer.Repeat) || at < repeatsAt do
+          repeatsAt = at
+          scheduleOnce(Timer.Repeat, (at - sinceStart()).max(Span.Zero).toDuration)
 
       /** Hands the bottleneck the bytes that it has room for.
         *
@@ -138,6 +196,11 @@ private[link] final class DelayLine(
         case Timer.Send    =>
           send(held = true)
           deliver()
+        case Timer.Repeat =>
+          packets match
+            case tcp: Packets.Tcp => repeat(tcp)
+            case _                => ()
+          deliver()
         case Timer.Cancel => cancellation.foreach(cancelStage)
         case _            =>
           counts.bytesLost.add(bytesUnderWay)
@@ -163,7 +226,7 @@ private[link] final class DelayLine(
           push(out, bytes)
         if bytesUnderWay < maxBytes then pullIfIdle()
         (underWay.headOption, end) match
-          case (Some(segment), _)                           => if isAvailable(out) then wakeAt(segment.due)
+          case (Some(segment), _) => if isAvailable(out) && !segment.isLost then wakeAt(segment.due)
           case (None, Some(End(failure, due))) if due > now => wakeAt(due)
           case (None, Some(End(failure, _)))                => failure.fold(completeStage())(failStage)
           case (None, None)                                 => ()
@@ -176,8 +239,6 @@ private[link] final class DelayLine(
       private def pullIfIdle(): Unit = if !isClosed(in) && !hasBeenPulled(in) then pull(in)
 
 private object DelayLine:
-  private final case class Segment(bytes: ByteString, due: Span)
-
   /** Bytes sent at a time that have not left yet, with their delay once they leave. */
   private final case class Waiting(bytes: ByteString, since: Span, delay: Span)
 
@@ -185,4 +246,4 @@ private object DelayLine:
   private final case class End(failure: Option[Throwable], due: Span)
 
   private enum Timer:
-    case Send, Deliver, Cancel, Break
+    case Send, Deliver, Repeat, Cancel, Break
