@@ -19,10 +19,10 @@ object Retransmission:
   def timeout(profile: LatencyProfile): Span =
     profile.meanRoundTrip + LeastVariance.max(profile.meanDeviation * 4)
 
-  /** How much later than the acknowledgement of a later packet one counts as lost, and not as overtaken: a
-    * quarter of a round trip (RFC 8985, section 6.2).
+  /** How long after it was sent a packet counts as lost, and not as overtaken, if a later one has been
+    * acknowledged: a round trip and a quarter (RFC 8985, section 6.2).
     */
-  def reordering(profile: LatencyProfile): Span = profile.meanRoundTrip / 4
+  def overtaken(profile: LatencyProfile): Span = profile.meanRoundTrip + profile.meanRoundTrip / 4
 
   /** The next wait after one that ended in vain (RFC 6298, section 5.5). */
   def next(wait: Span): Span = Most.min(wait * 2)

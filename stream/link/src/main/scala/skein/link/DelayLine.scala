@@ -99,16 +99,16 @@ private[link] final class DelayLine(
           for bytes <- Packets.of(waiting.bytes) do
             if tcp.loss.loses(leave) then
               counts.packets.lost.increment()
-              val segment = Segment(bytes, Segment.Never)
+              val segment = Segment(bytes, Segment.Never, leave)
               segment.waits = tcp.timeout
               segment.againAt = leave + tcp.timeout
               underWay.enqueue(segment)
             else
               travel(bytes, leave, waiting.delay)
               // Its acknowledgement reports what was lost before it.
-              val known = leave + waiting.delay * 2 + tcp.reordering
+              val known = leave + waiting.delay * 2
               for segment <- underWay if segment.isLost && segment.isFirst do
-                segment.againAt = segment.againAt.min(known)
+                segment.againAt = segment.againAt.min(segment.missedAt(known, tcp.overtaken))
           repeatInTime()
 
       private def travel(bytes: ByteString, leave: Span, delay: Span): Unit =

@@ -48,7 +48,7 @@ final class EmulatedLink(val profile: LinkProfile, seed: Long, clock: Clock, sta
       if isDatagrams then
         Packets.Datagrams(loss, profile.duplicates, SplitMix64(SplitMix64.seedOf(duplicateSeed, index)))
       else if loss.isAny then
-        Packets.Tcp(loss, Retransmission.timeout(latency), Retransmission.reordering(latency))
+        Packets.Tcp(loss, Retransmission.timeout(latency), Retransmission.overtaken(latency))
       else Packets.Whole
 
   def counts: LinkCounts = LinkCounts(

@@ -13,13 +13,12 @@ private[link] enum Packets:
   case Datagrams(loss: PacketLoss, duplicates: Double, random: SplitMix64)
 
   /** TCP's: a lost one is sent again after a time-out, which doubles each time, or sooner if a later packet
-    * passes: once its acknowledgement is back, and a part of a round trip later, in case it was overtaken
-    * (RFC 8985).
+    * passes: once its acknowledgement is back, but no earlier than an overtaken packet's might be (RFC 8985).
     *
     * @param timeout the first ([[skein.signal.Retransmission.timeout]])
-    * @param reordering that part of a round trip
+    * @param overtaken how long after its sending that is ([[skein.signal.Retransmission.overtaken]])
     */
-  case Tcp(loss: PacketLoss, timeout: Span, reordering: Span)
+  case Tcp(loss: PacketLoss, timeout: Span, overtaken: Span)
 
   def isDatagrams: Boolean = this match
     case _: Datagrams => true
@@ -37,13 +36,16 @@ private[link] object Packets:
   *
   * @param due when they come out; [[Segment.Never]] while they are lost and not yet sent again
   */
-private[link] final class Segment(val bytes: ByteString, var due: Span):
+private[link] final class Segment(val bytes: ByteString, var due: Span, sentAt: Span = Span.Zero):
   /** Of lost bytes: when they are sent again, and the wait after that. */
   var againAt: Span = Segment.Never
   var waits: Span   = Span.Zero
 
   /** Whether they were sent once. */
   var isFirst: Boolean = true
+
+  /** When they count as lost by the acknowledgement of a later packet. */
+  def missedAt(acknowledged: Span, overtaken: Span): Span = acknowledged.max(sentAt + overtaken)
 
   def isLost: Boolean = due == Segment.Never
 

@@ -62,7 +62,7 @@ class DelayLineSuite extends munit.FunSuite:
       val packets =
         if isDatagrams then Packets.Datagrams(loss, duplicates, SplitMix64(7))
         else if loss.isAny then
-          Packets.Tcp(loss, Retransmission.timeout(latency), Retransmission.reordering(latency))
+          Packets.Tcp(loss, Retransmission.timeout(latency), Retransmission.overtaken(latency))
         else Packets.Whole
       val line = Flow.fromGraph(DelayLine(open, None, () => sinceStart, maxBytes, lost, counts, packets))
       body(Line(line, () => sinceStart.toMillis, counts))
@@ -286,16 +286,18 @@ class DelayLineSuite extends munit.FunSuite:
     assertEquals(delays.distinct.sorted.take(3), Seq(50L, 350L, 950L))
     assertEqualsDouble(delays.count(_ == 50) / 500.0, 0.85, 0.05)
 
-  test("a packet that others follow is sent again a quarter of a round trip after the next one's answer"):
+  test(
+    "a packet that others follow is sent again a round trip and a quarter later, or once one is acknowledged"
+  ):
     val came  = over(lossy)(line => arrivals(every(20, 1000), line))
     val ms    = came.flatMap((text, at) => text.split(';').map(_.toInt -> at)).toMap
     val waits = (0 until 1000).map(i => (ms(i) - 20 * i).round)
-    // Alone it would be 350 ms: it is 20 ms to the next packet, 100 and 25 ms until it counts as lost, 50 ms.
-    assert(waits.contains(195L), waits.distinct.sorted.toString)
-    // Two in a row: 20 ms more for the first; the retransmission lost: 600 ms more.
-    assert(waits.contains(215L), waits.distinct.sorted.toString)
-    // Later packets wait behind.
+    // Alone it would be 350 ms. Sent again after 125 ms; the next one's acknowledgement comes after 120.
     assert(waits.contains(175L), waits.distinct.sorted.toString)
+    // Two in a row: the first is sent again after 140 ms, when the one behind both is acknowledged.
+    assert(waits.contains(190L), waits.distinct.sorted.toString)
+    // The next one waits behind.
+    assert(waits.contains(155L), waits.distinct.sorted.toString)
 
   test("a large write is cut into packets, of which the lost ones are sent again"):
     val bytes          = ByteString.fromArray(Array.tabulate(1_000_000)(_.toByte))
