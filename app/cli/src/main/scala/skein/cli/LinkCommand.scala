@@ -74,9 +74,9 @@ object LinkCommand
     yield LinkProfile(toServer, toClient, faults, duplicates = duplicates)
 
   private def duplicates(options: LinkOptions): Either[String, Double] = options.duplicate match
-    case None                            => Right(0)
+    case None                          => Right(0)
     case Some(_) if !options.udp.value => Left("--duplicate: expected with --udp; TCP discards duplicates")
-    case Some(text)                      => Impairment.percent(text)
+    case Some(text)                    => Impairment.percent(text)
         .filter(share => share >= 0 && share <= 1)
         .toRight(s"--duplicate: expected a share from 0% to 100% such as 1%, came '$text'")
 

@@ -60,7 +60,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
       BudgetCommand(program),
       PolicyCommand()
     ),
-    "Simulator and network" -> Seq(ServeCommand, LinkCommand, LatencyCommand, ObserveCommand),
+    "Simulator and network" -> Seq(ServeCommand, LinkCommand, LinkFitCommand, LatencyCommand, ObserveCommand),
     "Work with recordings"  -> Seq(
       ReportCommand(),
       ReplayCommand(),

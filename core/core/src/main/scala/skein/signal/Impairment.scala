@@ -64,7 +64,6 @@ object Impairment:
         "outages of more than 0, and longer times from one to the next"
     yield Outage(lasts, every)
 
-  /** Reads `5%`. */
   def percent(text: String): Option[Double] = text match
     case s"$number%" => number.trim.toDoubleOption.map(_ / 100)
     case _           => None

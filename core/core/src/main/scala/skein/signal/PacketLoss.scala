@@ -15,7 +15,6 @@ final class PacketLoss(profile: LatencyProfile, linkSeed: Long, seed: Long):
   private val bursts = profile.impairments.collectFirst:
     case loss: Impairment.Loss if loss.share > 0 => LossBursts(loss, seed)
 
-  /** Whether any packet may be lost. */
   val isAny: Boolean = outages.isDefined || bursts.isDefined
 
   /** Whether a packet that is sent now is lost.
@@ -38,14 +37,12 @@ final class PacketLoss(profile: LatencyProfile, linkSeed: Long, seed: Long):
       wait = Retransmission.next(wait)
     waited
 
-/** [[Impairment.Loss]], packet by packet. */
 private[signal] final class LossBursts(loss: Impairment.Loss, seed: Long):
   private val random = SplitMix64(seed)
   private val leaves = 1 / loss.burst
   private val enters = leaves * loss.share / (1 - loss.share)
   private var isBad  = random.nextDouble() < loss.share
 
-  /** Whether the next packet is lost. */
   def next(): Boolean =
     val lost = isBad
     isBad = if isBad then random.nextDouble() >= leaves else random.nextDouble() < enters

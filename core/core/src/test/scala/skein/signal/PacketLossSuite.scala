@@ -10,7 +10,6 @@ class PacketLossSuite extends munit.FunSuite:
     val loss = PacketLoss(profile(text), linkSeed, seed)
     Vector.tabulate(count)(i => loss.loses(Span.ofMillis(i * everyMs)))
 
-  /** Lengths of runs of lost packets. */
   private def bursts(lost: Vector[Boolean]): Vector[Int] =
     lost.mkString(",").split("false").map(_.split("true", -1).length - 1).filter(_ > 0).toVector
 

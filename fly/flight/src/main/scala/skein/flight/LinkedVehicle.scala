@@ -5,7 +5,15 @@ import org.apache.pekko.pattern.after
 import scala.concurrent.Future
 import skein.policy.Action
 import skein.port.{Sensor, VehicleError, VehiclePort}
-import skein.signal.{Kinematics, LatencyProfile, LatencySampler, PacketLoss, Retransmission, SplitMix64, Stamped}
+import skein.signal.{
+  Kinematics,
+  LatencyProfile,
+  LatencySampler,
+  PacketLoss,
+  Retransmission,
+  SplitMix64,
+  Stamped
+}
 import skein.units.*
 
 /** A vehicle behind an emulated link, for adapters without bytes to delay: each call and each answer is
@@ -24,8 +32,8 @@ final class LinkedVehicle(
 ) extends VehiclePort:
   import system.dispatcher
   private val timeout = Retransmission.timeout(latency)
-  private val there = Direction(2 * line)
-  private val back  = Direction(2 * line + 1)
+  private val there   = Direction(2 * line)
+  private val back    = Direction(2 * line + 1)
 
   def read(): Future[Either[VehicleError, Stamped[Kinematics]]] = over(vehicle.read())
 
@@ -51,7 +59,7 @@ final class LinkedVehicle(
     private val sampler = LatencySampler(latency, seed, seed * 1_000_003 + number)
     private val loss    =
       PacketLoss(latency, SplitMix64.seedOf(seed, 5), SplitMix64.seedOf(seed, 6 + number))
-    private var newest  = begun
+    private var newest = begun
 
     def pass: Future[Unit] =
       val in = synchronized:

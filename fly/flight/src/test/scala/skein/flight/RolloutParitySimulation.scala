@@ -130,9 +130,7 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
       (LoopKind.Sequential, "loss:5%,vpn", 1),
       (LoopKind.Futures, "loss:5%/4,direct", 2),
       (LoopKind.Stream, "loss:5%/4,vpn", 1),
-      (LoopKind.Stream, "outage:1s/5s,loss:5%,direct", 2),
-      (LoopKind.Predictive, "loss:5%/4,vpn", 1),
-      (LoopKind.Predictive, "outage:1s/5s,loss:5%/4,vpn", 2)
+      (LoopKind.Predictive, "loss:5%/4,vpn", 1)
     )
   do
     test(s"${loop.label} over $link"):

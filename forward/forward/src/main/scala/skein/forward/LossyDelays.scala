@@ -4,7 +4,7 @@ import skein.signal.Impairment
 import skein.simd.WorldRandom
 
 /** A link that loses packets, as TCP meets it: a lost message is sent again after a time-out, which doubles
-  * each time, and is delayed by as much. Every message is a packet with none behind it that would tell of its
+  * each time, and is delayed by as much. Every message is a packet with none behind it that would report its
   * loss, since a vehicle has few commands under way and every request a connection of its own.
   *
   * Independent losses are drawn for each message and try. Bursts and outages are stretches of time in which
@@ -51,7 +51,9 @@ final class LossyDelays private (
   /** The stretches of a world in which everything is lost. */
   private[skein] def times(worldKey: Int): LossTimes = LossTimes(
     worldKey,
-    Vector(BurstsToServer, BurstsToClient).map(line => bursts.map(LossStretches(worldKey, line, _, isFixed = false))),
+    Vector(BurstsToServer, BurstsToClient).map(line =>
+      bursts.map(LossStretches(worldKey, line, _, isFixed = false))
+    ),
     outages.map(LossStretches(worldKey, Outages, _, isFixed = true))
   )
 
@@ -64,7 +66,10 @@ final class LossyDelays private (
     var timeout = timeoutNs
     var tries   = 0
     var drawn   = bits
-    while tries < mostTries && ((drawn & LowBits) < lossThreshold || times.isLost(line & 1, sentAtNs + waited))
+    while tries < mostTries && ((drawn & LowBits) < lossThreshold || times.isLost(
+        line & 1,
+        sentAtNs + waited
+      ))
     do
       waited += timeout
       timeout *= 2
@@ -86,7 +91,7 @@ object LossyDelays:
     *
     * @param timeoutS the first time-out
     * @param packetsPerS of all connections in one direction: turns the length of bursts into a time. Packets
-    *   at equal distances meet the same chain as live
+    *   at equal distances meet an equal chain live
     */
   def of(
       base: TabledDelays,
@@ -101,7 +106,8 @@ object LossyDelays:
     val bursts = loss.filter(_ => keeps > 1e-6).map: one =>
       val rate = -StrictMath.log(keeps) * packetsPerS
       (lastS = 1 / (rate * (1 - one.share)), betweenS = 1 / (rate * one.share))
-    val outages = outage.map(one => (lastS = one.lasts.toSeconds, betweenS = (one.every - one.lasts).toSeconds))
+    val outages =
+      outage.map(one => (lastS = one.lasts.toSeconds, betweenS = (one.every - one.lasts).toSeconds))
     val longestS = outages.fold(0.0)(_.lastS).max(bursts.fold(0.0)(-_.lastS * StrictMath.log(Chance)))
     val share    = loss.fold(0.0)(_.share)
     val tries    = Iterator
@@ -121,7 +127,7 @@ object LossyDelays:
         tries
       )
 
-/** When one world's link loses everything. Mutable: knows the flight as far as it was asked. */
+/** When one world's link loses everything. Mutable: computes the flight as far as needed. */
 private[skein] final class LossTimes(
     val worldKey: Int,
     bursts: Vector[Option[LossStretches]],
@@ -129,7 +135,8 @@ private[skein] final class LossTimes(
 ):
   private val all = bursts.map(own => (own ++ outages).toArray)
 
-  /** When the calm began that was found last, and when it ends, ns; both are the time asked where it is lost. */
+  /** When the calm began that was found last, and when it ends, ns; both are the requested time where it is lost.
+    */
   var calmFromNs, calmUntilNs = 0L
 
   /** Whether everything is lost at a time.

@@ -61,7 +61,7 @@ class DelaysSuite extends munit.FunSuite:
 
   test("bursts of four packets come in the next message of a line as often as on a link with forty a second"):
     // From packet to packet the chain keeps a share of 1 − 1/4 / 0.95; messages of a line are four apart.
-    val keeps = math.pow(1 - 0.25 / 0.95, 4)
+    val keeps              = math.pow(1 - 0.25 / 0.95, 4)
     def next(text: String) =
       val lost = waits(text, Delays.command(1)).map(_.map(_ > 0))
       val both = lost.flatMap(_.sliding(2)).filter(_.head)
@@ -71,7 +71,8 @@ class DelaysSuite extends munit.FunSuite:
 
   test("bursts of one direction are not those of the other, outages are"):
     def together(text: String) =
-      val (there, back) = (waits(text, Delays.command(0)).flatten, waits(text, Delays.acknowledgement(0)).flatten)
+      val (there, back) =
+        (waits(text, Delays.command(0)).flatten, waits(text, Delays.acknowledgement(0)).flatten)
       there.zip(back).count((a, b) => a > 0 && b > 0) / there.count(_ > 0).toDouble
     assertEqualsDouble(together("loss:5%/4,vpn"), 0.05, 0.02)
     assertEquals(together("outage:1s/10s,vpn"), 1.0)
@@ -87,7 +88,9 @@ class DelaysSuite extends munit.FunSuite:
     for text <- Seq("rate:1mbit,loss:5%,vpn", "loss:5%,correlated:1s,vpn") do
       assertEquals(
         checked(text),
-        Left(s"expected a link without rate and correlation, which forward simulation does not have, came $text")
+        Left(
+          s"expected a link without rate and correlation, which forward simulation does not have, came $text"
+        )
       )
     assert(checked("loss:0%,vpn").exists(_.isInstanceOf[DelayTable]))
 

@@ -5,7 +5,6 @@ import org.apache.pekko.stream.SubscriptionWithCancelException.NonFailureCancell
 import org.apache.pekko.stream.stage.*
 import org.apache.pekko.util.ByteString
 import scala.collection.mutable
-import skein.signal.Retransmission
 import skein.units.*
 
 /** One direction of one connection over an emulated link: bytes, the end of sending and failures come out in
@@ -53,11 +52,12 @@ private[link] final class DelayLine(
     new TimerGraphStageLogic(shape) with InHandler with OutHandler:
       private val delivery      = open(sinceStart())
       private val underWay      = mutable.Queue.empty[Segment]
-      private val atSender      = mutable.Queue.empty[Waiting] // for the bottleneck
+      private val missing       = mutable.ArrayBuffer.empty[Segment] // of those under way, the lost ones
+      private val atSender      = mutable.Queue.empty[Waiting]       // for the bottleneck
       private var roomAt        = Span.Zero
       private var wakesAt       = Span.Zero
       private var repeatsAt     = Span.Zero
-      private var bytesUnderWay = 0                            // and at the sender
+      private var bytesUnderWay = 0                                  // and at the sender
       private var ending: Option[Option[Throwable]] = None // once all bytes have left the sender
       private var end: Option[End]                  = None
       private var cancellation: Option[Throwable]   = None
@@ -99,16 +99,13 @@ private[link] final class DelayLine(
           for bytes <- Packets.of(waiting.bytes) do
             if tcp.loss.loses(leave) then
               counts.packets.lost.increment()
-              val segment = Segment(bytes, Segment.Never, leave)
-              segment.waits = tcp.timeout
-              segment.againAt = leave + tcp.timeout
+              val segment = Segment(bytes, Segment.Never)
+              segment.lost(leave, tcp)
               underWay.enqueue(segment)
+              missing += segment
             else
               travel(bytes, leave, waiting.delay)
-              // Its acknowledgement reports what was lost before it.
-              val known = leave + waiting.delay * 2
-              for segment <- underWay if segment.isLost && segment.isFirst do
-                segment.againAt = segment.againAt.min(segment.missedAt(known, tcp.overtaken))
+              passed(leave, waiting.delay, tcp)
           repeatInTime()
 
       private def travel(bytes: ByteString, leave: Span, delay: Span): Unit =
@@ -123,22 +120,27 @@ private[link] final class DelayLine(
         bytesUnderWay -= bytes.size
         counts.bytesLost.add(bytes.size)
 
-      /** Sends again what is due to be. */
+      /** Learns by the acknowledgement of a packet what was lost before it. */
+      private def passed(leave: Span, delay: Span, tcp: Packets.Tcp): Unit =
+        missing.foreach(_.missed(leave, leave + delay * 2, tcp))
+
       private def repeat(tcp: Packets.Tcp): Unit =
         val now = sinceStart()
-        for segment <- underWay if segment.isLost && segment.againAt <= now do
+        for segment <- missing if segment.againAt <= now do
           counts.packets.sentAgain.increment()
           if tcp.loss.loses(now) then
             counts.packets.lost.increment()
-            segment.isFirst = false
-            segment.waits = Retransmission.next(segment.waits)
-            segment.againAt = now + segment.waits
-          else segment.due = delivery.dueAgain(now, delivery.delay(now)).getOrElse(Segment.Gone)
+            segment.lostAgain(now)
+          else
+            val delay = delivery.delay(now)
+            segment.due = delivery.dueAgain(now, delay).getOrElse(Segment.Gone)
+            passed(now, delay, tcp)
+        missing.filterInPlace(_.isLost)
         underWay.removeAll(_.due == Segment.Gone).foreach(segment => lose(segment.bytes))
         repeatInTime()
 
       private def repeatInTime(): Unit =
-        val next = underWay.iterator.filter(_.isLost).map(_.againAt).minOption
+        val next = missing.iterator.map(_.againAt).minOption
         for at <- next if !isTimerActive(Timer.Repeat) || at < repeatsAt do
           repeatsAt = at
           scheduleOnce(Timer.Repeat, (at - sinceStart()).max(Span.Zero).toDuration)
@@ -180,6 +182,7 @@ private[link] final class DelayLine(
 
       override def onDownstreamFinish(cause: Throwable): Unit =
         underWay.clear()
+        missing.clear()
         atSender.clear()
         bytesUnderWay = 0
         cause match

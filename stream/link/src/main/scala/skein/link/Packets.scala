@@ -1,7 +1,7 @@
 package skein.link
 
 import org.apache.pekko.util.ByteString
-import skein.signal.{PacketLoss, SplitMix64}
+import skein.signal.{PacketLoss, Retransmission, SplitMix64}
 import skein.units.Span
 
 /** What happens to the packets of one direction of one connection. */
@@ -28,7 +28,6 @@ private[link] object Packets:
   /** Payload of a packet in an Ethernet frame, with the time stamps of TCP. */
   val Bytes = 1448
 
-  /** Cuts bytes into packets of TCP. */
   def of(bytes: ByteString): Iterator[ByteString] =
     if bytes.size <= Bytes then Iterator.single(bytes) else bytes.grouped(Bytes)
 
@@ -36,18 +35,35 @@ private[link] object Packets:
   *
   * @param due when they come out; [[Segment.Never]] while they are lost and not yet sent again
   */
-private[link] final class Segment(val bytes: ByteString, var due: Span, sentAt: Span = Span.Zero):
-  /** Of lost bytes: when they are sent again, and the wait after that. */
+private[link] final class Segment(val bytes: ByteString, var due: Span):
+  private var sentAt   = Span.Zero
+  private var timeout  = Span.Zero
+  private var timedOut = false
+
   var againAt: Span = Segment.Never
-  var waits: Span   = Span.Zero
-
-  /** Whether they were sent once. */
-  var isFirst: Boolean = true
-
-  /** When they count as lost by the acknowledgement of a later packet. */
-  def missedAt(acknowledged: Span, overtaken: Span): Span = acknowledged.max(sentAt + overtaken)
 
   def isLost: Boolean = due == Segment.Never
+
+  def lost(at: Span, by: Packets.Tcp): Unit =
+    due = Segment.Never
+    timeout = by.timeout
+    waits(at)
+
+  /** Loses them when they are sent again. After a time-out TCP sends nothing else that would reveal it. */
+  def lostAgain(at: Span): Unit =
+    if at >= sentAt + timeout then
+      timedOut = true
+      timeout = Retransmission.next(timeout)
+    waits(at)
+
+  private def waits(at: Span): Unit =
+    sentAt = at
+    againAt = at + timeout
+
+  /** Learns that a packet behind it, or one that was sent again no earlier, is acknowledged at a time. */
+  def missed(sent: Span, acknowledged: Span, by: Packets.Tcp): Unit =
+    if isLost && !timedOut && sentAt <= sent then
+      againAt = againAt.min(acknowledged.max(sentAt + by.overtaken))
 
 private[link] object Segment:
   val Never: Span = Span.ofNanos(Long.MaxValue)

@@ -73,10 +73,8 @@ final class LaneDelays {
   /** Bits of a time that are dropped to compare it with a calm: flights of hours fit into an integer. */
   private static final int COARSE = 12;
 
-  /** The messages' random numbers. */
   private final int[] bits = new int[WORLDS];
 
-  /** By world: where its table begins. */
 
   final int[] tableOf = new int[WORLDS];
 
@@ -228,7 +226,6 @@ final class LaneDelays {
     if (loses) lose(vectors, line, begin, sentAt, values);
   }
 
-  /** Adds how long messages are sent in vain. */
   private void lose(LaneVectors vectors, int line, long begin, int[] sentAt, int[] values) {
     int[] from = calmFrom[line & 1], until = calmUntil[line & 1];
     IntVector coarse = IntVector.broadcast(INTS, (int) (begin >> COARSE));
@@ -252,7 +249,7 @@ final class LaneDelays {
   private void lose(int world, int line, long begin, int[] sentAt, int[] values) {
     LossyDelays losses = lossy[world];
     // Where nothing is sent, there is no time.
-    if (losses == null || sentAt[world] == LaneOffers.NONE) return;
+    if (losses == null || sentAt[world] == Integer.MAX_VALUE) return;
     LossTimes times = lossTimes[world];
     int grain = DelayTable.GrainNs();
     long at = (begin + sentAt[world]) * grain;
