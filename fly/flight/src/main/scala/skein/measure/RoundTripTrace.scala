@@ -34,7 +34,8 @@ object RoundTripTrace:
         trips.map(_.map(state => state.receivedAt.since(state.sentAt).toMillis)).toVector
       )
 
-  /** Reads the output of `ping`, or lines `time_s,rtt_ms` with nothing behind the comma for a request without an answer.
+  /** Reads the output of `ping`, or lines `time_s,rtt_ms` with nothing behind the comma for a request without
+    * an answer.
     *
     * @return Left states what was expected and received, and in which line
     */

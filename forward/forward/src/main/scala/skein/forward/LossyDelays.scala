@@ -135,7 +135,8 @@ private[skein] final class LossTimes(
 ):
   private val all = bursts.map(own => (own ++ outages).toArray)
 
-  /** When the calm began that was found last, and when it ends, ns; both are the requested time where it is lost.
+  /** When the calm began that was found last, and when it ends, ns; both are the requested time where it is
+    * lost.
     */
   var calmFromNs, calmUntilNs = 0L
 

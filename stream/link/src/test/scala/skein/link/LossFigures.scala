@@ -64,10 +64,10 @@ import skein.vtime.VirtualTime
       .value
 
   for loss <- Seq("loss:5%", "loss:5%/4") do
-    val (_, _, known, _)      = messages(s"$loss,constant:100ms", "none", 1, 20_000, 2, udp = true)
-    val there                 = known.toSet
-    val lost                  = (0 until 20_000).map(!there(_))
-    val runs                  = lost.indices.count(i => lost(i) && (i == 0 || !lost(i - 1)))
+    val (_, _, known, _) = messages(s"$loss,constant:100ms", "none", 1, 20_000, 2, udp = true)
+    val there            = known.toSet
+    val lost             = (0 until 20_000).map(!there(_))
+    val runs             = lost.indices.count(i => lost(i) && (i == 0 || !lost(i - 1)))
     println(
       f"UDP $loss loss ${lost.count(identity) / 20_000.0}%.4f runs $runs burst ${lost.count(identity).toDouble / runs}%.3f"
     )
