@@ -52,7 +52,7 @@ object BenchmarkSet:
       Named("formation", "scenario = formation"),
       Named("crossing", "scenario = crossing")
     ),
-    links = Vector("direct", "vpn", "constant:200ms", "constant:400ms"),
+    links = Vector("direct", "vpn", "constant:200ms", "constant:400ms", "loss:5%/4,vpn"),
     worlds = Vector(
       Named("as modelled", "airsim"),
       Named("wind", "airsim:wind=8/0/0,gusts=7.7"),

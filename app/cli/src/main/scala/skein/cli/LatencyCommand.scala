@@ -103,16 +103,15 @@ object LatencyCommand
   /** Quantiles as measured, beside those of the link's profile. */
   private def quantileTable(profile: LatencyProfile, samples: Distribution): TextTable =
     val measured = "measured, ms" +: quantiles(samples.quantile)
-    val expected = expectedOf(profile).collect:
+    val expected = Some(expectedOf(profile)).collect:
       case LatencyProfile.Steady(name, roundTrip) if name != LatencyProfile.none.name =>
         s"$name, ms" +: quantiles(roundTrip.quantile(_).toMillis)
     TextTable("<quantile, %" +: probabilities.map(_.toString), measured +: expected.toVector)
 
-  /** The distribution of round trips without load. */
-  private def expectedOf(profile: LatencyProfile): Option[LatencyProfile] = profile match
-    case LatencyProfile.Limited(_, latency, _)    => expectedOf(latency)
-    case LatencyProfile.Correlated(_, latency, _) => expectedOf(latency)
-    case other                                    => Some(other)
+  /** The distribution of round trips without load, loss and correlation. */
+  private def expectedOf(profile: LatencyProfile): LatencyProfile = profile.delays match
+    case LatencyProfile.Correlated(_, latency, _) => latency
+    case other                                    => other
 
   private def text(table: TextTable, samples: Distribution, failures: Seq[String]): String =
     val lines = Vector(

@@ -4,7 +4,7 @@ import java.util.concurrent.CountDownLatch
 import mainargs.{Flag, ParserForClass, arg}
 import org.apache.pekko.actor.ActorSystem
 import skein.link.*
-import skein.signal.{Bandwidth, LatencyProfile}
+import skein.signal.{Bandwidth, Impairment, LatencyProfile}
 import skein.units.{Clock, Decimals, Span}
 
 /** Command-line options of `./skein link`, with their help texts. */
@@ -21,7 +21,8 @@ final case class LinkOptions(
     @arg(doc =
       "latency in both directions: none, direct, vpn, vpn-mixed, constant:200ms, uniform:10ms..40ms, " +
         "lognormal:36ms,0.3 or file:PATH; times are round trips; " +
-        "correlated:250ms,PROFILE keeps each for 250 ms on average"
+        "before it correlated:250ms, keeps each for 250 ms on average, loss:5%, or loss:5%/4, loses packets, " +
+        "in bursts of four, and outage:1s/10s, everything for 1 s every 10 s"
     )
     profile: String = "direct",
     @arg(name = "to-server", doc = "latency towards the server, where it differs")
@@ -39,6 +40,8 @@ final case class LinkOptions(
         "before it: 50mbit or 50mbit/64kB; without it, unlimited"
     )
     rate: Option[String],
+    @arg(doc = "share of datagrams that come twice, for example 1%; with --udp")
+    duplicate: Option[String],
     @arg(doc = "seed of every random choice")
     seed: Long = 1
 )
@@ -67,7 +70,15 @@ object LinkCommand
       stallLasts <- Span.parse(options.stallLasts).left.map("--stall-lasts: " + _)
       resetEvery <- every(options.resetEvery).left.map("--reset-every: " + _)
       faults = Faults(stallEvery = stallEvery, stallLasts = stallLasts, resetEvery = resetEvery)
-    yield LinkProfile(toServer, toClient, faults)
+      duplicates <- duplicates(options)
+    yield LinkProfile(toServer, toClient, faults, duplicates = duplicates)
+
+  private def duplicates(options: LinkOptions): Either[String, Double] = options.duplicate match
+    case None                          => Right(0)
+    case Some(_) if !options.udp.value => Left("--duplicate: expected with --udp; TCP discards duplicates")
+    case Some(text)                    => Impairment.percent(text)
+        .filter(share => share >= 0 && share <= 1)
+        .toRight(s"--duplicate: expected a share from 0% to 100% such as 1%, came '$text'")
 
   private def latency(
       flag: String,
@@ -110,7 +121,7 @@ object LinkCommand
       Edge.untilInterrupted(() => stopped.countDown(), GraceMillis):
         stopped.await()
         Edge.await(proxy.close()): Unit
-        Console.out.println(summary(proxy.counts))
+        Console.out.println(summary(proxy.counts, isUdp))
       Right(())
     catch case error: TransportError => Left(error.getMessage)
     finally Edge.await(system.terminate()): Unit
@@ -122,8 +133,13 @@ object LinkCommand
     if profile.toServer == profile.toClient then s"${profile.toServer.name} in both directions"
     else s"${profile.toServer.name} to the server, ${profile.toClient.name} to the client"
 
-  private def summary(counts: LinkCounts): String =
+  private def summary(counts: LinkCounts, isUdp: Boolean): String =
+    val packets =
+      if isUdp then
+        s"${Decimals.counted(counts.packetsLost, "datagram")} lost, ${counts.duplicates} duplicated"
+      else
+        s"${Decimals.counted(counts.packetsLost, "packet")} lost, ${counts.packetsSentAgain} sent again"
     s"${Decimals.counted(counts.connections, "connection")}, ${counts.bytesToServer} bytes to the server, " +
       s"${counts.bytesToClient} bytes to the client, ${counts.bytesLost} bytes lost, " +
       s"${counts.stalls} stalls, ${counts.disconnects} disconnects, ${counts.bytesHeldBack} " +
-      s"bytes waited at their sender, at most ${counts.longestWait.toMillis.round} ms to be sent"
+      s"bytes waited at their sender, at most ${counts.longestWait.toMillis.round} ms to be sent; $packets"

@@ -61,7 +61,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
       BudgetCommand(program),
       PolicyCommand()
     ),
-    "Simulator and network"       -> Seq(ServeCommand, LinkCommand, LatencyCommand),
+    "Simulator and network"       -> Seq(ServeCommand, LinkCommand, LinkFitCommand, LatencyCommand),
     "Judge a program of your own" -> Seq(ObserveCommand, MarginCommand()),
     "Work with recordings"        -> Seq(
       ReportCommand(),

@@ -8,7 +8,7 @@ import skein.units.Decimals.{fixed, significant}
 
 /** The runs over one link, and what they come to together. */
 final case class MarginPoint(link: LatencyProfile, runs: Vector[MarginRun]):
-  def meanMs: Double = link.mean.toMillis
+  def meanMs: Double = link.meanRoundTrip.toMillis
 
   val stats: RunningStats =
     val values = runs.flatMap(_.value.toOption)

@@ -44,6 +44,16 @@ final case class Conditions(
       _ <- Moves.mistake(movesInFlight).map("--moves-in-flight: " + _).toLeft(())
     yield kind
 
+  /** The delays of a link between the controller and this number of vehicles.
+    *
+    * @return Left states what was expected and what was given
+    */
+  def delays(link: String, vehicles: Int): Either[String, Delays] =
+    LatencyProfile
+      .parse(link, TextFile.read)
+      .left.map(_.message)
+      .flatMap(LinkDelays.checked(_, LinkDelays.packetsPerS(vehicles, periodMs / 1000)))
+
   /** @return Left states what was expected and what was given */
   def resolved(using Scenarios): Either[String, Conditions.Resolved] =
     for
@@ -92,6 +102,3 @@ object Conditions:
         s"forward simulation has no ${loop.label} loop; expected " +
           "paused, sequential, futures, stream or predictive"
       )
-
-  def delays(link: String): Either[String, Delays] =
-    LatencyProfile.parse(link, TextFile.read).left.map(_.message).flatMap(LinkDelays.checked)

@@ -48,7 +48,7 @@ final case class SearchQuestion(
       role      <- PolicyFile.roleOf(family, Some(role)).left.map("--role: " + _)
       objective <- Objective.parse(objective, role).left.map("--objective: " + _)
       flown     <- conditions.resolved
-      delays    <- Conditions.delays(link).left.map("--link: " + _)
+      delays    <- conditions.delays(link, vehicles = 2).left.map("--link: " + _)
       opponent  <- PolicyFile
         .parse(Role.opponentOf(role), opponent)
         .left

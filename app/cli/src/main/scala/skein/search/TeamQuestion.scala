@@ -111,7 +111,7 @@ final case class TeamQuestion(
             plantIsTold
           )
           flown  <- conditions.copy(plant = plant, altitudeM = altitudesM(all.head).head).resolved
-          delays <- Conditions.delays(link).left.map("--link: " + _)
+          delays <- conditions.delays(link, engagements.head.agents.size).left.map("--link: " + _)
         yield WholeFlights
           .whole(engagements.head, by.measures)
           .fold(TeamEngine.Reduced(flown, delays)): why =>

@@ -39,6 +39,7 @@ class OptionsAgreeSuite extends munit.FunSuite:
       Set(
         "serve",
         "link",
+        "link-fit",
         "export",
         "import",
         "replay",

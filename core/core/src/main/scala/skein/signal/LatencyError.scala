@@ -23,4 +23,5 @@ enum LatencyError(val message: String):
 object LatencyError:
   val forms: String =
     "none, direct, vpn, vpn-mixed, constant:200ms, uniform:10ms..40ms, lognormal:36ms,0.3 " +
-      "or file:PATH (times are round trips), or one of them after 'correlated:250ms,' or 'rate:50mbit,'"
+      "or file:PATH (times are round trips), or one of them after 'correlated:250ms,', 'rate:50mbit,', " +
+      "'loss:5%,', 'loss:5%/4,' or 'outage:1s/10s,'"

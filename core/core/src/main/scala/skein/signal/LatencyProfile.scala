@@ -34,17 +34,52 @@ enum LatencyProfile:
   /** Another profile behind a line of limited rate, where bytes wait. */
   case Limited(name: String, latency: LatencyProfile, rate: Bandwidth)
 
+  /** Another profile that also loses packets. */
+  case Impaired(name: String, latency: LatencyProfile, by: Impairment)
+
   /** The text that [[LatencyProfile.parse]] reads back as this profile. */
   def name: String
 
-  /** The mean round trip over a long time, without waits for a limited rate. */
-  def mean: Span = this match
-    case Steady(_, roundTrip)                               => roundTrip.mean
-    case Alternating(_, busy, quiet, busyLasts, quietLasts) =>
-      val share = busyLasts.toSeconds / (busyLasts + quietLasts).toSeconds
-      Span.ofMillis(busy.mean.toMillis * share + quiet.mean.toMillis * (1 - share))
-    case Correlated(_, latency, _) => latency.mean
-    case Limited(_, latency, _)    => latency.mean
+  /** The rate of the line before it, if it is limited. */
+  def bandwidth: Option[Bandwidth] = this match
+    case Limited(_, _, rate) => Some(rate)
+    case _                   => within.flatMap(_.bandwidth)
+
+  /** How it loses packets, outermost first; empty if it loses none. */
+  def impairments: Vector[Impairment] = this match
+    case Impaired(_, latency, by) => by +: latency.impairments
+    case _                        => within.fold(Vector.empty)(_.impairments)
+
+  /** The delays alone, without rate and losses. */
+  def delays: LatencyProfile = this match
+    case Limited(_, latency, _)                                       => latency.delays
+    case Impaired(_, latency, _)                                      => latency.delays
+    case Correlated(name, latency, over) if latency.delays != latency =>
+      Correlated(name, latency.delays, over)
+    case _ => this
+
+  private[signal] def within: Option[LatencyProfile] = this match
+    case Steady(_, _) | Alternating(_, _, _, _, _) => None
+    case Correlated(_, latency, _)                 => Some(latency)
+    case Limited(_, latency, _)                    => Some(latency)
+    case Impaired(_, latency, _)                   => Some(latency)
+
+  /** Mean round trip, without waiting for a rate or for packets sent again. */
+  def meanRoundTrip: Span = Span.ofMillis(average(_.mean.toMillis))
+
+  /** Mean deviation of round trips from their mean, E|t − E t|. */
+  def meanDeviation: Span =
+    val mean = meanRoundTrip.toMillis
+    Span.ofMillis(average: distribution =>
+      val parts = 1000
+      (0 until parts).map(i => (distribution.quantile((i + 0.5) / parts).toMillis - mean).abs).sum / parts)
+
+  private def average(of: LatencyDistribution => Double): Double = this match
+    case Steady(_, roundTrip)                             => of(roundTrip)
+    case Alternating(_, busy, quiet, busyLasts, notLasts) =>
+      val share = busyLasts.toSeconds / (busyLasts.toSeconds + notLasts.toSeconds)
+      share * of(busy) + (1 - share) * of(quiet)
+    case _ => within.fold(0.0)(_.average(of))
 
 object LatencyProfile:
   val none: LatencyProfile   = Steady("none", LatencyDistribution.Constant(Span.Zero))
@@ -66,8 +101,10 @@ object LatencyProfile:
   /** Reads a profile from its text form: `none`, `direct`, `vpn`, `vpn-mixed`, `constant:200ms`,
     * `uniform:10ms..40ms`, `lognormal:36ms,0.3` (median, standard deviation of the logarithm), `file:PATH`
     * (round trips in ms, one a line; empty lines and lines that start with # are skipped). All times are
-    * round trips; units are `us`, `ms`, `s`. Before any of them may stand `correlated:250ms,` and before all
-    * that `rate:50mbit,` or `rate:50mbit/64kB,`: see [[Bandwidth.parse]].
+    * round trips; units are `us`, `ms`, `s`. Before any of them may stand, each once and in any order:
+    * `correlated:250ms,`; `rate:50mbit,` or `rate:50mbit/64kB,` ([[Bandwidth.parse]]); `loss:5%,`, or
+    * `loss:5%/4,` in bursts of four packets on average ([[Impairment.Loss]]); `outage:1s/10s,`, for 1 s every
+    * 10 s on average ([[Impairment.Outage]]).
     *
     * @param read returns the text of the file at a path, or why it cannot
     */
@@ -90,26 +127,34 @@ private object LatencyText:
     def time(came: String): Either[LatencyError, Span] =
       span(came).toRight(malformed("a time such as 200ms", came))
 
+    def before(rest: String, what: String)(isSame: LatencyProfile => Boolean) =
+      parse(rest, read).filterOrElse(!layers(_).exists(isSame), malformed(s"one $what", rest))
+
     text match
       case s"rate:$rate,$rest" =>
         for
           bandwidth <- Bandwidth.parse(rate).left.map(_ => malformed(Bandwidth.form, rate))
-          latency   <- parse(rest, read)
-          _         <- latency match
-            case _: LatencyProfile.Limited => Left(malformed("one rate", rest))
-            case _                         => Right(())
+          latency   <- before(rest, "rate")(_.isInstanceOf[LatencyProfile.Limited])
         yield LatencyProfile.Limited(text, latency, bandwidth)
       case s"rate:$came"             => Left(malformed("a rate and a profile such as 50mbit,direct", came))
       case s"correlated:$over,$rest" =>
         for
           mean    <- time(over).filterOrElse(_ > Span.Zero, malformed("more than 0", over))
-          latency <- parse(rest, read)
-          _       <- latency match
-            case _: LatencyProfile.Limited    => Left(malformed("the rate before all else", rest))
-            case _: LatencyProfile.Correlated => Left(malformed("one time constant", rest))
-            case _                            => Right(())
+          latency <- before(rest, "time constant")(_.isInstanceOf[LatencyProfile.Correlated])
         yield LatencyProfile.Correlated(text, latency, mean)
-      case s"correlated:$came"      => Left(malformed("a time and a profile such as 250ms,direct", came))
+      case s"correlated:$came" => Left(malformed("a time and a profile such as 250ms,direct", came))
+      case s"loss:$loss,$rest" =>
+        for
+          by      <- Impairment.loss(loss).left.map(malformed(_, loss))
+          latency <- before(rest, "loss")(impaired(_.isInstanceOf[Impairment.Loss]))
+        yield LatencyProfile.Impaired(text, latency, by)
+      case s"loss:$came" => Left(malformed("a share and a profile such as 5%,vpn or 5%/4,vpn", came))
+      case s"outage:$outage,$rest" =>
+        for
+          by      <- Impairment.outage(outage, span).left.map(malformed(_, outage))
+          latency <- before(rest, "outage")(impaired(_.isInstanceOf[Impairment.Outage]))
+        yield LatencyProfile.Impaired(text, latency, by)
+      case s"outage:$came"          => Left(malformed("two times and a profile such as 1s/10s,vpn", came))
       case s"constant:$roundTrip"   => time(roundTrip).map(t => Steady(text, Constant(t)))
       case s"uniform:$least..$most" =>
         for
@@ -133,6 +178,13 @@ private object LatencyText:
           roundTripsMs <- samples(path, content)
         yield Steady(text, ofSamples(roundTripsMs))
       case _ => named.get(text).toRight(UnknownProfile(text))
+
+  private def layers(profile: LatencyProfile): Iterator[LatencyProfile] =
+    Iterator.unfold(Option(profile))(_.map(layer => (layer, layer.within)))
+
+  private def impaired(by: Impairment => Boolean)(layer: LatencyProfile): Boolean = layer match
+    case LatencyProfile.Impaired(_, _, impairment) => by(impairment)
+    case _                                         => false
 
   private def samples(path: String, content: String): Either[LatencyError, Vector[Double]] =
     val lines = content.linesIterator.map(_.trim).zipWithIndex.filterNot: (line, _) =>

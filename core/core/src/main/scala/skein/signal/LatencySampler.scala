@@ -20,11 +20,13 @@ final class LatencySampler(profile: LatencyProfile, linkSeed: Long, lineSeed: Lo
     case alternating: LatencyProfile.Alternating  => Stretches(alternating, linkSeed).at
     case LatencyProfile.Correlated(_, latency, _) => distributionOf(latency)
     case LatencyProfile.Limited(_, latency, _)    => distributionOf(latency)
+    case LatencyProfile.Impaired(_, latency, _)   => distributionOf(latency)
 
   private def shareOf(profile: LatencyProfile): Span => Double = profile match
-    case LatencyProfile.Correlated(_, _, over) => HeldShare(over, SplitMix64.seedOf(linkSeed, 1)).at
-    case LatencyProfile.Limited(_, latency, _) => shareOf(latency)
-    case _                                     => _ => random.nextDouble()
+    case LatencyProfile.Correlated(_, _, over)  => HeldShare(over, SplitMix64.seedOf(linkSeed, 1)).at
+    case LatencyProfile.Limited(_, latency, _)  => shareOf(latency)
+    case LatencyProfile.Impaired(_, latency, _) => shareOf(latency)
+    case _                                      => _ => random.nextDouble()
 
   /** The next message's delay: half of a sampled round trip.
     *

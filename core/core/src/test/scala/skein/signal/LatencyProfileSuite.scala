@@ -49,7 +49,7 @@ class LatencyProfileSuite extends munit.FunSuite:
       messageOf("dsl"),
       "unknown latency profile \"dsl\"; expected none, direct, vpn, vpn-mixed, constant:200ms, " +
         "uniform:10ms..40ms, lognormal:36ms,0.3 or file:PATH (times are round trips), " +
-        "or one of them after 'correlated:250ms,' or 'rate:50mbit,'"
+        "or one of them after 'correlated:250ms,', 'rate:50mbit,', 'loss:5%,', 'loss:5%/4,' or 'outage:1s/10s,'"
     )
 
   test("a mistake in a form is answered with what was expected there"):
@@ -107,7 +107,6 @@ class LatencyProfileSuite extends munit.FunSuite:
         "rate:50mb,direct"          -> s"expected ${Bandwidth.form}, got \"50mb\"",
         "rate:50mbit"               -> "expected a rate and a profile such as 50mbit,direct, got \"50mbit\"",
         "rate:1mbit,rate:2mbit,vpn" -> "expected one rate, got \"rate:2mbit,vpn\"",
-        "correlated:1s,rate:2mbit,vpn"    -> "expected the rate before all else, got \"rate:2mbit,vpn\"",
         "correlated:1s,correlated:1s,vpn" -> "expected one time constant, got \"correlated:1s,vpn\"",
         "correlated:0s,vpn"               -> "expected more than 0, got \"0s\"",
         "correlated:vpn"                  -> "expected a time and a profile such as 250ms,direct, got \"vpn\""
@@ -115,7 +114,43 @@ class LatencyProfileSuite extends munit.FunSuite:
     do assertEquals(messageOf(text), s"latency profile \"$text\": $expected")
 
   test("a profile's mean is that of its round trips, whatever holds them or limits their rate"):
-    def meanMs(text: String) = parse(text).map(_.mean.toMillis).fold(error => fail(error.message), identity)
+    def meanMs(text: String) = parse(text).map(_.meanRoundTrip.toMillis).fold(error => fail(error.message), identity)
     assertEqualsDouble(meanMs("uniform:10ms..40ms"), 25, 1e-9)
     assertEqualsDouble(meanMs("rate:1mbit,correlated:1s,constant:200ms"), 200, 1e-9)
     assertEqualsDouble(meanMs("vpn-mixed"), (40 * meanMs("vpn") + 55 * meanMs("direct")) / 95, 1e-3)
+
+  test("rate, correlation, loss and outages may come in any order, each once"):
+    for texts <- List("rate:1mbit", "correlated:1s", "loss:5%/4", "outage:1s/10s").permutations do
+      val text    = texts.mkString(",") + ",vpn"
+      val profile = parse(text).fold(error => fail(s"$text: ${error.message}"), identity)
+      assertEquals(profile.name, text)
+      assertEquals(profile.bandwidth, Some(Bandwidth.ofBitsPerSecond(1_000_000)))
+      assertEquals(
+        profile.impairments.toSet,
+        Set(Impairment.Loss(0.05, 4), Impairment.Outage(Span.ofSeconds(1), Span.ofSeconds(10)))
+      )
+      assertEquals(profile.meanRoundTrip, LatencyProfile.vpn.meanRoundTrip)
+
+  test("losses without bursts are independent: one in a row, and one more with the share's probability"):
+    assertEquals(parse("loss:20%,vpn").map(_.impairments), Right(Vector(Impairment.Loss(0.2, 1.25))))
+
+  test("a loss or an outage that is none is answered with what was expected"):
+    val share =
+      "expected a share from 0% to 90% such as 5%, or with a mean length of bursts such as 5%/4, got "
+    for (text, expected) <- List(
+        "loss:5%"          -> "expected a share and a profile such as 5%,vpn or 5%/4,vpn, got \"5%\"",
+        "loss:5,vpn"       -> s"$share\"5\"",
+        "loss:95%,vpn"     -> s"$share\"95%\"",
+        "loss:-1%,vpn"     -> s"$share\"-1%\"",
+        "loss:NaN%,vpn"    -> s"$share\"NaN%\"",
+        "loss:50%/1.5,vpn" ->
+          "expected bursts of 2.00 packets, which independent losses have, to 10000, got \"50%/1.5\"",
+        "loss:1%,loss:2%,vpn" -> "expected one loss, got \"loss:2%,vpn\"",
+        "outage:1s"           -> "expected two times and a profile such as 1s/10s,vpn, got \"1s\"",
+        "outage:1s,vpn"       -> "expected two times such as 1s/10s, got \"1s\"",
+        "outage:10s/1s,vpn"   ->
+          "expected outages of more than 0, and longer times from one to the next, got \"10s/1s\"",
+        "outage:1s/9s,rate:1mbit,outage:1s/9s,vpn" ->
+          "expected one outage, got \"rate:1mbit,outage:1s/9s,vpn\""
+      )
+    do assertEquals(messageOf(text), s"latency profile \"$text\": $expected")

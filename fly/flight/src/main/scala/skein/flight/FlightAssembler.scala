@@ -265,7 +265,7 @@ final class FlightAssembler(
       if plan.link == LatencyProfile.none then plain()
       else
         EmulatedLink(LinkProfile.symmetric(plan.link), plan.seed, clock)
-          .connection(TransportError.Lost(at, "the link broke"))
+          .connection(TransportError.Lost(at, "the link broke"), isDatagrams = !isTcp)
           .join(plain())
     val origin  = server.map(_ => WorldSettings.DefaultOrigin)
     val mavlink =
@@ -276,7 +276,7 @@ final class FlightAssembler(
         if plan.loop == LoopKind.Paused then Future.failed(CannotFly(FlightAssembler.noSteps("MAVLink")))
         else Future.unit
       _                <- mavlink.prepare().map(right)
-      (link, vehicles) <- mavlink.open(linked, isStream = plan.link != LatencyProfile.none).map(right)
+      (link, vehicles) <- mavlink.open(linked).map(right)
     yield
       val _       = opened.closing(link)(_.close())
       val custody = MavlinkCustody(

@@ -5,11 +5,19 @@ import org.apache.pekko.pattern.after
 import scala.concurrent.Future
 import skein.policy.Action
 import skein.port.{Sensor, VehicleError, VehiclePort}
-import skein.signal.{Kinematics, LatencyProfile, LatencySampler, Stamped}
+import skein.signal.{
+  Kinematics,
+  LatencyProfile,
+  LatencySampler,
+  PacketLoss,
+  Retransmission,
+  SplitMix64,
+  Stamped
+}
 import skein.units.*
 
 /** A vehicle behind an emulated link, for adapters without bytes to delay: each call and each answer is
-  * delayed by the link's latency, in order.
+  * delayed by the link's latency, in order; a lost one is sent again, as by TCP.
   *
   * @param line the vehicle's number among those behind this link
   */
@@ -23,8 +31,9 @@ final class LinkedVehicle(
     system: ActorSystem
 ) extends VehiclePort:
   import system.dispatcher
-  private val there = Direction(2 * line)
-  private val back  = Direction(2 * line + 1)
+  private val timeout = Retransmission.timeout(latency)
+  private val there   = Direction(2 * line)
+  private val back    = Direction(2 * line + 1)
 
   def read(): Future[Either[VehicleError, Stamped[Kinematics]]] = over(vehicle.read())
 
@@ -48,11 +57,14 @@ final class LinkedVehicle(
   private final class Direction(number: Int):
     private val begun   = clock.now()
     private val sampler = LatencySampler(latency, seed, seed * 1_000_003 + number)
-    private var newest  = begun
+    private val loss    =
+      PacketLoss(latency, SplitMix64.seedOf(seed, 5), SplitMix64.seedOf(seed, 6 + number))
+    private var newest = begun
 
     def pass: Future[Unit] =
       val in = synchronized:
         val now = clock.now()
-        newest = newest.max(now + sampler.oneWay(now.since(begun)))
+        val at  = now.since(begun)
+        newest = newest.max(now + loss.delay(at, timeout) + sampler.oneWay(at))
         newest.since(now)
       after(in.toDuration)(Future.unit)

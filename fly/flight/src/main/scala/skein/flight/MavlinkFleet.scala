@@ -49,13 +49,9 @@ private[flight] final class MavlinkFleet(
           .recover { case StartPositioning.NotReady(reason) => Left(reason) }
           .flatMap(result => link.close().map(_ => result))
 
-  /** Opens the connection of the flight, and aligns the clocks over it before any decision.
-    *
-    * @param isStream whether the link in between makes it a byte stream
-    */
+  /** Opens the connection of the flight, and aligns the clocks over it before any decision. */
   def open(
-      flow: Flow[ByteString, ByteString, ?],
-      isStream: Boolean
+      flow: Flow[ByteString, ByteString, ?]
   ): Future[Either[String, (MavlinkLink, Vector[MavlinkVehicle])]] =
     MavlinkLink
       .open(
@@ -64,7 +60,7 @@ private[flight] final class MavlinkFleet(
         clock,
         origin,
         settings.copy(exchanges = Exchanges),
-        isDatagrams = isDatagrams && !isStream
+        isDatagrams = isDatagrams
       )
       .map(_.left.map(_.message).map(link => (link, systems.map(MavlinkVehicle(link, _)))))
 

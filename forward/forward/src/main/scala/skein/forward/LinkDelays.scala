@@ -1,7 +1,8 @@
 package skein.forward
 
-import skein.signal.{LatencyDistribution, LatencyProfile}
+import skein.signal.{LatencyProfile, Retransmission}
 import skein.simd.WorldRandom
+import skein.units.Expect
 
 /** Delays of links by their latency profiles, for forward simulation. */
 object LinkDelays:
@@ -11,30 +12,32 @@ object LinkDelays:
 
   /** The delays of a link, if forward simulation supports it.
     *
+    * @param packetsPerS of all vehicles in each direction: see [[LossyDelays.of]]
     * @return Left states what was expected and what was given
     */
-  def checked(link: LatencyProfile): Either[String, Delays] = link match
-    case steady: LatencyProfile.Steady           => bounded(steady, steady.roundTrip)
-    case alternating: LatencyProfile.Alternating => bounded(alternating, alternating.busy, alternating.quiet)
-    case other                                   =>
-      Left(
-        "expected a link without rate and correlation, which " +
-          s"forward simulation does not have, came ${other.name}"
+  def checked(link: LatencyProfile, packetsPerS: Double): Either[String, Delays] =
+    val base = link.delays match
+      case _ if link.bandwidth.isDefined           => None
+      case steady: LatencyProfile.Steady           => Some(of(steady), Seq(steady.roundTrip))
+      case alternating: LatencyProfile.Alternating =>
+        Some(of(alternating), Seq(alternating.busy, alternating.quiet))
+      case _ => None
+    for
+      (delays, roundTrips) <- base.toRight(
+        s"expected a link without rate and correlation, which forward simulation does not have, came ${link.name}"
       )
+      longestS = roundTrips.map(_.quantile(1).toSeconds).max
+      _ <- Expect.that(longestS <= LongestRoundTripS):
+        s"expected round trips of at most $LongestRoundTripS s, came ${link.name} with up to $longestS s"
+    yield LossyDelays.of(delays, link.impairments, Retransmission.timeout(link).toSeconds, packetsPerS)
 
-  private def bounded(
-      link: LatencyProfile.Steady | LatencyProfile.Alternating,
-      roundTrips: LatencyDistribution*
-  ): Either[String, Delays] =
-    val longestS = roundTrips.map(_.quantile(1).toSeconds).max
-    Either.cond(
-      longestS <= LongestRoundTripS,
-      of(link),
-      s"expected round trips of at most $LongestRoundTripS s, came ${link.name} with up to $longestS s"
-    )
+  /** The packets of a loop in each direction, without those that only acknowledge others: a request and a
+    * command of each vehicle in each period.
+    */
+  def packetsPerS(vehicles: Int, periodS: Double): Double = 2 * vehicles / periodS
 
   /** The delays of a link: half of a sampled round trip each. */
-  def of(profile: LatencyProfile.Steady | LatencyProfile.Alternating): Delays = profile match
+  def of(profile: LatencyProfile.Steady | LatencyProfile.Alternating): TabledDelays = profile match
     case LatencyProfile.Steady(_, roundTrip)                    => DelayTable.of(roundTrip)
     case LatencyProfile.Alternating(_, busy, quiet, lasts, not) =>
       AlternatingDelays(DelayTable.of(busy), DelayTable.of(quiet), lasts.toSeconds, not.toSeconds)

@@ -34,6 +34,66 @@ class DelaysSuite extends munit.FunSuite:
           link.delayNs(world, line, 70, 70, 7 * second)
         )
 
+  private def checked(text: String) = LinkDelays.checked(
+    LatencyProfile.parse(text, Left(_)).fold(error => fail(error.message), identity),
+    LinkDelays.packetsPerS(2, 0.1)
+  )
+
+  private def lossy(text: String) = checked(text) match
+    case Right(lossy: LossyDelays) => lossy
+    case other                     => fail(other.toString)
+
+  /** By how much the messages of a line are late, over many worlds and steps, ns. */
+  private def waits(text: String, line: Int, worlds: Int = 400, steps: Int = 300): Seq[Seq[Long]] =
+    val delays = lossy(text)
+    for world <- 0 until worlds yield
+      val key = WorldRandom.key(5, 0, world)
+      for step <- 0 until steps yield
+        val at = step * second / 10
+        delays.delayNs(key, line, step, step, at) - DelayTable.vpn.delayNs(key, line, step, step, at)
+
+  for (text, after) <- Seq("loss:5%,vpn" -> 0.05, "loss:5%/4,vpn" -> 0.05) do
+    test(s"$text: of all messages 5 % are sent again after the time-out of TCP, and 5 % of these once more"):
+      val all = waits(text, Delays.command(0)).flatten.map(ns => (ns * 1e-6).round)
+      assertEqualsDouble(all.count(_ > 0) / all.size.toDouble, after, 0.004)
+      assertEquals(all.distinct.sorted.take(3), Seq(0L, 303L, 909L))
+      assertEqualsDouble(all.count(_ > 303).toDouble / all.count(_ > 0), after, 0.02)
+
+  test("bursts of four packets come in the next message of a line as often as on a link with forty a second"):
+    // From packet to packet the chain keeps a share of 1 − 1/4 / 0.95; messages of a line are four apart.
+    val keeps              = math.pow(1 - 0.25 / 0.95, 4)
+    def next(text: String) =
+      val lost = waits(text, Delays.command(1)).map(_.map(_ > 0))
+      val both = lost.flatMap(_.sliding(2)).filter(_.head)
+      both.count(_.last).toDouble / both.size
+    assertEqualsDouble(next("loss:5%/4,vpn"), 0.05 + 0.95 * keeps, 0.03)
+    assertEqualsDouble(next("loss:5%,vpn"), 0.05, 0.01)
+
+  test("bursts of one direction are not those of the other, outages are"):
+    def together(text: String) =
+      val (there, back) =
+        (waits(text, Delays.command(0)).flatten, waits(text, Delays.acknowledgement(0)).flatten)
+      there.zip(back).count((a, b) => a > 0 && b > 0) / there.count(_ > 0).toDouble
+    assertEqualsDouble(together("loss:5%/4,vpn"), 0.05, 0.02)
+    assertEquals(together("outage:1s/10s,vpn"), 1.0)
+
+  test("in an outage all waits end behind it, the longest after the last try needed"):
+    val all = waits("outage:1s/10s,vpn", Delays.command(0)).flatten.map(ns => (ns * 1e-6).round)
+    assertEqualsDouble(all.count(_ > 0) / all.size.toDouble, 0.1, 0.01)
+    // Tries 303, 909 and 2,120 ms later.
+    assertEquals(all.distinct.sorted, Seq(0L, 303L, 909L, 2120L))
+    assertEqualsDouble(lossy("outage:1s/10s,vpn").maxS, 2.12 + 0.1035, 0.01)
+
+  test("what forward simulation does not support, it names; without losses nothing changes"):
+    for text <- Seq("rate:1mbit,loss:5%,vpn", "loss:5%,correlated:1s,vpn") do
+      assertEquals(
+        checked(text),
+        Left(
+          s"expected a link without rate and correlation, which forward simulation does not have, came $text"
+        )
+      )
+    assert(checked("loss:0%,vpn").exists(_.isInstanceOf[DelayTable]))
+
   test(
     "a recorded flight's delays come back by vehicle, kind and number; what is not on record never arrives"
   ):

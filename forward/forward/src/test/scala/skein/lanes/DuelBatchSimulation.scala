@@ -66,7 +66,7 @@ class DuelBatchSimulation extends munit.FunSuite:
     def isFast(timing: LoopTiming, links: Delays*) =
       batch(timing).engine(PaperPursuer(), PaperEvader(), shareEpisodes = false, links).isFast
     assert(isFast(LoopTiming.stream(0.1), near, far))
-    val slow = DelayTable.of(LatencyDistribution.Constant(Span.ofMillis(4000)))
+    val slow = DelayTable.of(LatencyDistribution.Constant(Span.ofMillis(8000)))
     assert(isFast(LoopTiming.stream(0.005), near, far))
     assert(isFast(LoopTiming.Stream(decideThenPace = true), near, far))
     assert(clue(engine(

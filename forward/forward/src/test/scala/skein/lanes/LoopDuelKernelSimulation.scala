@@ -6,6 +6,7 @@ import skein.forward.{
   DelayTable,
   Duel,
   LoopTiming,
+  LossyDelays,
   PlantResponse,
   Steering,
   TabledDelays,
@@ -18,7 +19,9 @@ import skein.lanes.policy.LanePolicy
 import skein.optimise.LatencyBudget
 import skein.policy.{HeadingPolicy, PaperEvader, PaperPursuer}
 import skein.port.Moves
+import skein.signal.Impairment
 import skein.simd.WorldRandom
+import skein.units.Span
 import skein.vehicle.{ConstantVelocity, ReducedModel}
 
 class LoopDuelKernelSimulation extends munit.FunSuite:
@@ -76,6 +79,14 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
   /** A link that is busy for about a second, and quiet for half of one. */
   private val changing = AlternatingDelays(wild(200, 300), DelayTable.direct, 1.0, 0.5)
 
+  /** Bursts, and outages of 0.4 s, over a link that changes. */
+  private val impaired = LossyDelays.of(
+    AlternatingDelays(DelayTable.vpn, DelayTable.direct, 0.5, 0.8),
+    Seq(Impairment.Loss(0.05, 4), Impairment.Outage(Span.ofMillis(400), Span.ofSeconds(2))),
+    timeoutS = 0.237,
+    packetsPerS = 40
+  )
+
   private val links = Seq[(String, TabledDelays)](
     "none"                        -> DelayTable.none,
     "direct"                      -> DelayTable.direct,
@@ -84,7 +95,10 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
     "200 ms and 300 ms of jitter" -> wild(200, 300),
     "300 ms and 300 ms of jitter" -> wild(300, 300),
     "110 ms and a busy link"      -> AlternatingDelays(wild(110, 60), wild(300, 300), 0.5, 0.8),
-    "one that changes"            -> changing
+    "one that changes"            -> changing,
+    "vpn with losses"             ->
+      LossyDelays.of(DelayTable.vpn, Seq(Impairment.independent(0.05)), timeoutS = 0.303, packetsPerS = 40),
+    "one with bursts and outages" -> impaired
   )
 
   private def agreement(
@@ -127,7 +141,7 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
       LoopTiming.Predictive(predictor = model.predictor, steering = steering)
     )
     (name, link) <-
-      links.filter((name, _) => name == "vpn" || name.startsWith("300") || name == "one that changes")
+      links.filter((name, _) => name == "vpn" || name.startsWith("300") || name.startsWith("one "))
   do
     test(
       s"$vehicles, $timing over $name with $most moves in flight: the scalar reference's decisions and flight"

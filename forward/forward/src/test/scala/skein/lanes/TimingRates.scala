@@ -3,6 +3,7 @@ package skein.lanes
 import skein.forward.*
 import skein.identify.Tilting
 import skein.policy.*
+import skein.signal.LatencyProfile
 import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
 
@@ -32,7 +33,10 @@ import skein.vehicle.ReducedModel
       LoopTiming.Predictive(predictor = model.predictor)
     )
     sees <- if name == "lag" then Seq(false, true) else Seq(false)
-    mixed = if !shared && name == "lag" then Seq(" over vpn-mixed" -> LinkDelays.vpnMixed) else Nil
+    losing = Seq("loss:5%", "loss:5%/4", "outage:1s/10s").map: text =>
+      val link = LatencyProfile.parse(s"$text,vpn", Left(_)).toOption.get
+      s" over $text" -> LinkDelays.checked(link, LinkDelays.packetsPerS(2, timing.periodS)).toOption.get
+    mixed = if !shared && name == "lag" then (" over vpn-mixed" -> LinkDelays.vpnMixed) +: losing else Nil
     (linked, over) <- Seq[(String, Delays)]("" -> DelayTable.vpn) ++ mixed
     row = s"${if shared then "shared" else "own"} $name ${timing.productPrefix.toLowerCase}${
         if sees then " by eye" else ""
@@ -75,6 +79,6 @@ import skein.vehicle.ReducedModel
     scalar(60): Unit
     val reference = Vector.fill(3)(scalar(30)).max
     println(
-      f"$row%-28s ${if isFast then "SIMD  " else "scalar"} $lanes%7.2f M/s  " +
+      f"$row%-42s ${if isFast then "SIMD  " else "scalar"} $lanes%7.2f M/s  " +
         f"scalar $reference%.3f M/s  ${lanes / reference}%6.1f times"
     )

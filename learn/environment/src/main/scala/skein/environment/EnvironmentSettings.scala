@@ -69,7 +69,7 @@ final case class EnvironmentSettings(
       _     <- Expect.that(objective.isEmpty):
         "objective: expected with another scenario than the duel, " +
           s"whose distance is rewarded, came '$objective'"
-      flown <- flown(altitudeM, "reduced")
+      flown <- flown(altitudeM, "reduced", vehicles = 2)
       (timing, delays, vehicle) = flown
       paper                     = Duel.paperAt(altitudeM, episodeS + SpareS)
       model   <- LaneDynamics.under(timing, vehicle.response, paper).left.map("plant: " + _)
@@ -93,7 +93,8 @@ final case class EnvironmentSettings(
     */
   private[environment] def flown(
       atM: Double,
-      otherwise: String
+      otherwise: String,
+      vehicles: Int
   )(using Scenarios): Either[String, (LoopTiming, Delays, VehicleChoice)] =
     for
       kind    <- LoopKind.parse(loop).left.map("loop: " + _)
@@ -107,7 +108,7 @@ final case class EnvironmentSettings(
       _       <- within("turn_rate_rad_per_s", turnRateRadPerS, 1e-3, MostRateRadPerS)
       _       <- within("evader_rate_rad_per_s", evaderRateRadPerS, 0, MostRateRadPerS)
       vehicle <- VehicleChoice.parse(if plant.nonEmpty then plant else otherwise, atM).left.map("plant: " + _)
-      delays  <- delaysOf(link).left.map("link: " + _)
+      delays  <- delaysOf(link, vehicles).left.map("link: " + _)
       loopSettings = LoopSettings
         .every(Span.ofMillis(periodMs))
         .copy(model = _ => vehicle.response.predictor, movesInFlight = movesInFlight)
@@ -119,8 +120,11 @@ final case class EnvironmentSettings(
         )
     yield (timing, delays, vehicle)
 
-  private def delaysOf(link: String): Either[String, Delays] =
-    LatencyProfile.parse(link, TextFile.read).left.map(_.message).flatMap(LinkDelays.checked)
+  private def delaysOf(link: String, vehicles: Int): Either[String, Delays] =
+    LatencyProfile
+      .parse(link, TextFile.read)
+      .left.map(_.message)
+      .flatMap(LinkDelays.checked(_, LinkDelays.packetsPerS(vehicles, periodMs / 1000)))
 
   private def opponentFile(roles: Vector[Role]): Either[String, Option[PolicyFile]] =
     if opponent.isEmpty then Right(None)

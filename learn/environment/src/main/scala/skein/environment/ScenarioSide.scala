@@ -120,7 +120,7 @@ private[environment] object ScenarioSide:
           s"as they come, came ${TeamObjective.keyOf(measure)}"
       .toLeft(())
       // Teams fly low, where the model of three parameters is not valid.
-      flown <- settings.flown(-agents(members.head).startPositionNed.z, "drag")
+      flown <- settings.flown(-agents(members.head).startPositionNed.z, "drag", agents.size)
       (timing, delays, vehicle) = flown
       side = ScenarioSide(settings, scenario, role, members, objective, timing, delays, vehicle.response)
       _ <- Try(Rollout(

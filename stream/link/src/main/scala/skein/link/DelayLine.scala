@@ -23,6 +23,9 @@ import skein.units.*
   * With a bottleneck before it, bytes enter piece by piece, as the bottleneck has room, and have its delay in
   * addition.
   *
+  * Lost bytes of a stream are sent again, and later ones wait for them ([[Packets.Tcp]]). The rate does not
+  * fall by losses, as a congestion window would let it.
+  *
   * Bytes sent into a silence count as lost; neither side learns of it before the link breaks.
   *
   * @param open makes the delivery of a line that opens at this time
@@ -36,7 +39,7 @@ private[link] final class DelayLine(
     maxBytes: Int,
     broken: TransportError,
     counts: LineCounters,
-    isDatagrams: Boolean = false
+    packets: Packets = Packets.Whole
 ) extends GraphStage[FlowShape[ByteString, ByteString]]:
   import DelayLine.*
 
@@ -49,13 +52,16 @@ private[link] final class DelayLine(
     new TimerGraphStageLogic(shape) with InHandler with OutHandler:
       private val delivery      = open(sinceStart())
       private val underWay      = mutable.Queue.empty[Segment]
-      private val atSender      = mutable.Queue.empty[Waiting] // for the bottleneck
+      private val missing       = mutable.ArrayBuffer.empty[Segment] // of those under way, the lost ones
+      private val atSender      = mutable.Queue.empty[Waiting]       // for the bottleneck
       private var roomAt        = Span.Zero
       private var wakesAt       = Span.Zero
-      private var bytesUnderWay = 0                            // and at the sender
+      private var repeatsAt     = Span.Zero
+      private var bytesUnderWay = 0                                  // and at the sender
       private var ending: Option[Option[Throwable]] = None // once all bytes have left the sender
       private var end: Option[End]                  = None
       private var cancellation: Option[Throwable]   = None
+      private val isDatagrams                       = packets.isDatagrams
 
       setHandlers(in, out, this)
 
@@ -77,13 +83,67 @@ private[link] final class DelayLine(
           deliver()
 
       /** Takes bytes that leave their sender's side. */
-      private def enter(waiting: Waiting, leave: Span): Unit = delivery.due(leave, waiting.delay) match
-        case Some(due) =>
+      private def enter(waiting: Waiting, leave: Span): Unit = packets match
+        case Packets.Whole                               => travel(waiting.bytes, leave, waiting.delay)
+        case Packets.Datagrams(loss, duplicates, random) =>
+          if loss.loses(leave) then
+            counts.packets.lost.increment()
+            lose(waiting.bytes)
+          else
+            travel(waiting.bytes, leave, waiting.delay)
+            if duplicates > 0 && random.nextDouble() < duplicates then
+              counts.packets.duplicates.increment()
+              bytesUnderWay += waiting.bytes.size
+              travel(waiting.bytes, leave, delivery.delay(leave.max(sinceStart())))
+        case tcp: Packets.Tcp =>
+          for bytes <- Packets.of(waiting.bytes) do
+            if tcp.loss.loses(leave) then
+              counts.packets.lost.increment()
+              val segment = Segment(bytes, Segment.Never)
+              segment.lost(leave, tcp)
+              underWay.enqueue(segment)
+              missing += segment
+            else
+              travel(bytes, leave, waiting.delay)
+              passed(leave, waiting.delay, tcp)
+          repeatInTime()
+
+      private def travel(bytes: ByteString, leave: Span, delay: Span): Unit =
+        delivery.due(leave, delay) match
           // Anything but a datagram is due after earlier bytes.
-          underWay.insert(underWay.lastIndexWhere(_.due <= due) + 1, Segment(waiting.bytes, due))
-        case None =>
-          bytesUnderWay -= waiting.bytes.size
-          counts.bytesLost.add(waiting.bytes.size)
+          case Some(due) if isDatagrams =>
+            underWay.insert(underWay.lastIndexWhere(_.due <= due) + 1, Segment(bytes, due))
+          case Some(due) => underWay.enqueue(Segment(bytes, due))
+          case None      => lose(bytes)
+
+      private def lose(bytes: ByteString): Unit =
+        bytesUnderWay -= bytes.size
+        counts.bytesLost.add(bytes.size)
+
+      /** Learns by the acknowledgement of a packet what was lost before it. */
+      private def passed(leave: Span, delay: Span, tcp: Packets.Tcp): Unit =
+        missing.foreach(_.missed(leave, leave + delay * 2, tcp))
+
+      private def repeat(tcp: Packets.Tcp): Unit =
+        val now = sinceStart()
+        for segment <- missing if segment.againAt <= now do
+          counts.packets.sentAgain.increment()
+          if tcp.loss.loses(now) then
+            counts.packets.lost.increment()
+            segment.lostAgain(now)
+          else
+            val delay = delivery.delay(now)
+            segment.due = delivery.dueAgain(now, delay).getOrElse(Segment.Gone)
+            passed(now, delay, tcp)
+        missing.filterInPlace(_.isLost)
+        underWay.removeAll(_.due == Segment.Gone).foreach(segment => lose(segment.bytes))
+        repeatInTime()
+
+      private def repeatInTime(): Unit =
+        val next = missing.iterator.map(_.againAt).minOption
+        for at <- next if !isTimerActive(Timer.Repeat) || at < repeatsAt do
+          repeatsAt = at
+          scheduleOnce(Timer.Repeat, (at - sinceStart()).max(Span.Zero).toDuration)
 
       /** Hands the bottleneck the bytes that it has room for.
         *
@@ -122,6 +182,7 @@ private[link] final class DelayLine(
 
       override def onDownstreamFinish(cause: Throwable): Unit =
         underWay.clear()
+        missing.clear()
         atSender.clear()
         bytesUnderWay = 0
         cause match
@@ -137,6 +198,11 @@ private[link] final class DelayLine(
         case Timer.Deliver => deliver()
         case Timer.Send    =>
           send(held = true)
+          deliver()
+        case Timer.Repeat =>
+          packets match
+            case tcp: Packets.Tcp => repeat(tcp)
+            case _                => ()
           deliver()
         case Timer.Cancel => cancellation.foreach(cancelStage)
         case _            =>
@@ -163,7 +229,7 @@ private[link] final class DelayLine(
           push(out, bytes)
         if bytesUnderWay < maxBytes then pullIfIdle()
         (underWay.headOption, end) match
-          case (Some(segment), _)                           => if isAvailable(out) then wakeAt(segment.due)
+          case (Some(segment), _) => if isAvailable(out) && !segment.isLost then wakeAt(segment.due)
           case (None, Some(End(failure, due))) if due > now => wakeAt(due)
           case (None, Some(End(failure, _)))                => failure.fold(completeStage())(failStage)
           case (None, None)                                 => ()
@@ -176,8 +242,6 @@ private[link] final class DelayLine(
       private def pullIfIdle(): Unit = if !isClosed(in) && !hasBeenPulled(in) then pull(in)
 
 private object DelayLine:
-  private final case class Segment(bytes: ByteString, due: Span)
-
   /** Bytes sent at a time that have not left yet, with their delay once they leave. */
   private final case class Waiting(bytes: ByteString, since: Span, delay: Span)
 
@@ -185,4 +249,4 @@ private object DelayLine:
   private final case class End(failure: Option[Throwable], due: Span)
 
   private enum Timer:
-    case Send, Deliver, Cancel, Break
+    case Send, Deliver, Repeat, Cancel, Break

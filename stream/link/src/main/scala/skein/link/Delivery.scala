@@ -36,7 +36,13 @@ private[link] final class Delivery(
     */
   def due(leave: Span, delay: Span): Option[Span] =
     met = met.filter(_.until > leave)
-    val due = afterStalls(if isInOrder then lastDue.max(leave + delay) else leave + delay)
+    after(if isInOrder then lastDue.max(leave + delay) else leave + delay)
+
+  /** When bytes come out that were sent before, and now leave once more: later ones are not in their way. */
+  def dueAgain(leave: Span, delay: Span): Option[Span] = after(leave + delay)
+
+  private def after(earliest: Span): Option[Span] =
+    val due = afterStalls(earliest)
     lastDue = lastDue.max(due)
     Option.unless(lossBegins.exists(_ <= due))(due)
 

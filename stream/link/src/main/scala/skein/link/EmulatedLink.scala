@@ -4,7 +4,7 @@ import java.util.concurrent.atomic.{AtomicBoolean, AtomicLong, LongAccumulator, 
 import org.apache.pekko.NotUsed
 import org.apache.pekko.stream.scaladsl.{BidiFlow, Flow}
 import org.apache.pekko.util.ByteString
-import skein.signal.{LatencyProfile, LatencySampler, SplitMix64}
+import skein.signal.{LatencyProfile, LatencySampler, PacketLoss, Retransmission, SplitMix64}
 import skein.units.*
 
 /** A link between clients and a server that behaves as a profile specifies, whatever bytes cross it. Its
@@ -21,6 +21,7 @@ final class EmulatedLink(val profile: LinkProfile, seed: Long, clock: Clock, sta
   private val attemptSeed = SplitMix64.seedOf(seed, 2)
   private val lineSeed    = SplitMix64.seedOf(seed, 3)
   private val cutSeed     = SplitMix64.seedOf(seed, 4)
+  private val outageSeed  = SplitMix64.seedOf(seed, 5)
 
   private val attempts, connections        = AtomicLong()
   private val disconnects                  = LongAdder()
@@ -28,15 +29,27 @@ final class EmulatedLink(val profile: LinkProfile, seed: Long, clock: Clock, sta
   private val bytesLost, stalls            = LongAdder()
   private val bytesHeldBack                = LongAdder()
   private val longestWaitNs                = LongAccumulator(math.max(_, _), 0)
+  private val packets                      = PacketCounters()
 
-  private val toServer = Direction(profile.toServer, bytesToServer)
-  private val toClient = Direction(profile.toClient, bytesToClient)
+  private val toServer = Direction(profile.toServer, bytesToServer, SplitMix64.seedOf(seed, 6))
+  private val toClient = Direction(profile.toClient, bytesToClient, SplitMix64.seedOf(seed, 7))
 
   /** The state of one direction that all connections share. */
-  private final class Direction(val latency: LatencyProfile, val delivered: LongAdder):
-    val bottleneck: Option[Bottleneck] = latency match
-      case LatencyProfile.Limited(_, _, rate) => Some(Bottleneck(rate))
-      case _                                  => None
+  private final class Direction(val latency: LatencyProfile, val delivered: LongAdder, lossSeed: Long):
+    val bottleneck: Option[Bottleneck] = latency.bandwidth.map(Bottleneck(_))
+    val loss: PacketLoss               = PacketLoss(latency, outageSeed, lossSeed)
+    private val duplicateSeed          = SplitMix64.seedOf(lossSeed, 1)
+
+    /** What happens to the packets of a connection.
+      *
+      * @param index of the direction and connection
+      */
+    def packets(index: Long, isDatagrams: Boolean): Packets =
+      if isDatagrams then
+        Packets.Datagrams(loss, profile.duplicates, SplitMix64(SplitMix64.seedOf(duplicateSeed, index)))
+      else if loss.isAny then
+        Packets.Tcp(loss, Retransmission.timeout(latency), Retransmission.overtaken(latency))
+      else Packets.Whole
 
   def counts: LinkCounts = LinkCounts(
     connections.get,
@@ -46,7 +59,10 @@ final class EmulatedLink(val profile: LinkProfile, seed: Long, clock: Clock, sta
     stalls.sum,
     disconnects.sum,
     bytesHeldBack.sum,
-    Span.ofNanos(longestWaitNs.get)
+    Span.ofNanos(longestWaitNs.get),
+    packets.lost.sum,
+    packets.sentAgain.sum,
+    packets.duplicates.sum
   )
 
   /** A new connection over this link; its first side is the client's, its second the server's. To be
@@ -65,7 +81,14 @@ final class EmulatedLink(val profile: LinkProfile, seed: Long, clock: Clock, sta
     def countBreak()                            = if whole.getAndSet(false) then disconnects.increment()
     def line(direction: Direction, index: Long) =
       val counters =
-        LineCounters(direction.delivered, bytesLost, bytesHeldBack, longestWaitNs, () => countBreak())
+        LineCounters(
+          direction.delivered,
+          bytesLost,
+          bytesHeldBack,
+          longestWaitNs,
+          packets,
+          () => countBreak()
+        )
       val open    = delivery(direction.latency, SplitMix64.seedOf(lineSeed, index), !isDatagrams)
       val delayed = Flow.fromGraph(DelayLine(
         open,
@@ -74,7 +97,7 @@ final class EmulatedLink(val profile: LinkProfile, seed: Long, clock: Clock, sta
         profile.maxBytesInFlight,
         broken,
         counters,
-        isDatagrams
+        direction.packets(index, isDatagrams)
       ))
       if profile.cutsSegments && !isDatagrams then
         delayed.via(Segments.cut(SplitMix64.seedOf(cutSeed, index)))
@@ -92,7 +115,9 @@ final class EmulatedLink(val profile: LinkProfile, seed: Long, clock: Clock, sta
     val now       = sinceStart
     val asking    = delivery(profile.toServer, SplitMix64.seedOf(attemptSeed, index))(now)
     val answering = delivery(profile.toClient, SplitMix64.seedOf(attemptSeed, index + 1))(now)
-    def leave(direction: Direction, at: Span) = direction.bottleneck.fold(at)(_.free(at))
+    def leave(direction: Direction, at: Span) =
+      val sent = direction.bottleneck.fold(at)(_.free(at))
+      sent + direction.loss.delay(sent, Retransmission.First)
     for
       heard    <- asking.due(leave(toServer, now), asking.delay(now))
       answered <- answering.due(leave(toClient, heard), answering.delay(heard))

@@ -13,6 +13,9 @@ import skein.units.*
   * @param disconnects connections that the link broke
   * @param bytesHeldBack that waited at their senders because the queue of a line with a rate was full
   * @param longestWait of any bytes, from their sending until a line with a rate had sent them
+  * @param packetsLost that the profile lost; of datagrams, or of TCP's packets, the repeated ones included
+  * @param packetsSentAgain by TCP, because they were lost
+  * @param duplicates of datagrams
   */
 final case class LinkCounts(
     connections: Long,
@@ -22,7 +25,10 @@ final case class LinkCounts(
     stalls: Long,
     disconnects: Long,
     bytesHeldBack: Long,
-    longestWait: Span
+    longestWait: Span,
+    packetsLost: Long,
+    packetsSentAgain: Long,
+    duplicates: Long
 )
 
 /** The counters that a link's lines share. */
@@ -31,5 +37,10 @@ private[link] final class LineCounters(
     val bytesLost: LongAdder,
     val bytesHeldBack: LongAdder,
     val longestWaitNs: LongAccumulator,
+    val packets: PacketCounters,
     val onBreak: () => Unit
 )
+
+/** The counters of packets that both directions of a link share. */
+private[link] final class PacketCounters:
+  val lost, sentAgain, duplicates = LongAdder()

@@ -9,6 +9,8 @@ import skein.signal.LatencyProfile
   * @param toClient delays in the opposite direction, which has a line of its own
   * @param maxBytesInFlight most bytes that one direction of a connection holds (besides the segment that
   *   exceeds it); then the sender waits, as with TCP's window
+  * @param duplicates share of datagrams that come twice, each time with a delay of its own; TCP discards
+  *   duplicates, so it has none
   * @param cutsSegments whether bytes arrive in segments that are cut anywhere, for tests of their readers
   */
 final case class LinkProfile(
@@ -16,8 +18,10 @@ final case class LinkProfile(
     toClient: LatencyProfile,
     faults: Faults = Faults.none,
     maxBytesInFlight: Int = 4 * 1024 * 1024,
-    cutsSegments: Boolean = false
+    cutsSegments: Boolean = false,
+    duplicates: Double = 0
 ):
+  require(duplicates >= 0 && duplicates <= 1, s"duplicates are a share, got $duplicates")
   require(maxBytesInFlight > 0, s"a link holds at least one byte, got $maxBytesInFlight")
 
 object LinkProfile:

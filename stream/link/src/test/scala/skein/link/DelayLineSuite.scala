@@ -31,7 +31,8 @@ class DelayLineSuite extends munit.FunSuite:
       latency: LatencyProfile,
       faults: Faults = Faults.none,
       maxBytes: Int = 1_000_000,
-      isDatagrams: Boolean = false
+      isDatagrams: Boolean = false,
+      duplicates: Double = 0
   )(
       body: ActorSystem ?=> Line => Future[A]
   ): A =
@@ -49,8 +50,21 @@ class DelayLineSuite extends munit.FunSuite:
           isInOrder = !isDatagrams
         )
       val counts =
-        LineCounters(LongAdder(), LongAdder(), LongAdder(), LongAccumulator(math.max(_, _), 0), () => ())
-      val line = Flow.fromGraph(DelayLine(open, None, () => sinceStart, maxBytes, lost, counts, isDatagrams))
+        LineCounters(
+          LongAdder(),
+          LongAdder(),
+          LongAdder(),
+          LongAccumulator(math.max(_, _), 0),
+          PacketCounters(),
+          () => ()
+        )
+      val loss    = PacketLoss(latency, 5, 6)
+      val packets =
+        if isDatagrams then Packets.Datagrams(loss, duplicates, SplitMix64(7))
+        else if loss.isAny then
+          Packets.Tcp(loss, Retransmission.timeout(latency), Retransmission.overtaken(latency))
+        else Packets.Whole
+      val line = Flow.fromGraph(DelayLine(open, None, () => sinceStart, maxBytes, lost, counts, packets))
       body(Line(line, () => sinceStart.toMillis, counts))
     .value
 
@@ -195,7 +209,14 @@ class DelayLineSuite extends munit.FunSuite:
       def ms            = clock.now().since(start).toMillis
       val bottleneck    = Bottleneck(Bandwidth.ofBitsPerSecond(50_000_000))
       val counts        =
-        LineCounters(LongAdder(), LongAdder(), LongAdder(), LongAccumulator(math.max(_, _), 0), () => ())
+        LineCounters(
+          LongAdder(),
+          LongAdder(),
+          LongAdder(),
+          LongAccumulator(math.max(_, _), 0),
+          PacketCounters(),
+          () => ()
+        )
       def line = DelayLine(
         _ => Delivery(LatencySampler(constant(20), 1, 2), Iterator.empty, None, LongAdder()),
         Some(bottleneck),
@@ -245,3 +266,68 @@ class DelayLineSuite extends munit.FunSuite:
       came._3.bytesHeldBack > 0 && came._3.longestWait >= Span.ofMillis(text.length / 125.0 - 1),
       came._3
     )
+
+  private def profile(text: String) =
+    LatencyProfile.parse(text, Left(_)).fold(error => fail(error.message), identity)
+
+  private val lossy = profile("loss:10%,constant:100ms")
+
+  test("TCP sends lost bytes again and keeps their order: nothing is missing"):
+    val (came, counts) = over(lossy): line =>
+      for came <- arrivals(every(20, 1000), line) yield (came, line.counts.packets)
+    assertEquals(came.map(_._1).mkString, (0 until 1000).map(i => s"$i;").mkString)
+    assertEquals(counts.lost.sum, counts.sentAgain.sum)
+    assert(counts.lost.sum > 70 && counts.lost.sum < 150, s"${counts.lost.sum}")
+
+  test("a packet that is followed by none is sent again after the time-out, and then twice that"):
+    // One packet every 30 s, so that each is alone: 50 ms under way, time-outs of 300 ms.
+    val came   = over(profile("loss:15%,constant:100ms"))(line => arrivals(every(30_000, 500), line))
+    val delays = came.map((text, ms) => (ms - 30_000 * text.stripSuffix(";").toInt).round)
+    assertEquals(delays.distinct.sorted.take(3), Seq(50L, 350L, 950L))
+    assertEqualsDouble(delays.count(_ == 50) / 500.0, 0.85, 0.05)
+
+  test(
+    "a packet that others follow is sent again a round trip and a quarter later, or once one is acknowledged"
+  ):
+    val came  = over(lossy)(line => arrivals(every(20, 1000), line))
+    val ms    = came.flatMap((text, at) => text.split(';').map(_.toInt -> at)).toMap
+    val waits = (0 until 1000).map(i => (ms(i) - 20 * i).round)
+    // Alone it would be 350 ms. Sent again after 125 ms; the next one's acknowledgement comes after 120.
+    assert(waits.contains(175L), waits.distinct.sorted.toString)
+    // Two in a row: the first is sent again after 140 ms, when the one behind both is acknowledged.
+    assert(waits.contains(190L), waits.distinct.sorted.toString)
+    // The next one waits behind.
+    assert(waits.contains(155L), waits.distinct.sorted.toString)
+
+  test("a large write is cut into packets, of which the lost ones are sent again"):
+    val bytes          = ByteString.fromArray(Array.tabulate(1_000_000)(_.toByte))
+    val (came, counts) = over(lossy, maxBytes = 10_000_000): line =>
+      for all <- Source.single(bytes).via(line.flow).runFold(ByteString.empty)(_ ++ _)
+      yield (all, line.counts.packets)
+    assertEquals(came, bytes)
+    assert(counts.lost.sum > 40, s"${counts.lost.sum}")
+
+  test("an outage holds TCP's bytes until a repetition after its end"):
+    val came = over(profile("outage:1s/10s,constant:100ms"))(line => arrivals(every(50, 2000), line))
+    val gaps = came.map(_._2).sliding(2).map(pair => pair(1) - pair(0)).toVector
+    assertEquals(came.map(_._1).mkString, (0 until 2000).map(i => s"$i;").mkString)
+    // Sent at the outage's beginning and lost, again after 0.3, 0.9 and 2.1 s; after 4.5 s if another began.
+    assert(gaps.max > 900 && gaps.max < 4600, s"${gaps.max}")
+    assert(gaps.count(_ > 800) >= 5, s"${gaps.count(_ > 800)}")
+
+  test("a lost datagram is gone, others are unaffected; some come twice"):
+    val (came, counts) = over(profile("loss:10%/3,constant:100ms"), isDatagrams = true, duplicates = 0.05):
+      line =>
+        for came <- arrivals(every(5, 2000), line) yield (came, line.counts)
+    val ids = came.map((text, ms) => text.stripSuffix(";").toInt -> ms)
+    assert(ids.forall((id, ms) => (ms - 5 * id - 50).abs < 1e-6))
+    assertEquals(2000 - ids.map(_._1).distinct.size, counts.packets.lost.sum.toInt)
+    assertEquals(ids.size - ids.map(_._1).distinct.size, counts.packets.duplicates.sum.toInt)
+    assertEqualsDouble(counts.packets.lost.sum.toDouble, 200, 80)
+    assertEqualsDouble(counts.packets.duplicates.sum.toDouble, 90, 40)
+    assertEquals(counts.packets.sentAgain.sum, 0L)
+    assert(counts.bytesLost.sum > 0)
+
+  test("with losses, too, equal seeds give equal times, to the nanosecond"):
+    def once = over(profile("loss:10%/3,outage:200ms/2s,vpn"))(line => arrivals(every(7, 1000), line))
+    assertEquals(once, once)

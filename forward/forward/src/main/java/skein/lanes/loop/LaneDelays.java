@@ -1,14 +1,21 @@
 package skein.lanes.loop;
 
+import static jdk.incubator.vector.VectorOperators.ASHR;
+import static jdk.incubator.vector.VectorOperators.GE;
+import static jdk.incubator.vector.VectorOperators.LE;
 import static jdk.incubator.vector.VectorOperators.LSHR;
+import static jdk.incubator.vector.VectorOperators.LT;
 import static jdk.incubator.vector.VectorOperators.XOR;
 import static skein.simd.LaneMath.INTS;
 import static skein.simd.LaneMath.LANES;
 
 import java.util.Arrays;
 import jdk.incubator.vector.IntVector;
+import jdk.incubator.vector.VectorMask;
 import skein.forward.DelayTable;
 import skein.forward.Delays;
+import skein.forward.LossTimes;
+import skein.forward.LossyDelays;
 import skein.forward.TabledDelays;
 import skein.lanes.policy.LanePolicy;
 import skein.simd.WorldRandom;
@@ -16,12 +23,14 @@ import skein.simd.WorldRandom;
 /** The delays of many worlds' links, as {@link DelayTable} has them, in {@link DelayTable#GrainNs}. Passes
  * draw them by {@link WorldRandom}'s hash: a table look-up takes as long as a dozen other operations, which
  * overlap with it. Where a link's table changes ({@link TabledDelays}), it depends on the time of sending;
- * such worlds are processed one by one.
+ * such worlds are processed one by one, and so are messages that are lost, or may be ({@link LossyDelays}).
  */
 final class LaneDelays {
   private static final int WORLDS = LanePolicy.WORLDS;
   /** Bits that are dropped from a hash without its last step, which does not change the upper bits. */
   static final int DROP = DelayTable.Drop();
+
+  private static final int LOW_BITS = (1 << DROP) - 1;
 
   private static final LaneVectors ALL = LaneVectors.all();
 
@@ -39,8 +48,33 @@ final class LaneDelays {
   private DelayTable[] tables = new DelayTable[1];
   private int tableCount = 0;
 
-  /** Whether no link's table changes; and if so, where each world's table begins. */
+  /** Whether delays do not depend on the time of sending: no link's table changes, and none loses packets.
+   */
   boolean isSteady;
+
+  /** Whether some link's table changes, and whether some link loses packets, at some times more than at
+   * others.
+   */
+  private boolean changes, loses, losesByTime;
+
+  /** By world: its link's losses, if it has any; and when its link loses everything. */
+  private final LossyDelays[] lossy = new LossyDelays[WORLDS];
+
+  private final LossTimes[] lossTimes = new LossTimes[WORLDS];
+
+  /** By world: low bits of a random number below this mean a loss. */
+  private final int[] lossThreshold = new int[WORLDS];
+
+  /** By direction and world: when the calm around the last message began and ends, in {@link #COARSE} grains
+   * since the flight's start. Within it nothing is lost by the time of sending.
+   */
+  private final int[][] calmFrom = new int[2][WORLDS], calmUntil = new int[2][WORLDS];
+
+  /** Bits of a time that are dropped to compare it with a calm: flights of hours fit into an integer. */
+  private static final int COARSE = 12;
+
+  private final int[] bits = new int[WORLDS];
+
 
   final int[] tableOf = new int[WORLDS];
 
@@ -53,16 +87,35 @@ final class LaneDelays {
     keys = worldKeys;
     starts++;
     tableCount = 0;
-    isSteady = true;
+    changes = loses = losesByTime = false;
     for (int i = 0; i < WORLDS; i++) {
-      if (links[i] instanceof DelayTable table) tableOf[i] = beginOf(table);
-      else isSteady = false;
+      lossy[i] = links[i] instanceof LossyDelays losing ? losing : null;
+      if (lossy[i] != null) startLosses(i, worldKeys[i]);
+      else lossThreshold[i] = 0;
+      if (baseOf(links[i]) instanceof DelayTable table) tableOf[i] = beginOf(table);
+      else changes = true;
     }
-    if (!isSteady)
+    isSteady = !changes && !loses;
+    if (changes)
       for (int i = 0; i < WORLDS; i++) {
         if (courses[i] == null) courses[i] = new TableCourse(this::beginOf);
-        courses[i].start(links[i].stretches(worldKeys[i]));
+        courses[i].start(baseOf(links[i]).stretches(worldKeys[i]));
       }
+  }
+
+  private void startLosses(int world, int worldKey) {
+    loses = true;
+    lossThreshold[world] = lossy[world].lossThreshold();
+    losesByTime |= lossy[world].isTimed();
+    lossTimes[world] = lossy[world].times(worldKey);
+    for (int direction = 0; direction < 2; direction++) {
+      calmFrom[direction][world] = 0;
+      calmUntil[direction][world] = lossy[world].isTimed() ? 0 : Integer.MAX_VALUE;
+    }
+  }
+
+  private static TabledDelays baseOf(TabledDelays link) {
+    return link instanceof LossyDelays losing ? losing.base() : link;
   }
 
   /** Where a table begins; adds it at the end if it is new. */
@@ -120,7 +173,7 @@ final class LaneDelays {
           .add(there)
           .intoArray(into, i);
     }
-    look(vectors, begin, sentAt, into);
+    look(vectors, line, begin, sentAt, into);
   }
 
   /** Draws a line's delays at one place in all worlds. */
@@ -129,7 +182,7 @@ final class LaneDelays {
     IntVector there = IntVector.broadcast(INTS, place + placeOfLine(line));
     for (int i = 0; i < WORLDS; i += LANES)
       IntVector.fromArray(INTS, keys, i).add(there).intoArray(into, i);
-    look(ALL, begin, sentAt, into);
+    look(ALL, line, begin, sentAt, into);
   }
 
   /** Draws the delays of an agent's requests to all vehicles, each sent when the one before is answered, and
@@ -154,8 +207,8 @@ final class LaneDelays {
   }
 
   /** Hashes the places, and looks up the delays. */
-  private void look(LaneVectors vectors, long begin, int[] sentAt, int[] values) {
-    if (!isSteady) chooseTables(vectors, begin, sentAt);
+  private void look(LaneVectors vectors, int line, long begin, int[] sentAt, int[] values) {
+    if (changes) chooseTables(vectors, begin, sentAt);
     IntVector multiplier1 = IntVector.broadcast(INTS, WorldRandom.MULTIPLIER_1),
         multiplier2 = IntVector.broadcast(INTS, WorldRandom.MULTIPLIER_2);
     for (int k = 0; k < vectors.count; k++) {
@@ -163,12 +216,52 @@ final class LaneDelays {
       IntVector a = IntVector.fromArray(INTS, values, i);
       a = a.lanewise(XOR, a.lanewise(LSHR, 16)).mul(multiplier1);
       a = a.lanewise(XOR, a.lanewise(LSHR, 15)).mul(multiplier2);
+      if (loses) a.lanewise(XOR, a.lanewise(LSHR, 16)).intoArray(bits, i);
       a.lanewise(LSHR, DROP).add(IntVector.fromArray(INTS, tableOf, i)).intoArray(values, i);
     }
     for (int k = 0; k < vectors.count; k++) {
       int i = vectors.first[k];
       IntVector.fromArray(INTS, delays, 0, values, i).intoArray(values, i);
     }
+    if (loses) lose(vectors, line, begin, sentAt, values);
+  }
+
+  private void lose(LaneVectors vectors, int line, long begin, int[] sentAt, int[] values) {
+    int[] from = calmFrom[line & 1], until = calmUntil[line & 1];
+    IntVector coarse = IntVector.broadcast(INTS, (int) (begin >> COARSE));
+    for (int k = 0; k < vectors.count; k++) {
+      int i = vectors.first[k];
+      VectorMask<Integer> mayLose =
+          IntVector.fromArray(INTS, bits, i).and(LOW_BITS).compare(LT, IntVector.fromArray(INTS, lossThreshold, i));
+      if (losesByTime) {
+        // The sum of two times without their low bits is the time, or one less.
+        IntVector at = IntVector.fromArray(INTS, sentAt, i).lanewise(ASHR, COARSE).add(coarse);
+        mayLose =
+            mayLose
+                .or(at.compare(LE, IntVector.fromArray(INTS, from, i)))
+                .or(at.compare(GE, IntVector.fromArray(INTS, until, i).sub(1)));
+      }
+      for (long lanes = mayLose.toLong(); lanes != 0; lanes &= lanes - 1)
+        lose(i + Long.numberOfTrailingZeros(lanes), line, begin, sentAt, values);
+    }
+  }
+
+  private void lose(int world, int line, long begin, int[] sentAt, int[] values) {
+    LossyDelays losses = lossy[world];
+    // Where nothing is sent, there is no time.
+    if (losses == null || sentAt[world] == Integer.MAX_VALUE) return;
+    LossTimes times = lossTimes[world];
+    int grain = DelayTable.GrainNs();
+    long at = (begin + sentAt[world]) * grain;
+    values[world] += (int) (losses.waitNs(times, bits[world], line, at) / grain);
+    if (losses.isTimed() && !times.isLost(line & 1, at)) {
+      calmFrom[line & 1][world] = times.calmFromNs() == Long.MIN_VALUE ? -1 : coarse(times.calmFromNs());
+      calmUntil[line & 1][world] = coarse(times.calmUntilNs());
+    }
+  }
+
+  private static int coarse(long ns) {
+    return (int) Math.min(Integer.MAX_VALUE, ns / DelayTable.GrainNs() >> COARSE);
   }
 
   /** Sets {@link #tableOf} for messages sent at these times. */

@@ -55,7 +55,7 @@ private[lanes] final class LoopLanes(
     case _                         => true
 
   /** Longest time for which a command is on its way, s. */
-  def longestS: Double = 2 * LoopLanes.MostS
+  def longestS: Double = LoopLanes.MostS + 1
 
   /** Number of earlier periods whose flight a reading or an image may need: those from a reading to its
     * decision, and from the decision before that until its command takes effect.
@@ -65,8 +65,10 @@ private[lanes] final class LoopLanes(
     offers.rowsAhead + 2 + (kept / periodS).ceil.toInt
 
 private[lanes] object LoopLanes:
-  /** Longest time, s, that stays within the range of integers in grains. */
-  val MostS = 3.5
+  /** Longest time, s, after a period's begin at which a command may act: with the second and a half within
+    * which vehicles are read, it stays within the range of integers in grains.
+    */
+  val MostS = 6.0
 
   /** Longest time from the first reading of a view to its decision, s. */
   def readingS(timing: LoopTiming, vehicles: Int, maxDelayS: Double): Double =

@@ -1,0 +1,69 @@
+package skein.signal
+
+import skein.units.*
+
+/** How a link loses packets. What a loss means is the transport's matter: TCP sends a packet again and later
+  * bytes wait for it ([[Retransmission]]), a datagram is gone.
+  */
+enum Impairment:
+
+  /** Of each direction a share of all packets is lost, in bursts: the chain of Gilbert, "Capacity of a
+    * burst-noise channel", Bell System Technical Journal 39 (1960), which moves with every packet of the
+    * direction, as `loss gemodel p r` of Linux's netem does. In its bad state every packet is lost, in its
+    * good state none. It leaves the bad state with probability r = 1/burst, and enters it with p = r · share
+    * / (1 − share). Losses are independent if `burst` is 1/(1 − share).
+    *
+    * @param burst mean number of successive packets that are lost together, 1/(1 − share) or more
+    */
+  case Loss(share: Double, burst: Double)
+
+  /** Nothing passes in either direction of any connection for `lasts`, again and again. The time between two
+    * outages is exponentially distributed, so that they begin `every` apart on average. A link begins between
+    * two.
+    */
+  case Outage(lasts: Span, every: Span)
+
+object Impairment:
+  private val MostShare = 0.9
+  private val MostBurst = 10_000.0
+
+  /** A share of packets that are lost independently. */
+  def independent(share: Double): Impairment = Loss(share, 1 / (1 - share))
+
+  private val lossForm =
+    s"a share from 0% to ${(MostShare * 100).toInt}% such as 5%, or with a mean length of bursts such as 5%/4"
+
+  /** Reads `5%` or `5%/4`; the error states what was expected. */
+  private[signal] def loss(text: String): Either[String, Impairment] =
+    val (share, burst) = text match
+      case s"$share/$burst" => (share, Some(burst))
+      case share            => (share, None)
+    for
+      part <- percent(share).filter(p => p >= 0 && p <= MostShare).toRight(lossForm)
+      loss <- burst match
+        case None          => Right(independent(part))
+        case Some(packets) =>
+          val least = 1 / (1 - part)
+          packets.toDoubleOption
+            .filter(length => length >= least - 1e-9 && length <= MostBurst)
+            .map(length => Loss(part, length.max(least)))
+            .toRight(
+              s"bursts of ${Decimals.fixed(least)(2)} packets, which independent losses have, to " +
+                s"${MostBurst.toInt}"
+            )
+    yield loss
+
+  /** Reads `1s/10s`: how long, and how often on average. */
+  private[signal] def outage(text: String, time: String => Option[Span]): Either[String, Impairment] =
+    val times = text match
+      case s"$lasts/$every" => time(lasts).zip(time(every))
+      case _                => None
+    for
+      (lasts, every) <- times.toRight("two times such as 1s/10s")
+      _              <- Expect.that(lasts > Span.Zero && lasts < every):
+        "outages of more than 0, and longer times from one to the next"
+    yield Outage(lasts, every)
+
+  def percent(text: String): Option[Double] = text match
+    case s"$number%" => number.trim.toDoubleOption.map(_ / 100)
+    case _           => None

@@ -1,0 +1,86 @@
+package skein.measure
+
+import skein.record.Recording
+import skein.units.Expect
+
+/** Requests over a link, in the order of sending.
+  *
+  * @param sentAtS of each, since any moment
+  * @param roundTripsMs None for a request without an answer
+  */
+final case class RoundTripTrace(sentAtS: Vector[Double], roundTripsMs: Vector[Option[Double]]):
+  def size: Int                = sentAtS.size
+  def answered: Vector[Double] = roundTripsMs.flatten
+  def lost: Vector[Boolean]    = roundTripsMs.map(_.isEmpty)
+
+object RoundTripTrace:
+  private val MostMs = 3_600_000.0
+
+  /** The readings of a recording, by vehicle. A reading that was not answered in time is missing, and counts
+    * as lost.
+    */
+  def of(recording: Recording): Vector[RoundTripTrace] =
+    recording.readings.groupBy(_.vehicle).values.toVector.map: readings =>
+      val known  = readings.map(reading => reading.sequence -> reading.state).toMap
+      val first  = known.keys.min
+      val trips  = (first to known.keys.max).map(known.get)
+      val everyS =
+        (known(known.keys.max).sentAt.since(known(first).sentAt).toSeconds) / (trips.size - 1).max(1)
+      RoundTripTrace(
+        trips.zipWithIndex
+          .map: (state, i) =>
+            state.fold(known(first).sentAt.toSeconds + i * everyS)(_.sentAt.toSeconds)
+          .toVector,
+        trips.map(_.map(state => state.receivedAt.since(state.sentAt).toMillis)).toVector
+      )
+
+  /** Reads the output of `ping`, or lines `time_s,rtt_ms` with nothing behind the comma for a request without
+    * an answer.
+    *
+    * @return Left states what was expected and received, and in which line
+    */
+  def parse(text: String): Either[String, RoundTripTrace] =
+    val lines = text.linesIterator.map(_.trim).zipWithIndex.map((line, i) => (line, i + 1)).toVector
+    if lines.exists((line, _) => line.contains("icmp_seq=")) then ofPing(lines.map(_._1)) else ofTable(lines)
+
+  private val answer  = """.*icmp_seq=(\d+) .*time[=<]([\d.]+) ?ms.*""".r
+  private val summary = """(\d+) packets transmitted, .* time (\d+)ms.*""".r
+
+  private def ofPing(lines: Vector[String]): Either[String, RoundTripTrace] =
+    val trips = lines.collect { case answer(number, ms) => number.toInt -> ms.toDouble }.reverse.toMap
+    val total = lines.collectFirst { case summary(sent, lastsMs) => (sent.toInt, lastsMs.toDouble) }
+    for
+      _ <- Expect.that(trips.nonEmpty)(
+        "expected the answers of ping, such as 'icmp_seq=1 ttl=64 time=36.1 ms', came none"
+      )
+      first = trips.keys.min.min(1)
+      last  = trips.keys.max.max(total.fold(0)(first + _._1 - 1))
+      _ <- Expect.that(
+        last - first < MostSamples
+      )(s"expected at most $MostSamples requests, came ${last - first + 1}")
+      // Without a summary, ping was stopped by force: it sends once a second unless told otherwise.
+      everyS = total.filter(_._1 > 1).fold(1.0)((sent, lastsMs) => lastsMs / 1000 / (sent - 1))
+    yield RoundTripTrace(
+      Vector.tabulate(last - first + 1)(_ * everyS),
+      Vector.tabulate(last - first + 1)(i => trips.get(first + i))
+    )
+
+  private def ofTable(lines: Vector[(String, Int)]): Either[String, RoundTripTrace] =
+    val rows = lines.filterNot((line, _) => line.isEmpty || line.startsWith("#") || line == "time_s,rtt_ms")
+    for
+      _ <- Expect.that(rows.size <= MostSamples)(s"expected at most $MostSamples requests, came ${rows.size}")
+      read <- Expect.each(rows): (line, number) =>
+        val row = line.split(",", -1) match
+          case Array(time, "") => time.toDoubleOption.map((_, None))
+          case Array(time, ms) =>
+            time.toDoubleOption.zip(ms.toDoubleOption.filter(t => t >= 0 && t <= MostMs).map(Some(_)))
+          case _ => None
+        row.filter(_._1.isFinite).toRight(
+          s"line $number: expected time_s,rtt_ms, such as 0.1,36.2, or 0.1, where no answer came; came '$line'"
+        )
+      _ <- Expect.that(read.exists(_._2.nonEmpty))("expected round trips, came none")
+      _ <- Expect.that(read.map(_._1).sliding(2).forall(pair => pair.head <= pair.last)):
+        "expected times in ascending order"
+    yield RoundTripTrace(read.map(_._1), read.map(_._2))
+
+  private val MostSamples = 1_000_000

@@ -1,0 +1,201 @@
+package skein.forward
+
+import skein.signal.Impairment
+import skein.simd.WorldRandom
+
+/** A link that loses packets, as TCP meets it: a lost message is sent again after a time-out, which doubles
+  * each time, and is delayed by as much. Every message is a packet with none behind it that would report its
+  * loss, since a vehicle has few commands under way and every request a connection of its own.
+  *
+  * Independent losses are drawn for each message and try. Bursts and outages are stretches of time in which
+  * everything is lost, bursts of each direction by itself.
+  *
+  * The number of tries is limited so that a chance of 10^−5^ is left out: the last one always passes.
+  *
+  * @param share of packets that are lost independently
+  * @param bursts mean lengths of bursts and of the time between them, s
+  * @param outages length of outages, and mean time between them, s
+  * @param timeoutNs the first ([[skein.signal.Retransmission.timeout]]), a multiple of [[DelayTable.GrainNs]]
+  * @param mostTries with which a message is sent again
+  */
+final class LossyDelays private (
+    private[skein] val base: TabledDelays,
+    share: Double,
+    bursts: Option[(lastS: Double, betweenS: Double)],
+    outages: Option[(lastS: Double, betweenS: Double)],
+    timeoutNs: Long,
+    mostTries: Int
+) extends TabledDelays:
+  import LossyDelays.*
+
+  /** Numbers of the low bits of a random number that mean a loss; its upper bits choose the delay. */
+  private[skein] val lossThreshold: Int = math.round(share * (1 << DelayTable.Drop)).toInt
+
+  /** Whether losses depend on the time of sending. */
+  private[skein] val isTimed: Boolean = bursts.isDefined || outages.isDefined
+
+  def maxS: Float = base.maxS + (timeoutNs * ((1L << mostTries) - 1) * 1e-9).toFloat
+
+  private[skein] def stretches(worldKey: Int): TableStretch = base.stretches(worldKey)
+
+  private val last = ThreadLocal.withInitial[LossTimes](() => times(0))
+
+  def delayNs(worldKey: Int, line: Int, step: Int, number: Int, sentAtNs: Long): Long =
+    var lossTimes = last.get
+    if lossTimes.worldKey != worldKey then
+      lossTimes = times(worldKey)
+      last.set(lossTimes)
+    val bits = WorldRandom.bits(Delays.keyOf(worldKey, line), step * Delays.Lines + line % Delays.Lines)
+    base.delayNs(worldKey, line, step, number, sentAtNs) + waitNs(lossTimes, bits, line, sentAtNs)
+
+  /** The stretches of a world in which everything is lost. */
+  private[skein] def times(worldKey: Int): LossTimes = LossTimes(
+    worldKey,
+    Vector(BurstsToServer, BurstsToClient).map(line =>
+      bursts.map(LossStretches(worldKey, line, _, isFixed = false))
+    ),
+    outages.map(LossStretches(worldKey, Outages, _, isFixed = true))
+  )
+
+  /** How long a message is sent in vain, ns.
+    *
+    * @param bits the random number of the message
+    */
+  private[skein] def waitNs(times: LossTimes, bits: Int, line: Int, sentAtNs: Long): Long =
+    var waited  = 0L
+    var timeout = timeoutNs
+    var tries   = 0
+    var drawn   = bits
+    while tries < mostTries && ((drawn & LowBits) < lossThreshold || times.isLost(
+        line & 1,
+        sentAtNs + waited
+      ))
+    do
+      waited += timeout
+      timeout *= 2
+      tries += 1
+      drawn = WorldRandom.bits(bits, tries)
+    waited
+
+object LossyDelays:
+  private val LowBits = (1 << DelayTable.Drop) - 1
+
+  // Lines without messages: their random numbers decide when everything is lost.
+  private val BurstsToServer = Delays.Stretch + 1
+  private val BurstsToClient = Delays.Stretch + 2
+  private val Outages        = Delays.Stretch + 3
+
+  private val Chance = 1e-5
+
+  /** The delays of a link with these losses; without any, the base itself.
+    *
+    * @param timeoutS the first time-out
+    * @param packetsPerS of all connections in one direction: turns the length of bursts into a time. Packets
+    *   at equal distances meet an equal chain live
+    */
+  def of(
+      base: TabledDelays,
+      impairments: Seq[Impairment],
+      timeoutS: Double,
+      packetsPerS: Double
+  ): TabledDelays =
+    val loss   = impairments.collectFirst { case loss: Impairment.Loss if loss.share > 0 => loss }
+    val outage = impairments.collectFirst { case outage: Impairment.Outage => outage }
+    // Of the chain's states, a share 1 − p − r is kept from packet to packet.
+    val keeps  = loss.fold(0.0)(one => 1 - 1 / one.burst / (1 - one.share))
+    val bursts = loss.filter(_ => keeps > 1e-6).map: one =>
+      val rate = -StrictMath.log(keeps) * packetsPerS
+      (lastS = 1 / (rate * (1 - one.share)), betweenS = 1 / (rate * one.share))
+    val outages =
+      outage.map(one => (lastS = one.lasts.toSeconds, betweenS = (one.every - one.lasts).toSeconds))
+    val longestS = outages.fold(0.0)(_.lastS).max(bursts.fold(0.0)(-_.lastS * StrictMath.log(Chance)))
+    val share    = loss.fold(0.0)(_.share)
+    val tries    = Iterator
+      .from(0)
+      .find: n =>
+        (share == 0 || StrictMath.pow(share, n + 1) <= Chance * 1.001) &&
+          timeoutS * ((1L << n) - 1) >= longestS
+      .get
+    if loss.isEmpty && outage.isEmpty then base
+    else
+      new LossyDelays(
+        base,
+        if bursts.isEmpty then share else 0,
+        bursts,
+        outages,
+        math.round(timeoutS * 1e9 / DelayTable.GrainNs) * DelayTable.GrainNs,
+        tries
+      )
+
+/** When one world's link loses everything. Mutable: computes the flight as far as needed. */
+private[skein] final class LossTimes(
+    val worldKey: Int,
+    bursts: Vector[Option[LossStretches]],
+    outages: Option[LossStretches]
+):
+  private val all = bursts.map(own => (own ++ outages).toArray)
+
+  /** When the calm began that was found last, and when it ends, ns; both are the requested time where it is
+    * lost.
+    */
+  var calmFromNs, calmUntilNs = 0L
+
+  /** Whether everything is lost at a time.
+    *
+    * @param direction 0 to the server, 1 to the client
+    */
+  def isLost(direction: Int, atNs: Long): Boolean =
+    calmFromNs = Long.MinValue
+    calmUntilNs = Long.MaxValue
+    val each = all(direction)
+    var i    = 0
+    while i < each.length do
+      each(i).find(atNs)
+      calmFromNs = calmFromNs.max(each(i).endedNs)
+      calmUntilNs = calmUntilNs.min(each(i).beginsNs)
+      i += 1
+    calmUntilNs <= atNs
+
+/** Stretches of time in which everything is lost, and exponentially distributed times between them.
+  *
+  * @param line of the random numbers
+  * @param isFixed whether all last equally long, and the flight begins between two; else they are
+  *   exponentially distributed, and the flight begins anywhere
+  */
+private[skein] final class LossStretches(
+    worldKey: Int,
+    line: Int,
+    lengths: (lastS: Double, betweenS: Double),
+    isFixed: Boolean
+):
+  private var begins, ends = new Array[Long](8)
+  private var count        = 0
+  private var drawn        = 0
+  private var at           = 0
+
+  private def uniform(): Double =
+    drawn += 1
+    WorldRandom.uniform(worldKey, drawn * Delays.Lines + line)
+
+  private def exponential(meanS: Double): Double = -StrictMath.log1p(-uniform()) * meanS
+
+  /** When the stretch before a time ended, and when the one at it or behind it begins, ns. */
+  var endedNs, beginsNs = 0L
+
+  def find(atNs: Long): Unit =
+    while count == 0 || ends(count - 1) <= atNs do add()
+    if at >= count || ends(at) <= atNs then while ends(at) <= atNs do at += 1
+    while at > 0 && ends(at - 1) > atNs do at -= 1
+    endedNs = if at == 0 then Long.MinValue else ends(at - 1)
+    beginsNs = begins(at)
+
+  private def add(): Unit =
+    if count == ends.length then
+      begins = java.util.Arrays.copyOf(begins, 2 * count)
+      ends = java.util.Arrays.copyOf(ends, 2 * count)
+    val beginsInIt = count == 0 && !isFixed && uniform() < lengths.lastS / (lengths.lastS + lengths.betweenS)
+    val calmS      = if beginsInIt then 0 else exponential(lengths.betweenS)
+    val lostS      = if isFixed then lengths.lastS else exponential(lengths.lastS)
+    begins(count) = (if count == 0 then 0 else ends(count - 1)) + (calmS * 1e9).toLong
+    ends(count) = begins(count) + (lostS * 1e9).toLong
+    count += 1

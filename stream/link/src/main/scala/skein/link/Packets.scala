@@ -1,0 +1,72 @@
+package skein.link
+
+import org.apache.pekko.util.ByteString
+import skein.signal.{PacketLoss, Retransmission, SplitMix64}
+import skein.units.Span
+
+/** What happens to the packets of one direction of one connection. */
+private[link] enum Packets:
+  /** None is lost, so a stream of bytes need not be cut into packets. */
+  case Whole
+
+  /** Each piece is a datagram, which may be lost, and may come twice. */
+  case Datagrams(loss: PacketLoss, duplicates: Double, random: SplitMix64)
+
+  /** TCP's: a lost one is sent again after a time-out, which doubles each time, or sooner if a later packet
+    * passes: once its acknowledgement is back, but no earlier than an overtaken packet's might be (RFC 8985).
+    *
+    * @param timeout the first ([[skein.signal.Retransmission.timeout]])
+    * @param overtaken how long after its sending that is ([[skein.signal.Retransmission.overtaken]])
+    */
+  case Tcp(loss: PacketLoss, timeout: Span, overtaken: Span)
+
+  def isDatagrams: Boolean = this match
+    case _: Datagrams => true
+    case _            => false
+
+private[link] object Packets:
+  /** Payload of a packet in an Ethernet frame, with the time stamps of TCP. */
+  val Bytes = 1448
+
+  def of(bytes: ByteString): Iterator[ByteString] =
+    if bytes.size <= Bytes then Iterator.single(bytes) else bytes.grouped(Bytes)
+
+/** Bytes on their way.
+  *
+  * @param due when they come out; [[Segment.Never]] while they are lost and not yet sent again
+  */
+private[link] final class Segment(val bytes: ByteString, var due: Span):
+  private var sentAt   = Span.Zero
+  private var timeout  = Span.Zero
+  private var timedOut = false
+
+  var againAt: Span = Segment.Never
+
+  def isLost: Boolean = due == Segment.Never
+
+  def lost(at: Span, by: Packets.Tcp): Unit =
+    due = Segment.Never
+    timeout = by.timeout
+    waits(at)
+
+  /** Loses them when they are sent again. After a time-out TCP sends nothing else that would reveal it. */
+  def lostAgain(at: Span): Unit =
+    if at >= sentAt + timeout then
+      timedOut = true
+      timeout = Retransmission.next(timeout)
+    waits(at)
+
+  private def waits(at: Span): Unit =
+    sentAt = at
+    againAt = at + timeout
+
+  /** Learns that a packet behind it, or one that was sent again no earlier, is acknowledged at a time. */
+  def missed(sent: Span, acknowledged: Span, by: Packets.Tcp): Unit =
+    if isLost && !timedOut && sentAt <= sent then
+      againAt = againAt.min(acknowledged.max(sentAt + by.overtaken))
+
+private[link] object Segment:
+  val Never: Span = Span.ofNanos(Long.MaxValue)
+
+  /** Stands for bytes that never come out: the link broke. */
+  val Gone: Span = Span.ofNanos(Long.MaxValue - 1)
