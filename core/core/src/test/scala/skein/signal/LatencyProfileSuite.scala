@@ -114,7 +114,8 @@ class LatencyProfileSuite extends munit.FunSuite:
     do assertEquals(messageOf(text), s"latency profile \"$text\": $expected")
 
   test("a profile's mean is that of its round trips, whatever holds them or limits their rate"):
-    def meanMs(text: String) = parse(text).map(_.meanRoundTrip.toMillis).fold(error => fail(error.message), identity)
+    def meanMs(text: String) =
+      parse(text).map(_.meanRoundTrip.toMillis).fold(error => fail(error.message), identity)
     assertEqualsDouble(meanMs("uniform:10ms..40ms"), 25, 1e-9)
     assertEqualsDouble(meanMs("rate:1mbit,correlated:1s,constant:200ms"), 200, 1e-9)
     assertEqualsDouble(meanMs("vpn-mixed"), (40 * meanMs("vpn") + 55 * meanMs("direct")) / 95, 1e-3)
