@@ -284,6 +284,7 @@ lazy val cli = project.in(file("app/cli"))
   .enablePlugins(JavaAppPackaging)
   .settings(underAgent)
   .settings(
+    testsLast := true,
     libraryDependencies ++= Seq(mainargs, logback, scalatags) ++ munit,
     // What runs any model is larger than all the rest; who flies such a policy adds it: docs/guides/onnx.md.
     excludeDependencies += ExclusionRule(onnxruntime.organization, onnxruntime.name),

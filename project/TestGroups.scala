@@ -12,6 +12,7 @@ object TestGroups extends AutoPlugin {
 
   object autoImport {
     val testsCompute = settingKey[Boolean]("whether all tests compute for so long that optimising them pays")
+    val testsLast    = settingKey[Boolean]("whether its tests run when all others have ended, so that they need two JVMs")
   }
   import autoImport.*
 
@@ -34,6 +35,7 @@ object TestGroups extends AutoPlugin {
 
   override val projectSettings: Seq[Setting[?]] = Seq(
     testsCompute := false,
+    testsLast    := false,
     Test / test / testOptions += {
       val classes = (Test / classDirectory).value
       Tests.Filter(suite => !isMarked(classes, suite, "Lengthy"))
@@ -42,9 +44,15 @@ object TestGroups extends AutoPlugin {
       val options  = (Test / forkOptions).value
       val classes  = (Test / classDirectory).value
       val computes = testsCompute.value
-      val groups   = (Test / definedTests).value.groupBy { suite =>
+      val isLast   = testsLast.value
+      val suites   = (Test / definedTests).value
+      val second   =
+        if (isLast) suites.map(_.name).sorted.zipWithIndex.collect { case (name, i) if i % 2 == 1 => name }.toSet
+        else Set.empty[String]
+      val groups = suites.groupBy { suite =>
         def is(mark: String) = isMarked(classes, suite.name, mark)
-        val alone            = if (is("Lengthy")) suite.name else ""
+        val half             = if (second(suite.name)) "second" else ""
+        val alone            = if (is("Lengthy")) suite.name else half
         (alone, Seq("Timing", "Waiting").find(is).getOrElse(""), computes || is("Optimised"))
       }
       groups.toSeq.sortBy(_._1).reverse.map { case ((alone, kind, isOptimised), suites) =>

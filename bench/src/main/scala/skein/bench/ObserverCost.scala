@@ -105,7 +105,7 @@ object ObserverCost:
     private val whole             = answerBytes + 9L
     socket.setTcpNoDelay(true)
 
-    /** One call; the bytes of its answer. */
+    /** Makes one call and returns the number of bytes of its answer. */
     def call(): Long =
       // The id is always 1: one call at a time.
       out.write(Call.updated(2, 1.toByte))

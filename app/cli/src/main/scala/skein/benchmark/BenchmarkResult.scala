@@ -2,7 +2,7 @@ package skein.benchmark
 
 import skein.measure.{Distribution, FlightSummary}
 
-/** What one flight came to.
+/** The result of one flight.
   *
   * @param headline the value of the scenario's first measure; absent where the flight has none
   * @param ageMs mean age of the own vehicle's reading at a decision
@@ -23,9 +23,9 @@ object BenchmarkFlight:
     flown.predictions.fold(Vector.empty)(_.own.samples.map(_._2))
   )
 
-/** The flights of one entry in one cell, beside those of the truth.
+/** The flights of one entry in one cell, and those of the truth.
   *
-  * @param truths by the paused loop, in the same world
+  * @param truths by the paused loop, in the cell's world
   * @param notFlown why flights failed
   */
 final case class BenchmarkRow(

@@ -44,7 +44,7 @@ object BenchmarkSet:
         ConfigFactory.parseString(text).withFallback(ConfigFactory.load()).resolve.withOnlyPath("skein.fly")
       )
 
-  /** The published set. */
+  /** The set of `./skein benchmark`, of [[Version]]. */
   val Published: BenchmarkSet = BenchmarkSet(
     tasks = Vector(
       Named("duel", "scenario = duel"),

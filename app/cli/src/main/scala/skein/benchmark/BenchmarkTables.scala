@@ -3,10 +3,10 @@ package skein.benchmark
 import skein.report.{Section, TextTable}
 import skein.units.Decimals.{fixed, signed}
 
-/** A benchmark's result as tables. */
+/** The result of a benchmark for people and, as JSON, for scripts: two tables. */
 object BenchmarkTables:
 
-  /** The entries in short, then every cell. */
+  /** Two tables: a row for each entry over all its cells, and one for each cell of each entry. */
   def of(rows: Vector[BenchmarkRow]): Vector[Section] = Vector(
     Section(
       s"Entries, benchmark ${BenchmarkSet.Version}",

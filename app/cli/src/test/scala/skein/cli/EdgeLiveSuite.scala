@@ -1,9 +1,10 @@
 package skein.cli
 
 import java.nio.file.Path
+import skein.testing.Unhurried
 
 /** Programs that are ended while they run, each in a process of its own. */
-class EdgeLiveSuite extends munit.FunSuite:
+class EdgeLiveSuite extends munit.FunSuite, Unhurried:
 
   for place <- Seq("main", "virtual") do
     test(s"when user code ends the program on a $place thread, that and the progress are reported"):

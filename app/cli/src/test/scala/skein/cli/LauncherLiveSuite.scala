@@ -4,10 +4,10 @@ import java.io.File
 import java.nio.file.{Files, Path}
 import scala.jdk.CollectionConverters.*
 import scala.util.Using
-import skein.testing.TemporaryFolders
+import skein.testing.{TemporaryFolders, Unhurried}
 
 /** The script `./skein`, in a checkout with a fake build, so that each start takes a moment. */
-class LauncherLiveSuite extends munit.FunSuite, TemporaryFolders:
+class LauncherLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders:
   private val checkout =
     Iterator.iterate(File("").getAbsoluteFile)(_.getParentFile).find(File(_, "sbtw").exists).get
 

@@ -1,10 +1,10 @@
 package skein.cli
 
 import java.nio.file.{Files, Path}
-import skein.testing.TemporaryFolders
+import skein.testing.{TemporaryFolders, Unhurried}
 
 /** The JVM options of our launcher and of a user project's: a fake JVM prints them. */
-class LauncherVectorsLiveSuite extends munit.FunSuite, TemporaryFolders:
+class LauncherVectorsLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders:
   private lazy val scratch = temporaryFolder()
 
   private lazy val echoing: Path =

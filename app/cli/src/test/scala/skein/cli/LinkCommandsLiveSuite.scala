@@ -5,11 +5,11 @@ import org.apache.pekko.actor.ActorSystem
 import skein.link.{Address, TcpTransport}
 import skein.scenario.Scenarios
 import skein.simulator.{SimulatorServer, SimulatorSettings}
-import skein.testing.TemporaryFolders
+import skein.testing.{TemporaryFolders, Unhurried}
 import skein.units.Clock
 
 /** Real sockets on loopback and the real clock. */
-class LinkCommandsLiveSuite extends munit.FunSuite, TemporaryFolders:
+class LinkCommandsLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders:
   private given system: ActorSystem = ActorSystem("latency-command")
   private lazy val server           = Edge.await(
     SimulatorServer.start(SimulatorSettings(address = Address("127.0.0.1", 0)), TcpTransport(), Clock.system)

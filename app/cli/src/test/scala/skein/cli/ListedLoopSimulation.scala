@@ -3,7 +3,7 @@ package skein.cli
 import java.nio.file.{Files, Path}
 import skein.loop.{LoopEvent, OwnLoop, SnapshotGraph}
 import skein.scenario.Scenarios
-import skein.testing.TemporaryFolders
+import skein.testing.{TemporaryFolders, Unhurried}
 
 /** A program with a loop of its own, as a user writes it: the vehicles take turns to decide. */
 object TakingTurns extends SkeinApp(Scenarios.ours.kinds*):
@@ -21,7 +21,7 @@ object TakingTurns extends SkeinApp(Scenarios.ours.kinds*):
     )
   )
 
-class ListedLoopSimulation extends munit.FunSuite, TemporaryFolders:
+class ListedLoopSimulation extends munit.FunSuite, Unhurried, TemporaryFolders:
   private def run(program: SkeinApp, words: String) = Ran.of(program.run(words.split(' ').toSeq))
 
   private def fly(out: Path) = run(

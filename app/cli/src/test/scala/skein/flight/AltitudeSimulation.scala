@@ -8,12 +8,12 @@ import skein.scenario.{PaperDuel, Scenarios}
 import skein.search.Conditions
 import skein.settings.{FlightPlan, FlySettings, PredictionModel}
 import skein.signal.LatencyProfile
-import skein.testing.TemporaryFolders
+import skein.testing.{TemporaryFolders, Unhurried}
 import skein.units.Span
 import skein.vehicle.{ReducedModel, PlantModel, VehicleModel}
 
 /** AirSim's vehicles lag more the higher they fly: a model is valid at one altitude. */
-class AltitudeSimulation extends munit.FunSuite, TemporaryFolders:
+class AltitudeSimulation extends munit.FunSuite, Unhurried, TemporaryFolders:
   private given Scenarios = DuelReport.scenarios
 
   private def settings(hocon: String): Either[String, FlySettings] = FlySettings.read(

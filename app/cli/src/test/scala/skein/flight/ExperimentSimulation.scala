@@ -7,10 +7,11 @@ import skein.report.DuelReport
 import skein.scenario.{PaperDuel, Scenarios}
 import skein.settings.{FlightPlan, FlySettings}
 import skein.signal.LatencyProfile
+import skein.testing.Unhurried
 import skein.units.*
 
 /** The paper's experiment in virtual time, compared with the results of AirSim's own flight code. */
-class ExperimentSimulation extends munit.FunSuite:
+class ExperimentSimulation extends munit.FunSuite, Unhurried:
   private given Scenarios = DuelReport.scenarios
 
   private def fly(

@@ -8,9 +8,10 @@ import skein.report.{Report, ReportSections}
 import skein.scenario.Scenarios
 import skein.settings.{FlySettings, PolicyFile, RecordedPlan}
 import skein.signal.LatencyProfile
+import skein.testing.Unhurried
 import skein.units.*
 
-class PolicyFlightSimulation extends munit.FunSuite:
+class PolicyFlightSimulation extends munit.FunSuite, Unhurried:
   private given Scenarios = DuelReport.scenarios
 
   private val policy = PolicyFile(Role.Pursuer, PolicyFamily.leadPursuit, Vector(0.5, 1.25, 1.0))

@@ -5,11 +5,12 @@ import skein.docs.Documentation
 import skein.loop.{GraphLayout, LoopKind, OwnLoop}
 import skein.plot.Svg
 import skein.scenario.PaperDuel
+import skein.testing.Unhurried
 
 /** The graphs in `docs/pictures` equal the running ones. `cli/Test/runMain skein.report.drawLoops` draws them
   * again.
   */
-class LoopPicturesLiveSuite extends munit.FunSuite:
+class LoopPicturesLiveSuite extends munit.FunSuite, Unhurried:
 
   test("the documentation's graphs are drawn from the loops as they run"):
     for (file, text) <- LoopPicturesLiveSuite.drawn do

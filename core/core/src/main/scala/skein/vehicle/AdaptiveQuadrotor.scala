@@ -16,7 +16,7 @@ import skein.units.*
   */
 object AdaptiveQuadrotor extends VehicleModel[AdaptiveQuadrotor.Learning]:
 
-  /** Time over which the guard forgets, s. */
+  /** Time constant of the errors that the guard compares, s. */
   val MemoryS = 2.0
 
   /** Longest time between two readings from which it learns. */
@@ -58,7 +58,7 @@ object AdaptiveQuadrotor extends VehicleModel[AdaptiveQuadrotor.Learning]:
       nominalError: Double,
       learnedError: Double
   ):
-    /** Whether the learned parameters are used. */
+    /** Whether the learned parameters predict; otherwise the nominal model does. */
     def helps: Boolean = nominalError > Right && learnedError < Better * nominalError
 
     def deviation: Deviation = deviationOf(belief.mean)

@@ -33,7 +33,7 @@ final case class ParameterBelief private (mean: Vector[Double], covariance: Vect
       Vector.tabulate(mean.size, mean.size)((i, j) => covariance(i)(j) + (if i == j then added(i) else 0))
     )
 
-  /** The mean, cut off at these sizes. */
+  /** Cuts each mean off at its greatest size; the covariance stays. */
   def within(most: Vector[Double]): ParameterBelief =
     copy(mean = mean.lazyZip(most).map((x, limit) => x.max(-limit).min(limit)))
 

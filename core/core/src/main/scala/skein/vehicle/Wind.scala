@@ -32,8 +32,8 @@ object Wind:
   * Gusts have the intensities and scale lengths of the Dryden model at low altitude (MIL-F-8785C, section
   * 3.7.3, with h in feet, from 10 to 1000): σ,,w,, = 0.1 W20, L,,w,, = h; σ,,u,, = σ,,v,, = σ,,w,, / (0.177 +
   * 0.000823 h)^0.4^, L,,u,, = L,,v,, = h / (0.177 + 0.000823 h)^1.2^. Along each axis they are a first-order
-  * Markov process over the distance flown through the air: Dryden's along the flight, while across it the
-  * model's second-order spectrum is replaced by the first-order one of equal variance and length.
+  * Markov process over the distance through the air: Dryden's along the flight, while across it the model's
+  * second-order spectrum is replaced by the first-order one of equal variance and length.
   */
 final class WindAlong(wind: Wind, seed: Long):
   import Wind.FootM

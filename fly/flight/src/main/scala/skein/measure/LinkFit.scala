@@ -52,10 +52,10 @@ object LinkFit:
     val length   = lost.map(_.count(identity)).sum.toDouble / runs
     val expected = 1 / (1 - share)
     val error    = math.sqrt(share) / (1 - share) / math.sqrt(runs)
-    val logs     = trips.map(ms => math.log(ms.max(1e-3)))
+    val logs     = trips.map(ms => StrictMath.log(ms.max(1e-3)))
     val centre   = logs.sum / logs.size
     val sigma    = math.sqrt(logs.map(log => (log - centre) * (log - centre)).sum / logs.size).min(3)
-    val fitted   = LatencyDistribution.LogNormal(Span.ofMillis(math.exp(centre)), sigma)
+    val fitted   = LatencyDistribution.LogNormal(Span.ofMillis(StrictMath.exp(centre)), sigma)
     // Against the middle between the steps of the measured distribution function.
     val distance = trips.indices.map: i =>
       val p = (i + 0.5) / trips.size
@@ -65,7 +65,7 @@ object LinkFit:
       share,
       Option.when(runs > 0 && length > expected + 3 * error)(length),
       correlation(traces, trips),
-      (math.exp(centre), sigma),
+      (StrictMath.exp(centre), sigma),
       distance.max
     )
 
@@ -83,7 +83,9 @@ object LinkFit:
       val square  = pairs.map((a, _, _) => a * a).sum
       val similar = pairs.map((a, b, _) => a * b).sum / square
       val everyS  = pairs.map(_._3).sorted.apply(pairs.size / 2)
-      Option.when(everyS > 0 && similar > 3 / math.sqrt(pairs.size))(-everyS / math.log(similar.min(0.999)))
+      Option.when(
+        everyS > 0 && similar > 3 / math.sqrt(pairs.size)
+      )(-everyS / StrictMath.log(similar.min(0.999)))
 
   /** The share of the sorted numbers below one, half of those equal to it included. */
   private def shareBelow(sorted: Vector[Double], value: Double): Double =

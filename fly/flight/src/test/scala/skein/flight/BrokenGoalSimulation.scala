@@ -4,10 +4,11 @@ import skein.loop.LoopKind
 import skein.policy.*
 import skein.scenario.Scenario
 import skein.signal.LatencyProfile
+import skein.testing.Unhurried
 import skein.units.*
 
 /** The fate of a plan if a policy cannot state its goal. */
-class BrokenGoalSimulation extends munit.FunSuite:
+class BrokenGoalSimulation extends munit.FunSuite, Unhurried:
 
   private final case class Wanting(place: () => (Double, Double)) extends Policy, Goal:
     type Memory = Unit

@@ -14,12 +14,13 @@ import skein.port.VehicleError
 import skein.record.{ClockKind, MemoryRecorder, Recording}
 import skein.scenario.Surround
 import skein.signal.LatencyProfile
+import skein.testing.Unhurried
 import skein.units.*
 import skein.vehicle.ConstantVelocity
 import skein.vtime.VirtualTime
 
 /** Environments in another process, here on a thread of this one. */
-class EnvironmentSimulatorLiveSuite extends munit.FunSuite:
+class EnvironmentSimulatorLiveSuite extends munit.FunSuite, Unhurried:
   private val names = Vector("Evader", "Pursuer1", "Pursuer2")
 
   /** Points that follow half of their commanded velocity; the reward is minus the distance from the origin.

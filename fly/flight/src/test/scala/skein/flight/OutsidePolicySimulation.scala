@@ -6,10 +6,11 @@ import skein.policy.PolicyFamily
 import skein.record.{EventKind, Recording}
 import skein.settings.{FlySettings, OutsidePolicy, Peer}
 import skein.signal.LatencyProfile
+import skein.testing.Unhurried
 import skein.units.*
 
 /** Flights in virtual time by a policy behind a socket. */
-class OutsidePolicySimulation extends munit.FunSuite:
+class OutsidePolicySimulation extends munit.FunSuite, Unhurried:
   private val settings = FlySettings(
     List(LoopKind.Stream),
     List(LatencyProfile.vpn),

@@ -12,11 +12,12 @@ import skein.port.{Sensor, VehicleError, VehiclePort}
 import skein.record.{ClockKind, MemoryRecorder}
 import skein.scenario.{PaperDuel, Scenarios}
 import skein.signal.{Kinematics, LatencyProfile, Stamped}
+import skein.testing.Unhurried
 import skein.units.*
 import skein.vtime.VirtualTime
 
 /** A user's own loop: a graph of public operators. */
-class OwnLoopSimulation extends munit.FunSuite:
+class OwnLoopSimulation extends munit.FunSuite, Unhurried:
 
   /** A loop like `stream` without pacing: decides on everything new. */
   private val eager = OwnLoop("eager", (team, stop) => OwnLoopSimulation.eager(team, stop))

@@ -129,7 +129,6 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
       (LoopKind.Predictive, "lognormal:150ms,0.8", 1),
       (LoopKind.Sequential, "loss:5%,vpn", 1),
       (LoopKind.Futures, "loss:5%/4,direct", 2),
-      (LoopKind.Stream, "loss:5%/4,vpn", 1),
       (LoopKind.Predictive, "loss:5%/4,vpn", 1)
     )
   do

@@ -16,11 +16,12 @@ import skein.scenario.Scenarios
 import skein.settings.{FlightPlan, FlySettings, ImageSource}
 import skein.signal.{Kinematics, LatencyProfile}
 import skein.simulator.{SimulatorServer, SimulatorSettings}
+import skein.testing.Unhurried
 import skein.units.*
 import skein.vtime.VirtualTime
 
 /** Flights against a simulator that was started before and continues afterwards, as AirSim does. */
-class RunningSimulatorSimulation extends munit.FunSuite:
+class RunningSimulatorSimulation extends munit.FunSuite, Unhurried:
   private val settings = FlySettings(
     List(LoopKind.Stream, LoopKind.Paused, LoopKind.Predictive),
     List(LatencyProfile.direct),

@@ -5,11 +5,12 @@ import skein.loop.{LoopKind, FlightOutcome}
 import skein.record.Digest
 import skein.settings.{FlightPlan, FlySettings}
 import skein.signal.LatencyProfile
+import skein.testing.Unhurried
 import skein.units.*
 import skein.vtime.{Problem, RunLimits, VirtualTimeException}
 
 /** Whole flights in virtual time repeat exactly. */
-class VirtualFlightSimulation extends munit.FunSuite:
+class VirtualFlightSimulation extends munit.FunSuite, Unhurried:
 
   private val settings = FlySettings(
     List(LoopKind.Sequential, LoopKind.Stream),

@@ -6,13 +6,14 @@ import org.apache.pekko.pattern.after
 import scala.concurrent.{ExecutionContext, Future}
 import skein.record.{MemoryRecorder, Recordable, RecordError, Recorder, Samples, Written}
 import skein.scenario.PaperDuel
+import skein.testing.Unhurried
 import skein.units.*
 import skein.vtime.VirtualTime
 
 /** The last answers of a flight are received after its time is over: if they cannot be recorded, the flight
   * has failed.
   */
-class LateFailureSimulation extends munit.FunSuite:
+class LateFailureSimulation extends munit.FunSuite, Unhurried:
 
   /** The outcome of a flight of 2 s over 200 ms each way, whose recorder fails at a moment, if ever. */
   private def outcome(

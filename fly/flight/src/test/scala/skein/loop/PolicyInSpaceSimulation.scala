@@ -5,11 +5,12 @@ import scala.concurrent.ExecutionContext
 import skein.policy.*
 import skein.record.{MemoryRecorder, Recording, Samples}
 import skein.signal.LatencyProfile
+import skein.testing.Unhurried
 import skein.units.*
 import skein.vtime.VirtualTime
 
 /** Policies in three dimensions, with their own memories and actions, through whole loops in virtual time. */
-class PolicyInSpaceSimulation extends munit.FunSuite:
+class PolicyInSpaceSimulation extends munit.FunSuite, Unhurried:
 
   /** Climbs to an altitude, remembers that it was there, and descends to another. */
   private final case class UpAndDown(topM: Double, bottomM: Double) extends Policy:

@@ -1,8 +1,9 @@
 package skein.loop
 
 import skein.signal.LatencyProfile
+import skein.testing.Unhurried
 
-class PredictiveLoopSimulation extends munit.FunSuite:
+class PredictiveLoopSimulation extends munit.FunSuite, Unhurried:
   private val seeds = 1L to 5L
 
   private def deviation(

@@ -5,8 +5,9 @@ import org.apache.pekko.stream.scaladsl.{Flow, Keep, Sink, Source}
 import org.apache.pekko.stream.{Attributes, KillSwitches, SystemMaterializer}
 import scala.concurrent.{Await, Future}
 import scala.concurrent.duration.*
+import skein.testing.Unhurried
 
-class RunningGraphLiveSuite extends munit.FunSuite:
+class RunningGraphLiveSuite extends munit.FunSuite, Unhurried:
 
   test("the named parts of a running graph, and its edges, are reported by its interpreter"):
     given system: ActorSystem = ActorSystem("graph")

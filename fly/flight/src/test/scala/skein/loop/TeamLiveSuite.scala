@@ -5,13 +5,14 @@ import scala.concurrent.duration.*
 import scala.concurrent.{Await, ExecutionContext, Future}
 import skein.port.{VehicleError, VehiclePort}
 import skein.scenario.PaperDuel
+import skein.testing.Unhurried
 import skein.units.Clock
 import skein.policy.Action
 import skein.record.{MemoryRecorder, Samples}
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 
-class TeamLiveSuite extends munit.FunSuite:
+class TeamLiveSuite extends munit.FunSuite, Unhurried:
 
   /** Answers when it is requested to, and never before. */
   private final class Slow extends VehiclePort:

@@ -4,10 +4,10 @@ import java.net.{StandardProtocolFamily, UnixDomainSocketAddress}
 import java.nio.channels.ServerSocketChannel
 import scala.util.{Try, Using}
 import skein.policy.PlanarObservation
-import skein.testing.TemporaryFolders
+import skein.testing.{TemporaryFolders, Unhurried}
 import skein.units.{OwnFailure, Span}
 
-class OutsidePolicyLiveSuite extends munit.FunSuite, TemporaryFolders:
+class OutsidePolicyLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders:
   private val seen = PlanarObservation(3, 4, 1, -2, 0.5, 1.5, 0.1, 0.02, 0.03)
 
   /** Decisions or failures of as many requests as there are answers. */

@@ -9,13 +9,14 @@ import skein.link.*
 import skein.rpc.RpcClient
 import skein.signal.LatencyProfile
 import skein.simulator.{SimulatorServer, SimulatorSettings}
+import skein.testing.Unhurried
 import skein.units.*
 import skein.vtime.VirtualTime
 
 /** A program flies the built-in simulator through the observer, in virtual time; the data ages that the
   * observer reports are compared with the program's own records.
   */
-class ObservingProxySimulation extends munit.FunSuite:
+class ObservingProxySimulation extends munit.FunSuite, Unhurried:
   private val vehicles = Vector(VehicleSettings("Evader"), VehicleSettings("Pursuer", Vector3(-21, 0, 0)))
 
   /** The result of an observed flight.

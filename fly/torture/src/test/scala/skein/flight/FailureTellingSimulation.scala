@@ -10,12 +10,13 @@ import skein.record.*
 import skein.settings.FlySettings
 import skein.signal.LatencyProfile
 import skein.simulator.{SimulatorServer, SimulatorSettings}
+import skein.testing.Unhurried
 import skein.torture.{Disk, FaultyRecorder}
 import skein.units.*
 import skein.vtime.VirtualTime
 
 /** What is reported, recorded and answered when a flight goes wrong, and when. */
-class FailureTellingSimulation extends munit.FunSuite:
+class FailureTellingSimulation extends munit.FunSuite, Unhurried:
   private def settings(loop: LoopKind) = FlySettings(
     List(loop),
     List(LatencyProfile.direct),

@@ -6,10 +6,10 @@ import scala.concurrent.Await
 import scala.concurrent.duration.*
 import scala.util.Using
 import scala.util.chaining.scalaUtilChainingOps
-import skein.testing.TemporaryFolders
+import skein.testing.{TemporaryFolders, Unhurried}
 
 /** Needs threads: a database writes while others offer records. */
-class DuckDbRecorderLiveSuite extends munit.FunSuite, TemporaryFolders:
+class DuckDbRecorderLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders:
   private given system: ActorSystem = ActorSystem("DuckDbRecorderLiveSuite")
   override def afterAll(): Unit     = { val _ = Await.result(system.terminate(), 10.seconds) }
 

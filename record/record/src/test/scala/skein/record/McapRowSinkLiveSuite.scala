@@ -7,10 +7,10 @@ import scala.concurrent.duration.*
 import skein.mcap.Parsed
 import skein.mcap.Record.Message
 import skein.mcap.file.McapFile
-import skein.testing.TemporaryFolders
+import skein.testing.{TemporaryFolders, Unhurried}
 
 /** MCAP files that are written in parallel to a recording. */
-class McapRowSinkLiveSuite extends munit.FunSuite, TemporaryFolders:
+class McapRowSinkLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders:
   private given system: ActorSystem = ActorSystem("McapRowSinkLiveSuite")
   override def afterAll(): Unit     = { val _ = Await.result(system.terminate(), 10.seconds) }
 

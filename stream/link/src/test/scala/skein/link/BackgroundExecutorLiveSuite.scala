@@ -2,10 +2,11 @@ package skein.link
 
 import java.util.concurrent.{ConcurrentLinkedQueue, CountDownLatch, ThreadFactory, TimeUnit}
 import scala.jdk.CollectionConverters.*
+import skein.testing.Unhurried
 import skein.units.Span
 
 /** Runs tasks on real threads. */
-class BackgroundExecutorLiveSuite extends munit.FunSuite:
+class BackgroundExecutorLiveSuite extends munit.FunSuite, Unhurried:
 
   private def made(threads: ConcurrentLinkedQueue[Thread]): ThreadFactory = work =>
     val thread = Thread(work)

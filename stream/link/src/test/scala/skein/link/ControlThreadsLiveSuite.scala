@@ -9,9 +9,10 @@ import org.apache.pekko.util.ByteString
 import scala.concurrent.duration.*
 import scala.concurrent.{ExecutionContext, Future, Promise}
 import scala.jdk.CollectionConverters.*
+import skein.testing.Unhurried
 
 /** Reads from Linux how it schedules the threads of this JVM, which keep their policy for good. */
-class ControlThreadsLiveSuite extends munit.FunSuite:
+class ControlThreadsLiveSuite extends munit.FunSuite, Unhurried:
   private given system: ActorSystem = ActorSystem("control-threads", PreciseScheduler.config)
   private given ExecutionContext    = ExecutionContext.parasitic
 

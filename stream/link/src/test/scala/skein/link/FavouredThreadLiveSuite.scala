@@ -2,9 +2,10 @@ package skein.link
 
 import java.nio.file.{Files, Path}
 import java.util.concurrent.{LinkedBlockingQueue, ThreadFactory}
+import skein.testing.Unhurried
 
 /** Reads from Linux how it schedules threads. */
-class FavouredThreadLiveSuite extends munit.FunSuite:
+class FavouredThreadLiveSuite extends munit.FunSuite, Unhurried:
   override def munitIgnore: Boolean = System.getProperty("os.name") != "Linux"
 
   private val roundRobin = 2

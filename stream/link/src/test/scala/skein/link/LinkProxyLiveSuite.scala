@@ -7,10 +7,11 @@ import org.apache.pekko.{Done, NotUsed}
 import scala.concurrent.duration.*
 import scala.concurrent.{ExecutionContext, Future, Promise}
 import skein.signal.*
+import skein.testing.Unhurried
 import skein.units.*
 
 /** Real sockets on loopback and the real clock. */
-class LinkProxyLiveSuite extends munit.FunSuite:
+class LinkProxyLiveSuite extends munit.FunSuite, Unhurried:
   private given system: ActorSystem = ActorSystem("link-proxy", PreciseScheduler.config)
   private given ExecutionContext    = system.dispatcher
   private val transport             = TcpTransport()

@@ -5,10 +5,11 @@ import org.apache.pekko.stream.scaladsl.{Flow, Sink, Source}
 import org.apache.pekko.util.ByteString
 import scala.concurrent.{ExecutionContext, Future}
 import skein.signal.*
+import skein.testing.Unhurried
 import skein.units.{Clock, Span}
 
 /** Uses the real clock and many threads. */
-class MemoryNetworkLiveSuite extends munit.FunSuite:
+class MemoryNetworkLiveSuite extends munit.FunSuite, Unhurried:
   private given system: ActorSystem = ActorSystem("memory-network", PreciseScheduler.config)
   private given ExecutionContext    = system.dispatcher
 

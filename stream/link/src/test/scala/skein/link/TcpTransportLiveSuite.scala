@@ -6,10 +6,11 @@ import org.apache.pekko.stream.StreamTcpException
 import org.apache.pekko.stream.scaladsl.{Flow, Keep, Sink, Source}
 import org.apache.pekko.util.ByteString
 import scala.concurrent.{ExecutionContext, Future, Promise}
+import skein.testing.Unhurried
 import skein.units.Span
 
 /** Real sockets on loopback. */
-class TcpTransportLiveSuite extends munit.FunSuite:
+class TcpTransportLiveSuite extends munit.FunSuite, Unhurried:
   private given system: ActorSystem = ActorSystem("tcp-transport")
   private given ExecutionContext    = system.dispatcher
   private val transport             = TcpTransport()

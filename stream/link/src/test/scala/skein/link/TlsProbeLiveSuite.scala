@@ -4,10 +4,11 @@ import java.io.IOException
 import java.net.{InetAddress, ServerSocket}
 import java.util.concurrent.FutureTask
 import scala.util.Using
+import skein.testing.Unhurried
 import skein.units.Span
 
 /** Probes real sockets on loopback. */
-class TlsProbeLiveSuite extends munit.FunSuite:
+class TlsProbeLiveSuite extends munit.FunSuite, Unhurried:
 
   /** Probes a server that reads a little and then sends this answer. */
   private def asked(answer: Int*): Boolean =

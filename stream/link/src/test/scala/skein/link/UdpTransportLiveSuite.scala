@@ -8,9 +8,10 @@ import org.apache.pekko.stream.scaladsl.{Keep, Sink, Source}
 import org.apache.pekko.util.ByteString
 import scala.concurrent.Await
 import scala.concurrent.duration.*
+import skein.testing.Unhurried
 import skein.units.Span
 
-class UdpTransportLiveSuite extends munit.FunSuite:
+class UdpTransportLiveSuite extends munit.FunSuite, Unhurried:
 
   test("a peer that sends again after having been idle is one new connection, and stays it"):
     given system: ActorSystem = ActorSystem("udp")

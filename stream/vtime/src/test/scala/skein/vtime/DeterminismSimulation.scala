@@ -5,9 +5,10 @@ import org.apache.pekko.actor.{ActorSystem, Props}
 import org.apache.pekko.stream.{KillSwitches, OverflowStrategy}
 import org.apache.pekko.stream.scaladsl.{Sink, Source}
 import scala.concurrent.Future
+import skein.testing.Unhurried
 
 /** Equal seeds give equal runs: in one JVM, in several, and in parallel. */
-class DeterminismSimulation extends munit.FunSuite:
+class DeterminismSimulation extends munit.FunSuite, Unhurried:
 
   test("a graph has equal logs over repeats, and another one for another seed"):
     val first = SampleGraph.digest(3)

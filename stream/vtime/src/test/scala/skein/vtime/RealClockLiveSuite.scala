@@ -6,9 +6,10 @@ import org.apache.pekko.pattern.after
 import org.apache.pekko.stream.scaladsl.{Sink, Source}
 import scala.concurrent.duration.*
 import scala.concurrent.{Await, Future}
+import skein.testing.Unhurried
 
 /** Needs the real clock: shows that real time advances beside virtual time. */
-class RealClockLiveSuite extends munit.FunSuite:
+class RealClockLiveSuite extends munit.FunSuite, Unhurried:
 
   test("a task that waits for a latch is ended, and its stack is shown"):
     val error = intercept[VirtualTimeException]:

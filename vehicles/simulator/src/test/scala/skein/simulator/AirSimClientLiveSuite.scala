@@ -7,12 +7,13 @@ import skein.airsim.{AirSimClient, Lookahead, Multirotor, VehiclePose, VehicleSe
 import skein.link.{Address, TcpTransport, TransportError}
 import skein.policy.Yaw
 import skein.rpc.{RpcClient, RpcError, RpcSettings}
+import skein.testing.Unhurried
 import skein.units.*
 
 /** The typed client against the built-in simulator over real sockets, its clock ten times as fast as the
   * machine's.
   */
-class AirSimClientLiveSuite extends munit.FunSuite:
+class AirSimClientLiveSuite extends munit.FunSuite, Unhurried:
   private given system: ActorSystem = ActorSystem("airsim-client")
   import system.dispatcher
 

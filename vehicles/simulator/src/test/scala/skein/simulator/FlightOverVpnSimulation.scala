@@ -8,13 +8,14 @@ import skein.airsim.{AirSimClient, Multirotor, VehiclePose, VehicleSettings, Wor
 import skein.link.*
 import skein.rpc.RpcClient
 import skein.signal.{Kinematics, LatencyProfile, Stamped}
+import skein.testing.Unhurried
 import skein.units.*
 import skein.vtime.VirtualTime
 
 /** Simulator, client and the paper's busy link between them, in virtual time: a minute of two vehicles
   * steered at 10 Hz.
   */
-class FlightOverVpnSimulation extends munit.FunSuite:
+class FlightOverVpnSimulation extends munit.FunSuite, Unhurried:
 
   private val seed     = 7L
   private val vehicles = Vector(VehicleSettings("Evader"), VehicleSettings("Pursuer", Vector3(-21, 0, 0)))

@@ -7,6 +7,7 @@ import scala.concurrent.ExecutionContext
 import skein.hil.{AutopilotKind, SmallAutopilot}
 import skein.link.*
 import skein.signal.LatencyProfile
+import skein.testing.Unhurried
 import skein.units.*
 import skein.vtime.VirtualTime
 
@@ -63,7 +64,7 @@ object HilFlightSimulation:
     )
 
 /** PX4's interface behind its server, in virtual time. */
-class HilFlightSimulation extends munit.FunSuite:
+class HilFlightSimulation extends munit.FunSuite, Unhurried:
   import HilFlightSimulation.*
 
   test("a small autopilot flies over the served interface in lockstep, and equal seeds give equal bytes"):

@@ -5,10 +5,11 @@ import skein.airsim.{VehicleSettings, WorldSettings}
 import skein.hil.*
 import skein.link.Address
 import skein.mavlink.{FrameReader, HilSensor}
+import skein.testing.Unhurried
 import skein.units.*
 
 /** External autopilots, without sockets and without a clock. */
-class HilVehiclesSimulation extends munit.FunSuite:
+class HilVehiclesSimulation extends munit.FunSuite, Unhurried:
 
   private final class Flown(kind: AutopilotKind = AutopilotKind.Px4, vehicles: Int = 1, speed: Double = 1):
     val simulation = Simulation(

@@ -190,25 +190,25 @@ class ImageSuite extends munit.FunSuite:
     assertEquals(told.map(_.normal), Some(Vector3r(-1, 0, 0)))
 
   test("contacts with objects are counted, one for touches in a row, and the ground is none"):
-    val bench                   = Bench(scene = scene).hovering(-3)
-    def contacts                = bench.simulation.world.vehicles.head.contacts
-    def fly(north: Float): Unit =
+    val bench                             = Bench(scene = scene).hovering(-3)
+    def contacts                          = bench.simulation.world.vehicles.head.contacts
+    def fly(north: Float, s: Float): Unit =
       bench.call(
         "moveByVelocityZ",
         Float32(north),
         Float32(0),
         Float32(-3),
-        Float32(2),
+        Float32(s),
         Int32(0),
         writeMsg(YawMode.Still),
         Str("Evader")
       )
-      bench.pass(3)
+      bench.pass(s + 1)
     assertEquals(contacts, 0L)
-    fly(5)
+    fly(5, 6)
     assertEquals(contacts, 1L)
-    fly(-5)
-    fly(5)
+    fly(-5, 3)
+    fly(5, 6)
     assertEquals(contacts, 2L)
     bench.call("land", Float32(60), Str("Evader"))
     bench.pass(60)

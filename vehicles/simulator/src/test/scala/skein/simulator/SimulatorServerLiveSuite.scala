@@ -7,12 +7,13 @@ import scala.concurrent.duration.*
 import skein.airsim.wire.YawMode
 import skein.link.{Address, TcpTransport}
 import skein.rpc.{MessageWriter, RpcClient, RpcError, RpcSettings}
+import skein.testing.Unhurried
 import skein.units.*
 import upack.{Bool, Float32, Int32, Msg, Str}
 import upickle.default.writeMsg
 
 /** Calls whose connection has closed, and the port when the simulation fails; over real sockets. */
-class SimulatorServerLiveSuite extends munit.FunSuite:
+class SimulatorServerLiveSuite extends munit.FunSuite, Unhurried:
   private given system: ActorSystem = ActorSystem("simulator-server")
 
   override def afterAll(): Unit =

@@ -90,5 +90,6 @@ private[message] object CdrReader:
       case (0, 0) => ByteOrder.BIG_ENDIAN
       case (0, 1) => ByteOrder.LITTLE_ENDIAN
       case (a, b) =>
-        throw CdrError(f"expected plain CDR, 0x0000 or 0x0001, came 0x${a & 0xff}%02x${b & 0xff}%02x")
+        val came = java.util.HexFormat.of.formatHex(Array(a, b))
+        throw CdrError(s"expected plain CDR, 0x0000 or 0x0001, came 0x$came")
     CdrReader(ByteBuffer.wrap(bytes, HeaderBytes, bytes.length - HeaderBytes).slice().order(order))
