@@ -10,6 +10,7 @@ import scala.concurrent.duration.*
 import scala.concurrent.{Await, Future, blocking}
 import scala.jdk.CollectionConverters.*
 import skein.airsim.WorldSettings
+import skein.benchmark.BenchmarkSimulation
 import skein.docs.Documentation
 import skein.gpu.CudaGpu
 import skein.link.{Address, TcpTransport}
@@ -117,7 +118,16 @@ abstract class DocumentedCommands(commands: Seq[String]) extends munit.FunSuite:
       case "torture" => Seq("--seeds", "2", "--duration", "12s")
       case _         => Seq.empty
     few(without(words, more)) ++ more ++
-      Option.when(Set("fly", "search", "learn", "budget", "latency", "new", "torture")(words.head))(Seq(
+      Option.when(Set(
+        "fly",
+        "search",
+        "learn",
+        "budget",
+        "latency",
+        "link-fit",
+        "new",
+        "torture"
+      )(words.head))(Seq(
         "--out",
         out.toString
       )).toSeq.flatten
@@ -364,6 +374,8 @@ object DocumentedCommands:
     "search --family lead-pursuit --workers 2"               -> classOf[ClusterCommandsLiveSuite],
     "torture --workers 2"                                    -> classOf[ElsewhereLiveSuite],
     "fly --ros --loop predictive --link none --duration 60s" -> classOf[FlyRosSuite],
+    "benchmark"                                              -> classOf[BenchmarkSimulation],
+    "serve --ros"                                            -> classOf[ServeRosSuite],
     "serve --ros --settings three.json"                      -> classOf[ServeRosSuite],
     "serve --ros --settings three.json --speed 10"           -> classOf[ServeRosSuite],
     "fly --clock virtual"                                    -> classOf[StartedLauncherLiveSuite],
