@@ -1,6 +1,7 @@
 package skein.benchmark
 
 import skein.measure.{Distribution, FlightSummary}
+import skein.optimise.RunningStats
 
 /** The result of one flight.
   *
@@ -48,9 +49,8 @@ final case class BenchmarkRow(
   /** Half of the 95 % interval of [[meanOff]]; absent with fewer than two flights. Normal: the interval of
     * few flights is too narrow.
     */
-  val halfOff: Option[Double] = Option.when(off.sizeIs > 1):
-    val centre = off.sum / off.size
-    1.96 * math.sqrt(off.map(x => (x - centre) * (x - centre)).sum / (off.size - 1) / off.size)
+  val halfOff: Option[Double] =
+    Option.when(off.sizeIs > 1)(1.96 * RunningStats.of(off.size)(off).sd / math.sqrt(off.size))
 
   /** Violations of a flight, beyond those of the truth. */
   val violations: Double =

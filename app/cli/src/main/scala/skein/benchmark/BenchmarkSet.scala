@@ -29,17 +29,21 @@ object BenchmarkSet:
   /** A loop, and the model by which it predicts. */
   final case class Entry(name: String, loop: String, predictor: String = "quadrotor")
 
+  /** The loop that all entries are compared with. */
+  val Truth: Entry = Entry("truth", "paused")
+
   final case class Cell(task: Named, world: Named, link: String):
-    /** The settings of an entry's flights; those of the truth without an entry.
+    /** What the truth's flights depend on: they meet no link. */
+    def ofTruth: (Named, Named) = (task, world)
+
+    /** The settings of an entry's flights.
       *
       * @return Left states the mistake in the cell's texts
       */
-    def settings(entry: Option[Entry], seed: Long)(using Scenarios): Either[String, FlySettings] =
+    def settings(entry: Entry, seed: Long)(using Scenarios): Either[String, FlySettings] =
       val text =
         s"""skein.fly { ${task.text}, plant = "${world.text}", links = ["$link"], seed = $seed
-           |  loops = [${entry.fold("paused")(_.loop)}], predictor = ${entry.fold("quadrotor")(
-            _.predictor
-          )} }""".stripMargin
+           |  loops = [${entry.loop}], predictor = ${entry.predictor} }""".stripMargin
       FlySettings.read(
         ConfigFactory.parseString(text).withFallback(ConfigFactory.load()).resolve.withOnlyPath("skein.fly")
       )

@@ -9,9 +9,8 @@ import skein.link.TransportError
 import skein.margin.*
 import skein.report.{Paragraph, Section}
 import skein.scenario.{Scenario, Scenarios}
-import skein.settings.{NamedScene, ScenarioSettings, TextFile}
+import skein.settings.{NamedScene, ScenarioSettings}
 import skein.signal.LatencyProfile
-import skein.simulator.SettingsFile
 import skein.units.Decimals.brief
 import skein.units.{Clock, Expect, Span}
 
@@ -142,13 +141,9 @@ final class MarginCommand(using scenarios: Scenarios)
     (scenario, options.settings) match
       case (Some(flown), _) =>
         val vehicles = flown.agents.map(Vehicles.settings)
-        Right(WorldSettings(vehicles, text = WorldSettings.render(vehicles, flown.equipment)))
-      case (None, Some(file)) =>
-        for
-          text <- TextFile.read(file).left.map("--settings: " + _)
-          read <- SettingsFile.read(text).left.map(error => s"--settings: $file: ${error.message}")
-        yield read.world
-      case _ => Right(WorldSettings.Default)
+        Right(WorldSettings.of(vehicles, flown.equipment))
+      case (None, Some(file)) => ServeCommand.fileOf(file).map(_.world).left.map("--settings: " + _)
+      case _                  => Right(WorldSettings.Default)
 
   private def linksOf(options: MarginOptions): Either[String, Vector[LatencyProfile]] =
     for

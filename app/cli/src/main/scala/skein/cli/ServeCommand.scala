@@ -167,7 +167,7 @@ object ServeCommand
     val path = Path.of(folder)
     Expect.that(Files.isDirectory(path))(s"--grids: expected a folder, came '$folder'").map(_ => path)
 
-  private def fileOf(name: String): Either[String, SettingsFile] =
+  private[cli] def fileOf(name: String): Either[String, SettingsFile] =
     for
       text <- TextFile.read(name)
       file <- SettingsFile.read(text).left.map(error => s"$name: ${error.message}")

@@ -1,7 +1,6 @@
 package skein.cli
 
 import skein.flight.{NotFlown, VirtualFlights}
-import skein.loop.FlightOutcome
 import skein.measure.FlightSummary
 import skein.scenario.Scenarios
 import skein.settings.{FlightPlan, FlySettings}
@@ -23,14 +22,9 @@ private[cli] object SpreadFlights:
   private def summaries(settings: FlySettings, plans: Vector[FlightPlan])(onLanded: => Unit)(using
       Scenarios
   ): Vector[Either[NotFlown, FlightSummary]] =
-    VirtualFlights
-      .inParallel(settings, plans): flight =>
-        val summary = flight.landed.outcome match
-          case FlightOutcome.Failed(reason) => Left(NotFlown(flight.landed.plan, reason))
-          case _                            => Right(FlightSummary.of(flight.recorder.recording))
-        onLanded
-        summary
-      .map(_.flatten)
+    VirtualFlights.summaries(settings, plans): summary =>
+      onLanded
+      summary
 
   /** Counts the flights that have ended, and prints the count from time to time. */
   final class SpreadProgress(of: Int, tell: String => Unit = Console.err.println(_)):

@@ -46,7 +46,7 @@ class BenchmarkSimulation extends munit.FunSuite, Unhurried:
 
   test("every cell of the published set has settings"):
     for cell <- BenchmarkSet.Published.cells; entry <- BenchmarkSet.Published.entries do
-      assertEquals(cell.settings(Some(entry), 1).map(_.plans.size), Right(1))
+      assertEquals(cell.settings(entry, 1).map(_.plans.size), Right(1))
 
   test("an interval is that of the mean over seeds, and a truth of 0 gives no share"):
     def flights(values: Double*) =

@@ -12,14 +12,7 @@ import skein.testing.{Conclusive, Lengthy, PythonEnvironment, TemporaryFolders, 
 class MarginOfScriptLiveSuite extends munit.FunSuite, Conclusive, TemporaryFolders, Lengthy, Waiting:
   private given Scenarios = DuelReport.scenarios
 
-  /** The same packages as those of the simulator's own tests, in the same place of the user's cache. */
-  private val client = PythonEnvironment(
-    imports = "airsim",
-    scripts = None,
-    Seq("setuptools", "wheel", "msgpack", "numpy"),
-    Seq("--no-deps", "--no-build-isolation", "msgpack-rpc-python==0.4.1", "tornado==4.5.3"),
-    Seq("--no-deps", "--no-build-isolation", "airsim==1.8.1")
-  )
+  private val client = PythonEnvironment.ofAirSim()
 
   private val Ms = Seq(0.0, 80.0)
 

@@ -21,7 +21,7 @@ class MarginTrialLiveSuite extends munit.FunSuite, Waiting:
   private def run(script: String, seconds: Double, judge: MarginJudge = MarginJudge.Contacts) =
     MarginTrial(
       Seq("bash", "-c", script),
-      WorldSettings(vehicles, text = WorldSettings.render(vehicles)),
+      WorldSettings.of(vehicles),
       Scene.Empty,
       Some(duel),
       judge,

@@ -45,18 +45,16 @@ object Deviation:
 
   /** Reads, for example, `mass=1.3,drag=2,wind=8/0/0`. Left states what was expected. */
   def parse(text: String): Either[String, Deviation] =
-    text.split(
-      ",",
-      -1
-    ).toVector.foldLeft[Either[String, (Deviation, Set[String])]](Right((Deviation(), Set()))):
-      (before, word) =>
-        for
-          (read, named) <- before
-          name = word.takeWhile(_ != '=')
-          _    <- Expect.that(!named(name))(s"$name stands twice")
-          next <- one(read, word)
-        yield (next, named + name)
-    .map(_._1)
+    type Read = (deviation: Deviation, names: Set[String])
+    val none: Either[String, Read] = Right((deviation = Deviation(), names = Set()))
+    val all                        = text.split(",", -1).foldLeft(none): (before, word) =>
+      for
+        read <- before
+        name = word.takeWhile(_ != '=')
+        _    <- Expect.that(!read.names(name))(s"$name stands twice")
+        next <- one(read.deviation, word)
+      yield (deviation = next, names = read.names + name)
+    all.map(_.deviation)
 
   private def one(of: Deviation, word: String): Either[String, Deviation] = word match
     case s"mass=$x"   => number(word, x, 0.5, 1.6).map(mass => of.copy(mass = mass))

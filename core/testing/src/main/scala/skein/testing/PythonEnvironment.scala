@@ -77,6 +77,19 @@ final class PythonEnvironment(imports: String, scripts: Option[String], installs
 
 object PythonEnvironment:
 
+  /** AirSim's own Python client.
+    *
+    * @param scripts as of [[PythonEnvironment]]
+    */
+  def ofAirSim(scripts: Option[String] = None): PythonEnvironment = PythonEnvironment(
+    imports = "airsim",
+    scripts,
+    Seq("setuptools", "wheel", "msgpack", "numpy"),
+    // They are built with the packages already installed; and airsim's set-up imports the client itself.
+    Seq("--no-deps", "--no-build-isolation", "msgpack-rpc-python==0.4.1", "tornado==4.5.3"),
+    Seq("--no-deps", "--no-build-isolation", "airsim==1.8.1")
+  )
+
   /** Folder of a resource; a jar's content is extracted for the lifetime of this process. */
   private def folderOf(resource: String): Path =
     val found = getClass.getResource(resource).toURI

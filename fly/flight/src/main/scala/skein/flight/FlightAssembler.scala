@@ -306,7 +306,7 @@ final class FlightAssembler(
       SimulatorServer
         .start(
           SimulatorSettings(
-            WorldSettings(vehicles, text = WorldSettings.render(vehicles, settings.scenario.equipment)),
+            WorldSettings.of(vehicles, settings.scenario.equipment),
             FlightAssembler.anyPort,
             scene = settings.world.scene,
             mavlink =

@@ -7,10 +7,10 @@ import scala.concurrent.Future
 import scala.concurrent.duration.*
 import skein.link.{Address, LinkProfile, MemoryNetwork, NetworkPlan}
 import skein.loop.{AnyLoop, FlightOutcome, LoopKind}
-import skein.measure.RecordedTracks
+import skein.measure.{FlightSummary, RecordedTracks}
 import skein.units.OwnFailure
 import skein.record.{Digest, MemoryRecorder}
-import skein.scenario.{Result, Scenario, Tracks}
+import skein.scenario.{Result, Scenario, Scenarios, Tracks}
 import skein.settings.{FlightPlan, FlySettings, RecordedPlan, SolverChoice}
 import skein.signal.LatencyProfile
 import skein.solver.{FlightDeciders, SolverDesk, SolverServer, TcpLink}
@@ -45,6 +45,19 @@ object VirtualFlights:
       use: VirtualFlightResult => A
   ): Vector[Either[NotFlown, A]] =
     eachInParallel(plans)(plan => fly(settings, plan).map(use))
+
+  /** [[inParallel]] for the flights' summaries, so that no recording is kept.
+    *
+    * @param use receives the summary of each flight, or why the flight failed
+    */
+  private[skein] def summaries[A](settings: FlySettings, plans: Vector[FlightPlan])(
+      use: Either[NotFlown, FlightSummary] => Either[NotFlown, A]
+  )(using Scenarios): Vector[Either[NotFlown, A]] =
+    val used = inParallel(settings, plans): flight =>
+      flight.landed.outcome match
+        case FlightOutcome.Failed(reason) => use(Left(NotFlown(flight.landed.plan, reason)))
+        case _                            => use(Right(FlightSummary.of(flight.recorder.recording)))
+    used.map(_.flatten)
 
   /** Runs the flights in parallel. A failure is reported with that flight's seed, and the others still run.
     */

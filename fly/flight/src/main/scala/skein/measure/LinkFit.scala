@@ -47,9 +47,10 @@ object LinkFit:
   def of(traces: Seq[RoundTripTrace]): LinkFit =
     val trips    = traces.flatMap(_.answered).sorted.toVector
     val lost     = traces.map(_.lost)
-    val share    = lost.map(_.count(identity)).sum.toDouble / traces.map(_.size).sum
+    val count    = lost.map(_.count(identity)).sum.toDouble
+    val share    = count / traces.map(_.size).sum
     val runs     = lost.map(one => one.indices.count(i => one(i) && (i == 0 || !one(i - 1)))).sum
-    val length   = lost.map(_.count(identity)).sum.toDouble / runs
+    val length   = count / runs
     val expected = 1 / (1 - share)
     val error    = math.sqrt(share) / (1 - share) / math.sqrt(runs)
     val logs     = trips.map(ms => StrictMath.log(ms.max(1e-3)))
@@ -73,11 +74,12 @@ object LinkFit:
     def rank(ms: Double) = shareBelow(sorted, ms) - 0.5
     val pairs            =
       for
-        trace  <- traces
-        (a, b) <- trace.roundTripsMs.zip(trace.sentAtS).zip(trace.roundTripsMs.zip(trace.sentAtS).drop(1))
-        before <- a._1
-        after  <- b._1
-      yield (rank(before), rank(after), b._2 - a._2)
+        trace <- traces
+        requests = trace.roundTripsMs.zip(trace.sentAtS)
+        ((one, oneAtS), (next, nextAtS)) <- requests.zip(requests.drop(1))
+        before                           <- one
+        after                            <- next
+      yield (rank(before), rank(after), nextAtS - oneAtS)
     if pairs.sizeIs < 10 || sorted.head == sorted.last then None
     else
       val square  = pairs.map((a, _, _) => a * a).sum

@@ -21,17 +21,14 @@ object RoundTripTrace:
     */
   def of(recording: Recording): Vector[RoundTripTrace] =
     recording.readings.groupBy(_.vehicle).values.toVector.map: readings =>
-      val known  = readings.map(reading => reading.sequence -> reading.state).toMap
-      val first  = known.keys.min
-      val trips  = (first to known.keys.max).map(known.get)
-      val everyS =
-        (known(known.keys.max).sentAt.since(known(first).sentAt).toSeconds) / (trips.size - 1).max(1)
+      val known       = readings.map(reading => reading.sequence -> reading.state).toMap
+      val numbers     = known.keys.min to known.keys.max
+      val trips       = numbers.map(known.get).toVector
+      val (from, til) = (known(numbers.head).sentAt, known(numbers.last).sentAt)
+      val everyS      = til.since(from).toSeconds / (trips.size - 1).max(1)
       RoundTripTrace(
-        trips.zipWithIndex
-          .map: (state, i) =>
-            state.fold(known(first).sentAt.toSeconds + i * everyS)(_.sentAt.toSeconds)
-          .toVector,
-        trips.map(_.map(state => state.receivedAt.since(state.sentAt).toMillis)).toVector
+        trips.zipWithIndex.map((state, i) => state.fold(from.toSeconds + i * everyS)(_.sentAt.toSeconds)),
+        trips.map(_.map(state => state.receivedAt.since(state.sentAt).toMillis))
       )
 
   /** Reads the output of `ping`, or lines `time_s,rtt_ms` with nothing behind the comma for a request without

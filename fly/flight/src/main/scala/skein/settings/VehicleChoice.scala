@@ -14,7 +14,7 @@ import skein.scenario.Scenarios
 import skein.mujoco.{MujocoModel, MujocoResponse}
 import skein.units.Decimals.fixed
 import skein.units.Expect
-import skein.vehicle.{Deviation, DrivenCar, Quadrotor, ReducedModel, TiltModel, Wind}
+import skein.vehicle.{Deviation, DrivenCar, Quadrotor, ReducedModel, TiltModel}
 
 /** Models of vehicles by the names that users give: one list for simulated vehicles (`--plant`) and, as far
   * as they predict, for predictions (`--predictor`, [[PredictionModel]]).
@@ -92,7 +92,7 @@ object VehicleChoice:
   ): Either[String, VehicleChoice] =
     for
       read <- Deviation.parse(deviation)
-      _    <- Expect.that(read.copy(wind = Wind.None, rotors = Deviation().rotors) == read):
+      _    <- Expect.that(read == Deviation(read.mass, read.drag, read.lag)):
         s"expected mass, drag and lag; wind, gusts, shear and rotors are for fly and spread, came '$text'"
     yield VehicleChoice(text, s"AirSim's quadrotor with $deviation", response(read.quadrotor))
 

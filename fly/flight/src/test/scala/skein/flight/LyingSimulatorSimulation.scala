@@ -81,7 +81,7 @@ class LyingSimulatorSimulation extends munit.FunSuite, Unhurried:
       val clock = Clock.ofNanos(VirtualTime.clock(system))
       val duel  = settings(loop).fleet.agents.map(Vehicles.settings)
       val world =
-        SimulatorSettings(WorldSettings(duel, text = WorldSettings.render(duel)), Address("simulator", 41451))
+        SimulatorSettings(WorldSettings.of(duel), Address("simulator", 41451))
       var liesFrom                   = Option.empty[Instant]
       def lied(at: Instant): Instant =
         val lie =

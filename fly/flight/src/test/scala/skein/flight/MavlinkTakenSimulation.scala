@@ -39,7 +39,7 @@ class MavlinkTakenSimulation extends munit.FunSuite, Unhurried:
       val network = MemoryNetwork(NetworkPlan(LinkProfile.symmetric(LatencyProfile.none)), 1, clock)
       val duel    = settings.fleet.agents.map(Vehicles.settings)
       val world   = SimulatorSettings(
-        WorldSettings(duel, text = WorldSettings.render(duel)),
+        WorldSettings.of(duel),
         Address("simulator", 41451),
         mavlink = Some(MavlinkSettings(listen = Some(Address("simulator", 5760))))
       )

@@ -38,7 +38,7 @@ class RunningSimulatorLiveSuite extends munit.FunSuite, Waiting, Lengthy:
     val transport = TcpTransport()
     val world     =
       SimulatorSettings(
-        WorldSettings(duel, text = WorldSettings.render(duel)),
+        WorldSettings.of(duel),
         Address("127.0.0.1", 0)
       )
     def fly(assembler: FlightAssembler, before: Vector[Recording]): Future[Vector[Recording]] =

@@ -45,7 +45,7 @@ class RunningSimulatorSimulation extends munit.FunSuite, Unhurried:
     private val clock   = Clock.ofNanos(VirtualTime.clock(system))
     private val network = MemoryNetwork(NetworkPlan(), 1, clock).host("localhost")
     private val world   = SimulatorSettings(
-      WorldSettings(vehicles, text = WorldSettings.render(vehicles)),
+      WorldSettings.of(vehicles),
       Address("127.0.0.1", 0),
       losesCancel = losesCancel
     )

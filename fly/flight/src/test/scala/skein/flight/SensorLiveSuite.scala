@@ -42,7 +42,7 @@ class SensorLiveSuite extends munit.FunSuite, Unhurried:
     import system.dispatcher
     val drone = Vector(VehicleSettings("Drone"))
     val world =
-      SimulatorSettings(WorldSettings(drone, text = WorldSettings.render(drone)), Address("127.0.0.1", 0))
+      SimulatorSettings(WorldSettings.of(drone), Address("127.0.0.1", 0))
     val flight   = PortFlight(kind.label, kind, Alone(), Span.ofSeconds(3), ClockKind.Real, Clock.system)
     val recorder = MemoryRecorder(flight.heading)
     for

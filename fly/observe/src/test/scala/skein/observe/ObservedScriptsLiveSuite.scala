@@ -39,14 +39,7 @@ class ObservedScriptsLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Wait
 
   private val anyPort = Address("127.0.0.1", 0)
 
-  /** The same packages as those of the simulator's own tests, in the same place of the user's cache. */
-  private val client = PythonEnvironment(
-    imports = "airsim",
-    scripts = None,
-    Seq("setuptools", "wheel", "msgpack", "numpy"),
-    Seq("--no-deps", "--no-build-isolation", "msgpack-rpc-python==0.4.1", "tornado==4.5.3"),
-    Seq("--no-deps", "--no-build-isolation", "airsim==1.8.1")
-  )
+  private val client = PythonEnvironment.ofAirSim()
 
   private def parsed(text: String) =
     LatencyProfile.parse(text, Left(_)).fold(error => fail(error.message), identity)
@@ -55,7 +48,7 @@ class ObservedScriptsLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Wait
   private def observe(script: String, link: LatencyProfile): (observed: Observed, inside: Distribution) =
     val (clock, transport) = (Clock.system, TcpTransport())
     val settings           = SimulatorSettings(
-      WorldSettings(vehicles, text = WorldSettings.render(vehicles)),
+      WorldSettings.of(vehicles),
       anyPort
     )
     val reader = Executors.newSingleThreadExecutor()

@@ -33,7 +33,7 @@ class ObservingProxySimulation extends munit.FunSuite, Unhurried:
         val clock              = VirtualClock(system)
         val network            = MemoryNetwork(NetworkPlan(), seed, clock)
         val settings           = SimulatorSettings(
-          WorldSettings(vehicles, text = WorldSettings.render(vehicles)),
+          WorldSettings.of(vehicles),
           Address("simulator", 41451)
         )
         val here = network.host("controller")

@@ -70,7 +70,7 @@ object TortureFlight:
     private val supervisor = SimulatorSupervisor(
       scenario,
       SimulatorSettings(
-        WorldSettings(world, text = WorldSettings.render(world, faultPlan.scenario.equipment)),
+        WorldSettings.of(world, faultPlan.scenario.equipment),
         address,
         scene = faultPlan.scene.scene
       ),

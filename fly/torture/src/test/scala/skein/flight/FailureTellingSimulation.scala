@@ -66,7 +66,7 @@ class FailureTellingSimulation extends munit.FunSuite, Unhurried:
         VehicleSettings(agent.name, agent.startPositionNed.copy(z = 0), agent.startHeading)
       )
       val world =
-        SimulatorSettings(WorldSettings(duel, text = WorldSettings.render(duel)), Address("simulator", 41451))
+        SimulatorSettings(WorldSettings.of(duel), Address("simulator", 41451))
       // Where a flight begins is not known before; its link is stalled from outside then.
       var gate = Option.empty[Instant]
       // `paused` has no link of its own: with answers that take no time it would have flown at once.

@@ -75,6 +75,10 @@ object WorldSettings:
   /** Reads a `settings.json`. A file without vehicles gives one, named after its type, as in AirSim. */
   def parse(text: String): Either[SettingsError, WorldSettings] = SettingsSection.read(text)(read(_, text))
 
+  /** The world of these vehicles with their cameras and lidars, and the `settings.json` that says so. */
+  def of(vehicles: Vector[VehicleSettings], equipment: Seq[Equipment] = Nil): WorldSettings =
+    WorldSettings(vehicles, text = render(vehicles, equipment))
+
   /** Writes a `settings.json` with these vehicles and their cameras and lidars. */
   def render(vehicles: Seq[VehicleSettings], equipment: Seq[Equipment] = Nil): String =
     val entries = vehicles.map: vehicle =>

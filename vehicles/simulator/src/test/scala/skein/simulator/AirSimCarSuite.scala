@@ -33,7 +33,7 @@ class AirSimCarSuite extends munit.FunSuite:
       val link    = LinkProfile.symmetric(LatencyProfile.parse("constant:40ms", Left(_)).toOption.get)
       val network = MemoryNetwork(NetworkPlan(links = Map(("controller", "simulator") -> link)), 1, clock)
       val cars    = Vector(VehicleSettings("Car", vehicleType = "PhysXCar"))
-      val world   = WorldSettings(cars, text = WorldSettings.render(cars))
+      val world   = WorldSettings.of(cars)
       val client  = AirSimClient(RpcClient(network.host("controller"), address, clock), Span.ofMillis(500))
       for
         server <- SimulatorServer.start(SimulatorSettings(world, address), network.host("simulator"), clock)

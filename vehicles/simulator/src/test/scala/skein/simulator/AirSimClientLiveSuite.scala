@@ -23,7 +23,7 @@ class AirSimClientLiveSuite extends munit.FunSuite, Unhurried:
   private val start    = Vector3(-21, 3, 0)
   private val vehicles = Vector(VehicleSettings("Evader"), VehicleSettings("Pursuer", start))
   private val settings = SimulatorSettings(
-    WorldSettings(vehicles, text = WorldSettings.render(vehicles)),
+    WorldSettings.of(vehicles),
     Address("127.0.0.1", 0),
     speed = 10
   )

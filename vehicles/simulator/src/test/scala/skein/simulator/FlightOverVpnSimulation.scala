@@ -30,7 +30,7 @@ class FlightOverVpnSimulation extends munit.FunSuite, Unhurried:
         val network  = MemoryNetwork(NetworkPlan(LinkProfile.symmetric(LatencyProfile.vpn)), seed, clock)
         val settings =
           SimulatorSettings(
-            WorldSettings(vehicles, text = WorldSettings.render(vehicles)),
+            WorldSettings.of(vehicles),
             Address("simulator", 41451)
           )
         for

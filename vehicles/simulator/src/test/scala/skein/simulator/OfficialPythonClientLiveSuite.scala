@@ -40,7 +40,7 @@ class OfficialPythonClientLiveSuite extends munit.FunSuite, Conclusive, Lengthy,
     fly("fly_examples.py")
 
   test("the official Python client drives a car as AirSim's example does, beside a multirotor"):
-    fly("drive_car.py", WorldSettings(mixed, text = WorldSettings.render(mixed)))
+    fly("drive_car.py", WorldSettings.of(mixed))
 
   test("the official Python client calls what methods.txt lists"):
     val (status, output) = OfficialPythonClient.run("list_methods.py", "airsim")
@@ -67,11 +67,5 @@ class OfficialPythonClientLiveSuite extends munit.FunSuite, Conclusive, Lengthy,
     finally
       val _ = Await.result(server.close(), 10.seconds)
 
-private[simulator] val OfficialPythonClient = PythonEnvironment(
-  imports = "airsim",
-  scripts = Some("/airsim-python/fly_square.py"),
-  Seq("setuptools", "wheel", "msgpack", "numpy"),
-  // They are built with the packages already installed; and airsim's set-up imports the client itself.
-  Seq("--no-deps", "--no-build-isolation", "msgpack-rpc-python==0.4.1", "tornado==4.5.3"),
-  Seq("--no-deps", "--no-build-isolation", "airsim==1.8.1")
-)
+private[simulator] val OfficialPythonClient =
+  PythonEnvironment.ofAirSim(scripts = Some("/airsim-python/fly_square.py"))
