@@ -1,5 +1,8 @@
 package skein.identify
 
+import java.util.stream.IntStream
+import scala.annotation.tailrec
+
 /** Levenberg and Marquardt's method within bounds, with a Jacobian by central differences.
   *
   * Source: Marquardt, SIAM J. Appl. Math. 11 (1963); damping by the diagonal of JᵀJ.
@@ -24,11 +27,16 @@ private[identify] object LeastSquares:
   /** A step that changes no parameter by more than this share ends the search. */
   private val SmallStep = 1e-7
 
-  private val SmallGain = 1e-6
+  /** A step that lowers the sum of squares by no more than this share ends the search: the square root of the
+    * precision of a `Double`, as in MINPACK's `lmdif1`.
+    */
+  private val SmallGain = 1.5e-8
 
-  /** Minimises the sum of squares.
+  /** Minimises the sum of squares. A parameter at a bound that the descent would cross is left there for that
+    * step.
     *
-    * @param residuals a pure function of the parameters; always of one size, more than the parameters
+    * @param residuals a pure function of the parameters, called by several threads at a time; always of one
+    *   size, more than the parameters
     */
   def solve(start: Array[Double], least: Array[Double], most: Array[Double])(
       residuals: Array[Double] => Array[Double]
@@ -37,30 +45,37 @@ private[identify] object LeastSquares:
 
     def go(at: Array[Double], here: Array[Double], damping: Double, iteration: Int): Solution =
       val jacobian = differences(at, least, most, residuals)
-      val normal   = at.indices.map(i => at.indices.map(j => dot(jacobian(i), jacobian(j))).toArray).toArray
-      val gradient = at.indices.map(i => -dot(jacobian(i), here)).toArray
+      val descent  = jacobian.map(-dot(_, here))
+      val square   = dot(here, here)
+      val free     = at.indices.filterNot: i =>
+        at(i) == least(i) && descent(i) < 0 || at(i) == most(i) && descent(i) > 0
+      val normal   = free.map(i => free.map(j => dot(jacobian(i), jacobian(j))).toArray).toArray
 
+      def stepped(step: Array[Double]): Array[Double] =
+        clamped(free.zip(step).foldLeft(at) { case (moved, (i, by)) => moved.updated(i, at(i) + by) })
+
+      def isSmall(next: Array[Double]): Boolean =
+        at.indices.forall(i => math.abs(next(i) - at(i)) <= SmallStep * (math.abs(at(i)) + 1e-3))
+
+      @tailrec
       def attempt(damping: Double): Option[(Array[Double], Array[Double], Double)] =
-        if damping > 1e12 then None
-        else
-          val damped = normal.map(_.clone)
-          for i <- at.indices do damped(i)(i) += damping * normal(i)(i).max(1e-12)
-          LinearSystem.solve(damped, gradient)
-            .map(step => clamped(step.zip(at).map(_ + _)))
-            .map(next => (next, residuals(next)))
-            .collect {
-              case (next, there) if dot(there, there) < dot(here, here) => (next, there, damping / 5)
-            }
-            .orElse(attempt(damping * 4))
+        val damped = normal.map(_.clone)
+        for k <- free.indices do damped(k)(k) += damping * normal(k)(k).max(1e-12)
+        LinearSystem.solve(damped, free.map(descent(_)).toArray).map(stepped) match
+          case Some(next) =>
+            val there = residuals(next)
+            if dot(there, there) < square then Some((next, there, damping / 5))
+            else if isSmall(next) then None
+            else attempt(damping * 4)
+          case None if damping > 1e12 => None
+          case None                   => attempt(damping * 4)
 
       attempt(damping) match
         case None                      => Solution(at, here, jacobian, isConverged = true)
         case Some((next, there, less)) =>
-          val isSmall =
-            at.indices.forall(i => math.abs(next(i) - at(i)) <= SmallStep * (math.abs(at(i)) + 1e-3))
-          if isSmall || iteration == MostIterations then
-            val hardlyBetter = dot(there, there) >= (1 - SmallGain) * dot(here, here)
-            Solution(next, there, differences(next, least, most, residuals), isSmall || hardlyBetter)
+          val isDone = isSmall(next) || dot(there, there) >= (1 - SmallGain) * square
+          if isDone || iteration == MostIterations then
+            Solution(next, there, differences(next, least, most, residuals), isDone)
           else go(next, there, less, iteration + 1)
 
     val from = clamped(start)
@@ -72,14 +87,16 @@ private[identify] object LeastSquares:
       most: Array[Double],
       residuals: Array[Double] => Array[Double]
   ): Array[Array[Double]] =
-    at.indices
-      .map: i =>
+    IntStream
+      .range(0, at.length)
+      .parallel()
+      .mapToObj: i =>
         val step   = 1e-4 * math.abs(at(i)).max(1e-3)
         val (a, b) = ((at(i) - step).max(least(i)), (at(i) + step).min(most(i)))
         val below  = residuals(at.updated(i, a))
         val above  = residuals(at.updated(i, b))
         Array.tabulate(above.length)(k => (above(k) - below(k)) / (b - a))
-      .toArray
+      .toArray(Array.ofDim[Array[Double]](_))
 
   def dot(a: Array[Double], b: Array[Double]): Double =
     var sum = 0.0
