@@ -60,7 +60,7 @@ class RoverSimulation extends munit.FunSuite:
       s"${loop.label}: after 10 s the hound is close behind the hare, and the recording repeats all " +
         "decisions"
     ):
-      val recorder  = Chase.virtual(loop, Span.ofSeconds(20), seed = 1)
+      val recorder  = Chase.virtual(loop, Span.ofSeconds(16), seed = 1)
       val recording = recorder.recording
       assertEquals(recording.ending.map(_.how.toString), Some("Completed"))
       for (atS, distance) <- distances(recording) if atS > 10 do
@@ -94,7 +94,7 @@ class RoverSimulation extends munit.FunSuite:
 
   test("with plans by its own plant, the hound reaches its goal behind the hare, where its policy lags"):
     def off(loop: LoopKind) =
-      offM(Chase.virtual(loop, Span.ofSeconds(30), seed = 1, LatencyProfile.direct).recording)
+      offM(Chase.virtual(loop, Span.ofSeconds(20), seed = 1, LatencyProfile.direct).recording)
     val (planned, byPolicy) = (off(LoopKind.Plan), off(LoopKind.Predictive))
     assert(planned < 0.3, s"$planned m")
     assert(byPolicy > 1, s"$byPolicy m")
@@ -103,7 +103,7 @@ class RoverSimulation extends munit.FunSuite:
     val laps                     = Laps()
     def off(by: PredictionModel) =
       val driven =
-        Chase.virtual(LoopKind.Plan, Span.ofSeconds(25), 1, LatencyProfile.direct, by, laps).recording
+        Chase.virtual(LoopKind.Plan, Span.ofSeconds(12), 1, LatencyProfile.direct, by, laps).recording
       val offs = driven.readings.map(_.state.value.positionNed).map: at =>
         val (north, east) = laps.circuit.point(laps.circuit.nearest(at.x, at.y))
         at.horizontalDistance(Vector3(north, east, 0))
