@@ -49,7 +49,7 @@ lazy val root =
     .in(file("."))
     .aggregate(core, testing, onnx, flow, link, vtime, vtimeAgent, forward, gpu)
     .aggregate(airsim, mavlink, autopilot, hil, offboard, mujoco, scene, simulator, ros, mcap, record, view)
-    .aggregate(flight, kafka, observe, torture, environment, learn, recognition, blocks, cluster, cli, python)
+    .aggregate(flight, kafka, observe, rosbag, torture, environment, learn, recognition, blocks, cluster, cli, python)
     .aggregate(bench, benchJmh, docs, chase, ownPolicy, ownScenario, ownGraph, ownVehicle, foreignEnvironment, virtualTime)
     .settings(publish / skip := true, publishCheck := Publishing.check.value, Installing.settings)
     // The API reference of all parts: .ci/docs.
@@ -258,6 +258,12 @@ lazy val observe = project.in(file("fly/observe"))
   .dependsOn(flight % "compile->compile;test->test", link % "test->test")
   .settings(underAgent, libraryDependencies ++= munit)
 
+/** Bags of ROS 2: recordings written as bags, and the loops of bags measured. */
+lazy val rosbag = project.in(file("fly/rosbag"))
+  .settings(artifact("rosbag", "Bags of ROS 2: recordings as bags, and what a bag says of a loop's timing"))
+  .dependsOn(observe, ros, flight % "test->test")
+  .settings(underAgent, libraryDependencies ++= munit)
+
 /** Episodes step by step, for learners. */
 lazy val environment = project.in(file("learn/environment"))
   .settings(artifact("environment", "Episodes under a loop's timing, step by step, for learners"))
@@ -280,7 +286,7 @@ lazy val kafka = project.in(file("fly/kafka"))
 lazy val cli = project.in(file("app/cli"))
   .settings(artifact("cli", "Commands and reports"))
   .dependsOn(flight % "compile->compile;test->test", kafka % "compile->compile;test->test")
-  .dependsOn(view, learn, cluster, recognition, gpu, observe, torture, ros)
+  .dependsOn(view, learn, cluster, recognition, gpu, rosbag, torture)
   .enablePlugins(JavaAppPackaging)
   .settings(underAgent)
   .settings(

@@ -8,8 +8,9 @@ import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.duration.DurationInt
 import skein.figures.ObservedFigure
 import skein.link.*
-import skein.observe.{Observed, ObservingProxy, OutsideProgram}
-import skein.report.{ObservedTables, Paragraph, Section}
+import skein.observe.{Observed, ObservedCommand, ObservedVehicle, ObservingProxy, OutsideProgram}
+import skein.report.{ObservedTables, Paragraph, Section, TopicTables}
+import skein.rosbag.BagLoop
 import skein.units.{Clock, Expect}
 
 /** Command-line options of `./skein observe`, with their help texts. */
@@ -25,6 +26,20 @@ final case class ObserveOptions(
     @arg(doc = "seed of every random choice")
     seed: Long = 1,
     @arg(doc =
+      "instead of a program: a bag of ROS 2, its folder or an MCAP file; the loop that it holds is measured"
+    )
+    bag: Option[String],
+    @arg(doc =
+      "with --bag: a topic that vehicles are read by, for example /uav1/odom; can be repeated; without it, " +
+        "topics of odometry and poses"
+    )
+    readings: Seq[String],
+    @arg(doc =
+      "with --bag: a topic of commands, for example /uav1/cmd_vel; can be repeated; without it, topics of " +
+        "twists and poses named cmd, command, setpoint, target or goal"
+    )
+    commands: Seq[String],
+    @arg(doc =
       "folder for observed.json with the tables, commands.csv with a row for each command, and the figure " +
         "ages.svg, ages.png; without it, the tables are only shown"
     )
@@ -38,15 +53,39 @@ final case class ObserveOptions(
     command: Behind
 )
 
-/** `./skein observe`: measures the control loop of any program that flies by AirSim's interface. */
+/** `./skein observe`: measures the control loop of any program that flies by AirSim's interface, from between
+  * it and the simulator, or of any graph of ROS 2, by a bag.
+  */
 object ObserveCommand
     extends OptionsCommand[ObserveOptions](
       "observe",
-      "measures the loop of any AirSim program, from between it and the simulator: how old its data is, and why",
+      "measures the loop of any AirSim program, or of a bag of ROS 2: how old its data is, and why",
       ParserForClass[ObserveOptions]
     ):
 
-  protected def execute(options: ObserveOptions): Either[String, Unit] =
+  protected def execute(options: ObserveOptions): Either[String, Unit] = options.bag match
+    case Some(bag) => observeBag(Path.of(bag), options)
+    case None      =>
+      Expect.that(options.readings.isEmpty && options.commands.isEmpty):
+        "--readings, --commands: expected with --bag alone"
+      .flatMap(_ => observeProgram(options))
+
+  private def observeBag(bag: Path, options: ObserveOptions): Either[String, Unit] =
+    for
+      _ <- Expect.that(options.command.words.isEmpty):
+        "--bag: expected no program behind --, the bag is what is measured"
+      folder   <- options.out.fold(Right(None))(OutFolder.made("--out", _).map(Some(_)))
+      observed <- BagLoop(options.readings.toSet, options.commands.toSet).observed(bag)
+      shown = Shown(options.json.value)
+      _     = shown.tables(
+        TopicTables.tables(observed),
+        text(TopicTables.tables(observed), TopicTables.findings(observed))
+      )
+      _ <- folder.fold(Right(())):
+        write(TopicTables.tables(observed), observed.log, observed.vehicles, _, shown)
+    yield ()
+
+  private def observeProgram(options: ObserveOptions): Either[String, Unit] =
     for
       listenAt  <- Address.parse(options.listen).left.map("--listen: " + _)
       simulator <- Address.parse(options.simulator).left.map("--simulator: " + _)
@@ -55,18 +94,25 @@ object ObserveCommand
       profile  <- Arguments.latency(options.link).left.map("--link: " + _)
       folder   <- options.out.fold(Right(None))(OutFolder.made("--out", _).map(Some(_)))
       observed <- observe(listenAt, simulator, LinkProfile.symmetric(profile), options)
-      _        <- folder.fold(Right(()))(write(observed, _, Shown(options.json.value)))
+      _        <- folder.fold(Right(())):
+        write(ObservedTables.data(observed), observed.log, observed.vehicles, _, Shown(options.json.value))
     yield ()
 
-  private def write(observed: Observed, folder: Path, shown: Shown): Either[String, Unit] =
+  private def write(
+      tables: Vector[Section],
+      log: Vector[ObservedCommand],
+      vehicles: Vector[ObservedVehicle],
+      folder: Path,
+      shown: Shown
+  ): Either[String, Unit] =
     val picture =
-      ObservedFigure(observed).fold(Vector.empty)(OutFolder.picture("ages", _, "how old a loop's data is"))
+      ObservedFigure(vehicles).fold(Vector.empty)(OutFolder.picture("ages", _, "how old a loop's data is"))
     OutFolder
       .write(
         folder,
         Vector(
-          OutFolder.text("observed.json", Section.json(ObservedTables.data(observed))),
-          OutFolder.text("commands.csv", ObservedTables.csv(observed))
+          OutFolder.text("observed.json", Section.json(tables)),
+          OutFolder.text("commands.csv", ObservedTables.csv(log))
         ) ++ picture
       )
       .map(files => shown.say(s"written: ${files.mkString(", ")}"))
@@ -107,7 +153,10 @@ object ObserveCommand
       telling.cancel()
       Edge.await(proxy.close())
       val observed = proxy.observed
-      shown.tables(ObservedTables.data(observed), text(observed))
+      shown.tables(
+        ObservedTables.data(observed),
+        text(ObservedTables.tables(observed), ObservedTables.findings(observed))
+      )
       ended.map(_ => observed)
     catch case error: TransportError => Left(error.getMessage)
     finally
@@ -130,8 +179,7 @@ object ObserveCommand
       Right(())
     catch case absent: IOException => Left(s"cannot start ${command.head}: ${absent.getMessage}")
 
-  private def text(observed: Observed): String =
-    val findings = ObservedTables.findings(observed).flatMap(Paragraph.lines(_, 100))
-    (Section.text(ObservedTables.tables(observed)) +: "" +: findings).mkString("\n")
+  private def text(tables: Vector[Section], findings: Vector[String]): String =
+    (Section.text(tables) +: "" +: findings.flatMap(Paragraph.lines(_, 100))).mkString("\n")
 
   private val TellEvery = 5.seconds

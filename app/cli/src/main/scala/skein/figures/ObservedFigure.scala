@@ -1,7 +1,7 @@
 package skein.figures
 
 import skein.measure.Distribution
-import skein.observe.{Observed, ObservedVehicle}
+import skein.observe.ObservedVehicle
 import skein.plot.*
 
 /** The paper's four observations of an outside program: for each vehicle a bar for the mean, and a line up to
@@ -14,11 +14,13 @@ object ObservedFigure:
   private val place    = 72.0
   private val height   = 150.0
 
-  def apply(observed: Observed): Option[Drawing] =
-    val vehicles = observed.vehicles.filter(_.commands > 0).take(Most)
-    Option.when(vehicles.nonEmpty):
+  def apply(observed: Vector[ObservedVehicle]): Option[Drawing] =
+    val vehicles = observed.filter(_.commands > 0).take(Most)
+    // A quantity of others, of a single vehicle, has no panel.
+    val panels = quantities.filter((_, of) => vehicles.exists(of(_).isDefined))
+    Option.when(panels.nonEmpty):
       Drawing.stacked(
-        Drawing.grid(quantities.map(panel(_, _, vehicles)), columns = 2),
+        Drawing.grid(panels.map(panel(_, _, vehicles)), columns = panels.size.min(2)),
         Legend(46, Legend.box("mean", colour), Legend.line("99 % are shorter", whisker))
       )
 

@@ -1,7 +1,7 @@
 package skein.report
 
 import skein.measure.Distribution
-import skein.observe.{Diagnosis, LoopAccount, Observed, Progress}
+import skein.observe.{Diagnosis, LoopAccount, Observed, ObservedCommand, ObservedVehicle, Progress}
 import skein.units.Decimals.{brief, fixed}
 
 /** The observer's measurements, as tables and sentences. */
@@ -9,25 +9,25 @@ object ObservedTables:
 
   /** Tables for people; the findings are sentences ([[findings]]). */
   def tables(observed: Observed): Vector[Section] =
-    Vector(vehicles(observed), period(observed), methods(observed)).flatten
+    Vector(vehicles(observed.vehicles), period(observed), methods(observed)).flatten
 
   /** Tables for scripts, with the findings. */
   def data(observed: Observed): Vector[Section] = tables(observed) ++ found(observed)
 
   /** A section with a table; None without rows. */
-  private def section(
+  private[report] def section(
       title: String,
       header: Vector[String],
       rows: Vector[Vector[String]],
       note: String = ""
   ): Option[Section] = Option.when(rows.nonEmpty)(Section(title, note, Some(TextTable(header, rows))))
 
-  private def vehicles(observed: Observed) = section(
+  private[report] def vehicles(observed: Vector[ObservedVehicle]) = section(
     "How old the data behind each command was",
     Vector("<vehicle", "commands", "every ms", "p99") ++
       Vector("own data ms", "p99", "others' data ms", "p99", "± ms") ++
       Vector("since others' command ms", "in flight at most"),
-    observed.vehicles.filter(_.commands > 0).map: vehicle =>
+    observed.filter(_.commands > 0).map: vehicle =>
       Vector(
         if vehicle.name.isEmpty then "(the first)" else vehicle.name,
         vehicle.commands.toString,
@@ -99,11 +99,11 @@ object ObservedTables:
     Vector("boundMs", "sinceOwnMs", "sinceOthersMs")
 
   /** A row for each command that the log holds, as comma-separated values; an empty cell is unknown. */
-  def csv(observed: Observed): String =
+  def csv(log: Vector[ObservedCommand]): String =
     def text(word: String) =
       if word.matches("[^\",\n\r]*") then word else s"\"${word.replace("\"", "\"\"")}\""
     def number(value: Option[Double]) = value.fold("")(_.fixed(3))
-    val rows                          = observed.log.map: command =>
+    val rows                          = log.map: command =>
       import command.*
       (Vector(at.toSeconds.fixed(6), text(vehicle), text(method), connection.toString) ++
         Vector(ownAgeMs, othersAgeMs, boundMs, sinceOwnMs, sinceOthersMs).map(number)).mkString(",")
@@ -115,5 +115,5 @@ object ObservedTables:
       val age = progress.ageMs.fold("never read")(ms => s"data ${ms.brief} ms old")
       s"${progress.lasted.toSeconds.fixed(0)} s: ${progress.commands} commands, $age"
 
-  private def mean(samples: Option[Distribution]) = samples.fold("")(_.mean.brief)
-  private def p99(samples: Option[Distribution])  = samples.fold("")(_.p99.brief)
+  private[report] def mean(samples: Option[Distribution]) = samples.fold("")(_.mean.brief)
+  private[report] def p99(samples: Option[Distribution])  = samples.fold("")(_.p99.brief)

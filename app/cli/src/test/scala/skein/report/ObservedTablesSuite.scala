@@ -17,7 +17,7 @@ class ObservedTablesSuite extends munit.FunSuite:
 
   test("each command is a row of comma-separated values, with empty cells for what is unknown"):
     assertEquals(
-      ObservedTables.csv(observed("A")),
+      ObservedTables.csv(observed("A").log),
       """atS,vehicle,method,connection,ownAgeMs,othersAgeMs,boundMs,sinceOwnMs,sinceOthersMs
         |0.020000,A,hover,0,15.000,,5.000,,
         |0.120000,A,hover,0,115.000,,5.000,100.000,
@@ -25,8 +25,8 @@ class ObservedTablesSuite extends munit.FunSuite:
     )
 
   test("a name with a comma or a quotation mark stays one cell"):
-    assert(ObservedTables.csv(observed("A, \"B\"")).contains("0.020000,\"A, \"\"B\"\"\",hover,"))
+    assert(ObservedTables.csv(observed("A, \"B\"").log).contains("0.020000,\"A, \"\"B\"\"\",hover,"))
 
   test("the figure has a bar for each vehicle that was commanded, and there is none without"):
-    assert(ObservedFigure(observed("A")).exists(_.shapes.nonEmpty))
-    assertEquals(ObservedFigure(LoopAccount().observed), None)
+    assert(ObservedFigure(observed("A").vehicles).exists(_.shapes.nonEmpty))
+    assertEquals(ObservedFigure(LoopAccount().observed.vehicles), None)

@@ -81,7 +81,7 @@ class RosFlightSimulation extends munit.FunSuite, Optimised:
           clock,
           Some((at, seen) =>
             for (vehicle, motion) <- vehicles.zip(seen) do
-              assertEquals(vehicle.receive(VehicleMessages.odometry(at, motion)), Right(()))
+              assertEquals(vehicle.receive(VehicleMessages.odometry(at, motion.name, motion.kinematics)), Right(()))
           )
         )
         .flatMap: server =>

@@ -55,7 +55,7 @@ final class LoopAccount:
       tick(at)
       for open <- connections.remove(connection) do
         for pending <- open.pending.values do
-          if pending.kind == CallKind.Move then vehicle(pending.vehicle).foreach(_.leftRunning += 1)
+          if pending.kind == CallKind.Move then vehicle(pending.vehicle).foreach(_.account.leftRunning += 1)
           forget(pending)
 
   /** Counts messages that passed without analysis. */
@@ -120,16 +120,13 @@ final class LoopAccount:
         own,
         others.maxOption,
         commanded.reading.map(_.bound(clock).toMillis),
-        commanded.movedAt.map(sinceMs),
-        rest.flatMap(_.movedAt).maxOption.map(sinceMs)
+        commanded.account.commandedAt.map(sinceMs),
+        rest.flatMap(_.account.commandedAt).maxOption.map(sinceMs)
       )
       if log.size < MostLogged then log += command
-      commanded.add(command)
-      val ages = others ++ own
-      if ages.size > 1 then commanded.skew.add(ages.max - ages.min)
-      commanded.movedAt = Some(at)
+      commanded.account.add(command, at, others ++ own)
       commanded.inFlight.add(pending): Unit
-      commanded.mostInFlight = commanded.mostInFlight.max(commanded.inFlight.size)
+      commanded.account.mostInFlight = commanded.account.mostInFlight.max(commanded.inFlight.size)
 
   private def answer(answered: Passed.Answered): Unit =
     for
@@ -158,11 +155,11 @@ final class LoopAccount:
     */
   private def ended(pending: Pending, roundTrip: Span, isAlone: Boolean, hasFlown: Boolean): Unit =
     for commanded <- vehicle(pending.vehicle) do
-      if isAlone && roundTrip > JoinedFor then commanded.joined += 1
+      if isAlone && roundTrip > JoinedFor then commanded.account.joined += 1
       // A later command has replaced this one in its time; one that was sent before and still flies came after.
       val isLast = !commanded.inFlight.exists(_.at > pending.at)
       if hasFlown && isLast && !Immediate(pending.method) && commanded.inFlight.exists(_.at < pending.at) then
-        commanded.overtaken += 1
+        commanded.account.overtaken += 1
 
   private def read(pending: Pending, answered: Passed.Answered): Unit =
     val sampled = answered.sampledAt.map(Stamped((), _, pending.at, answered.at))
@@ -211,22 +208,22 @@ final class LoopAccount:
         first
 
   /** Number of commands to all vehicles. */
-  private def commands: Long = vehicles.valuesIterator.map(_.commands).sum
+  private def commands: Long = vehicles.valuesIterator.map(_.account.commands).sum
 
   /** The progress, at constant cost for any number of observations. */
   def progress: Progress = Progress(
     begunAt.fold(Span.Zero)(lastAt.since),
     commands,
-    vehicles.valuesIterator.flatMap(_.ownAge.mean).maxOption
+    vehicles.valuesIterator.flatMap(_.account.ownAgeMs).maxOption
   )
 
   /** The complete observations so far; sorts every sample. */
   def observed: Observed =
-    val periods = commands.toDouble / vehicles.valuesIterator.count(_.commands > 0).max(1) - 1
+    val periods = commands.toDouble / vehicles.valuesIterator.count(_.account.commands > 0).max(1) - 1
     Observed(
       lasted = begunAt.fold(Span.Zero)(lastAt.since),
       connections = opened,
-      vehicles = vehicles.valuesIterator.map(_.observed).toVector,
+      vehicles = vehicles.valuesIterator.map(_.account.observed).toVector,
       methods = methods.valuesIterator.map(_.observed).toVector,
       periodMs =
         if periods < 1 then Map.empty else periodsNs.map((phase, ns) => phase -> ns * 1e-6 / periods),
@@ -259,9 +256,6 @@ object LoopAccount:
   val MostLogged = 200_000
 
   private val MostLost = 100
-
-  /** AirSim's physics step: a command replaced within it never takes effect. */
-  private val PhysicsStep = Span.ofMillis(3)
 
   /** Limit of a small answer, bytes; larger ones occupy a link for a while. */
   private val SmallBytes = 16L << 10
@@ -314,46 +308,9 @@ object LoopAccount:
         .getOrElse(receivedAt.since(sentAt) / 2)
 
   private final class Vehicle(name: String):
-    var reading      = Option.empty[Reading]
-    var movedAt      = Option.empty[Instant]
-    val inFlight     = mutable.LinkedHashSet.empty[Pending]
-    var commands     = 0L
-    var superseded   = 0L
-    var overtaken    = 0L
-    var mostInFlight = 0
-    var joined       = 0L
-    var leftRunning  = 0L
-    val ownAge       = Samples()
-    val othersAge    = Samples()
-    val bound        = Samples()
-    val every        = Samples()
-    val sinceOthers  = Samples()
-    val skew         = Samples()
-
-    def add(command: ObservedCommand): Unit =
-      commands += 1
-      command.sinceOwnMs.foreach(every.add)
-      if command.sinceOwnMs.exists(_ < PhysicsStep.toMillis) then superseded += 1
-      command.sinceOthersMs.foreach(sinceOthers.add)
-      command.ownAgeMs.foreach(ownAge.add)
-      command.othersAgeMs.foreach(othersAge.add)
-      command.boundMs.foreach(bound.add)
-
-    def observed: ObservedVehicle = ObservedVehicle(
-      name,
-      commands,
-      ownAge.distribution,
-      othersAge.distribution,
-      bound.mean,
-      every.distribution,
-      sinceOthers.distribution,
-      skew.distribution,
-      superseded,
-      overtaken,
-      mostInFlight,
-      joined,
-      leftRunning
-    )
+    val account  = VehicleAccount(name)
+    val inFlight = mutable.LinkedHashSet.empty[Pending]
+    var reading  = Option.empty[Reading]
 
   private final class Method(name: String, kind: CallKind):
     var calls, failed = 0L

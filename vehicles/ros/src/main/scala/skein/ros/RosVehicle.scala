@@ -6,7 +6,7 @@ import scala.concurrent.{Future, Promise}
 import skein.policy.Action
 import skein.port.{VehicleError, VehiclePort}
 import skein.ros.message.*
-import skein.signal.{ClockAlignment, Kinematics, Stamped}
+import skein.signal.{ClockAlignment, FastestMessage, Kinematics, Stamped}
 import skein.units.{Clock, Instant, Span}
 
 /** A vehicle behind ROS topics, as a loop's vehicle port: it is read by odometry, and steered by `cmd_vel` in

@@ -77,10 +77,12 @@ final class SimulatedTopics private (
 
   private def publish(at: Instant, seen: Vector[SeenVehicle], withFix: Boolean): Unit =
     for (vehicle, topics) <- seen.zip(vehicles) do
-      topics.odometry.foreach(_.publish(VehicleMessages.odometry(at, vehicle)))
+      topics.odometry.foreach(_.publish(VehicleMessages.odometry(at, vehicle.name, vehicle.kinematics)))
       topics.imu.foreach(_.publish(VehicleMessages.imu(at, vehicle)))
       if withFix then topics.fix.foreach(_.publish(VehicleMessages.fix(at, vehicle)))
-    frames.foreach(_.publish(TFMessage(seen.take(vehicles.size).map(VehicleMessages.transform(at, _)))))
+    frames.foreach(_.publish(TFMessage(seen.take(vehicles.size).map(it =>
+      VehicleMessages.transform(at, it.name, it.kinematics)
+    ))))
     clock.publish(Clock(Time.of(at)))
 
   /** Ends the thread that publishes; the node stays open. */

@@ -7,8 +7,10 @@ import skein.signal.Kinematics
 import skein.units.{Quaternion, Vector3}
 import skein.vehicle.GoTo
 
-/** A vehicle behind ROS topics, in Skein's terms. */
-private[ros] object TwistCommand:
+/** A vehicle behind ROS topics in Skein's terms: what its odometry says, and which `cmd_vel` performs an
+  * action.
+  */
+object TwistCommand:
 
   /** Odometry as a motion in NED. Left states which numbers are no motion. */
   def kinematics(odometry: Odometry): Either[String, Kinematics] =

@@ -19,7 +19,7 @@ class VehicleMessagesSuite extends munit.FunSuite:
     assert(math.abs(v.x - x) + math.abs(v.y - y) + math.abs(v.z - z) < 1e-12, v)
 
   test("odometry has the position in ENU and the velocities in the body's front, left and up"):
-    val odometry = VehicleMessages.odometry(at, vehicle)
+    val odometry = VehicleMessages.odometry(at, vehicle.name, vehicle.kinematics)
     assertEquals(odometry.header.stamp, Time(1_700_000_000, 20_000_000))
     assertEquals((odometry.header.frameId, odometry.childFrameId), ("map", "a/base_link"))
     assertEquals(odometry.pose.pose.position, Point(20, 10, 30))
@@ -28,8 +28,8 @@ class VehicleMessagesSuite extends munit.FunSuite:
     near(odometry.twist.twist.angular, 0, 0, -0.5)
 
   test("the frame in the tree is the odometry's"):
-    val frame    = VehicleMessages.transform(at, vehicle)
-    val odometry = VehicleMessages.odometry(at, vehicle)
+    val frame    = VehicleMessages.transform(at, vehicle.name, vehicle.kinematics)
+    val odometry = VehicleMessages.odometry(at, vehicle.name, vehicle.kinematics)
     assertEquals((frame.header, frame.childFrameId), (odometry.header, odometry.childFrameId))
     near(frame.transform.translation, 20, 10, 30)
     assertEquals(frame.transform.rotation, odometry.pose.pose.orientation)

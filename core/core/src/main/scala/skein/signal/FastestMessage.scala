@@ -1,6 +1,5 @@
-package skein.ros
+package skein.signal
 
-import skein.signal.ClockAlignment
 import skein.units.*
 
 /** Relates the clock of message headers to the receiver's where nothing goes there and back: the fastest
@@ -11,7 +10,7 @@ import skein.units.*
   * @param offset the receiver's clock minus the header's, at most
   * @param at when the fastest message was received
   */
-private[ros] final case class FastestMessage(offset: Span, at: Instant):
+final case class FastestMessage(offset: Span, at: Instant):
   import FastestMessage.*
 
   def updated(validAt: Instant, receivedAt: Instant): FastestMessage =
@@ -22,7 +21,7 @@ private[ros] final case class FastestMessage(offset: Span, at: Instant):
   /** The earliest time, by the receiver's clock, at which the message's stamp can have been taken. */
   def sentAt(validAt: Instant, receivedAt: Instant): Instant = (validAt + offset - Doubt).min(receivedAt)
 
-private[ros] object FastestMessage:
+object FastestMessage:
   /** How much faster than the fastest so far a later message may be: it would contradict the clocks'
     * alignment.
     */

@@ -1,6 +1,5 @@
-package skein.ros
+package skein.signal
 
-import skein.signal.{ClockAlignment, Stamped}
 import skein.units.*
 
 class FastestMessageSuite extends munit.FunSuite:

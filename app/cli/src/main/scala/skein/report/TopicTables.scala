@@ -1,0 +1,77 @@
+package skein.report
+
+import skein.observe.{ObservedTopic, ObservedTopics}
+import skein.report.ObservedTables.{mean, p99, section}
+import skein.units.Decimals.{brief, fixed}
+
+/** Measurements of a loop whose messages are topics', as tables and sentences. */
+object TopicTables:
+
+  def tables(observed: ObservedTopics): Vector[Section] =
+    Vector(vehicles(observed), topics(observed)).flatten
+
+  private def vehicles(observed: ObservedTopics) = section(
+    "How old the data behind each command was",
+    Vector("<vehicle", "commands", "every ms", "p99", "own data ms", "p99", "others' data ms", "p99") ++
+      Vector("since others' command ms"),
+    observed.vehicles.filter(_.commands > 0).map: vehicle =>
+      Vector(
+        if vehicle.name.isEmpty then "(the only)" else vehicle.name,
+        vehicle.commands.toString,
+        mean(vehicle.everyMs),
+        p99(vehicle.everyMs),
+        mean(vehicle.ownAgeMs),
+        p99(vehicle.ownAgeMs),
+        mean(vehicle.othersAgeMs),
+        p99(vehicle.othersAgeMs),
+        mean(vehicle.sinceOthersMs)
+      ),
+    "Ages count from the stamp of a reading's header to when the command was recorded; means, and 99th percentiles."
+  )
+
+  private def topics(observed: ObservedTopics) = section(
+    "Topics",
+    Vector("<topic", "<of", "messages", "a second", "every ms", "p99", "longest", "gaps") ++
+      Vector("came after ms", "p99", "out of order"),
+    observed.topics.map: topic =>
+      Vector(
+        topic.name,
+        topic.kind.label,
+        topic.messages.toString,
+        topic.intervalMs.fold("")(all => if all.mean > 0 then (1e3 / all.mean).brief else ""),
+        topic.intervalMs.fold("")(_.median.brief),
+        p99(topic.intervalMs),
+        topic.intervalMs.fold("")(_.most.brief),
+        topic.gaps.toString,
+        mean(topic.lateMs),
+        p99(topic.lateMs),
+        topic.backwards.toString
+      ),
+    "Every: the median; a gap is longer than two and a half of it. Came after: from a header's stamp to when its " +
+      "message was recorded."
+  )
+
+  /** A paragraph for each finding, and one for what a bag cannot tell. */
+  def findings(observed: ObservedTopics): Vector[String] =
+    def seconds(ms: Double)          = s"${(ms / 1e3).fixed(2)} s"
+    def broken(topic: ObservedTopic) =
+      s"${topic.name} had ${topic.gaps} gaps, the longest of ${seconds(topic.intervalMs.fold(0.0)(_.most))}."
+    def disorder(topic: ObservedTopic) = s"${topic.name} came out of order ${topic.backwards} times."
+    val assumed                        = Option.when(observed.commands > 0):
+      if observed.caused == observed.commands then
+        "Every command has the stamp of the reading that caused it."
+      else if observed.caused == 0 then
+        "No command has the stamp of a reading: the newest one recorded before it is assumed."
+      else
+        s"${observed.caused} of ${observed.commands} commands have the stamp of the reading that caused them; behind " +
+          "the others the newest one recorded before is assumed."
+    val clocks = Option.when(observed.byOtherClock.nonEmpty):
+      s"The stamps of ${observed.byOtherClock.map(name => if name.isEmpty then "the vehicle" else name).mkString(", ")} are by " +
+        "another clock than the recorder's: ages lack the way of the fastest message."
+    val more = Option.when(observed.notKept > 0)(s"${observed.notKept} messages are not counted.")
+    (if observed.commands == 0 then Vector("There is no command, so there is no loop to judge.")
+     else Vector.empty) ++
+      observed.topics.filter(_.gaps > 0).map(broken) ++ observed.topics.filter(
+        _.backwards > 0
+      ).map(disorder) ++
+      assumed ++ clocks ++ more

@@ -1,0 +1,172 @@
+package skein.observe
+
+import scala.collection.mutable
+import skein.signal.FastestMessage
+import skein.units.{Instant, Span}
+
+/** Analyses a loop from messages of topics: readings of vehicles, and commands to them. Mutable; one thread
+  * at a time; messages in the order of their times.
+  *
+  * A command whose header has the stamp of a reading of its vehicle is caused by that reading; any other is
+  * assumed to be based on the newest reading that came before it. An age counts from the reading's stamp; of
+  * a reading without one, from when it came.
+  *
+  * Nothing goes there and back by which clocks could be compared. If the first stamp of a vehicle is within
+  * [[TopicAccount.SameClock]] of the time at which its message came, stamps are taken as they are. Otherwise
+  * they are by another clock, such as simulated time, and [[skein.signal.FastestMessage]] relates the two:
+  * ages lack the way of the fastest message.
+  *
+  * Memory: [[TopicAccount.MostVehicles]] vehicles, [[TopicAccount.MostTopics]] topics, a million samples of
+  * each quantity, and [[LoopAccount.MostLogged]] commands.
+  */
+final class TopicAccount:
+  import TopicAccount.*
+
+  private val vehicles = mutable.LinkedHashMap.empty[String, Vehicle]
+  private val topics   = mutable.LinkedHashMap.empty[String, Topic]
+  private val log      = mutable.ArrayBuffer.empty[ObservedCommand]
+  private var caused   = 0L
+  private var notKept  = 0L
+  private var begunAt  = Option.empty[Instant]
+  private var lastAt   = Instant.Epoch
+
+  /** A reading came.
+    *
+    * @param stamp of its header
+    * @param at when it came
+    */
+  def reading(vehicle: String, topic: String, stamp: Option[Instant], at: Instant): Unit =
+    received(vehicle, topic, TopicKind.Readings, stamp, at).foreach(_.read(stamp, at))
+
+  /** A command was sent. */
+  def command(vehicle: String, topic: String, stamp: Option[Instant], at: Instant): Unit =
+    for commanded <- received(vehicle, topic, TopicKind.Commands, stamp, at) do
+      val cause = stamp.flatMap(commanded.readingOf)
+      if cause.isDefined then caused += 1
+      val rest    = vehicles.valuesIterator.filterNot(_ eq commanded).toVector
+      val own     = cause.orElse(commanded.newest).map(commanded.ageMs(_, at))
+      val others  = rest.flatMap(other => other.newest.map(other.ageMs(_, at)))
+      val account = commanded.account
+      val command = ObservedCommand(
+        at.since(begunAt.getOrElse(at)),
+        vehicle,
+        topic,
+        0,
+        own,
+        others.maxOption,
+        None,
+        account.commandedAt.map(at.since(_).toMillis),
+        rest.flatMap(_.account.commandedAt).maxOption.map(at.since(_).toMillis)
+      )
+      if log.size < LoopAccount.MostLogged then log += command
+      account.add(command, at, others ++ own)
+
+  private def received(
+      vehicle: String,
+      topic: String,
+      kind: TopicKind,
+      stamp: Option[Instant],
+      at: Instant
+  ): Option[Vehicle] =
+    if begunAt.isEmpty then begunAt = Some(at)
+    lastAt = lastAt.max(at)
+    val known =
+      for
+        of    <- TopicAccount.entry(vehicles, vehicle, MostVehicles)(Vehicle(vehicle))
+        about <- TopicAccount.entry(topics, topic, MostTopics)(Topic(topic, kind))
+      yield
+        about.add(stamp, at)
+        of
+    if known.isEmpty then notKept += 1
+    known
+
+  /** The complete observations so far; sorts every sample. */
+  def observed: ObservedTopics = ObservedTopics(
+    begunAt.fold(Span.Zero)(lastAt.since),
+    vehicles.valuesIterator.map(_.account.observed).toVector,
+    topics.valuesIterator.map(_.observed).toVector,
+    caused,
+    vehicles.valuesIterator.filter(_.isByOtherClock).map(_.name).toVector,
+    notKept,
+    log.toVector
+  )
+
+object TopicAccount:
+  /** How far a stamp and the time of its message may be apart on one clock. */
+  val SameClock: Span = Span.ofSeconds(10)
+
+  private val MostVehicles = 256
+  private val MostTopics   = 1024
+
+  /** Readings among which a command's cause is looked for. */
+  private val MostCauses = 256
+
+  private def isNear(stamp: Instant, at: Instant): Boolean =
+    at.since(stamp) <= SameClock && stamp.since(at) <= SameClock
+
+  private def entry[A](
+      known: mutable.LinkedHashMap[String, A],
+      name: String,
+      most: Int
+  )(make: => A): Option[A] =
+    known.get(name).orElse(Option.when(known.size < most)(known.getOrElseUpdate(name, make)))
+
+  private final case class Reading(stamp: Option[Instant], at: Instant)
+
+  private final class Vehicle(val name: String):
+    val account        = VehicleAccount(name)
+    var newest         = Option.empty[Reading]
+    private val stamps = mutable.LinkedHashMap.empty[Instant, Reading]
+
+    private var isFirst = true
+    private var fastest = Option.empty[FastestMessage]
+
+    def isByOtherClock: Boolean = fastest.isDefined
+
+    def read(stamp: Option[Instant], at: Instant): Unit =
+      val reading = Reading(stamp, at)
+      for stamped <- stamp do
+        if isFirst && !isNear(stamped, at) then fastest = Some(FastestMessage(at.since(stamped), at))
+        isFirst = false
+        fastest = fastest.map(_.updated(stamped, at))
+        stamps(stamped) = reading
+        if stamps.size > MostCauses then stamps -= stamps.head._1
+      // A message that overtook a newer one is no newer reading.
+      if newest.flatMap(_.stamp).forall(before => stamp.forall(_ >= before)) then newest = Some(reading)
+
+    def readingOf(stamp: Instant): Option[Reading] = stamps.get(stamp)
+
+    def ageMs(reading: Reading, now: Instant): Double =
+      now.since(reading.stamp.fold(reading.at)(_ + fastest.fold(Span.Zero)(_.offset))).toMillis
+
+  private final class Topic(name: String, kind: TopicKind):
+    private val between   = Samples()
+    private val late      = Samples()
+    private var messages  = 0L
+    private var backwards = 0L
+    private var last      = Option.empty[Instant]
+    private var newest    = Option.empty[Instant]
+
+    def add(stamp: Option[Instant], at: Instant): Unit =
+      messages += 1
+      last.foreach(before => between.add(at.since(before).toMillis))
+      last = Some(at)
+      for stamped <- stamp do
+        if newest.exists(_ > stamped) then backwards += 1
+        newest = Some(newest.fold(stamped)(_.max(stamped)))
+        if isNear(stamped, at) then late.add(at.since(stamped).toMillis)
+
+    def observed: ObservedTopic =
+      val intervals = between.distribution
+      ObservedTopic(
+        name,
+        kind,
+        messages,
+        intervals,
+        late.distribution,
+        intervals.fold(0L)(all => all.sorted.count(_ > GapFactor * all.median).toLong),
+        backwards
+      )
+
+  /** An interval longer than so many usual ones is a gap. */
+  private val GapFactor = 2.5

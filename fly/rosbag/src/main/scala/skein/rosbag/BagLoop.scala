@@ -1,0 +1,118 @@
+package skein.rosbag
+
+import java.io.IOException
+import java.nio.ByteOrder
+import java.nio.file.{Files, Path}
+import scala.jdk.StreamConverters.StreamHasToScala
+import scala.util.Using
+import skein.mcap.file.McapFile
+import skein.mcap.{Bytes, TopicMessage}
+import skein.observe.{ObservedTopics, TopicAccount}
+import skein.record.FileReason
+import skein.units.Instant
+
+/** Measures the loop that a bag of ROS 2 holds, from MCAP files, of any message types.
+  *
+  * @param readings topics that vehicles are read by; without any, those of poses whose name sounds like no
+  *   command
+  * @param commands topics of commands; without any, those of twists and poses whose name sounds like one
+  */
+final class BagLoop(readings: Set[String], commands: Set[String]):
+  import BagLoop.*
+
+  /** Reads a bag: its folder, or an MCAP file.
+    *
+    * @return Left states in a line what is no bag, or which topic is missing
+    */
+  def observed(bag: Path): Either[String, ObservedTopics] =
+    for
+      files <- mcapFiles(bag)
+      account = TopicAccount()
+      seen <- files.foldLeft[Either[String, Set[String]]](Right(Set.empty)): (before, file) =>
+        for
+          seen <- before
+          more <- add(file, account)
+        yield seen ++ more
+      _ <- (readings ++ commands).find(!seen(_)).toLeft(()).left.map: missing =>
+        s"expected the topic $missing in $bag, it has ${
+            if seen.isEmpty then "none" else seen.toVector.sorted.mkString(", ")
+          }"
+    yield account.observed
+
+  private def add(file: Path, account: TopicAccount): Either[String, Set[String]] =
+    try
+      McapFile.read(file): messages =>
+        messages.foldLeft[Either[String, Set[String]]](Right(Set.empty)):
+          case (Right(seen), Right(message)) =>
+            add(message, account)
+            Right(seen + message.channel.topic)
+          case (Right(_), Left(error)) => Left(s"$file: ${error.message}")
+          case (failed, _)             => failed
+    catch case failed: IOException => Left(s"cannot read $file: ${FileReason.of(failed)}")
+
+  private def add(message: TopicMessage, account: TopicAccount): Unit =
+    val topic        = message.channel.topic
+    val kind         = message.schema.fold("")(_.name)
+    val isPose       = Poses(kind)
+    val isCommand    = soundsLikeCommand(topic)
+    val at           = Instant.ofNanos(message.message.logTime)
+    lazy val stamped = stamp(message)
+    val vehicle      = vehicleOf(topic)
+    if commands(topic) || commands.isEmpty && isCommand && (isPose || Twists(kind)) && !readings(topic) then
+      account.command(vehicle, topic, stamped, at)
+    else if readings(topic) || readings.isEmpty && isPose && !isCommand then
+      account.reading(vehicle, topic, stamped, at)
+
+object BagLoop:
+  private val Poses = Set("Odometry", "PoseStamped", "PoseWithCovarianceStamped").map: name =>
+    s"${if name == "Odometry" then "nav_msgs" else "geometry_msgs"}/msg/$name"
+
+  private val Twists = Set("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
+
+  private def soundsLikeCommand(topic: String): Boolean =
+    val name = topic.drop(topic.lastIndexOf('/') + 1).toLowerCase
+    val path = topic.toLowerCase
+    Vector("cmd", "command", "target", "goal").exists(name.contains) || path.contains("setpoint")
+
+  /** The vehicle of a topic: its first part, if there are several. */
+  private[rosbag] def vehicleOf(topic: String): String = topic.split('/').filter(_.nonEmpty) match
+    case Array(first, _, _*) => first
+    case _                   => ""
+
+  private def mcapFiles(bag: Path): Either[String, Vector[Path]] =
+    if Files.isRegularFile(bag) then Right(Vector(bag))
+    else if !Files.isDirectory(bag) then Left(s"$bag: expected a bag's folder or an MCAP file, there is none")
+    else
+      val files = Using.resource(Files.list(bag))(_.toScala(Vector)).sorted
+      val mcap  = files.filter(_.toString.endsWith(".mcap"))
+      Either.cond(
+        mcap.nonEmpty,
+        mcap,
+        if files.exists(_.toString.endsWith(".db3")) then
+          s"$bag: expected MCAP, came SQLite; `ros2 bag convert` makes the one from the other"
+        else s"$bag: expected a bag's folder, it has no MCAP file"
+      )
+
+  /** The stamp of the header with which a message begins, if it has one: by the type's definition, or by its
+    * name where the bag has none.
+    */
+  private def stamp(message: TopicMessage): Option[Instant] =
+    val hasHeader = message.schema.exists: schema =>
+      val first = schema.data.utf8.linesIterator.map(_.takeWhile(_ != '#').trim)
+        .find(line => line.nonEmpty && !line.contains('='))
+      first.fold(schema.name != "geometry_msgs/msg/Twist")(_.matches("""(std_msgs/)?Header\s+\w+"""))
+    Option.when(hasHeader)(message.message.data).filter(_.size >= StampEnd).flatMap(headerStamp)
+
+  /** The first field of a header in CDR: seconds and nanoseconds, behind four bytes that state the encoding.
+    */
+  private def headerStamp(data: Bytes): Option[Instant] =
+    val order = data(1) match
+      case 0 => Some(ByteOrder.BIG_ENDIAN)
+      case 1 => Some(ByteOrder.LITTLE_ENDIAN)
+      case _ => None
+    order.filter(_ => data(0) == 0).map: bytes =>
+      val numbers          = data.buffer.order(bytes)
+      val (seconds, nanos) = (numbers.getInt(4), numbers.getInt(8) & 0xffffffffL)
+      Instant.ofNanos(seconds * 1_000_000_000L + nanos)
+
+  private val StampEnd = 12

@@ -1,0 +1,143 @@
+package skein.rosbag
+
+import scala.collection.immutable.ArraySeq
+import scala.collection.mutable
+import skein.policy.Action
+import skein.record.*
+import skein.ros.message.*
+import skein.ros.{RosFrames, TwistCommand, VehicleMessages}
+import skein.signal.Kinematics
+import skein.units.{Instant, Quaternion as Rotation, Span, Vector3 as Ned}
+
+/** A message of a bag.
+  *
+  * @param at when the controller knew it, on its clock
+  */
+final case class BagMessage(topic: String, kind: MessageType[?], at: Instant, bytes: Array[Byte])
+
+/** Makes messages of ROS 2 from the rows of a recording; rows in their order.
+  *
+  *   - `/NAME/odom` (`nav_msgs/Odometry`) and `/tf`: readings;
+  *   - `/NAME/cmd_vel` (`geometry_msgs/TwistStamped`, in the frame `map`): commands, as `fly --ros` sends
+  *     them;
+  *   - `/NAME/CAMERA/image_raw` (`sensor_msgs/Image`), `/NAME/LIDAR/points` (`sensor_msgs/PointCloud2`), each
+  *     with its frame in `/tf`: images and scans.
+  *
+  * Headers are stamped with the time of sampling, on the controller's clock by the offset known at that row.
+  * Frames are those of REP 103 and 105. Bytes that are no letter, digit or `_` in a name become `_`.
+  */
+final class BagMessages(rows: Vector[Record]):
+  private var offset  = BagMessages.firstOffset(rows)
+  private val motions = mutable.Map.empty[String, Kinematics]
+  private val actions = mutable.Map.empty[String, (Long, Action)]
+
+  /** Every topic that has a message, in the order of first messages. */
+  def all: Iterator[BagMessage] = rows.iterator.flatMap(of)
+
+  private def of(row: Record): Vector[BagMessage] = row match
+    case reading: ReadingRow =>
+      val (vehicle, motion) = (BagMessages.token(reading.vehicle), reading.state.value)
+      val (at, stamp)       = (reading.state.receivedAt, reading.state.validAt + offset)
+      motions(reading.vehicle) = motion
+      Vector(
+        message(s"/$vehicle/odom", at, VehicleMessages.odometry(stamp, vehicle, motion)),
+        frame(at, VehicleMessages.transform(stamp, vehicle, motion))
+      )
+    case decision: DecisionRow =>
+      for known <- decision.trueAge do offset = known.clockOffset
+      for action <- decision.action do actions(decision.vehicle) = (decision.sequence, action)
+      Vector.empty
+    case command: CommandRow => commanded(command).toVector
+    case image: CameraImage  =>
+      val (at, stamp) = (image.receivedAt, image.validAt + offset)
+      val name        = s"${BagMessages.token(image.vehicle)}/${BagMessages.token(image.camera)}"
+      val optical     = s"$name/optical"
+      val bytesAPixel = image.pixels.size / (image.width * image.height).max(1)
+      val toEnu       = RosFrames.toEnu(image.orientation) * BagMessages.FluFromOptical
+      Vector(
+        frame(at, VehicleMessages.transform(stamp, optical, image.positionNed, toEnu)),
+        message(
+          s"/$name/image_raw",
+          at,
+          Image(
+            Header(Time.of(stamp), optical),
+            image.height.toInt,
+            image.width.toInt,
+            image.encoding,
+            0,
+            (image.width * bytesAPixel).toInt,
+            ArraySeq.unsafeWrapArray(image.pixels.bytes)
+          )
+        )
+      )
+    case cloud: Cloud =>
+      val (at, stamp) = (cloud.receivedAt, cloud.validAt + offset)
+      val name        = s"${BagMessages.token(cloud.vehicle)}/${BagMessages.token(cloud.lidar)}"
+      Vector(
+        frame(
+          at,
+          VehicleMessages.transform(stamp, name, cloud.positionNed, RosFrames.toEnu(cloud.orientation))
+        ),
+        message(s"/$name/points", at, BagMessages.points(Header(Time.of(stamp), name), cloud))
+      )
+    case _ => Vector.empty
+
+  private def commanded(command: CommandRow): Option[BagMessage] =
+    val level  = Action.VelocityAt(command.velocityNorth.value, command.velocityEast.value, command.down)
+    val action = actions.get(command.vehicle) match
+      case Some((decision, chosen)) if command.decision.contains(decision) => chosen
+      case _                                                               => level
+    for
+      motion <- motions.get(command.vehicle)
+      twist  <- TwistCommand.of(action, motion).toOption
+    yield message(
+      s"/${BagMessages.token(command.vehicle)}/cmd_vel",
+      command.sentAt,
+      TwistStamped(Header(Time.of(command.sentAt), VehicleMessages.World), twist)
+    )
+
+  private def frame(at: Instant, frame: TransformStamped) = message("/tf", at, TFMessage(Vector(frame)))
+
+  private def message[A](topic: String, at: Instant, value: A)(using kind: MessageType[A]) =
+    BagMessage(topic, kind, at, Cdr.bytes(value)(using kind.cdr))
+
+private object BagMessages:
+  /** From a camera's optical frame (x right, y down, z forward; REP 103) to its front, left, up. */
+  private val FluFromOptical = Rotation(0.5, -0.5, 0.5, -0.5)
+
+  def token(name: String): String =
+    val plain = name.map(letter => if letter < 128 && letter.isLetterOrDigit then letter else '_')
+    if plain.headOption.forall(_.isDigit) then s"_$plain" else plain
+
+  /** From the simulator's clock to the controller's: the first estimate, or as if the first reading had no
+    * latency.
+    */
+  def firstOffset(rows: Vector[Record]): Span =
+    val estimated = rows.iterator.collect { case row: DecisionRow => row.trueAge.map(_.clockOffset) }.flatten
+    val assumed   = rows.iterator.collect { case row: ReadingRow =>
+      row.state.receivedAt.since(row.state.validAt)
+    }
+    (estimated ++ assumed).nextOption().getOrElse(Span.Zero)
+
+  /** A scan in the frame front, left, up. */
+  private def points(header: Header, cloud: Cloud): PointCloud2 =
+    val seen = java.nio.ByteBuffer.wrap(cloud.xyz.bytes).order(java.nio.ByteOrder.LITTLE_ENDIAN)
+    val flu  = java.nio.ByteBuffer.allocate(cloud.xyz.size).order(java.nio.ByteOrder.LITTLE_ENDIAN)
+    while seen.remaining >= PointBytes do
+      val point = RosFrames.swapBody(Ned(seen.getFloat, seen.getFloat, seen.getFloat))
+      flu.putFloat(point.x.toFloat).putFloat(point.y.toFloat).putFloat(point.z.toFloat): Unit
+    val count = cloud.xyz.size / PointBytes
+    PointCloud2(
+      header,
+      1,
+      count,
+      Vector("x", "y", "z").zipWithIndex.map((name, at) => PointField(name, 4 * at, Float32, 1)),
+      isBigendian = false,
+      PointBytes,
+      PointBytes * count,
+      ArraySeq.unsafeWrapArray(flu.array),
+      isDense = true
+    )
+
+  private val PointBytes    = 12
+  private val Float32: Byte = 7
