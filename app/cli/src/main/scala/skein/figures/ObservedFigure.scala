@@ -5,7 +5,7 @@ import skein.observe.ObservedVehicle
 import skein.plot.*
 
 /** The paper's four observations of an outside program: for each vehicle a bar for the mean, and a line up to
-  * the 99th percentile. Ages count from when physics was sampled.
+  * the 99th percentile, all on one scale. Ages count from when physics was sampled.
   */
 object ObservedFigure:
   private val colour   = Colour(0x0072b2)
@@ -18,9 +18,10 @@ object ObservedFigure:
     val vehicles = observed.filter(_.commands > 0).take(Most)
     // A quantity of others, of a single vehicle, has no panel.
     val panels = quantities.filter((_, of) => vehicles.exists(of(_).isDefined))
+    val most   = panels.flatMap((_, of) => vehicles.flatMap(of)).map(_.p99).maxOption.getOrElse(1.0)
     Option.when(panels.nonEmpty):
       Drawing.stacked(
-        Drawing.grid(panels.map(panel(_, _, vehicles)), columns = panels.size.min(2)),
+        Drawing.grid(panels.map(panel(_, _, vehicles, most)), columns = panels.size.min(2)),
         Legend(46, Legend.box("mean", colour), Legend.line("99 % are shorter", whisker))
       )
 
@@ -36,19 +37,20 @@ object ObservedFigure:
   private def panel(
       title: String,
       of: ObservedVehicle => Option[Distribution],
-      vehicles: Vector[ObservedVehicle]
+      vehicles: Vector[ObservedVehicle],
+      most: Double
   ): Drawing =
     val width = place * vehicles.size.max(3)
     val panel = Panel(
       PlotAxis.exactly("", 0, width, 1),
-      PlotAxis.around("ms", 0, vehicles.flatMap(of).map(_.p99).maxOption.getOrElse(1.0) * 1.06),
+      PlotAxis.around("ms", 0, most * 1.06),
       left = 46,
       top = 34,
       width,
       height
     )
     val bars = vehicles.zipWithIndex.flatMap: (vehicle, index) =>
-      val middle = panel.left + place * (index + 0.5)
+      val middle = panel.left + width * (index + 0.5) / vehicles.size
       val name   = if vehicle.name.isEmpty then "(the first)" else vehicle.name.take(12)
       val label  = Mark.Text(Point(middle, panel.bottom + 13), name, Theme.smallSize, anchor = Anchor.Middle)
       label +: of(vehicle).toVector.flatMap: values =>
