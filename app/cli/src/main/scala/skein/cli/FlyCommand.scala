@@ -27,7 +27,7 @@ final case class FlyOptions(
     simulator: Option[String],
     @arg(doc =
       "flies vehicles behind topics of ROS 2, which must be installed: /NAME/odom is read, /NAME/cmd_vel is sent; " +
-        "with --link none, not for paused"
+        "not for paused"
     )
     ros: Flag,
     @arg(

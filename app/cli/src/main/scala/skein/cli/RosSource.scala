@@ -39,7 +39,7 @@ private[cli] object RosSource:
   def mistake(settings: FlySettings, isLive: Boolean, hasSimulator: Boolean): Option[String] =
     val paused = settings.loops.contains(LoopKind.Paused)
     val cars   = settings.fleet.agents.filter(_.kind == VehicleKind.Car).map(_.name)
-    val others = settings.links.filter(_.name != "none")
+    val others = settings.links.filter(_.bandwidth.isDefined)
     val all    =
       for
         _ <- Expect.that(
@@ -49,7 +49,7 @@ private[cli] object RosSource:
         _ <-
           Expect.that(!paused)("expected loops other than paused, whose simulator stands still between steps")
         _ <- Expect.that(others.isEmpty):
-          s"expected --link none, since no network is emulated between nodes, came ${others.map(_.name).mkString(", ")}"
+          s"expected links without a rate, since messages have no known size, came ${others.map(_.name).mkString(", ")}"
         _ <- Expect.that(cars.isEmpty)(s"expected multirotors alone, came the car ${cars.mkString(", ")}")
         _ <- Expect.that(settings.images.isEmpty)("expected no --images")
         _ <- Expect.that(settings.scene.isEmpty && settings.plant.isAirSim):

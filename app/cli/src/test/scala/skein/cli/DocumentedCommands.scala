@@ -371,15 +371,15 @@ object DocumentedCommands:
 
   /** Commands that other suites run, with options that make them short. */
   private val runElsewhere: Map[String, Class[?]] = Map(
-    "search --family lead-pursuit --workers 2"               -> classOf[ClusterCommandsLiveSuite],
-    "torture --workers 2"                                    -> classOf[ElsewhereLiveSuite],
-    "fly --ros --loop predictive --link none --duration 60s" -> classOf[FlyRosSuite],
-    "benchmark"                                              -> classOf[BenchmarkSimulation],
-    "serve --ros"                                            -> classOf[ServeRosSuite],
-    "serve --ros --settings three.json"                      -> classOf[ServeRosSuite],
-    "serve --ros --settings three.json --speed 10"           -> classOf[ServeRosSuite],
-    "fly --clock virtual"                                    -> classOf[StartedLauncherLiveSuite],
-    "--help"                                                 -> classOf[StartedLauncherLiveSuite]
+    "search --family lead-pursuit --workers 2"                          -> classOf[ClusterCommandsLiveSuite],
+    "torture --workers 2"                                               -> classOf[ElsewhereLiveSuite],
+    "fly --ros --loop predictive --link none --link vpn --duration 60s" -> classOf[FlyRosSuite],
+    "benchmark"                                                         -> classOf[BenchmarkSimulation],
+    "serve --ros"                                                       -> classOf[ServeRosSuite],
+    "serve --ros --settings three.json"                                 -> classOf[ServeRosSuite],
+    "serve --ros --settings three.json --speed 10"                      -> classOf[ServeRosSuite],
+    "fly --clock virtual"                                               -> classOf[StartedLauncherLiveSuite],
+    "--help"                                                            -> classOf[StartedLauncherLiveSuite]
   )
 
   def kindOf(command: String): Kind =

@@ -27,7 +27,11 @@ class FlyRosSuite extends munit.FunSuite:
       ("MAVLink", possible :+ "--mavlink", "not together with --simulator or --mavlink"),
       ("virtual time", possible ++ Seq("--clock", "virtual"), "expected --clock real"),
       ("paused", Seq("--ros", "--loop", "paused", "--link", "none"), "expected loops other than paused"),
-      ("an emulated link", Seq("--ros", "--loop", "stream", "--link", "vpn"), "expected --link none"),
+      (
+        "a link with a rate",
+        Seq("--ros", "--loop", "stream", "--link", "rate:50mbit,vpn"),
+        "expected links without a rate"
+      ),
       ("cars", possible ++ Seq("--scenario", "convoy"), "expected multirotors alone, came the car"),
       ("images", possible ++ Seq("--images", "front_center@5"), "expected no --images"),
       ("a scene", possible ++ Seq("--scene", "forest"), "--scene and --plant are for the built-in simulator")

@@ -81,7 +81,10 @@ class RosFlightSimulation extends munit.FunSuite, Optimised:
           clock,
           Some((at, seen) =>
             for (vehicle, motion) <- vehicles.zip(seen) do
-              assertEquals(vehicle.receive(VehicleMessages.odometry(at, motion.name, motion.kinematics)), Right(()))
+              assertEquals(
+                vehicle.receive(VehicleMessages.odometry(at, motion.name, motion.kinematics)),
+                Right(())
+              )
           )
         )
         .flatMap: server =>
@@ -148,7 +151,23 @@ class RosFlightSimulation extends munit.FunSuite, Optimised:
       assertEquals(outcome, FlightOutcome.Completed)
       assert(recording.decisions.size > 20, recording.decisions.size)
 
-  test("paused, and an emulated link, are refused before anything moves"):
+  test("paused, and a link with a rate, are refused before anything moves"):
     assert(flown(settings(LoopKind.Paused, 3)).left.exists(_.contains("which vehicles of ROS 2 have not")))
-    val over = settings(LoopKind.Stream, 3).copy(links = List(LatencyProfile.vpn))
-    assertEquals(flown(over).left.toOption, Some("expected the link none to ROS 2, came vpn"))
+    val slow = LatencyProfile.parse("rate:50mbit,vpn", Left(_)).fold(error => fail(error.message), identity)
+    val over = settings(LoopKind.Stream, 3).copy(links = List(slow))
+    assert(flown(over).left.exists(_.startsWith("expected a link without a rate to ROS 2")))
+
+  test("over an emulated link, readings are older by its delay, and predictive predicts further"):
+    def over(loop: LoopKind, link: LatencyProfile) =
+      val (outcome, recording) = flown(settings(loop, 10).copy(links = List(link))).fold(fail(_), identity)
+      assertEquals(outcome, FlightOutcome.Completed)
+      recording
+    def ageMs(recording: Recording) =
+      val ages = recording.readings.map(_.state).map(state => state.receivedAt.since(state.validAt).toMillis)
+      ages.sum / ages.size
+    // Half a round trip of 200 ms, and up to 20 ms, the odometry's period.
+    val link    = LatencyProfile.parse("constant:200ms", Left(_)).fold(error => fail(error.message), identity)
+    val longer  = ageMs(over(LoopKind.Stream, link)) - ageMs(over(LoopKind.Stream, LatencyProfile.none))
+    val further = over(LoopKind.Predictive, link).predictions.map(_.age.toMillis)
+    assert(longer >= 100 && longer <= 121, longer)
+    assert(further.sum / further.size > 190, further.sum / further.size)

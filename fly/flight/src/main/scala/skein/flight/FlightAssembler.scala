@@ -34,7 +34,7 @@ import skein.units.Decimals.brief
   * @param isWatched whether its records are shown, so that images and clouds that are not recorded are still
   *   offered
   * @param isMavlinkByTcp whether `simulator`, if it speaks MAVLink, is reached by TCP instead of datagrams
-  * @param elsewhere vehicles to fly instead of a simulator's; not in `paused`, and over no emulated link
+  * @param elsewhere vehicles to fly instead of a simulator's; not in `paused`, and over no link with a rate
   */
 final class FlightAssembler(
     transport: Transport,
@@ -294,9 +294,16 @@ final class FlightAssembler(
 
   private def fromSource(plan: FlightPlan, source: VehicleSource, opened: Opened): Future[ConnectedFleet] =
     if plan.loop == LoopKind.Paused then Future.failed(CannotFly(FlightAssembler.noSteps(source.where)))
-    else if plan.link != LatencyProfile.none then
-      Future.failed(CannotFly(s"expected the link none to ${source.where}, came ${plan.link.name}"))
-    else SourceFleet(source, fleet, clock, () => calledOff(plan.id)).connect(opened)
+    else if plan.link.bandwidth.isDefined then
+      Future.failed(CannotFly(
+        s"expected a link without a rate to ${source.where}, whose messages have no known size, came ${plan.link.name}"
+      ))
+    else
+      SourceFleet(source, fleet, clock, () => calledOff(plan.id)).connect(opened).map: reached =>
+        if plan.link == LatencyProfile.none then reached
+        else
+          reached.copy(vehicles = reached.vehicles.zipWithIndex.map: (vehicle, line) =>
+            LinkedVehicle(vehicle, plan.link, plan.seed, line, clock))
 
   private def serve(seed: Long): Future[Option[SimulatorServer]] =
     if isShared then Future.successful(None)

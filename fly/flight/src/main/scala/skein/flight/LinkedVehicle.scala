@@ -52,7 +52,8 @@ final class LinkedVehicle(
 
   private def over[A](ask: => Future[Either[VehicleError, Stamped[A]]]) =
     val sentAt = clock.now()
-    called(ask).map(_.map(_.copy(sentAt = sentAt, receivedAt = clock.now())))
+    // Vehicles of topics answer by a message that was sent before it was asked for.
+    called(ask).map(_.map(read => read.copy(sentAt = read.sentAt.min(sentAt), receivedAt = clock.now())))
 
   private final class Direction(number: Int):
     private val begun   = clock.now()
