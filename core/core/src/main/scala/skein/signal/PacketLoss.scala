@@ -26,16 +26,9 @@ final class PacketLoss(profile: LatencyProfile, linkSeed: Long, seed: Long):
     val inBurst = bursts.exists(_.next())
     outages.exists(_.isOut(at)) || inBurst
 
-  /** How long a packet is sent in vain, by a sender without other packets that waits longer and longer before
-    * it sends again.
-    */
+  /** How long a packet is sent in vain ([[Retransmission.wait]]). */
   def delay(at: Span, timeout: Span): Span =
-    var waited = Span.Zero
-    var wait   = timeout
-    while loses(at + waited) do
-      waited = waited + wait
-      wait = Retransmission.next(wait)
-    waited
+    Retransmission.wait(timeout, Int.MaxValue)((_, waited) => loses(at + waited))
 
 private[signal] final class LossBursts(loss: Impairment.Loss, seed: Long):
   private val random = SplitMix64(seed)

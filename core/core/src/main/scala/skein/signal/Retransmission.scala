@@ -26,3 +26,20 @@ object Retransmission:
 
   /** The next wait after one that ended in vain (RFC 6298, section 5.5). */
   def next(wait: Span): Span = Most.min(wait * 2)
+
+  /** How long a packet is sent in vain, by a sender without other packets that waits longer and longer before
+    * it sends again.
+    *
+    * @param first the first time-out
+    * @param mostTries with which it is sent again; the last one passes
+    * @param isLost given the number of tries before, and for how long they were in vain
+    */
+  inline def wait(first: Span, mostTries: Int)(inline isLost: (Int, Span) => Boolean): Span =
+    var waited  = Span.Zero
+    var timeout = first
+    var tries   = 0
+    while tries < mostTries && isLost(tries, waited) do
+      waited = waited + timeout
+      timeout = next(timeout)
+      tries += 1
+    waited

@@ -128,8 +128,14 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
       (LoopKind.Predictive, "vpn", 2),
       (LoopKind.Predictive, "lognormal:150ms,0.8", 1),
       (LoopKind.Sequential, "loss:5%,vpn", 1),
-      (LoopKind.Futures, "loss:5%/4,direct", 2),
-      (LoopKind.Predictive, "loss:5%/4,vpn", 1)
+      (LoopKind.Sequential, "loss:5%/4,outage:1s/10s,vpn", 1),
+      (LoopKind.Futures, "loss:5%/4,direct", 3),
+      (LoopKind.Futures, "outage:1s/10s,vpn", 1),
+      // Time-outs end in the moment of a tick.
+      (LoopKind.Stream, "loss:5%/4,vpn", 1),
+      (LoopKind.Stream, "loss:5%/4,outage:1s/10s,vpn", 3),
+      (LoopKind.Predictive, "loss:5%/4,vpn", 1),
+      (LoopKind.Predictive, "outage:1s/10s,vpn", 1)
     )
   do
     test(s"${loop.label} over $link"):
@@ -169,9 +175,9 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
 
   // Everything happens in the same nanosecond as something else: readings, ticks, time-outs of 500 ms. Left
   // out are futures over none and 50 ms, where tasks of both vehicles end at once and the flight's streams
-  // say who decides first, and sequential over 500 ms, where no answer comes in time.
+  // say who decides first.
   private val ties = Seq(
-    LoopKind.Sequential -> Seq("none", "constant:100ms", "constant:400ms"),
+    LoopKind.Sequential -> Seq("none", "constant:100ms", "constant:400ms", "constant:500ms"),
     LoopKind.Futures    -> Seq("constant:100ms", "constant:400ms", "constant:500ms"),
     LoopKind.Stream     -> Seq("none", "constant:100ms", "constant:400ms", "constant:500ms"),
     LoopKind.Predictive -> Seq("none", "constant:500ms")

@@ -1,7 +1,8 @@
 package skein.forward
 
 /** A bounded queue of events in the order of their times, ns; events of equal times keep the order of
-  * insertion. An event is a `Long` of the caller's. Allocates only when it must grow.
+  * insertion, but for those that come last. An event is a `Long` of the caller's. Allocates only when it must
+  * grow.
   */
 private[skein] final class EventQueue(capacity: Int):
   import java.util.Arrays.copyOf
@@ -19,11 +20,15 @@ private[skein] final class EventQueue(capacity: Int):
 
   def nextTime: Long = times(0)
 
-  def add(time: Long, event: Long): Unit =
+  def add(time: Long, event: Long): Unit = add(time, event, added)
+
+  /** Adds an event that comes behind all others of its time, also those added later. */
+  def addLast(time: Long, event: Long): Unit = add(time, event, added | EventQueue.Last)
+
+  private def add(time: Long, event: Long, number: Long): Unit =
     if size == times.length then makeRoom()
     var hole = size
     size += 1
-    val number = added
     added += 1
     while hole > 0 && isBefore(time, number, (hole - 1) / 2) do
       move((hole - 1) / 2, hole)
@@ -64,3 +69,6 @@ private[skein] final class EventQueue(capacity: Int):
 
 private[skein] object EventQueue:
   private val Room = 16
+
+  /** More than any number of events. */
+  private val Last = 1L << 62

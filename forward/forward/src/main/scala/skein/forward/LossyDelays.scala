@@ -1,7 +1,8 @@
 package skein.forward
 
-import skein.signal.Impairment
+import skein.signal.{Impairment, Retransmission}
 import skein.simd.WorldRandom
+import skein.units.Span
 
 /** A link that loses packets, as TCP meets it: a lost message is sent again after a time-out, which doubles
   * each time, and is delayed by as much. Every message is a packet with none behind it that would report its
@@ -15,7 +16,7 @@ import skein.simd.WorldRandom
   * @param share of packets that are lost independently
   * @param bursts mean lengths of bursts and of the time between them, s
   * @param outages length of outages, and mean time between them, s
-  * @param timeoutNs the first ([[skein.signal.Retransmission.timeout]]), a multiple of [[DelayTable.GrainNs]]
+  * @param timeout the first ([[skein.signal.Retransmission.timeout]]), a multiple of [[DelayTable.GrainNs]]
   * @param mostTries with which a message is sent again
   */
 final class LossyDelays private (
@@ -23,7 +24,7 @@ final class LossyDelays private (
     share: Double,
     bursts: Option[(lastS: Double, betweenS: Double)],
     outages: Option[(lastS: Double, betweenS: Double)],
-    timeoutNs: Long,
+    timeout: Span,
     mostTries: Int
 ) extends TabledDelays:
   import LossyDelays.*
@@ -34,7 +35,7 @@ final class LossyDelays private (
   /** Whether losses depend on the time of sending. */
   private[skein] val isTimed: Boolean = bursts.isDefined || outages.isDefined
 
-  def maxS: Float = base.maxS + (timeoutNs * ((1L << mostTries) - 1) * 1e-9).toFloat
+  def maxS: Float = base.maxS + longest(timeout, mostTries).toSeconds.toFloat
 
   private[skein] def stretches(worldKey: Int): TableStretch = base.stretches(worldKey)
 
@@ -62,20 +63,11 @@ final class LossyDelays private (
     * @param bits the random number of the message
     */
   private[skein] def waitNs(times: LossTimes, bits: Int, line: Int, sentAtNs: Long): Long =
-    var waited  = 0L
-    var timeout = timeoutNs
-    var tries   = 0
-    var drawn   = bits
-    while tries < mostTries && ((drawn & LowBits) < lossThreshold || times.isLost(
-        line & 1,
-        sentAtNs + waited
-      ))
-    do
-      waited += timeout
-      timeout *= 2
-      tries += 1
-      drawn = WorldRandom.bits(bits, tries)
-    waited
+    Retransmission
+      .wait(timeout, mostTries): (tries, waited) =>
+        val drawn = if tries == 0 then bits else WorldRandom.bits(bits, tries)
+        (drawn & LowBits) < lossThreshold || times.isLost(line & 1, sentAtNs + waited.toNanos)
+      .toNanos
 
 object LossyDelays:
   private val LowBits = (1 << DelayTable.Drop) - 1
@@ -86,6 +78,8 @@ object LossyDelays:
   private val Outages        = Delays.Stretch + 3
 
   private val Chance = 1e-5
+
+  private def longest(timeout: Span, tries: Int): Span = Retransmission.wait(timeout, tries)((_, _) => true)
 
   /** The delays of a link with these losses; without any, the base itself.
     *
@@ -110,11 +104,12 @@ object LossyDelays:
       outage.map(one => (lastS = one.lasts.toSeconds, betweenS = (one.every - one.lasts).toSeconds))
     val longestS = outages.fold(0.0)(_.lastS).max(bursts.fold(0.0)(-_.lastS * StrictMath.log(Chance)))
     val share    = loss.fold(0.0)(_.share)
+    val timeout  = Span.ofNanos(math.round(timeoutS * 1e9 / DelayTable.GrainNs) * DelayTable.GrainNs)
     val tries    = Iterator
       .from(0)
       .find: n =>
         (share == 0 || StrictMath.pow(share, n + 1) <= Chance * 1.001) &&
-          timeoutS * ((1L << n) - 1) >= longestS
+          longest(timeout, n).toSeconds >= longestS
       .get
     if loss.isEmpty && outage.isEmpty then base
     else
@@ -123,7 +118,7 @@ object LossyDelays:
         if bursts.isEmpty then share else 0,
         bursts,
         outages,
-        math.round(timeoutS * 1e9 / DelayTable.GrainNs) * DelayTable.GrainNs,
+        timeout,
         tries
       )
 

@@ -117,7 +117,10 @@ private[skein] final class RolloutWorld(
 
   /** Schedules an event at a time that is not past. Events of one time happen in the order of these calls. */
   def schedule(atNs: Long, kind: Int, vehicle: Int, number: Int): Unit =
-    queue.add(atNs, (kind.toLong << 40) | (vehicle.toLong << 32) | number)
+    queue.add(atNs, event(kind, vehicle, number))
+
+  private def event(kind: Int, vehicle: Int, number: Int) =
+    (kind.toLong << 40) | (vehicle.toLong << 32) | number
 
   def nextNs: Long = queue.nextTime
 
@@ -153,8 +156,9 @@ private[skein] final class RolloutWorld(
     if delay > sentAtNs(at) + timeoutNs - time then timeOut(vehicle, number)
     else schedule(time + delay, Answered, vehicle, number)
 
+  /** A time-out comes behind all else of its moment, as in a flight (`skein.rpc.ChannelStage`). */
   private def timeOut(vehicle: Int, number: Int): Unit =
-    schedule(sentAtNs(slot(vehicle, number)) + timeoutNs, TimedOut, vehicle, number)
+    queue.addLast(sentAtNs(slot(vehicle, number)) + timeoutNs, event(TimedOut, vehicle, number))
 
   def received(vehicle: Int, number: Int): Unit =
     receivedAtNs(slot(vehicle, number)) = time

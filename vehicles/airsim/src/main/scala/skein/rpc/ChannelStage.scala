@@ -8,6 +8,7 @@ import org.apache.pekko.stream.stage.*
 import org.apache.pekko.stream.{Attributes, ClosedShape}
 import org.apache.pekko.util.ByteString
 import scala.collection.mutable
+import scala.concurrent.duration.Duration
 import scala.concurrent.{ExecutionContext, Future, Promise}
 import scala.util.control.NonFatal
 import scala.util.{Failure, Random, Success, Try}
@@ -123,7 +124,10 @@ private[rpc] final class ChannelStage(
     override protected def onTimer(key: Any): Unit = key match
       case connection: Connection => connection.open()
       case attempt: Attempt       => attempt.messageDue()
-      case _                      =>
+      // What else happens at this moment comes first, whenever its timer was set: an answer counts, and a
+      // loop's tick finds the call unanswered. Else virtual flights would depend on what is called besides.
+      case Deadline => scheduleOnce(Expire, Duration.Zero)
+      case _        =>
         armedFor = None
         state.expire(clock.now())
         settle()
@@ -320,6 +324,8 @@ private[rpc] final class ChannelStage(
   private def reasonOf(failure: Throwable): String = Option(failure.getMessage).getOrElse(failure.toString)
 
   private case object Deadline
+
+  private case object Expire
 
 private object ChannelStage:
   /** Bytes after which a write takes no further calls. */

@@ -2,7 +2,6 @@ package skein.lanes.loop;
 
 import static jdk.incubator.vector.VectorOperators.EQ;
 import static jdk.incubator.vector.VectorOperators.GT;
-import static jdk.incubator.vector.VectorOperators.LE;
 import static jdk.incubator.vector.VectorOperators.LT;
 import static jdk.incubator.vector.VectorOperators.NE;
 import static skein.simd.LaneMath.INTS;
@@ -124,8 +123,9 @@ final class FuturesOffers extends LaneOffers {
       IntVector before = IntVector.fromArray(INTS, began, i);
       IntVector begin = IntVector.fromArray(INTS, lastOf, i).max(agent == 0 ? zero : before.max(zero));
       if (agent == 0) {
-        // A step whose predecessor waits still is missed. The other tasks follow the first.
-        VectorMask<Integer> goes = before.compare(LE, zero);
+        // A step whose predecessor waits still is missed, also where a time-out ends its wait at that moment:
+        // time-outs come last. The other tasks follow the first.
+        VectorMask<Integer> goes = before.compare(LT, zero);
         before.blend(begin, goes).intoArray(began, i);
         zero.blend(1, goes.not()).intoArray(missed, i);
       }

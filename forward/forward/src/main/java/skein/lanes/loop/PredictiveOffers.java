@@ -22,8 +22,8 @@ import skein.forward.TabledDelays;
  * arrival.
  *
  * <p>With the window of n requests full, a request waits until one ends: until the n-th latest of all ends. A
- * request that becomes due meanwhile is missed. Of events in one nanosecond, those known first are first, as
- * in {@code Rollout}.
+ * request that becomes due meanwhile is missed. Of events in one nanosecond, those known first are first, and
+ * time-outs last, as in {@code Rollout}.
  */
 final class PredictiveOffers extends LaneOffers {
   private static final int STEP = LaneDelays.placeOf(1);
@@ -43,7 +43,8 @@ final class PredictiveOffers extends LaneOffers {
 
   // By vehicle: places of the next question's random numbers, when the last one began, and the latest ends
   // of all, the latest first. Twice the time from the row's begin, and 1 more for what is behind the
-  // question that is due in the same moment: it was not known when that was scheduled, a period before.
+  // question that is due in the same moment: a time-out, and what was not known when that was scheduled, a
+  // period before.
   private final int[][] places, began;
   private final int[][][] latest;
 
@@ -177,7 +178,6 @@ final class PredictiveOffers extends LaneOffers {
     int[] places = this.places[vehicle];
     IntVector none = IntVector.broadcast(INTS, NONE),
         past = IntVector.broadcast(INTS, PAST),
-        zero = IntVector.broadcast(INTS, 0),
         period = IntVector.broadcast(INTS, periodGrains),
         timeout = IntVector.broadcast(INTS, timeoutGrains);
     for (int i = 0; i < WORLDS; i += LANES) {
@@ -185,10 +185,10 @@ final class PredictiveOffers extends LaneOffers {
       IntVector.fromArray(INTS, places, i).add(STEP, goes).intoArray(places, i);
       IntVector asks = IntVector.fromArray(INTS, asked, i);
       IntVector to = IntVector.fromArray(INTS, there, i), back = IntVector.fromArray(INTS, this.back, i);
-      IntVector lasts = to.add(back).min(timeout);
-      // That it will have ended is known when it reaches the vehicle, or at once if it does not in time.
-      IntVector left = lasts.sub(to.blend(zero, to.compare(GT, timeout)));
-      IntVector ends = asks.add(lasts).lanewise(LSHL, 1).add(1, left.compare(LT, period));
+      IntVector roundTrip = to.add(back), lasts = roundTrip.min(timeout);
+      // An answer is known when the request has reached the vehicle.
+      VectorMask<Integer> isBehind = back.compare(LT, period).or(roundTrip.compare(GT, timeout));
+      IntVector ends = asks.add(lasts).lanewise(LSHL, 1).add(1, isBehind);
       IntVector more = past.blend(ends, goes);
       for (int[] each : latest[vehicle]) {
         IntVector held = IntVector.fromArray(INTS, each, i);
