@@ -1,5 +1,6 @@
 package skein.flight
 
+import skein.policy.Action
 import skein.record.{DecisionRow, LaterDecision, MemoryRecorder}
 import skein.report.SyntheticFlight
 import skein.units.*
@@ -13,7 +14,13 @@ class FlightMonitorSuite extends munit.FunSuite:
     def text    = FlightProgress("one", Span.ofSeconds(12), monitor.lastSeen(last.decidedAt)).text
     assertEquals(text, "")
     def decided(row: DecisionRow, seesOthers: Boolean) =
-      monitor.offer(LaterDecision(row.vehicle, row.decidedAt, row.action, seesOthers, row))
+      monitor.offer(LaterDecision(
+        row.vehicle,
+        row.decidedAt,
+        row.action.getOrElse(Action.Hover),
+        seesOthers,
+        row
+      ))
     flown.readings.foreach(monitor.offer)
     flown.decisions.foreach(decided(_, seesOthers = false))
     assert(clue(text).matches(" *[0-9.]+ m apart, +[0-9]+ ms old"))

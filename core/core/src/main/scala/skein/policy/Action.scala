@@ -68,6 +68,14 @@ object Action:
         Action.VelocityAt(speed.value * cos, speed.value * sin, down, yaw)
       case other => other
 
+  /** Whether every number in an action, or in a part of one, is finite, and so is its speed; null is not. */
+  private[skein] def isFinite(part: Any): Boolean = part match
+    case null                                           => false
+    case number: Double                                 => number.isFinite
+    case action: Action if !action.speed.value.isFinite => false
+    case parts: Product                                 => parts.productIterator.forall(isFinite)
+    case _                                              => true
+
   private def along(northMps: Double, eastMps: Double, beforeRad: Double) =
     if StrictMath.hypot(northMps, eastMps) < LeastMps then beforeRad
     else StrictMath.atan2(eastMps, northMps)

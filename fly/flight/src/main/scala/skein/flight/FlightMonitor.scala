@@ -41,7 +41,7 @@ final class FlightMonitor(recorder: Recorder, isStepped: Boolean = false, hasPla
   private def decided(decision: LaterDecision): Unit =
     newest = Some(decision)
     if decision.seesOthers then isOfTeams = true
-    val lands = decision.action.contains(Action.Land)
+    val lands = decision.action == Action.Land
     if lands != isLanding(decision.vehicle) then
       landing.updateAndGet(all => if lands then all + decision.vehicle else all - decision.vehicle): Unit
 

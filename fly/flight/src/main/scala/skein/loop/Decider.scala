@@ -1,6 +1,6 @@
 package skein.loop
 
-import skein.policy.{Action, Fleet, HeadingPolicy, Observation, Policy, Seen, Sensed, Yaw}
+import skein.policy.{Action, Fleet, Observation, Policy, Seen, Sensed}
 import skein.signal.Stamped
 import skein.units.*
 
@@ -29,13 +29,8 @@ final class Decider(fleet: Fleet, self: Int, policy: Policy):
   def decide(memory: Memory, view: TeamView, now: Instant): (Memory, Decision) =
     val seen             = observation(memory, view, now)
     val (action, held)   = answered(memory, seen)
-    val heading          = action.headingRad(memory.headingRad)
-    val speed            = Option.unless(policy.isInstanceOf[HeadingPolicy])(action.speed)
-    val (next, decision) = against(seen.opponent, memory, view, now, heading, speed)
-    val told             = action match
-      case Action.Along(_, _, down, Yaw.Still) if down.value == agent.startPositionNed.z => None
-      case other => Some(other.byVelocity)
-    (next.copy(held = held), decision.copy(action = told))
+    val (next, decision) = against(seen.opponent, memory, view, now, action)
+    (next.copy(held = held), decision)
 
   /** The policy's action and next memory.
     *
@@ -97,34 +92,21 @@ final class Decider(fleet: Fleet, self: Int, policy: Policy):
   private def opponentIn(view: TeamView): Int =
     fleet.opponentOf(self, view.kinematics(_).positionNed)
 
-  /** The decision for a chosen course.
+  /** The decision for an action that was chosen elsewhere.
     *
-    * @param speed absent where the vehicle commands its own
-    * @throws ArithmeticException if heading or speed is not finite: no vehicle may receive it
+    * @throws skein.units.OwnFailure if a number in it is not finite: no vehicle may receive it
     */
-  def decided(
-      memory: Memory,
-      view: TeamView,
-      now: Instant,
-      heading: Double,
-      speed: Option[MetresPerSecond]
-  ): (Memory, Decision) = against(opponentIn(view), memory, view, now, heading, speed)
+  def decided(memory: Memory, view: TeamView, now: Instant, action: Action): (Memory, Decision) =
+    PolicyAnswer.expectAction(agent, action)
+    against(opponentIn(view), memory, view, now, action)
 
   private def against(
       opponent: Int,
       memory: Memory,
       view: TeamView,
       now: Instant,
-      heading: Double,
-      speed: Option[MetresPerSecond]
+      action: Action
   ): (Memory, Decision) =
-    for
-      (what, number) <- speed.map(mps => ("speed", mps.value)) ++ Some(("heading", heading))
-      if !number.isFinite
-    do
-      throw ArithmeticException(
-        s"the policy of ${agent.name} decided for a $what that is no finite number: $number"
-      )
     val decision = Decision(
       vehicle = self,
       sequence = memory.decisions,
@@ -133,7 +115,8 @@ final class Decider(fleet: Fleet, self: Int, policy: Policy):
       opponent = opponent,
       headingBefore = Radians(memory.headingRad),
       elapsed = elapsed(memory, now),
-      heading = Radians(heading),
-      speed = speed
+      action = action
     )
-    (memory.copy(headingRad = heading, decidedAt = Some(now), decisions = memory.decisions + 1), decision)
+    val next = memory
+      .copy(headingRad = decision.heading.value, decidedAt = Some(now), decisions = memory.decisions + 1)
+    (next, decision)

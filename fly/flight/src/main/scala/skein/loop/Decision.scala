@@ -10,9 +10,7 @@ import skein.units.*
   * @param opponent against which it was decided
   * @param headingBefore last commanded to this vehicle
   * @param elapsed since this vehicle's last decision; zero at the first
-  * @param heading the chosen one
-  * @param speed the chosen one; absent where the vehicle always commands its own
-  * @param action the chosen one; absent where heading and speed at the altitude of the start define it
+  * @param action the chosen one
   */
 final case class Decision(
     vehicle: Int,
@@ -22,10 +20,10 @@ final case class Decision(
     opponent: Int,
     headingBefore: Radians,
     elapsed: Span,
-    heading: Radians,
-    speed: Option[MetresPerSecond],
-    action: Option[Action] = None
+    action: Action
 ):
+  /** The heading to which it leads; other vehicles observe it as the last commanded one. */
+  def heading: Radians = Radians(action.headingRad(headingBefore.value))
+
   /** The sent command as other vehicles' policies observe it. */
-  def move(sentAt: Instant): SentCommand =
-    SentCommand(vehicle, sequence, heading.value, sentAt, speed, action)
+  def move(sentAt: Instant): SentCommand = SentCommand(vehicle, sequence, heading, sentAt, action)

@@ -1,7 +1,7 @@
 package skein.loop
 
 import skein.planning.*
-import skein.policy.{Agent, Fleet, Goal, HeadingPolicy, Role}
+import skein.policy.{Action, Agent, Fleet, Goal, HeadingPolicy, Role}
 import skein.record.PlannedPath
 import skein.units.*
 import skein.vehicle.{PlaneReading, VehicleKind}
@@ -18,10 +18,11 @@ private abstract class Planning(
 ):
   protected val agent: Agent     = fleet.agents(self)
   protected val decider: Decider = Decider(fleet, self)
-  private val startM             = -agent.startPositionNed.z
 
   /** Altitude of the plan: that of the vehicle's start, within the limits. */
-  protected val altitudeM: Double = settings.altitudeM(startM)
+  private val down =
+    val start = agent.startPositionNed.z
+    Metres(if settings.altitudeM(-start) == -start then start else -settings.altitudeM(-start))
 
   final val planner: PlannerSettings = settings.planner
 
@@ -57,22 +58,16 @@ private abstract class Planning(
     val action = chosen.fold(byPolicy(memory, view, now, part))(manoeuvre =>
       PlannedMove.of(plan.copy(manoeuvre = manoeuvre), part.situation, part.objective, planner.dtS)
     )
-    val speed            = Option.when(choosesSpeed)(MetresPerSecond(action.speed))
-    val (next, decision) =
-      decider.decided(memory, view, now, memory.headingRad + action.turned, speed)
-    (next, PlannedDecision(atAltitude(decision), action, plan, isOld, chosen.map(course(part, _))))
+    val heading          = Radians(memory.headingRad + action.turned)
+    val speed            = if choosesSpeed then MetresPerSecond(action.speed) else agent.speed
+    val (next, decision) = decider.decided(memory, view, now, Action.Along(heading, speed, down))
+    (next, PlannedDecision(decision, action, plan, isOld, chosen.map(course(part, _))))
 
   /** The path along which a manoeuvre leads. */
   private def course(part: Part, manoeuvre: Manoeuvre): PlannedPath =
     val track = ManoeuvreRollout(part.situation, part.objective, planner.dtS).track(manoeuvre)
     val steps = Vector.range(0, track.steps)
     PlannedPath(steps.map(track.x), steps.map(track.y), Span.ofSeconds(planner.dtS))
-
-  private def atAltitude(decision: Decision): Decision =
-    if altitudeM == startM then decision
-    else
-      val velocity = agent.velocityNed(decision.heading.value, decision.speed)
-      decision.copy(action = Some(skein.policy.Action.VelocityAt(velocity.x, velocity.y, Metres(-altitudeM))))
 
   /** The plan's manoeuvre if it costs clearly less than every suggested one. */
   private def begun(part: Part, plan: Plan): Manoeuvre =

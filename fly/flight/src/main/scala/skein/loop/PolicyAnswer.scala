@@ -1,6 +1,6 @@
 package skein.loop
 
-import skein.policy.Agent
+import skein.policy.{Action, Agent}
 import skein.units.OwnFailure
 
 /** Evaluates a vehicle's policy and checks its answer. */
@@ -24,13 +24,7 @@ private object PolicyAnswer:
     * @throws OwnFailure if there is none, or a number in it is not finite
     */
   def expectAction(agent: Agent, action: Any): Unit =
-    if !isFinite(action) then
+    if !Action.isFinite(action) then
       throw OwnFailure(whose(agent), s"decided for what no vehicle can do: $action")
 
   private def whose(agent: Agent) = s"the policy of ${agent.name}"
-
-  private def isFinite(part: Any): Boolean = part match
-    case null           => false
-    case number: Double => number.isFinite
-    case parts: Product => parts.productIterator.forall(isFinite)
-    case _              => true

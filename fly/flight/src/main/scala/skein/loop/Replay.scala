@@ -82,8 +82,13 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
       .scanLeft((Minds(states, jointly, Map.empty), Option.empty[Difference])): (state, recorded) =>
         again(state._1, recorded) match
           case Left(difference)          => (state._1, Some(difference))
-          case Right((states, decision)) => (states, Difference.between(recorded, decision))
+          case Right((states, decision)) =>
+            (states, Difference.between(withSpeed(recorded), withSpeed(decision)))
       .collectFirst { case (_, Some(difference)) => difference }
+
+  /** A decision with its speed, also where that is the vehicle's own and not recorded. */
+  private def withSpeed(decision: DecisionRow): DecisionRow =
+    decision.copy(speed = decision.speed.orElse(indexOf.get(decision.vehicle).map(fleet.agents(_).speed)))
 
   /** All decisions except an incomplete final joint decision of a truncated recording. */
   private def whole: Vector[DecisionRow] =
@@ -301,10 +306,9 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
     yield SentCommand(
       vehicle,
       sequence,
-      decision.heading.value,
+      decision.heading,
       if paused then decision.decidedAt else command.sentAt,
-      decision.speed,
-      decision.action
+      rows.action(decision, fleet.agents(vehicle))
     )
 
   private def where(decision: DecisionRow): String = s"decision ${decision.sequence} of ${decision.vehicle}"

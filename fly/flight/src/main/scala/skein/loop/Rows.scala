@@ -1,6 +1,6 @@
 package skein.loop
 
-import skein.policy.{Action, Fleet, Role}
+import skein.policy.{Action, Agent, Fleet, HeadingPolicy, Role, Yaw}
 import skein.record.{
   CommandRow,
   DecisionRow,
@@ -86,9 +86,32 @@ private final class Rows(fleet: Fleet):
           there.velocityNed
         )
       ),
-      speed = decision.speed,
-      action = decision.action
+      speed = speedColumn(decision.action, fleet.agents(self)),
+      action = actionColumn(decision.action, fleet.agents(self))
     )
+
+  /** The recorded speed: absent for that of a vehicle whose policy always commands its own. */
+  private def speedColumn(action: Action, agent: Agent): Option[MetresPerSecond] = action match
+    case Action.Along(_, agent.speed, _, Yaw.Still) if agent.policy.isInstanceOf[HeadingPolicy] => None
+    case _ => Some(action.speed)
+
+  /** The recorded action: absent for a heading at the altitude of the start. */
+  private def actionColumn(action: Action, agent: Agent): Option[Action] = action match
+    case Action.Along(_, _, down, Yaw.Still) if down == startDown(agent) => None
+    case _                                                               => Some(action.byVelocity)
+
+  /** The action of a recorded decision for an agent. */
+  def action(recorded: DecisionRow, agent: Agent): Action =
+    def along(down: Metres, yaw: Yaw) =
+      Action.Along(recorded.heading, recorded.speed.getOrElse(agent.speed), down, yaw)
+    recorded.action match
+      case None                                                => along(startDown(agent), Yaw.Still)
+      case Some(velocity @ Action.VelocityAt(_, _, down, yaw)) =>
+        // A flight along a heading at another altitude is recorded as its velocity.
+        Some(along(down, yaw)).filter(_.byVelocity == velocity).getOrElse(velocity)
+      case Some(other) => other
+
+  private def startDown(agent: Agent) = Metres(agent.startPositionNed.z)
 
   /** The other vehicles that a decision used besides its opponent, if it considered the whole team. */
   def sighted(decision: Decision): Vector[Int] =
@@ -121,7 +144,7 @@ private final class Rows(fleet: Fleet):
   /** The row of a decision that was sent as a command. */
   def command(decision: Decision, at: Instant): CommandRow =
     val agent    = fleet.agents(decision.vehicle)
-    val velocity = agent.velocityNed(decision.heading.value, decision.speed)
+    val velocity = agent.velocityNed(decision.heading.value, Some(decision.action.speed))
     CommandRow(
       decision.sequence,
       agent.name,
@@ -129,8 +152,9 @@ private final class Rows(fleet: Fleet):
       MetresPerSecond(velocity.x),
       MetresPerSecond(velocity.y),
       decision.action match
-        case Some(Action.VelocityAt(_, _, down, _)) => down
-        case _                                      => Metres(agent.startPositionNed.z)
+        case Action.VelocityAt(_, _, down, _) => down
+        case Action.Along(_, _, down, _)      => down
+        case _                                => startDown(agent)
       ,
       at
     )

@@ -63,17 +63,6 @@ final case class Solved(
 
 /** The decision for one vehicle.
   *
-  * @param speed absent where the vehicle commands its own
-  * @param action absent where heading and speed define it
   * @param plan its data; absent where a policy decided
   */
-final case class Chosen(
-    headingRad: Double,
-    speed: Option[MetresPerSecond],
-    action: Option[Action],
-    plan: Option[PlanReport] = None
-)
-
-object Chosen:
-  def of(decision: Decision, plan: Option[PlanReport] = None): Chosen =
-    Chosen(decision.heading.value, decision.speed, decision.action, plan)
+final case class Chosen(action: Action, plan: Option[PlanReport] = None)

@@ -39,7 +39,7 @@ final class Team(
   private val sensing  = TeamSensing(fleet, ports, clock, settings, clocks, parts, log)
   private val viewing  = TeamViewing(fleet, settings, clocks, hold, sensing, parts, log)
   private val deciding = TeamDeciding(fleet, clock, settings, deciders, workers, solver, sensing, parts, log)
-  private val steering = TeamSteering(fleet, ports, clock, settings, hold, sensing, parts, log)
+  private val steering = TeamSteering(ports, clock, settings, hold, sensing, parts, log)
 
   export parts.{meters, named}
   export sensing.{isNewer, joinLatest, read, readAll, sense, senseAll, sensed, ticks}

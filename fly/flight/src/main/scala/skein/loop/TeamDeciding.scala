@@ -124,9 +124,9 @@ private final class TeamDeciding(
         .map: solved =>
           val used         = Solver.Remembered(solved.solver, solved.question)
           val (next, made) = asked.zip(solved.chosen).map((asked, chosen) =>
-            val (next, decision) = deciders(asked.vehicle)
-              .decided(asked.memory, view, solved.decidedAt, chosen.headingRad, chosen.speed)
-            (next.copy(held = used), decision.copy(action = chosen.action))
+            val (next, decision) =
+              deciders(asked.vehicle).decided(asked.memory, view, solved.decidedAt, chosen.action)
+            (next.copy(held = used), decision)
           ).unzip
           (next, made, solved)
 

@@ -9,14 +9,12 @@ import scala.concurrent.{ExecutionContext, Future}
 import scala.util.{Failure, Success}
 import skein.flow.*
 import skein.forecast.ForecastEvent
-import skein.policy.Fleet
 import skein.port.{VehicleError, VehiclePort}
 import skein.record.EventKind
 import skein.units.*
 
 /** Commands a team's vehicles, records the results, and feeds them back into the loop. */
 private final class TeamSteering(
-    fleet: Fleet,
     ports: Vector[VehiclePort],
     clock: Clock,
     settings: LoopSettings,
@@ -126,7 +124,7 @@ private final class TeamSteering(
   /** Sends a decision as a move; completes when the move ends. */
   def move(decision: Decision): Future[Either[VehicleError, Boolean]] =
     import decision.vehicle
-    val answer = ports(vehicle).act(Acting.action(fleet, decision), settings.moveDuration)
+    val answer = ports(vehicle).act(decision.action.byVelocity, settings.moveDuration)
     val _ = moves.updateAndGet(vehicle, sent => (sent :+ answer).takeRight(settings.movesInFlight.max(2)))
     answer
 

@@ -7,16 +7,14 @@ import skein.units.*
 
 /** A command that was sent to a vehicle, as other vehicles' policies observe it.
   *
-  * @param speed absent where the vehicle always commands its own
-  * @param action absent where heading and speed define it
+  * @param heading to which the action leads: for one without a heading, that of the command before
   */
 final case class SentCommand(
     vehicle: Int,
     decision: Long,
-    headingRad: Double,
+    heading: Radians,
     sentAt: Instant,
-    speed: Option[MetresPerSecond] = None,
-    action: Option[Action] = None
+    action: Action
 )
 
 /** The controller's knowledge of the team: the newest reading and the last move of each vehicle, by index,
@@ -58,7 +56,7 @@ final case class TeamView(
 
   /** The last heading commanded to a vehicle, as far as known; before the first command that of the start. */
   def headingRad(vehicle: Int, fleet: Fleet): Double =
-    moves(vehicle).fold(fleet.agents(vehicle).startHeading.value)(_.headingRad)
+    moves(vehicle).fold(fleet.agents(vehicle).startHeading.value)(_.heading.value)
 
   /** Whether a reading is newer than the one held: a late answer never overrides a newer one. */
   def isNews(reading: Reading): Boolean =

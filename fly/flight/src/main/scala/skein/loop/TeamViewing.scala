@@ -5,7 +5,7 @@ import org.apache.pekko.stream.{Graph, UniformFanOutShape}
 import org.apache.pekko.stream.scaladsl.{Broadcast, Flow, MergePreferred, Source}
 import skein.flow.Hold
 import skein.forecast.{Commanded, ForecastEvent, Forecast}
-import skein.policy.Fleet
+import skein.policy.{ActionGuidance, Fleet}
 import skein.record.EventKind
 import skein.signal.ClockAlignment
 import skein.units.*
@@ -57,7 +57,7 @@ private final class TeamViewing(
               (view, None)
             case LoopEvent.Measured(reading) => (view.withSensorReading(reading), None)
             case LoopEvent.Moved(move)       =>
-              val command = Commanded(move.decision, Acting.guidance(fleet, move), move.sentAt)
+              val command = Commanded(move.decision, ActionGuidance.of(move.action), move.sentAt)
               (view.withMove(move).withEvent(ForecastEvent.Sent(move.vehicle, command)), None)
             case LoopEvent.Due(deciders) =>
               (view, request(view, deciders))

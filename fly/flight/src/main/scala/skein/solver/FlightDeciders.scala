@@ -40,7 +40,7 @@ final class FlightDeciders(val fleet: Fleet, plans: Option[FlightDeciders.Plans]
         val decider          = Decider(fleet, question.vehicle)
         val memory           = question.deciders.head.memory.copy(held = held.getOrElse(decider.start.held))
         val (next, decision) = decider.decide(memory, question.view, now)
-        Future.successful((Vector(Chosen.of(decision)), next.held))
+        Future.successful((Vector(Chosen(decision.action)), next.held))
 
   private def planned(
       plans: FlightDeciders.Plans,
@@ -58,7 +58,7 @@ final class FlightDeciders(val fleet: Fleet, plans: Option[FlightDeciders.Plans]
       .searched(problem, last, plans.deadline, plans.workers, planner)
       .map { answer =>
         val (_, made) = planning.decide(memories, views, now, problem.parts, answer)
-        (made.map(one => Chosen.of(one.decision, Some(one.report(answer.slices)))), answer)
+        (made.map(one => Chosen(one.decision.action, Some(one.report(answer.slices)))), answer)
       }(using ExecutionContext.parasitic)
 
   def close(): Unit = plans.foreach(_.workers.close())

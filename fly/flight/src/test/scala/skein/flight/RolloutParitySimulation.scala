@@ -58,11 +58,13 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
     val clue     = s"${loop.label} over ${link.name}, seed $seed"
 
     val readings, commands = ArrayBuffer.empty[Note]
+    val headings           = fleet.agents.map(_.startHeading.value).toArray
     val observer           = new LoopObserver:
       override def read(vehicle: Int, number: Int, atNs: Long, x: Double, y: Double, z: Double): Unit =
         readings += Note(vehicle, number, Span.ofNanos(atNs), x, y, z)
-      override def commanded(vehicle: Int, number: Int, atNs: Long, headingRad: Double, speed: Double): Unit =
-        val velocity = fleet.agents(vehicle).velocityNed(headingRad, Some(MetresPerSecond(speed)))
+      override def commanded(vehicle: Int, number: Int, atNs: Long, action: Action): Unit =
+        headings(vehicle) = action.headingRad(headings(vehicle))
+        val velocity = fleet.agents(vehicle).velocityNed(headings(vehicle), Some(action.speed))
         commands += Note(vehicle, number, Span.ofNanos(atNs), velocity.x, velocity.y)
     val model   = VelocityResponses.quadrotor(hoveredS = flown.hovered.toSeconds)
     val rollout = Rollout(Engagement.inSpace(fleet, duration.toSeconds), timing, flown.delays, model)
@@ -218,13 +220,7 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
       rollout.fly(
         0,
         observer = new LoopObserver:
-          override def commanded(
-              vehicle: Int,
-              number: Int,
-              atNs: Long,
-              headingRad: Double,
-              speedMps: Double
-          ) =
+          override def commanded(vehicle: Int, number: Int, atNs: Long, action: Action) =
             last = Span.ofNanos(atNs)
       ): Unit
       val sent = flown.recording.commands.map(_.sentAt.since(flown.startedAt).toSeconds).max

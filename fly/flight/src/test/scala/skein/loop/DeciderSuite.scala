@@ -33,6 +33,9 @@ class DeciderSuite extends munit.FunSuite:
     .withReading(reading(0, 21, 4, 1010, 100, 120))
     .withReading(reading(1, 1, 2, 1040, 130, 160))
 
+  private def sent(vehicle: Int, heading: Double, at: Instant) =
+    SentCommand(vehicle, 0, Radians(heading), at, Action.Hover)
+
   private def row(decided: (Memory, Decision)) = Rows(scenario).decision(decided._2)
 
   test("the pursuer integrates its turn over the time since its last decision"):
@@ -50,7 +53,7 @@ class DeciderSuite extends munit.FunSuite:
       told.getMessage.contains("the policy of Pursuer decided for what no vehicle can do: Along(NaN")
     )
 
-  test("a heading at the start's altitude is the whole decision; at another, its velocity is added"):
+  test("a heading at the start's altitude is recorded without an action, at another with its velocity"):
     final case class Straight(down: Metres, yaw: Yaw) extends Policy:
       type Memory = Int
       def start: Int                                            = 0
@@ -60,8 +63,10 @@ class DeciderSuite extends munit.FunSuite:
       val decider          = Decider(scenario, 1, policy)
       val (next, decision) = decider.decide(decider.start, view, millis(200))
       assertEquals((next.headingRad, next.held), (7.0, 1))
-      assertEquals((decision.heading, decision.speed), (Radians(7), Some(MetresPerSecond(3))))
-      decision.action
+      val recorded = Rows(scenario).decision(decision)
+      assertEquals((recorded.heading, recorded.speed), (Radians(7), Some(MetresPerSecond(3))))
+      assertEquals(Rows(scenario).action(recorded, scenario.agents(1)), decision.action)
+      recorded.action
     val start = Metres(scenario.agents(1).startPositionNed.z)
     assertEquals(decided(Straight(start, Yaw.Still)), None)
     for (down, yaw) <- Seq(Metres(-3) -> Yaw.Still, start -> Yaw.Forward) do
@@ -112,7 +117,7 @@ class DeciderSuite extends munit.FunSuite:
   test("both deciders see the evader in the pursuer's frame"):
     val heading  = math.Pi / 2
     val ofEvader =
-      row(evader.decide(evader.start, view.withMove(SentCommand(1, 0, heading, millis(150))), millis(200)))
+      row(evader.decide(evader.start, view.withMove(sent(1, heading, millis(150))), millis(200)))
     assertEqualsDouble(ofEvader.relativeX.value, 2, 1e-12)
     assertEqualsDouble(ofEvader.relativeY.value, -20, 1e-12)
     val ofPursuer = row(pursuer.decide(pursuer.start.copy(headingRad = heading), view, millis(200)))
@@ -120,7 +125,7 @@ class DeciderSuite extends munit.FunSuite:
     assertEqualsDouble(ofPursuer.relativeY.value, -20, 1e-12)
 
   test("the four observations count from arrival and from the moves sent"):
-    val moved = view.withMove(SentCommand(0, 0, 1, millis(150))).withMove(SentCommand(1, 0, 1, millis(170)))
+    val moved    = view.withMove(sent(0, 1, millis(150))).withMove(sent(1, 1, millis(170)))
     val decision = row(evader.decide(evader.start, moved, millis(200)))
     assertEquals(decision.observations.ownAge, Span.ofMillis(80))
     assertEquals(decision.observations.opponentAge, Span.ofMillis(40))
@@ -141,17 +146,17 @@ class DeciderSuite extends munit.FunSuite:
     "it sees itself heading where it was last told, the others " +
       "where they were sent, and all as they are foreseen"
   ):
-    val sent =
-      view.withMove(SentCommand(0, 0, 0.4, millis(150))).withMove(SentCommand(1, 0, 0.6, millis(150)))
+    val moved =
+      view.withMove(sent(0, 0.4, millis(150))).withMove(sent(1, 0.6, millis(150)))
     val memory = pursuer.start.copy(headingRad = 0.9, decidedAt = Some(millis(170)), decisions = 3)
-    val heard  = pursuer.observation(memory, sent, millis(200))
+    val heard  = pursuer.observation(memory, moved, millis(200))
     assertEquals(heard.headings.map(_.value), Vector(0.4, 0.9))
     assertEquals((heard.elapsed, heard.decisions, heard.actsIn), (Span.ofMillis(30), 3L, Span.Zero))
     assert(heard.vehicles.forall(!_.isPredicted))
-    val ahead                      = sent.readings(0).get.state.value.copy(positionNed = Vector3(7, 8, -20))
+    val ahead                      = moved.readings(0).get.state.value.copy(positionNed = Vector3(7, 8, -20))
     def foreseen(actsAtMs: Double) =
       val estimate = skein.forecast.Estimate(ahead, millis(actsAtMs), millis(1040))
-      pursuer.observation(memory, sent.copy(estimates = Some(Vector(estimate, estimate))), millis(200))
+      pursuer.observation(memory, moved.copy(estimates = Some(Vector(estimate, estimate))), millis(200))
     assert(foreseen(1150).vehicles.forall(seen => seen.isPredicted && seen.kinematics == ahead))
     // The simulator's clock is 900 ms ahead, to within the drift.
     assertEqualsDouble(foreseen(1150).actsIn.toMillis, 50, 0.01)

@@ -88,11 +88,12 @@ class PlanningSuite extends munit.FunSuite:
     for (turn, heading) <- Seq(2.0 -> 0.5, -2.0 -> 0.0, 0.125 -> 0.375, -0.125 -> 0.125) do
       val (decision, made) = byPolicy(turn, PlanSettings())
       assertEqualsDouble(decision.heading.value, heading, 1e-9)
-      assertEquals((decision.speed, made.byPolicy), (None, true))
+      assertEquals((decision.action.speed, made.byPolicy), (fleet.agents(pursuer).speed, true))
 
   test("a speed is chosen where less than the vehicle's own may be commanded"):
-    assertEquals(byPolicy(0.1, PlanSettings(slowestShare = 0.999))._1.speed, Some(MetresPerSecond(10)))
-    assertEquals(decidedBy(pursuit(PlanSettings()), isOld = false)._1.speed, None)
+    val slower = PlanSettings(kept = Vector(Kept.NoFaster(5)))
+    assertEquals(byPolicy(0.1, slower)._1.action.speed.value, slower.speedMps(10))
+    assertEquals(decidedBy(pursuit(PlanSettings()), isOld = false)._1.action.speed.value, 10.0)
 
   test("it may turn for as long as it has not decided, at most for half a second"):
     assertEquals(part(PlanSettings()).situation.sinceDecisionS, 0.0)
@@ -113,7 +114,11 @@ class PlanningSuite extends munit.FunSuite:
       Fleet(fleet.agents.updated(evader, fleet.agents(evader).copy(policy = policy)))
     def target(policy: Policy) =
       val posed = pursuit(PlanSettings(behaviours = 1), flownBy(policy))
-        .pose(Memory(0.25, None, 7), view.withMove(SentCommand(evader, 1, 0.7, now)), now)
+        .pose(
+          Memory(0.25, None, 7),
+          view.withMove(SentCommand(evader, 1, Radians(0.7), now, Action.Hover)),
+          now
+        )
       posed.situation.behaviours.head.target
     target(KeepHeading) match
       case opponent: Target.Opponent =>
@@ -238,8 +243,7 @@ class PlanningSuite extends munit.FunSuite:
     val planning         = teamwork(team, Moving(), PlanSettings())
     val (decision, made) = decidedBy(planning, isOld = true)
     assertEqualsDouble(decision.heading.value, 0, 1e-12)
-    assertEquals((decision.speed, made.byPolicy), (Some(MetresPerSecond(3)), true))
-    assert(decidedBy(planning, isOld = false)._1.speed.isDefined)
+    assertEquals((decision.action.speed, made.byPolicy), (MetresPerSecond(3), true))
 
   test(
     "a plan is begun with where it saves a tenth of a metre " +
@@ -256,7 +260,7 @@ class PlanningSuite extends munit.FunSuite:
     def begun(suggested: Double, planned: Double) =
       val part = posed.copy(situation = posed.situation.copy(suggested = Vector(flown(suggested))))
       val plan = plans.plans.head.copy(manoeuvre = flown(planned))
-      planning.decide(memory, view, now, part, plan, isOld = false)._2.decision.speed.get.value
+      planning.decide(memory, view, now, part, plan, isOld = false)._2.decision.action.speed.value
     val costs                                   = speeds.map(speed => speed -> rollout.fly(flown(speed)).cost)
     val (best, least)                           = costs.minBy(_._2)
     def worse(from: Double, to: Double): Double =

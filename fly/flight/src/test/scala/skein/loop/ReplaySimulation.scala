@@ -80,6 +80,15 @@ class ReplaySimulation extends munit.FunSuite, Optimised:
         assertEquals(difference.where, s"decision ${decisions(at).sequence} of ${decisions(at).vehicle}")
         assertEquals(difference.column, "headingRad")
 
+  test("a vehicle's own speed may be recorded or not, and another speed is found"):
+    val recording             = flown(LoopKind.Stream, duels)
+    def stated(share: Double) = recording.copy(decisions = recording.decisions.map: decision =>
+      val own = duels.agents.find(_.name == decision.vehicle).get.speed
+      decision.copy(speed = Some(MetresPerSecond(share * own.value))))
+    assert(recording.decisions.forall(_.speed.isEmpty))
+    assertEquals(found(duels, stated(1)), None)
+    assertEquals(found(duels, stated(0.5)).map(_.column), Some("speedMps"))
+
   test("a recording that broke off within decisions made together is compared up to there"):
     val recording = flown(LoopKind.Plan, team(Slot))
     val last      = recording.decisions.size - 1

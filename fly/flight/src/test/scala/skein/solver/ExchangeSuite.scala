@@ -1,13 +1,14 @@
 package skein.solver
 
 import skein.loop.Chosen
+import skein.policy.Action
 import skein.solver.Exchange.Verdict
 import skein.units.*
 
 class ExchangeSuite extends munit.FunSuite:
   private def at(ms: Double) = Instant.Epoch + Span.ofMillis(ms)
   private val within         = Span.ofMillis(100)
-  private val choice         = Right(Choice(at(0), false, Vector(Chosen(0, None, None))))
+  private val choice         = Right(Choice(at(0), false, Vector(Chosen(Action.Hover))))
 
   private def asking(times: Double*) =
     times.foldLeft(Exchange.of(2))((exchange, ms) => exchange.asked(0, at(ms), at(ms) + within)._1)

@@ -48,12 +48,9 @@ class SolverMessageCodecLaws extends munit.ScalaCheckSuite:
     Gen.const(Action.Land)
   )
 
-  private val speed = Gen.option(number.map(MetresPerSecond(_)))
-
   private def move(vehicle: Int) =
-    Gen.zip(Gen.long, number, instant, speed, Gen.option(action)).map(
-      (decision, heading, at, speed, action) =>
-        SentCommand(vehicle, decision, heading, at, speed, action)
+    Gen.zip(Gen.long, number, instant, action).map((decision, heading, at, action) =>
+      SentCommand(vehicle, decision, Radians(heading), at, action)
     )
 
   /** Clock alignments with a whole middle and half width. */
@@ -133,7 +130,7 @@ class SolverMessageCodecLaws extends munit.ScalaCheckSuite:
     yield PlanReport(candidates, slices.toVector, cost, searched, !searched, breaches, breach, course)
 
   private val chosen =
-    Gen.zip(number, speed, Gen.option(action), Gen.option(plan)).map(Chosen(_, _, _, _))
+    Gen.zip(action, Gen.option(plan)).map(Chosen(_, _))
 
   private val choice =
     Gen.zip(instant, Gen.oneOf(true, false), Gen.listOf(chosen)).map((at, isNew, chosen) =>
@@ -193,7 +190,7 @@ class SolverMessageCodecLaws extends munit.ScalaCheckSuite:
     val welcome = SolverMessageCodec.bytes(SolverMessage.Welcome(1, 2, true))
     assertEquals(
       SolverMessageCodec.message(welcome.updated(0, 9.toByte)),
-      Left("expected messages of version 6 of the solver's protocol, came version 9")
+      Left("expected messages of version 7 of the solver's protocol, came version 9")
     )
     assertEquals(
       SolverMessageCodec.message(welcome.updated(1, 42.toByte)),

@@ -80,7 +80,8 @@ private[skein] final class Controller(
 ):
   import RolloutWorld.*
 
-  private val policy     = world.agents(agent).policy
+  private val own        = world.agents(agent)
+  private val policy     = own.policy
   private val minNs      = Nanos.of(steering.minIntervalS)
   private val handoverNs = Nanos.of(steering.handoverS)
   private val held       = RolloutView(world)
@@ -92,18 +93,14 @@ private[skein] final class Controller(
   private var holds         = false
   private var lastDecidedAt = Controller.Never
   private var decided       = 0.0
-  private var speed         = 0.0
   private var sent          = 0.0
   private var sentNumber    = 0
   private var made, unused  = 0
 
   /** Evaluates a policy that is not a [[HeadingPolicy]]. */
-  private val choosing                = Choosing(world.agents(agent), world.responses(agent))
-  private var chosenNorth, chosenEast = 0.0
-  private var chosenAction            = Option.empty[Action]
-  private var isChosen                = false
-
-  private var memory: Any = ()
+  private val choosing       = Choosing(world.agents(agent), world.responses(agent))
+  private var action: Action = Action.Hover
+  private var memory: Any    = ()
 
   /** The view of the present decision, and its distance to another vehicle. */
   private var upon                    = held
@@ -127,12 +124,9 @@ private[skein] final class Controller(
   def start(): Unit =
     outstanding = 0; mayCommandAt = 0; mayCommand = false; turnAt = 0; holds = false
     lastDecidedAt = Controller.Never
-    decided = world.agents(agent).startHeadingRad
+    decided = own.startHeadingRad
     memory = ObservingPolicy.initialOf(policy)
-    isChosen = false
-    chosenAction = None
     if world.isAsked(agent) then choosing.start()
-    speed = world.agents(agent).speed
     sent = decided; sentNumber = 0
     made = 0; unused = 0; turned = 0
     goOn()
@@ -163,15 +157,7 @@ private[skein] final class Controller(
         send(held.step(agent))
       else world.schedule(turnAt, Wake, agent, 0)
 
-  def decidedHeading: Double = decided
-
-  def decidedSpeed: Double = speed
-
-  def decidedNorth: Double = if isChosen then chosenNorth else speed * StrictMath.cos(decided)
-  def decidedEast: Double  = if isChosen then chosenEast else speed * StrictMath.sin(decided)
-
-  /** The decided action, unless it is that velocity at the altitude of the start. */
-  def decidedAction: Option[Action] = chosenAction
+  def decidedAction: Action = action
 
   def decide(observation: RolloutView): Unit =
     val now       = world.nowNs
@@ -180,15 +166,12 @@ private[skein] final class Controller(
     val before    = decided
     for forecast <- observation.forecast do ahead(observation, forecast)
     policy match
-      case duel: HeadingPolicy => decided = heading(duel, observation, elapsed)
-      case _                   =>
-        val chosen = choosing.choose(observed(observation, elapsedNs))
-        decided = chosen.headingRad
-        speed = chosen.speedMps
-        chosenNorth = chosen.northMps
-        chosenEast = chosen.eastMps
-        chosenAction = chosen.action
-        isChosen = true
+      case duel: HeadingPolicy =>
+        decided = heading(duel, observation, elapsed)
+        action = Action.Along(Radians(decided), MetresPerSecond(own.speed), Metres(own.altitudeDownM))
+      case _ =>
+        action = choosing.choose(observed(observation, elapsedNs))
+        decided = action.headingRad(decided)
     turned += math.abs(math.IEEEremainder(decided - before, 2 * math.Pi))
     lastDecidedAt = now
     made += 1
@@ -198,7 +181,6 @@ private[skein] final class Controller(
   private def observed(observation: RolloutView, elapsedNs: Long): Observation =
     upon = observation
     val now = world.nowNs
-    val own = world.agents(agent)
     Observation(
       agent,
       Vector.tabulate(world.count): vehicle =>
@@ -306,20 +288,12 @@ private[skein] final class Controller(
     mayCommandAt = world.nowNs + minNs
     outstanding += 1
     sentNow()
-    val (north, east) = (decidedNorth, decidedEast)
-    onSent.sent(
-      agent,
-      world.send(agent, decided, speed, north, east, decidedAction, step),
-      north,
-      east,
-      decidedAction
-    )
+    onSent.sent(agent, world.send(agent, action, step), action)
     goOn()
 
 private[skein] object Controller:
   /** Receives every command that a controller sends. */
   trait OnSent:
-    /** @param action performed instead of this velocity at the altitude of the start */
-    def sent(agent: Int, number: Int, northMps: Double, eastMps: Double, action: Option[Action]): Unit
+    def sent(agent: Int, number: Int, action: Action): Unit
 
   private val Never = Long.MinValue

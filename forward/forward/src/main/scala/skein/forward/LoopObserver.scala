@@ -2,6 +2,7 @@ package skein.forward
 
 import skein.forecast.{Forecast, Leg}
 import skein.fusion.Exposure
+import skein.policy.Action
 
 /** The data on which a decision is based, by vehicle. */
 private[skein] trait Grounds:
@@ -41,7 +42,7 @@ trait LoopObserver:
   ): Unit = ()
 
   /** A command was sent: the newest decision for the vehicle. */
-  def commanded(vehicle: Int, number: Int, atNs: Long, headingRad: Double, speedMps: Double): Unit = ()
+  def commanded(vehicle: Int, number: Int, atNs: Long, action: Action): Unit = ()
 
   /** A command has reached the vehicle and replaced the one before; it takes effect after the vehicle's dead
     * time.

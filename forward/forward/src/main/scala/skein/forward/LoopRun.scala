@@ -41,8 +41,7 @@ private[skein] trait LoopRun extends Controller.OnSent:
   /** Handles an event that was scheduled as `Due`. */
   def due(number: Int): Unit = ()
 
-  def sent(agent: Int, number: Int, northMps: Double, eastMps: Double, action: Option[Action]): Unit =
-    ()
+  def sent(agent: Int, number: Int, action: Action): Unit = ()
 
   /** A command was answered because a newer one has replaced it. */
   def replaced(agent: Int, number: Int): Unit = ()

@@ -18,14 +18,7 @@ private[skein] final class PausedRun(timing: LoopTiming.Paused, protected val wo
       val controller = controllers(agent)
       controller.decide(observation)
       controller.sentNow()
-      world.commandNow(
-        agent,
-        controller.decidedHeading,
-        controller.decidedSpeed,
-        controller.decidedNorth,
-        controller.decidedEast,
-        controller.decidedAction
-      )
+      world.commandNow(agent, controller.decidedAction)
     world.schedule((number + 1) * periodNs, RolloutWorld.Tick, 0, number + 1)
 
   def answered(vehicle: Int, question: Int): Unit = ()

@@ -34,12 +34,10 @@ private[skein] final class PlantVehicle[S](plant: Plant[S]) extends Vehicle:
     nowS = 0; isCommanded = false
     coming.clear()
 
-  def command(vx: Double, vy: Double): Unit = coming.put(nowS, vx, vy)
-
-  override def act(action: Action): Unit = action.byVelocity match
-    case Action.Velocity(velocity, _)         => command(velocity.x, velocity.y)
-    case Action.VelocityAt(north, east, _, _) => command(north, east)
-    case _                                    => command(0, 0)
+  def act(action: Action): Unit = action.byVelocity match
+    case Action.Velocity(velocity, _)         => coming.put(nowS, velocity.x, velocity.y)
+    case Action.VelocityAt(north, east, _, _) => coming.put(nowS, north, east)
+    case _                                    => coming.put(nowS, 0, 0)
 
   def advance(timeS: Double): Unit =
     coming.until(timeS): (atS, vx, vy, _, _) =>

@@ -4,7 +4,7 @@ import skein.forecast.{Commanded, ForecastEvent, Forecast}
 import skein.policy.{Action, ActionGuidance}
 import skein.signal.Stamped
 import skein.units.Instant
-import skein.vehicle.{Setpoint, VehicleKind}
+import skein.vehicle.VehicleKind
 
 /** The loop [[LoopTiming.Predictive]] in virtual time. The forecast is an immutable value: this loop
   * allocates.
@@ -53,19 +53,9 @@ private[skein] final class PredictiveRun(timing: LoopTiming.Predictive, world: R
       observation.forecast = Some(forecast)
       for controller <- controllers do controller.offer(observation)
 
-  override def sent(
-      agent: Int,
-      number: Int,
-      northMps: Double,
-      eastMps: Double,
-      action: Option[Action]
-  ): Unit =
-    val setpoint = action.fold(
-      Setpoint.velocityZ(northMps, eastMps, world.agents(agent).altitudeDownM)
-    )(ActionGuidance.of)
-    forecast = forecast.withEvent(
-      ForecastEvent.Sent(agent, Commanded(number, setpoint, Instant.ofNanos(world.nowNs)))
-    )
+  override def sent(agent: Int, number: Int, action: Action): Unit =
+    val command = Commanded(number, ActionGuidance.of(action), Instant.ofNanos(world.nowNs))
+    forecast = forecast.withEvent(ForecastEvent.Sent(agent, command))
 
   override def replaced(agent: Int, number: Int): Unit =
     forecast = forecast.withEvent(ForecastEvent.Replaced(agent, number, Instant.ofNanos(world.nowNs)))

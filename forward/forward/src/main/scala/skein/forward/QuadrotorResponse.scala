@@ -25,13 +25,12 @@ private[skein] final class QuadrotorVehicle(quadrotor: Rotorcraft, hoveredNs: Lo
   private var guidance: Guidance = Setpoint.Disarmed
   private var setpoint: Setpoint = Setpoint.Disarmed
   private var renewedAt          = 0L
-  private var down               = 0.0
 
   // Since it was put to its start, ns.
   private var now, steppedTo = 0L
 
   def start(x: Double, y: Double, z: Double): Unit =
-    originX = x; originY = y; down = z
+    originX = x; originY = y
     val hold = Vector3(0, 0, z - quadrotor.hoverSagM(z))
     quadrotor.hover(state, hold, 0, Environment.Calm)
     state.place(Vector3(0, 0, z), Quaternion.Identity)
@@ -39,10 +38,7 @@ private[skein] final class QuadrotorVehicle(quadrotor: Rotorcraft, hoveredNs: Lo
     now = 0; steppedTo = 0
     advance(0)
 
-  def command(vx: Double, vy: Double): Unit =
-    fly(Setpoint.velocityZ(vx.toFloat, vy.toFloat, down.toFloat))
-
-  override def act(action: Action): Unit =
+  def act(action: Action): Unit =
     fly(OnWire.of(action) match
       case Action.Hover     => Setpoint.hold(state.positionNed)
       case Action.Turn(yaw) => ActionGuidance.turned(Setpoint.hold(state.positionNed), yaw, Vector3.Zero)

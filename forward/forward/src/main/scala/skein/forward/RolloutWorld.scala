@@ -54,8 +54,7 @@ private[skein] final class RolloutWorld(
   private val asked         = Array.ofDim[Int](count)
 
   // Commands by vehicle and number.
-  private val norths, easts    = Array.ofDim[Double](count * ring)
-  private val actions          = Array.fill(count * ring)(Option.empty[Action])
+  private val actions          = Array.ofDim[Action](count * ring)
   private val commandSteps     = Array.ofDim[Int](count * ring)
   private val commanded        = Array.ofDim[Int](count)
   private val commandAt, ackAt = Array.ofDim[Long](count)
@@ -189,22 +188,12 @@ private[skein] final class RolloutWorld(
     *
     * @return its number
     */
-  def send(
-      agent: Int,
-      headingRad: Double,
-      speedMps: Double,
-      northMps: Double,
-      eastMps: Double,
-      action: Option[Action],
-      step: Int
-  ): Int =
+  def send(agent: Int, action: Action, step: Int): Int =
     val number = commanded(agent)
     commanded(agent) += 1
-    norths(slot(agent, number)) = northMps
-    easts(slot(agent, number)) = eastMps
     actions(slot(agent, number)) = action
     commandSteps(slot(agent, number)) = step
-    observer.commanded(agent, number, time, headingRad, speedMps)
+    observer.commanded(agent, number, time, action)
     commandAt(agent) =
       math.max(commandAt(agent), time + link.delayNs(key, Delays.command(agent), step, number, time))
     schedule(commandAt(agent), Arrived, agent, number)
@@ -225,29 +214,21 @@ private[skein] final class RolloutWorld(
 
   def acts(agent: Int, number: Int): Unit =
     observer.acts(agent, number, time)
-    val at = slot(agent, number)
-    command(agent, norths(at), easts(at), actions(at))
+    act(agent, actions(slot(agent, number)))
 
-  def commandNow(
-      agent: Int,
-      headingRad: Double,
-      speedMps: Double,
-      northMps: Double,
-      eastMps: Double,
-      action: Option[Action]
-  ): Unit =
-    observer.commanded(agent, commanded(agent), time, headingRad, speedMps)
+  def commandNow(agent: Int, action: Action): Unit =
+    observer.commanded(agent, commanded(agent), time, action)
     observer.acts(agent, commanded(agent), time)
     commanded(agent) += 1
-    command(agent, northMps, eastMps, action)
+    act(agent, action)
 
   def decided(agent: Int, elapsedS: Double, upon: Grounds): Unit =
     observer.decided(agent, time, elapsedS, upon)
     if isAwaited then mayEnd()
 
-  private def command(agent: Int, northMps: Double, eastMps: Double, action: Option[Action]): Unit =
+  private def act(agent: Int, action: Action): Unit =
     vehicles(agent).advance(nowS)
-    action.fold(vehicles(agent).command(northMps, eastMps))(vehicles(agent).act)
+    vehicles(agent).act(action)
 
 private[skein] object RolloutWorld:
   private val NotBegun = -1L

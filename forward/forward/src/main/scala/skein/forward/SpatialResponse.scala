@@ -23,23 +23,21 @@ final case class SpatialResponse(plant: SpatialPlant[?]) extends VelocityRespons
     case _: (Action.Position | Action.Attitude) | Action.Land                                 => false
 
 private final class SpatialVehicle[S](plant: SpatialPlant[S]) extends Vehicle:
-  private val coming               = DeadTime(plant.deadTimeS)
-  private val flight               = SpatialFlight(plant)
-  private var startX, startY, down = 0.0
-  private var nowS                 = 0.0
-  private var isCommanded          = false
-  private var reading              = flight.reading
+  private val coming         = DeadTime(plant.deadTimeS)
+  private val flight         = SpatialFlight(plant)
+  private var startX, startY = 0.0
+  private var nowS           = 0.0
+  private var isCommanded    = false
+  private var reading        = flight.reading
 
   def start(x: Double, y: Double, z: Double): Unit =
-    startX = x; startY = y; down = z
+    startX = x; startY = y
     flight.rest(z)
     reading = flight.reading
     nowS = 0; isCommanded = false
     coming.clear()
 
-  def command(vx: Double, vy: Double): Unit = coming.put(nowS, vx, vy, down, 1)
-
-  override def act(action: Action): Unit = action.byVelocity match
+  def act(action: Action): Unit = action.byVelocity match
     case Action.Velocity(velocity, _)            => coming.put(nowS, velocity.x, velocity.y, velocity.z, 0)
     case Action.VelocityAt(north, east, down, _) => coming.put(nowS, north, east, down.value, 1)
     case _                                       => coming.put(nowS, 0, 0, 0, 0)

@@ -10,14 +10,11 @@ trait Vehicle:
   /** Sets it to rest here, at time 0; world NED, m. */
   def start(x: Double, y: Double, z: Double): Unit
 
-  /** A horizontal velocity (m/s, north and east) at the altitude of the start, which arrives now. It takes
-    * effect after the vehicle's dead time, until another command does.
+  /** A horizontal velocity at the altitude of the start, or another action that it
+    * [[VelocityResponse.performs performs]], which arrives now. It takes effect after the vehicle's dead
+    * time, until another does.
     */
-  def command(vx: Double, vy: Double): Unit
-
-  /** Any other action that it [[VelocityResponse.performs performs]], which arrives now. */
-  def act(action: Action): Unit =
-    throw UnsupportedOperationException(s"this vehicle does not perform $action")
+  def act(action: Action): Unit
 
   /** Simulates until this time, s; times must not decrease. */
   def advance(timeS: Double): Unit

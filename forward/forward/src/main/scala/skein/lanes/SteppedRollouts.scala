@@ -2,6 +2,7 @@ package skein.lanes
 
 import skein.forward.*
 import skein.lanes.plant.LaneQuadrotors
+import skein.policy.Action
 import skein.simd.LaneMath
 import skein.units.{Quaternion, Vector3}
 
@@ -74,7 +75,10 @@ private final class SteppedRollouts private (
       down = z.toFloat
       vehicles.hover(place, z)
 
-    def command(vx: Double, vy: Double): Unit = vehicles.command(place, vx.toFloat, vy.toFloat, down)
+    def act(action: Action): Unit = action.byVelocity match
+      case Action.VelocityAt(north, east, _, _) =>
+        vehicles.command(place, north.toFloat, east.toFloat, down)
+      case other => throw UnsupportedOperationException(s"this vehicle does not perform $other")
 
     def advance(timeS: Double): Unit = sinceStepS = (Nanos.of(timeS) - steppedTo) * 1e-9
 

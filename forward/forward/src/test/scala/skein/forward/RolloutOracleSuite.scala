@@ -1,7 +1,7 @@
 package skein.forward
 
 import scala.collection.mutable.ArrayBuffer
-import skein.policy.{PaperPursuer, HeadingPolicy, PurePursuit}
+import skein.policy.{Action, PaperPursuer, HeadingPolicy, PurePursuit}
 import skein.signal.LatencyDistribution
 import skein.simd.WorldRandom
 import skein.units.*
@@ -87,8 +87,8 @@ class RolloutOracleSuite extends munit.FunSuite:
   private def headings(timing: LoopTiming, link: Delays): Map[Int, Vector[Double]] =
     val sent     = Map(0 -> ArrayBuffer.empty[Double], 1 -> ArrayBuffer.empty[Double])
     val observer = new LoopObserver:
-      override def commanded(vehicle: Int, number: Int, atNs: Long, headingRad: Double, speed: Double): Unit =
-        sent(vehicle) += headingRad
+      override def commanded(vehicle: Int, number: Int, atNs: Long, action: Action): Unit =
+        sent(vehicle) += action.headingRad(0)
     val _ = Rollout(Duel.paper.copy(durationS = 20), timing, link, lag).fly(0, observer = observer)
     sent.view.mapValues(_.toVector).toMap
 
@@ -130,7 +130,7 @@ class RolloutOracleSuite extends munit.FunSuite:
       val vehicle = VelocityResponses.lag(gain = 0.8, lagS = 0.5, deadTimeS = 0.12).create()
       vehicle.start(0, 0, -20)
       for (second, (vx, vy)) <- Seq((10.0, 0.0), (3.0, 9.0), (-5.0, 5.0)).zipWithIndex.map(_.swap) do
-        vehicle.command(vx, vy)
+        vehicle.act(Action.VelocityAt(vx, vy, Metres(-20)))
         for piece <- 1 to pieces do vehicle.advance(second + piece.toDouble / pieces)
       Vector(vehicle.x, vehicle.y, vehicle.vx, vehicle.vy)
     for pieces <- Seq(7, 1000) do assertClose(fly(pieces), fly(1), 1e-11)

@@ -1,7 +1,7 @@
 package skein.forward
 
 import scala.collection.mutable.ArrayBuffer
-import skein.policy.{PaperEvader, PaperPursuer, HeadingPolicy}
+import skein.policy.{Action, PaperEvader, PaperPursuer, HeadingPolicy}
 import skein.scenario.PaperDuel
 import skein.signal.LatencyDistribution
 import skein.simd.WorldRandom
@@ -132,9 +132,9 @@ class RolloutSuite extends munit.FunSuite:
   test("the reduced model follows its differential equation through dead time and commands"):
     val vehicle = VelocityResponses.lag(gain = 0.8, lagS = 0.5, deadTimeS = 0.12).create()
     vehicle.start(0, 0, 0)
-    vehicle.command(10, 0)
+    vehicle.act(Action.VelocityAt(10, 0, Metres(0)))
     vehicle.advance(0.3)
-    vehicle.command(0, 10)
+    vehicle.act(Action.VelocityAt(0, 10, Metres(0)))
     vehicle.advance(1.0)
     var x, y, vx, vy = 0.0
     val dt           = 1e-5

@@ -2,7 +2,7 @@ package skein.identify
 
 import skein.forecast.Structure
 import skein.forward.{DelayTable, Duel, LoopTiming, Rollout, Vehicle, VelocityResponse, VelocityResponses}
-import skein.policy.Role
+import skein.policy.{Action, Role}
 import skein.scenario.PaperDuel
 import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
@@ -62,9 +62,11 @@ private final class TappedVehicle(vehicle: Vehicle) extends Vehicle:
     vehicle.start(x, y, z)
     down = z
 
-  def command(vx: Double, vy: Double): Unit =
-    vehicle.command(vx, vy)
-    arrivals += ArrivedCommand(now, vx, vy)
+  def act(action: Action): Unit =
+    vehicle.act(action)
+    action.byVelocity match
+      case Action.VelocityAt(vx, vy, _, _) => arrivals += ArrivedCommand(now, vx, vy)
+      case _                               => ()
 
   def advance(timeS: Double): Unit =
     vehicle.advance(timeS)

@@ -1,6 +1,7 @@
 package skein.vehicle
 
 import skein.forward.{PlantResponse, VelocityResponses}
+import skein.policy.Action
 import skein.signal.{Kinematics, SplitMix64}
 import skein.units.*
 
@@ -66,7 +67,7 @@ class ReducedModelSuite extends munit.FunSuite:
       velocity = wanted + (velocity - wanted) * lag.remains(spanS)
     for k <- 1 to 40 do
       vehicle.advance(0.07 * k)
-      vehicle.command(9 * math.cos(k), 9 * math.sin(k))
+      vehicle.act(Action.VelocityAt(9 * math.cos(k), 9 * math.sin(k), Metres(-20)))
       glide(if k == 1 then 0.12 else 0.07)
       wanted = 0.9 * 9 * math.sin(k)
     // Longer than a piece.
@@ -86,7 +87,7 @@ class ReducedModelSuite extends munit.FunSuite:
     assert(after(60, 61).velocityNed.x > 0)
     val expected = PlantResponse(model).create()
     expected.start(0, 0, -20)
-    expected.command(10, 0)
+    expected.act(Action.VelocityAt(10, 0, Metres(-20)))
     expected.advance(0.15)
     assertEqualsDouble(after(150).positionNed.x, expected.x, 1e-12)
     assertEqualsDouble(after(100, 50).positionNed.x, expected.x, 1e-12)

@@ -2,7 +2,7 @@ package skein.environment
 
 import scala.util.control.ControlThrowable
 import skein.forward.{LoopObserver, Rollout}
-import skein.policy.{Decided, ObservingPolicy, PlanarObservation, HeadingPolicy}
+import skein.policy.{Action, Decided, ObservingPolicy, PlanarObservation, HeadingPolicy}
 import skein.signal.SplitMix64
 import skein.simd.WorldRandom
 import skein.units.OwnFailure
@@ -105,17 +105,11 @@ private final class LearnerRollout(side: ScenarioSide, learner: Int) extends Aut
         leastM = leastM.min(distanceM)
         loss += side.loss(distanceM, northM, eastM)
 
-    override def commanded(
-        vehicle: Int,
-        number: Int,
-        atNs: Long,
-        headingRad: Double,
-        speedMps: Double
-    ): Unit =
-      if !headingRad.isFinite || !speedMps.isFinite then
+    override def commanded(vehicle: Int, number: Int, atNs: Long, action: Action): Unit =
+      if !Action.isFinite(action) then
         throw OwnFailure(
           s"the policy of ${side.nameOf(vehicle)}",
-          s"decided for what no vehicle can do: to fly at $speedMps m/s with a heading of $headingRad rad"
+          s"decided for what no vehicle can do: $action"
         )
 
 private object LearnerRollout:

@@ -170,7 +170,7 @@ class ScenarioGroupSuite extends munit.FunSuite:
     assert(clue(told("", "throws")).startsWith(s"the quantity Off $thrown"))
     assertEquals(
       told("NaN", ""),
-      "the policy of Evader decided for what no vehicle can do: to fly at 4.0 m/s with a heading of NaN rad"
+      "the policy of Evader decided for what no vehicle can do: Along(NaN,4.0,0.0,Still)"
     )
     assertEquals(told("", "NaN"), "the quantity Off answered NaN, which nobody can be rewarded by")
 

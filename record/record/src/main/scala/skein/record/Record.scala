@@ -33,7 +33,7 @@ final class LaterRow(make: => Record) extends Recordable:
 final class LaterDecision(
     val vehicle: String,
     val decidedAt: Instant,
-    val action: Option[Action],
+    val action: Action,
     val seesOthers: Boolean,
     make: => DecisionRow
 ) extends Recordable:

@@ -2,8 +2,9 @@ package skein.mujoco
 
 import java.nio.file.{Files, Path}
 import scala.collection.concurrent.TrieMap
+import skein.policy.Action
 import skein.testing.Waiting
-import skein.units.Vector3
+import skein.units.{Metres, Vector3}
 import skein.vehicle.*
 
 /** MuJoCo models as bodies, controlled by AirSim's flight controller. */
@@ -92,7 +93,7 @@ class MujocoRotorcraftLiveSuite extends MujocoHere, Waiting:
         for place <- 0 until 6 do
           val (north, east) = ((place + step % 7).toFloat, (3 - place).toFloat)
           together.command(place, north, east, -20)
-          alone(place).command(north, east)
+          alone(place).act(Action.VelocityAt(north, east, Metres(-20)))
       together.step()
       for place <- 0 until 6 do alone(place).advance((step + 1) * response.stepS)
     for place <- 0 until 6 do

@@ -2,7 +2,7 @@ package skein.lanes.timetable
 
 import skein.forward.{DelayTable, Delays, RolloutAgent, Engagement, TabledDelays, Vehicle, VelocityResponse}
 import skein.fusion.SensorModel
-import skein.policy.{Assignment, KeepHeading, Role}
+import skein.policy.{Action, Assignment, KeepHeading, Role}
 
 /** Vehicles at rest, to compute a loop's times, which do not depend on positions. */
 private[lanes] object StandingStill:
@@ -26,7 +26,7 @@ private[lanes] object StandingStill:
     override def handoverS: Double = handsOverS
     def create(): Vehicle          = new Vehicle:
       def start(x: Double, y: Double, z: Double): Unit = ()
-      def command(vx: Double, vy: Double): Unit        = ()
+      def act(action: Action): Unit                    = ()
       def advance(timeS: Double): Unit                 = ()
       def x: Double                                    = 0
       def y: Double                                    = 0

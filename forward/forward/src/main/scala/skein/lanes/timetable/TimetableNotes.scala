@@ -5,6 +5,7 @@ import scala.collection.mutable
 import skein.forecast.{Forecast, Leg}
 import skein.forward.{Grounds, LoopObserver}
 import skein.fusion.{Exposure, SensorModel}
+import skein.policy.Action
 import skein.units.Instant
 
 /** Records the events of an episode in their order. Readings and decisions count from 1 for each vehicle. */
@@ -131,13 +132,8 @@ private[lanes] final class TimetableNotes(
     order.known(image)
     all += Note.Join(vehicle, atNs * 1e-9, image, order.isOlder, order.last)
 
-  override def commanded(
-      vehicle: Int,
-      number: Int,
-      atNs: Long,
-      headingRad: Double,
-      speedMps: Double
-  ): Unit = decisionOf(vehicle) += decisions(vehicle)
+  override def commanded(vehicle: Int, number: Int, atNs: Long, action: Action): Unit =
+    decisionOf(vehicle) += decisions(vehicle)
 
   override def acts(vehicle: Int, number: Int, atNs: Long): Unit =
     all += Note.Act(vehicle, atNs * 1e-9 + model.deadTimeS, decisionOf(vehicle)(number)): Unit
