@@ -1,6 +1,7 @@
 package skein.loop
 
 import skein.policy.Action
+import skein.port.CommandPlan
 import skein.units.*
 
 /** A decision for one vehicle, with its inputs.
@@ -13,6 +14,7 @@ import skein.units.*
   * @param heading the chosen one
   * @param speed the chosen one; absent where the vehicle always commands its own
   * @param action the chosen one; absent where heading and speed at the altitude of the start define it
+  * @param plan this decision's action and those foreseen after it, where they are sent in one command
   */
 final case class Decision(
     vehicle: Int,
@@ -24,7 +26,8 @@ final case class Decision(
     elapsed: Span,
     heading: Radians,
     speed: Option[MetresPerSecond],
-    action: Option[Action] = None
+    action: Option[Action] = None,
+    plan: Option[CommandPlan] = None
 ):
   /** The sent command as other vehicles' policies observe it. */
   def move(sentAt: Instant): SentCommand =

@@ -3,7 +3,7 @@ package skein.airsim
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.{ExecutionContext, Future}
 import skein.policy.{Action, Yaw}
-import skein.port.{Sensor, SteppedTime, VehicleError, VehiclePort}
+import skein.port.{CommandPlan, Sensor, SteppedTime, VehicleError, VehiclePort}
 import skein.rpc.RpcError
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
@@ -45,6 +45,11 @@ final class AirSimVehicle(multirotor: Multirotor, onLost: String => Unit)(using 
       sent(_ => multirotor.moveByRollPitchYawThrottle(roll, pitch, yaw, thrust, lasts))
     case Action.Hover => hover()
     case Action.Land  => sent(_ => multirotor.land(lasts))
+
+  override def follow(plan: CommandPlan): Future[Either[VehicleError, Boolean]] =
+    multirotor.followPlan(plan).fold(
+      Future.successful(Left(VehicleError.Unsupported("expected a plan of velocities, came other actions")))
+    )(_.map(_.left.map(errorOf)))
 
   def hover(): Future[Either[VehicleError, Boolean]] = sent(_ => multirotor.hover())
 
