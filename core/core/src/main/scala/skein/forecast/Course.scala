@@ -9,7 +9,12 @@ import skein.vehicle.{Guidance, VehicleModel}
   * @param at on the simulator's clock
   * @param newestAt the valid time of the newest reading behind it
   */
-final class Course[S] private[forecast] (model: VehicleModel[S], state: S, val at: Instant, newestAt: Instant):
+final class Course[S] private[forecast] (
+    model: VehicleModel[S],
+    state: S,
+    val at: Instant,
+    newestAt: Instant
+):
   def estimate: Estimate = Estimate(model.kinematics(state), at, newestAt, model.numbers(state))
 
   /** The course after a stretch of flight under one command. */

@@ -24,7 +24,7 @@ final case class Forecast private (
   def withEvent(event: ForecastEvent): Forecast = event match
     case ForecastEvent.Seen(vehicle, reading)                  => seen(vehicle, reading)
     case ForecastEvent.Sent(vehicle, command)                  => updated(vehicle)(_.sent(command))
-    case ForecastEvent.Planned(vehicle, commands) => updated(vehicle)(_.planned(commands))
+    case ForecastEvent.Planned(vehicle, commands)              => updated(vehicle)(_.planned(commands))
     case ForecastEvent.Replaced(vehicle, sequence, answeredAt) =>
       updated(vehicle)(_.replaced(sequence, answeredAt))
     case ForecastEvent.Failed(vehicle, sequence) => updated(vehicle)(_.failed(sequence))

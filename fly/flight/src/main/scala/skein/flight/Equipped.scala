@@ -10,7 +10,7 @@ import skein.signal.Stamped
 private[skein] final class Equipped(vehicle: VehiclePort, more: Map[String, Sensor]) extends VehiclePort:
   export vehicle.{act, hover, read}
   override def follow(plan: CommandPlan): Future[Either[VehicleError, Boolean]] = vehicle.follow(plan)
-  override val sensors: Map[String, Sensor] = vehicle.sensors ++ more
+  override val sensors: Map[String, Sensor]                                     = vehicle.sensors ++ more
 
 private[skein] object Equipped:
 

@@ -13,7 +13,7 @@ import skein.loop.*
 import skein.loop.learning.{Learning, Lessons, LessonsAgain, LessonsBeside}
 import skein.loop.planning.{CountedPlanWorkers, PlanThread, PlanWorkers, ThreadedPlanWorkers}
 import skein.policy.Fleet
-import skein.port.CommandPlan
+import skein.port.{CommandPlan, VehicleError}
 import skein.record.*
 import skein.settings.{ChosenPolicy, FlightPlan, FlySettings, PolicyFile, RecordedPlan, Wire}
 import skein.signal.LatencyProfile
@@ -301,12 +301,15 @@ final class FlightAssembler(
     else if plan.policy.exists(_.learning.isDefined) then
       Future.failed(CannotFly("plan-in-packet: expected policies that do not learn in flight"))
     else
-      Future.traverse(reached.vehicles)(_.follow(CommandPlan.Question)).map: answers =>
-        for case Left(error) <- answers.headOption do
-          throw CannotFly(
-            "plan-in-packet: expected vehicles of the built-in simulator, which hold plans, " +
-              s"came ${reached.where}: ${error.message}"
-          )
+      // An outage that just happens says nothing of the vehicles.
+      def certain(answer: Either[VehicleError, Boolean]) = answer.fold(_.isCertain, _ => true)
+      Future.traverse(reached.vehicles)(one => UntilCertain(one.follow(CommandPlan.Question))(certain)).map:
+        answers =>
+          for error <- answers.flatMap(_.left.toOption).headOption do
+            throw CannotFly(
+              "plan-in-packet: expected vehicles of the built-in simulator, which hold plans, " +
+                s"came ${reached.where}: ${error.message}"
+            )
 
   private def fromSource(plan: FlightPlan, source: VehicleSource, opened: Opened): Future[ConnectedFleet] =
     if plan.loop == LoopKind.Paused then Future.failed(CannotFly(FlightAssembler.noSteps(source.where)))

@@ -44,7 +44,8 @@ private final class Foreseen(fleet: Fleet, deciders: IndexedSeq[Decider], period
       before.appended((at = course.at, action = action))
     if all.head.sizeIs >= CommandPlan.Most then all
     else
-      val flown = courses.lazyZip(actions).map((course, action) => course.flown(ActionGuidance.of(action), period))
+      val flown =
+        courses.lazyZip(actions).map((course, action) => course.flown(ActionGuidance.of(action), period))
       val moved = made.foldLeft(view)((view, made) => view.withMove(made._2.move(now)))
       val next  = moved.copy(
         readings = moved.readings.map(_.map(later)),

@@ -18,10 +18,11 @@ private final class Foresight(foreseen: Foreseen, starts: Vector[Memory]):
 
   /** A decision with its plan; one without predictions stays as it is. */
   def planned(decision: Decision): Decision =
-    val foretold = for
-      forecast  <- decision.view.forecast
-      estimates <- decision.view.estimates
-    yield (forecast, estimates(decision.vehicle).predictedFor)
+    val foretold =
+      for
+        forecast  <- decision.view.forecast
+        estimates <- decision.view.estimates
+      yield (forecast, estimates(decision.vehicle).predictedFor)
     foretold.fold(decision): (forecast, actsAt) =>
       val later = of(forecast, decision)(decision.vehicle).filter(_.at > actsAt)
       val first = (at = actsAt, action = foreseen.action(decision))

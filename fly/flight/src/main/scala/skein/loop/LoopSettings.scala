@@ -26,8 +26,8 @@ import skein.vehicle.{QuadrotorModel, VehicleModel}
   * @param deadline of every decision; without one a policy decides on the loop's own thread, which waits for
   *   it. `paused` has none: its time stands still
   * @param planInPacket whether `predictive` sends with each action those that it foresees, to a buffer beside
-  *   the vehicle ([[skein.port.PlanBuffer]]). Such commands are answered when they arrive, so
-  *   `movesInFlight` does not limit them, [[skein.port.Moves.MostInFlight]] does
+  *   the vehicle ([[skein.port.PlanBuffer]]). Such commands are answered when they arrive, so `movesInFlight`
+  *   does not limit them, [[skein.port.Moves.MostInFlight]] does
   */
 final case class LoopSettings(
     period: Span = Span.ofMillis(100),

@@ -33,7 +33,8 @@ private final class TeamDeciding(
   /** The plan is absent where a fallback decided. */
   private type Planned = (decision: Decision, plan: Option[PlanReport])
 
-  private val foresight = Foresight(Foreseen(fleet, deciders, settings.period), deciders.map(_.start).toVector)
+  private val foresight =
+    Foresight(Foreseen(fleet, deciders, settings.period), deciders.map(_.start).toVector)
 
   @volatile private var underWay = Option.empty[(vehicle: Int, at: Instant)]
 

@@ -98,7 +98,8 @@ private final class TeamSteering(
 
   /** Forecast events: commands sent, and command endings that change a prediction. */
   def told: Flow[SteeringEvent, LoopEvent, NotUsed] = Flow[SteeringEvent].collect(Function.unlift:
-    case SteeringEvent(_, Steered.Sent(decision, at)) => Some(LoopEvent.Moved(decision.move(at), decision.plan))
+    case SteeringEvent(_, Steered.Sent(decision, at)) =>
+      Some(LoopEvent.Moved(decision.move(at), decision.plan))
     case SteeringEvent(vehicle, Steered.Ended(decision, at, Success(Right(false)))) =>
       Some(LoopEvent.Heard(ForecastEvent.Replaced(vehicle, decision.sequence, at)))
     case SteeringEvent(_, Steered.Ended(_, _, Success(Right(true)))) => None
@@ -118,8 +119,8 @@ private final class TeamSteering(
     Flow[LoopEvent]
       .map:
         case event @ LoopEvent.Moved(move, _) => ((event.ordinal, move.vehicle), event)
-        case heard @ LoopEvent.Heard(event) => ((heard.ordinal, event.vehicle), heard)
-        case event                          => ((event.ordinal, -1), event)
+        case heard @ LoopEvent.Heard(event)   => ((heard.ordinal, event.vehicle), heard)
+        case event                            => ((event.ordinal, -1), event)
       .via(FeedBack.newest)
       .map(_._2)
       .addAttributes(parts.named("feed back"))

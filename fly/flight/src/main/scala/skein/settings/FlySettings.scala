@@ -24,8 +24,7 @@ import skein.vehicle.VehicleKind
   * @param predictor by which `predictive` predicts multirotors; cars are predicted by their own model
   * @param movesInFlight limit of unanswered moves of one vehicle; more than 2 are for links that never
   *   deliver several simultaneously: see [[skein.flow.Steer]]
-  * @param planInPacket whether `predictive` sends plans to a buffer beside the vehicle: see
-  *   [[LoopSettings]]
+  * @param planInPacket whether `predictive` sends plans to a buffer beside the vehicle: see [[LoopSettings]]
   * @param plant the built-in simulator's kind of multirotor
   * @param wire protocol of the vehicles
   * @param solver a remote solver for additional flights, beside those that decide in this process; a decision
@@ -320,7 +319,9 @@ object FlySettings:
     else if settings.deadline.isDefined || settings.solver.isDefined then
       Some("expected without deadline and solver, since the policy is asked for later moments too")
     else if settings.policies.exists(OutsidePolicy.decides) then
-      Some("expected policies of this process, which are asked for later moments too, came one behind a socket")
+      Some(
+        "expected policies of this process, which are asked for later moments too, came one behind a socket"
+      )
     else
       settings.cars.headOption.map(car => s"expected multirotors, which hold plans, came the car ${car.name}")
 

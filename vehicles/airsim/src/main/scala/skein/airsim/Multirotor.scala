@@ -179,18 +179,27 @@ final class Multirotor(
   def rotateByYawRate(radiansPerSecond: Double, duration: Span): Future[Either[RpcError, Boolean]] =
     move("rotateByYawRate", duration, degrees(radiansPerSecond), seconds(duration))
 
-  /** Gives the vehicle's buffer a plan of velocities; it is answered as soon as the buffer has it. Only the
-    * built-in simulator supports this.
+  /** Gives the vehicle's buffer a plan of velocities; it is answered as soon as the buffer has it, and
+    * awaited as long as the plan lasts. Plans may overtake one another, since each takes the connection on
+    * which least is on its way. Only the built-in simulator supports this.
     *
+    * @param number greater than that of all plans before
     * @return None if an action of the plan is none by velocity
     */
-  def followPlan(plan: CommandPlan): Option[Future[Either[RpcError, Boolean]]] =
+  def followPlan(number: Long, plan: CommandPlan): Option[Future[Either[RpcError, Boolean]]] =
     val last  = plan.actions.lastOption.fold(Instant.Epoch)(_.at + CommandPlan.Hold)
     val calls = plan.actions.flatMap: (at, action) =>
-      planned(action, last.since(at)).map((method, params) => Arr(Int64(at.toNanos), Str(method), Arr(params*)))
+      planned(action, last.since(at)).map((method, params) =>
+        Arr(Int64(at.toNanos), Str(method), Arr(params*))
+      )
     Option.when(calls.size == plan.actions.size):
       val acts = plan.actions.headOption.fold(Span.Zero)(first => last.since(first.at))
-      call("skeinFollowPlan", Seq(Int64(plan.sequence), Arr(calls*)), moving(acts))
+      call("skeinFollowPlan", Seq(Int64(number), Arr(calls*)), once.copy(timeout = client.timeout + acts))
+
+  /** Ends all plans before this number, even those that arrive later, and lets the vehicle hover. */
+  def endPlans(number: Long): Future[Either[RpcError, Boolean]] =
+    val hover = Arr(Int64(0), Str("hover"), Arr(Seq.empty[Msg]*))
+    call("skeinFollowPlan", Seq(Int64(number), Arr(hover)), once)
 
   private def planned(action: Action, lasts: Span): Option[(String, Seq[Msg])] = action match
     case Action.VelocityAt(north, east, down, yaw) =>

@@ -19,6 +19,13 @@ private[simulator] final class FollowedPlan:
     buffer = buffer.received(sequence, plan, now)
     if due.forall(_ > now) then due = buffer.due(now).map(_ => now).orElse(buffer.nextAfter(now))
 
+  /** Ends all plans. Those that are older than the newest received stay without effect when they come. */
+  def stop(now: Instant): Unit =
+    val none = PlanBuffer.empty[Move.Order]
+    buffer = buffer.newest.fold(none)(none.received(_, Vector.empty, now))
+    running = None
+    due = None
+
   /** Lets the vehicle do what is due. */
   def turn(vehicle: SimulatedMultirotor, now: Instant): Unit =
     for next <- buffer.due(now) if !running.exists(_.order eq next.action) do

@@ -245,7 +245,8 @@ final class Simulation(
           case CallOutcome.Steps(span) => continueFor(span, call.token, at)
           case CallOutcome.Flies(vehicle, order) =>
             val flight = Waiting(call, order)
-            val wins   = isControl(call.method) || isOpen && !settings.losesCancel()
+            if call.method != "hover" then world.forgetPlans(vehicle)
+            val wins = isControl(call.method) || isOpen && !settings.losesCancel()
             workers.dismiss(vehicle, all = wins).foreach(flight => giveUp(flight.call))
             if wins then
               world.cancelMove(vehicle)

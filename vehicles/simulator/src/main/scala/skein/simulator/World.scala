@@ -117,7 +117,7 @@ final class World(
     * @param token returned when the move ends
     */
   private[simulator] def startMove(vehicle: Int, token: Long, move: Move): Unit =
-    followed.remove(vehicle): Unit
+    followed.get(vehicle).foreach(_.stop(clock))
     moves(vehicle) = Some(Running(token, move, clock, clock))
     takeTurn(vehicle)
 
@@ -132,9 +132,12 @@ final class World(
     buffer.receive(sequence, plan, clock)
     if buffer.dueAt.exists(_ <= clock) then buffer.turn(multirotor(vehicle), clock)
 
+  /** Forgets the vehicle's plans and their numbers: whoever sends the next may count from anywhere. */
+  private[simulator] def forgetPlans(vehicle: Int): Unit = followed.remove(vehicle): Unit
+
   /** Ends the vehicle's move, if there is one, with false, and its plans. */
   def cancelMove(vehicle: Int): Unit =
-    followed.remove(vehicle): Unit
+    followed.get(vehicle).foreach(_.stop(clock))
     end(vehicle, result = false)
 
   private[simulator] def isMoving(vehicle: Int): Boolean = moves(vehicle).nonEmpty
@@ -158,6 +161,7 @@ final class World(
 
   def reset(): Unit =
     vehicles.indices.foreach(cancelMove)
+    followed.clear()
     vehicles.foreach(_.reset(clock))
     scans.forget()
     scans.note(clock, scan)
