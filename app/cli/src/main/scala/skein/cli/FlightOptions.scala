@@ -80,6 +80,13 @@ final case class FlightOptions(
           "commands, but several that a stall delivers at once can freeze AirSim"
     )
     movesInFlight: Option[Int],
+    @arg(
+      name = "plan-in-packet",
+      doc =
+        "each command of `predictive` carries its plan for the next moments: a buffer beside the vehicle " +
+          "performs what is due, through delays and losses; built-in simulator alone"
+    )
+    planInPacket: Flag,
     @arg(doc = "deadline of each decision, for example 20ms; without it, the loop waits for policies")
     deadline: Option[String],
     @arg(doc =

@@ -24,6 +24,7 @@ final case class Forecast private (
   def withEvent(event: ForecastEvent): Forecast = event match
     case ForecastEvent.Seen(vehicle, reading)                  => seen(vehicle, reading)
     case ForecastEvent.Sent(vehicle, command)                  => updated(vehicle)(_.sent(command))
+    case ForecastEvent.Planned(vehicle, commands)              => updated(vehicle)(_.planned(commands))
     case ForecastEvent.Replaced(vehicle, sequence, answeredAt) =>
       updated(vehicle)(_.replaced(sequence, answeredAt))
     case ForecastEvent.Failed(vehicle, sequence) => updated(vehicle)(_.failed(sequence))
@@ -50,6 +51,15 @@ final case class Forecast private (
   def legsWhenActing(now: Instant): Option[Vector[Vector[Leg]]] =
     for delays <- delays if tracks.forall(_.isDefined)
     yield tracks.flatten.map(_.legsTo(delays.expectedArrival(now), delays, now))
+
+  /** The vehicles at the moments of estimates of this forecast, to be flown on from there.
+    *
+    * @param estimates of [[whenActing]], by vehicle
+    * @param now as there
+    */
+  def courses(estimates: Vector[Estimate], now: Instant): Vector[Course[?]] =
+    tracks.zip(estimates).flatMap: (track, estimate) =>
+      for track <- track; delays <- delays yield track.courseAt(estimate.predictedFor, delays, now)
 
   private def seen(vehicle: Int, reading: Stamped[Kinematics]): Forecast =
     // What a simulator told before it started again says nothing of what will be.
@@ -88,6 +98,12 @@ enum ForecastEvent:
   case Seen(vehicle: Int, reading: Stamped[Kinematics])
 
   case Sent(vehicle: Int, command: Commanded)
+
+  /** A plan was sent to the buffer beside the vehicle.
+    *
+    * @param commands its actions, each with the moment at which it acts
+    */
+  case Planned(vehicle: Int, commands: Vector[Commanded])
 
   /** The vehicle reported that a command was replaced, as AirSim does when the next one arrives; this
     * acknowledges the next one.

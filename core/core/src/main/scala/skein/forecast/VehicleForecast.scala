@@ -1,9 +1,8 @@
 package skein.forecast
 
-import scala.annotation.tailrec
 import skein.signal.{Kinematics, OneWayDelays, Stamped}
 import skein.units.*
-import skein.vehicle.{Guidance, Setpoint, VehicleModel}
+import skein.vehicle.{Setpoint, VehicleModel}
 
 /** The forecast of one vehicle: its newest readings and the commands that act on it or are on their way.
   * Instants are the controller's, except where they come from the simulator: `validAt` and everything named
@@ -49,6 +48,15 @@ final case class VehicleForecast[S] private (
   def sent(command: Commanded): VehicleForecast[S] =
     copy(commands = (commands :+ command).takeRight(VehicleForecast.CommandLimit))
 
+  /** Adds the actions of a plan, which replace those of earlier plans from its first moment on, as in
+    * [[skein.port.PlanBuffer]]. They are taken to arrive in time: where they do not, an earlier plan's
+    * actions act, which are much the same.
+    */
+  def planned(plan: Vector[Commanded]): VehicleForecast[S] =
+    val from = plan.headOption.flatMap(_.actsAt)
+    val kept = commands.filterNot(_.actsAt.exists(acts => from.exists(acts >= _)))
+    copy(commands = (kept ++ plan).takeRight(VehicleForecast.CommandLimit))
+
   /** The vehicle reported that a command was replaced, so its successor has arrived. Changes nothing if the
     * successor took effect before all commands held here.
     */
@@ -64,15 +72,18 @@ final case class VehicleForecast[S] private (
   def failed(sequence: Long): VehicleForecast[S] =
     copy(commands =
       commands.take(1) ++ commands.drop(1).filterNot(command =>
-        command.sequence == sequence && command.answeredAt.isEmpty
+        command.sequence == sequence && command.answeredAt.isEmpty && command.actsAt.isEmpty
       )
     )
 
   /** The estimate at an instant on the simulator's clock; not before the newest reading. */
   def estimateAt(validAt: Instant, delays: OneWayDelays, now: Instant): Estimate =
-    val at    = validAt.max(newest.validAt)
-    val flown = advancedTo(at, delays, now)
-    Estimate(model.kinematics(flown), at, newest.validAt, model.numbers(flown))
+    courseAt(validAt, delays, now).estimate
+
+  /** The vehicle at the instant of [[estimateAt]], to be flown on from there. */
+  def courseAt(validAt: Instant, delays: OneWayDelays, now: Instant): Course[S] =
+    val at = validAt.max(newest.validAt)
+    Course(model, advancedTo(at, delays, now), at, newest.validAt)
 
   /** The vehicle's position at an instant on the simulator's clock, by cubic interpolation between the two
     * readings around it; absent without two such readings within [[VehicleForecast.MaxGap]].
@@ -104,35 +115,28 @@ final case class VehicleForecast[S] private (
 
   private def advancedTo(validAt: Instant, delays: OneWayDelays, now: Instant): S =
     legsTo(validAt, delays, now).foldLeft(state): (flown, leg) =>
-      guided(flown, leg.command.fold(resting)(_.guidance), leg.span)
-
-  private def guided(from: S, guidance: Guidance, span: Span): S =
-    val period                                  = guidance.period.getOrElse(span)
-    @tailrec def flown(state: S, left: Span): S =
-      val part = left.min(period)
-      val next = model.advanced(state, guidance.setpoint(model.kinematics(state)), part)
-      if part < left then flown(next, left - part) else next
-    flown(from, span)
+      Course.guided(model, flown, leg.command.fold(resting)(_.guidance), leg.span)
 
   /** Commands with the times at which they take effect, on the simulator's clock. On an ordered connection
-    * none takes effect before one sent earlier.
+    * none takes effect before one sent earlier. Those of plans have moments of their own.
     */
   private def effects(delays: OneWayDelays, now: Instant): Iterator[(Commanded, Instant)] =
     var latest = Option.empty[Instant]
     commands.iterator
       .filterNot(isPresumedLost(_, delays, now))
       .map: command =>
-        val arrives = command.answeredAt.fold(delays.expectedArrival(command.sentAt)):
-          delays.arrivalGiven(command.sentAt, _)
+        val arrives = command.actsAt.getOrElse:
+          command.answeredAt.fold(delays.expectedArrival(command.sentAt)):
+            delays.arrivalGiven(command.sentAt, _)
         val acts = latest.fold(arrives)(_.max(arrives))
         latest = Some(acts)
         (command, acts)
 
   /** Whether a command is taken for lost because its acknowledgement is overdue. The oldest held one never
-    * is: one command is always in effect.
+    * is: one command is always in effect. Nor are those of plans: where one is lost, others stand in.
     */
   private def isPresumedLost(command: Commanded, delays: OneWayDelays, now: Instant): Boolean =
-    command.answeredAt.isEmpty && command != commands.head &&
+    command.answeredAt.isEmpty && command.actsAt.isEmpty && command != commands.head &&
       now.since(command.sentAt) > delays.roundTrip * 2 + VehicleForecast.Grace
 
   /** Index of the command in effect; 0 if there is none. */

@@ -24,7 +24,16 @@ trait VehiclePort:
     */
   def act(action: Action, lasts: Span): Future[Either[VehicleError, Boolean]]
 
-  /** Ends every action. Completes once the vehicle holds its position. */
+  /** Gives a plan to the buffer beside the vehicle, which carries out the action of each moment: see
+    * [[PlanBuffer]]. Completes when the buffer has received it, with true.
+    *
+    * @return [[VehicleError.Unsupported]] or [[VehicleError.Refused]] where there is no such buffer
+    */
+  def follow(plan: CommandPlan): Future[Either[VehicleError, Boolean]] =
+    val reason = s"plan ${plan.sequence}: no buffer beside this vehicle holds plans"
+    Future.successful(Left(VehicleError.Unsupported(reason)))
+
+  /** Ends every action, and every plan. Completes once the vehicle holds its position. */
   def hover(): Future[Either[VehicleError, Boolean]]
 
   def sensors: Map[String, Sensor] = Map.empty

@@ -57,6 +57,35 @@ class VehicleForecastSuite extends munit.FunSuite:
       Vector(Some(controller(395)), None)
     )
 
+  /** A plan that flies north with these speeds, in m/s, each for 100 ms. */
+  private def plan(sequence: Long, fromMs: Double, north: Double*) =
+    north.zipWithIndex.toVector.map: (speed, number) =>
+      command(sequence, speed, fromMs - 60).copy(actsAt = Some(simulator(fromMs + 100 * number)))
+
+  test("the actions of a plan act at their moments, however late it is answered"):
+    val track = VehicleForecast(obedient, reading(0, at(0))).planned(plan(0, 100, 10, 20, 30))
+    assertEqualsDouble(northAt(track, 100, 110), 0, 1e-4)
+    assertEqualsDouble(northAt(track, 250, 3000), 2, 1e-4)
+    assertEqualsDouble(northAt(track, 400, 3000), 6, 1e-4)
+
+  test("a newer plan replaces an older one from its first moment on, and a failed call changes nothing"):
+    val track = VehicleForecast(obedient, reading(0, at(0)))
+      .planned(plan(0, 100, 10, 20, 30))
+      .planned(plan(1, 250, 0, 40))
+    assertEqualsDouble(northAt(track, 250, 260), 2, 1e-4)
+    assertEqualsDouble(northAt(track, 350, 260), 2, 1e-4)
+    assertEqualsDouble(northAt(track, 400, 260), 4, 1e-4)
+    assertEquals(track.failed(1).commands, track.commands)
+
+  test("a course flies on from an estimate as the model does"):
+    val track  = VehicleForecast(obedient, reading(0, at(0))).planned(plan(0, 100, 10))
+    val course = track.courseAt(simulator(200), delays, controller(210))
+    val flown  = course.flown(Setpoint.velocityZ(-5, 0, -20), Span.ofMillis(100))
+    assertEquals(course.estimate, track.estimateAt(simulator(200), delays, controller(210)))
+    assertEquals(flown.at, simulator(300))
+    assertEqualsDouble(flown.estimate.kinematics.positionNed.x, 0.5, 1e-4)
+    assertEquals(flown.estimate.readAt, simulator(0))
+
   test("no command acts before one that was sent earlier"):
     val crossed = commanded
       .sent(command(2, -10, 130))

@@ -1,14 +1,16 @@
 package skein.flight
 
+import scala.concurrent.Future
 import skein.airsim.{LidarSensor, Scan, VehicleClient}
-import skein.port.{Sensor, VehiclePort}
+import skein.port.{CommandPlan, Sensor, VehicleError, VehiclePort}
 import skein.scenario.{Equipment, Scenario}
 import skein.signal.Stamped
 
 /** A vehicle with sensors in addition to its own. */
 private[skein] final class Equipped(vehicle: VehiclePort, more: Map[String, Sensor]) extends VehiclePort:
   export vehicle.{act, hover, read}
-  override val sensors: Map[String, Sensor] = vehicle.sensors ++ more
+  override def follow(plan: CommandPlan): Future[Either[VehicleError, Boolean]] = vehicle.follow(plan)
+  override val sensors: Map[String, Sensor]                                     = vehicle.sensors ++ more
 
 private[skein] object Equipped:
 

@@ -13,6 +13,7 @@ import skein.loop.*
 import skein.loop.learning.{Learning, Lessons, LessonsAgain, LessonsBeside}
 import skein.loop.planning.{CountedPlanWorkers, PlanThread, PlanWorkers, ThreadedPlanWorkers}
 import skein.policy.Fleet
+import skein.port.{CommandPlan, VehicleError}
 import skein.record.*
 import skein.settings.{ChosenPolicy, FlightPlan, FlySettings, PolicyFile, RecordedPlan, Wire}
 import skein.signal.LatencyProfile
@@ -123,6 +124,7 @@ final class FlightAssembler(
             settings.wire match
               case Wire.AirSim => airSim.connect(plan, server.fold(simulator.get)(_.address), opened, monitor)
               case Wire.Mavlink => overMavlink(plan, server, opened, monitor)
+        _ <- packets(plan, reached)
         _ <- Team.missingSensor(fleet, reached.vehicles).fold(reached.ping())(missing =>
           Future.failed(CannotFly(missing))
         )
@@ -146,6 +148,7 @@ final class FlightAssembler(
           SimulatorWatchdog.within(settings.period, Asking.Timeout),
           reached.where,
           reached.isOther,
+          () => reached.ping().map { case Right(_) => true; case _ => false },
           isShared,
           () => team.underDecision,
           line => tell(s"${plan.id}: $line")
@@ -291,6 +294,22 @@ final class FlightAssembler(
         () => Future.successful(Right(custody.check())),
         clocks = link.clocks
       )
+
+  /** Asks the vehicles whether they hold plans, if the flight sends them. */
+  private def packets(plan: FlightPlan, reached: ConnectedFleet): Future[Unit] =
+    if !settings.loopSettings(plan).planInPacket then Future.unit
+    else if plan.policy.exists(_.learning.isDefined) then
+      Future.failed(CannotFly("plan-in-packet: expected policies that do not learn in flight"))
+    else
+      // An outage that just happens says nothing of the vehicles.
+      def certain(answer: Either[VehicleError, Boolean]) = answer.fold(_.isCertain, _ => true)
+      Future.traverse(reached.vehicles)(one => UntilCertain(one.follow(CommandPlan.Question))(certain)).map:
+        answers =>
+          for error <- answers.flatMap(_.left.toOption).headOption do
+            throw CannotFly(
+              "plan-in-packet: expected vehicles of the built-in simulator, which hold plans, " +
+                s"came ${reached.where}: ${error.message}"
+            )
 
   private def fromSource(plan: FlightPlan, source: VehicleSource, opened: Opened): Future[ConnectedFleet] =
     if plan.loop == LoopKind.Paused then Future.failed(CannotFly(FlightAssembler.noSteps(source.where)))

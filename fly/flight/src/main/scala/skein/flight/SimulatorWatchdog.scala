@@ -3,7 +3,7 @@ package skein.flight
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Future
 import scala.util.Success
-import skein.loop.{Flight, FlightOutcome}
+import skein.loop.{Flight, FlightOutcome, UntilCertain}
 import skein.record.{Event, EventKind}
 import skein.units.*
 import skein.units.Decimals.fixed
@@ -16,6 +16,7 @@ import skein.units.Decimals.fixed
   *
   * @param isOther checks whether the simulator is another one; `Left` if it did not answer, else the
   *   evidence, if any
+  * @param answers asks the simulator for a sign of life over the flight's link
   * @param isShared whether other clients may take the vehicles: then it is checked every
   *   [[SimulatorWatchdog.AskEvery]]
   * @param within time-out of an answer
@@ -30,6 +31,7 @@ private[flight] final class SimulatorWatchdog(
     within: Span,
     simulator: String,
     isOther: () => Future[Either[String, Option[String]]],
+    answers: () => Future[Boolean],
     isShared: Boolean,
     deciding: () => Option[(vehicle: String, since: Instant)],
     tell: String => Unit
@@ -44,6 +46,7 @@ private[flight] final class SimulatorWatchdog(
   @volatile private var backAt, knownAt = startedAt
   @volatile private var asking          = false
   @volatile private var askedAt         = startedAt
+  @volatile private var endedSilent     = Option.empty[Span]
   @volatile private var isTold          = false
   @volatile private var wanders         = false
   @volatile private var lateness        = Lateness()
@@ -51,16 +54,28 @@ private[flight] final class SimulatorWatchdog(
   /** Time since the last answer, while the simulator is silent. */
   def silentFor: Option[Span] = life.silentSince.map(clock.now().since(_))
 
-  /** The outcome of the flight when its time is over. */
-  def onTime: FlightOutcome = silentFor.fold(FlightOutcome.Completed)(lasts =>
-    FlightOutcome.Failed(silence(clock.now(), s"the last ${seconds(lasts)}"))
-  )
+  /** The outcome of the flight when its time is over, unless [[last]] finds another: where the simulator is
+    * silent then, it still has to answer.
+    */
+  def onTime: FlightOutcome =
+    endedSilent = silentFor
+    FlightOutcome.Completed
 
   /** Why the machine was too busy for the flight, if it was. */
   def starved: Option[String] = lateness.starved
 
   /** The outcome of a flight at its end, after the checks that are still due. */
-  def last(): Future[FlightOutcome] =
+  def last(): Future[FlightOutcome] = endedSilent match
+    case None        => checked()
+    case Some(lasts) =>
+      // An outage of the link at the end of a flight says nothing against it; a dead simulator does.
+      val asked = UntilCertain(answers(), AttemptsAtEnd, LookEvery)(identity)
+      asked.transformWith:
+        case Success(true) => checked()
+        case _             =>
+          Future.successful(FlightOutcome.Failed(silence(clock.now(), s"the last ${seconds(lasts)}")))
+
+  private def checked(): Future[FlightOutcome] =
     val asked =
       if !isShared || monitor.unsound.isDefined then Future.successful(Right(None))
       else isOther().recover { case error => Left(error.toString) }
@@ -145,6 +160,12 @@ private[flight] final class SimulatorWatchdog(
 private[flight] object SimulatorWatchdog:
   /** Time without an answer after which a flight ends. */
   val GivesUp: Span = Span.ofSeconds(10)
+
+  /** How often a simulator that is silent when the flight's time is over is asked whether it answers again.
+    * Each takes a time-out of [[Asking.Timeout]] and a pause: 6 s in all, more than an outage of a second and
+    * the waits of TCP after it.
+    */
+  private val AttemptsAtEnd = 10
 
   /** Silence is reported within a second of the last answer, where there are ten decisions a second. */
   private val ToldAfter = Span.ofMillis(700)

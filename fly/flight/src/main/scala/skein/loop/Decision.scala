@@ -1,6 +1,7 @@
 package skein.loop
 
 import skein.policy.Action
+import skein.port.CommandPlan
 import skein.units.*
 
 /** A decision for one vehicle, with its inputs.
@@ -11,6 +12,7 @@ import skein.units.*
   * @param headingBefore last commanded to this vehicle
   * @param elapsed since this vehicle's last decision; zero at the first
   * @param action the chosen one
+  * @param plan this decision's action and those foreseen after it, where they are sent in one command
   */
 final case class Decision(
     vehicle: Int,
@@ -20,7 +22,8 @@ final case class Decision(
     opponent: Int,
     headingBefore: Radians,
     elapsed: Span,
-    action: Action
+    action: Action,
+    plan: Option[CommandPlan] = None
 ):
   /** The heading to which it leads; other vehicles observe it as the last commanded one. */
   def heading: Radians = Radians(action.headingRad(headingBefore.value))

@@ -1,6 +1,7 @@
 package skein.loop
 
 import skein.forecast.ForecastEvent
+import skein.port.CommandPlan
 
 /** An event that updates a loop's view of the team. */
 enum LoopEvent:
@@ -15,7 +16,11 @@ enum LoopEvent:
   /** The vehicles that must decide on the present view. */
   case Due(deciders: Set[Int])
 
-  case Moved(move: SentCommand)
+  /** A command was sent.
+    *
+    * @param plan the one sent with it
+    */
+  case Moved(move: SentCommand, plan: Option[CommandPlan] = None)
 
   /** A further event that updates the forecast. */
   case Heard(event: ForecastEvent)

@@ -25,6 +25,9 @@ import skein.vehicle.{QuadrotorModel, VehicleModel}
   * @param seed of its searches
   * @param deadline of every decision; without one a policy decides on the loop's own thread, which waits for
   *   it. `paused` has none: its time stands still
+  * @param planInPacket whether `predictive` sends with each action those that it foresees, to a buffer beside
+  *   the vehicle ([[skein.port.PlanBuffer]]). Such commands are answered when they arrive, so `movesInFlight`
+  *   does not limit them, [[skein.port.Moves.MostInFlight]] does
   */
 final case class LoopSettings(
     period: Span = Span.ofMillis(100),
@@ -40,7 +43,8 @@ final case class LoopSettings(
     model: Int => VehicleModel[?] = _ => QuadrotorModel.AirSim,
     planning: PlanSettings = PlanSettings(),
     seed: Long = 1,
-    deadline: Option[Deadline] = None
+    deadline: Option[Deadline] = None,
+    planInPacket: Boolean = false
 ):
   require(period > Span.Zero, "the period must be positive")
   require(window > 0, "the window must be at least 1")

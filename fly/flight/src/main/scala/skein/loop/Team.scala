@@ -44,7 +44,7 @@ final class Team(
   export parts.{meters, named}
   export sensing.{isNewer, joinLatest, read, readAll, sense, senseAll, sensed, ticks}
   export viewing.{cast, due, events, view, viewWithForecast}
-  export deciding.{decide, decideAt, decideWithin, plan, planning, predict, start, underDecision}
+  export deciding.{decide, decideAt, decideWithin, foresee, plan, planning, predict, start, underDecision}
   export steering.{
     fan,
     feedBack,

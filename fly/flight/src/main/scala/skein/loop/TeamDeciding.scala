@@ -33,6 +33,9 @@ private final class TeamDeciding(
   /** The plan is absent where a fallback decided. */
   private type Planned = (decision: Decision, plan: Option[PlanReport])
 
+  private val foresight =
+    Foresight(Foreseen(fleet, deciders, settings.period), deciders.map(_.start).toVector)
+
   @volatile private var underWay = Option.empty[(vehicle: Int, at: Instant)]
 
   /** The vehicle whose policy the loop waits for, and since when. */
@@ -134,9 +137,19 @@ private final class TeamDeciding(
     requests(vehicle)
       .via(Decide.withMemory(start(vehicle)): (memory, seen) =>
         underWay = Some((vehicle, seen._2))
-        try decideAt(vehicle, memory, seen._1, seen._2)
+        try
+          val made = decideAt(vehicle, memory, seen._1, seen._2)
+          foresight.decided(vehicle, made._1, made._2)
+          made
         finally underWay = None)
       .via(decided(vehicle))
+
+  /** Adds to a vehicle's decisions the actions foreseen after them, for one command together; a part of the
+    * graph only where the settings want it.
+    */
+  def foresee(vehicle: Int): Flow[Decision, Decision, NotUsed] =
+    if !settings.planInPacket then Flow[Decision]
+    else Flow[Decision].map(foresight.planned).addAttributes(parts.named("foresee", vehicle))
 
   private def requests(vehicle: Int): Flow[DecisionRequest, Seen, NotUsed] =
     val deciding = parts.meter("decide", vehicle)

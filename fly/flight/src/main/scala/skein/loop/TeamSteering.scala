@@ -9,7 +9,7 @@ import scala.concurrent.{ExecutionContext, Future}
 import scala.util.{Failure, Success}
 import skein.flow.*
 import skein.forecast.ForecastEvent
-import skein.port.{VehicleError, VehiclePort}
+import skein.port.{Moves, VehicleError, VehiclePort}
 import skein.record.EventKind
 import skein.units.*
 
@@ -51,7 +51,8 @@ private final class TeamSteering(
         Steer[Decision, Either[VehicleError, Boolean]](
           settings.minCommandInterval,
           clock,
-          settings.movesInFlight
+          if settings.planInPacket then Moves.MostInFlight else settings.movesInFlight,
+          parksInDoubt = !settings.planInPacket
         )(
           move(_),
           () => ports(vehicle).hover(),
@@ -95,7 +96,8 @@ private final class TeamSteering(
 
   /** Forecast events: commands sent, and command endings that change a prediction. */
   def told: Flow[SteeringEvent, LoopEvent, NotUsed] = Flow[SteeringEvent].collect(Function.unlift:
-    case SteeringEvent(_, Steered.Sent(decision, at)) => Some(LoopEvent.Moved(decision.move(at)))
+    case SteeringEvent(_, Steered.Sent(decision, at)) =>
+      Some(LoopEvent.Moved(decision.move(at), decision.plan))
     case SteeringEvent(vehicle, Steered.Ended(decision, at, Success(Right(false)))) =>
       Some(LoopEvent.Heard(ForecastEvent.Replaced(vehicle, decision.sequence, at)))
     case SteeringEvent(_, Steered.Ended(_, _, Success(Right(true)))) => None
@@ -114,9 +116,9 @@ private final class TeamSteering(
   def feedBackAll: Flow[LoopEvent, LoopEvent, NotUsed] =
     Flow[LoopEvent]
       .map:
-        case event @ LoopEvent.Moved(move)  => ((event.ordinal, move.vehicle), event)
-        case heard @ LoopEvent.Heard(event) => ((heard.ordinal, event.vehicle), heard)
-        case event                          => ((event.ordinal, -1), event)
+        case event @ LoopEvent.Moved(move, _) => ((event.ordinal, move.vehicle), event)
+        case heard @ LoopEvent.Heard(event)   => ((heard.ordinal, event.vehicle), heard)
+        case event                            => ((event.ordinal, -1), event)
       .via(FeedBack.newest)
       .map(_._2)
       .addAttributes(parts.named("feed back"))
@@ -124,7 +126,9 @@ private final class TeamSteering(
   /** Sends a decision as a move; completes when the move ends. */
   def move(decision: Decision): Future[Either[VehicleError, Boolean]] =
     import decision.vehicle
-    val answer = ports(vehicle).act(decision.action.byVelocity, settings.moveDuration)
+    val answer = decision.plan.fold(
+      ports(vehicle).act(decision.action.byVelocity, settings.moveDuration)
+    )(ports(vehicle).follow(_))
     val _ = moves.updateAndGet(vehicle, sent => (sent :+ answer).takeRight(settings.movesInFlight.max(2)))
     answer
 

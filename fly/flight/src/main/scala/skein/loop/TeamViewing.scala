@@ -6,6 +6,7 @@ import org.apache.pekko.stream.scaladsl.{Broadcast, Flow, MergePreferred, Source
 import skein.flow.Hold
 import skein.forecast.{Commanded, ForecastEvent, Forecast}
 import skein.policy.{ActionGuidance, Fleet}
+import skein.port.CommandPlan
 import skein.record.EventKind
 import skein.signal.ClockAlignment
 import skein.units.*
@@ -56,9 +57,8 @@ private final class TeamViewing(
               log.note(EventKind.Dropped, Some(reading.vehicle), s"reading ${reading.sequence} is stale")
               (view, None)
             case LoopEvent.Measured(reading) => (view.withSensorReading(reading), None)
-            case LoopEvent.Moved(move)       =>
-              val command = Commanded(move.decision, ActionGuidance.of(move.action), move.sentAt)
-              (view.withMove(move).withEvent(ForecastEvent.Sent(move.vehicle, command)), None)
+            case LoopEvent.Moved(move, plan) =>
+              (view.withMove(move).withEvent(told(move, plan)), None)
             case LoopEvent.Due(deciders) =>
               (view, request(view, deciders))
             case LoopEvent.Heard(event) => (view.withEvent(event), None)
@@ -70,6 +70,15 @@ private final class TeamViewing(
           meter.pass(sensing.ageOf(request.view))
           request
       .addAttributes(parts.named("view"))
+
+  private def told(move: SentCommand, plan: Option[CommandPlan]): ForecastEvent = plan match
+    case None =>
+      val command = Commanded(move.decision, ActionGuidance.of(move.action), move.sentAt)
+      ForecastEvent.Sent(move.vehicle, command)
+    case Some(plan) =>
+      val commands = plan.actions.map: (at, action) =>
+        Commanded(move.decision, ActionGuidance.of(action), move.sentAt, actsAt = Some(at))
+      ForecastEvent.Planned(move.vehicle, commands)
 
   private def request(view: TeamView, deciders: Set[Int]) =
     Option.when(view.isComplete && !hold.isHeld)(DecisionRequest(view, deciders))

@@ -6,7 +6,7 @@ import scala.concurrent.Future
 import skein.units.*
 
 /** Repeats a final command of a flight that must not get lost, with pauses, until its answer is certain. */
-private[loop] object UntilCertain:
+private[skein] object UntilCertain:
 
   /** Limit of the attempts, the first one included. */
   val Attempts = 20

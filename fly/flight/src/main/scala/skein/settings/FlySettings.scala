@@ -24,6 +24,7 @@ import skein.vehicle.VehicleKind
   * @param predictor by which `predictive` predicts multirotors; cars are predicted by their own model
   * @param movesInFlight limit of unanswered moves of one vehicle; more than 2 are for links that never
   *   deliver several simultaneously: see [[skein.flow.Steer]]
+  * @param planInPacket whether `predictive` sends plans to a buffer beside the vehicle: see [[LoopSettings]]
   * @param plant the built-in simulator's kind of multirotor
   * @param wire protocol of the vehicles
   * @param solver a remote solver for additional flights, beside those that decide in this process; a decision
@@ -45,6 +46,7 @@ final case class FlySettings(
     planning: PlanSettings = PlanSettings(),
     predictor: PredictionModel = PredictionModel.Quadrotor,
     movesInFlight: Int = Moves.InFlight,
+    planInPacket: Boolean = false,
     plant: SimulatedBody = SimulatedBody.AirSim,
     wire: Wire = Wire.AirSim,
     solver: Option[SolverChoice] = None,
@@ -85,7 +87,8 @@ final case class FlySettings(
   private def cars: Vector[Agent]        = fleet.agents.filter(_.kind == VehicleKind.Car)
 
   def loopSettings(plan: FlightPlan): LoopSettings =
-    val all = loopSettings.copy(seed = plan.seed)
+    val all =
+      loopSettings.copy(seed = plan.seed, planInPacket = planInPacket && plan.loop == LoopKind.Predictive)
     if plan.solver.isEmpty then all else all.copy(deadline = Some(Deadline(deadlineOf(plan).get, fallback)))
 
   /** The deadline of a flight's decisions, if there is one. */
@@ -253,6 +256,7 @@ object FlySettings:
         "only-policies: expected policies beside it, came none"
       ),
       Moves.mistake(settings.movesInFlight).map("moves-in-flight: " + _),
+      packetMistake(settings).map("plan-in-packet: " + _),
       Option.when(settings.solver.isDefined && !settings.loops.exists(decidedElsewhere))(
         "solver: expected with a loop whose decisions can be made elsewhere, came with paused alone"
       ),
@@ -305,6 +309,21 @@ object FlySettings:
       val which = if settings.deadline.isDefined then "deadline" else "period"
       s"$which: expected more than planning.deadline, for which a solver searches " +
         s"its plans, ${searched.toMillis} ms; came ${within.toMillis} ms"
+
+  private def packetMistake(settings: FlySettings): Option[String] =
+    if !settings.planInPacket then None
+    else if !settings.loops.contains(LoopKind.Predictive) then
+      Some("expected with the loop predictive, which foresees its commands, came without it")
+    else if settings.wire == Wire.Mavlink then
+      Some("expected vehicles of the built-in simulator over AirSim's protocol, came mavlink")
+    else if settings.deadline.isDefined || settings.solver.isDefined then
+      Some("expected without deadline and solver, since the policy is asked for later moments too")
+    else if settings.policies.exists(OutsidePolicy.decides) then
+      Some(
+        "expected policies of this process, which are asked for later moments too, came one behind a socket"
+      )
+    else
+      settings.cars.headOption.map(car => s"expected multirotors, which hold plans, came the car ${car.name}")
 
   private def isRightAltitude(altitudeM: Double) = altitudeM > 0 && altitudeM <= MostAltitudeM
 

@@ -100,6 +100,19 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
       Right("plan: Pursuer plans; Evader flies by its own policy")
     )
 
+  test("plan-in-packet is refused where no plan could be sent"):
+    def refused(text: String)(why: String) = assertTold(text, s"2: skein.fly.plan-in-packet: expected $why")
+    refused("plan-in-packet = true, loops = [stream]"):
+      "with the loop predictive, which foresees its commands, came without it"
+    refused("plan-in-packet = true, loops = [predictive], wire = mavlink"):
+      "vehicles of the built-in simulator over AirSim's protocol, came mavlink"
+    refused("plan-in-packet = true, loops = [predictive], deadline = 20 ms"):
+      "without deadline and solver, since the policy is asked for later moments too"
+    refused("plan-in-packet = true, loops = [predictive], solver = \"link:vpn\""):
+      "without deadline and solver, since the policy is asked for later moments too"
+    refused("plan-in-packet = true, loops = [predictive], scenario = convoy"):
+      "multirotors, which hold plans, came the car Lead"
+
   test("with only-policies the scenario's own policies are omitted"):
     val file = temporaryFolder().resolve("policy.conf")
     Files.writeString(

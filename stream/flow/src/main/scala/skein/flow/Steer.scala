@@ -42,6 +42,8 @@ enum Steered[+C, +R]:
   * @param mostOutstanding commands that may be unanswered. More than [[Moves.InFlight]] let a link of a long
   *   round trip carry more commands than one a round trip; only for links that never deliver several in a
   *   burst
+  * @param parksInDoubt whether the vehicle is parked after a lost answer; not where commands bear numbers, so
+  *   that one that arrives late changes nothing
   * @param send one command; the future ends when the move ends
   * @param park makes the vehicle hover, so that the outstanding moves are answered; sent as the last command,
   *   and after a lost answer
@@ -51,7 +53,12 @@ enum Steered[+C, +R]:
   *   arrived while it was held
   * @param hold parks the vehicle for as long as it is held
   */
-final class Steer[C, R](minInterval: Span, clock: Clock, mostOutstanding: Int = Moves.InFlight)(
+final class Steer[C, R](
+    minInterval: Span,
+    clock: Clock,
+    mostOutstanding: Int = Moves.InFlight,
+    parksInDoubt: Boolean = true
+)(
     send: C => Future[R],
     park: () => Future[R],
     isCertain: R => Boolean = (_: R) => true,
@@ -80,7 +87,7 @@ final class Steer[C, R](minInterval: Span, clock: Clock, mostOutstanding: Int = 
 
       private val ended = getAsyncCallback[(C, Try[R])]: (command, result) =>
         outstanding -= 1
-        if !result.toOption.exists(isCertain) then doubtful = true
+        if parksInDoubt && !result.toOption.exists(isCertain) then doubtful = true
         if outstanding > 0 then
           nextAt = nextAt.max(clock.now() + Moves.HandoverAllowed)
           parkAt = parkAt.max(clock.now() + Moves.HandoverAllowed)

@@ -180,11 +180,19 @@ class SteerSuite extends munit.FunSuite:
   /** Commands received by a vehicle whose first move's answer is lost after 150 ms, and whose hovers fail
     * `failures` times.
     */
-  private def afterLoss(failures: Int, every: FiniteDuration = 200.millis): Vector[(Long, String)] =
-    afterLossUs(failures, every).map((us, what) => (us / 1000, what))
+  private def afterLoss(
+      failures: Int,
+      every: FiniteDuration = 200.millis,
+      parksInDoubt: Boolean = true
+  ): Vector[(Long, String)] =
+    afterLossUs(failures, every, parksInDoubt).map((us, what) => (us / 1000, what))
 
   /** Commands received by such a vehicle, with times in µs. */
-  private def afterLossUs(failures: Int, every: FiniteDuration): Vector[(Long, String)] =
+  private def afterLossUs(
+      failures: Int,
+      every: FiniteDuration,
+      parksInDoubt: Boolean = true
+  ): Vector[(Long, String)] =
     VirtualTime
       .run(seed = 1): system =>
         given ActorSystem                        = system
@@ -215,7 +223,12 @@ class SteerSuite extends munit.FunSuite:
           .zipWithIndex
           .map(_._2.toInt)
           .takeWithin(700.millis)
-          .via(Steer(Span.Zero, clock)(send, () => hover(), _ != "lost", command => hear(s"unsent $command")))
+          .via(Steer(Span.Zero, clock, parksInDoubt = parksInDoubt)(
+            send,
+            () => hover(),
+            _ != "lost",
+            command => hear(s"unsent $command")
+          ))
           .runWith(Sink.ignore)
           .map(_ => heard)
       .value
@@ -230,6 +243,20 @@ class SteerSuite extends munit.FunSuite:
         400L -> "move 2",
         600L -> "move 3",
         700L -> "hover"
+      )
+    )
+
+  test("where commands bear numbers a lost answer parks nothing; the last parking still needs an answer"):
+    assertEquals(
+      afterLoss(failures = 2, parksInDoubt = false),
+      Vector(
+        0L   -> "move 0",
+        200L -> "move 1",
+        400L -> "move 2",
+        600L -> "move 3",
+        700L -> "hover",
+        800L -> "hover",
+        900L -> "hover"
       )
     )
 

@@ -1,9 +1,10 @@
 package skein.airsim
 
+import java.util.concurrent.atomic.AtomicLong
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.{ExecutionContext, Future}
 import skein.policy.{Action, Yaw}
-import skein.port.{Sensor, SteppedTime, VehicleError, VehiclePort}
+import skein.port.{CommandPlan, Sensor, SteppedTime, VehicleError, VehiclePort}
 import skein.rpc.RpcError
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
@@ -22,6 +23,9 @@ final class AirSimVehicle(multirotor: Multirotor, onLost: String => Unit)(using 
   import system.dispatcher
 
   private val moves = MoveQueue(multirotor, onLost)
+
+  private val plans             = AtomicLong()
+  @volatile private var follows = false
 
   /** Calls sent in addition to readings and moves. */
   def callsBeside: Int = moves.callsBeside
@@ -46,7 +50,15 @@ final class AirSimVehicle(multirotor: Multirotor, onLost: String => Unit)(using 
     case Action.Hover => hover()
     case Action.Land  => sent(_ => multirotor.land(lasts))
 
-  def hover(): Future[Either[VehicleError, Boolean]] = sent(_ => multirotor.hover())
+  override def follow(plan: CommandPlan): Future[Either[VehicleError, Boolean]] =
+    if plan.actions.nonEmpty then follows = true
+    multirotor.followPlan(plans.getAndIncrement(), plan).fold(
+      Future.successful(Left(VehicleError.Unsupported("expected a plan of velocities, came other actions")))
+    )(_.map(_.left.map(errorOf)))
+
+  def hover(): Future[Either[VehicleError, Boolean]] =
+    if follows then multirotor.endPlans(plans.getAndIncrement()).map(_.left.map(errorOf))
+    else sent(_ => multirotor.hover())
 
   override val sensors: Map[String, Sensor] = AirSimSensors.of(multirotor)
 

@@ -2,11 +2,12 @@ package skein.airsim
 
 import scala.concurrent.{ExecutionContext, Future}
 import skein.airsim.wire.*
-import skein.policy.Yaw
+import skein.policy.{Action, Yaw}
+import skein.port.CommandPlan
 import skein.rpc.RpcError
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
-import upack.{Bool, Float64, Int32, Msg}
+import upack.{Arr, Bool, Float64, Int32, Int64, Msg, Str}
 import upickle.default.writeMsg
 
 /** One multirotor of a simulator. Positions are world NED in m, velocities NED in m/s.
@@ -178,6 +179,37 @@ final class Multirotor(
   def rotateByYawRate(radiansPerSecond: Double, duration: Span): Future[Either[RpcError, Boolean]] =
     move("rotateByYawRate", duration, degrees(radiansPerSecond), seconds(duration))
 
+  /** Gives the vehicle's buffer a plan of velocities; it is answered as soon as the buffer has it, and
+    * awaited as long as the plan lasts. Plans may overtake one another, since each takes the connection on
+    * which least is on its way. Only the built-in simulator supports this.
+    *
+    * @param number greater than that of all plans before
+    * @return None if an action of the plan is none by velocity
+    */
+  def followPlan(number: Long, plan: CommandPlan): Option[Future[Either[RpcError, Boolean]]] =
+    val last  = plan.actions.lastOption.fold(Instant.Epoch)(_.at + CommandPlan.Hold)
+    val calls = plan.actions.flatMap: (at, action) =>
+      planned(action, last.since(at)).map((method, params) =>
+        Arr(Int64(at.toNanos), Str(method), Arr(params*))
+      )
+    Option.when(calls.size == plan.actions.size):
+      val acts = plan.actions.headOption.fold(Span.Zero)(first => last.since(first.at))
+      call("skeinFollowPlan", Seq(Int64(number), Arr(calls*)), once.copy(timeout = client.timeout + acts))
+
+  /** Ends all plans before this number, even those that arrive later, and lets the vehicle hover. */
+  def endPlans(number: Long): Future[Either[RpcError, Boolean]] =
+    val hover = Arr(Int64(0), Str("hover"), Arr(Seq.empty[Msg]*))
+    call("skeinFollowPlan", Seq(Int64(number), Arr(hover)), once)
+
+  private def planned(action: Action, lasts: Span): Option[(String, Seq[Msg])] = action match
+    case Action.VelocityAt(north, east, down, yaw) =>
+      Some(("moveByVelocityZ", velocityParams(north, east, ownDown(down), lasts, yaw)))
+    case Action.Velocity(velocityNed, yaw) =>
+      Some(("moveByVelocity", velocityParams(velocityNed.x, velocityNed.y, velocityNed.z, lasts, yaw)))
+    case along: Action.Along => planned(along.byVelocity, lasts)
+    case Action.Hover        => Some(("hover", Seq.empty))
+    case _                   => None
+
   // ---- helpers
 
   private def byVelocity(
@@ -189,9 +221,11 @@ final class Multirotor(
       yaw: Yaw,
       withdrawn: Option[Future[?]] = None
   ): Future[Either[RpcError, Boolean]] =
-    val params =
-      Seq(real(x), real(y), real(third), seconds(duration), Int32(yaw.drivetrain), writeMsg(yaw.mode))
+    val params = velocityParams(x, y, third, duration, yaw)
     call(method, params, moving(duration).copy(withdrawn = withdrawn))
+
+  private def velocityParams(x: Double, y: Double, third: Double, duration: Span, yaw: Yaw): Seq[Msg] =
+    Seq(real(x), real(y), real(third), seconds(duration), Int32(yaw.drivetrain), writeMsg(yaw.mode))
 
   protected def attitude(
       method: String,

@@ -1,6 +1,7 @@
 package skein.simulator
 
 import skein.airsim.VehicleSettings
+import skein.units.Instant
 
 /** The simulation as the server's functions see it. */
 private[simulator] trait Simulated:
@@ -29,6 +30,13 @@ private[simulator] trait Simulated:
 
   /** The folder for voxel grids, if they are written. */
   private[simulator] def grids: Option[GridFolder]
+
+  /** Adds a plan to a vehicle's buffer, in place of its move, if it has one. */
+  private[simulator] def follow(
+      vehicle: Int,
+      sequence: Long,
+      plan: Vector[(at: Instant, action: Move.Order)]
+  ): Unit
 
   /** Returns all vehicles to their starts and drops all moves, including those that wait. */
   private[simulator] def reset(): Unit

@@ -148,6 +148,15 @@ final class Simulation(
     world.add(vehicle)
     workers.addVehicle()
 
+  private[simulator] def follow(
+      vehicle: Int,
+      sequence: Long,
+      plan: Vector[(at: Instant, action: Move.Order)]
+  ): Unit =
+    // A move, and those that wait for its lock, are replaced; the settling after this call answers them.
+    workers.dismiss(vehicle, all = true).foreach(flight => giveUp(flight.call))
+    world.follow(vehicle, sequence, plan)
+
   private[simulator] def reset(): Unit =
     world.reset()
     for vehicle <- world.vehicles.indices do
@@ -236,7 +245,8 @@ final class Simulation(
           case CallOutcome.Steps(span) => continueFor(span, call.token, at)
           case CallOutcome.Flies(vehicle, order) =>
             val flight = Waiting(call, order)
-            val wins   = isControl(call.method) || isOpen && !settings.losesCancel()
+            if call.method != "hover" then world.forgetPlans(vehicle)
+            val wins = isControl(call.method) || isOpen && !settings.losesCancel()
             workers.dismiss(vehicle, all = wins).foreach(flight => giveUp(flight.call))
             if wins then
               world.cancelMove(vehicle)
@@ -303,16 +313,18 @@ object Simulation:
 
   private[simulator] val methods: Seq[ServerMethod] =
     SimulatorMethods.all ++ VehicleMethods.all ++ CarMethods.all ++ MoveMethods.all ++
-      GainMethods.all ++ SceneMethods.all ++
+      PlanMethods.all ++ GainMethods.all ++ SceneMethods.all ++
       CameraMethods.all ++ AppearanceMethods.all ++ CosysMethods.all
 
   /** All functions by name; AirSim's form before Cosys-AirSim's. */
   private[simulator] val named: Map[String, Seq[ServerMethod]] =
     (methods ++ CosysMethods.forms(methods)).groupBy(_.name)
 
-  /** Functions that let a person regain control of a busy simulator: they never wait behind moves. */
+  /** Functions that let a person regain control of a busy simulator, and plans, which hold no worker: they
+    * never wait behind moves.
+    */
   private val Controls = Set("simPause", "simIsPaused", "ping", "hover", "cancelLastTask", "reset") ++
-    Set("getServerVersion", "getMinRequiredClientVersion")
+    Set("getServerVersion", "getMinRequiredClientVersion", "skeinFollowPlan")
 
   private[simulator] def isControl(method: String): Boolean = Controls(method)
 

@@ -56,12 +56,13 @@ private[simulator] object VehicleMethods:
     ),
     many[(Pose, String)]("skeinHoverAt"):
       case (simulation, (pose, name)) =>
-        multirotor(simulation, name): (_, vehicle) =>
+        multirotor(simulation, name): (index, vehicle) =>
           val place = pose.position.toVector
           if !vehicle.apiControl then CallOutcome.Threw("only a vehicle under api control can hover")
           else if !vehicle.isAboveGround(place) then
             CallOutcome.Threw(s"expected a place above the ground, came z = ${place.z} m")
           else
+            simulation.world.forgetPlans(index)
             val turn = pose.orientation.toQuaternion
             within(pose.position):
               done(vehicle.hoverAt(place, 2 * StrictMath.atan2(turn.z, turn.w), simulation.world.now))

@@ -1,5 +1,6 @@
 package skein.simulator
 
+import scala.collection.mutable
 import scala.collection.mutable.ArrayBuffer
 import skein.airsim.{VehicleSettings, WorldSettings}
 import skein.scene.{Lidar, Placement, Scene, SceneObject}
@@ -25,6 +26,7 @@ final class World(
 
   private var present    = settings.vehicles.map(made)
   private val moves      = ArrayBuffer.fill(present.size)(Option.empty[Running])
+  private val followed   = mutable.HashMap.empty[Int, FollowedPlan]
   private val ended      = ArrayBuffer.empty[Ended]
   private val stepLength = Span.ofSeconds(kind.stepS)
   private var clock      = start
@@ -104,7 +106,9 @@ final class World(
     while due.exists(_._1 <= to) do
       due.foreach: (at, vehicle) =>
         stepTo(at)
-        if vehicle == AllPilots then askPilots() else takeTurn(vehicle)
+        if vehicle == AllPilots then askPilots()
+        else if moves(vehicle).nonEmpty then takeTurn(vehicle)
+        else followed.get(vehicle).foreach(_.turn(multirotor(vehicle), clock))
       due = nextTurn
     stepTo(to)
 
@@ -113,11 +117,28 @@ final class World(
     * @param token returned when the move ends
     */
   private[simulator] def startMove(vehicle: Int, token: Long, move: Move): Unit =
+    followed.get(vehicle).foreach(_.stop(clock))
     moves(vehicle) = Some(Running(token, move, clock, clock))
     takeTurn(vehicle)
 
-  /** Ends the vehicle's move, if there is one, with false. */
-  def cancelMove(vehicle: Int): Unit = end(vehicle, result = false)
+  /** Adds a plan to the vehicle's buffer; its move ends. Only multirotors have such a buffer. */
+  private[simulator] def follow(
+      vehicle: Int,
+      sequence: Long,
+      plan: Vector[(at: Instant, action: Move.Order)]
+  ): Unit =
+    end(vehicle, result = false)
+    val buffer = followed.getOrElseUpdate(vehicle, FollowedPlan())
+    buffer.receive(sequence, plan, clock)
+    if buffer.dueAt.exists(_ <= clock) then buffer.turn(multirotor(vehicle), clock)
+
+  /** Forgets the vehicle's plans and their numbers: whoever sends the next may count from anywhere. */
+  private[simulator] def forgetPlans(vehicle: Int): Unit = followed.remove(vehicle): Unit
+
+  /** Ends the vehicle's move, if there is one, with false, and its plans. */
+  def cancelMove(vehicle: Int): Unit =
+    followed.get(vehicle).foreach(_.stop(clock))
+    end(vehicle, result = false)
 
   private[simulator] def isMoving(vehicle: Int): Boolean = moves(vehicle).nonEmpty
 
@@ -140,6 +161,7 @@ final class World(
 
   def reset(): Unit =
     vehicles.indices.foreach(cancelMove)
+    followed.clear()
     vehicles.foreach(_.reset(clock))
     scans.forget()
     scans.note(clock, scan)
@@ -182,7 +204,11 @@ final class World(
     var next = Option.empty[(Instant, Int)]
     for vehicle <- moves.indices; move <- moves(vehicle) do
       if next.forall(move.dueAt < _._1) then next = Some((move.dueAt, vehicle))
+    for vehicle <- followers; due <- followed(vehicle).dueAt do
+      if next.forall(due < _._1) then next = Some((due, vehicle))
     if pilots.nonEmpty && next.forall(pilotAt < _._1) then Some((pilotAt, AllPilots)) else next
+
+  private def followers: Seq[Int] = if followed.isEmpty then Nil else followed.keys.toSeq.sorted
 
   private def askPilots(): Unit =
     for (vehicle, pilot) <- pilots; setpoint <- pilot.turn(multirotor(vehicle), clock) do

@@ -64,6 +64,7 @@ private[simulator] object SampleCalls:
       case "simSetVehiclePose" => Seq(pose, true, v)
       case "setCarControls"    => Seq(writeMsg(CarControls(throttle = 1)), v)
       case "skeinHoverAt"      => Seq(pose, v)
+      case "skeinFollowPlan"   => Seq(0, Arr(), v)
       case "simSetKinematics"  =>
         val zero = Vector3r.Zero
         Seq(writeMsg(KinematicsState(zero, Quaternionr(1, 0, 0, 0), zero, zero, zero, zero)), true, v)

@@ -1,0 +1,73 @@
+package skein.loop
+
+import scala.annotation.tailrec
+import skein.forecast.Course
+import skein.policy.{Action, ActionGuidance, Fleet}
+import skein.port.CommandPlan
+import skein.units.*
+
+/** A team's decisions, rolled forward by its own policies and the models that predict it: what each vehicle
+  * will be commanded if nothing unforeseen happens. Pure.
+  *
+  * Each vehicle decides once a period on the predicted states of all. Their readings are taken to be as old
+  * as they are now.
+  */
+private final class Foreseen(fleet: Fleet, deciders: IndexedSeq[Decider], period: Span):
+  import Foreseen.*
+
+  /** The next actions of every vehicle, [[CommandPlan.Most]] of each, the first ones for the moments of the
+    * view's estimates. Cost: that many decisions of each vehicle, and their predicted flight.
+    *
+    * @param view with estimates
+    * @param minds by vehicle
+    * @throws skein.units.OwnFailure as [[Decider.decide]]
+    */
+  def actions(view: TeamView, minds: Vector[Mind], now: Instant): Vector[Actions] =
+    val known = for forecast <- view.forecast; estimates <- view.estimates yield (forecast, estimates)
+    known.fold(fleet.agents.map(_ => Vector.empty)): (forecast, estimates) =>
+      rolled(view, forecast.courses(estimates, now), minds, now, fleet.agents.map(_ => Vector.empty))
+
+  /** The action of a decision, as it is commanded. */
+  def action(decision: Decision): Action = decision.action.byVelocity
+
+  @tailrec private def rolled(
+      view: TeamView,
+      courses: Vector[Course[?]],
+      minds: Vector[Mind],
+      now: Instant,
+      soFar: Vector[Actions]
+  ): Vector[Actions] =
+    val made = deciders.zip(minds).toVector.map: (decider, mind) =>
+      mind.decision.fold(decider.decide(mind.memory, view, now))((mind.memory, _))
+    val actions = made.map((_, decision) => action(decision))
+    val all     = soFar.lazyZip(courses).lazyZip(actions).map: (before, course, action) =>
+      before.appended((at = course.at, action = action))
+    if all.head.sizeIs >= CommandPlan.Most then all
+    else
+      val flown =
+        courses.lazyZip(actions).map((course, action) => course.flown(ActionGuidance.of(action), period))
+      val moved = made.foldLeft(view)((view, made) => view.withMove(made._2.move(now)))
+      val next  = moved.copy(
+        readings = moved.readings.map(_.map(later)),
+        estimates = Some(flown.map(_.estimate))
+      )
+      rolled(next, flown, made.map((memory, _) => Mind(memory, None)), now + period, all)
+
+  private def later(reading: Reading): Reading =
+    val state = reading.state
+    reading.copy(state =
+      state.copy(
+        validAt = state.validAt + period,
+        sentAt = state.sentAt + period,
+        receivedAt = state.receivedAt + period
+      )
+    )
+
+private object Foreseen:
+  type Actions = Vector[(at: Instant, action: Action)]
+
+  /** What a vehicle decides with.
+    *
+    * @param decision the one that led to this memory, where it was made on the very view
+    */
+  final case class Mind(memory: Memory, decision: Option[Decision])

@@ -1,0 +1,80 @@
+package skein.loop
+
+import skein.forecast.{Commanded, Forecast, ForecastEvent}
+import skein.policy.{Action, ActionGuidance}
+import skein.port.CommandPlan
+import skein.scenario.PaperDuel
+import skein.signal.{Kinematics, Stamped}
+import skein.units.*
+import skein.vehicle.QuadrotorModel
+
+class ForeseenSuite extends munit.FunSuite:
+  private val fleet    = PaperDuel().fleet
+  private val deciders = fleet.agents.indices.map(Decider(fleet, _))
+  private val period   = Span.ofMillis(100)
+  private val foreseen = Foreseen(fleet, deciders, period)
+  private val starts   = deciders.map(_.start).toVector
+
+  private def millis(n: Double) = Instant.Epoch + Span.ofMillis(n)
+
+  /** Both vehicles at rest at their starts, read at 20 ms over 20 ms each way. */
+  private val seen: TeamView =
+    val empty =
+      TeamView.empty(2).copy(forecast = Some(Forecast(fleet.agents.map(_ => QuadrotorModel.AirSim))))
+    fleet.agents.zipWithIndex.foldLeft(empty): (view, placed) =>
+      val (agent, vehicle) = placed
+      val state = Kinematics(agent.startPositionNed, Vector3.Zero, Quaternion.Identity, Vector3.Zero)
+      view.withReading(Reading(vehicle, 0, Stamped(state, millis(20), millis(0), millis(40))))
+
+  /** The view of a loop that has sent its commands and asks again `later`, with nothing read since. */
+  private def predicted(view: TeamView, now: Instant) =
+    view.copy(estimates = view.forecast.flatMap(_.whenActing(now)))
+
+  private val now  = millis(50)
+  private val view = predicted(seen, now)
+
+  test("as many actions are foreseen as a plan may have, a period apart, from when a command acts"):
+    val all = foreseen.actions(view, starts.map(Foreseen.Mind(_, None)), now)
+    assertEquals(all.map(_.size), Vector.fill(2)(CommandPlan.Most))
+    val moments = Vector.tabulate(CommandPlan.Most)(number => millis(70) + period * number.toLong)
+    assertEquals(all.map(_.map(_.at)), Vector.fill(2)(moments))
+
+  test("what is foreseen is what is decided, period by period, where nothing else is read"):
+    val all  = foreseen.actions(view, starts.map(Foreseen.Mind(_, None)), now)
+    val sent = all.zipWithIndex.foldLeft(seen): (view, planned) =>
+      val commands = planned._1.map((at, action) =>
+        Commanded(0, ActionGuidance.of(action), now, actsAt = Some(at))
+      )
+      view.withEvent(ForecastEvent.Planned(planned._2, commands))
+    val decided = (0 until CommandPlan.Most).scanLeft((starts, Vector.empty[Action])): (before, number) =>
+      val then_ = predicted(sent, now + period * number.toLong)
+      val made  = deciders.zip(before._1).map((decider, memory) =>
+        decider.decide(memory, then_, now + period * number.toLong)
+      )
+      (made.map(_._1).toVector, made.map((_, decision) => foreseen.action(decision)).toVector)
+    for ((_, actions), number) <- decided.tail.zipWithIndex; vehicle <- 0 to 1 do
+      (actions(vehicle), all(vehicle)(number).action) match
+        case (Action.VelocityAt(n, e, d, _), Action.VelocityAt(north, east, down, _)) =>
+          assertEqualsDouble(n, north, 1e-3, s"$number of $vehicle")
+          assertEqualsDouble(e, east, 1e-3, s"$number of $vehicle")
+          assertEquals(d, down)
+        case other => fail(other.toString)
+
+  test("a decision made on the view is the first action of its vehicle, and is not made again"):
+    val (memory, decision) = deciders(0).decide(starts(0), view, now)
+    val minds              = Vector(Foreseen.Mind(memory, Some(decision)), Foreseen.Mind(starts(1), None))
+    assertEquals(
+      foreseen.actions(view, minds, now),
+      foreseen.actions(view, starts.map(Foreseen.Mind(_, None)), now)
+    )
+
+  test("a vehicle's plan begins with its decision, and a view without predictions makes none"):
+    val foresight          = Foresight(foreseen, starts)
+    val (memory, decision) = deciders(0).decide(starts(0), view, now)
+    foresight.decided(0, memory, decision)
+    val plan = foresight.planned(decision).plan.getOrElse(fail("no plan"))
+    assertEquals(plan.sequence, decision.sequence)
+    assertEquals(plan.actions.size, CommandPlan.Most)
+    assertEquals(plan.actions.head, (at = millis(70), action = foreseen.action(decision)))
+    val (_, blind) = deciders(0).decide(starts(0), seen, now)
+    assertEquals(foresight.planned(blind).plan, None)

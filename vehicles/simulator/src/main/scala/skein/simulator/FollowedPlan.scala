@@ -1,0 +1,52 @@
+package skein.simulator
+
+import skein.port.PlanBuffer
+import skein.units.*
+import skein.vehicle.PathFollowing
+
+/** A multirotor's buffer of plans, and the move that it makes of the action in effect: as if a client had
+  * called that move at the very moment.
+  */
+private[simulator] final class FollowedPlan:
+  private var buffer  = PlanBuffer.empty[Move.Order]
+  private var running = Option.empty[FollowedPlan.Running]
+  private var due     = Option.empty[Instant]
+
+  /** When its turn comes; None: not before the next plan. */
+  def dueAt: Option[Instant] = due
+
+  def receive(sequence: Long, plan: Vector[(at: Instant, action: Move.Order)], now: Instant): Unit =
+    buffer = buffer.received(sequence, plan, now)
+    if due.forall(_ > now) then due = buffer.due(now).map(_ => now).orElse(buffer.nextAfter(now))
+
+  /** Ends all plans. Those that are older than the newest received stay without effect when they come. */
+  def stop(now: Instant): Unit =
+    val none = PlanBuffer.empty[Move.Order]
+    buffer = buffer.newest.fold(none)(none.received(_, Vector.empty, now))
+    running = None
+    due = None
+
+  /** Lets the vehicle do what is due. */
+  def turn(vehicle: SimulatedMultirotor, now: Instant): Unit =
+    for next <- buffer.due(now) if !running.exists(_.order eq next.action) do
+      running = Some(FollowedPlan.Running(next.action, next.action(vehicle).toOption, next.at))
+    val goesOn = running.flatMap(_.move).map(_.turn(vehicle, now.since(running.fold(now)(_.startedAt))))
+    val again  = goesOn match
+      case Some(MoveProgress.Going(goal)) =>
+        vehicle.command(goal, now)
+        Some(now + PathFollowing.Period)
+      case Some(MoveProgress.Idle)           => Some(now + PathFollowing.Period)
+      case Some(MoveProgress.Ended(_, goal)) =>
+        goal.foreach(vehicle.command(_, now))
+        running = running.map(_.copy(move = None))
+        None
+      case None => None
+    due = (again ++ buffer.nextAfter(now)).minOption
+
+private object FollowedPlan:
+  /** The action in effect.
+    *
+    * @param move absent once it has ended, or if it could not be made
+    * @param startedAt the action's moment, so that one that arrives late does not last longer
+    */
+  private final case class Running(order: Move.Order, move: Option[Move], startedAt: Instant)
