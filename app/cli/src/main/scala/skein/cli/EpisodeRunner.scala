@@ -41,7 +41,6 @@ private[cli] object EpisodeRunner:
       options: Option[ClusterOptions.Checked],
       program: String,
       ready: ReadySearch,
-      question: SearchFile.Question,
       folder: Path,
       threads: Int,
       shown: Shown
@@ -50,6 +49,6 @@ private[cli] object EpisodeRunner:
       try body(here(ready, threads))
       catch case failed: (BlocksFailed | GpuFailure) => Left(failed.getMessage)
     case Some(asked) =>
-      val posed = QuestionKind.Search.of(VerifiedQuestion.bytes(question, ready))
+      val posed = QuestionKind.Search.of(VerifiedQuestion.bytes(ready))
       ClusterRun.using(asked, program, posed, folder, threads, shown): run =>
         body(elsewhere(run, asked.block.getOrElse(ready.blockEpisodes)))

@@ -90,17 +90,15 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
       else Right(None)
       begun <- options.resume.fold(begin(options))(resume(options, _))
       (folder, question, state) = begun
-      ready <- question match
-        case duel: SearchQuestion => duel.setup.map(_.copy(accelerator = accelerator))
-        case team: TeamQuestion   => team.setup.map(_.copy(accelerator = accelerator))
-      _ <- Expect.that(accelerator.isEmpty || ready.fliesForward):
+      ready <- question.setup.map(_.acceleratedBy(accelerator))
+      _     <- Expect.that(accelerator.isEmpty || ready.fliesForward):
         "--gpu: expected what forward simulation flies; these are flights in virtual time"
       _ <- OutFolder.alone(folder):
-        EpisodeRunner.using(cluster, program, ready, question, folder, threads, shown): runner =>
-          SearchJob(ready, question, folder, threads, runner, shown).run(state.getOrElse(ready.search.start))
+        EpisodeRunner.using(cluster, program, ready, folder, threads, shown): runner =>
+          SearchJob(ready, folder, threads, runner, shown).run(state.getOrElse(ready.search.start))
     yield ()
 
-  private type Begun = (Path, SearchQuestion | TeamQuestion, Option[SearchState])
+  private type Begun = (Path, PosedSearch, Option[SearchState])
 
   private def resume(options: SearchOptions, folder: String): Either[String, Begun] =
     val may = Arguments.told(options.cluster) ++ Set("--threads", "--gpu", "--json")

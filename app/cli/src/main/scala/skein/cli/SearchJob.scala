@@ -9,7 +9,6 @@ import skein.units.Decimals.significant
 /** Runs a search in a terminal, to its end or until it is stopped. */
 private[cli] final class SearchJob(
     ready: ReadySearch,
-    question: SearchFile.Question,
     folder: Path,
     threads: Int,
     runner: EpisodeRunner,
@@ -31,7 +30,7 @@ private[cli] final class SearchJob(
       var last      = from
       runner.onWait((flying, how) => line.show(last.flown + flying, s"$how; ${progress(last)}"))
       val searched =
-        SearchRun(ready.search, question, candidates, folder, () => System.nanoTime())
+        SearchRun(ready.search, ready.question, candidates, folder, () => System.nanoTime())
           .run(from, () => isStopped): state =>
             last = state
             line.show(state.flown, progress(state))

@@ -46,46 +46,44 @@ final class MarginTrial(
       seed: Long,
       isStopped: () => Boolean
   ): Either[String, (run: MarginRun, printed: String)] =
-    val transport = TcpTransport()
-    val settings  = SimulatorSettings(world, AnyPort, scene = scene)
-    val server    = awaited(SimulatorServer.start(settings, transport, clock))
-    val reader    = Executors.newSingleThreadExecutor(Thread.ofPlatform().daemon().factory())
-    try
+    simulated(SimulatorSettings(world, AnyPort, scene = scene)): (server, transport, observer) =>
       for
-        _ <- scenario.fold(Right(()))(place(_, server.address, transport))
-        proxy = awaited(ObservingProxy.start(
-          AnyPort,
-          server.address,
-          EmulatedLink(LinkProfile.symmetric(link), seed, clock),
-          transport,
-          clock,
-          reader
-        ))
-        run <- flown(server, proxy, isStopped)
+        _   <- scenario.fold(Right(()))(place(_, server.address, transport))
+        run <- flown(server, observer(EmulatedLink(LinkProfile.symmetric(link), seed, clock)), isStopped)
       yield run
-    finally
-      awaited(server.close()): Unit
-      reader.shutdown()
 
   /** Calls the simulator through an observer for a while, so that their code is compiled before a run counts;
     * then their threads precede others, where the system allows it. Blocks.
     */
   def warmUp(): Unit =
-    val transport = TcpTransport()
-    val server    = awaited(SimulatorServer.start(SimulatorSettings(address = AnyPort), transport, clock))
-    val link      = EmulatedLink(LinkProfile.none, 0, clock)
-    val reader    = Executors.newSingleThreadExecutor(Thread.ofPlatform().daemon().factory())
-    val proxy     = awaited(ObservingProxy.start(AnyPort, server.address, link, transport, clock, reader))
-    val client    = AirSimClient(RpcClient(transport, proxy.address, clock))
-    val until     = clock.now() + Warming
-    awaited(Multirotor.named(client, WorldSettings.Default.vehicles.head.name)).foreach: vehicle =>
-      while clock.now() < until do
-        awaited(vehicle.status()): Unit
-        vehicle.moveByVelocityZ(Vector3(1, 0, 0), Metres(-20), Span.ofSeconds(1)): Unit
-    Seq(client.close(), proxy.close(), server.close()).foreach(awaited(_): Unit)
-    reader.shutdown()
+    simulated(SimulatorSettings(address = AnyPort)): (_, transport, observer) =>
+      val proxy  = observer(EmulatedLink(LinkProfile.none, 0, clock))
+      val client = AirSimClient(RpcClient(transport, proxy.address, clock))
+      val until  = clock.now() + Warming
+      awaited(Multirotor.named(client, WorldSettings.Default.vehicles.head.name)).foreach: vehicle =>
+        while clock.now() < until do
+          awaited(vehicle.status()): Unit
+          vehicle.moveByVelocityZ(Vector3(1, 0, 0), Metres(-20), Span.ofSeconds(1)): Unit
+      Seq(client.close(), proxy.close()).foreach(awaited(_): Unit)
     BackgroundThread.compilersGiveWay(): Unit
     ControlThreads.lead(): Unit
+
+  /** Uses a simulator, with observers that the user starts before it and closes. */
+  private def simulated[A](settings: SimulatorSettings)(
+      use: (SimulatorServer, Transport, EmulatedLink => ObservingProxy) => A
+  ): A =
+    val transport = TcpTransport()
+    val server    = awaited(SimulatorServer.start(settings, transport, clock))
+    val reader    = Executors.newSingleThreadExecutor(Thread.ofPlatform().daemon().factory())
+    try
+      use(
+        server,
+        transport,
+        link => awaited(ObservingProxy.start(AnyPort, server.address, link, transport, clock, reader))
+      )
+    finally
+      awaited(server.close()): Unit
+      reader.shutdown()
 
   private def flown(server: SimulatorServer, proxy: ObservingProxy, isStopped: () => Boolean) =
     val port    = proxy.address.port.toString

@@ -1,27 +1,36 @@
 package skein.search
 
 import skein.lanes.{Accelerator, Engine}
-import skein.optimise.{Evaluator, RunningStats, Search, SearchMethod, ValueEvaluator, WeightedSum}
+import skein.optimise.*
 import skein.policy.SearchSpace
+import skein.scenario.Scenarios
+
+/** A search's question in the user's words: enough to continue it, or to repeat it. */
+trait PosedSearch:
+  def method: String
+  def conditions: Conditions
+  def link: String
+
+  /** @return Left states what was expected, what was given, and in which option */
+  def setup(using Scenarios): Either[String, ReadySearch]
+
+  /** The names in the question, some of which may be those of files. */
+  final def named: Seq[String] = Seq(link, conditions.plant) ++ conditions.eye
 
 /** A search whose question is resolved: processes that resolve equal questions evaluate with identical bits.
   */
 trait ReadySearch:
+  val question: PosedSearch
   def search: Search
   def space: SearchSpace
-  def durationS: Double
-  def periodMs: Double
+  val objective: SummedMeasures[?]
 
   /** The vehicle model: in a line for people, and in a word. */
   def vehicles: String
   def model: String
 
-  /** The objective as users write it: with its direction, and without. */
-  def text: String
-  def formula: String
-
-  /** The objective's unit; empty where its terms differ. */
-  def unit: String
+  /** This search with an accelerator that simulates its candidates. */
+  def acceleratedBy(accelerator: Option[Accelerator]): ReadySearch
 
   /** Name of the policy family or scenario that is searched. */
   def name: String
@@ -92,10 +101,11 @@ trait ReadySearch:
   /** The result as a file that `./skein fly` accepts: its name and its text. */
   def file(found: Found): (String, String)
 
-  /** Names of the method, the loop and the link. */
-  def method: String
-  def loop: String
-  def link: String
+  export objective.{formula, text, unit}
+  export question.{link, method}
+  final def loop: String      = question.conditions.loopText
+  final def durationS: Double = question.conditions.durationS
+  final def periodMs: Double  = question.conditions.periodMs
 
   final def under: String = s"$loop over $link"
 

@@ -9,7 +9,7 @@ import upickle.default.{ReadWriter, readwriter, writeJs, read as readJson}
   */
 final case class SearchFile(
     version: Int,
-    question: SearchFile.Question,
+    question: PosedSearch,
     state: SearchState,
     files: Map[String, String] = Map.empty
 )
@@ -20,24 +20,16 @@ object SearchFile:
   private val onDisk = StateFile[SearchFile](Name, Version, "a search")
   export onDisk.{json, parse, read, write}
 
-  type Question = SearchQuestion | TeamQuestion
-
-  /** Names in a question, some of which may be files. */
-  def named(question: Question): Seq[String] =
-    val (link, conditions) = question match
-      case duel: SearchQuestion => (duel.link, duel.conditions)
-      case team: TeamQuestion   => (team.link, team.conditions)
-    Seq(link, conditions.plant) ++ conditions.eye
-
   given ReadWriter[RunningStats]        = ReadWriter.derived
   private given ReadWriter[Scored]      = ReadWriter.derived
   private given ReadWriter[CmaEs.State] = ReadWriter.derived
   private given ReadWriter[MethodState] = ReadWriter.derived
   private given ReadWriter[SearchState] = ReadWriter.derived
-  given ReadWriter[Question]            = readwriter[ujson.Value].bimap(
+  given ReadWriter[PosedSearch]         = readwriter[ujson.Value].bimap(
     {
       case duel: SearchQuestion => writeJs(duel)
       case team: TeamQuestion   => writeJs(team)
+      case other                => throw IllegalArgumentException(s"no question of a search: $other")
     },
     json =>
       if json.obj.contains("scenario") then readJson[TeamQuestion](json) else readJson[SearchQuestion](json)

@@ -18,7 +18,7 @@ import skein.settings.PolicyFile
 import skein.units.Expect
 import upickle.default.ReadWriter
 
-/** A search's question in the user's words: enough to continue it, or to repeat it.
+/** The question of a search for a duel's policy.
   *
   * @param opponent a policy as [[PolicyFile.text]] writes it, of the other role
   * @param candidates approximate number to evaluate
@@ -39,9 +39,8 @@ final case class SearchQuestion(
     population: Int,
     seed: Long,
     fresh: Option[Int] = None
-) derives ReadWriter:
+) extends PosedSearch derives ReadWriter:
 
-  /** @return Left states what was expected, what was given, and in which option */
   def setup(using scenarios: Scenarios): Either[String, SearchSetup] =
     for
       family    <- scenarios.family(family).left.map("--family: " + _)
@@ -120,20 +119,14 @@ final case class SearchSetup(
 ) extends ReadySearch:
   def space: SearchSpace = family.space
   def name: String       = family.name
-  def method: String     = question.method
-  def loop: String       = question.conditions.loopText
-  def link: String       = question.link
-  def text: String       = objective.text
-  def formula: String    = objective.formula
-  def unit: String       = objective.unit
-  def durationS: Double  = conditions.duel.durationS
-  def periodMs: Double   = question.conditions.periodMs
   def vehicles: String   = conditions.vehicle.description
   def model: String      = conditions.vehicle.name
   def blockEpisodes: Int = Effort.blockEpisodes(flown(Judge.Candidates).isFast, conditions.vehicle)
   def fresh: Option[Int] = question.fresh
   def label(candidate: Vector[Double]): String = policy(candidate).label
   def subject(axes: String): String = s"${question.role} ${family.name} ($axes) against ${opponent.label}"
+
+  def acceleratedBy(accelerator: Option[Accelerator]): SearchSetup = copy(accelerator = accelerator)
 
   val search: Search = Search(space, by, objective.direction, question.seed)
 
@@ -152,7 +145,7 @@ final case class SearchSetup(
       many: Boolean = true
   ): ValueEvaluator = DuelEvaluator(
     batch,
-    conditions.duel.durationS,
+    durationS,
     of,
     role,
     opponent.policy,

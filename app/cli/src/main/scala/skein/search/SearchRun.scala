@@ -8,14 +8,14 @@ import skein.optimise.{Evaluator, Search, SearchState}
   */
 final class SearchRun(
     search: Search,
-    question: SearchQuestion | TeamQuestion,
+    question: PosedSearch,
     evaluator: Evaluator,
     folder: Path,
     nanoTime: () => Long
 ):
   import SearchRun.*
 
-  private val files = NamedFiles.digests(SearchFile.named(question))
+  private val files = NamedFiles.digests(question.named)
 
   /** @param isStopped checked from time to time, from any thread; true abandons the current step
     * @param onStep called with every state

@@ -20,8 +20,7 @@ import skein.units.Decimals.significant
 import skein.units.Expect
 import upickle.default.ReadWriter
 
-/** The question of a search over a scenario's settings, in the user's words: enough to continue it, or to
-  * repeat it.
+/** The question of a search over a scenario's settings.
   *
   * @param set settings that have one value, by their keys
   * @param objective a sum of the scenario's measures
@@ -43,10 +42,9 @@ final case class TeamQuestion(
     population: Int,
     seed: Long,
     fresh: Int
-) derives ReadWriter:
+) extends PosedSearch derives ReadWriter:
   import TeamQuestion.*
 
-  /** @return Left states what was expected, what was given, and in which option */
   def setup(using scenarios: Scenarios): Either[String, TeamSetup] =
     for
       ready <- read(plantIsTold = conditions.plant != Plant)
@@ -174,17 +172,13 @@ final case class TeamSetup(
 ) extends ReadySearch:
   export flownBy.{isVirtual, model, vehicles}
 
+  def acceleratedBy(accelerator: Option[Accelerator]): TeamSetup = copy(accelerator = accelerator)
+
   val search: Search =
     if isVirtual then Search(space, by, objective.direction, question.seed, TeamSetup.LeastPlayOff)
     else Search(space, by, objective.direction, question.seed)
 
-  val durationS: Double = question.conditions.durationS
-  val periodMs: Double  = question.conditions.periodMs
-
   def name: String                             = kind.name
-  def method: String                           = question.method
-  def loop: String                             = question.conditions.loopText
-  def link: String                             = question.link
   def fresh: Option[Int]                       = Some(question.fresh)
   def label(candidate: Vector[Double]): String = told(candidate, " ")(_.significant(4))
   def subject(axes: String): String = s"${kind.name} of ${scenario(space.defaults).agents.size} ($axes)"
@@ -221,7 +215,7 @@ final case class TeamSetup(
       objective.terms.map(_._1),
       question.seed,
       share,
-      Some(space.defaults)
+      space.defaults
     )
 
   private def share(judge: Judge) = judge == Judge.Candidates && sharing
@@ -287,10 +281,6 @@ final case class TeamSetup(
       Engagement.inSpace(own.fleet, durationS),
       TeamObjective.judged(objective.measures.map(each => measures(each.name)), durationS, periodMs * 1e-3)
     )
-
-  def formula: String = objective.formula
-  def text: String    = objective.text
-  def unit: String    = objective.unit
 
   /** The result as a configuration that `./skein fly --config` accepts: its name and its text. */
   def file(found: Found): (String, String) =

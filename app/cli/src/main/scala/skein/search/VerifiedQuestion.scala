@@ -12,7 +12,7 @@ import upickle.default.ReadWriter
   * @param probe the defaults' result at the coordinator on the first episodes: a worker with another result,
   *   for example because a file has other content, does not answer the question
   */
-final case class VerifiedQuestion(question: SearchFile.Question, probe: Vector[RunningStats])
+final case class VerifiedQuestion(question: PosedSearch, probe: Vector[RunningStats])
 
 object VerifiedQuestion:
   import SearchFile.given
@@ -23,14 +23,14 @@ object VerifiedQuestion:
   private def probe(ready: ReadySearch, by: Judge => ValueEvaluator) =
     by(Judge.Candidates).tallies(Vector(ready.space.defaults), Probes)
 
-  def bytes(question: SearchFile.Question, ready: ReadySearch): ArraySeq[Byte] =
-    JsonText.bytes(VerifiedQuestion(question, probe(ready, ready.judges(1))))
+  def bytes(ready: ReadySearch): ArraySeq[Byte] =
+    JsonText.bytes(VerifiedQuestion(ready.question, probe(ready, ready.judges(1))))
 
   /** Answers search questions about the scenarios known to this process. */
   def solvers(using Scenarios): BlockSolverFactory = asked =>
     for
       posed <- JsonText.read[VerifiedQuestion](asked, "a search's question")
-      ready <- setup(posed.question)
+      ready <- posed.question.setup
       came = probe(ready, ready.judges(1))
       _ <- Expect.that(RunningStats.areSame(came, posed.probe)):
         s"the defaults come to ${came.head.mean} here and to ${posed.probe.head.mean} at the coordinator; " +
@@ -38,8 +38,3 @@ object VerifiedQuestion:
     yield () =>
       val judges = ready.judges(1)
       work => SearchBlock.read(work).fold(wrong => throw IllegalArgumentException(wrong), _.answer(judges))
-
-  private def setup(question: SearchFile.Question)(using Scenarios): Either[String, ReadySearch] =
-    question match
-      case duel: SearchQuestion => duel.setup
-      case team: TeamQuestion   => team.setup

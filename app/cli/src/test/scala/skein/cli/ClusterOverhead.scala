@@ -75,7 +75,7 @@ import skein.signal.SplitMix64
     f"one core flies $rate%,.0f episodes a second; blocks of $block%,d; calls of ${count * episodes.size}%,d"
   )
 
-  val posed   = QuestionKind.Search.of(VerifiedQuestion.bytes(question, ready))
+  val posed   = QuestionKind.Search.of(VerifiedQuestion.bytes(ready))
   val options =
     ClusterOptions.Checked(workers = 2, ClusterOptions.Loopback, Some(block), None)
   val done = ClusterRun.using(options, "skein.cli.Main", posed, folder, threads = 2, Shown(false)): run =>

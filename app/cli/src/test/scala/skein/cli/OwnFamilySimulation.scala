@@ -7,13 +7,14 @@ import skein.scenario.Scenarios
 import skein.testing.{Lengthy, Optimised, TemporaryFolders}
 
 /** Turns towards the opponent's last known position, less the older it is. */
-final case class Doubting(turnRateRadPerS: Double, doubtS: Double) extends ObservingPolicy[Double]:
-  def initial: Double = 0
+final case class Doubting(turnRateRadPerS: Double, doubtS: Double) extends HeadingPolicy:
+  type Memory = Double
+  def start: Double = 0
 
-  def decide(seen: PlanarObservation, memory: Double): Decided[Double] =
+  def decide(seen: PlanarObservation, memory: Double): (Double, Double) =
     val wanted = math.IEEEremainder(StrictMath.atan2(seen.dyM, seen.dxM) - seen.ownHeadingRad, 2 * math.Pi)
     val most   = turnRateRadPerS * seen.elapsedS * doubtS / (doubtS + seen.opponentAgeS)
-    Decided(seen.ownHeadingRad + wanted.max(-most).min(most), memory)
+    (seen.ownHeadingRad + wanted.max(-most).min(most), memory)
 
 /** A program with a family of policies of its own, as a user writes it. */
 object Doubters extends SkeinApp(Scenarios.ours.kinds*):

@@ -177,7 +177,8 @@ object Formula:
       def ofFields(className: String, fields: Map[String, Value], name: String): Vector[(String, Node)] =
         fieldsOf(files.load(className)).toVector
           .map(_.getName)
-          .filter(fields.contains)
+          // A pair of doubles is of a class of its own, whose inherited fields are empty.
+          .filter(each => fields.contains(each) && fields(each) != Null)
           .flatMap(each => outputsOf(fields(each), if name == Answer then each else s"$name.$each"))
 
       Right(lifted(trace, names.result(), outputsOf(answer, Answer), lifter, target.getClass))

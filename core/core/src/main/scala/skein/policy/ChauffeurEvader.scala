@@ -24,22 +24,15 @@ package skein.policy
   *   need more.
   */
 final case class ChauffeurEvader(turningRadiusM: Double = 8.0, speedRatio: Double = 0.5, dodgeM: Double = 4.0)
-    extends HeadingPolicy:
+    extends HeadingPolicy.Memoryless:
   require(turningRadiusM > 0, s"the turning radius must be positive, came $turningRadiusM m")
   require(speedRatio >= 0 && speedRatio <= 1, s"the ratio of speeds must be in 0 to 1, came $speedRatio")
 
   /** The least angle that it keeps to the pursuer's heading while dodging. */
   private val leastAside = StrictMath.acos(speedRatio)
 
-  def heading(
-      dxM: Double,
-      dyM: Double,
-      dvxMps: Double,
-      dvyMps: Double,
-      ownHeadingRad: Double,
-      opponentHeadingRad: Double,
-      elapsedS: Double
-  ): Double =
+  def heading(seen: PlanarObservation): Double =
+    import seen.*
     val cos    = StrictMath.cos(opponentHeadingRad)
     val sin    = StrictMath.sin(opponentHeadingRad)
     val x      = -dxM * cos - dyM * sin

@@ -26,22 +26,15 @@ final case class ChauffeurPursuer(
     speedRatio: Double = 0.5,
     captureRadiusM: Double = 1.5,
     turnRateRadPerS: Double = 1.25
-) extends HeadingPolicy:
+) extends HeadingPolicy.Memoryless:
   require(turnRateRadPerS > 0, s"the turn rate must be positive, came $turnRateRadPerS rad/s")
 
   private val game  = HomicidalChauffeur(turningRadiusM, speedRatio)
   private val most  = math.max(captureRadiusM, 1.05 * game.thresholdM)
   private val falls = (most - game.thresholdM) / (math.Pi - game.edgeRad)
 
-  def heading(
-      dxM: Double,
-      dyM: Double,
-      dvxMps: Double,
-      dvyMps: Double,
-      ownHeadingRad: Double,
-      opponentHeadingRad: Double,
-      elapsedS: Double
-  ): Double =
+  def heading(seen: PlanarObservation): Double =
+    import seen.*
     val cos   = StrictMath.cos(ownHeadingRad)
     val sin   = StrictMath.sin(ownHeadingRad)
     val ahead = dxM * cos + dyM * sin

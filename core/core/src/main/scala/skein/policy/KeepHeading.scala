@@ -1,14 +1,8 @@
 package skein.policy
 
 /** Keeps the last commanded heading: repeats the last decision where a policy has not decided in time. */
-object KeepHeading extends HeadingPolicy:
+object KeepHeading extends HeadingPolicy.Memoryless:
 
-  def heading(
-      dxM: Double,
-      dyM: Double,
-      dvxMps: Double,
-      dvyMps: Double,
-      ownHeadingRad: Double,
-      opponentHeadingRad: Double,
-      elapsedS: Double
-  ): Double = ownHeadingRad
+  def heading(seen: PlanarObservation): Double =
+    import seen.*
+    ownHeadingRad

@@ -11,19 +11,12 @@ package skein.policy
   * @param turnRateRadPerS the most that it turns
   */
 final case class LeadPursuit(speedRatio: Double = 0.5, lead: Double = 1.0, turnRateRadPerS: Double = 1.0)
-    extends HeadingPolicy:
+    extends HeadingPolicy.Memoryless:
   require(speedRatio >= 0, s"the ratio of speeds must not be negative, came $speedRatio")
   require(turnRateRadPerS > 0, s"the turn rate must be positive, came $turnRateRadPerS rad/s")
 
-  def heading(
-      dxM: Double,
-      dyM: Double,
-      dvxMps: Double,
-      dvyMps: Double,
-      ownHeadingRad: Double,
-      opponentHeadingRad: Double,
-      elapsedS: Double
-  ): Double =
+  def heading(seen: PlanarObservation): Double =
+    import seen.*
     val sight = StrictMath.atan2(dyM, dxM)
     val ahead = StrictMath.asin((speedRatio * StrictMath.sin(opponentHeadingRad - sight)).max(-1.0).min(1.0))
     Turn.towards(ownHeadingRad, sight + lead * ahead, turnRateRadPerS * elapsedS)

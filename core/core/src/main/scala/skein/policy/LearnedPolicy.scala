@@ -14,7 +14,7 @@ final case class LearnedPolicy(
     parameters: Vector[Double],
     turnRateRadPerS: Double,
     turnRad: Double
-) extends ObservingPolicy[Double]:
+) extends HeadingPolicy.Memoryless:
   require(
     shape.inputs == LearnedPolicy.Inputs,
     s"a learned policy has ${LearnedPolicy.Inputs} inputs, got ${shape.inputs}"
@@ -27,10 +27,8 @@ final case class LearnedPolicy(
   private val network = DenseNetwork(shape, parameters)
   private val scales  = LearnedPolicy.scales.toArray
 
-  def initial: Double = 0
-
-  def decide(seen: PlanarObservation, memory: Double): Decided[Double] =
-    Decided(seen.ownHeadingRad + share(seen) * (turnRateRadPerS * seen.elapsedS + turnRad), memory)
+  def heading(seen: PlanarObservation): Double =
+    seen.ownHeadingRad + share(seen) * (turnRateRadPerS * seen.elapsedS + turnRad)
 
   /** The network's output: share of the largest turn, −1 to 1, positive to the right. */
   def share(seen: PlanarObservation): Double =

@@ -10,18 +10,12 @@ package skein.policy
   * @param turnRateRadPerS the most that it turns
   */
 final case class NeuralPolicy(shape: NeuralShape, parameters: Vector[Double], turnRateRadPerS: Double = 1.0)
-    extends HeadingPolicy:
+    extends HeadingPolicy.Memoryless:
   private val network = DenseNetwork(shape, parameters)
 
-  def heading(
-      dxM: Double,
-      dyM: Double,
-      dvxMps: Double,
-      dvyMps: Double,
-      ownHeadingRad: Double,
-      opponentHeadingRad: Double,
-      elapsedS: Double
-  ): Double = ownHeadingRad + turnRate(dxM, dyM, dvxMps, dvyMps, ownHeadingRad) * elapsedS
+  def heading(seen: PlanarObservation): Double =
+    import seen.*
+    ownHeadingRad + turnRate(dxM, dyM, dvxMps, dvyMps, ownHeadingRad) * elapsedS
 
   /** The turn rate for a relative position and velocity, rad/s, positive to the right. */
   def turnRate(dxM: Double, dyM: Double, dvxMps: Double, dvyMps: Double, ownHeadingRad: Double): Double =

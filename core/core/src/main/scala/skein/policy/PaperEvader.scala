@@ -11,17 +11,10 @@ package skein.policy
   *
   * @param turningRadiusM R, the pursuer's assumed turning radius; the paper's is 8 m
   */
-final case class PaperEvader(turningRadiusM: Double = 8.0) extends HeadingPolicy:
+final case class PaperEvader(turningRadiusM: Double = 8.0) extends HeadingPolicy.Memoryless:
 
-  def heading(
-      dxM: Double,
-      dyM: Double,
-      dvxMps: Double,
-      dvyMps: Double,
-      ownHeadingRad: Double,
-      opponentHeadingRad: Double,
-      elapsedS: Double
-  ): Double =
+  def heading(seen: PlanarObservation): Double =
+    import seen.*
     val radius = turningRadiusM
     val cos    = StrictMath.cos(opponentHeadingRad)
     val sin    = StrictMath.sin(opponentHeadingRad)

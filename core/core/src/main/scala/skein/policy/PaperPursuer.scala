@@ -12,17 +12,10 @@ package skein.policy
   *   comparison of loops.
   */
 final case class PaperPursuer(turnRateRadPerS: Double = 1.0, stepRad: Option[Double] = None)
-    extends HeadingPolicy:
+    extends HeadingPolicy.Memoryless:
 
-  def heading(
-      dxM: Double,
-      dyM: Double,
-      dvxMps: Double,
-      dvyMps: Double,
-      ownHeadingRad: Double,
-      opponentHeadingRad: Double,
-      elapsedS: Double
-  ): Double =
+  def heading(seen: PlanarObservation): Double =
+    import seen.*
     val cos  = StrictMath.cos(ownHeadingRad)
     val sin  = StrictMath.sin(ownHeadingRad)
     val x    = dxM * cos + dyM * sin

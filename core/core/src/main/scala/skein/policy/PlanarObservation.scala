@@ -1,8 +1,14 @@
 package skein.policy
 
-/** What an [[ObservingPolicy]] observes of its opponent. North and east, m and m/s; the first seven are the
-  * arguments of [[HeadingPolicy.heading]].
+/** What a [[HeadingPolicy]] observes of its opponent.
   *
+  * @param dxM opponent's position minus own, north, m
+  * @param dyM opponent's position minus own, east, m
+  * @param dvxMps opponent's velocity minus own, north, m/s
+  * @param dvyMps opponent's velocity minus own, east, m/s
+  * @param ownHeadingRad heading commanded last to the own vehicle
+  * @param opponentHeadingRad heading commanded last to the opponent, as far as known to this controller
+  * @param elapsedS time since the own last decision; 0 at the first
   * @param ownAgeS age of the reading of the own vehicle, s
   * @param opponentAgeS age of the reading of the opponent, s
   */

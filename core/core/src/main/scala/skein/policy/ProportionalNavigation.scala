@@ -11,19 +11,12 @@ package skein.policy
   * @param turnRateRadPerS the most that it turns
   */
 final case class ProportionalNavigation(gain: Double = 3.0, turnRateRadPerS: Double = 1.0)
-    extends HeadingPolicy:
+    extends HeadingPolicy.Memoryless:
   require(gain > 0, s"the gain must be positive, came $gain")
   require(turnRateRadPerS > 0, s"the turn rate must be positive, came $turnRateRadPerS rad/s")
 
-  def heading(
-      dxM: Double,
-      dyM: Double,
-      dvxMps: Double,
-      dvyMps: Double,
-      ownHeadingRad: Double,
-      opponentHeadingRad: Double,
-      elapsedS: Double
-  ): Double =
+  def heading(seen: PlanarObservation): Double =
+    import seen.*
     val most      = turnRateRadPerS * elapsedS
     val isClosing = dxM * dvxMps + dyM * dvyMps < 0
     if isClosing then

@@ -5,15 +5,9 @@ package skein.policy
   * @param turnRateRadPerS the most that it turns; a turning circle of radius R at speed v is v / R. The
   *   paper's pursuer turns 1 rad/s.
   */
-final case class PurePursuit(turnRateRadPerS: Double = 1.0) extends HeadingPolicy:
+final case class PurePursuit(turnRateRadPerS: Double = 1.0) extends HeadingPolicy.Memoryless:
   require(turnRateRadPerS > 0, s"the turn rate must be positive, came $turnRateRadPerS rad/s")
 
-  def heading(
-      dxM: Double,
-      dyM: Double,
-      dvxMps: Double,
-      dvyMps: Double,
-      ownHeadingRad: Double,
-      opponentHeadingRad: Double,
-      elapsedS: Double
-  ): Double = Turn.towards(ownHeadingRad, StrictMath.atan2(dyM, dxM), turnRateRadPerS * elapsedS)
+  def heading(seen: PlanarObservation): Double =
+    import seen.*
+    Turn.towards(ownHeadingRad, StrictMath.atan2(dyM, dxM), turnRateRadPerS * elapsedS)

@@ -213,10 +213,8 @@ object OnnxPolicy:
       asked: Array[Float] => Either[String, Array[Float]],
       turnRateRadPerS: Double,
       turnRad: Double
-  ) extends ObservingPolicy[Unit]:
-    def initial: Unit = ()
-
-    def decide(seen: PlanarObservation, memory: Unit): Decided[Unit] =
+  ) extends HeadingPolicy.Memoryless:
+    def heading(seen: PlanarObservation): Double =
       val share =
         answer(asked, seen).fold(reason => throw IllegalStateException(s"the policy: $reason"), identity)
-      Decided(seen.ownHeadingRad + share * (turnRateRadPerS * seen.elapsedS + turnRad), ())
+      seen.ownHeadingRad + share * (turnRateRadPerS * seen.elapsedS + turnRad)

@@ -25,17 +25,16 @@ import skein.units.{OwnFailure, Span}
   * @param mostTurnRadPerS of a pursuer
   */
 final class OutsidePolicy private (connection: OutsidePolicy.Connection, role: Role, mostTurnRadPerS: Double)
-    extends ObservingPolicy[Unit]:
-  def initial: Unit = ()
+    extends HeadingPolicy.Memoryless:
 
   /** Requests a decision.
     *
     * @throws skein.units.OwnFailure if there is no answer
     */
-  def decide(seen: PlanarObservation, memory: Unit): Decided[Unit] =
+  def heading(seen: PlanarObservation): Double =
     val share = connection.ask(seen.fromOwnHeading.map(_.toFloat)).toDouble.max(-1).min(1)
     val turn  = if role == Role.Pursuer then share * mostTurnRadPerS * seen.elapsedS else share * math.Pi
-    Decided(seen.ownHeadingRad + turn, ())
+    seen.ownHeadingRad + turn
 
 object OutsidePolicy:
   private val Name = "outside"

@@ -57,14 +57,14 @@ class FailedFlightSuite extends munit.FunSuite:
       settings: LoopSettings = LoopSettings()
   ): FlightResult = VirtualTime
     .run(seed = 1): system =>
-      given ActorSystem          = system
-      given ExecutionContext     = system.dispatcher
-      val clock                  = Clock.ofNanos(VirtualTime.clock(system))
-      val duel                   = PaperDuel().fleet
-      var decisions              = 0
-      val failing: HeadingPolicy = (_, _, _, _, own, _, _) =>
+      given ActorSystem                     = system
+      given ExecutionContext                = system.dispatcher
+      val clock                             = Clock.ofNanos(VirtualTime.clock(system))
+      val duel                              = PaperDuel().fleet
+      var decisions                         = 0
+      val failing: HeadingPolicy.Memoryless = seen =>
         decisions += 1
-        if decisions > 20 then throw error else own
+        if decisions > 20 then throw error else seen.ownHeadingRad
       val scenario = duel.copy(agents = duel.agents.map: agent =>
         if agent.role == Role.Pursuer then agent.copy(policy = failing) else agent)
       val world    = FarQuadrotors(scenario, link, 1, clock)

@@ -1,7 +1,17 @@
 package skein.loop
 
 import skein.planning.{JointPlanner, Manoeuvre, ManoeuvreRollout, PlanProblem, SeparationCost, Target}
-import skein.policy.{Action, Fleet, Goal, HeadingPolicy, KeepHeading, Observation, Policy, Role}
+import skein.policy.{
+  Action,
+  Fleet,
+  Goal,
+  HeadingPolicy,
+  KeepHeading,
+  Observation,
+  PlanarObservation,
+  Policy,
+  Role
+}
 import skein.scenario.{Kept, PaperDuel}
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
@@ -66,9 +76,8 @@ class PlanningSuite extends munit.FunSuite:
 
   /** The decision instead of a plan by a policy that turns by this angle from its last heading, 0.25 rad. */
   private def byPolicy(turn: Double, settings: PlanSettings): (Decision, PlannedDecision) =
-    object Turning extends HeadingPolicy:
-      def heading(dx: Double, dy: Double, dvx: Double, dvy: Double, own: Double, its: Double, s: Double) =
-        own + turn
+    object Turning extends HeadingPolicy.Memoryless:
+      def heading(seen: PlanarObservation): Double = seen.ownHeadingRad + turn
     val turning  = Fleet(fleet.agents.updated(pursuer, fleet.agents(pursuer).copy(policy = Turning)))
     val planning = pursuit(settings, turning)
     decidedBy(planning, isOld = true)
@@ -127,9 +136,8 @@ class PlanningSuite extends munit.FunSuite:
       case other => fail(s"came $other")
     assertEquals(OpponentModel.missing(flownBy(KeepHeading)), Vector.empty)
 
-    object Lucky extends HeadingPolicy:
-      def heading(dx: Double, dy: Double, dvx: Double, dvy: Double, own: Double, its: Double, s: Double) =
-        System.nanoTime.toDouble
+    object Lucky extends HeadingPolicy.Memoryless:
+      def heading(seen: PlanarObservation): Double = System.nanoTime.toDouble
     assert(target(Lucky).isInstanceOf[Target.Along])
     // Of those alone that somebody plans against.
     def all(policy: Policy) = Fleet(fleet.agents.map(_.copy(policy = policy)))

@@ -36,7 +36,7 @@ class OnnxPolicySuite extends munit.FunSuite, OnnxFiles:
       for _ <- 1 to 50 do
         val what = seen(random, 1)
         // A neural policy is not told ages.
-        def heading(policy: HeadingPolicy) = ObservingPolicy.decide(policy, what, 0.0).headingRad
+        def heading(policy: HeadingPolicy) = policy.decide(what, policy.start)._1
         if name.startsWith("learned") then assertEquals(heading(again.policy), heading(policy))
         else assertEqualsDouble(heading(again.policy), heading(policy), 1e-12)
 
@@ -119,7 +119,7 @@ class OnnxPolicySuite extends munit.FunSuite, OnnxFiles:
         val one = seen(random, 1)
         assertEqualsDouble(policy.share(one), expected(one, hidden, output), 1e-9)
         val heading = one.ownHeadingRad + policy.share(one) * one.elapsedS
-        assertEquals(policy.decide(one, 0).headingRad, heading)
+        assertEquals(policy.heading(one), heading)
 
   folder.test("its role can be stated, and an evader turns by up to half a turn"): folder =>
     val file = written(

@@ -16,7 +16,7 @@ class OutsidePolicyLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders
       val policy =
         OutsidePolicy.reach(peer.option).map(_.policy.asInstanceOf[OutsidePolicy]).fold(fail(_), identity)
       answers.map: _ =>
-        Try(policy.decide(seen, ()).headingRad).toEither.left.map:
+        Try(policy.heading(seen)).toEither.left.map:
           case reason: OwnFailure => reason.getMessage
           case other              => throw other
 

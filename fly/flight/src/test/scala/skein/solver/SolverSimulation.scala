@@ -248,7 +248,8 @@ class SolverSimulation extends munit.FunSuite, Optimised:
 
 object SolverSimulation:
   /** Turns by the number of its decisions, so that its actions show its memory. */
-  object Counting extends ObservingPolicy[Int]:
-    def initial: Int                                               = 0
-    def decide(seen: PlanarObservation, memory: Int): Decided[Int] =
-      Decided(seen.ownHeadingRad + 0.001 * memory, memory + 1)
+  object Counting extends HeadingPolicy:
+    type Memory = Int
+    def start: Int                                                  = 0
+    def decide(seen: PlanarObservation, memory: Int): (Double, Int) =
+      (seen.ownHeadingRad + 0.001 * memory, memory + 1)

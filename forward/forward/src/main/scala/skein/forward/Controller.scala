@@ -1,14 +1,7 @@
 package skein.forward
 
 import skein.forecast.Forecast
-import skein.policy.{
-  Action,
-  Observation,
-  ObservingPolicy,
-  PlanarObservation,
-  HeadingPolicy,
-  Seen
-}
+import skein.policy.{Action, Observation, PlanarObservation, HeadingPolicy, Seen}
 import skein.signal.Kinematics
 import skein.units.{Instant, Metres, MetresPerSecond, OwnFailure, Radians, Span}
 
@@ -125,8 +118,7 @@ private[skein] final class Controller(
     outstanding = 0; mayCommandAt = 0; mayCommand = false; turnAt = 0; holds = false
     lastDecidedAt = Controller.Never
     decided = own.startHeadingRad
-    memory = ObservingPolicy.initialOf(policy)
-    if world.isAsked(agent) then choosing.start()
+    if world.isAsked(agent) then choosing.start() else memory = asked(policy.start)
     sent = decided; sentNumber = 0
     made = 0; unused = 0; turned = 0
     goOn()
@@ -201,10 +193,9 @@ private[skein] final class Controller(
   private def heading(policy: HeadingPolicy, observation: RolloutView, elapsedS: Double): Double =
     upon = observation
     val other = world.assignment.opponentOf(agent, distance)
-    world.views(agent) match
+    val seen  = world.views(agent) match
       case None =>
-        chosen(
-          policy,
+        planar(
           observation,
           elapsedS,
           observation.x(other),
@@ -217,8 +208,7 @@ private[skein] final class Controller(
       case Some(view) =>
         val (place, velocity, sinceS) = view.believed(observation.forecast.map(actsInS))
         view.turn(place.x - observation.x(agent), place.y - observation.y(agent))
-        chosen(
-          policy,
+        planar(
           observation,
           elapsedS,
           place.x,
@@ -228,6 +218,9 @@ private[skein] final class Controller(
           StrictMath.atan2(velocity.y, velocity.x),
           sinceS
         )
+    val (heading, next) = asked(policy.decide(seen, memory.asInstanceOf[policy.Memory]))
+    memory = next
+    heading
 
   /** Time from now until a command sent now takes effect, s. */
   private def actsInS(forecast: Forecast): Double = actsIn(forecast).toSeconds
@@ -239,9 +232,8 @@ private[skein] final class Controller(
   private def ageS(observation: RolloutView, vehicle: Int) =
     (world.nowNs - observation.validAtNs(vehicle)) * 1e-9
 
-  /** The decision of a policy, given its opponent's position, velocity, last commanded heading, and age. */
-  private def chosen(
-      policy: HeadingPolicy,
+  /** What a policy observes, given its opponent's position, velocity, last commanded heading, and age. */
+  private def planar(
       observation: RolloutView,
       elapsedS: Double,
       x: Double,
@@ -250,17 +242,17 @@ private[skein] final class Controller(
       vy: Double,
       sentRad: Double,
       otherAgeS: Double
-  ): Double =
-    val (dx, dy)   = (x - observation.x(agent), y - observation.y(agent))
-    val (dvx, dvy) = (vx - observation.vx(agent), vy - observation.vy(agent))
-    policy match
-      case observing: ObservingPolicy[?] =>
-        val seen =
-          PlanarObservation(dx, dy, dvx, dvy, decided, sentRad, elapsedS, ageS(observation, agent), otherAgeS)
-        val answer = asked(ObservingPolicy.decide(observing, seen, memory))
-        memory = answer.memory
-        answer.headingRad
-      case _ => asked(policy.heading(dx, dy, dvx, dvy, decided, sentRad, elapsedS))
+  ): PlanarObservation = PlanarObservation(
+    x - observation.x(agent),
+    y - observation.y(agent),
+    vx - observation.vx(agent),
+    vy - observation.vy(agent),
+    decided,
+    sentRad,
+    elapsedS,
+    ageS(observation, agent),
+    otherAgeS
+  )
 
   /** Evaluates the policy's code.
     *

@@ -55,11 +55,12 @@ enum DuelMeasure:
     case CaptureTime(radiusM) => Some(radiusM)
     case _                    => None
 
-/** The objective of a search: a weighted sum of measures, averaged over episodes.
+/** The objective of a search for a duel's policy.
   *
   * @param terms weight and measure; all measures of captures have one radius
   */
-final case class Objective(terms: Vector[(Double, DuelMeasure)], direction: Direction):
+final case class Objective(terms: Vector[(Double, DuelMeasure)], direction: Direction)
+    extends SummedMeasures[DuelMeasure](_.text, _.unit):
   require(terms.nonEmpty, "an objective needs at least one term")
   require(
     terms.flatMap((_, measure) => measure.captureRadiusM).distinct.size <= 1,
@@ -90,14 +91,6 @@ final case class Objective(terms: Vector[(Double, DuelMeasure)], direction: Dire
         case _                               => told
       sum += weight * came
     sum
-
-  /** The text that [[Objective.parse]] reads, without the direction. */
-  def formula: String = WeightedSum.formula(terms)(_.text)
-
-  def text: String = s"${direction.text} $formula"
-
-  /** Unit of the value, if all terms agree, else empty. */
-  def unit: String = WeightedSum.unit(terms)(_.unit)
 
 object Objective:
   private val Forms =

@@ -1,17 +1,16 @@
 package skein.optimise
 
 import skein.forward.Delays
-import skein.lanes.{TeamBatch, TeamCandidate, TeamWorlds}
-import skein.simd.{LaneFunction, WorldRandom}
+import skein.lanes.{Engine, TeamBatch, TeamCandidate, TeamWorlds}
 
 /** Simulates a team's candidates in [[TeamBatch]].
   *
   * @param candidate made from parameters; a pure function
   * @param weights of the judged numbers, in their order: the weighted sum is the objective
   * @param seed of the delays
-  * @param shareEpisodes whether they share episodes, each by one timetable: for many candidates; a single one
-  *   runs faster without
-  * @param usual parameters of a typical candidate, from which the number that run side by side is derived
+  * @param shareEpisodes see [[WorldsEvaluator]]
+  * @param usual parameters of a typical candidate, from which the number that run side by side is derived, if
+  *   they share episodes
   */
 final class TeamEvaluator(
     batch: TeamBatch,
@@ -20,34 +19,21 @@ final class TeamEvaluator(
     weights: Vector[Double],
     seed: Long,
     shareEpisodes: Boolean = true,
-    usual: Option[Vector[Double]] = None
-) extends ValueEvaluator:
+    usual: Vector[Double] = Vector.empty
+) extends WorldsEvaluator(link, seed, shareEpisodes):
 
-  override def sideBySide: Int =
-    if shareEpisodes then
-      usual.fold(LaneFunction.COUNT)(each =>
-        batch.engine(candidate(each), shareEpisodes, Seq(link)).sideBySide
-      )
-    else 1
+  protected def engine: Engine = batch.engine(candidate(usual), shareEpisodes, Seq(link))
 
-  def valuesUnless(isCancelled: () => Boolean)(
+  protected def flown(
       candidates: Vector[Vector[Double]],
-      episodes: Range
-  ): Option[Vector[Array[Double]]] =
-    val teams    = candidates.map(candidate)
-    val keys     = episodes.map(WorldRandom.key(seed, 0, _)).toArray
-    val worlds   = Worlds(teams, keys)
+      keys: Array[Int],
+      isCancelled: () => Boolean
+  ): Option[Int => Double] =
+    val worlds   = Teams(candidates.map(candidate).toArray, keys)
     val outcomes = batch.fly(worlds, isCancelled = isCancelled)
-    Option.when(outcomes.flown == worlds.size):
-      Vector.tabulate(teams.size): number =>
-        Array.tabulate(keys.length): episode =>
-          val world = number * keys.length + episode
-          outcomes.sum(weights, world)
+    Option.when(outcomes.flown == worlds.size)(outcomes.sum(weights, _))
 
-  private final class Worlds(teams: Vector[TeamCandidate], keys: Array[Int]) extends TeamWorlds:
-    def size: Int                            = teams.size * keys.length
-    override def shareEpisodes: Boolean      = TeamEvaluator.this.shareEpisodes
-    override def episodesOfEach: Int         = keys.length
-    def key(world: Int): Int                 = keys(world % keys.length)
-    def link(world: Int): Delays             = TeamEvaluator.this.link
-    def candidate(world: Int): TeamCandidate = teams(world / keys.length)
+  private final class Teams(teams: Array[TeamCandidate], keys: Array[Int])
+      extends EachOf(teams, keys),
+        TeamWorlds:
+    def candidate(world: Int): TeamCandidate = of(world)

@@ -9,11 +9,8 @@ import skein.scenario.{Measure, Scenario, Window}
   *
   * @param terms weights and measures; forward simulation supports those of a quantity
   */
-final case class TeamObjective(terms: Vector[(Double, Measure)], direction: Direction):
-
-  def formula: String = WeightedSum.formula(terms)((measure: Measure) => TeamObjective.keyOf(measure))
-  def text: String    = s"${direction.text} $formula"
-  def unit: String    = WeightedSum.unit(terms)((measure: Measure) => measure.unit)
+final case class TeamObjective(terms: Vector[(Double, Measure)], direction: Direction)
+    extends SummedMeasures[Measure](TeamObjective.keyOf, _.unit):
 
   def measures: Vector[Measure] = terms.map((_, measure) => measure)
 

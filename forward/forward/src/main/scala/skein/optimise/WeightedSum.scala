@@ -66,19 +66,33 @@ object WeightedSum:
 
     terms(0, Vector.empty).map(WeightedSum(_, stated))
 
-  /** Unit of the sum, if all terms agree; else empty. */
-  def unit[M](terms: Vector[(Double, M)])(of: M => String): String =
-    if terms.map((_, measure) => of(measure)).distinct.size == 1 then of(terms.head._2) else ""
-
   /** The formula with its unit, for the axis of a picture. */
   def withUnit(formula: String, unit: String): String = if unit.isEmpty then formula else s"$formula, $unit"
 
-  /** The text that [[parse]] reads, without the direction. */
-  def formula[M](terms: Vector[(Double, M)])(text: M => String): String = terms.zipWithIndex
+/** The objective of a search: a weighted sum of measures, averaged over episodes. Its `terms` are weights
+  * with their measures.
+  *
+  * @param keyOf the name of a measure in the formula
+  * @param unitOf a measure's unit
+  */
+trait SummedMeasures[M](keyOf: M => String, unitOf: M => String):
+  def terms: Vector[(Double, M)]
+
+  def direction: Direction
+
+  /** The text that [[WeightedSum.parse]] reads, without the direction. */
+  def formula: String = terms.zipWithIndex
     .map:
-      case ((1.0, measure), 0)    => text(measure)
-      case ((weight, measure), 0) => s"$weight*${text(measure)}"
+      case ((1.0, measure), 0)    => keyOf(measure)
+      case ((weight, measure), 0) => s"$weight*${keyOf(measure)}"
       case ((weight, measure), _) =>
         val factor = if weight.abs == 1 then "" else s"${weight.abs}*"
-        s"${if weight < 0 then "-" else "+"} $factor${text(measure)}"
+        s"${if weight < 0 then "-" else "+"} $factor${keyOf(measure)}"
     .mkString(" ")
+
+  def text: String = s"${direction.text} $formula"
+
+  /** Unit of the value, if all terms agree; else empty. */
+  def unit: String = terms.map((_, measure) => unitOf(measure)).distinct match
+    case Vector(one) => one
+    case _           => ""

@@ -1,6 +1,6 @@
 package skein.planning
 
-import skein.policy.{ObservingPolicy, PlanarObservation}
+import skein.policy.PlanarObservation
 import skein.vehicle.PlaneReading
 
 /** Simulates one manoeuvre in a situation, in doubles: the reference for the kernel, the check of the chosen
@@ -84,8 +84,7 @@ final class ManoeuvreRollout(situation: Situation, objective: PlanCost, dtS: Dou
         val (vx, vy) = (track.lastVx(dtS), track.lastVy(dtS))
         Vector.tabulate(track.steps)(step => PlaneReading(track.x(step), track.y(step), vx, vy))
       case Target.Opponent(start, speed, headingRad, policy) =>
-        var (heading, memory, now) =
-          (headingRad, ObservingPolicy.initialOf(policy), start: PredictedVehicle[?])
+        var (heading, memory, now) = (headingRad, policy.start, start: PredictedVehicle[?])
         for step <- 0 until own.length - 1 yield
           val (last, at) = (own(step), now.motion)
           val seen       = PlanarObservation(
@@ -99,9 +98,9 @@ final class ManoeuvreRollout(situation: Situation, objective: PlanCost, dtS: Dou
             0,
             0
           )
-          val decided = ObservingPolicy.decide(policy, seen, memory)
-          heading = decided.headingRad
-          memory = decided.memory
+          val decided = policy.decide(seen, memory)
+          heading = decided._1
+          memory = decided._2
           now = now.flown(speed * StrictMath.cos(heading), speed * StrictMath.sin(heading), dtS)
           now.motion
 

@@ -189,13 +189,5 @@ class EngagementSuite extends munit.FunSuite:
     def choose(seen: Observation, memory: Unit): (Action, Unit) =
       (seen.along(if seen.northM(seen.self) > seen.northM(1) then math.Pi else 0, mps), ())
 
-  private final case class LeadAway(headingRad: Double) extends HeadingPolicy:
-    def heading(
-        dxM: Double,
-        dyM: Double,
-        dvxMps: Double,
-        dvyMps: Double,
-        ownHeadingRad: Double,
-        opponentHeadingRad: Double,
-        elapsedS: Double
-    ): Double = headingRad
+  private final case class LeadAway(headingRad: Double) extends HeadingPolicy.Memoryless:
+    def heading(seen: PlanarObservation): Double = headingRad

@@ -72,7 +72,8 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
   /** Runs straight away; when the pursuer is γ turning radii behind, turns aside by a right angle, and keeps
     * that direction while the pursuer turns after it.
     */
-  private val barrier: HeadingPolicy = (dx, dy, _, _, own, pursuer, _) =>
+  private val barrier: HeadingPolicy.Memoryless = seen =>
+    import seen.{dxM as dx, dyM as dy, opponentHeadingRad as pursuer, ownHeadingRad as own}
     val ahead = -dx * math.cos(pursuer) - dy * math.sin(pursuer)
     val right = dx * math.sin(pursuer) - dy * math.cos(pursuer)
     val aside = math.abs(math.IEEEremainder(own - pursuer, 2 * math.Pi))
@@ -82,7 +83,8 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
 
   /** Crosses the barriers as steeply as it can; within the circle where it may wait, it heads for the centre.
     */
-  private val steepest: HeadingPolicy = (dx, dy, _, _, _, pursuer, _) =>
+  private val steepest: HeadingPolicy.Memoryless = seen =>
+    import seen.{dxM as dx, dyM as dy, opponentHeadingRad as pursuer}
     val (cos, sin)       = (math.cos(pursuer), math.sin(pursuer))
     val (ahead, right)   = (-dx * cos - dy * sin, dx * sin - dy * cos)
     val side             = if right < 0 then -1.0 else 1.0
@@ -97,8 +99,8 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
       else math.atan2(outward, forward)
     pursuer + side * course
 
-  private val hunter: HeadingPolicy = (dx, dy, _, _, _, _, _) => math.atan2(dy, dx)
-  private val away: HeadingPolicy   = (dx, dy, _, _, _, _, _) => math.atan2(-dy, -dx)
+  private val hunter: HeadingPolicy.Memoryless = seen => math.atan2(seen.dyM, seen.dxM)
+  private val away: HeadingPolicy.Memoryless   = seen => math.atan2(-seen.dyM, -seen.dxM)
 
   private val evaders: Seq[(String, Int => HeadingPolicy)] =
     val shape = NeuralShape(Vector(6))

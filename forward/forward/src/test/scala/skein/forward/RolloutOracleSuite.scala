@@ -9,10 +9,10 @@ import skein.vehicle.*
 
 /** Results of the rollout that follow from geometry, game theory or numerics. */
 class RolloutOracleSuite extends munit.FunSuite:
-  private val away: HeadingPolicy = (dx, dy, _, _, _, _, _) => math.atan2(-dy, -dx)
-  private val lag                 = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0)
-  private val perfect             = LoopTiming.Predictive(predictor = lag.predictor)
-  private val loops               =
+  private val away: HeadingPolicy.Memoryless = seen => math.atan2(-seen.dyM, -seen.dxM)
+  private val lag                            = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0)
+  private val perfect                        = LoopTiming.Predictive(predictor = lag.predictor)
+  private val loops                          =
     Seq(LoopTiming.Paused(), LoopTiming.Sequential(), LoopTiming.Futures(), LoopTiming.Stream(), perfect)
 
   private def duel(
@@ -52,8 +52,8 @@ class RolloutOracleSuite extends munit.FunSuite:
   for loop <- loops do
     test(s"${loop.productPrefix}: the mirrored duel is the mirror image"):
       // Unlike the paper's evader, this one breaks away to the side on which it is.
-      val evader: HeadingPolicy =
-        (dx, dy, _, _, own, _, _) => 0.7 * math.atan2(-dy, -dx) + 0.3 * math.sin(own)
+      val evader: HeadingPolicy.Memoryless =
+        seen => 0.7 * math.atan2(-seen.dyM, -seen.dxM) + 0.3 * math.sin(seen.ownHeadingRad)
       def fly(side: Double) =
         val start = duel(PaperPursuer(), evader, 21, 2 * side, 20)
         val whole = start.copy(evader = start.evader.copy(startHeadingRad = 0.4 * side))

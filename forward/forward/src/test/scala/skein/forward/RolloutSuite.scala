@@ -1,7 +1,7 @@
 package skein.forward
 
 import scala.collection.mutable.ArrayBuffer
-import skein.policy.{Action, PaperEvader, PaperPursuer, HeadingPolicy}
+import skein.policy.{Action, HeadingPolicy, PaperEvader, PaperPursuer, PlanarObservation}
 import skein.scenario.PaperDuel
 import skein.signal.LatencyDistribution
 import skein.simd.WorldRandom
@@ -11,9 +11,9 @@ import skein.vehicle.{PlaneReading, Plant}
 class RolloutSuite extends munit.FunSuite:
   private val loops =
     Seq(LoopTiming.Paused(), LoopTiming.Sequential(), LoopTiming.Futures(), LoopTiming.Stream())
-  private val towards: HeadingPolicy  = (dx, dy, _, _, _, _, _) => math.atan2(dy, dx)
-  private val awayFrom: HeadingPolicy = (dx, dy, _, _, _, _, _) => math.atan2(-dy, -dx)
-  private val lag: VelocityResponse   = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
+  private val towards: HeadingPolicy.Memoryless  = seen => math.atan2(seen.dyM, seen.dxM)
+  private val awayFrom: HeadingPolicy.Memoryless = seen => math.atan2(-seen.dyM, -seen.dxM)
+  private val lag: VelocityResponse = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
 
   private def trajectory(rollout: Rollout, key: Int): Vector[(Double, Double, Double, Double)] =
     val points = ArrayBuffer.empty[(Double, Double, Double, Double)]
@@ -33,9 +33,8 @@ class RolloutSuite extends munit.FunSuite:
       assertClose(distances(Rollout(Duel.paper, loop, DelayTable.none, model), 1), truth, 1e-6)
 
   test("an exception in a policy or a plant is reported with its name and line"):
-    final class Lost extends HeadingPolicy:
-      def heading(x: Double, y: Double, vx: Double, vy: Double, own: Double, sent: Double, elapsedS: Double) =
-        throw Exception("no way")
+    final class Lost extends HeadingPolicy.Memoryless:
+      def heading(seen: PlanarObservation): Double = throw Exception("no way")
     final class Stuck extends Plant[PlaneReading]:
       def initial: PlaneReading                   = PlaneReading(0, 0, 0, 0)
       def stepS: Double                           = 0.1
@@ -73,9 +72,10 @@ class RolloutSuite extends munit.FunSuite:
       assertClose(distances(Rollout(turned, loop, DelayTable.direct, lag), key), plain, 1e-6)
 
   test("with symmetric policies the mirrored duel is the mirror image"):
-    val evader: HeadingPolicy = (dx, dy, _, _, own, _, _) => 0.7 * math.atan2(-dy, -dx) + 0.3 * math.sin(own)
-    val key                   = WorldRandom.key(5, 0, 0)
-    def fly(side: Double)     =
+    val evader: HeadingPolicy.Memoryless =
+      seen => 0.7 * math.atan2(-seen.dyM, -seen.dxM) + 0.3 * math.sin(seen.ownHeadingRad)
+    val key               = WorldRandom.key(5, 0, 0)
+    def fly(side: Double) =
       val duel = Duel(
         Duel.paper.pursuer.copy(policy = PaperPursuer(), startY = 3 * side),
         Duel.paper.evader.copy(policy = evader, startHeadingRad = 0.4 * side),

@@ -6,7 +6,7 @@ import skein.fusion.Exposure
 import skein.lanes.loop.{LoopEye, LoopLanes}
 import skein.lanes.policy.{LaneObservation, PolicyLanes}
 import skein.lanes.timetable.Timetable
-import skein.policy.{Decided, ObservingPolicy, PlanarObservation, HeadingPolicy}
+import skein.policy.{PlanarObservation, HeadingPolicy}
 
 /** Compares duels by SIMD with the scalar engine, decision by decision, by [[Agreement]]. All but the
   * vehicles' motion is compared to the bit: a decision starts from the heading and memory of the SIMD
@@ -292,18 +292,19 @@ private[skein] object DuelAgreement:
       else distances += timeS -> math.hypot(x - x0, y - y0)
 
   /** Notes what a policy sees, and answers as it does. */
-  final class Log(policy: HeadingPolicy) extends ObservingPolicy[Any]:
+  final class Log(val policy: HeadingPolicy) extends HeadingPolicy:
+    type Memory = policy.Memory
     val seen: ArrayBuffer[PlanarObservation] = ArrayBuffer.empty
     val before: ArrayBuffer[Any]             = ArrayBuffer.empty
     val decided: ArrayBuffer[Double]         = ArrayBuffer.empty
-    def initial: Any                         =
+    def start: Memory                        =
       seen.clear()
       before.clear()
       decided.clear()
-      ObservingPolicy.initialOf(policy)
-    def decide(observed: PlanarObservation, memory: Any): Decided[Any] =
+      policy.start
+    def decide(observed: PlanarObservation, memory: Memory): (Double, Memory) =
       seen += observed
       before += memory
-      val answer = ObservingPolicy.decide(policy, observed, memory)
-      decided += answer.headingRad
+      val answer = policy.decide(observed, memory)
+      decided += answer._1
       answer

@@ -214,7 +214,7 @@ class DuelBatchSimulation extends munit.FunSuite:
 
 object DuelBatchSimulation:
   /** Goes straight on, by what is no arithmetic. */
-  val Straight: HeadingPolicy = (_, _, _, _, own, _, _) => own.toString.toDouble
+  val Straight: HeadingPolicy.Memoryless = _.ownHeadingRad.toString.toDouble
 
   val lag: PlantResponse = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
 

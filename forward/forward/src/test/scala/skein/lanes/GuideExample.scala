@@ -1,24 +1,24 @@
 package skein.lanes
 
 // guide: policy
-import skein.policy.{Decided, ObservingPolicy, PlanarObservation}
+import skein.policy.{HeadingPolicy, PlanarObservation}
 
 /** The opponent's last bearing, and the mean rate of its change. */
 final case class Bearing(rad: Double, rateRadPerS: Double)
 
 /** Leads the opponent by the mean rate of its bearing, and trusts old readings less. */
-final case class Lead(gain: Double, forgetS: Double, turnRateRadPerS: Double)
-    extends ObservingPolicy[Bearing]:
-  def initial: Bearing = Bearing(0, 0)
+final case class Lead(gain: Double, forgetS: Double, turnRateRadPerS: Double) extends HeadingPolicy:
+  type Memory = Bearing
+  def start: Bearing = Bearing(0, 0)
 
-  def decide(seen: PlanarObservation, memory: Bearing): Decided[Bearing] =
+  def decide(seen: PlanarObservation, memory: Bearing): (Double, Bearing) =
     val rad  = StrictMath.atan2(seen.dyM, seen.dxM)
     val rate = if seen.elapsedS > 0 then wrapped(rad - memory.rad) / seen.elapsedS else 0.0
     val news = seen.elapsedS / (seen.elapsedS + forgetS + seen.opponentAgeS)
     val mean = memory.rateRadPerS + news * (rate - memory.rateRadPerS)
     val turn = wrapped(rad - seen.ownHeadingRad) + gain * mean
     val most = turnRateRadPerS * seen.elapsedS
-    Decided(seen.ownHeadingRad + turn.max(-most).min(most), Bearing(rad, mean))
+    (seen.ownHeadingRad + turn.max(-most).min(most), Bearing(rad, mean))
 
   private def wrapped(angleRad: Double) = math.IEEEremainder(angleRad, 2 * math.Pi)
 // guide: end

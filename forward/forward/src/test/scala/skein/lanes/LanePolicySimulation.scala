@@ -55,11 +55,11 @@ class LanePolicySimulation extends munit.FunSuite:
             0,
             0
           )
-          val memory    = ObservingPolicy.initialOf(policy)
+          val memory    = policy.start
           val departure = DuelAgreement.departure(0, 0, 0, policy, seen, memory, lanes.made.last, world)
           agreement.add(world, departure):
             // The formula is the policy.
-            val heading = ObservingPolicy.decide(policy, seen, memory).headingRad
+            val heading = policy.decide(seen, memory)._1
             assertEqualsDouble(into.cos(world), math.cos(heading), 1e-4)
             assertEqualsDouble(into.sin(world), math.sin(heading), 1e-4)
             val turned = math.abs(math.IEEEremainder(heading - ownHeading, 2 * math.Pi))
@@ -100,24 +100,12 @@ class LanePolicySimulation extends munit.FunSuite:
       agreement(pursuers, _ => opponent).check("seed 5", 0 until worlds by 3)
 
 /** A policy of another form, or no formula, depending on `isHasty`. */
-private final case class Hasty(isHasty: Boolean) extends HeadingPolicy:
-  def heading(
-      dxM: Double,
-      dyM: Double,
-      dvxMps: Double,
-      dvyMps: Double,
-      ownHeadingRad: Double,
-      opponentHeadingRad: Double,
-      elapsedS: Double
-  ): Double = if isHasty && System.nanoTime > 0 then dxM else dyM
+private final case class Hasty(isHasty: Boolean) extends HeadingPolicy.Memoryless:
+  def heading(seen: PlanarObservation): Double =
+    import seen.*
+    if isHasty && System.nanoTime > 0 then dxM else dyM
 
-private final class Impatient extends HeadingPolicy:
-  def heading(
-      dxM: Double,
-      dyM: Double,
-      dvxMps: Double,
-      dvyMps: Double,
-      ownHeadingRad: Double,
-      opponentHeadingRad: Double,
-      elapsedS: Double
-  ): Double = if System.nanoTime > 0 then dxM else dyM
+private final class Impatient extends HeadingPolicy.Memoryless:
+  def heading(seen: PlanarObservation): Double =
+    import seen.*
+    if System.nanoTime > 0 then dxM else dyM

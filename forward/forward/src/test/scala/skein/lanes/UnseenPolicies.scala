@@ -1,16 +1,17 @@
 package skein.lanes
 
-import skein.policy.{Decided, PlanarObservation, ObservingPolicy, HeadingPolicy}
+import skein.policy.{PlanarObservation, HeadingPolicy}
 
 /** The memory of [[TrendPursuer]]: the opponent's last bearing, and the mean rate of its change. */
 final case class Trend(bearingRad: Double, rateRadPerS: Double)
 
 /** Turns with the line of sight's average rate, and towards the opponent. The product does not contain it. */
 final case class TrendPursuer(gain: Double, forgetS: Double, turnRateRadPerS: Double)
-    extends ObservingPolicy[Trend]:
-  def initial: Trend = Trend(0, 0)
+    extends HeadingPolicy:
+  type Memory = Trend
+  def start: Trend = Trend(0, 0)
 
-  def decide(seen: PlanarObservation, memory: Trend): Decided[Trend] =
+  def decide(seen: PlanarObservation, memory: Trend): (Double, Trend) =
     val bearing = StrictMath.atan2(seen.dyM, seen.dxM)
     val trend   =
       if seen.elapsedS > 0 then
@@ -20,16 +21,15 @@ final case class TrendPursuer(gain: Double, forgetS: Double, turnRateRadPerS: Do
       else Trend(bearing, 0)
     val wanted = gain * trend.rateRadPerS + wrapped(bearing - seen.ownHeadingRad)
     val rate   = wanted.max(-turnRateRadPerS).min(turnRateRadPerS)
-    Decided(seen.ownHeadingRad + rate * seen.elapsedS, trend)
+    (seen.ownHeadingRad + rate * seen.elapsedS, trend)
 
   private def wrapped(angleRad: Double) = math.IEEEremainder(angleRad, 2 * math.Pi)
 
 /** Heads for the opponent's present position, extrapolated by its velocity over the age of its reading. */
 final case class AgeAwarePursuer(ownSpeedMps: Double, trust: Double, turnRateRadPerS: Double)
-    extends ObservingPolicy[Unit]:
-  def initial: Unit = ()
+    extends HeadingPolicy.Memoryless:
 
-  def decide(seen: PlanarObservation, memory: Unit): Decided[Unit] =
+  def heading(seen: PlanarObservation): Double =
     val (cos, sin) = (StrictMath.cos(seen.ownHeadingRad), StrictMath.sin(seen.ownHeadingRad))
     // The opponent's own velocity, as far as the own one is as commanded.
     val north = seen.dvxMps + ownSpeedMps * cos
@@ -38,21 +38,15 @@ final case class AgeAwarePursuer(ownSpeedMps: Double, trust: Double, turnRateRad
     val dy    = seen.dyM + trust * (east * seen.opponentAgeS - ownSpeedMps * sin * seen.ownAgeS)
     val turn  = math.IEEEremainder(StrictMath.atan2(dy, dx) - seen.ownHeadingRad, 2 * math.Pi)
     val most  = turnRateRadPerS * seen.elapsedS
-    Decided(seen.ownHeadingRad + turn.max(-most).min(most), memory)
+    seen.ownHeadingRad + turn.max(-most).min(most)
 
 /** A network with two hidden layers of 16 rectified neurons, written without knowledge of Skein's. */
-final class RectifiedNetwork(weights: Array[Double], turnRateRadPerS: Double) extends HeadingPolicy:
+final class RectifiedNetwork(weights: Array[Double], turnRateRadPerS: Double)
+    extends HeadingPolicy.Memoryless:
   require(weights.length == RectifiedNetwork.Weights)
 
-  def heading(
-      dxM: Double,
-      dyM: Double,
-      dvxMps: Double,
-      dvyMps: Double,
-      ownHeadingRad: Double,
-      opponentHeadingRad: Double,
-      elapsedS: Double
-  ): Double =
+  def heading(seen: PlanarObservation): Double =
+    import seen.*
     val (cos, sin) = (StrictMath.cos(ownHeadingRad), StrictMath.sin(ownHeadingRad))
     val inputs     = Array(
       (dxM * cos + dyM * sin) / 20,

@@ -2,7 +2,7 @@ package skein.environment
 
 import scala.util.control.ControlThrowable
 import skein.forward.{LoopObserver, Rollout}
-import skein.policy.{Action, Decided, ObservingPolicy, PlanarObservation, HeadingPolicy}
+import skein.policy.{Action, PlanarObservation, HeadingPolicy}
 import skein.signal.SplitMix64
 import skein.simd.WorldRandom
 import skein.units.OwnFailure
@@ -78,10 +78,8 @@ private final class LearnerRollout(side: ScenarioSide, learner: Int) extends Aut
     loss = 0
     isBegun = false
 
-  private object outside extends ObservingPolicy[Unit]:
-    def initial: Unit = ()
-
-    def decide(now: PlanarObservation, memory: Unit): Decided[Unit] =
+  private object outside extends HeadingPolicy.Memoryless:
+    def heading(now: PlanarObservation): Double =
       for (number, field) <- now.fromOwnHeading.iterator.zipWithIndex do seen(field) = number.toFloat
       isOver = scoredAtS + EnvironmentGroup.Tolerance >= side.settings.episodeS
       ask()
@@ -91,7 +89,7 @@ private final class LearnerRollout(side: ScenarioSide, learner: Int) extends Aut
         loss = 0
         leastM = Double.PositiveInfinity
       isBegun = true
-      Decided(now.ownHeadingRad + share * (rateRadPerS * now.elapsedS + turnRad), ())
+      now.ownHeadingRad + share * (rateRadPerS * now.elapsedS + turnRad)
 
   private object scores extends LoopObserver:
     private val northM, eastM = Array.ofDim[Double](side.count)

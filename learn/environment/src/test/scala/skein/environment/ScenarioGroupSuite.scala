@@ -37,10 +37,9 @@ class ScenarioGroupSuite extends munit.FunSuite:
   /** The turn towards the opponent, computed from an observation. */
   private def towards(right: Double): Double = (right / 10).max(-1).min(1)
 
-  private object steered extends ObservingPolicy[Unit]:
-    def initial: Unit                                                = ()
-    def decide(seen: PlanarObservation, memory: Unit): Decided[Unit] =
-      Decided(seen.ownHeadingRad + towards(seen.fromOwnHeading(1).toFloat) * seen.elapsedS, ())
+  private object steered extends HeadingPolicy.Memoryless:
+    def heading(seen: PlanarObservation): Double =
+      seen.ownHeadingRad + towards(seen.fromOwnHeading(1).toFloat) * seen.elapsedS
 
   test("the engine is reported: scalar for another scenario, SIMD for the duel"):
     val team = Learner(surround, 2).batch.engine
@@ -170,7 +169,7 @@ class ScenarioGroupSuite extends munit.FunSuite:
     assert(clue(told("", "throws")).startsWith(s"the quantity Off $thrown"))
     assertEquals(
       told("NaN", ""),
-      "the policy of Evader decided for what no vehicle can do: Along(NaN,4.0,0.0,Still)"
+      "the policy of Evader decided for what no vehicle can do: Along(NaN,4.0,-5.0,Still)"
     )
     assertEquals(told("", "NaN"), "the quantity Off answered NaN, which nobody can be rewarded by")
 

@@ -24,7 +24,7 @@ class SideTaskSimulation extends munit.FunSuite:
       pass.input(at) = number.toFloat
     pass.forward(actor, 0, 1)
     assertEqualsDouble(policy.share(seen), math.tanh(pass.output(0)), 1e-6)
-    assertEqualsDouble(policy.decide(seen, 0).headingRad, 0.7 + 0.1 * math.tanh(pass.output(0)), 1e-6)
+    assertEqualsDouble(policy.heading(seen), 0.7 + 0.1 * math.tanh(pass.output(0)), 1e-6)
 
   for side <- Seq("pursuer", "evader") do
     test(s"the $side's episode is that of its policy in forward simulation"):

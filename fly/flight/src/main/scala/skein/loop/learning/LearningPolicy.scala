@@ -24,19 +24,13 @@ final class LearningPolicy(
 
   @volatile private var newest = first
 
-  def heading(
-      dxM: Double,
-      dyM: Double,
-      dvxMps: Double,
-      dvyMps: Double,
-      ownHeadingRad: Double,
-      opponentHeadingRad: Double,
-      elapsedS: Double
-  ): Double = newest.heading(dxM, dyM, dvxMps, dvyMps, ownHeadingRad, opponentHeadingRad, elapsedS)
+  type Memory = Option[Before]
 
-  override def start: Any = None
+  def start: Memory = None
 
-  override def choose(seen: Observation, memory: Any): (Action, Any) =
+  def decide(seen: PlanarObservation, memory: Memory): (Double, Memory) = (newest.heading(seen), memory)
+
+  override def choose(seen: Observation, memory: Memory): (Action, Memory) =
     for news <- lessons.news(seen.decisions) do
       note(seen.decisions, news)
       news.parameters.foreach(parameters => newest = version(parameters))
@@ -60,4 +54,5 @@ final class LearningPolicy(
 object LearningPolicy:
   private val Least = 1e-12
 
-  private final case class Before(decision: Long, seen: Vector[Double], share: Double)
+  /** The last decision: its observation, and its share of the largest turn. */
+  final case class Before(decision: Long, seen: Vector[Double], share: Double)

@@ -2,12 +2,11 @@ package skein.lanes.policy
 
 import java.util.concurrent.ConcurrentHashMap
 import skein.formula.{Angles, Evaluation, Formula, Node, Op, Trace, Untraceable}
-import skein.policy.{ObservingPolicy, PlanarObservation, HeadingPolicy}
+import skein.policy.{PlanarObservation, HeadingPolicy}
 import skein.simd.{Forms, LaneCompiler, LaneFunction}
 
 /** The decision of policies of one form in many worlds by SIMD, compiled from the method
-  * [[HeadingPolicy.heading]], or [[ObservingPolicy.decide]], itself. Policies of one form differ in numbers
-  * alone.
+  * [[HeadingPolicy.decide]] itself. Policies of one form differ in numbers alone.
   */
 private[skein] final class PolicyLanes private (formula: Formula):
   import PolicyLanes.*
@@ -134,7 +133,7 @@ private[skein] final class PolicyLanes private (formula: Formula):
     ) ++ numbersOf(memory)
 
   /** A policy's initial memory, as numbers. */
-  def initialOf(policy: HeadingPolicy): Array[Double] = numbersOf(ObservingPolicy.initialOf(policy)).toArray
+  def initialOf(policy: HeadingPolicy): Array[Double] = numbersOf(policy.start).toArray
 
   def fits(policy: HeadingPolicy): Boolean = formula.fits(policy)
 
@@ -165,16 +164,15 @@ private[skein] final class PolicyLanes private (formula: Formula):
     trace.sub(trace.const(math.Pi), trace.mul(trace.const(2), trace.unary(Op.Acos, half)))
 
 private[skein] object PolicyLanes:
-  // The arguments of HeadingPolicy.heading, by place.
+  // The fields of PlanarObservation, by place.
   private final val Dvx             = 2
   private final val Dvy             = 3
   private final val OwnHeading      = 4
   private final val OpponentHeading = 5
   private final val Elapsed         = 6
-  // Those of ObservingPolicy.decide go on.
-  private final val OwnAge      = 7
-  private final val OpponentAge = 8
-  private final val Memory      = 9
+  private final val OwnAge          = 7
+  private final val OpponentAge     = 8
+  private final val Memory          = 9
 
   /** Inputs of the compiled function; the first four are those of the policy. */
   object In:
@@ -205,12 +203,10 @@ private[skein] object PolicyLanes:
   def of(policy: HeadingPolicy): Either[Untraceable, PolicyLanes] =
     known.computeIfAbsent(
       policy.getClass,
-      _ => Forms[HeadingPolicy, PolicyLanes](_.fits(_), MostRefused)(formulaOf(_).map(PolicyLanes(_)))
+      _ =>
+        Forms[HeadingPolicy, PolicyLanes](_.fits(_), MostRefused):
+          Formula.of(_, "decide").map(PolicyLanes(_))
     )(policy)
-
-  private def formulaOf(policy: HeadingPolicy): Either[Untraceable, Formula] = policy match
-    case observing: ObservingPolicy[?] => Formula.of(observing, "decide")
-    case _ => Formula.of(policy, "heading", arguments = Some(Seq.fill(7)(classOf[Double])))
 
   /** The SIMD code of a policy that is known to be a formula. */
   def get(policy: HeadingPolicy): PolicyLanes = of(policy).fold(throw _, identity)
