@@ -55,6 +55,10 @@ def _better(reason: str, code: str) -> str:
             if re.search(pattern, code):
                 return f"{reason}; write {instead}"
         return f"{reason}; write where(condition, a, b), which takes one of both"
+    if reason == _INDEX:
+        if re.search(r"\brange\(", code):
+            return f"{reason}; write a loop over a range that is known, with where(condition, changed, unchanged) in it"
+        return f"{reason}; write pick(index, values)"
     if reason == _VALUE:
         called = re.search(r"\b(?:math|np|numpy)\.(?:linalg\.)?(\w+)\(", code)
         if called and called[1] in ("norm", "dist"):
@@ -63,12 +67,22 @@ def _better(reason: str, code: str) -> str:
             return f"{reason}; write {called[1]} of skein_uav.formula"
         if called and called[1] in ("log", "log2", "log10"):
             return f"{reason}; there is no logarithm in formulas"
+        for pattern, instead in _VALUES:
+            if re.search(pattern, code):
+                return f"{reason}; {instead}"
         return f"{reason}; write it with the functions of skein_uav.formula, and leave it a number"
     return reason
 
 
 _BRANCH = "it branches on a number that is known in flight alone"
 _VALUE = "it needs the value of a number that is known in flight alone"
+_INDEX = "it counts or indexes by a number that is known in flight alone"
+_VALUES = [
+    (r"\bround\(", "write rint(x) of skein_uav.formula"),
+    (r"\bint\(", "write floor(x) or ceil(x) of skein_uav.formula"),
+    (r"\bfloat\(", "leave it a number, without float"),
+    (r"\bf[\"']|\bformat\(|%", "a text cannot hold it; leave the text away, or make the number a series of the scenario"),
+]
 _BRANCHES = [
     (r"\bmin\(", "minimum(a, b)"),
     (r"\bmax\(", "maximum(a, b)"),
@@ -126,7 +140,7 @@ class _Symbol:
     __float__ = __int__ = __complex__ = __round__ = __trunc__ = _no_value  # type: ignore[assignment]
 
     def __index__(self) -> int:
-        raise refused("it counts or indexes by a number that is known in flight alone; write pick(index, values)")
+        raise refused(_INDEX)
 
     def __format__(self, form: str) -> str:
         if form:
