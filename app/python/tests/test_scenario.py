@@ -211,6 +211,14 @@ def test_what_cannot_be_written_down_is_told_with_its_line_and_what_to_write(lin
         assert "patrol.py:" in str(caught.value)
 
 
+def test_what_an_observation_lacks_is_told_with_what_it_has():
+    seen = Observation(0, [Known()])
+    with pytest.raises(AttributeError, match="velocity is no method .* import it from skein_uav.scenario"):
+        seen.velocity(1.0, 0.0, 0.0)
+    with pytest.raises(AttributeError, match="no rival; it has .* opponent, others, own, .* towards, vehicles"):
+        seen.rival  # noqa: B018
+
+
 def test_a_memory_is_of_one_form_and_belongs_to_one_vehicle():
     with pytest.raises(Untraceable, match="expected an action and the next memory, came Action"):
         scenario(lambda seen, memory: seen.along(memory.rad, 1.0), Kept()).text()
