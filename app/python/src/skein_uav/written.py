@@ -10,10 +10,11 @@ import re
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from . import formula
 from .actions import Action, Choice, cases
-from .formula import Condition, Graph, Number, Untraceable, where
+from .formula import where
 from .scenario import Known, Moment, Observation, Scenario, Series, Vehicle
+from .symbols import Condition, Graph, Number, constant
+from .untraceable import Untraceable
 
 
 def _key(name: str) -> str:
@@ -71,7 +72,7 @@ class Writer:
             raise Untraceable(f"{_at(where_)}expected a number as {what}, came {_came(value)}{instead}")
         if not math.isfinite(value):
             raise Untraceable(f"{_at(where_)}expected a finite number as {what}, came {value}")
-        return formula.constant(self.graph, float(value))
+        return constant(self.graph, float(value))
 
     def fixed(self, value: Any, what: str) -> Number:
         number = self.number(value, what)
