@@ -90,7 +90,7 @@ class Telling:
 
 
 def _one_hot(numbers: Any, space: Discrete) -> Any:
-    if type(numbers) is np.ndarray:
+    if type(numbers) is np.ndarray and space.n <= 64:  # a table is faster, and larger by the square
         return np.eye(space.n, dtype=np.float32).take(numbers - space.start, 0)
     return numbers[:, :, None] == on(numbers, np.arange(space.start, space.start + space.n))
 
