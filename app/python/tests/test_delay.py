@@ -374,6 +374,84 @@ def test_no_episode_sees_or_feels_the_one_before(mode):
         idle = terminated
 
 
+class Plain:
+    """A delayed vector of environments, told one environment and one step at a time, from lists."""
+
+    def __init__(self, back_rows, to_rows, pending, is_zero):
+        sent = np.arange(len(back_rows))[:, None]
+        self.comes, self.arrives = sent + back_rows, np.maximum.accumulate(sent + to_rows)  # in their order
+        self.pending, self.is_zero, self.row = pending, is_zero, 0
+        self.episodes = [None] * back_rows.shape[1]
+
+    def begin(self, env, observation):
+        self.episodes[env] = {"began": self.row, "seen": {self.row: observation}, "decided": {}}
+
+    def act(self, actions):
+        """Takes the decisions of a step; gives what acts in it."""
+        acting = []
+        for env, action in enumerate(actions):
+            decided = self.episodes[env]["decided"]
+            decided[self.row] = action
+            arrived = [sent for sent in decided if self.arrives[sent, env] <= self.row]
+            acting.append(decided[max(arrived)] if arrived else np.zeros_like(action))
+        self.row += 1
+        return np.array(acting)
+
+    def told(self, env):
+        episode = self.episodes[env]
+        arrived = [taken for taken in episode["seen"] if self.comes[taken, env] <= self.row]
+        newest = max(arrived, default=episode["began"])
+        observation = episode["seen"][newest] * (0 if self.is_zero and not arrived else 1)
+        last = [episode["decided"].get(row, np.zeros(1)) for row in range(self.row - self.pending, self.row)]
+        return np.concatenate([observation, [(self.row - newest) * STEP_S], *last])
+
+
+@pytest.mark.parametrize("mode", list(AutoresetMode))
+@pytest.mark.parametrize("case", range(6))
+def test_a_vector_is_told_what_lists_of_messages_tell(mode, case):
+    random = np.random.default_rng([case, list(AutoresetMode).index(mode)])
+    count, steps, pending = int(random.integers(1, 9)), 200, int(random.integers(0, 4))
+    most, is_zero = int(random.integers(0, 90 if case else 1)), bool(random.integers(2))
+    back, to = random.integers(0, most + 1, (2, 1024, count))
+    lengths = random.integers(2, 60, count)
+    env = DelayVectorEnv(
+        SyncVectorEnv([lambda one=one: Counter(one) for one in lengths], autoreset_mode=mode),
+        STEP_S,
+        observation_delay=back * STEP_S,
+        action_delay=to * STEP_S,
+        first="zeros" if is_zero else "known",
+        pending=pending,
+    )
+    bare = SyncVectorEnv([lambda one=one: Counter(one) for one in lengths], autoreset_mode=mode)
+    plain = Plain(back, to, pending, is_zero)
+
+    def begin(mask, observations):
+        for one in np.flatnonzero(mask):
+            plain.begin(one, observations[one])
+
+    begin(np.ones(count, bool), bare.reset()[0])
+    told, began = env.reset(seed=case)[0], np.zeros(count, bool)
+    for _ in range(steps):
+        assert np.array_equal(told, [plain.told(one) for one in range(count)])
+        actions = random.normal(size=(count, 1))
+        told, rewards, ended, _, infos = env.step(actions)
+        observations, expected, _, _, finals = bare.step(plain.act(actions))
+        assert np.array_equal(rewards, expected)
+        for one in range(count):
+            is_final = mode is AutoresetMode.SAME_STEP and ended[one]
+            plain.episodes[one]["seen"][plain.row] = finals["final_obs"][one] if is_final else observations[one]
+            if is_final:
+                assert np.array_equal(infos["final_obs"][one], plain.told(one))
+        if mode is AutoresetMode.NEXT_STEP:
+            begin(began, observations)
+            began = ended
+        elif mode is AutoresetMode.SAME_STEP:
+            begin(ended, observations)
+        elif ended.any():
+            begin(ended, bare.reset(options={"reset_mask": ended})[0])
+            told, _ = env.reset(options={"reset_mask": ended})
+
+
 def test_seeds_repeat_and_are_not_the_environments():
     def ages(reset, **settings):
         env = DelayVectorEnv(SyncVectorEnv([Counter] * 3), STEP_S, link="vpn", **settings)

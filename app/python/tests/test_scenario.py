@@ -177,12 +177,12 @@ WRONG = [
     ("x = seen.own.north_m in (1.0, 2.0)", "branches .* write comparisons, joined by logical_or"),
     ("x = math.sin(seen.own.north_m)", "needs the value .* write sin of skein_uav.formula"),
     ("x = math.log(seen.own.north_m)", "needs the value .* there is no logarithm in formulas"),
-    ("x = float(seen.own.north_m)", "needs the value .* write it with the functions of skein_uav.formula"),
-    ("x = int(seen.own.north_m)", "needs the value .* leave it a number"),
-    ("x = round(seen.own.north_m)", "needs the value of a number"),
-    ("x = f'{seen.own.north_m:.2f}'", "needs the value of a number"),
+    ("x = float(seen.own.north_m)", "needs the value .* leave it a number, without float"),
+    ("x = int(seen.own.north_m)", "needs the value .* write floor\\(x\\) or ceil\\(x\\) of skein_uav.formula"),
+    ("x = round(seen.own.north_m)", "needs the value .* write rint\\(x\\) of skein_uav.formula"),
+    ("x = f'{seen.own.north_m:.2f}'", "needs the value .* leave it away, or make it a series"),
     ("x = [1, 2][seen.own.north_m]", "indexes by a number .* write pick\\(index, values\\)"),
-    ("x = range(seen.own.north_m)", "counts or indexes by a number"),
+    ("x = range(seen.own.north_m)", "counts or indexes by a number .* write a loop over a range that is known"),
     ("x = {1.0: 2}[seen.own.north_m]", "looks something up .* write pick\\(index, values\\)"),
     ("x = math.dist((seen.own.north_m, 0.0), (1.0, 0.0))", "write hypot\\(x, y\\) of skein_uav.formula"),
     ("x = np.cumsum(seen.own.north_m)", "there is no cumsum in formulas"),
@@ -193,8 +193,8 @@ WRONG = [
     ("x, y = seen.own.north_m", "one number, not several"),
     ("return seen.own.north_m", "expected an action, such as seen.along\\(heading, speed\\), came Number"),
     ("return", "expected an action, .* came None; is a return missing\\?"),
-    ("return seen.along(seen.own.north_m > 3, 1.0)", "expected a number as a number of along, .* came a condition"),
-    ("return seen.along('north', 1.0)", "expected a number as a number of along, .* came str 'north'"),
+    ("return seen.along(seen.own.north_m > 3, 1.0)", "py:1: the policy of Own: expected a number as argument 1 .* a condition; write where"),
+    ("return seen.along('north', 1.0)", "py:1: the policy of Own: expected a number as argument 1 of along, came str 'north'"),
 ]
 
 
@@ -209,6 +209,14 @@ def test_what_cannot_be_written_down_is_told_with_its_line_and_what_to_write(lin
         scenario(names["policy"]).text()
     if expected is Untraceable:
         assert "patrol.py:" in str(caught.value)
+
+
+def test_what_an_observation_lacks_is_told_with_what_it_has():
+    seen = Observation(0, [Known()])
+    with pytest.raises(AttributeError, match="velocity is no method .* import it from skein_uav.scenario"):
+        seen.velocity(1.0, 0.0, 0.0)
+    with pytest.raises(AttributeError, match="no rival; it has .* opponent, others, own, .* towards, vehicles"):
+        seen.rival  # noqa: B018
 
 
 def test_a_memory_is_of_one_form_and_belongs_to_one_vehicle():

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from . import formula
-from .formula import Condition, logical_and
+from .formula import logical_and
+from .symbols import Condition
+from .untraceable import refused
 
 
 @dataclass(frozen=True)
@@ -68,7 +69,7 @@ def cases(of: Any, when: Any) -> list[tuple[Any, Action]]:
         first = [(logical_and(of.condition, condition), action) for condition, action in of.a]
         return first + of.b
     if not isinstance(of, Action):
-        raise formula.refused(f"where takes two actions, came {type(of).__name__}")
+        raise refused(f"where takes two actions, came {type(of).__name__}")
     return [(when, of)]
 
 

@@ -63,6 +63,9 @@ __all__ = [
 ]
 
 
+_FUNCTIONS = ("attitude", "hover", "land", "position", "turn", "velocity", "velocity_at")
+
+
 def setting(default: float, meaning: str) -> Any:
     """A field of a scenario: its default, and its meaning with the unit."""
     return field(default=default, metadata={"meaning": meaning})
@@ -136,6 +139,12 @@ class Observation:
     cruise_mps: Any = 5.0
     start_down_m: Any = -5.0
     rivals: Sequence[int] | None = None
+
+    def __getattr__(self, name: str) -> Any:
+        if name in _FUNCTIONS:
+            raise AttributeError(f"{name} is no method of an observation; import it from skein_uav.scenario")
+        known = ", ".join(one for one in dir(self) if not one.startswith("_"))
+        raise AttributeError(f"an observation has no {name}; it has {known}")
 
     @property
     def own(self) -> Known:

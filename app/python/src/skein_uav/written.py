@@ -10,10 +10,11 @@ import re
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from . import formula
 from .actions import Action, Choice, cases
-from .formula import Condition, Graph, Number, Untraceable, where
+from .formula import where
 from .scenario import Known, Moment, Observation, Scenario, Series, Vehicle
+from .symbols import Condition, Graph, Number, constant
+from .untraceable import Untraceable
 
 
 def _key(name: str) -> str:
@@ -61,16 +62,17 @@ class Writer:
     def add(self, *words: Any) -> None:
         self.lines.append(words)
 
-    def number(self, value: Any, what: str) -> Number:
+    def number(self, value: Any, what: str, where_: str = "") -> Number:
         if isinstance(value, Number):
             return value
         if isinstance(value, Condition) or isinstance(value, bool) or not isinstance(value, (int, float)):
             if hasattr(value, "item") and getattr(value, "shape", None) == ():
-                return self.number(value.item(), what)
-            raise Untraceable(f"expected a number as {what}, came {_came(value)}")
+                return self.number(value.item(), what, where_)
+            instead = "; write where(condition, a, b)" if isinstance(value, Condition) else ""
+            raise Untraceable(f"{_at(where_)}expected a number as {what}, came {_came(value)}{instead}")
         if not math.isfinite(value):
-            raise Untraceable(f"expected a finite number as {what}, came {value}")
-        return formula.constant(self.graph, float(value))
+            raise Untraceable(f"{_at(where_)}expected a finite number as {what}, came {value}")
+        return constant(self.graph, float(value))
 
     def fixed(self, value: Any, what: str) -> Number:
         number = self.number(value, what)
@@ -136,10 +138,13 @@ class Writer:
         listed = cases(decided, True)
         for number, (condition, action) in enumerate(listed):
             when = ["when", condition] if number < len(listed) - 1 and isinstance(condition, Condition) else []
-            numbers = [self.number(one, f"a number of {action.kind}, {where_}") for one in action.numbers]
+            numbers = [
+                self.number(one, f"argument {place} of {action.kind}", where_)
+                for place, one in enumerate(action.numbers, 1)
+            ]
             yaw: list[Any] = [] if action.yaw.kind == "still" else ["yaw", action.yaw.kind]
             if action.yaw.number is not None:
-                yaw.append(self.number(action.yaw.number, f"a yaw, {where_}"))
+                yaw.append(self.number(action.yaw.number, "a yaw", where_))
             self.add("does", *when, action.kind, *numbers, *yaw)
             if not when:
                 break
@@ -160,7 +165,7 @@ class Writer:
     def remembered(self, value: Any, where_: str) -> Number:
         if isinstance(value, Condition):
             return where(value, 1.0, 0.0)
-        return self.number(float(value) if isinstance(value, bool) else value, f"a number of the memory, {where_}")
+        return self.number(float(value) if isinstance(value, bool) else value, "a number of the memory", where_)
 
     def drawn(self, count: int) -> None:
         measures = list(self.scenario.measures())
@@ -171,7 +176,7 @@ class Writer:
         for one in series:
             value = one.of(self.moment(count, object()))
             bound = [] if one.bound is None else ["bound", _quoted(one.bound[0]), self.fixed(one.bound[1], "a bound")]
-            node = self.number(value, f"the series {one.name}, {_place(one.of)}")
+            node = self.number(value, f"the series {one.name}", _place(one.of))
             self.add("series", _quoted(one.name), _quoted(one.unit), node, *bound)
             for each in measures:
                 if each.of.name == one.name:
@@ -219,6 +224,10 @@ def _quoted(text: str) -> str:
 def _place(function: Callable[..., Any]) -> str:
     code = getattr(getattr(function, "__func__", function), "__code__", None)
     return f"{os.path.basename(code.co_filename)}:{code.co_firstlineno}" if code else repr(function)
+
+
+def _at(where_: str) -> str:
+    return f"{where_}: " if where_ else ""
 
 
 def _came(value: Any) -> str:

@@ -47,11 +47,17 @@ def beside(flags: Any, array: Any) -> Any:
 
 
 def joined(columns: list[Any], width: int) -> Any:
-    """Matrices side by side, so wide together, of the kind of the first."""
+    """Matrices side by side, so wide together, of the kind of the first; None is none."""
     first = columns[0]
     if type(first) is not np.ndarray:
-        return namespace(first).concatenate([cast(one, first.dtype) for one in columns], 1)
-    return np.concatenate(columns, 1, dtype=first.dtype, casting="unsafe")
+        return namespace(first).concatenate([cast(one, first.dtype) for one in columns if one is not None], 1)
+    all, begin = np.empty((len(first), width), first.dtype), 0
+    for one in columns:
+        if one is not None:
+            end = begin + one.shape[1]
+            all[:, begin:end] = one
+            begin = end
+    return all
 
 
 def leaf(tree: Tree) -> Any:

@@ -9,14 +9,17 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arrays import Tree, beside, cast, each, leaf, namespace, on, put
+from .arrays import Tree, beside, cast, each, leaf, namespace, on
+from .history import History
 from .profiles import Trace, delays
-from .schedule import MOST_ROWS, Schedule, spawned
+from .schedule import Schedule, spawned
 
 MOST_LINKS = 256
 """Of more environments, those share a link whose numbers differ by a multiple."""
 
 _LATER = 2**31
+_ROWS, _BYTES = 64, 2**22
+"""Steps of which histories have room, if they fit into so many bytes, but as many as delays are long."""
 
 Link = str | float | ArrayLike | Trace
 
@@ -43,7 +46,7 @@ class Delay:
     """Decides which observation is seen, and which action acts, in each of a batch of environments.
 
     Arrays may be of NumPy, PyTorch or JAX, and stay where they are; what the link does is made ahead on the host and
-    uploaded once in 128 steps.
+    uploaded for many steps together.
 
     >>> delay = Delay(2, 0.05, observation_delay=0.05, action_delay=0.1)
     >>> delay.begin(np.array([0.0, 0.0]), seed=[1, 2]).age_s
@@ -151,11 +154,11 @@ class Delay:
         behind = (self._schedule.oldest_seen + self._ahead) // every + 2
         self._kept_observations = self._schedule.oldest_seen + 2
         self._kept_actions = max(self._schedule.oldest_acting, behind, pending) + 2
-        self._count, self.row, self._block = count, 0, -1
+        self._count, self.row, self._first, self._end = count, 0, 0, 0
         self._seeds = np.random.SeedSequence(seed).spawn(links)
-        self._links: Any = np.arange(count) % links if count > links else None
-        self._observations: Tree = None
-        self._actions: Tree = {}
+        self._links = np.arange(count) % links if count > links else None
+        self._observations: History | None = None
+        self._actions: History | None = None
         self._idles: Tree = {}
         self._is_begun = False
 
@@ -180,36 +183,35 @@ class Delay:
         actions : Tree, optional
             Of the kind of those to come: needed where pending ones are told, or observations predicted.
         """
+        self.row = -(-self.row // self._every) * self._every
         if not self._is_begun or (seed is not None and any(one is not None for one in seed)):
+            if self._is_begun:
+                self._forget(self._in_block())  # this row becomes row 0
             for at, one in enumerate((seed or ())[: len(self._seeds)]):
                 if one is not None:
                     self._seeds[at] = np.random.SeedSequence(one)
             self._schedule.seed(self._seeds, line)
             # An environment that is given no seed later goes on with other numbers.
             self._seeds = [spawned(one, _LATER) for one in self._seeds]
-            self.row, self._block, self._is_begun = 0, -1, True
-        self.row = -(-self.row // self._every) * self._every
-        self._like = leaf(observations)
-        self._xp = namespace(self._like)
+            self.row, self._first, self._end, self._is_begun = 0, 0, 0, True
         if self._observations is None:
-            self._observations = each(lambda one: _ring(self._xp, one, self._kept_observations), observations)
+            self._like = leaf(observations)
+            self._xp = namespace(self._like)
+            self._room = self._rows_at_once(observations)
+            self._observations = History(observations, self._kept_observations, self._room, self._count)
+            steps = np.arange(self._kept_observations + self._room)[::-1]
+            self._ages = on(self._like, np.repeat(steps * self.step_s, self._count))
             self._columns = on(self._like, np.arange(self._count))
-            self._began = on(self._like, np.zeros(self._count, dtype=np.int64))
-            # Of no axes, since a Python number takes NumPy as long as the sum itself.
-            self._all = on(self._like, np.array(self._count))
-            kept = max(self._kept_observations, self._kept_actions)
-            self._begins = [on(self._like, np.array(one * self._count)) for one in range(kept)]
-            self._ages = on(self._like, np.repeat(np.arange(self._kept_observations) * self.step_s, self._count))
-            self._links = None if self._links is None else on(self._like, self._links)
-        if not len(self._actions) and actions is not None:
+            rows = np.arange(self._room)[:, None]
+            self._begins = self._places(rows, -(-rows // self._every) - 1)
+            self._began = self._begins[0] + 0
+        if self._actions is None and actions is not None:
             self._allocate(actions)
+        at = self._in_block()
         mask = on(self._like, np.ones(self._count, dtype=np.bool_) if mask is None else mask)
-        self._void(mask)
-        now = self._slot(self.row, self._kept_observations)
-        observations = each(
-            lambda one, ring: self._xp.where(beside(mask, one), one, ring[now]), observations, self._observations
-        )
-        return self._look(observations)
+        self._void(mask, at)
+        self._observations.put_where(mask, at, at + 1, observations)
+        return self._look(at)
 
     def acting(self, actions: Tree = None) -> Tree:
         """Takes what is decided at the begin of a step; gives what acts in it.
@@ -219,16 +221,15 @@ class Delay:
         actions : Tree, optional
             None in the steps between two decisions.
         """
+        at = self._in_block()
         if actions is not None:
             actions = each(lambda one: on(self._like, one), actions)
-            if not len(self._actions):
+            if self._actions is None:
                 self._allocate(actions)
-            now = self._slot(self.row // self._every, self._kept_actions)
-            self._actions = each(lambda ring, one: put(_wide(ring, one), now, one), self._actions, actions)
-        at = self._in_block()
+            self._actions.put(at // self._every, actions)
         if self._is_shared:
-            return self._mean(self._weights[at])
-        return self._chosen(self._of(self._acts[at]), self.row // self._every)
+            return self._mean(at)
+        return self._actions.take(self._newest[1])
 
     def seen(self, observations: Tree, began: Any = None) -> Seen:
         """Lets a step pass, after which the environment is as these observations tell.
@@ -239,94 +240,70 @@ class Delay:
             Where this step began a new episode: the observation is its first.
         """
         self.row += 1
-        self._began = self._began - self._all
-        if began is not None:
-            self._void(on(self._like, began))
-        return self._look(observations)
-
-    # A ring holds one array of all environments after the other. What was so many steps ago is told by its place in
-    # the ring, were that of now the first: the number of the environment, less so many times the number of all.
-
-    def _of(self, lags: Any) -> Any:
-        """Places of what came so long ago, by environment, from what `_in_block` told."""
-        if self._links is None:
-            return lags
-        return self._columns + (lags.take(self._links) if self._xp is np else lags[self._links])
-
-    def _slot(self, number: int, kept: int) -> slice:
-        """Where a ring holds what came with a step or decision."""
-        begin = number % kept * self._count
-        return slice(begin, begin + self._count)
-
-    def _void(self, mask: Any) -> None:
-        """Episodes begin: what was decided before is void, and the idle action stands in the place of the last."""
-        last = self._slot(-(-self.row // self._every) - 1, self._kept_actions)
-        if self._xp is np:
-            at = mask.nonzero()[0]
-            if len(at):
-                self._began[at] = at
-                each(lambda ring, idle: ring.__setitem__(at + last.start, idle[at]), self._actions, self._idles)
-            return
-        self._began = self._xp.where(mask, self._columns, self._began)
-        self._actions = each(lambda ring, idle: _put_where(ring, last, mask, idle), self._actions, self._idles)
-
-    def _look(self, observations: Tree) -> Seen:
-        row, now = self.row, self._slot(self.row, self._kept_observations)
-        self._observations = each(lambda ring, one: put(ring, now, one), self._observations, observations)
         at = self._in_block()
-        arrived = self._of(self._seen[at])
-        newest = self._xp.maximum(arrived, self._began)
-        places = newest + self._begins[row % self._kept_observations]
-        observation = each(lambda ring: _taken(self._xp, ring, places), self._observations)
-        if self._is_zero:
-            has = arrived >= self._began
-            observation = each(lambda one: self._xp.where(beside(has, one), one, self._xp.zeros_like(one)), observation)
-        lag = self._columns - newest
-        if self._predict is not None:
-            observation = self._predicted(observation, lag // self._count, int(self._most[at]))
-        pending = None
-        if self._pending:
-            ago = on(self._like, np.arange(self._pending, 0, -1) * self._count)
-            pending = self._chosen(self._columns[:, None] + self._count - ago, -(-row // self._every))
-        return Seen(observation, self._ages.take(lag) if self._xp is np else self._ages[lag], pending)
+        if began is not None:
+            self._void(on(self._like, began), at)
+        self._observations.put(at, observations)
+        return self._look(at)
 
-    def _predicted(self, observation: Tree, lag: Any, most: int) -> Tree:
-        now = -(-self.row // self._every)
-        for step in range(most + self._ahead):
-            ago = now - (self.row - lag + step - self._ahead) // self._every
-            places = self._columns - (ago - 1) * self._count
-            later = self._predict(observation, self._chosen(places, now))
+    def _void(self, mask: Any, at: int) -> None:
+        """Episodes begin: what was decided before is void, and the idle action stands in the place of the last."""
+        if type(mask) is np.ndarray:
+            if not mask.nonzero()[0].size:  # faster than ``any`` of few
+                return
+            np.copyto(self._began, self._begins[at], where=mask)
+        else:
+            self._began = self._xp.where(mask, self._begins[at], self._began)
+        if self._actions is not None:
+            next = -(-at // self._every)
+            self._actions.put_where(mask, next - max(self._pending, 1), next, self._idles)
+
+    def _look(self, at: int) -> Seen:
+        self._newest = self._xp.maximum(self._arrived[at], self._began)
+        newest = self._newest[0]
+        observation = self._observations.take(newest)
+        if self._is_zero:
+            has = self._arrived[at][0] >= self._began[0]
+            observation = each(lambda one: self._xp.where(beside(has, one), one, self._xp.zeros_like(one)), observation)
+        if self._predict is not None:
+            observation = self._predicted(observation, (self._row(at) - newest) // self._count, at)
+        # The table ends with ages of 0, which here are those of this row.
+        ages = self._ages[(self._room - 1 - at) * self._count :]
+        age_s = ages.take(newest) if self._xp is np else ages[newest]
+        pending = self._actions.before(-(-at // self._every), self._pending) if self._pending else None
+        return Seen(observation, age_s, pending)
+
+    def _row(self, at: int) -> Any:
+        """The places of observations in this row."""
+        return self._columns + (at + self._kept_observations) * self._count
+
+    def _predicted(self, observation: Tree, lag: Any, at: int) -> Tree:
+        newest = -(-at // self._every) - 1
+        for step in range(int(self._most[at]) + self._ahead):
+            chosen = ((at - lag + step - self._ahead) // self._every).clip(None, newest)
+            places = self._columns + (chosen + self._kept_actions) * self._count
+            places = self._xp.maximum(places, self._began[1])
+            later = self._predict(observation, self._actions.take(places))
             goes = step < lag + self._ahead
             observation = each(lambda old, new: self._xp.where(beside(goes, old), new, old), observation, later)
         return observation
 
-    def _chosen(self, places: Any, now: int) -> Tree:
-        """What was chosen at these places, if the next is this decision; the idle action where before the episode."""
-        began = self._began
-        if self._every > 1:
-            steps = (self._columns - began) // self._count + now * self._every - self.row
-            began = self._columns - steps // self._every * self._count
-        newest = self._xp.maximum(places, began if places.ndim == 1 else began[:, None])
-        newest = newest + self._begins[(now - 1) % self._kept_actions]
-        return each(lambda ring: _taken(self._xp, ring, newest), self._actions)
-
-    def _mean(self, weights: Any) -> Tree:
+    def _mean(self, at: int) -> Tree:
         """The mean of the actions in force during a step."""
-        now, shares, left = self.row // self._every, [], 1.0
-        for lag in range(len(weights)):
-            weight = weights[lag] if self._links is None else weights[lag][self._links]
-            counts = self._columns - lag * self._count * self._every >= self._began
-            shares.append(self._xp.where(counts, weight, 0.0))
+        shares, left = [], 1.0
+        for lag, weight in enumerate(self._weights[at]):
+            counts = self._row(at) - lag * self._every * self._count >= self._began[0]
+            shares.append(self._xp.where(counts, weight if self._links is None else weight[self._links], 0.0))
             left = left - shares[-1]
+        rows = [self._actions.row(at // self._every - lag) for lag in range(len(shares))]
 
-        def mean(ring: Any, idle: Any) -> Any:
-            one = ring[self._slot(now, self._kept_actions)]
-            total = beside(left, one) * idle
-            for lag, share in enumerate(shares):
-                total = total + beside(share, one) * ring[self._slot(now - lag, self._kept_actions)]
-            return cast(total, ring.dtype)
+        def mean(idle: Any, *ones: Any) -> Any:
+            total = beside(left, idle) * idle
+            for share, one in zip(shares, ones):
+                total = total + beside(share, one) * one
+            return cast(total, ones[0].dtype)
 
-        return each(mean, self._actions, self._idles)
+        return each(mean, self._idles, *rows)
 
     def _allocate(self, actions: Tree) -> None:
         actions = each(lambda one: on(self._like, one), actions)
@@ -340,39 +317,50 @@ class Delay:
             return cast(on(self._like, np.broadcast_to(np.asarray(idle), tuple(one.shape)).copy()), one.dtype)
 
         self._idles = each(filled, actions, idles)
-        self._actions = each(lambda idle: _ring(self._xp, idle, self._kept_actions), self._idles)
+        self._actions = History(self._idles, self._kept_actions, self._room // self._every, self._count)
+
+    def _rows_at_once(self, observations: Tree) -> int:
+        """How many rows histories take before old ones are forgotten."""
+        sizes = [48 * self._count]  # of places
+        each(lambda one: sizes.append(one.nbytes), observations)
+        # Arrays of JAX are copied whole whenever they are changed.
+        is_copied = self._xp is not np and not hasattr(self._like, "is_cuda")
+        fit = 0 if is_copied else _BYTES // sum(sizes)
+        rows = max(min(fit, _ROWS), self._kept_observations, self._kept_actions * self._every)
+        return -(-min(rows, self._schedule.rows) // self._every) * self._every
 
     def _in_block(self) -> int:
-        """The place of this row in the schedule's block, which lies where the arrays do."""
-        at = self._schedule.row(self.row)
-        if self._block != self._schedule.first:
-            self._block = self._schedule.first
-            columns = np.arange(self._count) if self._links is None else 0
-            seen, acts = (one.astype(np.int64) * self._count for one in (self._schedule.seen, self._schedule.acts))
-            self._seen, self._acts = on(self._like, columns - seen), on(self._like, columns - acts + self._count)
-            self._most = self._schedule.seen.max(1)
-            self._weights = on(self._like, self._schedule.weights) if self._is_shared else None
-            # Keeps within 32 bits.
-            self._began = self._began.clip(-4 * MOST_ROWS * self._every * self._count)
-        return at
+        """The number of this row in the block, which is made if the last one is over."""
+        while self.row >= self._end:
+            self._forget(self._end - self._first)
+            self._first = self._end
+            self._make_block()
+        return self.row - self._first
 
+    def _forget(self, rows: int) -> None:
+        if rows and self._observations is not None:
+            self._observations.forget(rows)
+            decisions = rows // self._every
+            if self._actions is not None:
+                self._actions.forget(decisions)
+            begin = on(self._like, np.array([[rows], [decisions]]) * self._count)
+            self._began = (self._began - begin).clip(0)
 
-def _ring(xp: Any, one: Any, length: int) -> Any:
-    """Room for so many arrays, one after the other."""
-    ring = xp.concatenate([one] * length)
-    return np.ascontiguousarray(ring) if xp is np else ring  # as ``take`` wants it, whatever the environment has
+    def _places(self, seen: Any, acting: Any) -> list[Any]:
+        """The places of what is seen and of what acts, shape (2, environments), row by row, by their histories' rows."""
+        rows = np.stack(np.broadcast_arrays(seen + self._kept_observations, acting + self._kept_actions), 1)
+        links = rows.shape[-1]
+        columns = np.arange(-(-self._count // links) * links).reshape(-1, links)
+        places = (rows[:, :, None] * self._count + columns).reshape(len(rows), 2, -1)[..., : self._count]
+        return list(on(self._like, places))
 
-
-def _put_where(ring: Any, slot: slice, mask: Any, value: Any) -> Any:
-    return put(ring, slot, namespace(ring).where(beside(mask, value), value, ring[slot]))
-
-
-def _taken(xp: Any, ring: Any, places: Any) -> Any:
-    if xp is np:
-        return ring.take(places, 0, mode="wrap")
-    return ring[places % len(ring)]
-
-
-def _wide(ring: Any, one: Any) -> Any:
-    """The ring, so that it holds a value as it is."""
-    return ring if ring.dtype == one.dtype else cast(ring, namespace(ring).promote_types(ring.dtype, one.dtype))
+    def _make_block(self) -> None:
+        """Uploads what the link does in the next rows: the places of what is seen, and of what acts."""
+        schedule, at = self._schedule, self._schedule.row(self._first)
+        rows = min(self._room, schedule.rows - at)
+        self._end, block = self._first + rows, slice(at, at + rows)
+        numbers = np.arange(rows)[:, None]
+        acts = numbers // self._every - schedule.acts[block]
+        self._arrived = self._places(numbers - schedule.seen[block], acts)
+        self._most = schedule.seen[block].max(1)
+        self._weights = on(self._like, schedule.weights[block]) if self._is_shared else None

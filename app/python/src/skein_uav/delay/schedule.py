@@ -273,7 +273,8 @@ class _Direction:
             values = delays.trace[at] if delays.trace.ndim == 1 else delays.trace[at, np.arange(self._count)]
             return [(values / h, None)] * self._lines, lost
         if delays.is_constant:
-            return [(np.full((rows, self._count), delays.busy[0] / h), None)] * self._lines, lost
+            at = np.broadcast_to(np.intp(0), (rows, self._count))
+            return [(delays.busy[:1] / h, at)] * self._lines, lost
         if self._link is None:
             self._held, self._is_busy = None, None
             if delays.correlation_s:

@@ -80,16 +80,19 @@ class Telling:
             if self._pending:
                 told["pending"] = seen.pending
             return told
-        parts = [observation]
-        if self._ages:
-            parts.append(seen.age_s[:, None])
+        pending = None
         if self._pending:
             pending = seen.pending
             if isinstance(self._action, Discrete):
-                values = on(pending, np.arange(self._action.start, self._action.start + self._action.n))
-                pending = pending[:, :, None] == values
-            parts.append(pending.reshape(len(pending), -1))
-        return joined(parts, self.space.shape[0])
+                pending = _one_hot(pending, self._action)
+            pending = pending.reshape(len(pending), -1)
+        return joined([observation, seen.age_s[:, None] if self._ages else None, pending], self.space.shape[0])
+
+
+def _one_hot(numbers: Any, space: Discrete) -> Any:
+    if type(numbers) is np.ndarray and space.n <= 64:  # a table is faster, and larger by the square
+        return np.eye(space.n, dtype=np.float32).take(numbers - space.start, 0)
+    return numbers[:, :, None] == on(numbers, np.arange(space.start, space.start + space.n))
 
 
 def idle(space: gym.Space) -> Any:
