@@ -46,10 +46,9 @@ public abstract class LaneFlights extends LaneVehicles {
 
   final float[] chosen, sinceS = new float[WORLDS];
 
-  // Pieces that end by themselves: where, when, and under which command others follow.
+  // Pieces that end by themselves: where, and when others follow.
   private final LaneVectors over = new LaneVectors();
   private final int[] ends = new int[WORLDS], next = new int[WORLDS];
-  private final Directions along;
 
   private static final LaneVectors ALL = LaneVectors.all();
 
@@ -58,7 +57,6 @@ public abstract class LaneFlights extends LaneVehicles {
    */
   LaneFlights(RolloutAgent agent, int numbers, double pieceS, LoopLanes loop, boolean inSpace) {
     super(agent, 0, inSpace);
-    along = new Directions(WORLDS, inSpace);
     size = numbers * WORLDS;
     keptRows = loop.keptRows();
     periodGrains = LaneViews.grains(loop.periodS());
@@ -89,12 +87,15 @@ public abstract class LaneFlights extends LaneVehicles {
    */
   abstract void fly(float[] into, int at, boolean withVelocity);
 
-  abstract void flyOn();
+  /** Simulates the {@link #chosen} pieces of so many vectors, the first of all, to their ends. */
+  abstract void flyOn(int count);
 
-  /** Begins new pieces where the {@link #chosen} ones end after {@link #flyOn}, under commands, in worlds
-   * where {@code acts} is less than {@link LaneOffers#NONE}; elsewhere copies the chosen ones.
+  /** Begins new pieces where the {@link #chosen} ones end after {@link #flyOn}, in worlds where {@code acts}
+   * is less than {@link LaneOffers#NONE}; elsewhere copies the chosen ones.
    *
+   * @param vectors the chosen ones, one behind the other
    * @param at their offset in {@link #pieces}
+   * @param commanded by world; null where the present command goes on
    */
   abstract void begin(LaneVectors vectors, int at, int[] acts, Directions commanded);
 
@@ -125,7 +126,7 @@ public abstract class LaneFlights extends LaneVehicles {
     ask(row, vectors, acts, acts, Integer.MIN_VALUE);
     goOn(row, vectors);
     chooseNewest(vectors);
-    flyOn();
+    flyOn(vectors.count);
     begin(vectors, fill(row, vectors, until), acts, commanded);
   }
 
@@ -151,14 +152,8 @@ public abstract class LaneFlights extends LaneVehicles {
   private void goOn(int row, LaneVectors vectors) {
     while (findOver(vectors)) {
       copyNewest(over);
-      flyOn();
-      System.arraycopy(chosen, ALONG_X, along.cos, 0, WORLDS);
-      System.arraycopy(chosen, ALONG_Y, along.sin, 0, WORLDS);
-      if (inSpace) {
-        System.arraycopy(chosen, THIRD, along.third, 0, WORLDS);
-        System.arraycopy(chosen, HOLDS, along.holds, 0, WORLDS);
-      }
-      begin(over, fill(row, over, next), ends, along);
+      flyOn(over.count);
+      begin(over, fill(row, over, next), ends, null);
     }
   }
 
@@ -173,10 +168,12 @@ public abstract class LaneFlights extends LaneVehicles {
       IntVector begin = IntVector.fromArray(INTS, begins, newest + i);
       VectorMask<Integer> isOver = IntVector.fromArray(INTS, until, i).sub(begin).compare(GT, piece);
       if (isOver.anyTrue()) {
-        over.first[over.count++] = i;
         begin.add(piece, isOver).intoArray(next, i);
         IntVector.broadcast(INTS, LaneOffers.NONE).blend(0, isOver).intoArray(ends, i);
-        FloatVector.broadcast(SPECIES, 0f).blend(pieceS, isOver.cast(SPECIES)).intoArray(sinceS, i);
+        FloatVector.broadcast(SPECIES, 0f)
+            .blend(pieceS, isOver.cast(SPECIES))
+            .intoArray(sinceS, over.count * LANES);
+        over.first[over.count++] = i;
       }
     }
     return over.count > 0;
@@ -214,15 +211,16 @@ public abstract class LaneFlights extends LaneVehicles {
     }
   }
 
-  /** Chooses the newest pieces, with the time from their start to the requested times. */
+  /** Chooses the newest pieces, one vector behind the other, with the time from their start to the requested
+   * times.
+   */
   private void chooseNewest(LaneVectors vectors) {
     int newest = (filled - 1 & slots - 1) * WORLDS;
-    FloatVector grainS = FloatVector.broadcast(SPECIES, LaneViews.GRAIN_S);
     for (int k = 0; k < vectors.count; k++) {
       int i = vectors.first[k];
       IntVector since =
           IntVector.fromArray(INTS, until, i).sub(IntVector.fromArray(INTS, begins, newest + i));
-      ((FloatVector) since.convertShape(VectorOperators.I2F, SPECIES, 0)).mul(grainS).intoArray(sinceS, i);
+      tellSince(since, k * LANES);
     }
     copyNewest(vectors);
   }
@@ -230,37 +228,45 @@ public abstract class LaneFlights extends LaneVehicles {
   private void copyNewest(LaneVectors vectors) {
     int newest = (filled - 1 & slots - 1) * size;
     for (int k = 0; k < vectors.count; k++) {
-      int i = vectors.first[k];
-      for (int number = i; number < size; number += WORLDS)
-        FloatVector.fromArray(SPECIES, pieces, newest + number).intoArray(chosen, number);
+      int to = k * LANES, from = newest + vectors.first[k];
+      for (int number = 0; number < size; number += WORLDS)
+        FloatVector.fromArray(SPECIES, pieces, from + number).intoArray(chosen, to + number);
     }
   }
 
+  private void tellSince(IntVector grains, int at) {
+    ((FloatVector) grains.convertShape(VectorOperators.I2F, SPECIES, 0))
+        .mul(LaneViews.GRAIN_S)
+        .intoArray(sinceS, at);
+  }
+
+  /** Chooses the pieces in which the requested times lie, each world's in its own place. */
   private void choose(LaneVectors vectors) {
-    copyNewest(vectors);
     int[] begins = this.begins, until = this.until;
     float[] pieces = this.pieces, chosen = this.chosen;
     int size = this.size, mask = slots - 1, newest = filled - 1, oldest = Math.max(0, filled - slots);
-    IntVector zero = IntVector.broadcast(INTS, 0);
-    FloatVector grainS = FloatVector.broadcast(SPECIES, LaneViews.GRAIN_S);
     for (int k = 0; k < vectors.count; k++) {
-      int i = vectors.first[k], back = newest;
+      int i = vectors.first[k], back = newest, from = (back & mask) * size + i;
       IntVector time = IntVector.fromArray(INTS, until, i);
       IntVector since = time.sub(IntVector.fromArray(INTS, begins, (back & mask) * WORLDS + i));
-      VectorMask<Integer> late = since.compare(LT, zero);
+      VectorMask<Integer> late = since.compare(LT, 0);
+      if (!late.allTrue())
+        for (int number = 0; number < size; number += WORLDS)
+          FloatVector.fromArray(SPECIES, pieces, from + number).intoArray(chosen, i + number);
       while (late.anyTrue()) {
         if (--back < oldest)
           throw new IllegalStateException("a reading is older than " + slots + " pieces of a flight");
-        since =
-            since.blend(
-                time.sub(IntVector.fromArray(INTS, begins, (back & mask) * WORLDS + i)), late);
-        VectorMask<Float> isLate = late.cast(SPECIES);
-        int from = (back & mask) * size;
-        for (int number = i; number < size; number += WORLDS)
-          FloatVector.fromArray(SPECIES, pieces, from + number).intoArray(chosen, number, isLate);
-        late = since.compare(LT, zero);
+        IntVector before = time.sub(IntVector.fromArray(INTS, begins, (back & mask) * WORLDS + i));
+        VectorMask<Integer> found = before.compare(GE, 0).and(late);
+        if (!found.anyTrue()) continue;
+        since = since.blend(before, found);
+        late = late.andNot(found);
+        VectorMask<Float> isFound = found.cast(SPECIES);
+        from = (back & mask) * size + i;
+        for (int number = 0; number < size; number += WORLDS)
+          FloatVector.fromArray(SPECIES, pieces, from + number).intoArray(chosen, i + number, isFound);
       }
-      ((FloatVector) since.convertShape(VectorOperators.I2F, SPECIES, 0)).mul(grainS).intoArray(sinceS, i);
+      tellSince(since, i);
     }
   }
 }

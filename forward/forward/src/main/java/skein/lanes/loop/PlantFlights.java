@@ -2,6 +2,7 @@ package skein.lanes.loop;
 
 import static jdk.incubator.vector.VectorOperators.LT;
 import static skein.simd.LaneMath.INTS;
+import static skein.simd.LaneMath.LANES;
 import static skein.simd.LaneMath.SPECIES;
 
 import java.util.Arrays;
@@ -76,7 +77,8 @@ public final class PlantFlights extends LaneFlights {
   }
 
   @Override
-  void flyOn() {
+  void flyOn(int count) {
+    flown.use(count * LANES);
     flown.apply();
   }
 
@@ -85,28 +87,33 @@ public final class PlantFlights extends LaneFlights {
     IntVector none = IntVector.broadcast(INTS, LaneOffers.NONE);
     int flown = firstOfState + reached.length, size = chosen.length;
     for (int k = 0; k < vectors.count; k++) {
-      int i = vectors.first[k], to = at + i;
+      int from = k * LANES, i = vectors.first[k], to = at + i;
       VectorMask<Float> does = IntVector.fromArray(INTS, acts, i).compare(LT, none).cast(SPECIES);
-      FloatVector.fromArray(SPECIES, chosen, ALONG_X + i)
-          .blend(FloatVector.fromArray(SPECIES, commanded.cos, i), does)
-          .intoArray(pieces, to + ALONG_X);
-      FloatVector.fromArray(SPECIES, chosen, ALONG_Y + i)
-          .blend(FloatVector.fromArray(SPECIES, commanded.sin, i), does)
-          .intoArray(pieces, to + ALONG_Y);
-      if (inSpace) {
-        FloatVector.fromArray(SPECIES, chosen, THIRD + i)
-            .blend(FloatVector.fromArray(SPECIES, commanded.third, i), does)
-            .intoArray(pieces, to + THIRD);
-        FloatVector.fromArray(SPECIES, chosen, HOLDS + i)
-            .blend(FloatVector.fromArray(SPECIES, commanded.holds, i), does)
-            .intoArray(pieces, to + HOLDS);
+      if (commanded == null) copy(0, firstOfState, from, to);
+      else {
+        command(commanded.cos, ALONG_X, i, from, to, does);
+        command(commanded.sin, ALONG_Y, i, from, to, does);
+        if (inSpace) {
+          command(commanded.third, THIRD, i, from, to, does);
+          command(commanded.holds, HOLDS, i, from, to, does);
+        }
       }
       for (int number = firstOfState; number < flown; number += WORLDS)
-        FloatVector.fromArray(SPECIES, chosen, number + i)
-            .blend(FloatVector.fromArray(SPECIES, reached, number - firstOfState + i), does)
+        FloatVector.fromArray(SPECIES, chosen, number + from)
+            .blend(FloatVector.fromArray(SPECIES, reached, number - firstOfState + from), does)
             .intoArray(pieces, to + number);
-      for (int number = flown; number < size; number += WORLDS)
-        FloatVector.fromArray(SPECIES, chosen, number + i).intoArray(pieces, to + number);
+      copy(flown, size, from, to);
     }
+  }
+
+  private void command(float[] commanded, int number, int i, int from, int to, VectorMask<Float> does) {
+    FloatVector.fromArray(SPECIES, chosen, number + from)
+        .blend(FloatVector.fromArray(SPECIES, commanded, i), does)
+        .intoArray(pieces, to + number);
+  }
+
+  private void copy(int first, int end, int from, int to) {
+    for (int number = first; number < end; number += WORLDS)
+      FloatVector.fromArray(SPECIES, chosen, number + from).intoArray(pieces, to + number);
   }
 }
