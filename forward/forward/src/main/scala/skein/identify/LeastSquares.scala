@@ -49,7 +49,7 @@ private[identify] object LeastSquares:
       val square   = dot(here, here)
       val free     = at.indices.filterNot: i =>
         at(i) == least(i) && descent(i) < 0 || at(i) == most(i) && descent(i) > 0
-      val normal   = free.map(i => free.map(j => dot(jacobian(i), jacobian(j))).toArray).toArray
+      val normal = free.map(i => free.map(j => dot(jacobian(i), jacobian(j))).toArray).toArray
 
       def stepped(step: Array[Double]): Array[Double] =
         clamped(free.zip(step).foldLeft(at) { case (moved, (i, by)) => moved.updated(i, at(i) + by) })
