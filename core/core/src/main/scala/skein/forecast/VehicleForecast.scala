@@ -50,7 +50,7 @@ final case class VehicleForecast[S] private (
 
   /** Adds the actions of a plan, which replace those of earlier plans from its first moment on, as in
     * [[skein.port.PlanBuffer]]. They are taken to arrive in time: where they do not, an earlier plan's
-    * actions act, which are much the same.
+    * actions act, which are nearly equal.
     */
   def planned(plan: Vector[Commanded]): VehicleForecast[S] =
     val from = plan.headOption.flatMap(_.actsAt)
