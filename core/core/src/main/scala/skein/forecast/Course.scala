@@ -4,7 +4,7 @@ import scala.annotation.tailrec
 import skein.units.*
 import skein.vehicle.{Guidance, VehicleModel}
 
-/** A vehicle's predicted state, which can be flown on under further commands.
+/** A vehicle's predicted state, which can be carried on under further commands.
   *
   * @param at on the simulator's clock
   * @param newestAt the valid time of the newest reading behind it

@@ -52,7 +52,7 @@ final case class Forecast private (
     for delays <- delays if tracks.forall(_.isDefined)
     yield tracks.flatten.map(_.legsTo(delays.expectedArrival(now), delays, now))
 
-  /** The vehicles at the moments of estimates of this forecast, to be flown on from there.
+  /** The vehicles at the moments of estimates of this forecast, to be carried on from there.
     *
     * @param estimates of [[whenActing]], by vehicle
     * @param now as there

@@ -50,7 +50,7 @@ final case class VehicleForecast[S] private (
 
   /** Adds the actions of a plan, which replace those of earlier plans from its first moment on, as in
     * [[skein.port.PlanBuffer]]. They are taken to arrive in time: where they do not, an earlier plan's
-    * actions act, which are much the same.
+    * actions act, which are nearly equal.
     */
   def planned(plan: Vector[Commanded]): VehicleForecast[S] =
     val from = plan.headOption.flatMap(_.actsAt)
@@ -80,7 +80,7 @@ final case class VehicleForecast[S] private (
   def estimateAt(validAt: Instant, delays: OneWayDelays, now: Instant): Estimate =
     courseAt(validAt, delays, now).estimate
 
-  /** The vehicle at the instant of [[estimateAt]], to be flown on from there. */
+  /** The vehicle at the instant of [[estimateAt]], to be carried on from there. */
   def courseAt(validAt: Instant, delays: OneWayDelays, now: Instant): Course[S] =
     val at = validAt.max(newest.validAt)
     Course(model, advancedTo(at, delays, now), at, newest.validAt)
@@ -180,19 +180,3 @@ object VehicleForecast:
       before.value.velocityNed * (u * (1 - u) * (1 - u) * length) +
       after.value.positionNed * (u * u * (3 - 2 * u)) +
       after.value.velocityNed * (u * u * (u - 1) * length)
-
-/** The estimated state of a vehicle.
-  *
-  * @param predictedFor the simulator's time for which the estimate holds
-  * @param readAt the simulator's time of the reading from which it was predicted
-  * @param state of its plant, as numbers, where kinematics do not describe the whole state
-  */
-final case class Estimate(
-    kinematics: Kinematics,
-    predictedFor: Instant,
-    readAt: Instant,
-    state: Vector[Double] = Vector.empty
-):
-
-  /** Time from the reading to the predicted moment. */
-  def age: Span = predictedFor.since(readAt)

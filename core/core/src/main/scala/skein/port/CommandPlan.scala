@@ -16,13 +16,13 @@ final case class CommandPlan(sequence: Long, actions: Vector[(at: Instant, actio
     throw IllegalArgumentException(s"a command's plan: $wrong")
 
 object CommandPlan:
-  /** Most actions of a plan. */
+  /** Most actions of one plan, which fit into one packet of TCP. */
   final val Most = 16
 
   /** Time for which a plan's last action acts. */
   val Hold: Span = Span.ofSeconds(1)
 
-  /** Asks whether plans are accepted. */
+  /** A plan that only asks whether plans are accepted. */
   val Question: CommandPlan = CommandPlan(0, Vector.empty)
 
   /** Why actions of these moments are not a plan's, if they are not. */

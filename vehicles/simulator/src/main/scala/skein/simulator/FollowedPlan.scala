@@ -26,7 +26,6 @@ private[simulator] final class FollowedPlan:
     running = None
     due = None
 
-  /** Lets the vehicle do what is due. */
   def turn(vehicle: SimulatedMultirotor, now: Instant): Unit =
     for next <- buffer.due(now) if !running.exists(_.order eq next.action) do
       running = Some(FollowedPlan.Running(next.action, next.action(vehicle).toOption, next.at))
