@@ -240,6 +240,14 @@ def test_substeps_are_as_fine_as_steps_and_add_rewards():
     assert list(told) == [1, 6, 10, 0.05]
 
 
+def test_shares_last_however_long_the_episode():
+    env = DelayEnv(Counter(2000), STEP_S, link=0.07, substeps=5, arrival="share")
+    env.reset()
+    for decision in range(1, 300):
+        _, reward, *_ = env.step(np.array([float(decision)]))
+        assert reward == pytest.approx(1.4 * (decision - 1) + 3.6 * decision)
+
+
 @pytest.mark.parametrize("length", [3, 6])
 def test_an_episode_that_ends_between_two_decisions_leaves_nothing_behind(length):
     env = DelayEnv(Counter(length), 0.025, observation_delay=0.05, action_delay=0.05, substeps=4, pending=2)

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from .arrays import Tree, beside, cast, each, leaf, namespace, on
 from .history import History
 from .profiles import Trace, delays
-from .schedule import Schedule, spawned
+from .schedule import MOST_ROWS, Schedule, spawned
 
 MOST_LINKS = 256
 """Of more environments, those share a link whose numbers differ by a multiple."""
@@ -344,7 +344,8 @@ class Delay:
             if self._actions is not None:
                 self._actions.forget(decisions)
             begin = on(self._like, np.array([[rows], [decisions]]) * self._count)
-            self._began = (self._began - begin).clip(0)
+            # An episode may be older than what is kept; bounded, so that 32 bits hold it.
+            self._began = (self._began - begin).clip(-4 * MOST_ROWS * self._every * self._count)
 
     def _places(self, seen: Any, acting: Any) -> list[Any]:
         """The places of what is seen and of what acts, shape (2, environments), row by row, by their histories' rows."""
