@@ -51,7 +51,7 @@ object TopicTables:
       "message was recorded."
   )
 
-  /** A paragraph for each finding, and one for what a bag cannot tell. */
+  /** A paragraph for each finding, and one for what a bag leaves open. */
   def findings(observed: ObservedTopics): Vector[String] =
     def seconds(ms: Double)          = s"${(ms / 1e3).fixed(2)} s"
     def broken(topic: ObservedTopic) =

@@ -3,7 +3,7 @@ package skein.observe
 import skein.measure.Distribution
 import skein.units.Span
 
-/** What messages of a topic are for a loop. */
+/** What messages of a topic are: readings of vehicles, or commands to them. */
 enum TopicKind(val label: String):
   case Readings extends TopicKind("readings")
   case Commands extends TopicKind("commands")
@@ -12,7 +12,7 @@ enum TopicKind(val label: String):
   *
   * @param lasted from the first message to the last
   * @param caused commands with the stamp of the reading that caused them
-  * @param byOtherClock vehicles whose stamps are by another clock than the times at which messages came
+  * @param byOtherClock vehicles whose stamps are by another clock than the times at which messages arrived
   * @param notKept messages of vehicles or topics beyond the most
   * @param log of the first [[LoopAccount.MostLogged]] commands
   */
@@ -30,7 +30,8 @@ final case class ObservedTopics(
 /** The messages of one topic.
   *
   * @param intervalMs from one message to the next
-  * @param lateMs from a header's stamp to when its message came; absent where they are on different clocks
+  * @param lateMs from a header's stamp to the arrival of its message; absent where they are on different
+  *   clocks
   * @param gaps intervals of more than two and a half usual ones
   * @param backwards messages with an earlier stamp than one before
   */

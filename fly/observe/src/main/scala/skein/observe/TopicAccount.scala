@@ -8,13 +8,13 @@ import skein.units.{Instant, Span}
   * at a time; messages in the order of their times.
   *
   * A command whose header has the stamp of a reading of its vehicle is caused by that reading; any other is
-  * assumed to be based on the newest reading that came before it. An age counts from the reading's stamp; of
-  * a reading without one, from when it came.
+  * assumed to be based on the newest reading before it. An age counts from the reading's stamp; of a reading
+  * without one, from its arrival.
   *
   * Nothing goes there and back by which clocks could be compared. If the first stamp of a vehicle is within
-  * [[TopicAccount.SameClock]] of the time at which its message came, stamps are taken as they are. Otherwise
-  * they are by another clock, such as simulated time, and [[skein.signal.FastestMessage]] relates the two:
-  * ages lack the way of the fastest message.
+  * [[TopicAccount.SameClock]] of the time at which its message arrived, stamps are taken as they are.
+  * Otherwise they are by another clock, such as simulated time, and [[skein.signal.FastestMessage]] relates
+  * the two: ages lack the way of the fastest message.
   *
   * Memory: [[TopicAccount.MostVehicles]] vehicles, [[TopicAccount.MostTopics]] topics, a million samples of
   * each quantity, and [[LoopAccount.MostLogged]] commands.
@@ -30,15 +30,15 @@ final class TopicAccount:
   private var begunAt  = Option.empty[Instant]
   private var lastAt   = Instant.Epoch
 
-  /** A reading came.
+  /** Adds a reading that has arrived.
     *
     * @param stamp of its header
-    * @param at when it came
+    * @param at when it arrived
     */
   def reading(vehicle: String, topic: String, stamp: Option[Instant], at: Instant): Unit =
     received(vehicle, topic, TopicKind.Readings, stamp, at).foreach(_.read(stamp, at))
 
-  /** A command was sent. */
+  /** Adds a command that was sent; its parameters are those of [[reading]]. */
   def command(vehicle: String, topic: String, stamp: Option[Instant], at: Instant): Unit =
     for commanded <- received(vehicle, topic, TopicKind.Commands, stamp, at) do
       val cause = stamp.flatMap(commanded.readingOf)
@@ -168,5 +168,5 @@ object TopicAccount:
         backwards
       )
 
-  /** An interval longer than so many usual ones is a gap. */
+  /** A gap is an interval of more than this many usual ones. */
   private val GapFactor = 2.5

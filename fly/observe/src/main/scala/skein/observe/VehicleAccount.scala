@@ -36,7 +36,7 @@ private[observe] final class VehicleAccount(name: String):
     command.boundMs.foreach(bound.add)
     if agesMs.sizeIs > 1 then skew.add(agesMs.max - agesMs.min)
 
-  /** Mean age of the own data. */
+  /** Mean age of the own data behind a command, ms. */
   def ownAgeMs: Option[Double] = ownAge.mean
 
   def observed: ObservedVehicle = ObservedVehicle(

@@ -119,7 +119,7 @@ private object BagMessages:
     }
     (estimated ++ assumed).nextOption().getOrElse(Span.Zero)
 
-  /** A scan in the frame front, left, up. */
+  /** A scan, its points in the frame front, left, up. */
   private def points(header: Header, cloud: Cloud): PointCloud2 =
     val seen = java.nio.ByteBuffer.wrap(cloud.xyz.bytes).order(java.nio.ByteOrder.LITTLE_ENDIAN)
     val flu  = java.nio.ByteBuffer.allocate(cloud.xyz.size).order(java.nio.ByteOrder.LITTLE_ENDIAN)

@@ -70,5 +70,5 @@ private[skein] final class EventQueue(capacity: Int):
 private[skein] object EventQueue:
   private val Room = 16
 
-  /** More than any number of events. */
+  /** Added to the number of an event to put it behind all others of its moment. */
   private val Last = 1L << 62

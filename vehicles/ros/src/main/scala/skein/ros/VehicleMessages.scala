@@ -23,7 +23,7 @@ object VehicleMessages:
     )
   )
 
-  /** Where a vehicle is in the world. */
+  /** Where the frame of a vehicle's body is in the world. */
   def transform(at: Instant, vehicle: String, motion: Kinematics): TransformStamped =
     transform(at, body(vehicle), motion.positionNed, RosFrames.toEnu(motion.orientation))
 

@@ -5,10 +5,10 @@ import skein.units.Instant
 import upack.{Arr, Msg, Str}
 
 /** The function that gives a vehicle a plan: moves for several moments in one call. It is not one of
-  * AirSim's. It answers immediately, and needs no worker: the vehicle has one move at a time, that of the moment.
-  * Plans bear numbers, so that they may come over any connection: one that is older than another is without
-  * effect. A move, a reset or `skeinHoverAt` begins the count anew; `hover` does not, and so a late plan does
-  * not undo it.
+  * AirSim's. It answers immediately, and needs no worker: the vehicle has one move at a time, that of the
+  * moment. Plans bear numbers, so that they may come over any connection: one that is older than another is
+  * without effect. A move, a reset or `skeinHoverAt` begins the count anew; `hover` does not, and so a late
+  * plan does not undo it.
   */
 private[simulator] object PlanMethods:
   import ServerMethod.*

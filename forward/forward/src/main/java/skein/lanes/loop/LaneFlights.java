@@ -87,7 +87,7 @@ public abstract class LaneFlights extends LaneVehicles {
    */
   abstract void fly(float[] into, int at, boolean withVelocity);
 
-  /** Simulates the {@link #chosen} pieces of so many vectors, the first of all, to their ends. */
+  /** Simulates the {@link #chosen} pieces of the first vectors to their ends. */
   abstract void flyOn(int count);
 
   /** Begins new pieces where the {@link #chosen} ones end after {@link #flyOn}, in worlds where {@code acts}

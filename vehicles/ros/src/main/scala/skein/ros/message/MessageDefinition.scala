@@ -10,7 +10,7 @@ object MessageDefinition:
     val name = s"${kind.packageName}/${kind.name}"
     (text(name) +: inside(name).map(part => s"${"=" * 80}\nMSG: $part\n${text(part)}")).mkString
 
-  /** Names of a type's fields, in order. */
+  /** Names of a type's fields, in the order of their bytes. */
   private[message] def fieldNames(name: String): Vector[String] = fields(name).map(_.last)
 
   /** Types within a type, each once, at any depth. */
