@@ -233,8 +233,9 @@ abstract class DocumentedCommands(commands: Seq[String]) extends munit.FunSuite:
         case "evader.onnx"                 => s"evader:$onnx"
         case "searches/…/scenario.conf"    => scenario.toString
         // What one command of a guide writes, a later one reads.
-        case name if Set("flight.mcap", "again.duckdb", "pursuer.conf")(name) => folder.resolve(name).toString
-        case model if model.startsWith("mujoco:examples/")                    =>
+        case name if Set("flight.mcap", "my-bag", "again.duckdb", "pursuer.conf")(name) =>
+          folder.resolve(name).toString
+        case model if model.startsWith("mujoco:examples/") =>
           model.replace("examples/", s"${Documentation.root}/examples/")
         case word => word
       // The default port may be in use here.
@@ -265,7 +266,8 @@ abstract class DocumentedCommands(commands: Seq[String]) extends munit.FunSuite:
           // The guide's ports may be in use here.
           val own = words.updated(words.indexOf("--listen") + 1, "127.0.0.1:0")
           runUntilItListens(own.updated(own.indexOf("--to") + 1, server.address.toString))
-        case "observe" =>
+        case "observe" if words.contains("--bag") => run(words)
+        case "observe"                            =>
           // Without the guide's program, which belongs to the user.
           val own = without(words.takeWhile(_ != "--"), Seq("--simulator"))
           runUntilItListens(own ++ Seq("--listen", "127.0.0.1:0", "--simulator", server.address.toString))
@@ -288,7 +290,7 @@ abstract class DocumentedCommands(commands: Seq[String]) extends munit.FunSuite:
             "link",
             "observe",
             "decide"
-          )(words.head) || words.contains("--view") || words.contains("--cluster")
+          )(words.head) && !words.contains("--bag") || words.contains("--view") || words.contains("--cluster")
         then
           stopped(status)
         else status == 0,
@@ -356,7 +358,8 @@ object DocumentedCommands:
     * flown live.
     */
   private def inVirtualTime(command: String, readme: Seq[String]): String =
-    val isLive = Seq("--clock", "--view", "--record", "--simulator", "unix:").exists(command.contains)
+    val isLive =
+      Seq("--clock", "--ros", "--view", "--record", "--simulator", "unix:").exists(command.contains)
     if !command.startsWith("fly ") || isLive || readme.contains(command) then command
     else s"$command --clock virtual"
 

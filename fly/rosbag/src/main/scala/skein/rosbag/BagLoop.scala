@@ -3,6 +3,7 @@ package skein.rosbag
 import java.io.IOException
 import java.nio.ByteOrder
 import java.nio.file.{Files, Path}
+import java.util.Locale
 import scala.jdk.StreamConverters.StreamHasToScala
 import scala.util.Using
 import skein.mcap.file.McapFile
@@ -70,8 +71,8 @@ object BagLoop:
   private val Twists = Set("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 
   private def soundsLikeCommand(topic: String): Boolean =
-    val name = topic.drop(topic.lastIndexOf('/') + 1).toLowerCase
-    val path = topic.toLowerCase
+    val name = topic.drop(topic.lastIndexOf('/') + 1).toLowerCase(Locale.ROOT)
+    val path = topic.toLowerCase(Locale.ROOT)
     Vector("cmd", "command", "target", "goal").exists(name.contains) || path.contains("setpoint")
 
   /** The vehicle of a topic: its first part, if there are several. */
