@@ -258,7 +258,9 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
     val (status, _, err) = run(ExportCommand, folder.resolve("stream-vpn.duckdb").toString)
     assertEquals(status, 1)
     assert(
-      err.contains("expected what to write, came nothing: ./skein export FILE --parquet DIR, --mcap FILE, or --rosbag DIR"),
+      err.contains(
+        "expected what to write, came nothing: ./skein export FILE --parquet DIR, --mcap FILE, or --rosbag DIR"
+      ),
       err
     )
 
