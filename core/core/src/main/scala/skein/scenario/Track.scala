@@ -8,13 +8,15 @@ import skein.units.*
   *
   * @param positionsNed by instant, m, world frame
   * @param velocitiesNed by instant, m/s
+  * @param isMeasured whether velocities were measured, and are not those of the straight ways
   */
 final case class Track private (
     vehicle: String,
     role: String,
     times: Vector[Instant],
     positionsNed: Vector[Vector3],
-    velocitiesNed: Vector[Vector3]
+    velocitiesNed: Vector[Vector3],
+    isMeasured: Boolean
 ):
   def from: Instant = times.head
   def to: Instant   = times.last
@@ -22,9 +24,23 @@ final case class Track private (
   def isA(role: Role): Boolean = Role.parse(this.role) == role
 
   /** On straight lines between samples. A vehicle that circles at 10 m/s on 8 m, sampled every 100 ms, is
-    * less than 2 cm from them. Outside the track's times, its first or last position.
+    * less than 2 cm from them. Between samples with measured velocities more than [[Track.LongGap]] apart, as
+    * around an outage, on the cubic through both positions and velocities (Hermite's): that circle is then
+    * less than 1 m from it over 2 s, and 5.5 m from the straight line. Outside the track's times, its first
+    * or last position.
     */
-  def at(time: Instant): Vector3 = between(time, positionsNed)
+  def at(time: Instant): Vector3 =
+    val above  = times.search(time).insertionPoint
+    val isLong = above > 0 && above < times.size && times(above).since(times(above - 1)) > Track.LongGap
+    if isMeasured && isLong then curved(above, time) else between(time, positionsNed)
+
+  private def curved(above: Int, time: Instant): Vector3 =
+    val gap      = times(above).since(times(above - 1)).toSeconds
+    val s        = time.since(times(above - 1)).toSeconds / gap
+    val (p, q)   = (positionsNed(above - 1), positionsNed(above))
+    val (v, w)   = (velocitiesNed(above - 1) * gap, velocitiesNed(above) * gap)
+    val (s2, s3) = (s * s, s * s * s)
+    p * (2 * s3 - 3 * s2 + 1) + v * (s3 - 2 * s2 + s) + q * (3 * s2 - 2 * s3) + w * (s3 - s2)
 
   /** Interpolated velocity, m/s, like [[at]] for positions. */
   def velocityAt(time: Instant): Vector3 = between(time, velocitiesNed)
@@ -38,6 +54,8 @@ final case class Track private (
       values(above - 1) + (values(above) - values(above - 1)) * share
 
 object Track:
+  /** Samples further apart have curves between them: five periods of the usual ten readings a second. */
+  val LongGap: Span = Span.ofMillis(500)
 
   /** A track of samples.
     *
@@ -45,7 +63,14 @@ object Track:
     */
   def of(vehicle: String, role: String, samples: Vector[(Instant, Vector3, Vector3)]): Track =
     val ordered = samples.distinctBy(_._1).sortBy(_._1)
-    Track(vehicle, role.toLowerCase(Locale.ROOT), ordered.map(_._1), ordered.map(_._2), ordered.map(_._3))
+    Track(
+      vehicle,
+      role.toLowerCase(Locale.ROOT),
+      ordered.map(_._1),
+      ordered.map(_._2),
+      ordered.map(_._3),
+      isMeasured = true
+    )
 
   /** A track without measured velocities: each velocity is that of the straight way to the next sample. */
   def ofPositions(vehicle: String, role: String, samples: Vector[(Instant, Vector3)]): Track =
@@ -55,3 +80,4 @@ object Track:
     }
     val velocities = if moved.isEmpty then Vector(Vector3.Zero) else moved :+ moved.last
     of(vehicle, role, ordered.zip(velocities).map { case ((at, place), velocity) => (at, place, velocity) })
+      .copy(isMeasured = false)

@@ -17,19 +17,20 @@ class TracksSuite extends munit.FunSuite:
 
   private def tracks(all: Track*): Tracks = Tracks.of(all.toVector).getOrElse(fail("no tracks"))
 
-  test("a track is straight between its samples, and constant before the first and after the last"):
+  test("a track is straight between near samples, and constant before the first and after the last"):
     val track = Track.of(
       "One",
       "Leader",
       Vector(
-        (s(3), Vector3(5, 1, -2), Vector3(4, 0, 0)),
+        (s(1.4), Vector3(5, 1, -2), Vector3(4, 0, 0)),
         (s(1), Vector3(1, 0, -1), Vector3(2, 0, 0)),
         (s(1), Vector3(9, 9, 9), Vector3.Zero)
       )
     )
-    assertEquals(Seq(0.0, 1.0, 1.5, 3.0, 4.0).map(at => track.at(s(at)).x), Seq(1.0, 1.0, 2.0, 5.0, 5.0))
-    assertEquals(track.velocityAt(s(2)), Vector3(3, 0, 0))
-    assertEquals((track.from, track.to), (s(1), s(3)))
+    for (at, x) <- Seq(0.0 -> 1.0, 1.0 -> 1.0, 1.1 -> 2.0, 1.4 -> 5.0, 4.0 -> 5.0) do
+      assertEqualsDouble(track.at(s(at)).x, x, 1e-9)
+    assertEqualsDouble(track.velocityAt(s(1.2)).x, 3, 1e-9)
+    assertEquals((track.from, track.to), (s(1), s(1.4)))
     assert(track.isA(Role.Leader) && !track.isA(Role.Follower))
 
   test("where velocities were not measured they are those of the way to the next sample, the last as before"):
@@ -151,3 +152,27 @@ class TracksSuite extends munit.FunSuite:
     )
     val error = intercept[IllegalArgumentException](result.value("nearest"))
     assert(error.getMessage.contains("there are: apart"), error.getMessage)
+
+  test("a track is straight between near samples, and curves through a gap as its velocities say"):
+    def circle(everyS: Double) = Track.of(
+      "a",
+      "pursuer",
+      Vector.tabulate(8): number =>
+        val turned     = 1.25 * everyS * number
+        val (cos, sin) = (StrictMath.cos(turned), StrictMath.sin(turned))
+        (
+          Instant.Epoch + Span.ofSeconds(everyS * number),
+          Vector3(8 * cos, 8 * sin, 0),
+          Vector3(-10 * sin, 10 * cos, 0)
+        )
+    )
+    def offM(track: Track) =
+      val spanS = track.to.since(track.from).toSeconds
+      (0 to 1000).map(step =>
+        math.abs(track.at(track.from + Span.ofSeconds(spanS * step / 1000)).norm - 8)
+      ).max
+    assertEqualsDouble(offM(circle(0.1)), 0.0156, 1e-3)
+    assertEqualsDouble(offM(circle(0.5)), 0.387, 1e-2)
+    assert(offM(circle(2)) < 1, offM(circle(2)))
+    val samples = circle(2)
+    for (at, place) <- samples.times.zip(samples.positionsNed) do assert((samples.at(at) - place).norm < 1e-9)

@@ -53,11 +53,9 @@ class PlanInPacketSimulation extends munit.FunSuite, TemporaryFolders, Unhurried
     val without = distanceM(fly(far.copy(planInPacket = false))) / truthM - 1
     assert(without > 0.15, s"without plans: ${100 * without} %")
 
-  test(
-    "through losses and outages flights come to their end, and fly within 2 % of the truth where it is known"
-  ):
+  test("through losses and outages flights come to their end, and fly within 2 % of the truth"):
     val offs = Seq(1L, 5L).map: seed =>
-      CommonReadings.distanceM(fly(settings(lossy), seed).recording) / truthM - 1
+      distanceM(fly(settings(lossy), seed)) / truthM - 1
     assert(offs.forall(off => math.abs(off) < 0.02), offs.toString)
 
   test("a command is answered when the buffer has it, and each period has one"):
