@@ -69,10 +69,8 @@ class SummarySuite extends munit.FunSuite:
 
   test("the smallest distance is found with its time"):
     val curve = curveOf(
-      seen("Red", 0, 0, 0),
-      seen("Red", 20, 20, 0),
-      seen("Blue", 0, 12, 4),
-      seen("Blue", 20, 12, 4)
+      (for tick <- 0 to 40 yield seen("Red", tick * 0.5, tick * 0.5, 0)) ++
+        (for tick <- 0 to 40 yield seen("Blue", tick * 0.5, 12, 4))*
     )
     assertEqualsDouble(curve.closest._1, 12, 1e-9)
     assertEqualsDouble(curve.closest._2, 4, 1e-9)

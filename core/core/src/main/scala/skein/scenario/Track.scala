@@ -40,7 +40,7 @@ final case class Track private (
     val (p, q)   = (positionsNed(above - 1), positionsNed(above))
     val (v, w)   = (velocitiesNed(above - 1) * gap, velocitiesNed(above) * gap)
     val (s2, s3) = (s * s, s * s * s)
-    p * (2 * s3 - 3 * s2 + 1) + v * (s3 - 2 * s2 + s) + q * (3 * s2 - 2 * s3) + w * (s3 - s2)
+    p + (q - p) * (3 * s2 - 2 * s3) + v * (s3 - 2 * s2 + s) + w * (s3 - s2)
 
   /** Interpolated velocity, m/s, like [[at]] for positions. */
   def velocityAt(time: Instant): Vector3 = between(time, velocitiesNed)
