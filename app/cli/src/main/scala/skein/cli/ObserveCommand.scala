@@ -65,10 +65,7 @@ object ObserveCommand
 
   protected def execute(options: ObserveOptions): Either[String, Unit] = options.bag match
     case Some(bag) => observeBag(Path.of(bag), options)
-    case None      =>
-      Expect.that(options.readings.isEmpty && options.commands.isEmpty):
-        "--readings, --commands: expected with --bag alone"
-      .flatMap(_ => observeProgram(options))
+    case None      => observeProgram(options)
 
   private def observeBag(bag: Path, options: ObserveOptions): Either[String, Unit] =
     for
@@ -76,17 +73,16 @@ object ObserveCommand
         "--bag: expected no program behind --, the bag is what is measured"
       folder   <- options.out.fold(Right(None))(OutFolder.made("--out", _).map(Some(_)))
       observed <- BagLoop(options.readings.toSet, options.commands.toSet).observed(bag)
-      shown = Shown(options.json.value)
-      _     = shown.tables(
-        TopicTables.tables(observed),
-        text(TopicTables.tables(observed), TopicTables.findings(observed))
-      )
-      _ <- folder.fold(Right(())):
-        write(TopicTables.tables(observed), observed.log, observed.vehicles, _, shown)
+      tables = TopicTables.tables(observed)
+      shown  = Shown(options.json.value)
+      _      = shown.tables(tables, text(tables, TopicTables.findings(observed)))
+      _ <- folder.fold(Right(()))(write(tables, observed.log, observed.vehicles, _, shown))
     yield ()
 
   private def observeProgram(options: ObserveOptions): Either[String, Unit] =
     for
+      _ <- Expect.that(options.readings.isEmpty && options.commands.isEmpty):
+        "--readings, --commands: expected with --bag alone"
       listenAt  <- Address.parse(options.listen).left.map("--listen: " + _)
       simulator <- Address.parse(options.simulator).left.map("--simulator: " + _)
       _         <- Expect.that(listenAt.port == 0 || listenAt != simulator):

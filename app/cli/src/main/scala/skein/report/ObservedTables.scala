@@ -22,28 +22,47 @@ object ObservedTables:
       note: String = ""
   ): Option[Section] = Option.when(rows.nonEmpty)(Section(title, note, Some(TextTable(header, rows))))
 
-  private[report] def vehicles(observed: Vector[ObservedVehicle]) = section(
-    "How old the data behind each command was",
-    Vector("<vehicle", "commands", "every ms", "p99") ++
-      Vector("own data ms", "p99", "others' data ms", "p99", "± ms") ++
-      Vector("since others' command ms", "in flight at most"),
-    observed.filter(_.commands > 0).map: vehicle =>
-      Vector(
-        if vehicle.name.isEmpty then "(the first)" else vehicle.name,
-        vehicle.commands.toString,
-        mean(vehicle.everyMs),
-        p99(vehicle.everyMs),
-        mean(vehicle.ownAgeMs),
-        p99(vehicle.ownAgeMs),
-        mean(vehicle.othersAgeMs),
-        p99(vehicle.othersAgeMs),
-        vehicle.boundMs.fold("")(_.brief),
-        mean(vehicle.sinceOthersMs),
-        vehicle.mostInFlight.toString
-      ),
+  private def vehicles(observed: Vector[ObservedVehicle]) = ages(
+    observed,
+    unnamed = "(the first)",
+    bounds = Vector("± ms" -> (_.boundMs.fold("")(_.brief))),
+    further = Vector("in flight at most" -> (_.mostInFlight.toString)),
     "Ages count from when physics was sampled to when the command left the program; means, and 99th percentiles. " +
       "They lie within ± of the truth."
   )
+
+  private type Columns = Vector[(String, ObservedVehicle => String)]
+
+  /** How old the data behind the commands to each vehicle was.
+    *
+    * @param unnamed what a vehicle without a name is called
+    * @param bounds columns behind those of ages
+    * @param further columns behind all others
+    */
+  private[report] def ages(
+      observed: Vector[ObservedVehicle],
+      unnamed: String,
+      bounds: Columns,
+      further: Columns,
+      note: String
+  ): Option[Section] =
+    def since(vehicle: ObservedVehicle) = mean(vehicle.sinceOthersMs)
+    val columns                         = Vector[(String, ObservedVehicle => String)](
+      "<vehicle"        -> (vehicle => if vehicle.name.isEmpty then unnamed else vehicle.name),
+      "commands"        -> (_.commands.toString),
+      "every ms"        -> (vehicle => mean(vehicle.everyMs)),
+      "p99"             -> (vehicle => p99(vehicle.everyMs)),
+      "own data ms"     -> (vehicle => mean(vehicle.ownAgeMs)),
+      "p99"             -> (vehicle => p99(vehicle.ownAgeMs)),
+      "others' data ms" -> (vehicle => mean(vehicle.othersAgeMs)),
+      "p99"             -> (vehicle => p99(vehicle.othersAgeMs))
+    ) ++ bounds ++ Vector("since others' command ms" -> since) ++ further
+    section(
+      "How old the data behind each command was",
+      columns.map(_._1),
+      observed.filter(_.commands > 0).map(vehicle => columns.map(_._2(vehicle))),
+      note
+    )
 
   private def period(observed: Observed) = section(
     "Where a period goes",

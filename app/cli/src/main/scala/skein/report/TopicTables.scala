@@ -1,7 +1,7 @@
 package skein.report
 
 import skein.observe.{ObservedTopic, ObservedTopics}
-import skein.report.ObservedTables.{mean, p99, section}
+import skein.report.ObservedTables.{ages, mean, p99, section}
 import skein.units.Decimals.{brief, fixed}
 
 /** Measurements of a loop whose messages are topics', as tables and sentences. */
@@ -10,22 +10,11 @@ object TopicTables:
   def tables(observed: ObservedTopics): Vector[Section] =
     Vector(vehicles(observed), topics(observed)).flatten
 
-  private def vehicles(observed: ObservedTopics) = section(
-    "How old the data behind each command was",
-    Vector("<vehicle", "commands", "every ms", "p99", "own data ms", "p99", "others' data ms", "p99") ++
-      Vector("since others' command ms"),
-    observed.vehicles.filter(_.commands > 0).map: vehicle =>
-      Vector(
-        if vehicle.name.isEmpty then "(the only)" else vehicle.name,
-        vehicle.commands.toString,
-        mean(vehicle.everyMs),
-        p99(vehicle.everyMs),
-        mean(vehicle.ownAgeMs),
-        p99(vehicle.ownAgeMs),
-        mean(vehicle.othersAgeMs),
-        p99(vehicle.othersAgeMs),
-        mean(vehicle.sinceOthersMs)
-      ),
+  private def vehicles(observed: ObservedTopics) = ages(
+    observed.vehicles,
+    unnamed = "(the only)",
+    bounds = Vector.empty,
+    further = Vector.empty,
     "Ages count from the stamp of a reading's header to when the command was recorded; means, and 99th percentiles."
   )
 

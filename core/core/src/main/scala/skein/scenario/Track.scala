@@ -29,29 +29,36 @@ final case class Track private (
     * less than 1 m from it over 2 s, and 5.5 m from the straight line. Outside the track's times, its first
     * or last position.
     */
-  def at(time: Instant): Vector3 =
-    val above  = times.search(time).insertionPoint
-    val isLong = above > 0 && above < times.size && times(above).since(times(above - 1)) > Track.LongGap
-    if isMeasured && isLong then curved(above, time) else between(time, positionsNed)
+  def at(time: Instant): Vector3 = sought(time, positionsNed): above =>
+    if isMeasured && times(above).since(times(above - 1)) > Track.LongGap then curved(above, time)
+    else straight(above, time, positionsNed)
+
+  /** Interpolated velocity, m/s, on straight lines between samples; outside them as [[at]]. */
+  def velocityAt(time: Instant): Vector3 = sought(time, velocitiesNed)(straight(_, time, velocitiesNed))
+
+  /** The value at a time.
+    *
+    * @param between given the index of the sample after the time, which is not the first
+    */
+  private def sought(time: Instant, values: Vector[Vector3])(between: Int => Vector3): Vector3 =
+    val above = times.search(time).insertionPoint
+    if above == 0 then values.head
+    else if above == times.size then values.last
+    else between(above)
+
+  private def straight(above: Int, time: Instant, values: Vector[Vector3]): Vector3 =
+    values(above - 1) + (values(above) - values(above - 1)) * share(above, time)
 
   private def curved(above: Int, time: Instant): Vector3 =
     val gap      = times(above).since(times(above - 1)).toSeconds
-    val s        = time.since(times(above - 1)).toSeconds / gap
+    val s        = share(above, time)
     val (p, q)   = (positionsNed(above - 1), positionsNed(above))
     val (v, w)   = (velocitiesNed(above - 1) * gap, velocitiesNed(above) * gap)
     val (s2, s3) = (s * s, s * s * s)
     p + (q - p) * (3 * s2 - 2 * s3) + v * (s3 - 2 * s2 + s) + w * (s3 - s2)
 
-  /** Interpolated velocity, m/s, like [[at]] for positions. */
-  def velocityAt(time: Instant): Vector3 = between(time, velocitiesNed)
-
-  private def between(time: Instant, values: Vector[Vector3]): Vector3 =
-    val above = times.search(time).insertionPoint
-    if above == 0 then values.head
-    else if above == times.size then values.last
-    else
-      val share = time.since(times(above - 1)).toSeconds / times(above).since(times(above - 1)).toSeconds
-      values(above - 1) + (values(above) - values(above - 1)) * share
+  private def share(above: Int, time: Instant): Double =
+    time.since(times(above - 1)).toSeconds / times(above).since(times(above - 1)).toSeconds
 
 object Track:
   /** Samples further apart have curves between them: five periods of the usual ten readings a second. */

@@ -28,5 +28,8 @@ final case class Decision(
   /** The heading to which it leads; other vehicles observe it as the last commanded one. */
   def heading: Radians = Radians(action.headingRad(headingBefore.value))
 
+  /** The action as vehicles perform it. */
+  def performed: Action = action.byVelocity
+
   /** The sent command as other vehicles' policies observe it. */
   def move(sentAt: Instant): SentCommand = SentCommand(vehicle, sequence, heading, sentAt, action)

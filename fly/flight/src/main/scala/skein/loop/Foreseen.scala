@@ -27,9 +27,6 @@ private final class Foreseen(fleet: Fleet, deciders: IndexedSeq[Decider], period
     known.fold(fleet.agents.map(_ => Vector.empty)): (forecast, estimates) =>
       rolled(view, forecast.courses(estimates, now), minds, now, fleet.agents.map(_ => Vector.empty))
 
-  /** The action of a decision, as it is commanded. */
-  def action(decision: Decision): Action = decision.action.byVelocity
-
   @tailrec private def rolled(
       view: TeamView,
       courses: Vector[Course[?]],
@@ -39,7 +36,7 @@ private final class Foreseen(fleet: Fleet, deciders: IndexedSeq[Decider], period
   ): Vector[Actions] =
     val made = deciders.zip(minds).toVector.map: (decider, mind) =>
       mind.decision.fold(decider.decide(mind.memory, view, now))((mind.memory, _))
-    val actions = made.map((_, decision) => action(decision))
+    val actions = made.map((_, decision) => decision.performed)
     val all     = soFar.lazyZip(courses).lazyZip(actions).map: (before, course, action) =>
       before.appended((at = course.at, action = action))
     if all.head.sizeIs >= CommandPlan.Most then all

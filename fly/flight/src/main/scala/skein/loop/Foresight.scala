@@ -25,7 +25,7 @@ private final class Foresight(foreseen: Foreseen, starts: Vector[Memory]):
       yield (forecast, estimates(decision.vehicle).predictedFor)
     foretold.fold(decision): (forecast, actsAt) =>
       val later = of(forecast, decision)(decision.vehicle).filter(_.at > actsAt)
-      val first = (at = actsAt, action = foreseen.action(decision))
+      val first = (at = actsAt, action = decision.performed)
       decision.copy(plan = Some(CommandPlan(decision.sequence, (first +: later).take(CommandPlan.Most))))
 
   private def of(forecast: Forecast, decision: Decision): Vector[Actions] =

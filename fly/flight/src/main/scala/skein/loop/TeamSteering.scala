@@ -127,7 +127,7 @@ private final class TeamSteering(
   def move(decision: Decision): Future[Either[VehicleError, Boolean]] =
     import decision.vehicle
     val answer = decision.plan.fold(
-      ports(vehicle).act(decision.action.byVelocity, settings.moveDuration)
+      ports(vehicle).act(decision.performed, settings.moveDuration)
     )(ports(vehicle).follow(_))
     val _ = moves.updateAndGet(vehicle, sent => (sent :+ answer).takeRight(settings.movesInFlight.max(2)))
     answer

@@ -51,7 +51,7 @@ class ForeseenSuite extends munit.FunSuite:
       val made  = deciders.zip(before._1).map((decider, memory) =>
         decider.decide(memory, then_, now + period * number.toLong)
       )
-      (made.map(_._1).toVector, made.map((_, decision) => foreseen.action(decision)).toVector)
+      (made.map(_._1).toVector, made.map((_, decision) => decision.performed).toVector)
     for ((_, actions), number) <- decided.tail.zipWithIndex; vehicle <- 0 to 1 do
       (actions(vehicle), all(vehicle)(number).action) match
         case (Action.VelocityAt(n, e, d, _), Action.VelocityAt(north, east, down, _)) =>
@@ -75,6 +75,6 @@ class ForeseenSuite extends munit.FunSuite:
     val plan = foresight.planned(decision).plan.getOrElse(fail("no plan"))
     assertEquals(plan.sequence, decision.sequence)
     assertEquals(plan.actions.size, CommandPlan.Most)
-    assertEquals(plan.actions.head, (at = millis(70), action = foreseen.action(decision)))
+    assertEquals(plan.actions.head, (at = millis(70), action = decision.performed))
     val (_, blind) = deciders(0).decide(starts(0), seen, now)
     assertEquals(foresight.planned(blind).plan, None)

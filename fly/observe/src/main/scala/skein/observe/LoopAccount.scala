@@ -20,8 +20,8 @@ final class LoopAccount:
   import LoopAccount.*
 
   private val connections = mutable.LongMap.empty[Open]
-  private val vehicles    = mutable.LinkedHashMap.empty[String, Vehicle]
-  private val methods     = mutable.LinkedHashMap.empty[String, Method]
+  private val vehicles    = Kept[Vehicle](MostVehicles)
+  private val methods     = Kept[Method](MostMethods)
   private val outstanding = Array.ofDim[Int](CallKind.values.length)
   private val spentNs     = mutable.LinkedHashMap.from(Phases.map(_ -> 0L))
   private val stalls      = mutable.ArrayBuffer.empty[Stall]
@@ -107,7 +107,7 @@ final class LoopAccount:
     open.images = 0
     for commanded <- vehicle(called.vehicle) do
       val at                      = called.at
-      val rest                    = vehicles.valuesIterator.filterNot(_ eq commanded).toVector
+      val rest                    = vehicles.all.filterNot(_ eq commanded).toVector
       def sinceMs(last: Instant)  = at.since(last).toMillis
       def ageMs(reading: Reading) = reading.ageAt(at, clock).toMillis
       val own                     = commanded.reading.map(ageMs)
@@ -193,38 +193,28 @@ final class LoopAccount:
           stalls(stalls.size - 1) = if roundTrip > last.length then stall else last.copy(at = end)
         case _ => if stalls.size < MostStalls then stalls += stall
 
-  private def vehicle(name: String): Option[Vehicle] =
-    vehicles.get(name).orElse:
-      Option.when(vehicles.size < MostVehicles):
-        val first = Vehicle(name)
-        vehicles(name) = first
-        first
+  private def vehicle(name: String): Option[Vehicle] = vehicles.get(name)(Vehicle(name))
 
-  private def method(name: String, kind: CallKind): Option[Method] =
-    methods.get(name).orElse:
-      Option.when(methods.size < MostMethods):
-        val first = Method(name, kind)
-        methods(name) = first
-        first
+  private def method(name: String, kind: CallKind): Option[Method] = methods.get(name)(Method(name, kind))
 
   /** Number of commands to all vehicles. */
-  private def commands: Long = vehicles.valuesIterator.map(_.account.commands).sum
+  private def commands: Long = vehicles.all.map(_.account.commands).sum
 
   /** The progress, at constant cost for any number of observations. */
   def progress: Progress = Progress(
     begunAt.fold(Span.Zero)(lastAt.since),
     commands,
-    vehicles.valuesIterator.flatMap(_.account.ownAgeMs).maxOption
+    vehicles.all.flatMap(_.account.ownAgeMs).maxOption
   )
 
   /** The complete observations so far; sorts every sample. */
   def observed: Observed =
-    val periods = commands.toDouble / vehicles.valuesIterator.count(_.account.commands > 0).max(1) - 1
+    val periods = commands.toDouble / vehicles.all.count(_.account.commands > 0).max(1) - 1
     Observed(
       lasted = begunAt.fold(Span.Zero)(lastAt.since),
       connections = opened,
-      vehicles = vehicles.valuesIterator.map(_.account.observed).toVector,
-      methods = methods.valuesIterator.map(_.observed).toVector,
+      vehicles = vehicles.all.map(_.account.observed).toVector,
+      methods = methods.all.map(_.observed).toVector,
       periodMs =
         if periods < 1 then Map.empty else periodsNs.map((phase, ns) => phase -> ns * 1e-6 / periods),
       clock = stamps.map: known =>

@@ -22,8 +22,8 @@ import skein.units.{Instant, Span}
 final class TopicAccount:
   import TopicAccount.*
 
-  private val vehicles = mutable.LinkedHashMap.empty[String, Vehicle]
-  private val topics   = mutable.LinkedHashMap.empty[String, Topic]
+  private val vehicles = Kept[Vehicle](MostVehicles)
+  private val topics   = Kept[Topic](MostTopics)
   private val log      = mutable.ArrayBuffer.empty[ObservedCommand]
   private var caused   = 0L
   private var notKept  = 0L
@@ -43,7 +43,7 @@ final class TopicAccount:
     for commanded <- received(vehicle, topic, TopicKind.Commands, stamp, at) do
       val cause = stamp.flatMap(commanded.readingOf)
       if cause.isDefined then caused += 1
-      val rest    = vehicles.valuesIterator.filterNot(_ eq commanded).toVector
+      val rest    = vehicles.all.filterNot(_ eq commanded).toVector
       val own     = cause.orElse(commanded.newest).map(commanded.ageMs(_, at))
       val others  = rest.flatMap(other => other.newest.map(other.ageMs(_, at)))
       val account = commanded.account
@@ -72,8 +72,8 @@ final class TopicAccount:
     lastAt = lastAt.max(at)
     val known =
       for
-        of    <- TopicAccount.entry(vehicles, vehicle, MostVehicles)(Vehicle(vehicle))
-        about <- TopicAccount.entry(topics, topic, MostTopics)(Topic(topic, kind))
+        of    <- vehicles.get(vehicle)(Vehicle(vehicle))
+        about <- topics.get(topic)(Topic(topic, kind))
       yield
         about.add(stamp, at)
         of
@@ -83,10 +83,10 @@ final class TopicAccount:
   /** The complete observations so far; sorts every sample. */
   def observed: ObservedTopics = ObservedTopics(
     begunAt.fold(Span.Zero)(lastAt.since),
-    vehicles.valuesIterator.map(_.account.observed).toVector,
-    topics.valuesIterator.map(_.observed).toVector,
+    vehicles.all.map(_.account.observed).toVector,
+    topics.all.map(_.observed).toVector,
     caused,
-    vehicles.valuesIterator.filter(_.isByOtherClock).map(_.name).toVector,
+    vehicles.all.filter(_.isByOtherClock).map(_.name).toVector,
     notKept,
     log.toVector
   )
@@ -103,13 +103,6 @@ object TopicAccount:
 
   private def isNear(stamp: Instant, at: Instant): Boolean =
     at.since(stamp) <= SameClock && stamp.since(at) <= SameClock
-
-  private def entry[A](
-      known: mutable.LinkedHashMap[String, A],
-      name: String,
-      most: Int
-  )(make: => A): Option[A] =
-    known.get(name).orElse(Option.when(known.size < most)(known.getOrElseUpdate(name, make)))
 
   private final case class Reading(stamp: Option[Instant], at: Instant)
 

@@ -4,13 +4,14 @@ import java.io.IOException
 import java.nio.ByteOrder
 import java.nio.file.{Files, Path}
 import java.util.Locale
+import scala.collection.mutable
 import scala.jdk.StreamConverters.StreamHasToScala
 import scala.util.Using
 import skein.mcap.file.McapFile
-import skein.mcap.{Bytes, TopicMessage}
-import skein.observe.{ObservedTopics, TopicAccount}
+import skein.mcap.{Bytes, Record, TopicMessage}
+import skein.observe.{ObservedTopics, TopicAccount, TopicKind}
 import skein.record.FileReason
-import skein.units.Instant
+import skein.units.{Expect, Instant}
 
 /** Measures the loop that a bag of ROS 2 holds, from MCAP files, of any message types.
   *
@@ -26,43 +27,56 @@ final class BagLoop(readings: Set[String], commands: Set[String]):
     * @return Left states in a line what is no bag, or which topic is missing
     */
   def observed(bag: Path): Either[String, ObservedTopics] =
+    val account = TopicAccount()
     for
       files <- mcapFiles(bag)
-      account = TopicAccount()
-      seen <- files.foldLeft[Either[String, Set[String]]](Right(Set.empty)): (before, file) =>
-        for
-          seen <- before
-          more <- add(file, account)
-        yield seen ++ more
-      _ <- (readings ++ commands).find(!seen(_)).toLeft(()).left.map: missing =>
+      seen  <- Expect.each(files)(add(_, account)).map(_.flatten.toSet)
+      _     <- (readings ++ commands).find(!seen(_)).toLeft(()).left.map: missing =>
         s"expected the topic $missing in $bag, it has ${
             if seen.isEmpty then "none" else seen.toVector.sorted.mkString(", ")
           }"
     yield account.observed
 
-  private def add(file: Path, account: TopicAccount): Either[String, Set[String]] =
+  /** Adds the messages of a file.
+    *
+    * @return the names of its topics
+    */
+  private def add(file: Path, account: TopicAccount): Either[String, Iterable[String]] =
+    val topics = mutable.Map.empty[Int, Topic]
     try
       McapFile.read(file): messages =>
-        messages.foldLeft[Either[String, Set[String]]](Right(Set.empty)):
-          case (Right(seen), Right(message)) =>
-            add(message, account)
-            Right(seen + message.channel.topic)
-          case (Right(_), Left(error)) => Left(s"$file: ${error.message}")
-          case (failed, _)             => failed
+        val failed = messages
+          .flatMap:
+            case Left(error)    => Some(s"$file: ${error.message}")
+            case Right(message) =>
+              val topic = topics.getOrElseUpdate(message.channel.id, Topic(message))
+              topic.add(message.message, account)
+              None
+          .nextOption()
+        failed.toLeft(topics.values.map(_.name))
     catch case failed: IOException => Left(s"cannot read $file: ${FileReason.of(failed)}")
 
-  private def add(message: TopicMessage, account: TopicAccount): Unit =
-    val topic        = message.channel.topic
-    val kind         = message.schema.fold("")(_.name)
-    val isPose       = Poses(kind)
-    val isCommand    = soundsLikeCommand(topic)
-    val at           = Instant.ofNanos(message.message.logTime)
-    lazy val stamped = stamp(message)
-    val vehicle      = vehicleOf(topic)
-    if commands(topic) || commands.isEmpty && isCommand && (isPose || Twists(kind)) && !readings(topic) then
-      account.command(vehicle, topic, stamped, at)
-    else if readings(topic) || readings.isEmpty && isPose && !isCommand then
-      account.reading(vehicle, topic, stamped, at)
+  /** A topic, by its first message: what it is for the loop, of which vehicle, and whether its messages begin
+    * with a header.
+    */
+  private final class Topic(first: TopicMessage):
+    val name: String      = first.channel.topic
+    private val vehicle   = vehicleOf(name)
+    private val hasHeader = first.schema.exists(beginsWithHeader)
+    private val kind      =
+      val schema    = first.schema.fold("")(_.name)
+      val isPose    = Poses(schema)
+      val isCommand = soundsLikeCommand(name)
+      if commands(name) || commands.isEmpty && isCommand && (isPose || Twists(schema)) && !readings(name) then
+        Some(TopicKind.Commands)
+      else Option.when(readings(name) || readings.isEmpty && isPose && !isCommand)(TopicKind.Readings)
+
+    def add(message: Record.Message, account: TopicAccount): Unit =
+      val at    = Instant.ofNanos(message.logTime)
+      val stamp = Option.when(hasHeader)(message.data).filter(_.size >= StampEnd).flatMap(headerStamp)
+      kind.foreach:
+        case TopicKind.Commands => account.command(vehicle, name, stamp, at)
+        case TopicKind.Readings => account.reading(vehicle, name, stamp, at)
 
 object BagLoop:
   private val Poses = Set("Odometry", "PoseStamped", "PoseWithCovarianceStamped").map: name =>
@@ -94,15 +108,11 @@ object BagLoop:
         else s"$bag: expected a bag's folder, it has no MCAP file"
       )
 
-  /** The stamp of the header with which a message begins, if it has one: by the type's definition, or by its
-    * name where the bag has none.
-    */
-  private def stamp(message: TopicMessage): Option[Instant] =
-    val hasHeader = message.schema.exists: schema =>
-      val first = schema.data.utf8.linesIterator.map(_.takeWhile(_ != '#').trim)
-        .find(line => line.nonEmpty && !line.contains('='))
-      first.fold(schema.name != "geometry_msgs/msg/Twist")(_.matches("""(std_msgs/)?Header\s+\w+"""))
-    Option.when(hasHeader)(message.message.data).filter(_.size >= StampEnd).flatMap(headerStamp)
+  /** Whether a type begins with a header: by its definition, or by its name where the bag has none. */
+  private def beginsWithHeader(schema: Record.Schema): Boolean =
+    val first = schema.data.utf8.linesIterator.map(_.takeWhile(_ != '#').trim)
+      .find(line => line.nonEmpty && !line.contains('='))
+    first.fold(schema.name != "geometry_msgs/msg/Twist")(_.matches("""(std_msgs/)?Header\s+\w+"""))
 
   /** The first field of a header in CDR: seconds and nanoseconds, behind four bytes that state the encoding.
     */

@@ -1,5 +1,6 @@
 package skein.rosbag
 
+import java.nio.{ByteBuffer, ByteOrder}
 import scala.collection.immutable.ArraySeq
 import scala.collection.mutable
 import skein.policy.Action
@@ -7,7 +8,7 @@ import skein.record.*
 import skein.ros.message.*
 import skein.ros.{RosFrames, TwistCommand, VehicleMessages}
 import skein.signal.Kinematics
-import skein.units.{Instant, Quaternion as Rotation, Span, Vector3 as Ned}
+import skein.units.{Instant, Quaternion as Rotation, Vector3 as Ned}
 
 /** A message of a bag.
   *
@@ -27,7 +28,7 @@ final case class BagMessage(topic: String, kind: MessageType[?], at: Instant, by
   * Frames are those of REP 103 and 105. Bytes that are no letter, digit or `_` in a name become `_`.
   */
 final class BagMessages(rows: Vector[Record]):
-  private var offset  = BagMessages.firstOffset(rows)
+  private var offset  = McapRecording.firstOffset(rows)
   private val motions = mutable.Map.empty[String, Kinematics]
   private val actions = mutable.Map.empty[String, (Long, Action)]
 
@@ -109,20 +110,10 @@ private object BagMessages:
     val plain = name.map(letter => if letter < 128 && letter.isLetterOrDigit then letter else '_')
     if plain.headOption.forall(_.isDigit) then s"_$plain" else plain
 
-  /** From the simulator's clock to the controller's: the first estimate, or as if the first reading had no
-    * latency.
-    */
-  def firstOffset(rows: Vector[Record]): Span =
-    val estimated = rows.iterator.collect { case row: DecisionRow => row.trueAge.map(_.clockOffset) }.flatten
-    val assumed   = rows.iterator.collect { case row: ReadingRow =>
-      row.state.receivedAt.since(row.state.validAt)
-    }
-    (estimated ++ assumed).nextOption().getOrElse(Span.Zero)
-
   /** A scan, its points in the frame front, left, up. */
   private def points(header: Header, cloud: Cloud): PointCloud2 =
-    val seen = java.nio.ByteBuffer.wrap(cloud.xyz.bytes).order(java.nio.ByteOrder.LITTLE_ENDIAN)
-    val flu  = java.nio.ByteBuffer.allocate(cloud.xyz.size).order(java.nio.ByteOrder.LITTLE_ENDIAN)
+    val seen = ByteBuffer.wrap(cloud.xyz.bytes).order(ByteOrder.LITTLE_ENDIAN)
+    val flu  = ByteBuffer.allocate(cloud.xyz.size).order(ByteOrder.LITTLE_ENDIAN)
     while seen.remaining >= PointBytes do
       val point = RosFrames.swapBody(Ned(seen.getFloat, seen.getFloat, seen.getFloat))
       flu.putFloat(point.x.toFloat).putFloat(point.y.toFloat).putFloat(point.z.toFloat): Unit

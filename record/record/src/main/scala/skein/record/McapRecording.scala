@@ -66,7 +66,7 @@ object McapRecording:
       rows.iterator.flatMap((_, record) => FlightTopics.knownAt(record)).nextOption().getOrElse(
         Instant.ofNanos(0)
       )
-    val flight = Rows(mcap, names, from, Some(firstOffset(rows)), sceneOf(rows, scene))
+    val flight = Rows(mcap, names, from, Some(firstOffset(rows.map(_._2))), sceneOf(rows, scene))
     rows.foreach(flight.put)
 
   /** The scene of a recorded flight, if its simulator was ours.
@@ -83,10 +83,10 @@ object McapRecording:
   /** The offset from the simulator's clock to the controller's: the first estimate, or as if the first
     * reading had no latency.
     */
-  private def firstOffset(rows: Vector[(Long, Record)]): Span =
+  private[skein] def firstOffset(rows: Vector[Record]): Span =
     val estimated =
-      rows.iterator.collect { case (_, decision: DecisionRow) => decision.trueAge.map(_.clockOffset) }.flatten
-    val assumed = rows.iterator.collect { case (_, first: ReadingRow) =>
+      rows.iterator.collect { case decision: DecisionRow => decision.trueAge.map(_.clockOffset) }.flatten
+    val assumed = rows.iterator.collect { case first: ReadingRow =>
       first.state.receivedAt.since(first.state.validAt)
     }
     (estimated ++ assumed).nextOption().getOrElse(Span.Zero)

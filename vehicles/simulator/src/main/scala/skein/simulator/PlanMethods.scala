@@ -1,7 +1,7 @@
 package skein.simulator
 
 import skein.port.CommandPlan
-import skein.units.Instant
+import skein.units.{Expect, Instant}
 import upack.{Arr, Msg, Str}
 
 /** The function that gives a vehicle a plan: moves for several moments in one call. It is not one of
@@ -48,11 +48,7 @@ private[simulator] object PlanMethods:
       calls: Seq[PlannedCall],
       name: String
   ): Either[String, Planned] =
-    calls.foldLeft[Either[String, Planned]](Right(Vector.empty)): (before, call) =>
-      for
-        moves <- before
-        move  <- order(simulation, call, name)
-      yield moves.appended((at = call.at, action = move))
+    Expect.each(calls)(call => order(simulation, call, name).map(move => (at = call.at, action = move)))
 
   private def order(simulation: Simulated, call: PlannedCall, name: String): Either[String, Move.Order] =
     val params = call.params :+ Str(name)
