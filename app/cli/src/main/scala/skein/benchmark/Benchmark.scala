@@ -2,6 +2,7 @@ package skein.benchmark
 
 import skein.flight.VirtualFlights
 import skein.scenario.Scenarios
+import skein.settings.FlySettings
 import skein.units.Expect
 
 /** Flies a [[BenchmarkSet]] in virtual time, on all cores: equal sets and seeds give equal bits on every
@@ -12,8 +13,22 @@ final class Benchmark(set: BenchmarkSet, seeds: Int)(using Scenarios):
   /** A cell for each task and world, in which the truth flies once. */
   private val truthCells = set.cells.distinctBy(_.ofTruth)
 
+  private val (refused, planned) =
+    (for cell <- set.cells; entry <- set.entries yield (cell, entry)).partitionMap: (cell, entry) =>
+      cell
+        .settings(entry, Benchmark.Seed)
+        .fold(why => Left((cell.task, entry, why)), settings => Right((cell, entry, settings)))
+
+  /** What does not fly, and why: a policy in tasks without its role, for example. */
+  val notFlown: Vector[String] =
+    refused.map((task, entry, why) => s"${entry.name} does not fly ${task.name}: $why").distinct
+
+  /** Why a policy of one's own flies in no task, if one does not. */
+  val mistake: Option[String] = refused.collectFirst:
+    case (_, entry, why) if entry.policy.isDefined && !planned.exists(_._2 == entry) => why
+
   /** How many flights [[fly]] flies, those of the truth included. */
-  val flights: Int = seeds * (set.cells.size * set.entries.size + truthCells.size)
+  val flights: Int = seeds * (planned.size + truthCells.size)
 
   /** Flies all.
     *
@@ -23,29 +38,21 @@ final class Benchmark(set: BenchmarkSet, seeds: Int)(using Scenarios):
   def fly(onLanded: Int => Unit = _ => ()): Either[String, Vector[BenchmarkRow]] =
     for
       truths <- Expect.each(truthCells): cell =>
-        flown(cell, BenchmarkSet.Truth, onLanded).map(cell.ofTruth -> _)
+        cell.settings(BenchmarkSet.Truth, Benchmark.Seed).map(cell.ofTruth -> flown(_, onLanded))
       truthOf = truths.toMap
-      rows <- Expect.each(for cell <- set.cells; entry <- set.entries yield (cell, entry)): (cell, entry) =>
-        for (flights, lost) <- flown(cell, entry, onLanded)
-        yield
-          val (truths, missing) = truthOf(cell.ofTruth)
-          BenchmarkRow(cell, entry, truths, flights, missing ++ lost)
-    yield rows
+    yield planned.map: (cell, entry, settings) =>
+      val (flights, lost)   = flown(settings, onLanded)
+      val (truths, missing) = truthOf(cell.ofTruth)
+      BenchmarkRow(cell, entry, truths, flights, missing ++ lost)
 
   /** The flights of an entry in a cell, and why others failed. */
-  private def flown(
-      cell: BenchmarkSet.Cell,
-      entry: BenchmarkSet.Entry,
-      onLanded: Int => Unit
-  ): Either[String, (Vector[BenchmarkFlight], Vector[String])] =
-    for settings <- cell.settings(entry, Benchmark.Seed)
-    yield
-      val plan           = settings.plans.head
-      val plans          = Vector.tabulate(seeds)(number => plan.copy(seed = settings.seed + number))
-      val (lost, landed) =
-        VirtualFlights.summaries(settings, plans)(_.map(BenchmarkFlight.of)).partitionMap(identity)
-      onLanded(seeds)
-      (landed, lost.map(_.message))
+  private def flown(settings: FlySettings, onLanded: Int => Unit): (Vector[BenchmarkFlight], Vector[String]) =
+    val plan           = settings.plans.head
+    val plans          = Vector.tabulate(seeds)(number => plan.copy(seed = settings.seed + number))
+    val (lost, landed) =
+      VirtualFlights.summaries(settings, plans)(_.map(BenchmarkFlight.of)).partitionMap(identity)
+    onLanded(seeds)
+    (landed, lost.map(_.message))
 
 object Benchmark:
   private val Seed = 1L

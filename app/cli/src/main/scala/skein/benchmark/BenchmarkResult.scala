@@ -46,11 +46,10 @@ final case class BenchmarkRow(
 
   val meanOff: Option[Double] = mean(off)
 
-  /** Half of the 95 % interval of [[meanOff]]; absent with fewer than two flights. Normal: the interval of
-    * few flights is too narrow.
+  /** Half of the 95 % interval of [[meanOff]], by Student's distribution; absent with fewer than two flights.
     */
   val halfOff: Option[Double] =
-    Option.when(off.sizeIs > 1)(1.96 * RunningStats.of(off.size)(off).sd / math.sqrt(off.size))
+    Option.when(off.sizeIs > 1)(RunningStats.of(off.size)(off).studentHalfWidth95)
 
   /** Violations of a flight, beyond those of the truth. */
   val violations: Double =

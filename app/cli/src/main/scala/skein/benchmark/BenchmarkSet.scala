@@ -1,7 +1,7 @@
 package skein.benchmark
 
-import com.typesafe.config.ConfigFactory
-import skein.scenario.Scenarios
+import com.typesafe.config.{ConfigFactory, ConfigUtil}
+import skein.scenario.{ScenarioText, Scenarios}
 import skein.settings.FlySettings
 
 /** What a benchmark flies: every entry in every task, over every link, in every world.
@@ -21,13 +21,33 @@ final case class BenchmarkSet(
 
 object BenchmarkSet:
   /** Changes whenever a figure may change: results of different versions are not compared. */
-  val Version = 1
+  val Version = 2
 
   /** A name in the table, and the text of its settings. */
   final case class Named(name: String, text: String)
 
-  /** A loop, and the model by which it predicts. */
-  final case class Entry(name: String, loop: String, predictor: String = "quadrotor")
+  object Named:
+    /** A scenario as a task.
+      *
+      * @param name of its kind, or the text of its file
+      */
+    def of(name: String): Named =
+      Named(ScenarioText.called(name), s"scenario = ${ConfigUtil.quoteString(name)}")
+
+  /** A loop, and the model by which it predicts.
+    *
+    * @param isInPacket whether each command carries the actions foreseen after it
+    * @param policy that flies in place of the scenario's, as `--policy` of `./skein fly` names it
+    */
+  final case class Entry(
+      name: String,
+      loop: String,
+      predictor: String = "quadrotor",
+      isInPacket: Boolean = false,
+      policy: Option[String] = None
+  ):
+    def flownBy(policy: String): Entry =
+      copy(name = s"$name, ${policy.substring(policy.lastIndexOf('/') + 1)}", policy = Some(policy))
 
   /** The loop that all entries are compared with. */
   val Truth: Entry = Entry("truth", "paused")
@@ -41,21 +61,22 @@ object BenchmarkSet:
       * @return Left states the mistake in the cell's texts
       */
     def settings(entry: Entry, seed: Long)(using Scenarios): Either[String, FlySettings] =
-      val text =
+      val policy = entry.policy.map(ConfigUtil.quoteString)
+      val text   =
         s"""skein.fly { ${task.text}, plant = "${world.text}", links = ["$link"], seed = $seed
-           |  loops = [${entry.loop}], predictor = ${entry.predictor} }""".stripMargin
-      FlySettings.read(
-        ConfigFactory.parseString(text).withFallback(ConfigFactory.load()).resolve.withOnlyPath("skein.fly")
-      )
+           |  loops = [${entry.loop}], predictor = ${entry.predictor}, plan-in-packet = ${entry.isInPacket}
+           |  policies = [${policy.mkString}], only-policies = ${policy.isDefined} }""".stripMargin
+      FlySettings
+        .read(
+          ConfigFactory.parseString(text).withFallback(ConfigFactory.load()).resolve.withOnlyPath("skein.fly")
+        )
+        .left
+        // The text's lines say nothing to a user.
+        .map(_.replaceFirst("""^String: \d+: skein\.fly\.[\w.-]+: """, ""))
 
   /** The set of `./skein benchmark`, of [[Version]]. */
   val Published: BenchmarkSet = BenchmarkSet(
-    tasks = Vector(
-      Named("duel", "scenario = duel"),
-      Named("surround", "scenario = surround"),
-      Named("formation", "scenario = formation"),
-      Named("crossing", "scenario = crossing")
-    ),
+    tasks = Vector("duel", "surround", "formation", "crossing").map(Named.of),
     links = Vector("direct", "vpn", "constant:200ms", "constant:400ms", "loss:5%/4,vpn"),
     worlds = Vector(
       Named("as modelled", "airsim"),
@@ -67,6 +88,7 @@ object BenchmarkSet:
       Entry("stream", "stream"),
       Entry("straight on", "predictive", "constant-velocity"),
       Entry("model", "predictive"),
-      Entry("adaptive", "predictive", "adaptive")
+      Entry("adaptive", "predictive", "adaptive"),
+      Entry("plans in packets", "predictive", isInPacket = true)
     )
   )

@@ -1,17 +1,34 @@
 package skein.cli
 
 import mainargs.{Flag, ParserForClass, arg}
-import skein.benchmark.{Benchmark, BenchmarkSet, BenchmarkTables}
+import skein.benchmark.{Benchmark, BenchmarkFigure, BenchmarkSet, BenchmarkTables}
 import skein.report.Section
 import skein.scenario.Scenarios
 import skein.units.Expect
 
 /** Command-line options of `./skein benchmark`, with their help texts. */
 final case class BenchmarkOptions(
-    @arg(doc = "a task: duel, surround, formation or crossing; can be repeated; without one, all")
+    @arg(doc =
+      "a task: duel, surround, formation or crossing; can be repeated; without one, and without " +
+        "--scenario, all"
+    )
     task: Seq[String],
+    @arg(doc = "a scenario of your own as a task, by its name or its file; can be repeated")
+    scenario: Seq[String],
+    @arg(doc =
+      "an entry: sequential, stream, 'straight on', model, adaptive or 'plans in packets'; can be " +
+        "repeated; without one, all"
+    )
+    entry: Seq[String],
+    @arg(doc =
+      "flies each entry with this policy too, in place of the scenario's, in the tasks that have its role: a " +
+        "policy file, ONNX included, or unix:ROLE:PATH; can be repeated; the truth stays the scenario's policy"
+    )
+    policy: Seq[String],
     @arg(doc = "how many times each entry flies each cell, each time with another seed")
     seeds: Int = 4,
+    @arg(doc = "folder for benchmark.json with the tables, and their picture benchmark.svg, benchmark.png")
+    out: Option[String],
     @arg(doc = Shown.Doc)
     json: Flag
 )
@@ -25,18 +42,24 @@ final class BenchmarkCommand(using Scenarios)
     ):
 
   protected def execute(options: BenchmarkOptions): Either[String, Unit] =
-    val all   = BenchmarkSet.Published
-    val names = all.tasks.map(_.name)
+    val all = BenchmarkSet.Published
     for
       _ <- Expect.that(options.seeds >= 1 && options.seeds <= BenchmarkCommand.MostSeeds):
         s"--seeds: expected 1 to ${BenchmarkCommand.MostSeeds}, came ${options.seeds}"
-      _ <- options.task
-        .find(!names.contains(_))
-        .map(came => s"--task: expected ${names.mkString(", ")}, came '$came'")
-        .toLeft(())
-      tasks     = all.tasks.filter(task => options.task.isEmpty || options.task.contains(task.name))
-      benchmark = Benchmark(all.copy(tasks = tasks), options.seeds)
-      line      = ProgressLine(benchmark.flights, Console.err)
+      tasks <- chosen("--task", options.task, all.tasks)(_.name)
+      own   <- Expect.all(options.scenario)(name =>
+        summon[Scenarios].kind(name).left.map("--scenario: " + _).map(_ => BenchmarkSet.Named.of(name))
+      )
+      entries <- chosen("--entry", options.entry, all.entries)(_.name)
+      folder  <- options.out.fold(Right(None))(OutFolder.made("--out", _).map(Some(_)))
+      set = all.copy(
+        tasks = (if options.task.isEmpty && own.nonEmpty then Vector.empty else tasks) ++ own,
+        entries = entries ++ options.policy.flatMap(policy => entries.map(_.flownBy(policy)))
+      )
+      benchmark = Benchmark(set, options.seeds)
+      _ <- benchmark.mistake.map("--policy: " + _).toLeft(())
+      _    = benchmark.notFlown.foreach(Console.err.println)
+      line = ProgressLine(benchmark.flights, Console.err)
       rows <-
         var landed = 0L
         benchmark.fly: more =>
@@ -44,10 +67,30 @@ final class BenchmarkCommand(using Scenarios)
           line.show(landed, "flights")
       _        = line.end()
       sections = BenchmarkTables.of(rows)
-      _        = Shown(options.json.value).tables(sections, Section.text(sections))
-      lost     = rows.flatMap(_.notFlown).distinct
+      shown    = Shown(options.json.value)
+      _        = shown.tables(sections, Section.text(sections))
+      _ <- folder.fold(Right(())): folder =>
+        OutFolder
+          .write(
+            folder,
+            OutFolder.text("benchmark.json", Section.json(sections)) +:
+              OutFolder.picture("benchmark", BenchmarkFigure(rows), "How far off the truth each entry is")
+          )
+          .map(files => shown.say(s"written: ${files.mkString(", ")}"))
+      lost = rows.flatMap(_.notFlown).distinct
       _ <- Expect.that(lost.isEmpty)(lost.mkString("\n"))
     yield ()
+
+  /** Those with the names, or all without one. */
+  private def chosen[A](option: String, names: Seq[String], all: Vector[A])(
+      name: A => String
+  ): Either[String, Vector[A]] =
+    for _ <- Expect.all(names)(came =>
+        Expect.that(all.exists(name(_) == came))(
+          s"$option: expected ${all.map(name).mkString(", ")}, came '$came'"
+        )
+      )
+    yield all.filter(each => names.isEmpty || names.contains(name(each)))
 
 private object BenchmarkCommand:
   private val MostSeeds = 1000

@@ -1,7 +1,11 @@
 package skein.benchmark
 
+import java.nio.file.Files
+import skein.plot.Svg
+import skein.policy.{PolicyFamily, Role}
 import skein.report.Section
 import skein.scenario.Scenarios
+import skein.settings.PolicyFile
 import skein.testing.Unhurried
 
 class BenchmarkSimulation extends munit.FunSuite, Unhurried:
@@ -48,12 +52,43 @@ class BenchmarkSimulation extends munit.FunSuite, Unhurried:
     for cell <- BenchmarkSet.Published.cells; entry <- BenchmarkSet.Published.entries do
       assertEquals(cell.settings(entry, 1).map(_.plans.size), Right(1))
 
+  test("a policy flies beside the scenario's, in the tasks that have its role alone"):
+    val file = Files.writeString(
+      Files.createTempDirectory("benchmark").resolve("mine.policy"),
+      PolicyFile
+        .ofDefaults(Role.Pursuer, PolicyFamily.leadPursuit).hocon("")
+    )
+    val set = few.copy(
+      tasks = few.tasks :+ BenchmarkSet.Named("formation", "scenario = formation, duration = 14s"),
+      worlds = few.worlds.take(1),
+      entries = few.entries.take(1).flatMap(entry => Vector(entry, entry.flownBy(file.toString)))
+    )
+    val benchmark = Benchmark(set, seeds = 2)
+    assertEquals(benchmark.mistake, None)
+    assertEquals(
+      benchmark.notFlown.map(_.takeWhile(_ != ':')),
+      Vector("stream, mine.policy does not fly formation")
+    )
+    val rows = benchmark.fly().fold(fail(_), identity)
+    assertEquals(
+      rows.map(row => (row.cell.task.name, row.entry.name)),
+      Vector("duel" -> "stream", "duel" -> "stream, mine.policy", "formation" -> "stream")
+    )
+    assertEquals(rows(0).truth, rows(1).truth)
+    assertNotEquals(rows(0).meanOff, rows(1).meanOff)
+    assert(Svg.file(BenchmarkFigure(rows), "benchmark").contains("stream, mine.policy"))
+    val nowhere = set.copy(tasks = set.tasks.drop(1))
+    assert(clue(Benchmark(
+      nowhere,
+      seeds = 2
+    ).mistake).exists(_.contains("expected with a scenario of a pursuer")))
+
   test("an interval is that of the mean over seeds, and a truth of 0 gives no share"):
     def flights(values: Double*) =
       values.toVector.map(value => BenchmarkFlight(Some(value), violations = 2, None, Vector.empty))
     val cell = few.cells.head
     val row  = BenchmarkRow(cell, few.entries.head, flights(10, 10), flights(11, 13), Vector.empty)
     assertEqualsDouble(row.meanOff.get, 0.2, 1e-12)
-    assertEqualsDouble(row.halfOff.get, 1.96 * 0.1, 1e-12)
+    assertEqualsDouble(row.halfOff.get, 12.706 * 0.1, 1e-12)
     assertEqualsDouble(row.violations, 0, 0)
     assertEquals(BenchmarkRow(cell, few.entries.head, flights(0), flights(1), Vector.empty).meanOff, None)
