@@ -12,6 +12,7 @@ import skein.cluster.{CoordinatorNode, Endpoint}
 import skein.flight.SolvedFlight
 import skein.hil.AutopilotKind
 import skein.link.*
+import skein.observe.ObservingProxy
 import skein.record.Samples
 import skein.report.DuelReport
 import skein.rpc.RpcClient
@@ -75,6 +76,10 @@ class BrowserAttackLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, 
     val solver = Edge.await(SolverServer.start(free, transport, desk, Clock.system))
     val link   = EmulatedLink(LinkProfile.symmetric(LatencyProfile.direct), 1, Clock.system)
     val proxy  = Edge.await(LinkProxy.start(free, plain.address, link, transport))
+    val direct = EmulatedLink(LinkProfile.none, 1, Clock.system)
+    val reader = ExecutionContext.global
+    val seen   =
+      Edge.await(ObservingProxy.start(free, plain.address, direct, transport, Clock.system, reader))
     Using.resource(Ledger.open(
       out.resolve(Ledger.Name),
       ArraySeq.fill[Byte](32)(0)
@@ -90,6 +95,7 @@ class BrowserAttackLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, 
         ("hil", flown.peerAddresses.head.port, calls),
         ("rpc beside hil", flown.address.port, calls),
         ("link", proxy.address.port, calls),
+        ("observe", seen.address.port, calls),
         ("view", view.port, calls),
         ("solver", solver.address.port, goodbye),
         ("coordinator", coordinator.address.port, calls)

@@ -5,8 +5,7 @@ import java.util.concurrent.{ConcurrentLinkedQueue, Executor}
 import org.apache.pekko.Done
 import org.apache.pekko.NotUsed
 import org.apache.pekko.actor.ActorSystem
-import org.apache.pekko.stream.scaladsl.{BidiFlow, Flow, Keep, Sink}
-import org.apache.pekko.stream.{KillSwitches, SharedKillSwitch}
+import org.apache.pekko.stream.scaladsl.{BidiFlow, Flow}
 import org.apache.pekko.util.ByteString
 import scala.collection.mutable
 import scala.concurrent.{ExecutionContext, Future, Promise}
@@ -21,14 +20,13 @@ import skein.units.{Clock, Instant}
   * its connection is not understood any more.
   */
 final class ObservingProxy private (
-    listening: Listening,
-    switch: SharedKillSwitch,
+    proxy: LinkProxy,
     looking: ObservingProxy.Looking
 ):
   import ObservingProxy.*
 
   /** The address that clients connect to, with the actual port. */
-  def address: Address = listening.address
+  def address: Address = proxy.address
 
   /** Present progress; may be called repeatedly while it observes. */
   def progress: Progress = looking.progress
@@ -39,17 +37,14 @@ final class ObservingProxy private (
   /** Accepts no more connections, closes the open ones, and analyses what has passed until now. */
   def close(): Future[Done] =
     given ExecutionContext = ExecutionContext.parasitic
-    switch.shutdown()
     val looked = Promise[Done]()
-    listening.close().flatMap: _ =>
+    proxy.close().flatMap: _ =>
       looking.add(Piece.End(() => looked.success(Done): Unit))
       looked.future
 
 object ObservingProxy:
   /** Limit of bytes that have passed and wait for analysis. */
   val MostWaiting: Long = 256L << 20
-
-  private val MostConnections = 1024
 
   private enum Piece:
     case Opened(connection: Int, at: Instant)
@@ -62,7 +57,7 @@ object ObservingProxy:
     * @param link emulated between the observer and the simulator
     * @param reader executes the analysis; a separate thread in real time
     * @param unreachable called with the reason, if an accepted connection cannot be continued to the
-    *   simulator
+    *   simulator, or speaks another protocol: see [[LinkProxy]], whose places its connections have
     */
   def start(
       listenAt: Address,
@@ -74,9 +69,7 @@ object ObservingProxy:
       unreachable: Throwable => Unit = _ => ()
   )(using ActorSystem): Future[ObservingProxy] =
     given ExecutionContext = ExecutionContext.parasitic
-    val switch             = KillSwitches.shared("observing-proxy")
     val looking            = Looking(reader)
-    val count              = AtomicInteger()
 
     def passing(connection: Int, isFromClient: Boolean, whole: Whole): Flow[ByteString, ByteString, NotUsed] =
       Flow[ByteString].map: bytes =>
@@ -84,35 +77,17 @@ object ObservingProxy:
           whole.is = looking.offer(Piece.Bytes(connection, isFromClient, bytes, clock.now()))
         bytes
 
-    def forward(incoming: Incoming): Future[Done] =
-      val connection = count.getAndIncrement()
-      val whole      = Whole()
-      looking.add(Piece.Opened(connection, clock.now()))
-      val server = BidiFlow
-        .fromFlows(
-          passing(connection, true, whole).via(switch.flow),
-          passing(connection, false, whole).via(switch.flow)
-        )
-        .atop(link.connection(TransportError.Lost(simulator, "the link broke")))
-        .joinMat(transport.connect(simulator))(Keep.right)
-      val (sent, (reached, answered)) = incoming.flow
-        .watchTermination()(Keep.right)
-        .joinMat(server.watchTermination()(Keep.both))(Keep.both)
-        .run()
-      reached.failed.foreach(unreachable)
-      for
-        _ <- sent.recover(_ => Done)
-        _ <- answered.recover(_ => Done)
-      yield
-        looking.add(Piece.Closed(connection, clock.now()))
-        Done
+    object watching extends LinkProxy.Watching:
+      def opened(connection: Long): BidiFlow[ByteString, ByteString, ByteString, ByteString, NotUsed] =
+        val whole = Whole()
+        looking.add(Piece.Opened(connection.toInt, clock.now()))
+        BidiFlow.fromFlows(passing(connection.toInt, true, whole), passing(connection.toInt, false, whole))
 
-    transport
-      .listen(listenAt)
-      .mapAsyncUnordered(MostConnections)(forward)
-      .toMat(Sink.ignore)(Keep.left)
-      .run()
-      .map(ObservingProxy(_, switch, looking))
+      def closed(connection: Long): Unit = looking.add(Piece.Closed(connection.toInt, clock.now()))
+
+    LinkProxy
+      .start(listenAt, simulator, link, transport, unreachable = unreachable, watching = watching)
+      .map(ObservingProxy(_, looking))
 
   /** Whether all bytes of a connection were analysed. */
   private final class Whole:

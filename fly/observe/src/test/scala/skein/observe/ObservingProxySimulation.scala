@@ -1,7 +1,9 @@
 package skein.observe
 
+import java.util.concurrent.ConcurrentLinkedQueue
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.stream.scaladsl.{Sink, Source}
+import org.apache.pekko.util.ByteString
 import scala.concurrent.duration.*
 import scala.concurrent.{ExecutionContext, Future}
 import skein.airsim.{AirSimClient, Multirotor, VehiclePose, VehicleSettings, WorldSettings}
@@ -75,6 +77,44 @@ class ObservingProxySimulation extends munit.FunSuite, Unhurried:
 
   private def named(client: AirSimClient, name: String)(using ExecutionContext): Future[Multirotor] =
     Multirotor.named(client, name).map(_.fold(error => throw AssertionError(error.message), identity))
+
+  test("what a browser sends is closed and does not reach the simulator, which answers others"):
+    val (told, answered) = VirtualTime
+      .run(7): system =>
+        given ActorSystem      = system
+        given ExecutionContext = system.dispatcher
+        val clock              = VirtualClock(system)
+        val network            = MemoryNetwork(NetworkPlan(), 7, clock)
+        val settings           =
+          SimulatorSettings(WorldSettings.of(vehicles), Address("simulator", 41451))
+        val (here, told) = (network.host("controller"), ConcurrentLinkedQueue[String]())
+        for
+          server <- SimulatorServer.start(settings, network.host("simulator"), clock)
+          proxy  <- ObservingProxy.start(
+            Address("controller", 41452),
+            server.address,
+            EmulatedLink(LinkProfile.none, 7, clock),
+            here,
+            clock,
+            system.dispatcher,
+            reason => told.add(reason.getMessage): Unit
+          )
+          page <- Source
+            .single(ByteString("POST / HTTP/1.1\r\n\r\n"))
+            .concat(Source.maybe)
+            .via(here.connect(proxy.address))
+            .runWith(Sink.seq)
+            .transform(answer => scala.util.Success(answer.getOrElse(Nil)))
+          client = AirSimClient(RpcClient(here, proxy.address, clock))
+          answered <- client.ping()
+          _        <- client.close()
+          _        <- proxy.close()
+          stats = server.stats
+          _ <- server.close()
+        yield (told.toArray.toSeq, (page.isEmpty, answered.isRight, stats.malformed))
+      .value
+    assertEquals(answered, (true, true, 0L))
+    assert(clue(told).exists(_.toString.contains("came an HTTP request (POST)")))
 
   for profile <- Seq(LatencyProfile.direct, LatencyProfile.vpn) do
     test(s"over ${profile.name} the ages that the observer reports are the program's own, within its bounds"):

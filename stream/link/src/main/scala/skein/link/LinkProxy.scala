@@ -37,6 +37,7 @@ object LinkProxy:
     *   the one that has been silent for longest, if that is at least 5 s; else it is closed
     * @param unreachable called with the reason when the server of an accepted connection cannot be reached
     * @param isDatagrams whether the transport carries datagrams: see [[EmulatedLink.connection]]
+    * @param watching sees what passes each connection, and the link's delay with it
     */
   def start(
       listenAt: Address,
@@ -45,7 +46,8 @@ object LinkProxy:
       transport: Transport,
       maxConnections: Int = 1024,
       unreachable: Throwable => Unit = _ => (),
-      isDatagrams: Boolean = false
+      isDatagrams: Boolean = false,
+      watching: Watching = Watching.Nobody
   )(using ActorSystem): Future[LinkProxy] =
     given ExecutionContext = ExecutionContext.parasitic
     val switch             = KillSwitches.shared("link-proxy")
@@ -58,8 +60,9 @@ object LinkProxy:
       places.entered(number, guest)
       val own    = if isDatagrams then Flow[ByteString] else FirstBytes.guard(incoming.from)
       val client = incoming.flow.via(own).via(guest.noting)
-      val server = BidiFlow
-        .fromFlows(switch.flow, guest.noting.via(switch.flow))
+      val server = watching
+        .opened(number)
+        .atop(BidiFlow.fromFlows(switch.flow, guest.noting.via(switch.flow)))
         .atop(link.connection(TransportError.Lost(to, "the link broke"), isDatagrams))
         .joinMat(transport.connect(to))(Keep.right)
       val (sent, (reached, answered)) = client
@@ -70,7 +73,10 @@ object LinkProxy:
       sent.failed.foreach:
         case foreign: TransportError.Foreign => unreachable(foreign)
         case _                               => ()
-      sent.onComplete(_ => answered.onComplete(_ => places.left(number)))
+      sent.onComplete: _ =>
+        answered.onComplete: _ =>
+          watching.closed(number)
+          places.left(number)
 
     def accept(incoming: Incoming): Unit =
       if places.admit() then forward(incoming)
@@ -81,6 +87,20 @@ object LinkProxy:
       .to(Sink.foreach(accept))
       .run()
       .map(LinkProxy(_, link, switch))
+
+  /** Sees the connections of a proxy. Thread-safe. */
+  trait Watching:
+    /** A connection was accepted: its bytes to the server and back pass through this, unchanged. */
+    def opened(connection: Long): BidiFlow[ByteString, ByteString, ByteString, ByteString, NotUsed]
+
+    /** Nothing more passes in either direction. */
+    def closed(connection: Long): Unit
+
+  object Watching:
+    object Nobody extends Watching:
+      def opened(connection: Long): BidiFlow[ByteString, ByteString, ByteString, ByteString, NotUsed] =
+        BidiFlow.identity
+      def closed(connection: Long): Unit = ()
 
   private val Silence = Span.ofSeconds(5)
 
