@@ -112,10 +112,12 @@ final class FlightAssembler(
       for
         server <- serve(plan.seed)
         _       = server.foreach(opened.closing(_)(_.close()))
-        monitor = FlightMonitor(
+        isAirSims = simulator.isDefined && settings.wire == Wire.AirSim
+        monitor   = FlightMonitor(
           recorder,
           isStepped = plan.loop == LoopKind.Paused,
-          hasPlaces = simulator.isDefined && settings.wire == Wire.AirSim
+          hasPlaces = isAirSims,
+          movesLast = Option.when(isAirSims)(settings.loopSettings(plan).moveDuration)
         )
         solver  <- solverOf(plan, opened, monitor)
         reached <- elsewhere match

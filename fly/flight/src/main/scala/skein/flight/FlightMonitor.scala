@@ -13,9 +13,15 @@ import skein.units.*
   *   the controller's
   * @param hasPlaces whether readings are the vehicles' true places, which other clients may change, so that
   *   implausible displacements are detected: an autopilot's estimates may jump
+  * @param movesLast duration of the flight's moves, where the simulator tells which of them others replaced,
+  *   so that other clients' moves are detected
   */
-final class FlightMonitor(recorder: Recorder, isStepped: Boolean = false, hasPlaces: Boolean = false)
-    extends Recorder:
+final class FlightMonitor(
+    recorder: Recorder,
+    isStepped: Boolean = false,
+    hasPlaces: Boolean = false,
+    movesLast: Option[Span] = None
+) extends Recorder:
   @volatile private var newest     = Option.empty[LaterDecision]
   private val heard                = AtomicLong(Long.MinValue)
   @volatile private var lastBroken = Option.empty[Event]
@@ -26,11 +32,15 @@ final class FlightMonitor(recorder: Recorder, isStepped: Boolean = false, hasPla
   private val firstAt              = AtomicLong(Long.MaxValue)
   private val lastAt               = AtomicLong(Long.MinValue)
   private val displaced            = AtomicReference(Option.empty[String])
+  private val moves                = AtomicReference(Map.empty[String, ForeignMoves])
 
   def offer(record: Recordable): Unit =
     record match
       case decision: LaterDecision                              => decided(decision)
       case reading: ReadingRow                                  => read(reading)
+      case move: CommandRow                                     => moved(move.vehicle)(_.sent(move))
+      case move: Acknowledgement                                =>
+        movesLast.foreach(lasts => moved(move.vehicle)(_.ended(move, lasts)))
       case event: Event if event.kind == EventKind.Disconnected => lastBroken = Some(event)
       case _                                                    => ()
     recorder.offer(record)
@@ -44,6 +54,9 @@ final class FlightMonitor(recorder: Recorder, isStepped: Boolean = false, hasPla
     val lands = decision.action == Action.Land
     if lands != isLanding(decision.vehicle) then
       landing.updateAndGet(all => if lands then all + decision.vehicle else all - decision.vehicle): Unit
+
+  private def moved(vehicle: String)(next: ForeignMoves => ForeignMoves): Unit =
+    moves.updateAndGet(all => all.updated(vehicle, next(all.getOrElse(vehicle, ForeignMoves())))): Unit
 
   private def read(reading: ReadingRow): Unit =
     import reading.{state, vehicle}
@@ -60,11 +73,16 @@ final class FlightMonitor(recorder: Recorder, isStepped: Boolean = false, hasPla
         why  <- Displacement.between(vehicle, last, state)
       do displaced.compareAndSet(None, Some(why)): Unit
 
-  /** Why the flight cannot have a result, judged by its readings. */
+  /** Why the flight cannot have a result, judged by its readings and the answers to its moves. */
   def unsound: Option[Unsound] =
     clocks.get.fault.map(Unsound(EventKind.ClockBroken, _)).orElse(
-      displaced.get.map(Unsound(EventKind.VehicleTaken, _))
+      displaced.get.orElse(foreignMoves).map(Unsound(EventKind.VehicleTaken, _))
     )
+
+  private def foreignMoves: Option[String] = moves.get.collectFirst:
+    case (vehicle, its) if its.areMany =>
+      s"another client moves $vehicle: ${ForeignMoves.Many} of its last ${ForeignMoves.Judged} moves were " +
+        "replaced by none of this flight"
 
   /** Why the simulator's clock does not keep pace at present, if it does not. */
   def wandering: Option[String] = clocks.get.wandering

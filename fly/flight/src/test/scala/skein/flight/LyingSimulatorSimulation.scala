@@ -176,8 +176,17 @@ class LyingSimulatorSimulation extends munit.FunSuite, Unhurried:
       "puts a vehicle back to where it began",
       Multirotor(_, "Evader").setPose(VehiclePose(Vector3(0, 0, -20), Quaternion.Identity)),
       "Evader is "
-    )
+    ),
+    ("moves a vehicle", moves(_), "another client moves Pursuer")
   )
+
+  /** Moves the pursuer ten times a second, for three seconds. */
+  private def moves(client: AirSimClient)(using system: ActorSystem): Future[Any] =
+    val pursuer                           = Multirotor(client, "Pursuer")
+    def again(left: Int): Future[Unit] =
+      pursuer.moveByVelocity(Vector3(5, 0, 0), Span.ofSeconds(1)): Unit
+      if left == 0 then Future.unit else after(Span.ofMillis(100).toDuration)(again(left - 1))
+    again(30)
 
   for
     (what, acts, words) <- taken
@@ -185,6 +194,25 @@ class LyingSimulatorSimulation extends munit.FunSuite, Unhurried:
   do
     test(s"${loop.label}: another client that $what ends the flight without result, and is reported"):
       fly(loop, acts = acts).assertNoResult(EventKind.VehicleTaken, words)
+
+  test("a stranger's move or two are no sign, nor are moves whose time was over"):
+    def at(ms: Double)    = Instant.Epoch + Span.ofMillis(ms)
+    def move(number: Int) =
+      CommandRow(number, "A", None, MetresPerSecond(0), MetresPerSecond(0), Metres(0), at(100.0 * number))
+    def end(number: Int, ms: Double) =
+      Acknowledgement("A", number, at(ms), CommandOutcome.Superseded)
+    val lasts                                                   = Span.ofSeconds(1)
+    def flown(end: (Int, ForeignMoves) => ForeignMoves): ForeignMoves =
+      (0 until 20).foldLeft(ForeignMoves())((moves, number) => end(number, moves.sent(move(number))))
+    val own = flown((number, moves) => moves.ended(end(number - 1, 100.0 * number + 40), lasts))
+    assert(!own.areMany, "each is answered behind its successor")
+    assert(flown((number, moves) => moves.ended(end(number, 100.0 * number + 40), lasts)).areMany)
+    val one = flown((number, moves) =>
+      if number == 7 then moves.ended(end(number, 740), lasts)
+      else moves.ended(end(number - 1, 100.0 * number + 40), lasts)
+    )
+    assert(!one.areMany)
+    assert(!flown((number, moves) => moves.ended(end(number, 100.0 * number + 1000), lasts)).areMany)
 
   test("stream: another client that disarms a vehicle takes nothing: moves drive it on, as in AirSim"):
     def flown(acts: AirSimClient => ActorSystem ?=> Future[Any]) =
