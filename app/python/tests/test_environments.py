@@ -313,3 +313,21 @@ def test_both_sides_may_turn_by_a_rate():
     assert np.abs(seen("Evasion", 1.0) - straight).max() > 1
     with pytest.raises(ValueError, match="turn_rate_rad_per_s: expected"):
         gym.make("skein_uav/Pursuit-v0", turn_rate_rad_per_s=100.0)
+
+
+def test_stable_baselines3_gets_the_distance_and_the_last_observation_of_an_episode():
+    pytest.importorskip("stable_baselines3")
+    from skein_uav.stable_baselines3 import PursuitVecEnv
+
+    environments = PursuitVecEnv(3, episode_s=1.0)
+    environments.seed(1)
+    environments.reset()
+    while True:
+        environments.step_async(np.zeros((3, *environments.action_space.shape), np.float32))
+        _, _, done, infos = environments.step_wait()
+        assert all(info["distance_m"] > 0 and info["time_s"] > 0 for info in infos)
+        if done.any():
+            break
+    assert done.all() and all(info["TimeLimit.truncated"] for info in infos)
+    assert all(info["terminal_observation"].shape == environments.observation_space.shape for info in infos)
+    environments.close()

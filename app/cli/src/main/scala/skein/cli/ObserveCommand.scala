@@ -16,15 +16,15 @@ import skein.units.{Clock, Expect}
 /** Command-line options of `./skein observe`, with their help texts. */
 final case class ObserveOptions(
     @arg(doc = "where the program connects, in place of the simulator; 0.0.0.0 opens it to other machines")
-    listen: String = "127.0.0.1:41452",
+    listen: String = ObserveOptions.Listen,
     @arg(doc = "the simulator: AirSim, one of its forks, or ./skein serve")
-    simulator: String = "127.0.0.1:41451",
+    simulator: String = ObserveOptions.Simulator,
     @arg(doc =
       "a network that is emulated between the program and the simulator: direct, vpn, constant:200ms, …"
     )
-    link: String = "none",
+    link: String = ObserveOptions.Link,
     @arg(doc = "seed of every random choice")
-    seed: Long = 1,
+    seed: Long = ObserveOptions.Seed,
     @arg(doc =
       "instead of a program: a bag of ROS 2, its folder or an MCAP file; the loop that it holds is measured"
     )
@@ -53,6 +53,23 @@ final case class ObserveOptions(
     command: Behind
 )
 
+object ObserveOptions:
+  private val Listen    = "127.0.0.1:41452"
+  private val Simulator = "127.0.0.1:41451"
+  private val Link      = "none"
+  private val Seed      = 1L
+
+  extension (options: ObserveOptions)
+    /** Options that say something of a program, and nothing of a bag. */
+    def ofProgram: Vector[String] =
+      Vector(
+        "--listen"    -> (options.listen != Listen),
+        "--simulator" -> (options.simulator != Simulator),
+        "--link"      -> (options.link != Link),
+        "--seed"      -> (options.seed != Seed),
+        "a program"   -> options.command.words.nonEmpty
+      ).collect { case (name, true) => name }
+
 /** `./skein observe`: measures the control loop of any program that flies by AirSim's interface, from between
   * it and the simulator, or of any graph of ROS 2, by a bag.
   */
@@ -69,8 +86,8 @@ object ObserveCommand
 
   private def observeBag(bag: Path, options: ObserveOptions): Either[String, Unit] =
     for
-      _ <- Expect.that(options.command.words.isEmpty):
-        "--bag: expected no program behind --, the bag is what is measured"
+      _ <- Expect.that(options.ofProgram.isEmpty):
+        s"--bag: the bag is measured, and no program; came ${options.ofProgram.mkString(", ")} too"
       folder   <- options.out.fold(Right(None))(OutFolder.made("--out", _).map(Some(_)))
       observed <- BagLoop(options.readings.toSet, options.commands.toSet).observed(bag)
       tables = TopicTables.tables(observed)

@@ -38,7 +38,7 @@ object FlightTheme:
 
   def line(colour: Colour, width: Double = 1.4): Stroke = Stroke(colour, width)
 
-  def link(name: String): String = if name == "none" then "no network" else s"$name link"
+  def link(name: String): String = if name == "none" then "no link added" else s"$name link"
 
   /** The mark of a published value. */
   def diamond(centre: Point, radius: Double = 4): Mark =

@@ -80,6 +80,9 @@ object Theme:
   val labelSize = 11.0
   val titleSize = 12.0
 
+  /** Width of a letter of a title, estimated. */
+  val titleLetter = 7.5
+
   val titleColour: Colour = Colour(0x1a1a1a)
   val labelColour: Colour = Colour(0x333333)
   val tickColour: Colour  = Colour(0x555555)

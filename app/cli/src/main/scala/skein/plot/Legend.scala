@@ -4,7 +4,6 @@ package skein.plot
 object Legend:
   private val gap         = 18.0
   private val letterWidth = 6.3
-  private val titleLetter = 7.5
   private val middle      = 9.0
   private val height      = 24.0
 
@@ -37,7 +36,7 @@ object Legend:
   def titled(panel: Panel, title: String, drawn: Drawing, items: Item*): Drawing =
     val shapes = panel.title(title) +: drawn.shapes
     val legend = Legend(0, items*)
-    if title.length * titleLetter + gap + legend.width <= panel.width then
+    if title.length * Theme.titleLetter + gap + legend.width <= panel.width then
       val beside = legend.shapes.map(_.moved(panel.right - legend.width, panel.top - 23))
       drawn.copy(shapes = shapes ++ beside)
     else Drawing.stacked(drawn.copy(shapes = shapes), rows(panel.left, panel.width, items*))

@@ -69,5 +69,7 @@ final case class Panel(x: PlotAxis, y: PlotAxis, left: Double, top: Double, widt
       Mark.Text(Point(left - 36, top + height / 2), y.label, anchor = Anchor.Middle, upwards = true)
     )
 
+  /** The title above the panel, smaller where it would be wider than that. */
   def title(text: String): Mark =
-    Mark.Text(Point(left, top - 10), text, titleSize, titleColour, bold = true)
+    val size = (titleSize * width / (text.length * titleLetter).max(1)).min(titleSize).max(smallSize)
+    Mark.Text(Point(left, top - 10), text, size, titleColour, bold = true)

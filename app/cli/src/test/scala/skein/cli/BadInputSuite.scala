@@ -155,6 +155,13 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       "--mavlink: expected loops other than paused"
     )
 
+  test("options of observe that a bag has no use for are refused with it"):
+    assertRefused(
+      ObserveCommand,
+      Seq("--bag", "walk.mcap", "--link", "vpn", "--seed", "2"),
+      "skein observe: --bag: the bag is measured, and no program; came --link, --seed too"
+    )
+
   test("options that only MAVLink uses are refused without it"):
     assertRefused(FlyCommand(), Seq("--simulator", "tcp://127.0.0.1:5760"), "tcp:// is for --mavlink alone")
     assertRefused(

@@ -44,7 +44,7 @@ class LinkCommandsLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders:
     )
     assertEquals(status, 0, told)
     val picture = Files.readString(directory.resolve("latency.svg"))
-    assert(picture.contains(s"to ${server.address}") && !picture.contains("no network"))
+    assert(picture.contains(s"to ${server.address}") && !picture.contains("no link added"))
 
   folder.test("a flight names the vehicles that the simulator lacks before anything warms up"): directory =>
     val scenario          = Seq("--scenario", "formation", "--loop", "stream", "--link", "none")

@@ -1,7 +1,7 @@
 package skein.figures
 
 import skein.measure.Distribution
-import skein.plot.{Drawing, Mark}
+import skein.plot.{Drawing, Mark, Panel, PlotAxis, Theme}
 import skein.report.{DuelReport, Report, SyntheticFlight}
 import skein.scenario.Scenarios
 import skein.training.{LearnScore, LearningCurve}
@@ -57,8 +57,15 @@ class SparseFiguresSuite extends munit.FunSuite:
     assertEquals(legend("none"), Vector("measured"))
     assertEquals(legend("direct").size, 4)
     val real = LatencyFigure(Seq(LatencyFigure.Measured("to 10.0.0.7:41451", "none", trips))).get
-    assert(texts(real).contains("to 10.0.0.7:41451") && !texts(real).exists(_.contains("no network")))
+    assert(texts(real).contains("to 10.0.0.7:41451") && !texts(real).exists(_.contains("no link added")))
     assertEquals(real.width, 378.0)
+
+  test("a title is at most as wide as its panel"):
+    val panel              = Panel(PlotAxis.around("x", 0, 1), PlotAxis.around("y", 0, 1), 52, 34, 200, 200)
+    def size(text: String) = Vector(panel.title(text)).collect { case text: Mark.Text => text.size }.head
+    assertEquals(size("stream, vpn link"), Theme.titleSize)
+    val long = "stream, learned:2tanh:clip, vpn link"
+    assert(clue(size(long)) * Theme.titleLetter / Theme.titleSize * long.length <= 200)
 
   test("a single score of a learner is visible"):
     val colour           = LearningCurve.learned
