@@ -31,17 +31,19 @@ object RidgeKind extends ScenarioKind(OverTheRidge()), ScenarioReport:
         (-20 to 130).map(north => (north.toDouble, land.heightM(north))),
         Stroke(Colour(0x8c6d46), 2)
       )
+      // The first one is wider, and so is seen where both fly one way.
+      def line(scout: Int) =
+        if scout == 0 then Stroke(Colour(0x56b4e9), 4) else Stroke(Colour(0xd55e00), 1.4)
       val ways = tracks.vehicles.toVector.map(scout =>
         panel.curve(
           tracks.instants.map(now => (tracks.northM(scout)(now), tracks.altitudeM(scout, now))),
-          Stroke(Colour(if scout == 0 then 0x0072b2 else 0xd55e00), 1.4)
+          line(scout)
         )
       )
-      Drawing(
-        640,
-        270,
-        (panel.title(
-          s"${flight.summary.name}, ${flight.summary.flight.link}"
-        ) +: panel.axes) ++ (ground +: ways)
+      Legend.titled(
+        panel,
+        s"${flight.summary.name}, ${flight.summary.flight.link}",
+        Drawing(640, 270, panel.axes ++ (ground +: ways)),
+        tracks.vehicles.map(scout => Legend.line(s"scout ${scout + 1}", line(scout)))*
       )
     Figure("ridge", "From the side", "The ground in brown, a line for each scout.", Drawing.stacked(panels*))
