@@ -30,13 +30,8 @@ final class Ledger private (
 
   def size: Int = index.size
 
-  def bytes: Long = end
-
   def answer(key: BlockKey): Option[ArraySeq[Byte]] =
-    index.get(key).map: (at, length) =>
-      val bytes = ByteBuffer.allocate(length)
-      while bytes.hasRemaining && channel.read(bytes, at + bytes.position()) >= 0 do ()
-      ArraySeq.unsafeWrapArray(bytes.array)
+    index.get(key).map((at, length) => ArraySeq.unsafeWrapArray(Ledger.read(channel, at, length)))
 
   /** Writes an answer.
     *

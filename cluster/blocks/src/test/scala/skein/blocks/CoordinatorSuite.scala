@@ -48,6 +48,30 @@ class CoordinatorSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(waits(held.lost("anna").offered(blocks(3).drop(1))), (3, false, true))
     assertEquals(waits(two.offered(blocks(2))), (2, false, true))
 
+  test("a worker gets a second block for each core while as many wait as there are cores"):
+    def third(waiting: Int) =
+      val (a, _) = take(two.offered(blocks(2 + waiting)), "anna")
+      val (b, _) = take(a, "anna", holding = Set(0))
+      assertEquals((b.cores, b.waiting.size), (4, waiting))
+      take(b, "anna", holding = Set(0, 1))._2
+    assertEquals((third(waiting = 3), third(waiting = 4)), (None, Some(2L)))
+
+  test("a worker that is not known counts its answer, and has no cores until it joins"):
+    val (held, _)       = take(two.offered(blocks(2)), "anna")
+    val (first, one)    = held.answered("carl", 0, 10)
+    val (again, second) = first.answered("dora", 0, 20)
+    assertEquals((one, second), (AnswerKind.First(blocks(1).head), AnswerKind.Repeated))
+    assertEquals((again.counts.accepted, again.counts.repeated), (1L, 1L))
+    for (name, accepted, busy) <- Seq(("carl", 1L, 10L), ("dora", 0L, 20L)) do
+      val record = again.workers(name)
+      assertEquals(
+        (record.cores, record.isHere, record.accepted, record.busyNanos),
+        (0, false, accepted, busy)
+      )
+      assertEquals(record.repeated, 1 - accepted)
+      assertEquals(take(again, name)._2, None)
+      assertEquals(again.joined(name, 3).cores, 7)
+
   test("no worker holds a block twice"):
     val (a, _) = take(two.offered(blocks(1)), "anna")
     assertEquals(take(a, "anna", holding = Set(0))._2, None)
@@ -61,24 +85,27 @@ class CoordinatorSuite extends munit.FunSuite, TemporaryFolders:
 
   test("a block that never reached its worker is assigned again once it can no longer be in transit"):
     val (a, _)     = take(two.offered(blocks(1)), "anna", nowNanos = 0)
-    val (b, early) = take(a, "anna", nowNanos = Coordinator.OnItsWay)
-    val (_, late)  = take(b, "anna", nowNanos = Coordinator.OnItsWay + 1)
+    val (b, early) = take(a, "anna", nowNanos = 4_000_000_000L)
+    val (_, late)  = take(b, "anna", nowNanos = 4_000_000_001L)
     assertEquals((early, late), (None, Some(0L)))
 
   test("a block is overdue after the patience, with one worker or with two, and its answer still counts"):
     val start     = Coordinator(patienceNanos = 100).joined("anna", 1).joined("ben", 1).offered(blocks(1))
-    val (one, _)  = take(start, "anna", nowNanos = 0)
-    val (both, _) = take(one, "ben", nowNanos = 50)
+    val (one, _)  = take(start, "anna", nowNanos = 1000)
+    val (both, _) = take(one, "ben", nowNanos = 1050)
     for state <- Seq(one, both) do
-      assertEquals(state.at(100).counts.overdue, 0L)
-      val late = state.at(101)
+      assertEquals(state.at(1100).counts.overdue, 0L)
+      val late = state.at(1101)
       assertEquals(
         (late.counts.overdue, late.waiting.iterator.map(_.number).toSeq, late.leases.size),
         (1L, Seq(0L), 0)
       )
       val (done, answer) = late.answered("anna", 0, 1)
       assertEquals(answer, AnswerKind.First(blocks(1).head))
-      assert(done.isIdle)
+      assertEquals((done.counts.accepted, done.counts.repeated), (1L, 0L))
+      val by = done.workers("anna")
+      assertEquals((by.accepted, by.repeated, by.busyNanos), (1L, 0L, 1L))
+      assert(!start.isIdle && !one.isIdle && !late.isIdle && done.isIdle)
 
   test("after a cancellation nothing is assigned, and answers that arrive are repeats"):
     val (a, _)    = take(two.offered(blocks(2)), "anna")

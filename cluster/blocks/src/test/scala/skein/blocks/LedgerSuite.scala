@@ -46,6 +46,38 @@ class LedgerSuite extends munit.FunSuite, TemporaryFolders:
       ledger.close()
       assertEquals(Ledger.audit(path).broken, 0L)
 
+  file.test("a record that was cut off is not complete, even if zeros are all that it lacks"): path =>
+    val zeros  = ArraySeq.fill[Byte](20)(0)
+    val ledger = open(path)
+    assert(ledger.accept(key(0), answer(0)) && ledger.accept(key(1), zeros))
+    ledger.close()
+    val whole = Files.readAllBytes(path)
+    for length <- whole.length - 20 to whole.length do
+      Files.write(path, whole.take(length))
+      val again = open(path)
+      assertEquals(again.answer(key(1)), Option.when(length == whole.length)(zeros), s"cut at $length")
+      assertEquals(again.broken, if length == whole.length then 0L else 24L + length - (whole.length - 20))
+      again.close()
+
+  file.test("a block is known by all 128 bits of its key, the first of its work's SHA-256"): path =>
+    assertEquals(BlockKey.of(ArraySeq.empty), BlockKey(0xe3b0c44298fc1c14L, 0x9afbf4c8996fb924L))
+    val keys   = for high <- Seq(1L, 2L); low <- Seq(1L, 2L) yield BlockKey(high, low)
+    val ledger = open(path)
+    for (key, number) <- keys.zipWithIndex do assert(ledger.accept(key, answer(number)), key)
+    ledger.close()
+    val again = open(path)
+    assertEquals(keys.map(again.answer), keys.indices.map(number => Some(answer(number))))
+    again.close()
+
+  file.test("a record that is there twice is found by an audit, and counts once"): path =>
+    written(path, 2)
+    val bytes = Files.readAllBytes(path)
+    Files.write(path, bytes ++ bytes.drop(48)): Unit
+    assertEquals(Ledger.audit(path), Ledger.Audit(blocks = 2, repeats = 2, broken = 0))
+    val ledger = open(path)
+    assertEquals(ledger.size, 2)
+    ledger.close()
+
   file.test("a damaged record is skipped, its block is computed again, and later records are kept"): path =>
     written(path, 3)
     val bytes  = Files.readAllBytes(path)
@@ -71,6 +103,7 @@ class LedgerSuite extends munit.FunSuite, TemporaryFolders:
       )
       again.close()
       assertEquals(Ledger.audit(path), Ledger.Audit(3, 0, record))
+      assertEquals(Ledger.audit(path).broken, record.toLong)
 
   file.test("a damaged byte anywhere never changes an answer, and is reported"): path =>
     written(path, 3)

@@ -6,7 +6,7 @@ import org.apache.pekko.actor.{ActorSystem, Address}
 import org.apache.pekko.actor.typed.scaladsl.Behaviors
 import org.apache.pekko.actor.typed.scaladsl.adapter.*
 import scala.collection.immutable.ArraySeq
-import scala.concurrent.Await
+import scala.concurrent.{Await, Promise}
 import scala.concurrent.duration.DurationInt
 import scala.jdk.CollectionConverters.*
 import skein.blocks.Ledger
@@ -60,6 +60,52 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
     worker ! WorkerBehavior.Member
     assertEquals(Iterator.continually(run(heard.next())).dropWhile(_ == 0).next(), 7L)
 
+  test("a worker computes each given block once, answers with its number, and has a bound for what it holds"):
+    val heard  = Heard[ToCoordinator]()
+    val begun  = LinkedBlockingQueue[Byte]()
+    val goOn   = LinkedBlockingQueue[Unit]()
+    val solver = new BlockSolverFactory:
+      def of(asked: ArraySeq[Byte]) = Right(() =>
+        work =>
+          begun.add(work.head)
+          goOn.take()
+          if work.head == 3 then throw IllegalArgumentException("not three") else work :+ 9.toByte
+      )
+    val worker = system.spawnAnonymous(WorkerBehavior(
+      heard.actor,
+      WorkerBehavior.Self("anna", 1, "one", solver, System.nanoTime()),
+      pool,
+      _ => (),
+      _ => ()
+    ))
+    def next[A](wanted: PartialFunction[ToCoordinator, A]): A =
+      Iterator.continually(heard.next()).collectFirst(wanted).get
+    worker ! WorkerBehavior.Member
+    worker ! Message.Welcome(7, question)
+    next { case ask: Message.Ask if ask.run == 7 => () }
+    def give(number: Long, of: Long = 7) = worker ! Message.Give(of, number, ArraySeq(number.toByte))
+    give(1)
+    give(1)
+    give(4, of = 6)
+    give(2)
+    goOn.add(())
+    val (number, answer) =
+      next { case Message.Done(7, "anna", number, busy, answer) if busy > 0 => (number, answer) }
+    assertEquals((number, answer), (1L, ArraySeq[Byte](1, 9)))
+    assertEquals(next { case ask: Message.Ask => ask.holding }, Set(2L))
+    goOn.add(())
+    assertEquals(
+      next { case Message.Done(7, "anna", number, _, answer) => (number, answer) },
+      (2L, ArraySeq[Byte](2, 9))
+    )
+    give(3)
+    goOn.add(())
+    assertEquals(
+      next { case Message.Failed(7, "anna", number, reason) => (number, reason) },
+      (3L, "java.lang.IllegalArgumentException: not three")
+    )
+    assertEquals(begun.asScala.toVector, Vector[Byte](1, 2, 3))
+
   private def newLedger(): Ledger =
     Ledger.open(temporaryFolder().resolve(Ledger.Name), ArraySeq.fill(32)(7)).fold(fail(_), identity)
 
@@ -98,6 +144,31 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(working.next(), Message.Goodbye)
     assertEquals(worker("cleo", 0).next(), Message.Goodbye)
     assert(down.isEmpty, down.toString)
+    ledger.close()
+
+  test("a call is answered in the order of its works once all have answers, and equal works are one block"):
+    val ledger      = newLedger()
+    val latest      = AtomicReference(ClusterProgress())
+    val coordinator = system.spawnAnonymous(
+      CoordinatorBehavior(Job(7, "one", question), ledger, _ => (), latest.set, _ => ())
+    )
+    val (a, b)  = (ArraySeq[Byte](1), ArraySeq[Byte](2))
+    val promise = Promise[CoordinatorBehavior.Outcome]()
+    val news    = LinkedBlockingQueue[ArraySeq[Byte]]()
+    coordinator ! CoordinatorBehavior.Compute(Vector(a, b, a), news.add(_): Unit, () => (), promise)
+    val worker = Heard[ToWorker]()
+    coordinator ! Message.Ask("anna", 2, "one", 7, Set.empty, worker.actor)
+    assertEquals(Seq(worker.next(), worker.next()), Seq(Message.Give(7, 1, a), Message.Give(7, 2, b)))
+    coordinator ! Message.Done(7, "anna", 2, 5, ArraySeq(20))
+    assertEquals(Option(news.poll(30, TimeUnit.SECONDS)), Some(ArraySeq[Byte](20)))
+    coordinator ! Message.Done(7, "anna", 2, 5, ArraySeq(30))
+    // Its answer shows that the messages before it are done with.
+    coordinator ! Message.Ask("ben", 1, "one", 0, Set.empty, worker.actor)
+    assertEquals(worker.next(), Message.Welcome(7, question))
+    assertEquals((latest.get.done, latest.get.of, promise.isCompleted), (1, 2, false))
+    coordinator ! Message.Done(7, "anna", 1, 5, ArraySeq(10))
+    val all = Await.result(promise.future, 30.seconds)
+    assertEquals(all, Right(Some(Vector(10, 20, 10).map(answer => ArraySeq(answer.toByte)))))
     ledger.close()
 
   test("the receiver of news that a worker joined or was lost sees it in the progress"):

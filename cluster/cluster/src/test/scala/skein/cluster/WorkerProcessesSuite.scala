@@ -1,8 +1,10 @@
 package skein.cluster
 
-import java.nio.file.Files
+import java.lang.management.ManagementFactory
+import java.nio.file.{Files, Path}
 import java.util.concurrent.{CompletableFuture, TimeUnit}
 import java.util.concurrent.atomic.AtomicInteger
+import scala.jdk.CollectionConverters.*
 import skein.testing.TemporaryFolders
 
 class WorkerProcessesSuite extends munit.FunSuite, TemporaryFolders:
@@ -13,6 +15,20 @@ class WorkerProcessesSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(own, "-XX:SharedArchiveFile=/opt/skein/skein-vector-worker.jsa")
     assertEquals(WorkerProcesses.ofWorkers(own), own)
     assertEquals(WorkerProcesses.ofWorkers("-Xmx1g"), "-Xmx1g")
+
+  test("a worker runs with this program's JVM, options and class path"):
+    val command = WorkerProcesses.likeThis("skein.cli.main", Seq("worker", "--join", "lab:2552"))
+    assertEquals(command.head, Path.of(sys.props("java.home"), "bin", "java").toString)
+    assertEquals(
+      command.takeRight(6),
+      Seq("-cp", sys.props("java.class.path"), "skein.cli.main", "worker", "--join", "lab:2552")
+    )
+    val options = ManagementFactory.getRuntimeMXBean.getInputArguments.asScala.toSeq
+    assertEquals(
+      command.drop(1).dropRight(6),
+      options.filterNot(option => option.startsWith("-agentlib") || option.startsWith("-Xrun"))
+        .map(WorkerProcesses.ofWorkers)
+    )
 
   test("a truncated class archive is removed before a worker starts"):
     val archive                        = temporaryFolder().resolve("skein-worker.jsa")

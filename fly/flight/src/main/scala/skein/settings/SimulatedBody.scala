@@ -30,14 +30,13 @@ final class SimulatedBody private (
     case _ if deviation.isDefined =>
       Some(s"$text: expected airsim or mujoco:FILE, whose physics has steps of whole milliseconds")
     case Right(Some(body)) =>
-      val steps = AutopilotInterface.Step.toSeconds / body.stepS
       if !body.hasRotors then
         Some(
           s"$text: expected four actuators that each lift, one at " +
             "each corner, for an autopilot's four controls"
         )
       else
-        Option.when(steps < 1 || math.abs(steps - steps.round) > 1e-9):
+        Option.when(!SimulatedBody.meetsSensors(body.stepS)):
           s"$text: expected a timestep of 1 ms or a whole part of it, at " +
             s"which autopilots' sensors are read, came ${body.stepS} s"
     case _ => None
@@ -46,6 +45,11 @@ object SimulatedBody:
   val AirSim: SimulatedBody = SimulatedBody("airsim", Right(None))
 
   val forms: String = s"${AirSim.text}, airsim:DEVIATION, or mujoco:FILE"
+
+  /** Whether a step ends each time that autopilots' sensors are read. */
+  private[settings] def meetsSensors(stepS: Double): Boolean =
+    val steps = AutopilotInterface.Step.toSeconds / stepS
+    steps >= 1 && math.abs(steps - steps.round) <= 1e-9
 
   /** Reads the user's text; Left states what was expected, or why the model cannot be simulated. */
   def parse(text: String): Either[String, SimulatedBody] =

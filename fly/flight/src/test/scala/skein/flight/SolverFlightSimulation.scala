@@ -244,6 +244,7 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
       )
       def strangers(count: Int): Unit = for number <- 0 until count do
         kinds(number % kinds.size).via(network.host("stranger").connect(at)).runWith(Sink.ignore): Unit
+      var lost                 = 0
       def flight(number: Long) = SolverClient(
         TcpLink(network.host("here"), at),
         number,
@@ -251,7 +252,7 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
         Briefing.of(settings, settings.plans.last),
         2,
         clock,
-        (_, _, _, _) => ()
+        (kind, _, _, _) => if kind == EventKind.Disconnected then lost += 1
       )
       for
         server <- SolverServer.start(at, network.host("solver"), desk, clock)
@@ -263,10 +264,15 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
         _ <- after(1500.millis, system.scheduler)(Future.unit)
         second = flight(2)
         _ <- second.ready(Span.ofSeconds(3))
-        stats = desk.stats
+        (stats, disconnected) = (desk.stats, lost)
         _ <- Future.traverse(Seq(first, second))(_.close())
-      yield (stats.flights, server.displacedConnections >= 65, server.refusedConnections < 64)
-    assertEquals(run.value, (2, true, true))
+      yield (
+        stats.flights,
+        disconnected,
+        server.displacedConnections >= 65,
+        server.refusedConnections < 64
+      )
+    assertEquals(run.value, (2, 0, true, true))
 
 /** Runs every task after a fixed delay. */
 private final class Later(system: ActorSystem, by: Span) extends ExecutionContext:

@@ -2,9 +2,10 @@ package skein.settings
 
 import com.typesafe.config.ConfigFactory
 import java.nio.file.Files
-import skein.loop.Planning
+import skein.loop.{LoopKind, Planning}
 import skein.policy.{PolicyFamily, Role}
 import skein.scenario.{PaperDuel, Scenarios, Surround}
+import skein.signal.LatencyProfile
 import skein.testing.TemporaryFolders
 import skein.units.Span
 
@@ -112,6 +113,44 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
       "without deadline and solver, since the policy is asked for later moments too"
     refused("plan-in-packet = true, loops = [predictive], scenario = convoy"):
       "multirotors, which hold plans, came the car Lead"
+
+  test("the ground truth alone needs no link, and any other loop needs one"):
+    assertEquals(
+      read("skein.fly { loops = [paused], links = [] }").map(_.plans.map(_.id)),
+      Right(Vector("paused-none"))
+    )
+    assertTold(
+      "links = [], loops = [paused, stream]",
+      "2: skein.fly.links: expected at least one link for any loop but paused, came none"
+    )
+
+  test("a solver has time to answer after its search for plans"):
+    def told(key: String) = s"2: skein.fly.$key: expected more than planning.deadline, for which a solver " +
+      "searches its plans, 40.0 ms; came 40.0 ms"
+    val plans = "loops = [plan], planning.deadline = 40 ms, solver = \"link:vpn\""
+    assertTold(s"period = 40 ms, $plans", told("period"))
+    assertTold(s"deadline = 40 ms, $plans", told("deadline"))
+    assert(read(s"skein.fly { deadline = 41 ms, $plans }").isRight)
+    assert(read("skein.fly { period = 40 ms, loops = [plan], planning.deadline = 40 ms }").isRight)
+
+  test("flights have a name each, and differ in seed unless they differ in the policy alone"):
+    val family = (name: String) => PolicyFile.ofDefaults(Role.Pursuer, PolicyFamily.parse(name).toOption.get)
+    val flown  = FlySettings(
+      List(LoopKind.Stream, LoopKind.Paused),
+      List(LatencyProfile.vpn, LatencyProfile.direct),
+      Span.ofSeconds(4),
+      Span.ofMillis(100),
+      seed = 7,
+      policies = List("lead-pursuit", "paper-pursuer", "lead-pursuit").map(family)
+    )
+    val own = Vector("paused-none", "stream-vpn", "stream-direct")
+    assertEquals(
+      flown.plans.map(_.id),
+      own ++ Seq("lead-pursuit", "paper-pursuer", "lead-pursuit-2").flatMap(name =>
+        own.map(id => s"$id-$name")
+      )
+    )
+    assertEquals(flown.plans.map(_.seed), Vector.fill(4)(Vector(7L, 8L, 9L)).flatten)
 
   test("with only-policies the scenario's own policies are omitted"):
     val file = temporaryFolder().resolve("policy.conf")

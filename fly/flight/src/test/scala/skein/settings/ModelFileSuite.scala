@@ -77,6 +77,17 @@ class ModelFileSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(predictor.map(_.at(20)), Right(PlantModel(Late(0.75, 0.25))))
     assertEquals(VehicleChoice.parse(path, 20).map(_.response), Right(PlantResponse(Late(0.75, 0.25))))
 
+  test("a file has the tables of the errors that were measured, and no others"):
+    val both                = fit(late, 0.75, 0.25)
+    def tables(fitted: Fit) =
+      val written = ModelFile.render(late, Vector(fitted), ModelFile.Provenance(Vector(), Vector(), 1, "v"))
+      ConfigFactory.parseString(
+        written
+      ).getConfig("skein.model.late").root.keySet.asScala.filter(_.startsWith("against"))
+    assertEquals(tables(both).toSet, Set("against-quadrotor", "against-readings"))
+    assertEquals(tables(both.copy(againstQuadrotor = Vector.empty)).toSet, Set("against-readings"))
+    assertEquals(tables(both.copy(againstReadings = Vector.empty)).toSet, Set("against-quadrotor"))
+
   test("only models of Skein's structures hold at the altitude of their flights alone"):
     def altitude(use: Structure) = ModelFile.parse(text(use), "model.conf").map(_.altitudeM)
     assertEquals(altitude(Structure.Lag), Right(Some(5.0)))

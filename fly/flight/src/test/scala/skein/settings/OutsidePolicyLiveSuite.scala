@@ -1,6 +1,8 @@
 package skein.settings
 
+import java.io.IOException
 import java.net.{StandardProtocolFamily, UnixDomainSocketAddress}
+import java.nio.ByteBuffer
 import java.nio.channels.ServerSocketChannel
 import scala.util.{Try, Using}
 import skein.policy.PlanarObservation
@@ -107,6 +109,14 @@ class OutsidePolicyLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders
           val reason = intercept[OwnFailure](policy.heading(1, 1, 0, 0, 0, 0, 0.1)).getMessage
           assertEquals(reason, "the policy: expected an answer within 30 ms, came none")
         assert(peer.asked <= 1)
+
+  test("a question that is not read in time is not sent"):
+    val path = temporaryFolder().resolve("policy")
+    Using.resource(ServerSocketChannel.open(StandardProtocolFamily.UNIX)): listener =>
+      listener.bind(UnixDomainSocketAddress.of(path)): Unit
+      Using.resource(ProcessSocket(path.toString, Span.ofMillis(30))): socket =>
+        val reason = intercept[IOException](socket.ask(ByteBuffer.allocate(64 << 20))).getMessage
+        assertEquals(reason, "expected an answer within 30 ms, came none")
 
   test("an address without a process is refused, with what was expected"):
     val nobody = OutsidePolicy.reach("unix:pursuer:/nowhere/policy").left.toOption

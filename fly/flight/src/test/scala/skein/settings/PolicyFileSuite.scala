@@ -2,7 +2,7 @@ package skein.settings
 
 import java.nio.file.{Files, Path}
 import skein.policy.{PaperPursuer, PolicyFamily, Role}
-import skein.scenario.Scenarios
+import skein.scenario.{PaperDuel, Scenarios}
 import skein.testing.TemporaryFolders
 
 class PolicyFileSuite extends munit.FunSuite, TemporaryFolders:
@@ -54,6 +54,34 @@ class PolicyFileSuite extends munit.FunSuite, TemporaryFolders:
     folder.test(s"$what is refused with place and expectation"): folder =>
       val mistake = read(folder, text).left.getOrElse("accepted")
       for part <- expected do assert(mistake.contains(part), mistake)
+
+  test("a policy's text names each of its parameters once, in their order"):
+    def parsed(text: String) = PolicyFile.parse(Role.Pursuer, text).map(_.parameters)
+    assertEquals(parsed("paper-pursuer turnRateRadPerS=1.5"), Right(Vector(1.5)))
+    for wrong <- Seq("", " speed=1.5", " turnRateRadPerS=fast", " turnRateRadPerS=1 turnRateRadPerS=1") do
+      assertEquals(
+        parsed(s"paper-pursuer$wrong"),
+        Left(s"expected turnRateRadPerS=NUMBER after paper-pursuer, came 'paper-pursuer$wrong'")
+      )
+
+  test("it is flown by all agents of its role, and by no other"):
+    val fleet  = PaperDuel().fleet
+    val policy = PolicyFile(Role.Pursuer, PolicyFamily.paperPursuer, Vector(1.5))
+    assertEquals(
+      policy.flownIn(fleet).agents.map(agent => (agent.name, agent.policy)),
+      fleet.agents.map: agent =>
+        (agent.name, if agent.role == Role.Pursuer then PaperPursuer(1.5) else agent.policy)
+    )
+
+  test("a family of one role needs none, and one of both roles needs one of them"):
+    val one  = PolicyFamily.paperPursuer
+    val both = PolicyFamily("either", "", Set(Role.Pursuer, Role.Evader), one.space, one.policy)
+    assertEquals(PolicyFile.roleOf(one, None), Right(Role.Pursuer))
+    assertEquals(PolicyFile.roleOf(both, Some("evader")), Right(Role.Evader))
+    assertEquals(
+      PolicyFile.roleOf(both, None),
+      Left("family either is for pursuer and evader: expected one of them, came none")
+    )
 
   test("a missing file is named"):
     val mistake = PolicyFile.read("no/such/policy.conf").left.getOrElse("accepted")

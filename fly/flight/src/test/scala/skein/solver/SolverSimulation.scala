@@ -71,7 +71,7 @@ class SolverSimulation extends munit.FunSuite, Optimised:
     "decisions are made elsewhere, at the solver's time on the " +
       "controller's clock, and replay from the recording"
   ):
-    val trial = checked(SolverTrial.fly()())
+    val trial = checked(SolverTrial.fly(takes = _ => Span.ofMillis(20))())
     assert(trial.recording.decisions.size > 100)
     assertEquals(trial.events(EventKind.DeadlineMissed), Vector.empty)
     val bySequence = trial.recording.solved.map(one => (one.vehicle, one.decision) -> one).toMap
@@ -79,7 +79,8 @@ class SolverSimulation extends munit.FunSuite, Optimised:
       val one = bySequence((decision.vehicle, decision.sequence))
       assertEqualsDouble(decision.decidedAt.since(one.askedAt).toMillis, 5, 0.01)
       assertEqualsDouble(one.clock.get.offset.toSeconds, 7, 1e-5)
-      assertEqualsDouble(one.roundTrip.toMillis, 10, 1e-9)
+      assertEqualsDouble(one.roundTrip.toMillis, 30, 1e-9)
+      assertEqualsDouble(one.thinking.toMillis, 20, 1e-9)
 
   test("a prediction is made for when a command acts that was decided elsewhere"):
     def ahead(hopMs: Double) =

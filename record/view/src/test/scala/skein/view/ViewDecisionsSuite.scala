@@ -27,3 +27,12 @@ class ViewDecisionsSuite extends munit.FunSuite:
     feed.offer(LaterRow { made += 1; event(6) })
     assertEquals(made, 0)
     assertEquals((feed.poll(), made), (Some(event(6)), 1))
+
+  test("a token is its own word alone, and each drawn one differs"):
+    val token = Token("right")
+    for (said, isRight) <-
+        Seq("right" -> true, "wrong" -> false, "righ" -> false, "right " -> false, "" -> false)
+    do assertEquals(token.is(said), isRight, said)
+    val drawn = Seq.fill(100)(Token.drawn().word)
+    assertEquals(drawn.distinct.size, 100)
+    assert(drawn.forall(_.matches("[0-9a-f]{16}")), drawn.head)

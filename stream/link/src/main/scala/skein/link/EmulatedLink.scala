@@ -12,7 +12,12 @@ import skein.units.*
   *
   * Equal seeds, clocks and orders of connections give equal delays and faults.
   */
-final class EmulatedLink(val profile: LinkProfile, seed: Long, clock: Clock, start: Instant):
+final class EmulatedLink(
+    val profile: LinkProfile,
+    seed: Long,
+    private[link] val clock: Clock,
+    start: Instant
+):
 
   def this(profile: LinkProfile, seed: Long, clock: Clock) = this(profile, seed, clock, clock.now())
 

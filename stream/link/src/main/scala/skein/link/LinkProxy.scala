@@ -1,13 +1,11 @@
 package skein.link
 
-import java.util.concurrent.atomic.AtomicLong
 import org.apache.pekko.{Done, NotUsed}
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.stream.scaladsl.{BidiFlow, Flow, Keep, Sink, Source}
 import org.apache.pekko.stream.{KillSwitches, SharedKillSwitch}
 import org.apache.pekko.util.ByteString
 import scala.concurrent.{ExecutionContext, Future}
-import skein.units.Span
 
 /** Puts an emulated link between clients and a server: it listens, and forwards each connection that it
   * accepts to the server's address, over the link in both directions. A client that connects while the server
@@ -51,18 +49,18 @@ object LinkProxy:
   )(using ActorSystem): Future[LinkProxy] =
     given ExecutionContext = ExecutionContext.parasitic
     val switch             = KillSwitches.shared("link-proxy")
-    val places             = Places(maxConnections, Silence)
-    val numbers            = AtomicLong()
+    val seats              = Seats(maxConnections, link.clock)
 
-    def forward(incoming: Incoming): Unit =
-      val number = numbers.getAndIncrement()
-      val guest  = Crossing(KillSwitches.shared(s"link-proxy-$number"))
-      places.entered(number, guest)
-      val own    = if isDatagrams then Flow[ByteString] else FirstBytes.guard(incoming.from)
-      val client = incoming.flow.via(own).via(guest.noting)
+    def forward(incoming: Incoming, seat: Seats.Seat, own: SharedKillSwitch): Unit =
+      // Data from either side keep the seat.
+      val noting = Flow[ByteString].via(own.flow).map: bytes =>
+        seat.spoke()
+        bytes
+      val first  = if isDatagrams then Flow[ByteString] else FirstBytes.guard(incoming.from)
+      val client = incoming.flow.via(first).via(noting)
       val server = watching
-        .opened(number)
-        .atop(BidiFlow.fromFlows(switch.flow, guest.noting.via(switch.flow)))
+        .opened(seat.number)
+        .atop(BidiFlow.fromFlows(switch.flow, noting.via(switch.flow)))
         .atop(link.connection(TransportError.Lost(to, "the link broke"), isDatagrams))
         .joinMat(transport.connect(to))(Keep.right)
       val (sent, (reached, answered)) = client
@@ -75,12 +73,14 @@ object LinkProxy:
         case _                               => ()
       sent.onComplete: _ =>
         answered.onComplete: _ =>
-          watching.closed(number)
-          places.left(number)
+          watching.closed(seat.number)
+          seat.left()
 
     def accept(incoming: Incoming): Unit =
-      if places.admit() then forward(incoming)
-      else Source.empty[ByteString].via(incoming.flow).runWith(Sink.cancelled): Unit
+      val own = KillSwitches.shared("link-proxy-connection")
+      seats.enter(() => own.shutdown()) match
+        case None       => Source.empty[ByteString].via(incoming.flow).runWith(Sink.cancelled): Unit
+        case Some(seat) => forward(incoming, seat, own)
 
     transport
       .listen(listenAt)
@@ -101,21 +101,3 @@ object LinkProxy:
       def opened(connection: Long): BidiFlow[ByteString, ByteString, ByteString, ByteString, NotUsed] =
         BidiFlow.identity
       def closed(connection: Long): Unit = ()
-
-  private val Silence = Span.ofSeconds(5)
-
-  private final class Crossing(switch: SharedKillSwitch) extends Places.Guest:
-    @volatile private var crossedNs = System.nanoTime()
-    @volatile private var crossed   = false
-
-    /** Records when data arrive from either side. */
-    def noting: Flow[ByteString, ByteString, NotUsed] = Flow[ByteString]
-      .via(switch.flow)
-      .map: bytes =>
-        crossed = true
-        crossedNs = System.nanoTime()
-        bytes
-
-    def hasSpoken: Boolean = crossed
-    def silentFor: Span    = Span.ofNanos(System.nanoTime() - crossedNs)
-    def leave(): Unit      = switch.shutdown()

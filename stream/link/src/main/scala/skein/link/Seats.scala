@@ -11,7 +11,6 @@ import skein.units.{Clock, Instant, Span}
 private[skein] final class Seats(most: Int, private val clock: Clock):
   private val places             = Places(most, Seats.Silent)
   private val numbers            = AtomicLong()
-  private val seated             = AtomicLong()
   private val displaced, refused = AtomicLong()
 
   /** Connections that lost their place to another. */
@@ -20,8 +19,6 @@ private[skein] final class Seats(most: Int, private val clock: Clock):
   /** Connections that were refused for lack of a place. */
   def refusedConnections: Long = refused.get
 
-  def taken: Int = seated.get.toInt
-
   /** A seat for one more connection; None if it must be closed immediately.
     *
     * @param leave closes it when another gets its place; called at most once, on the other's thread
@@ -29,7 +26,6 @@ private[skein] final class Seats(most: Int, private val clock: Clock):
   def enter(leave: () => Unit): Option[Seats.Seat] =
     if places.admit() then
       val seat = Seats.Seat(this, numbers.incrementAndGet(), leave)
-      seated.incrementAndGet(): Unit
       places.entered(seat.number, seat)
       Some(seat)
     else
@@ -41,7 +37,7 @@ private[skein] object Seats:
   val Silent: Span = Span.ofSeconds(5)
 
   /** One connection's seat, until it has `left`. */
-  final class Seat private[Seats] (seats: Seats, private[Seats] val number: Long, close: () => Unit)
+  final class Seat private[Seats] (seats: Seats, private[link] val number: Long, close: () => Unit)
       extends Places.Guest:
     @volatile private var spokeAt = Option.empty[Instant]
     private val cameAt            = seats.clock.now()
@@ -58,5 +54,4 @@ private[skein] object Seats:
 
     /** Frees the seat of a closed connection; to be called once. */
     def left(): Unit =
-      seats.seated.decrementAndGet(): Unit
       seats.places.left(number)

@@ -258,6 +258,20 @@ class MemoryNetworkSuite extends munit.FunSuite:
       yield (answer.utf8String, world.ms())
     assertEquals(at, ("5000", 100 + 50 + 500 + 50 + 0.4))
 
+  test("each lost packet of TCP is counted, and is sent again until it has arrived"):
+    val lossy =
+      LatencyProfile.parse("loss:20%,constant:100ms", Left(_)).fold(wrong => fail(wrong.message), identity)
+    val sent           = ByteString(Array.fill[Byte](100_000)(7))
+    val (came, counts) = in(over(LinkProfile.symmetric(lossy))): world =>
+      for
+        _    <- world.serve(Flow[ByteString])
+        came <- world.ask(sent)
+      yield (came, world.network.counts("controller", "simulator"))
+    assertEquals(came, sent)
+    assert(clue(counts.packetsLost) > 10 && counts.packetsLost == counts.packetsSentAgain, counts)
+    assertEquals((counts.bytesToServer, counts.bytesToClient, counts.bytesLost), (100_000L, 100_000L, 0L))
+    assertEquals((counts.connections, counts.disconnects, counts.duplicates), (1L, 0L, 0L))
+
   test("equal seeds give equal traffic to the nanosecond, different seeds different traffic"):
     val shaky = LinkProfile.symmetric(LatencyProfile.vpn).copy(
       faults = Faults(

@@ -49,3 +49,32 @@ class TlsEngineSuite extends munit.FunSuite:
     engine.setSSLParameters(engine.getSSLParameters)
     assertEquals(own.getSSLParameters.getEndpointIdentificationAlgorithm, "HTTPS")
     assertEquals((engine.getPeerHost, engine.getPeerPort), ("lab", 1))
+
+  test("every other setting is the JDK's engine's, too"):
+    val own    = SSLContext.getDefault.createSSLEngine("lab", 1)
+    val engine = TlsEngine(own)
+    def told   = (of: SSLEngine) =>
+      (
+        (of.getUseClientMode, of.getNeedClientAuth, of.getWantClientAuth, of.getEnableSessionCreation),
+        (of.getEnabledProtocols.toSeq, of.getEnabledCipherSuites.toSeq),
+        (of.getSupportedProtocols.toSeq, of.getSupportedCipherSuites.toSeq),
+        (of.isInboundDone, of.isOutboundDone, of.getHandshakeStatus)
+      )
+    engine.setEnabledProtocols(Array("TLSv1.3"))
+    engine.setEnabledCipherSuites(Array("TLS_AES_128_GCM_SHA256"))
+    assertEquals(own.getEnabledCipherSuites.toSeq, Seq("TLS_AES_128_GCM_SHA256"))
+    assertEquals(own.getEnabledProtocols.toSeq, Seq("TLSv1.3"))
+    for is <- Seq(true, false) do
+      engine.setUseClientMode(is)
+      assertEquals(own.getUseClientMode, is)
+      engine.setNeedClientAuth(is)
+      assertEquals(own.getNeedClientAuth, is)
+      assertEquals(told(engine), told(own))
+      engine.setWantClientAuth(is)
+      assertEquals(own.getWantClientAuth, is)
+      engine.setEnableSessionCreation(is)
+      assertEquals(own.getEnableSessionCreation, is)
+      assertEquals(told(engine), told(own))
+    engine.closeOutbound()
+    assert(own.isOutboundDone)
+    assertEquals(told(engine), told(own))
