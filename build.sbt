@@ -172,7 +172,7 @@ lazy val simulator = project.in(file("vehicles/simulator"))
   .settings(artifact("simulator", "A simulator of quadrotors that speaks AirSim's wire"))
   .dependsOn(scene, autopilot, hil % "compile->compile;test->test", airsim % "compile->compile;test->test")
   .dependsOn(vtime % Test, testing % Test)
-  .settings(underAgent, Test / run / javaOptions ++= Jvm.control, libraryDependencies ++= pekkoTyped ++ munit)
+  .settings(underAgent, Test / run / javaOptions ++= Jvm.control, libraryDependencies ++= re2j +: (pekkoTyped ++ munit))
 
 /** The simulator's vehicles as a part of ROS 2, by the C library of an installed one. */
 lazy val ros = project.in(file("vehicles/ros"))
