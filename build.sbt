@@ -50,7 +50,7 @@ lazy val root =
     .aggregate(core, testing, onnx, flow, link, vtime, vtimeAgent, forward, gpu)
     .aggregate(airsim, mavlink, autopilot, hil, offboard, mujoco, scene, simulator, ros, mcap, record, view)
     .aggregate(flight, kafka, observe, rosbag, torture, environment, learn, recognition, blocks, cluster, cli, python)
-    .aggregate(bench, benchJmh, docs, chase, ownPolicy, ownScenario, ownGraph, ownVehicle, foreignEnvironment, virtualTime)
+    .aggregate(bench, docs, chase, ownPolicy, ownScenario, ownGraph, ownVehicle, foreignEnvironment, virtualTime)
     .settings(publish / skip := true, publishCheck := Publishing.check.value, Installing.settings)
     // The API reference of all parts: .ci/docs.
     .enablePlugins(ScalaUnidocPlugin)
@@ -395,10 +395,6 @@ lazy val bench =
     .dependsOn(cli, mcap)
     .settings(Jvm.vectorModule, underAgent, testsCompute := true, run / javaOptions ++= Jvm.control)
     .settings(publish / skip := true, libraryDependencies ++= munit)
-
-/** By JMH; apart from `bench`, whose classes with vectors its generator cannot load. */
-lazy val benchJmh =
-  project.in(file("bench/jmh")).dependsOn(bench).enablePlugins(JmhPlugin).settings(publish / skip := true)
 
 /** What the README shows: a whole program in a file. */
 lazy val chase = project
