@@ -332,16 +332,8 @@ lazy val cli = project.in(file("app/cli"))
       IO.read((ThisBuild / baseDirectory).value / "project" / "class-archive").trim,
       """addJava "--add-modules=jdk.incubator.vector"""",
       IO.read((ThisBuild / baseDirectory).value / "project" / "quiet-vectors").trim,
-      // The experiment's nine flights of a minute in virtual time, and short ones of any scenario, have landed before
-      // optimising them pays.
-      """brief=""",
-      """case " $* " in""",
-      """  *" plan "*|*" --config"*|*" --pairs"*) ;;""",
-      """  *" --duration"[\ =][0-9]"s "*|*" --duration"[\ =][1-5][0-9]"s "*) brief=1 ;;""",
-      """  *" --duration"*|*" --scenario"*) ;;""",
-      """  *) brief=1 ;;""",
-      """esac""",
-      """case "$brief $* " in 1*" fly"*" --clock"[\ =]"virtual "*) addJava "-XX:TieredStopAtLevel=1" ;; esac""",
+      IO.read((ThisBuild / baseDirectory).value / "project" / "brief-flights").trim,
+      """[ -z "$brief" ] || addJava "$brief"""",
       // Whoever chooses a collector or sizes chooses them all.
       """case "${JAVA_OPTS-} $*" in""",
       """  *-Xm[nsx]*|*-XX:+Use*GC*) ;;""",
