@@ -50,7 +50,7 @@ lazy val root =
     .aggregate(core, testing, onnx, flow, link, vtime, vtimeAgent, forward, gpu)
     .aggregate(airsim, mavlink, autopilot, hil, offboard, mujoco, scene, simulator, ros, mcap, record, view)
     .aggregate(flight, kafka, observe, rosbag, torture, environment, learn, recognition, blocks, cluster, cli, python)
-    .aggregate(bench, benchJmh, docs, chase, ownPolicy, ownScenario, ownGraph, ownVehicle, foreignEnvironment, virtualTime)
+    .aggregate(bench, docs, chase, ownPolicy, ownScenario, ownGraph, ownVehicle, foreignEnvironment, virtualTime)
     .settings(publish / skip := true, publishCheck := Publishing.check.value, Installing.settings)
     // The API reference of all parts: .ci/docs.
     .enablePlugins(ScalaUnidocPlugin)
@@ -172,7 +172,7 @@ lazy val simulator = project.in(file("vehicles/simulator"))
   .settings(artifact("simulator", "A simulator of quadrotors that speaks AirSim's wire"))
   .dependsOn(scene, autopilot, hil % "compile->compile;test->test", airsim % "compile->compile;test->test")
   .dependsOn(vtime % Test, testing % Test)
-  .settings(underAgent, Test / run / javaOptions ++= Jvm.control, libraryDependencies ++= pekkoTyped ++ munit)
+  .settings(underAgent, Test / run / javaOptions ++= Jvm.control, libraryDependencies ++= re2j +: (pekkoTyped ++ munit))
 
 /** The simulator's vehicles as a part of ROS 2, by the C library of an installed one. */
 lazy val ros = project.in(file("vehicles/ros"))
@@ -332,16 +332,8 @@ lazy val cli = project.in(file("app/cli"))
       IO.read((ThisBuild / baseDirectory).value / "project" / "class-archive").trim,
       """addJava "--add-modules=jdk.incubator.vector"""",
       IO.read((ThisBuild / baseDirectory).value / "project" / "quiet-vectors").trim,
-      // The experiment's nine flights of a minute in virtual time, and short ones of any scenario, have landed before
-      // optimising them pays.
-      """brief=""",
-      """case " $* " in""",
-      """  *" plan "*|*" --config"*|*" --pairs"*) ;;""",
-      """  *" --duration"[\ =][0-9]"s "*|*" --duration"[\ =][1-5][0-9]"s "*) brief=1 ;;""",
-      """  *" --duration"*|*" --scenario"*) ;;""",
-      """  *) brief=1 ;;""",
-      """esac""",
-      """case "$brief $* " in 1*" fly"*" --clock"[\ =]"virtual "*) addJava "-XX:TieredStopAtLevel=1" ;; esac""",
+      IO.read((ThisBuild / baseDirectory).value / "project" / "brief-flights").trim,
+      """[ -z "$brief" ] || addJava "$brief"""",
       // Whoever chooses a collector or sizes chooses them all.
       """case "${JAVA_OPTS-} $*" in""",
       """  *-Xm[nsx]*|*-XX:+Use*GC*) ;;""",
@@ -395,10 +387,6 @@ lazy val bench =
     .dependsOn(cli, mcap)
     .settings(Jvm.vectorModule, underAgent, testsCompute := true, run / javaOptions ++= Jvm.control)
     .settings(publish / skip := true, libraryDependencies ++= munit)
-
-/** By JMH; apart from `bench`, whose classes with vectors its generator cannot load. */
-lazy val benchJmh =
-  project.in(file("bench/jmh")).dependsOn(bench).enablePlugins(JmhPlugin).settings(publish / skip := true)
 
 /** What the README shows: a whole program in a file. */
 lazy val chase = project

@@ -26,6 +26,8 @@ object Dependencies {
   // Its class files name Trove (LGPL) where it learns scenes, which nothing here does: without it, tags are
   // found.
   val boofcv        = ("org.boofcv"            % "boofcv-recognition"   % "1.2.2").exclude("net.sf.trove4j", "trove4j")
+  // Regular expressions in time that is linear, whoever wrote them.
+  val re2j          = "com.google.re2j"        % "re2j"                 % "1.8"
   // 1.29.0 ends the JVM on threads with the default stack.
   val onnxruntime   = "com.microsoft.onnxruntime" % "onnxruntime"       % "1.26.0"
   val protobuf      = "com.google.protobuf"    % "protobuf-java"        % "4.33.1"

@@ -115,6 +115,7 @@ object Packaging {
     IO.touch(lib / ".timed")
     val launcher = home / "bin" / "skein"
     val words    = Map(
+      "@BRIEF@"     -> IO.read(sources.getParentFile / "brief-flights").trim,
       "@CONTROL@"   -> Jvm.control.mkString(" "),
       "@OPTIONS@"   -> (Jvm.nativeAccess ++ vectors).mkString(" "),
       "@CLASSPATH@" -> jars.map(jar => s"$$lib/${jar.getName}").mkString(":")

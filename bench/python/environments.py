@@ -1,5 +1,5 @@
-"""Steps a second, beside Gymnasium's own: python bench/python/environments.py; the engine alone, without Python:
-./sbtw 'bench/runMain skein.bench.EnvironmentRates'. With a number: what so many steps take."""
+"""Steps a second, beside Gymnasium's own: python bench/python/environments.py. With a number, how long that many
+steps take; the engine alone, without Python: ./sbtw 'bench/runMain skein.bench.EnvironmentSteps NUMBER'."""
 
 import os
 import resource

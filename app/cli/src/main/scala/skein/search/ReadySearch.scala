@@ -49,14 +49,6 @@ trait ReadySearch:
   /** Evaluators in this process, for one call at a time. */
   def judges(threads: Int): Judge => ValueEvaluator
 
-  /** Statistics of a candidate and of the baseline; None if it was cancelled. */
-  def measured(
-      by: Judge => Evaluator,
-      candidate: Vector[Double],
-      episodes: Range,
-      isCancelled: () => Boolean
-  ): Option[(RunningStats, RunningStats)]
-
   /** A candidate's statistics by the scalar reference; None where that is the engine anyhow, or forward
     * simulation cannot be used.
     */

@@ -5,7 +5,6 @@ import skein.forward.Delays
 import skein.lanes.{Accelerator, DuelBatch, Engine}
 import skein.optimise.{
   DuelEvaluator,
-  Evaluator,
   Objective,
   RunningStats,
   Search,
@@ -162,17 +161,6 @@ final case class SearchSetup(
       case Judge.Winner     => evaluator(flown, many = false)
       case Judge.Baseline   => evaluator(flown, paper.family, many = false)
     judge => each(judge.ordinal)
-
-  def measured(
-      by: Judge => Evaluator,
-      candidate: Vector[Double],
-      episodes: Range,
-      isCancelled: () => Boolean
-  ): Option[(RunningStats, RunningStats)] =
-    for
-      winner <- by(Judge.Winner).talliesUnless(isCancelled)(Vector(candidate), episodes)
-      other  <- by(Judge.Baseline).talliesUnless(isCancelled)(Vector(baseline.candidate), episodes)
-    yield (winner.head, other.head)
 
   def reference(candidate: Vector[Double], episodes: Range): Option[RunningStats] =
     Option.when(flown(Judge.Winner).isFast)(

@@ -99,10 +99,14 @@ object SearchResult:
       episodes: Int,
       isCancelled: () => Boolean = () => false
   ): Option[Found] =
-    val best = state.best.get.candidate
-    ready.measured(by, best, FreshFrom until FreshFrom + episodes, isCancelled).map((fresh, baseline) =>
-      Found(state, best, fresh, baseline)
-    )
+    val best                                           = state.best.get.candidate
+    val fresh                                          = FreshFrom until FreshFrom + episodes
+    def tally(judge: Judge, candidate: Vector[Double]) =
+      by(judge).talliesUnless(isCancelled)(Vector(candidate), fresh).map(_.head)
+    for
+      winner   <- tally(Judge.Winner, best)
+      baseline <- tally(Judge.Baseline, ready.baseline.candidate)
+    yield Found(state, best, winner, baseline)
 
   /** A mean with the half width of its 95 % interval. */
   def interval(tally: RunningStats, unit: String): String =

@@ -4,7 +4,6 @@ import com.typesafe.config.ConfigUtil.quoteString
 import skein.forward.{Delays, Engagement}
 import skein.lanes.{Accelerator, Engine, TeamBatch, TeamCandidate}
 import skein.optimise.{
-  Evaluator,
   RunningStats,
   Search,
   SearchMethod,
@@ -224,17 +223,6 @@ final case class TeamSetup(
     case TeamEngine.Reduced(_, delays) =>
       shares(by, accelerator, asked.engine(candidate(space.defaults), shareEpisodes = false, Seq(delays)))
     case _: TeamEngine.Whole => false
-
-  def measured(
-      by: Judge => Evaluator,
-      candidate: Vector[Double],
-      episodes: Range,
-      isCancelled: () => Boolean
-  ): Option[(RunningStats, RunningStats)] =
-    by(Judge.Winner).talliesUnless(isCancelled)(Vector(candidate, baseline.candidate), episodes).map(
-      tallies =>
-        (tallies(0), tallies(1))
-    )
 
   def reference(candidate: Vector[Double], episodes: Range): Option[RunningStats] = flownBy match
     case TeamEngine.Reduced(conditions, delays)

@@ -1,7 +1,6 @@
 package skein.docs
 
 import java.nio.file.{Files, Path}
-import skein.cli.CommandReference
 import skein.record.RecordingSchema
 
 /** Documentation pages that code generates. */

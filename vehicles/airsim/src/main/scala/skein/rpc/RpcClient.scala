@@ -117,11 +117,6 @@ final class RpcClient(
   def close(): Future[Done] =
     Future.traverse(Vector(control, sensors, bulk))(_.close()).map(_ => Done)
 
-  /** Counts an element that a flow skipped because its call failed. */
-  private[rpc] def skipped(method: String, error: RpcError): Unit =
-    counters.skipped.increment()
-    observer(RpcEvent.Skipped(method, error))
-
   private def read[A: Reader](method: String, value: Msg): Either[RpcError, A] =
     def readAs(trace: Boolean): A =
       val read = upickle.default.readBinary[A](value, trace)

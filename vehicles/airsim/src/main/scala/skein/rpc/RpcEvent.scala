@@ -26,6 +26,3 @@ enum RpcEvent:
 
   /** A value that is no reply; dropped. */
   case Ignored(what: String, channel: Channel, connection: Int)
-
-  /** A flow skipped an element whose call failed. */
-  case Skipped(method: String, error: RpcError)

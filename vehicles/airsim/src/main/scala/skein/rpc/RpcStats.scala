@@ -9,7 +9,6 @@ import java.util.concurrent.atomic.LongAdder
   * @param late replies to calls that had timed out
   * @param unexpected replies to no known call
   * @param ignored values that were no replies
-  * @param skipped elements that flows skipped because their calls failed
   */
 final case class RpcStats(
     called: Long,
@@ -26,7 +25,6 @@ final case class RpcStats(
     late: Long,
     unexpected: Long,
     ignored: Long,
-    skipped: Long,
     connected: Long,
     disconnected: Long
 ):
@@ -36,7 +34,7 @@ final case class RpcStats(
 /** The counters behind [[RpcStats]]; written by all channels, read from any thread. */
 private[rpc] final class RpcCounters:
   val called, sent, answered, refused, timedOut, lost, malformed, overloaded, cancelled, unreachable,
-      sentAgain, late, unexpected, ignored, skipped, connected, disconnected = LongAdder()
+      sentAgain, late, unexpected, ignored, connected, disconnected = LongAdder()
 
   def failed(error: RpcError): Unit = (error match
     case _: RpcError.Timeout        => timedOut
@@ -63,7 +61,6 @@ private[rpc] final class RpcCounters:
     late.sum,
     unexpected.sum,
     ignored.sum,
-    skipped.sum,
     connected.sum,
     disconnected.sum
   )

@@ -2,7 +2,6 @@ package skein.rpc
 
 import java.util.concurrent.LinkedBlockingQueue
 import org.apache.pekko.actor.ActorSystem
-import org.apache.pekko.stream.scaladsl.{Sink, Source}
 import org.apache.pekko.util.ByteString
 import scala.concurrent.Future
 import skein.link.Address
@@ -175,17 +174,3 @@ class RpcClientSuite extends munit.FunSuite:
       assertEquals(first, Left(RpcError.Cancelled("a")))
       assertEquals(second, Left(RpcError.Cancelled("b")))
       assertEquals(r.client.stats.pending, 0L)
-
-  rig("a flow passes over a refused and a late element, counts both, and keeps the order of the others"): r =>
-    val flow = RpcFlow.ordered[Int, Int](r.client, 4, Span.ofMillis(200))(i => RpcCall(s"$i", Seq.empty))
-    val seen = Source(1 to 4).via(flow).map(_.value).runWith(Sink.seq)
-    val peer = r.transport.peer()
-    val ids  = Seq.fill(4)(peer.request()).map(request => request.method -> request.id).toMap
-    peer.answer(ids("4"), Int32(4))
-    peer.refuse(ids("2"), "no")
-    peer.answer(ids("1"), Int32(1))
-    r.await[RpcEvent.Skipped]()
-    time.advance(Span.ofMillis(200))
-    seen.map: values =>
-      assertEquals(values, Seq(1, 4))
-      assertEquals(r.client.stats.skipped, 2L)

@@ -57,8 +57,10 @@ class RpcLiveSuite extends munit.FunSuite:
   test("ten thousand pipelined calls each get their own answer, and a flow keeps their order"):
     withPair: (_, client) =>
       Source(1 to 10_000)
-        .via(RpcFlow.ordered[Int, Int](client, 200, Span.ofSeconds(5))(i => RpcCall("echo", Seq(Int32(i)))))
-        .map(_.value)
+        .mapAsync(200)(i =>
+          client.callStampedAs[Int]("echo", Seq(Int32(i)), CallOptions(whenFull = WhenFull.Wait))
+        )
+        .collect { case Right(answer) => answer.value }
         .runWith(Sink.seq)
         .map: answers =>
           assertEquals(answers, (1 to 10_000).toVector)

@@ -46,28 +46,33 @@ class NamePatternSuite extends munit.FunSuite:
     assert(NamePattern("(.*)*" * 60 + "x").matches("a" * 100 + "x"))
 
   test("an expression that is too large, or takes too much effort for all names, is refused"):
-    assertEquals(refusal("((a{99}){99}){99}"), "the regular expression takes too long")
-    assertEquals(
-      refusal("(" * 200 + ")" * 200),
-      "no regular expression: groups nested too deep at character 51"
-    )
+    for text <- Seq(
+        "((a{99}){99}){99}",
+        "((a{999}\\(){999}\\(){999}",
+        "((a{999}[](]){999}[[:alpha:](]){999}",
+        "(?:(?:a{1,}b{999}){,9}(?:c{999}){999})"
+      )
+    do assertEquals(refusal(text), "the regular expression takes too long", text)
+    val nested = "(" * 200 + ")" * 200
+    assertEquals(refusal(nested), s"no regular expression: groups nested deeper than 50 in '$nested'")
     val pattern = NamePattern("(a?){900}")
     intercept[BadArgument]((1 to 100_000).foreach(_ => pattern.matches("a" * 50)))
 
-  test("an invalid or unsupported expression is reported with the position"):
+  test("an invalid or unsupported expression is reported with the reason"):
     for (text, why) <- Seq(
-        "("      -> "expected ')' at character 2",
-        "a)"     -> "unmatched ')' at character 2",
-        "*"      -> "nothing to repeat before '*' at character 1",
-        "[a"     -> "it ends too soon at character 3",
-        "[b-a]"  -> "a range that ends before it begins at character 5",
-        "a{2,1}" -> "a count that ends before it begins at character 7",
-        "(a)\\1" -> "references to groups are not known here at character 5",
-        "(?=a)"  -> "groups other than ( ) and (?: ) are not known here at character 2",
-        "\\q"    -> "unknown escape '\\q' at character 3",
-        "\\u12"  -> "expected 4 hexadecimal digits at character 5"
+        "("      -> "missing closing )",
+        "a)"     -> "unexpected )",
+        "*"      -> "missing argument to repetition operator",
+        "[a"     -> "missing closing ]",
+        "[b-a]"  -> "invalid character class range",
+        "a{2,1}" -> "invalid repeat count",
+        "(a)\\1" -> "invalid escape sequence",
+        "(?=a)"  -> "invalid or unsupported Perl syntax",
+        "\\q"    -> "invalid escape sequence",
+        "\\u12"  -> "invalid escape sequence",
+        "\\Qa"   -> "invalid escape sequence"
       )
-    do assertEquals(refusal(text), s"no regular expression: $why")
+    do assertEquals(refusal(text), s"no regular expression: $why in '$text'")
 
   test("character classes and escapes are supported"):
     assert(NamePattern("[[:alpha:]_]+\\x41\\u0042[\\d\\-]{2}").matches("ab_AB1-"))

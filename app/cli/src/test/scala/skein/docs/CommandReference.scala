@@ -1,4 +1,6 @@
-package skein.cli
+package skein.docs
+
+import skein.cli.Main
 
 /** All commands with their options as a page of the documentation. */
 object CommandReference:
