@@ -83,7 +83,7 @@ object Packaging {
     zip.close()
   }
 
-  /** Makes the folder.
+  /** Makes the folder, and removes those of other versions. A runtime that was linked before is kept.
     *
     * @param stage
     *   with `lib`
@@ -98,17 +98,24 @@ object Packaging {
       if (status != 0) sys.error(s"${command.mkString(" ")} ended with status $status")
     }
     val (java, lib, runtime) = (s"${sys.props("java.home")}/bin/java", home / "lib", home / "runtime")
-    IO.delete(home)
+    val (linker, remembered) = (sources / "LinkRuntime.java", home.getParentFile / "runtime.txt")
+    val options = Seq("--add-modules", modules.mkString(","), "--strip-debug", "--no-header-files", "--no-man-pages")
+    val wanted  = (IO.read(file(sys.props("java.home")) / "release") +: IO.read(linker) +: options).mkString("\n")
+    val isLinked = runtime.exists && remembered.exists && IO.read(remembered) == wanted
+    IO.delete((home.getParentFile * "skein-*").get.filter(one => one.isDirectory && one != home))
+    IO.delete((home * "*").get.filterNot(isLinked && _ == runtime))
     IO.createDirectory(lib)
     (stage / "lib" * "*.jar").get.foreach(copyJar(_, lib))
     run(home, java, "-XX:+UseSerialGC", "-cp", agent.getPath, "skein.vtime.agent.RewriteJars", lib.getPath)
-    val exports = Seq("internal", "plugin").flatMap(part => Seq("--add-exports", s"jdk.jlink/jdk.tools.jlink.$part=ALL-UNNAMED"))
-    val link    = Seq("--add-modules", modules.mkString(","), "--strip-debug", "--no-header-files", "--no-man-pages")
-    run(
-      home,
-      (java +: "-XX:+UseSerialGC" +: "--add-modules=jdk.jlink" +: exports) ++
-        ((sources / "LinkRuntime.java").getPath +: link) ++ Seq("--output", runtime.getPath): _*
-    )
+    if (!isLinked) {
+      val exports = Seq("internal", "plugin").flatMap(part => Seq("--add-exports", s"jdk.jlink/jdk.tools.jlink.$part=ALL-UNNAMED"))
+      run(
+        home,
+        (java +: "-XX:+UseSerialGC" +: "--add-modules=jdk.jlink" +: exports) ++
+          (linker.getPath +: options) ++ Seq("--output", runtime.getPath): _*
+      )
+      IO.write(remembered, wanted)
+    }
 
     val jars = (lib * "*.jar").get.sortBy(_.getName)
     jars.foreach(_.setLastModified(firstDay))

@@ -4,10 +4,13 @@ import java.nio.file.Path
 import java.util.concurrent.atomic.AtomicInteger
 import mainargs.{Flag, ParserForClass, arg}
 import org.apache.pekko.actor.ActorSystem
+import scala.collection.concurrent.TrieMap
+import scala.util.Try
 import skein.flight.{AirSimFleet, FlightResult, OutsideRequests, VirtualFlights, WarmUp}
 import skein.link.{Address, TcpTransport}
 import skein.forward.Asking
 import skein.loop.{AnyLoop, FlightOutcome}
+import skein.measure.{FlightSet, FlightSummary}
 import skein.record.{ClockKind, DuckDbRecorder}
 import skein.report.{Report, ReportSections, Typed}
 import skein.scenario.Scenarios
@@ -111,6 +114,7 @@ final class FlyCommand(using Scenarios)
         "--clock virtual flies the built-in simulator; not together with --simulator"
       out <- OutFolder.made("--out", options.out.getOrElse(OutFolder.dated("flights")))
       scene = if isShared then Scene.Empty else settings.world.scene
+      known = TrieMap.empty[String, Try[FlightSummary]]
       sinks = RecordOptions.Sinks(options.beside, out, scene)
       flown <- clock match
         case ClockKind.Real =>
@@ -146,12 +150,12 @@ final class FlyCommand(using Scenarios)
               s"flying ${Decimals.counted(plans.size, "flight")} of " +
                 s"${settings.duration.toSeconds.brief} s in virtual time"
             )
-            landed <- flyVirtual(settings, plans, out)
+            landed <- flyVirtual(settings, plans, out)(known.put(_, _): Unit)
             _      <- Expect.all(landed)(one => options.beside.exported(one.plan, out))
           yield LiveCommand.Flown(landed, None)
       unwritten = sinks.failures.map(_ + "; ./skein export makes it of the recording")
       _ <- all(
-        kept(out)(report(flown.landed, out, Shown(options.json.value))),
+        kept(out)(report(flown.landed, known.toMap, out, Shown(options.json.value))),
         Expect.that(unwritten.isEmpty && flown.grounded.isEmpty)((unwritten ++ flown.grounded).mkString("\n"))
       )
     yield ()
@@ -209,16 +213,21 @@ final class FlyCommand(using Scenarios)
         )
         VirtualFlights.fly(settings, due, out)((_, _) => ()).map(flown ++ _)
 
+  /** @param keep a flight's summary under its name: as long as its records are in memory, and while others
+    *   still fly
+    */
   private def flyVirtual(
       settings: FlySettings,
       plans: Vector[FlightPlan],
       out: Path
-  ): Either[String, Vector[FlightResult]] =
+  )(keep: (String, Try[FlightSummary]) => Unit): Either[String, Vector[FlightResult]] =
     val written = AtomicInteger()
     Edge.tellingIfCut(FlyCommand.recorded(written.get, plans.size, out)):
-      VirtualFlights.fly(settings, plans, out): (landed, contents) =>
+      VirtualFlights.fly(settings, plans, out): (landed, recorder) =>
         if landed.written.isRight then written.incrementAndGet(): Unit
-        Console.err.println(s"${landed.plan.id} has ended; SHA-256 of its recording: $contents")
+        val id = landed.plan.id
+        Console.err.println(s"$id has ended; SHA-256 of its recording: ${recorder.digest}")
+        keep(id, Try(FlightSummary.of(recorder.recording)))
 
   /** Names the recordings' folder if the command is ended after the flights. */
   private def kept[A](out: Path)(body: => A): A =
@@ -226,10 +235,21 @@ final class FlyCommand(using Scenarios)
 
   /** Reports on the flights, also after a failed one: its recording is readable to its end. If showing or
     * writing fails, all errors are reported.
+    *
+    * @param known summaries by the flights' names; without all of them, the recordings are read
     */
-  private def report(landed: Vector[FlightResult], out: Path, shown: Shown): Either[String, Unit] =
+  private def report(
+      landed: Vector[FlightResult],
+      known: Map[String, Try[FlightSummary]],
+      out: Path,
+      shown: Shown
+  ): Either[String, Unit] =
+    val read =
+      if landed.forall(flight => known.contains(flight.plan.id)) then
+        Right(FlightSet(landed.map(flight => known(flight.plan.id).get)))
+      else Report.read(landed.map(_.plan.file(out))).left.map(_.map(_.message).mkString("\n"))
     val told =
-      Report.read(landed.map(_.plan.file(out))).left.map(_.map(_.message).mkString("\n")).flatMap: flights =>
+      read.flatMap: flights =>
         shown.tables(ReportSections.of(flights), ReportSections.text(flights))
         val written = Report.write(flights, out).flatMap: output =>
           output.told.foreach(shown.say)

@@ -11,6 +11,9 @@ class LauncherLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders:
   private val checkout =
     Iterator.iterate(File("").getAbsoluteFile)(_.getParentFile).find(File(_, "sbtw").exists).get
 
+  /** Where a build puts the program. */
+  private val program = "app/cli/target/package/skein-1.0-any"
+
   private val copy = FunFixture[Path](
     _ =>
       val folder = temporaryFolder().toRealPath()
@@ -20,9 +23,10 @@ class LauncherLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders:
         folder.resolve(name).toFile.setExecutable(true): Unit
       script(
         folder.resolve("sbtw"),
-        """mkdir -p app/cli/target/universal/stage/bin
-          |printf '#!/usr/bin/env bash\necho "flown from $0: $*"\n' >app/cli/target/universal/stage/bin/skein
-          |chmod +x app/cli/target/universal/stage/bin/skein""".stripMargin
+        s"""echo "sbt $$*"
+           |mkdir -p $program/bin
+           |printf '#!/usr/bin/env bash\necho "flown from $$0: $$*"\n' >$program/bin/skein
+           |chmod +x $program/bin/skein""".stripMargin
       )
       Files.writeString(folder.resolve("build.sbt"), "")
       folder
@@ -56,16 +60,15 @@ class LauncherLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders:
     Files.createSymbolicLink(links.resolve("two"), links.resolve("one"))
     val (status, said) = run(links, Map.empty, "./two", "fly", "--seed 1")
     assertEquals(status, 0, said)
-    assert(clue(said).contains(s"$folder/app/cli/target/universal/stage/bin/skein: fly --seed 1"))
+    assert(clue(said).contains(s"$folder/$program/bin/skein: fly --seed 1"))
 
-  copy.test("an incomplete stage is built again, and a complete one is not"): folder =>
-    val stage = folder.resolve("app/cli/target/universal/stage")
+  copy.test("an incomplete program is built again, and a complete one is not"): folder =>
     script(
       folder.resolve("sbtw"),
-      """mkdir -p app/cli/target/universal/stage/bin app/cli/target/universal/stage/lib
-        |printf '#!/usr/bin/env bash\necho flown\n' >app/cli/target/universal/stage/bin/skein
-        |chmod +x app/cli/target/universal/stage/bin/skein
-        |touch app/cli/target/universal/stage/lib/one.jar app/cli/target/universal/stage/lib/other.jar""".stripMargin
+      s"""mkdir -p $program/bin $program/lib $program/runtime/bin
+         |printf '#!/usr/bin/env bash\necho flown\n' >$program/bin/skein
+         |chmod +x $program/bin/skein
+         |touch $program/lib/one.jar $program/lib/other.jar $program/lib/skein.aot $program/runtime/bin/java""".stripMargin
     )
     def started() =
       val (status, said) = run(folder, Map.empty, "./skein", "fly")
@@ -73,30 +76,25 @@ class LauncherLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders:
       said.contains("building")
     assert(started())
     assert(!started())
-    for taken <- Seq("bin/skein", "lib/other.jar") do
-      Files.delete(stage.resolve(taken))
+    for taken <- Seq("bin/skein", "lib/other.jar", "lib/skein.aot", "runtime/bin/java") do
+      Files.delete(folder.resolve(program).resolve(taken))
       assert(started(), taken)
       assert(!started(), taken)
 
-  copy.test("a build makes a flight first, and prints once what is always the same"): folder =>
-    val said = folder.resolve("app/cli/target/universal/stage/answers")
-    assertEquals(run(folder, Map.empty, "./skein", "fly")._1, 0)
-    assertEquals(said.toFile.list.toSet, Set("version", "help", "bash", "zsh"))
-    val log = Files.readString(folder.resolve("target/build.log"))
-    assert(clue(log).contains("stage/bin/skein: fly --clock virtual"))
-    Files.writeString(said.resolve("bash"), "completes\n")
-    Files.writeString(said.resolve("help"), "helps\n")
-    for (words, answer) <-
-        Seq(Seq("completion", "bash") -> "completes\n", Seq("--help") -> "helps\n", Nil -> "helps\n")
-    do
-      assertEquals(run(folder, Map.empty, ("./skein" +: words)*), (0, answer))
-    assert(clue(run(
-      folder,
-      Map.empty,
-      "./skein",
-      "fly",
-      "--help"
-    )._2).endsWith("stage/bin/skein: fly --help\n"))
+  copy.test("the program is built with its runtime and its cache, and of a new version after an old one"):
+    folder =>
+      assertEquals(run(folder, Map.empty, "./skein", "fly")._1, 0)
+      assertEquals(Files.readString(folder.resolve("target/build.log")), "sbt cli/program\n")
+      script(
+        folder.resolve("sbtw"),
+        s"""rm -r $program
+         |mkdir -p ${program}er/bin
+         |printf '#!/usr/bin/env bash\necho newer\n' >${program}er/bin/skein
+         |chmod +x ${program}er/bin/skein""".stripMargin
+      )
+      Files.delete(folder.resolve(program).resolve("bin/skein"))
+      assert(clue(run(folder, Map.empty, "./skein", "fly")._2).endsWith("newer\n"))
+      assertEquals(run(folder, Map.empty, "./skein", "fly"), (0, "newer\n"))
 
   copy.test("it is started without HOME"): folder =>
     val (status, said) = run(folder, Map("HOME" -> ""), "./skein", "--help")

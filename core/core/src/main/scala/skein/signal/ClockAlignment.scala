@@ -21,7 +21,7 @@ import skein.units.Decimals.fixed
   *
   * @param lower the offset is at least this
   * @param upper the offset is at most this
-  * @param latest bounds from single readings, the newest last
+  * @param latest bounds from single readings
   * @param validAt the simulator's time of the newest reading
   * @param receivedAt when the newest reading arrived
   * @param standsStill whether the simulator's clock did not advance between the last two readings
@@ -32,7 +32,7 @@ import skein.units.Decimals.fixed
 final case class ClockAlignment private (
     lower: Span,
     upper: Span,
-    latest: Vector[ClockAlignment.Bounds],
+    private val latest: NewestBounds,
     validAt: Instant,
     receivedAt: Instant,
     standsStill: Boolean,
@@ -40,12 +40,9 @@ final case class ClockAlignment private (
     since: Instant,
     former: Vector[ClockAlignment]
 ):
-  import ClockAlignment.{FormerRuns, Memory, Tick, drift, lowQuartile}
+  import ClockAlignment.{FormerRuns, Tick, drift}
 
-  lazy val offset: Span =
-    val toSimulator   = lowQuartile(latest)(bounds => Span.Zero - bounds.lower)
-    val fromSimulator = lowQuartile(latest)(_.upper)
-    ((fromSimulator - toSimulator) / 2).max(lower).min(upper)
+  val offset: Span = (Span.ofNanos(latest.quartileFrom - latest.quartileTo) / 2).max(lower).min(upper)
 
   /** Half width of the interval that contains the offset. */
   def uncertainty: Span = (offset - lower).max(upper - offset)
@@ -97,7 +94,7 @@ final case class ClockAlignment private (
         copy(
           lower = least,
           upper = most,
-          latest = (latest ++ one.latest).takeRight(Memory),
+          latest = latest.updated(ClockAlignment.boundsOf(reading)),
           validAt = validAt.max(reading.validAt),
           receivedAt = receivedAt.max(reading.receivedAt)
         )
@@ -149,11 +146,11 @@ object ClockAlignment:
   val Tick: Span = Span.ofMillis(9)
 
   def of(reading: Stamped[?]): ClockAlignment =
-    val bounds = Bounds(reading.sentAt.since(reading.validAt), reading.receivedAt.since(reading.validAt))
+    val bounds = boundsOf(reading)
     ClockAlignment(
       bounds.lower,
       bounds.upper,
-      Vector(bounds),
+      NewestBounds.of(bounds),
       reading.validAt,
       reading.receivedAt,
       standsStill = false,
@@ -162,18 +159,9 @@ object ClockAlignment:
       former = Vector.empty
     )
 
+  private def boundsOf(reading: Stamped[?]): Bounds =
+    Bounds(reading.sentAt.since(reading.validAt), reading.receivedAt.since(reading.validAt))
+
   /** The most that two clocks drift apart between two instants. */
   private def drift(since: Instant, until: Instant): Span =
     Span.ofNanos(math.ceil(until.since(since).max(Span.Zero).toNanos * MaxDrift).toLong)
-
-  /** Sorts primitive numbers, not objects: it runs at every reading, and boxing would take a tenth of a
-    * virtual flight.
-    */
-  private inline def lowQuartile(latest: Vector[Bounds])(inline leg: Bounds => Span): Span =
-    val nanos = new Array[Long](latest.size)
-    var index = 0
-    while index < nanos.length do
-      nanos(index) = leg(latest(index)).toNanos
-      index += 1
-    java.util.Arrays.sort(nanos)
-    Span.ofNanos(nanos((nanos.length - 1) / 4))

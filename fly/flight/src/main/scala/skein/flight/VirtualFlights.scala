@@ -9,7 +9,7 @@ import skein.link.{Address, LinkProfile, MemoryNetwork, NetworkPlan}
 import skein.loop.{AnyLoop, FlightOutcome, LoopKind}
 import skein.measure.{FlightSummary, RecordedTracks}
 import skein.units.OwnFailure
-import skein.record.{Digest, MemoryRecorder}
+import skein.record.MemoryRecorder
 import skein.scenario.{Result, Scenario, Scenarios, Tracks}
 import skein.settings.{FlightPlan, FlySettings, RecordedPlan, SolverChoice}
 import skein.signal.LatencyProfile
@@ -24,15 +24,15 @@ object VirtualFlights:
 
   /** Simulates all flights, in parallel on all cores, and writes a recording of each into `folder`. Blocks.
     *
-    * @param onLanded called with each flight when it has ended, and with the digest of its recording
+    * @param onLanded called with each flight when it has ended, on its thread, and with its records
     * @return Left states which of them failed, and why; the recordings of the others are written
     */
   def fly(settings: FlySettings, plans: Vector[FlightPlan], folder: Path)(
-      onLanded: (FlightResult, Digest) => Unit
+      onLanded: (FlightResult, MemoryRecorder) => Unit
   ): Either[String, Vector[FlightResult]] =
     val (missing, landed) = inParallel(settings, plans): flown =>
       val landed = flown.landed.copy(written = flown.recorder.writeTo(flown.landed.plan.file(folder)))
-      onLanded(landed, flown.recorder.digest)
+      onLanded(landed, flown.recorder)
       landed
     .partitionMap(identity)
     Either.cond(missing.isEmpty, landed, NotFlown.message(missing, plans.size))

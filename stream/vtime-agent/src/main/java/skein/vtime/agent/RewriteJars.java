@@ -1,16 +1,19 @@
 package skein.vtime.agent;
 
 import java.io.IOException;
+import java.io.UncheckedIOException;
 import java.net.MalformedURLException;
 import java.net.URL;
 import java.net.URLClassLoader;
 import java.nio.file.Files;
 import java.nio.file.Path;
 import java.nio.file.StandardCopyOption;
+import java.util.Collections;
+import java.util.HashMap;
 import java.util.List;
 import java.util.stream.Stream;
 import java.util.zip.ZipEntry;
-import java.util.zip.ZipInputStream;
+import java.util.zip.ZipFile;
 import java.util.zip.ZipOutputStream;
 
 /**
@@ -36,27 +39,41 @@ public final class RewriteJars {
     // Stack map frames are recomputed, which needs the class hierarchy.
     try (var classes = new URLClassLoader(jars.stream().map(RewriteJars::url).toArray(URL[]::new))) {
       var rewriter = new Rewriter(Rewriter.PACKAGES, RewriteJars::fail);
-      for (var jar : jars) rewrite(jar, rewriter, classes);
+      jars.parallelStream().forEach(jar -> rewrite(jar, rewriter, classes));
     }
   }
 
-  /** Rewrites a jar; one without any class to rewrite stays as it is. */
-  private static void rewrite(Path jar, Rewriter rewriter, ClassLoader classes) throws IOException {
-    var rewritten = jar.resolveSibling(jar.getFileName() + ".rewritten");
-    var hasChanged = false;
-    try (var in = new ZipInputStream(Files.newInputStream(jar));
-        var out = new ZipOutputStream(Files.newOutputStream(rewritten))) {
-      for (var entry = in.getNextEntry(); entry != null; entry = in.getNextEntry()) {
-        var name = entry.getName();
-        var before = in.readAllBytes();
-        var after = name.endsWith(".class") ? rewrite(name, before, rewriter, classes) : before;
-        hasChanged |= after != before || name.equals(AGENT);
-        write(out, name, entry.getTime(), after);
-        if (name.equals(AGENT)) write(out, DRAWS, entry.getTime(), Rewriter.DRAWS_CLASS);
+  /** Rewrites a jar; one without any class to rewrite stays as it is, and is not compressed again. */
+  private static void rewrite(Path jar, Rewriter rewriter, ClassLoader classes) {
+    try {
+      var rewritten = jar.resolveSibling(jar.getFileName() + ".rewritten");
+      try (var zip = new ZipFile(jar.toFile())) {
+        var changed = new HashMap<String, byte[]>();
+        for (var entry : Collections.list(zip.entries())) {
+          if (!entry.getName().endsWith(".class")) continue;
+          var before = read(zip, entry);
+          var after = rewrite(entry.getName(), before, rewriter, classes);
+          if (after != before) changed.put(entry.getName(), after);
+        }
+        if (changed.isEmpty() && zip.getEntry(AGENT) == null) return;
+        try (var out = new ZipOutputStream(Files.newOutputStream(rewritten))) {
+          for (var entry : Collections.list(zip.entries())) {
+            var bytes = changed.get(entry.getName());
+            write(out, entry.getName(), entry.getTime(), bytes == null ? read(zip, entry) : bytes);
+            if (entry.getName().equals(AGENT)) write(out, DRAWS, entry.getTime(), Rewriter.DRAWS_CLASS);
+          }
+        }
       }
+      Files.move(rewritten, jar, StandardCopyOption.REPLACE_EXISTING);
+    } catch (IOException failure) {
+      throw new UncheckedIOException("cannot rewrite " + jar, failure);
     }
-    if (hasChanged) Files.move(rewritten, jar, StandardCopyOption.REPLACE_EXISTING);
-    else Files.delete(rewritten);
+  }
+
+  private static byte[] read(ZipFile zip, ZipEntry entry) throws IOException {
+    try (var in = zip.getInputStream(entry)) {
+      return in.readAllBytes();
+    }
   }
 
   private static byte[] rewrite(String name, byte[] bytes, Rewriter rewriter, ClassLoader classes) {
