@@ -1,6 +1,5 @@
 package skein.search
 
-import com.typesafe.config.ConfigUtil.quoteString
 import skein.forward.Delays
 import skein.lanes.{Accelerator, DuelBatch, Engine}
 import skein.optimise.{
@@ -190,27 +189,14 @@ final case class SearchSetup(
 
   /** The found policy as a policy file: its name and its text. */
   def file(found: Found): (String, String) =
-    val eye     = question.conditions.eye.fold("")(file => s"  eye = ${quoteString(file)}\n")
     val remarks =
       SearchResult.objective(text, unit, found.fresh, baseline.name, found.baseline) +
-        s"""found {
-           |  by = "./skein search"
-           |  complete = ${found.state.isDone}
-           |  method = ${question.method}
-           |  loop = ${question.conditions.loop}
-           |  movesInFlight = ${question.conditions.movesInFlight}
-           |  periodMs = ${question.conditions.periodMs}
-           |  link = ${quoteString(question.link)}
-           |  plant = ${quoteString(question.conditions.plant)}
-           |  vehicles = ${quoteString(conditions.vehicle.description)}
-           |$eye  opponent = ${quoteString(question.opponent)}
-           |  altitudeM = ${question.conditions.altitudeM}
-           |  durationS = ${question.conditions.durationS}
-           |  candidates = ${question.candidates}
-           |  episodesEach = ${question.episodes}
-           |  population = ${question.population}
-           |  episodesFlown = ${found.state.flown}
-           |  seed = ${question.seed}
-           |}
-           |""".stripMargin
+        SearchResult.question(
+          "found",
+          question,
+          "by"            -> "./skein search",
+          "complete"      -> found.state.isDone,
+          "vehicles"      -> conditions.vehicle.description,
+          "episodesFlown" -> found.state.flown.toDouble
+        )
     "policy.conf" -> policy(found.best).hocon(remarks)

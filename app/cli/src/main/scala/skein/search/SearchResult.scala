@@ -1,12 +1,14 @@
 package skein.search
 
 import com.typesafe.config.ConfigUtil.quoteString
+import com.typesafe.config.{ConfigFactory, ConfigRenderOptions}
 import skein.lanes.Engine
 import skein.optimise.{Evaluator, RunningStats, SearchState}
 import skein.policy.SearchSpace
 import skein.report.{Section, TextTable}
 import skein.units.Decimals.significant
 import skein.units.Interval
+import upickle.default.{Writer, writeJs}
 
 /** A search's result, for the terminal and as a table. */
 final case class SearchResult(ready: ReadySearch, found: Found):
@@ -111,6 +113,20 @@ object SearchResult:
   /** A mean with the half width of its 95 % interval. */
   def interval(tally: RunningStats, unit: String): String =
     s"${Interval.of(tally.mean, tally.halfWidth95).text} $unit".trim
+
+  /** The last remarks of a policy file: the question that its policy answers, as it is stored, with its
+    * conditions beside it.
+    *
+    * @param how it was answered, in place of fields of these names
+    */
+  def question[Q: Writer](name: String, asked: Q, how: (String, ujson.Value)*): String =
+    val fields     = writeJs(asked).obj
+    val conditions = fields.remove("conditions").toVector.flatMap(_.obj)
+    ConfigFactory
+      .parseString(ujson.Obj.from(fields.toVector ++ conditions ++ how).render())
+      .atKey(name)
+      .root
+      .render(ConfigRenderOptions.defaults.setOriginComments(false).setJson(false))
 
   /** The first remarks of a policy file: its policy's result, and the paper's. */
   def objective(

@@ -1,6 +1,5 @@
 package skein.training
 
-import com.typesafe.config.ConfigUtil.quoteString
 import skein.optimise.{Evaluator, RunningStats}
 import skein.plot.Drawing
 import skein.report.{Section, TextTable}
@@ -92,28 +91,14 @@ object LearnResult:
     state.best.map(best => file(setup, state, setup.policy(best.weights), ""))
 
   private def file(setup: LearnSetup, state: LearnState, policy: PolicyFile, measured: String): String =
-    import setup.question
-    val scenario =
-      (ScenarioText.called(question.scenario) +: question.set.toVector.sorted.map((key, value) =>
-        s"$key=$value"
-      )).mkString(" ")
     policy.hocon(
-      measured +
-        s"""learned {
-           |  by = "./skein learn"
-           |  complete = ${state.rounds == setup.rounds}
-           |  algorithm = ${question.algorithm}
-           |  loop = ${question.conditions.loop}
-           |  movesInFlight = ${question.conditions.movesInFlight}
-           |  periodMs = ${question.conditions.periodMs}
-           |  link = ${quoteString(question.link)}
-           |  plant = ${quoteString(question.conditions.plant)}
-           |  scenario = ${quoteString(scenario)}
-           |  opponent = ${quoteString(question.opponent)}
-           |  altitudeM = ${question.conditions.altitudeM}
-           |  steps = ${state.rounds * setup.stepsOfRound}
-           |  stepsOfBest = ${state.best.fold(0L)(_.steps)}
-           |  seed = ${question.seed}
-           |}
-           |""".stripMargin
+      measured + SearchResult.question(
+        "learned",
+        setup.question,
+        "by"          -> "./skein learn",
+        "complete"    -> (state.rounds == setup.rounds),
+        "scenario"    -> ScenarioText.called(setup.question.scenario),
+        "steps"       -> (state.rounds * setup.stepsOfRound).toDouble,
+        "stepsOfBest" -> state.best.fold(0.0)(_.steps.toDouble)
+      )
     )
