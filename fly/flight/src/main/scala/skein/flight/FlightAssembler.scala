@@ -111,7 +111,7 @@ final class FlightAssembler(
     val starting =
       for
         server <- serve(plan.seed)
-        _       = server.foreach(opened.closing(_)(_.close()))
+        _         = server.foreach(opened.closing(_)(_.close()))
         isAirSims = simulator.isDefined && settings.wire == Wire.AirSim
         monitor   = FlightMonitor(
           recorder,

@@ -36,10 +36,10 @@ final class FlightMonitor(
 
   def offer(record: Recordable): Unit =
     record match
-      case decision: LaterDecision                              => decided(decision)
-      case reading: ReadingRow                                  => read(reading)
-      case move: CommandRow                                     => moved(move.vehicle)(_.sent(move))
-      case move: Acknowledgement                                =>
+      case decision: LaterDecision => decided(decision)
+      case reading: ReadingRow     => read(reading)
+      case move: CommandRow        => moved(move.vehicle)(_.sent(move))
+      case move: Acknowledgement   =>
         movesLast.foreach(lasts => moved(move.vehicle)(_.ended(move, lasts)))
       case event: Event if event.kind == EventKind.Disconnected => lastBroken = Some(event)
       case _                                                    => ()

@@ -8,7 +8,8 @@ import skein.units.{Instant, Span}
   * the other one was a stranger's. Pure.
   *
   * @param newest sequence and time of the flight's newest move of the vehicle
-  * @param replaced whether a stranger's move replaced each of the [[ForeignMoves.Judged]] moves that ended last
+  * @param replaced whether a stranger's move replaced each of the [[ForeignMoves.Judged]] moves that ended
+  *   last
   */
 private[flight] final case class ForeignMoves(
     newest: Option[(Long, Instant)] = None,

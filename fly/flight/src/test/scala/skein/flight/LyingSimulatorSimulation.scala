@@ -182,7 +182,7 @@ class LyingSimulatorSimulation extends munit.FunSuite, Unhurried:
 
   /** Moves the pursuer ten times a second, for three seconds. */
   private def moves(client: AirSimClient)(using system: ActorSystem): Future[Any] =
-    val pursuer                           = Multirotor(client, "Pursuer")
+    val pursuer                        = Multirotor(client, "Pursuer")
     def again(left: Int): Future[Unit] =
       pursuer.moveByVelocity(Vector3(5, 0, 0), Span.ofSeconds(1)): Unit
       if left == 0 then Future.unit else after(Span.ofMillis(100).toDuration)(again(left - 1))
@@ -201,7 +201,7 @@ class LyingSimulatorSimulation extends munit.FunSuite, Unhurried:
       CommandRow(number, "A", None, MetresPerSecond(0), MetresPerSecond(0), Metres(0), at(100.0 * number))
     def end(number: Int, ms: Double) =
       Acknowledgement("A", number, at(ms), CommandOutcome.Superseded)
-    val lasts                                                   = Span.ofSeconds(1)
+    val lasts                                                         = Span.ofSeconds(1)
     def flown(end: (Int, ForeignMoves) => ForeignMoves): ForeignMoves =
       (0 until 20).foldLeft(ForeignMoves())((moves, number) => end(number, moves.sent(move(number))))
     val own = flown((number, moves) => moves.ended(end(number - 1, 100.0 * number + 40), lasts))

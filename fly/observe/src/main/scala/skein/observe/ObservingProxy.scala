@@ -37,7 +37,7 @@ final class ObservingProxy private (
   /** Accepts no more connections, closes the open ones, and analyses what has passed until now. */
   def close(): Future[Done] =
     given ExecutionContext = ExecutionContext.parasitic
-    val looked = Promise[Done]()
+    val looked             = Promise[Done]()
     proxy.close().flatMap: _ =>
       looking.add(Piece.End(() => looked.success(Done): Unit))
       looked.future
