@@ -128,14 +128,6 @@ final case class ClockAlignment private (
 
 object ClockAlignment:
 
-  final case class Bounds(lower: Span, upper: Span)
-
-  /** Number of readings from which the estimate between the bounds is made: more of them estimate a quartile
-    * better, fewer follow drifting clocks sooner. At 20 a second, clocks that differ by 50 parts in a million
-    * are followed within 0.5 ms.
-    */
-  val Memory = 384
-
   /** Number of earlier runs of the simulator that are kept: more cannot end within the time of one answer. */
   val FormerRuns = 4
 
@@ -159,8 +151,8 @@ object ClockAlignment:
       former = Vector.empty
     )
 
-  private def boundsOf(reading: Stamped[?]): Bounds =
-    Bounds(reading.sentAt.since(reading.validAt), reading.receivedAt.since(reading.validAt))
+  private def boundsOf(reading: Stamped[?]) =
+    NewestBounds.Bounds(reading.sentAt.since(reading.validAt), reading.receivedAt.since(reading.validAt))
 
   /** The most that two clocks drift apart between two instants. */
   private def drift(since: Instant, until: Instant): Span =
