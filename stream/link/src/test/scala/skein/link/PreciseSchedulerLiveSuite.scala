@@ -70,10 +70,18 @@ class PreciseSchedulerLiveSuite extends munit.FunSuite, Timing:
         def run(): Unit                = fail("ran after cancel")
         override def cancelled(): Unit = told = true
     )
+    assert(!task.isCancelled)
     assert(task.cancel())
     assert(!task.cancel())
     assert(task.isCancelled)
     after(40.millis)(assert(told))
+
+  test("a task that has run is not cancelled, and cannot be any more"):
+    val done = Promise[Unit]()
+    val task = scheduler.scheduleOnce(1.milli)(done.success(()): Unit)
+    for _ <- done.future yield
+      assert(!task.cancel())
+      assert(!task.isCancelled)
 
   test("a repeated task stops when cancelled, even by itself"):
     val runs = AtomicInteger()

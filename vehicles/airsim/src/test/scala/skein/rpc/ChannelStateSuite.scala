@@ -15,6 +15,7 @@ class ChannelStateSuite extends munit.FunSuite:
     val sent       = mutable.Buffer.empty[Call]
     val usedInTurn = mutable.Buffer.empty[Int]
     val ends       = mutable.Map.empty[String, Either[RpcError, Msg | Received]]
+    val times      = mutable.Map.empty[String, (Instant, Instant)]
     val reconnects = mutable.Buffer.empty[(Int, Span)]
     val events     = mutable.Buffer.empty[RpcEvent]
     val state      = ChannelState(skein.rpc.Channel.Control, address, settings, counters, () => 0.0, this)
@@ -27,6 +28,7 @@ class ChannelStateSuite extends munit.FunSuite:
     def end(call: Call, outcome: Either[RpcError, TimedReply[Msg | Received]]): Unit =
       assert(!ends.contains(call.method), s"${call.method} ended twice")
       ends(call.method) = outcome.map(_.value)
+      for reply <- outcome do times(call.method) = (reply.sentAt, reply.receivedAt)
     def reconnect(connection: Int, after: Span): Unit = reconnects += connection -> after
     def observe(event: RpcEvent): Unit                = events += event
 
@@ -70,6 +72,14 @@ class ChannelStateSuite extends munit.FunSuite:
     assertEquals(l.sentNames, Seq.empty)
     l.open(1)
     assertEquals(l.sentNames, Seq("a", "b"))
+
+  test("an answer has the times of its request's sending and of its receipt"):
+    val l = channel()
+    l.open(1)
+    l.submit("a")
+    l.sent.head.sentAt = ms(3)
+    l.reply("a", at = 8)
+    assertEquals(l.times("a"), (ms(3), ms(8)))
 
   test("a call without a key goes where the fewest are in flight, in rotation among equals"):
     val l = channel(connections = 3, inAll = 9)

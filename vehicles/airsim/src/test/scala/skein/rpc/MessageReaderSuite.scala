@@ -32,6 +32,20 @@ class MessageReaderSuite extends munit.FunSuite:
     assert(binary.buffer.isReadOnly)
     intercept[IndexOutOfBoundsException](binary(3))
 
+  test("binary and strings of every form are read whole, up to the last byte of a message"):
+    for length <- Seq(0, 1, 31, 32, 255, 256, 65535, 65536) do
+      val bytes = Array.fill[Byte](length)('a')
+      for value <- Seq(Binary(bytes), Str("a" * length)) do
+        assertEquals(read(Wire.pack(value))(_.binary().toArray.sameElements(bytes)), Right(true), s"$length")
+
+  test("a map of more fields than bytes are left for is refused before any is read"):
+    for head <- Seq(Array(0xde, 0, 5), Array(0xdf, 0, 0, 0, 5)) do
+      val map = (head ++ Array.fill(9)(0xc0)).map(_.toByte)
+      assertEquals(
+        read(map)(_.fields { case other => fail(other) }),
+        Left("expected 5 more values or bytes, came 9 bytes")
+      )
+
   test("an unexpected value is reported with its field"):
     val map = Wire.pack(Obj(Str("width") -> Str("wide")))
     assertEquals(

@@ -32,6 +32,13 @@ class RpcMessageSuite extends munit.FunSuite:
       val ours = writer.take().toArray.drop(4)
       assertEquals(ours.toSeq, Wire.pack(Int64(edge)).toSeq, s"$edge")
 
+  test("binary and strings take their shortest form at every boundary"):
+    for length <- Seq(0, 1, 31, 32, 255, 256, 65535, 65536) do
+      for value <- Seq(Binary(Array.fill[Byte](length)(7)), Str("a" * length)) do
+        val writer = MessageWriter()
+        writer.reply(0, Right(value))
+        assertEquals(writer.take().toArray.drop(4).toSeq, Wire.pack(value).toSeq, s"$length")
+
   test("messages written together are taken together, once"):
     val writer = MessageWriter()
     writer.request(1, "a", Seq(Binary(new Array[Byte](100_000))))
