@@ -135,7 +135,10 @@ object Packaging {
     val program   = (runtime / "bin" / "java").getPath +: (Jvm.nativeAccess ++ vectors ++ Jvm.control) :+ "-cp" :+ classPath
     IO.withTemporaryDirectory { folder =>
       val cache = program :+ s"-XX:AOTCacheOutput=${lib / "skein.aot"}"
-      run(folder, cache :+ "skein.cli.Rehearsal" :+ (sources / "rehearsed").getPath: _*)
+      // What a busy machine did not fly is slower to start, no more.
+      val status = Process(cache :+ "skein.cli.Rehearsal" :+ (sources / "rehearsed").getPath, folder).!(log)
+      if (status != 0) log.warn("not all commands of the rehearsal ended well")
+      if (!(lib / "skein.aot").exists) sys.error("the rehearsal made no ahead-of-time cache")
     }
     for (words <- Seq("--version", "--help", "completion bash", "completion zsh")) {
       val answer = lib / "answers" / words.split("[ -]+").last
