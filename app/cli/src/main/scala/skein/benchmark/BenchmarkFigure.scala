@@ -70,7 +70,7 @@ object BenchmarkFigure:
         rows.map(_.cell.world.name).distinct.map(panel) :+ legend*
     )
 
-  /** A row of the table, at the origin. */
+  /** The marks of one row of the table; their top left corner is the origin. */
   private def cell(row: BenchmarkRow): Vector[Mark] =
     val (right, bottom) = (cellWidth - 2, cellHeight - 2)
     val middle          = Point(right / 2, bottom - 5)

@@ -80,7 +80,7 @@ object Theme:
   val labelSize = 11.0
   val titleSize = 12.0
 
-  /** Width of a letter of a title, estimated. */
+  /** Estimated width of a letter of a title, in CSS pixels. */
   val titleLetter = 7.5
 
   val titleColour: Colour = Colour(0x1a1a1a)

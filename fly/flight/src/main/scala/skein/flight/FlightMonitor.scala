@@ -13,7 +13,7 @@ import skein.units.*
   *   the controller's
   * @param hasPlaces whether readings are the vehicles' true places, which other clients may change, so that
   *   implausible displacements are detected: an autopilot's estimates may jump
-  * @param movesLast duration of the flight's moves, where the simulator tells which of them others replaced,
+  * @param movesLast duration of the flight's moves, where the simulator says which of them others replaced,
   *   so that other clients' moves are detected
   */
 final class FlightMonitor(

@@ -93,7 +93,7 @@ object LinkProxy:
     /** A connection was accepted: its bytes to the server and back pass through this, unchanged. */
     def opened(connection: Long): BidiFlow[ByteString, ByteString, ByteString, ByteString, NotUsed]
 
-    /** Nothing more passes in either direction. */
+    /** Called once, when nothing more passes in either direction. */
     def closed(connection: Long): Unit
 
   object Watching:
