@@ -378,6 +378,7 @@ object DocumentedCommands:
     "torture --workers 2"                                               -> classOf[ElsewhereLiveSuite],
     "fly --ros --loop predictive --link none --link vpn --duration 60s" -> classOf[FlyRosSuite],
     "benchmark"                                                         -> classOf[BenchmarkSimulation],
+    "benchmark --policy FILE"                                           -> classOf[BenchmarkSimulation],
     "serve --ros"                                                       -> classOf[ServeRosSuite],
     "serve --ros --settings three.json"                                 -> classOf[ServeRosSuite],
     "serve --ros --settings three.json --speed 10"                      -> classOf[ServeRosSuite],
