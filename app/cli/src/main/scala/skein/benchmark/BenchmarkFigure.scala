@@ -54,7 +54,7 @@ object BenchmarkFigure:
       yield Mark.Text(at, link, Theme.tickSize, upwards = true)
     val legend = Legend(
       left,
-      Vector(0.0, 5, 20, MostOff).map(off =>
+      Vector(5.0, 20, MostOff).map(off =>
         Legend.box(if off == MostOff then "50 % and more" else s"${off.toInt} %", colours.of(off))
       ) :+ Legend.line("breaks limits that the truth keeps", broken)*
     )
