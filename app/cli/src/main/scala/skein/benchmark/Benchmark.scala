@@ -23,9 +23,9 @@ final class Benchmark(set: BenchmarkSet, seeds: Int)(using Scenarios):
   val notFlown: Vector[String] =
     refused.map((task, entry, why) => s"${entry.name} does not fly ${task.name}: $why").distinct
 
-  /** Why a policy of one's own flies in no task, if one does not. */
+  /** Why a policy of one's own flies in no task and by no loop, if one does not. */
   val mistake: Option[String] = refused.collectFirst:
-    case (_, entry, why) if entry.policy.isDefined && !planned.exists(_._2 == entry) => why
+    case (_, entry, why) if entry.policy.isDefined && !planned.exists(_._2.policy == entry.policy) => why
 
   /** How many flights [[fly]] flies, those of the truth included. */
   val flights: Int = seeds * (planned.size + truthCells.size)

@@ -77,6 +77,12 @@ class BenchmarkSimulation extends munit.FunSuite, Unhurried:
     assertEquals(rows(0).truth, rows(1).truth)
     assertNotEquals(rows(0).meanOff, rows(1).meanOff)
     assert(Svg.file(BenchmarkFigure(rows), "benchmark").contains("stream, mine.policy"))
+    val packets = BenchmarkSet.Entry("packets", "stream", isInPacket = true).flownBy(file.toString)
+    val partly  = Benchmark(set.copy(entries = set.entries :+ packets), seeds = 2)
+    assertEquals(partly.mistake, None, "the policy flies by another loop")
+    assert(
+      clue(partly.notFlown).exists(_.startsWith("packets, mine.policy does not fly duel: expected with the"))
+    )
     val nowhere = set.copy(tasks = set.tasks.drop(1))
     assert(clue(Benchmark(
       nowhere,

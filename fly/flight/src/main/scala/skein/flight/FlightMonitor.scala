@@ -38,9 +38,8 @@ final class FlightMonitor(
     record match
       case decision: LaterDecision => decided(decision)
       case reading: ReadingRow     => read(reading)
-      case move: CommandRow        => moved(move.vehicle)(_.sent(move))
-      case move: Acknowledgement   =>
-        movesLast.foreach(lasts => moved(move.vehicle)(_.ended(move, lasts)))
+      case move: CommandRow        => movesLast.foreach(_ => moved(move.vehicle)(_.sent(move)))
+      case move: Acknowledgement   => movesLast.foreach(lasts => moved(move.vehicle)(_.ended(move, lasts)))
       case event: Event if event.kind == EventKind.Disconnected => lastBroken = Some(event)
       case _                                                    => ()
     recorder.offer(record)
