@@ -25,7 +25,8 @@ object ScenarioFigure:
     def fence(panel: Panel) = fences.flatMap(outline(panel, _))
     val panels              = flown.flights.map: flight =>
       val panel = Panel(east, north, 52, 34, side, side)
-      val title = panel.title(s"${flight.summary.name}, ${FlightTheme.link(flight.summary.flight.link)}")
+      val title =
+        panel.fittedTitle(s"${flight.summary.name}, ${FlightTheme.link(flight.summary.flight.link)}")
       Drawing(
         side + 72,
         side + 82,
@@ -133,7 +134,8 @@ object ScenarioFigure:
       val rings = flight.result.violations.filter(at => altitudeOf(at.limit).isDefined).map: violation =>
         Mark.Disc(panel.at(violation.worstAtS, violation.worst), 5, Some(Stroke(red, 1.2)))
       val held  = near.flatMap(altitudeOf).map(panel.level(_, boundLine))
-      val title = panel.title(s"${flight.summary.name}, ${FlightTheme.link(flight.summary.flight.link)}")
+      val title =
+        panel.fittedTitle(s"${flight.summary.name}, ${FlightTheme.link(flight.summary.flight.link)}")
       Drawing(plotWidth / 2 + 76, plotHeight + 84, (title +: panel.axes) ++ held ++ lines ++ rings)
     val grid  = Drawing.grid(panels, columns = 2.min(panels.size))
     val items = vehicles(flown.scenario) ++ near.map(limit => Legend.line(limit.text, boundLine)) ++

@@ -29,7 +29,7 @@ object TrajectoryFigure:
 
   private def panel(summary: FlightSummary, east: PlotAxis, north: PlotAxis): Drawing =
     val panel = Panel(east, north, 52, 34, side, side)
-    val title = panel.title(s"${summary.name}, ${FlightTheme.link(summary.flight.link)}")
+    val title = panel.fittedTitle(s"${summary.name}, ${FlightTheme.link(summary.flight.link)}")
     Drawing(
       side + 72,
       side + 82,

@@ -69,7 +69,11 @@ final case class Panel(x: PlotAxis, y: PlotAxis, left: Double, top: Double, widt
       Mark.Text(Point(left - 36, top + height / 2), y.label, anchor = Anchor.Middle, upwards = true)
     )
 
-  /** The title above the panel, smaller where it would be wider than that. */
-  def title(text: String): Mark =
-    val size = (titleSize * width / (text.length * titleLetter).max(1)).min(titleSize).max(smallSize)
+  def title(text: String): Mark = title(text, titleSize)
+
+  /** A title that flights' names may make long: smaller where it would be wider than the panel. */
+  def fittedTitle(text: String): Mark =
+    title(text, (titleSize * width / (text.length * titleLetter).max(1)).min(titleSize).max(smallSize))
+
+  private def title(text: String, size: Double): Mark =
     Mark.Text(Point(left, top - 10), text, size, titleColour, bold = true)
