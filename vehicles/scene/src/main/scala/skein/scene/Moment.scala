@@ -7,7 +7,8 @@ import skein.units.Vector3
   */
 final class Moment(val scene: Scene, val vehicles: IndexedSeq[SceneObject]):
 
-  private[scene] val solids: Vector[Solid] =
+  // Made by whoever looks at them: a moment waits to be drawn, with hundreds of others.
+  private[scene] lazy val solids: Vector[Solid] =
     scene.solids ++ vehicles.zipWithIndex.flatMap((thing, index) => thing.solids(itemOf(index)))
 
   private[skein] def eachSolid(visit: Solid => Unit): Unit = solids.foreach(visit)

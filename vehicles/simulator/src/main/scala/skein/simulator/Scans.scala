@@ -2,7 +2,7 @@ package skein.simulator
 
 import scala.collection.mutable
 import skein.airsim.wire.{LidarData, Pose, Quaternionr, Vector3r}
-import skein.scene.{Lidar, Moment, Placement, Scene, SceneObject}
+import skein.scene.{Bodies, Lidar, Moment, Placement, Scene}
 import skein.units.*
 
 /** The vehicles' lidars. Each takes a scan once a turn by the simulator's clock, a whole turn at one instant;
@@ -50,7 +50,7 @@ final private[simulator] class Scan(
     place: Placement,
     origin: Vector3,
     scene: Scene,
-    vehicles: Vector[SceneObject]
+    vehicles: Bodies
 ):
   private lazy val points: Lidar.Points =
     val moment = Moment(scene, vehicles)

@@ -2,8 +2,8 @@ package skein.simulator
 
 import scala.collection.mutable
 import skein.airsim.wire.{Pose, Quaternionr, Vector3r}
-import skein.scene.{Moment, Placement, Scene, SceneObject, Shape}
-import skein.units.{Quaternion, Vector3}
+import skein.scene.{Bodies, Moment, Placement, Scene, SceneObject, Shape}
+import skein.units.Vector3
 
 /** The scene's objects, vehicles and `Ground` by name, and what clients have set for them: scales and
   * segmentation ids.
@@ -17,6 +17,9 @@ final private[simulator] class SceneObjects(world: World):
   // The scene that the indices belong to: a client's change makes a new one.
   private var seen   = Scene.Empty
   private var places = Map.empty[String, Int]
+
+  private var boxed: (vehicles: Vector[SimulatedVehicle], shapes: Vector[Bodies.Shaped]) =
+    (Vector.empty, Vector.empty)
 
   /** All names, in the order of a [[Moment]]'s item numbers. */
   def names: Seq[String] = Ground +: (world.scene.objects.map(_.name) ++ world.vehicles.map(_.settings.name))
@@ -63,15 +66,13 @@ final private[simulator] class SceneObjects(world: World):
   /** Everything as it is now, each vehicle as its bounding box, a camera rig as nothing: to test whether a
     * line between two points is free.
     */
-  def boxes: Moment = Moment(
-    world.scene,
-    world.vehicles.indices.map: index =>
-      val vehicle = world.vehicles(index)
-      val name    = vehicle.settings.name
-      val place   = world.placeOf(index, world.now).outside(Placement(vehicle.middleFrd, Quaternion.Identity))
-      if vehicle.settings.isCamera then SceneObject(name, Vector.empty, place)
-      else SceneObject(name, Shape.Box(vehicle.halfLengths), place, 0, None)
-  )
+  def boxes: Moment =
+    if boxed.vehicles ne world.vehicles then boxed = (world.vehicles, world.vehicles.map(box))
+    Moment(world.scene, Bodies(boxed.shapes, world.places(world.now)))
+
+  private def box(vehicle: SimulatedVehicle): Bodies.Shaped =
+    val whole = SceneObject.Part(Shape.Box(vehicle.halfLengths), Placement(vehicle.middleFrd), 0)
+    Bodies.Shaped(vehicle.settings.name, if vehicle.settings.isCamera then Vector.empty else Vector(whole))
 
   /** Pose in the world; NaN if the object does not exist, as in AirSim. */
   def poseOf(name: String): Pose =

@@ -3,7 +3,7 @@ package skein.simulator
 import scala.collection.mutable
 import scala.collection.mutable.ArrayBuffer
 import skein.airsim.{VehicleSettings, WorldSettings}
-import skein.scene.{Lidar, Placement, Scene, SceneObject}
+import skein.scene.{Bodies, Lidar, Placement, Scene}
 import skein.units.*
 import skein.vehicle.{PathFollowing, RotorcraftKind}
 
@@ -40,6 +40,9 @@ final class World(
   private var lockstep = Option.empty[Lockstep]
 
   private val scans = Scans()
+
+  private var shaped: (vehicles: Vector[SimulatedVehicle], tagM: Double, shapes: Vector[Bodies.Shaped]) =
+    (Vector.empty, 0, Vector.empty)
   settings.vehicles.zipWithIndex.foreach((vehicle, index) => equip(index, vehicle.name))
 
   present.foreach(_.start(start))
@@ -169,13 +172,16 @@ final class World(
   private[simulator] def placeOf(vehicle: Int, at: Instant): Placement =
     Placement(vehicles(vehicle).worldPosition(at), vehicles(vehicle).orientation)
 
-  private[simulator] def bodies(at: Instant): Vector[SceneObject] =
-    vehicles.zipWithIndex.map: (vehicle, index) =>
-      SceneObject(
-        vehicle.settings.name,
-        vehicle.parts(index, scene.vehicleTagM),
-        placeOf(index, at)
-      )
+  private[simulator] def bodies(at: Instant): Bodies =
+    if (shaped.vehicles ne vehicles) || shaped.tagM != scene.vehicleTagM then
+      val shapes = vehicles.zipWithIndex.map: (vehicle, index) =>
+        Bodies.Shaped(vehicle.settings.name, vehicle.parts(index, scene.vehicleTagM))
+      shaped = (vehicles, scene.vehicleTagM, shapes)
+    Bodies(shaped.shapes, places(at))
+
+  /** The vehicles' places, as [[Bodies]] wants them. */
+  private[simulator] def places(at: Instant): Array[Double] =
+    Bodies.places(vehicles.iterator.map(vehicle => (vehicle.worldPosition(at), vehicle.orientation)))
 
   /** A lidar's newest scan; one of the current instant, if it scans on request. */
   private[simulator] def scanOf(vehicle: Int, name: String, lidar: Lidar): Option[Scan] =

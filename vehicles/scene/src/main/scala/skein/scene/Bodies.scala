@@ -1,0 +1,42 @@
+package skein.scene
+
+import skein.units.{Quaternion, Vector3}
+
+/** Vehicles at their places at one instant, as objects. It holds [[Bodies.Numbers]] numbers a vehicle and
+  * makes an object when one is looked at: images that wait to be drawn hold one of these each.
+  *
+  * @param shapes by vehicle
+  * @param places of each: north, east, down, m, then the orientation's w, x, y, z
+  */
+final class Bodies(shapes: IndexedSeq[Bodies.Shaped], places: Array[Double]) extends IndexedSeq[SceneObject]:
+  require(
+    places.length == shapes.length * Bodies.Numbers,
+    s"${shapes.length} vehicles, ${places.length} numbers"
+  )
+
+  def length: Int = shapes.length
+
+  def apply(vehicle: Int): SceneObject =
+    val shape = shapes(vehicle)
+    val first = vehicle * Bodies.Numbers
+    SceneObject(
+      shape.name,
+      shape.parts,
+      Placement(
+        Vector3(places(first), places(first + 1), places(first + 2)),
+        Quaternion(places(first + 3), places(first + 4), places(first + 5), places(first + 6))
+      )
+    )
+
+object Bodies:
+  /** A vehicle wherever it is. */
+  final case class Shaped(name: String, parts: Vector[SceneObject.Part])
+
+  val Numbers = 7
+
+  /** The numbers of these places, by vehicle. */
+  def places(all: Iterator[(position: Vector3, orientation: Quaternion)]): Array[Double] =
+    all.flatMap(at =>
+      val (p, q) = (at.position, at.orientation)
+      Iterator(p.x, p.y, p.z, q.w, q.x, q.y, q.z)
+    ).toArray
