@@ -193,8 +193,8 @@ WRONG = [
     ("x, y = seen.own.north_m", "one number, not several"),
     ("return seen.own.north_m", "expected an action, such as seen.along\\(heading, speed\\), came Number"),
     ("return", "expected an action, .* came None; is a return missing\\?"),
-    ("return seen.along(seen.own.north_m > 3, 1.0)", "py:1: the policy of Own: expected a number as argument 1 .* a condition; write where"),
-    ("return seen.along('north', 1.0)", "py:1: the policy of Own: expected a number as argument 1 of along, came str 'north'"),
+    ("return seen.along(seen.own.north_m > 3, 1.0)", "py:2: the policy of Own: expected a number as argument 1 .* a condition; write where"),
+    ("return seen.along('north', 1.0)", "py:2: the policy of Own: expected a number as argument 1 of along, came str 'north'"),
 ]
 
 

@@ -7,6 +7,7 @@ import dataclasses
 import math
 import os
 import re
+import sys
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -111,7 +112,8 @@ class Writer:
         where_ = f"{_place(vehicle.policy)}: the policy of {vehicle.name}"
         starts: list[Any] = _leaves(vehicle.memory, where_) if vehicle.memory is not None else []
         if vehicle.memory is None:
-            decided, after = vehicle.policy(seen), []
+            (decided, place_), after = _answered(vehicle.policy, seen), []
+            where_ = f"{place_}: the policy of {vehicle.name}"
         else:
             held = iter(
                 [
@@ -121,7 +123,8 @@ class Writer:
                     for number, start in enumerate(starts)
                 ]
             )
-            answer = vehicle.policy(seen, _filled(vehicle.memory, held))
+            answer, place_ = _answered(vehicle.policy, seen, _filled(vehicle.memory, held))
+            where_ = f"{place_}: the policy of {vehicle.name}"
             if not isinstance(answer, tuple) or len(answer) != 2:
                 raise Untraceable(f"{where_}: expected an action and the next memory, came {_came(answer)}")
             decided, memory = answer
@@ -221,9 +224,31 @@ def _quoted(text: str) -> str:
     return '"' + plain.replace("\\", "\\\\").replace('"', '\\"') + '"'
 
 
-def _place(function: Callable[..., Any]) -> str:
-    code = getattr(getattr(function, "__func__", function), "__code__", None)
-    return f"{os.path.basename(code.co_filename)}:{code.co_firstlineno}" if code else repr(function)
+def _place(function: Callable[..., Any], line: int | None = None) -> str:
+    code = _code(function)
+    return f"{os.path.basename(code.co_filename)}:{line or code.co_firstlineno}" if code else repr(function)
+
+
+def _code(function: Callable[..., Any]) -> Any:
+    return getattr(getattr(function, "__func__", function), "__code__", None)
+
+
+def _answered(function: Callable[..., Any], *arguments: Any) -> tuple[Any, str]:
+    """A function's answer, and the line that returned it."""
+    line: int | None = None
+
+    def note(frame: Any, event: str, _: Any) -> None:
+        nonlocal line
+        if event == "return" and frame.f_code is _code(function):
+            line = frame.f_lineno
+
+    before = sys.getprofile()
+    sys.setprofile(note)
+    try:
+        answer = function(*arguments)
+    finally:
+        sys.setprofile(before)
+    return answer, _place(function, line)
 
 
 def _at(where_: str) -> str:
