@@ -87,6 +87,11 @@ final case class FlightOptions(
           "performs what is due, through delays and losses; built-in simulator alone"
     )
     planInPacket: Flag,
+    @arg(doc =
+      "what a vehicle's controller knows of the others: all, or positions, their readings alone, without " +
+        "their commands and policies"
+    )
+    knows: Option[String],
     @arg(doc = "deadline of each decision, for example 20ms; without it, the loop waits for policies")
     deadline: Option[String],
     @arg(doc =

@@ -1,4 +1,4 @@
 package skein.cli
 
-/** `./skein`: the paper's duel, surround, formation, crossing, forest, convoy and blind-pursuit. */
+/** `./skein`: the paper's duel, surround, formation, crossing, forest, convoy, shadow and blind-pursuit. */
 object Main extends SkeinApp(OurScenarios.all.kinds*)

@@ -4,7 +4,7 @@ import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.duration.DurationInt
 import scala.concurrent.{Await, Future}
 import skein.figures.{Figure, GraphFigure}
-import skein.loop.{AnyLoop, LoopGraph, LoopInstance}
+import skein.loop.{AnyLoop, LoopGraph, LoopInstance, LoopKind, LoopSettings}
 import skein.measure.FlightSet
 import skein.policy.Fleet
 import skein.scenario.Scenarios
@@ -12,7 +12,8 @@ import skein.scenario.Scenarios
 /** Graphs of the loops of a set of flights, each for its number of vehicles. */
 object LoopPictures:
 
-  type Loop = (kind: AnyLoop, fleet: Fleet)
+  /** @param isInPacket whether its commands carry plans */
+  final case class Loop(kind: AnyLoop, fleet: Fleet, isInPacket: Boolean = false)
 
   /** Most vehicles of a picture that is readable. */
   private val MostVehicles = 8
@@ -24,18 +25,18 @@ object LoopPictures:
         summary <- set.all
         kind    <- AnyLoop.parse(summary.flight.loop).toOption
         known   <- summary.scenario
-      yield (kind = kind, fleet = known.fleet)
+      yield Loop(kind, known.fleet, summary.isInPacket && kind == LoopKind.Predictive)
     drawn(flown.filter(_.fleet.agents.size <= MostVehicles).distinctBy(loop =>
-      (loop.kind, loop.fleet.agents.map(_.name))
+      (loop.kind, loop.fleet.agents.map(_.name), loop.isInPacket)
     ))
 
   /** Pictures of those loops that are graphs. Blocks. */
   def drawn(loops: Seq[Loop]): Vector[Figure] =
     for (loop, graph) <- graphs(loops)
     yield Figure(
-      s"graph-${loop.kind.label}" + (if loop.fleet.agents.size == 2 then ""
-                                     else s"-${loop.fleet.agents.size}"),
-      s"The graph of ${loop.kind.label}",
+      s"graph-${loop.kind.label}" + (if loop.isInPacket then "-in-packet" else "") +
+        (if loop.fleet.agents.size == 2 then "" else s"-${loop.fleet.agents.size}"),
+      s"The graph of ${loop.kind.label}" + (if loop.isInPacket then " with plans in packets" else ""),
       "The stages by their names in the code, as the stream's interpreter runs them. The edge below feeds " +
         "back.",
       GraphFigure(graph)
@@ -48,7 +49,9 @@ object LoopPictures:
       import system.dispatcher
       try
         val asked = Future.traverse(loops.toVector)(loop =>
-          LoopInstance.graph(loop.kind, loop.fleet).map(_.map((loop, _)))
+          LoopInstance
+            .graph(loop.kind, loop.fleet, LoopSettings(planInPacket = loop.isInPacket))
+            .map(_.map((loop, _)))
         )
         Await.result(asked, Within).flatten
       finally Await.result(system.terminate(), Within): Unit

@@ -62,7 +62,9 @@ class SparseFiguresSuite extends munit.FunSuite:
 
   test("a title is at most as wide as its panel"):
     val panel              = Panel(PlotAxis.around("x", 0, 1), PlotAxis.around("y", 0, 1), 52, 34, 230, 200)
-    def size(text: String) = Vector(panel.fittedTitle(text)).collect { case text: Mark.Text => text.size }.head
+    def size(text: String) = Vector(panel.fittedTitle(text)).collect { case text: Mark.Text =>
+      text.size
+    }.head
     assertEquals(size("stream, vpn link"), Theme.titleSize)
     val long = "stream, learned:2tanh:clip, vpn link"
     assert(clue(size(long)) * Theme.titleLetter / Theme.titleSize * long.length <= 230 + 1e-9)

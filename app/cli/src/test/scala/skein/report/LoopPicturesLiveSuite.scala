@@ -25,18 +25,29 @@ class LoopPicturesLiveSuite extends munit.FunSuite, Unhurried:
     assert(turns.exists(_._2 == Set("feed back")), turns.toString)
     assertEquals(turns.filterNot(turned => turned._2 == Set("feed back")), Vector.empty)
 
+  test("with plans in packets the graph has a stage that foresees"):
+    val loops = Seq(false, true).map(LoopPictures.Loop(LoopKind.Predictive, LoopPicturesLiveSuite.fleet, _))
+    val drawn = LoopPictures.graphs(loops).map((loop, graph) =>
+      loop.isInPacket -> graph.stages.exists(_.startsWith("foresee"))
+    )
+    assertEquals(drawn.toMap, Map(false -> false, true -> true))
+    assertEquals(
+      LoopPictures.drawn(loops).map(_.name),
+      Vector("graph-predictive", "graph-predictive-in-packet")
+    )
+
 object LoopPicturesLiveSuite:
   private val kinds = LoopKind.values.toVector.filterNot(_ == LoopKind.Paused)
   private val fleet = PaperDuel().fleet
 
-  private lazy val figures = LoopPictures.drawn(kinds.map((_, fleet)))
+  private lazy val figures = LoopPictures.drawn(kinds.map(LoopPictures.Loop(_, fleet)))
 
   def drawn: Vector[(Path, String)] = figures.map(figure =>
     Documentation.root.resolve(s"docs/pictures/${figure.name}.svg") -> Svg.file(figure.drawing, figure.title)
   )
 
   def graphs: Vector[(LoopKind | OwnLoop, skein.loop.LoopGraph)] =
-    LoopPictures.graphs(kinds.map((_, fleet))).map((loop, graph) => (loop.kind, graph))
+    LoopPictures.graphs(kinds.map(LoopPictures.Loop(_, fleet))).map((loop, graph) => (loop.kind, graph))
 
 @main def drawLoops(): Unit =
   for (file, text) <- LoopPicturesLiveSuite.drawn do

@@ -61,6 +61,12 @@ final case class Forecast private (
     tracks.zip(estimates).flatMap: (track, estimate) =>
       for track <- track; delays <- delays yield track.courseAt(estimate.predictedFor, delays, now)
 
+  /** This forecast with one vehicle as another forecast predicts it. Both must have had the same readings. */
+  def withVehicleOf(other: Forecast, vehicle: Int): Forecast = copy(
+    models = models.updated(vehicle, other.models(vehicle)),
+    tracks = tracks.updated(vehicle, other.tracks(vehicle))
+  )
+
   private def seen(vehicle: Int, reading: Stamped[Kinematics]): Forecast =
     // What a simulator told before it started again says nothing of what will be.
     if alignment.exists(_.isOfFormerRun(reading)) then this else seenOfPresent(vehicle, reading)

@@ -39,6 +39,7 @@ final case class Observation(
   /** A vehicle's position, m; likewise `eastM` and `downM`. */
   def northM(vehicle: Int): Double = vehicles(vehicle).kinematics.positionNed.x
   def eastM(vehicle: Int): Double  = vehicles(vehicle).kinematics.positionNed.y
+  def downM(vehicle: Int): Double  = vehicles(vehicle).kinematics.positionNed.z
 
   def northMps(vehicle: Int): Double = vehicles(vehicle).kinematics.velocityNed.x
   def eastMps(vehicle: Int): Double  = vehicles(vehicle).kinematics.velocityNed.y

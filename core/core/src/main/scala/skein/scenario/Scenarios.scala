@@ -99,5 +99,6 @@ object Scenarios:
     ScenarioKind(Formation()),
     ScenarioKind(Crossing()),
     ScenarioKind(Forest()),
-    ScenarioKind(Convoy())
+    ScenarioKind(Convoy()),
+    ScenarioKind(Shadow())
   )

@@ -123,7 +123,7 @@ class ScenarioKindSuite extends munit.FunSuite:
       Scenarios.ours.kind("crosing"),
       Left(
         "expected duel, surround, formation, crossing, forest, " +
-          "convoy, came 'crosing'; the nearest is 'crossing'"
+          "convoy, shadow, came 'crosing'; the nearest is 'crossing'"
       )
     )
     intercept[IllegalArgumentException](Scenarios(ScenarioKind(Surround()), ScenarioKind(Surround(4))))

@@ -51,6 +51,10 @@ private[flight] final class Custody(
     yield Held(vehicle.name, control, flight)
 
 private[flight] object Custody:
+  /** What a simulator does that has taken api control of a vehicle away. */
+  def lost(vehicle: String): String =
+    s"no longer gives $vehicle to this flight: it was started again or reset, or another client took api " +
+      "control away"
 
   /** The simulator's answer for a vehicle.
     *
@@ -73,11 +77,8 @@ private[flight] object Custody:
     def heard(held: Vector[Held]): (Known, Option[String]) =
       val stands = held.filter(one => one.flies.contains(false) && flown(one.vehicle)).map(_.vehicle)
       val next   = Known(flown ++ held.filter(_.flies.contains(true)).map(_.vehicle), stands.toSet)
-      val taken  = held.find(!_.isControlled).map(one =>
-        s"no longer gives ${one.vehicle} to this flight: it was started again or reset, or another client " +
-          "took api control away"
-      )
-      val down = stands.find(landed).map(one =>
+      val taken  = held.find(!_.isControlled).map(one => lost(one.vehicle))
+      val down   = stands.find(landed).map(one =>
         s"says that $one has landed: another client landed it, or it fell"
       )
       (next, taken.orElse(down))

@@ -51,14 +51,24 @@ final class Preparation(
       _        <- if paused then call(client.resume()) else Future.unit
       vehicles <- everyVehicle(fleet)((vehicle, agent) => Future.successful((vehicle, agent)))
       _        <- Future.traverse(vehicles.collect { case (car: Car, agent) => (car, agent) })(park)
-      _        <- StartPositioning.fly(vehicles.collect { case (multirotor: Multirotor, agent) =>
-        StartPositioning.Starting(
-          agent.startPositionNed + Vector3(0, 0, multirotor.originNed.z),
-          Approach(agent.name, AirSimVehicle(multirotor, _ => ()), clock, calledOff),
-          () => leaveGround(multirotor)
-        )
-      })
+      _        <- StartPositioning
+        .fly(vehicles.collect { case (multirotor: Multirotor, agent) =>
+          StartPositioning.Starting(
+            agent.startPositionNed + Vector3(0, 0, multirotor.originNed.z),
+            Approach(agent.name, AirSimVehicle(multirotor, _ => ()), clock, calledOff),
+            () => leaveGround(multirotor)
+          )
+        })
+        .recoverWith:
+          case failed: NotReady =>
+            taken(vehicles.map(_._1), at).map(why => throw why.fold(failed)(NotReady(_)))
     yield vehicles.map(_._1)
+
+  /** What became of the api control of the first vehicle that has lost it. */
+  private def taken(vehicles: Vector[VehicleClient], at: Address): Future[Option[String]] =
+    Future
+      .traverse(vehicles)(vehicle => vehicle.isApiControlEnabled().map(vehicle.name -> _))
+      .map(_.collectFirst { case (name, Right(false)) => s"the simulator at $at ${Custody.lost(name)}" })
 
   /** Takes control of the car, brakes it and places it at its start: a car cannot drive there on every route.
     */

@@ -61,7 +61,7 @@ final class Decider(fleet: Fleet, self: Int, policy: Policy):
       places.map(seen(view, now, _)),
       opponentIn(view),
       places.map(place =>
-        Radians(if place == self then memory.headingRad else view.headingRad(place, fleet))
+        Radians(if place == self then memory.headingRad else view.seenHeadingRad(place, fleet))
       ),
       elapsed(memory, now),
       memory.decisions,

@@ -10,45 +10,49 @@ import skein.units.*
   * will be commanded if nothing unforeseen happens. Pure.
   *
   * Each vehicle decides once a period on the predicted states of all. Their readings are taken to be as old
-  * as they are now.
+  * as they are now. Where the policies of others are not known, one vehicle alone decides.
   */
 private final class Foreseen(fleet: Fleet, deciders: IndexedSeq[Decider], period: Span):
   import Foreseen.*
 
-  /** The next actions of every vehicle, [[CommandPlan.Most]] of each, the first ones for the moments of the
-    * view's estimates. Cost: that many decisions of each vehicle, and their predicted flight.
+  /** The next actions of a vehicle and of all that are known to decide as it does, [[CommandPlan.Most]] of
+    * each, the first ones for the moments of the view's estimates; of others none. Cost: that many decisions
+    * of each, and the predicted flight of all.
     *
     * @param view with estimates
     * @param minds by vehicle
     * @throws skein.units.OwnFailure as [[Decider.decide]]
     */
-  def actions(view: TeamView, minds: Vector[Mind], now: Instant): Vector[Actions] =
+  def actions(vehicle: Int, view: TeamView, minds: Vector[Mind], now: Instant): Vector[Actions] =
+    val deciding = minds.zipWithIndex.map: (mind, index) =>
+      Option.when(view.knows == Knowledge.All || index == vehicle)(mind)
     val known = for forecast <- view.forecast; estimates <- view.estimates yield (forecast, estimates)
     known.fold(fleet.agents.map(_ => Vector.empty)): (forecast, estimates) =>
-      rolled(view, forecast.courses(estimates, now), minds, now, fleet.agents.map(_ => Vector.empty))
+      rolled(view, forecast.courses(estimates, now), deciding, now, fleet.agents.map(_ => Vector.empty))
 
   @tailrec private def rolled(
       view: TeamView,
       courses: Vector[Course[?]],
-      minds: Vector[Mind],
+      minds: Vector[Option[Mind]],
       now: Instant,
       soFar: Vector[Actions]
   ): Vector[Actions] =
     val made = deciders.zip(minds).toVector.map: (decider, mind) =>
-      mind.decision.fold(decider.decide(mind.memory, view, now))((mind.memory, _))
-    val actions = made.map((_, decision) => decision.performed)
+      mind.map(mind => mind.decision.fold(decider.decide(mind.memory, view, now))((mind.memory, _)))
+    val actions = made.map(_.map((_, decision) => decision.performed))
     val all     = soFar.lazyZip(courses).lazyZip(actions).map: (before, course, action) =>
-      before.appended((at = course.at, action = action))
-    if all.head.sizeIs >= CommandPlan.Most then all
+      before ++ action.map(action => (at = course.at, action = action))
+    if all.exists(_.sizeIs >= CommandPlan.Most) then all
     else
-      val flown =
-        courses.lazyZip(actions).map((course, action) => course.flown(ActionGuidance.of(action), period))
-      val moved = made.foldLeft(view)((view, made) => view.withMove(made._2.move(now)))
+      // One that does not decide is predicted straight on, whatever it is told.
+      val flown = courses.lazyZip(actions).map: (course, action) =>
+        course.flown(ActionGuidance.of(action.getOrElse(Action.Hover)), period)
+      val moved = made.flatten.foldLeft(view)((view, made) => view.withMove(made._2.move(now)))
       val next  = moved.copy(
         readings = moved.readings.map(_.map(later)),
         estimates = Some(flown.map(_.estimate))
       )
-      rolled(next, flown, made.map((memory, _) => Mind(memory, None)), now + period, all)
+      rolled(next, flown, made.map(_.map((memory, _) => Mind(memory, None))), now + period, all)
 
   private def later(reading: Reading): Reading =
     val state = reading.state

@@ -32,6 +32,6 @@ private final class Foresight(foreseen: Foreseen, starts: Vector[Memory]):
     last.collect { case (of, actions) if of eq forecast => actions }.getOrElse:
       val asked = minds.map: mind =>
         mind.copy(decision = mind.decision.filter(_.view.forecast.exists(_ eq forecast)))
-      val actions = foreseen.actions(decision.view, asked, decision.decidedAt)
+      val actions = foreseen.actions(decision.vehicle, decision.view, asked, decision.decidedAt)
       last = Some((forecast, actions))
       actions

@@ -28,6 +28,7 @@ import skein.vehicle.{QuadrotorModel, VehicleModel}
   * @param planInPacket whether `predictive` sends with each action those that it foresees, to a buffer beside
   *   the vehicle ([[skein.port.PlanBuffer]]). Such commands are answered when they arrive, so `movesInFlight`
   *   does not limit them, [[skein.port.Moves.MostInFlight]] does
+  * @param knows what the controller of a vehicle knows of the others; `plan` knows all
   */
 final case class LoopSettings(
     period: Span = Span.ofMillis(100),
@@ -44,7 +45,8 @@ final case class LoopSettings(
     planning: PlanSettings = PlanSettings(),
     seed: Long = 1,
     deadline: Option[Deadline] = None,
-    planInPacket: Boolean = false
+    planInPacket: Boolean = false,
+    knows: Knowledge = Knowledge.All
 ):
   require(period > Span.Zero, "the period must be positive")
   require(window > 0, "the window must be at least 1")

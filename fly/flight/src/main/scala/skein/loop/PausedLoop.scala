@@ -88,7 +88,8 @@ private final class PausedFlight(
   @volatile private var newest, replaced = Vector.empty[Future[Either[VehicleError, Boolean]]]
 
   val start: PausedStep =
-    PausedStep(0, team.vehicles.map(team.start).toVector, TeamView.empty(team.vehicles.size))
+    val nothingSeen = TeamView.empty(team.vehicles.size).copy(knows = team.settings.knows)
+    PausedStep(0, team.vehicles.map(team.start).toVector, nothingSeen)
 
   def next(step: PausedStep): Future[Option[(PausedStep, Done)]] =
     if step.number == steps || stopped() then Future.successful(None)

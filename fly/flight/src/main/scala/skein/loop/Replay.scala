@@ -15,7 +15,7 @@ import skein.units.*
   * and compared to the last bit: everything else in a decision, above all its opponent and the chosen
   * heading. The memory from decision to decision is the replay's own.
   *
-  * @param settings of the flight; a loop that does not plan needs none of them
+  * @param settings of the flight; a loop that does not plan needs of them only what its controllers know
   * @throws IllegalArgumentException if planning does not support the recorded models here
   */
 final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = LoopSettings())(using
@@ -166,7 +166,7 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
       sensed   <- sensed(recorded, self)
       others   <- if regardsTeam then othersSeen(recorded, self, other) else Right(Map.empty)
     yield
-      val empty = TeamView.empty(fleet.agents.size)
+      val empty = TeamView.empty(fleet.agents.size).copy(knows = settings.knows)
       val used  = empty.readings.updated(self, Some(own)).updated(other, Some(opponent))
       val known = empty.copy(
         readings = others.foldLeft(used)((used, seen) => used.updated(seen._1, Some(seen._2))),

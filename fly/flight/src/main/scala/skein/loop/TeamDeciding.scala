@@ -47,7 +47,8 @@ private final class TeamDeciding(
     */
   def predict(vehicle: Int): Flow[DecisionRequest, DecisionRequest, NotUsed] =
     Flow[DecisionRequest]
-      .collect { case request if request.deciders(vehicle) => request }
+      .collect:
+        case request if request.deciders(vehicle) => request.copy(view = request.view.of(vehicle))
       .via(predicted(Vector(vehicle), delay, parts.meter("predict", vehicle)))
       .addAttributes(parts.named("predict", vehicle))
 

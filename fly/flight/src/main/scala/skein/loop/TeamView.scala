@@ -24,6 +24,9 @@ final case class SentCommand(
   * @param forecast present where the loop predicts
   * @param estimates of every vehicle for the time at which a command decided on this view takes effect;
   *   absent where none are made
+  * @param knows what policies may see of the other vehicles
+  * @param strangers predicts each vehicle from its readings alone; present where the loop predicts and
+  *   commands of others are not known
   */
 final case class TeamView(
     readings: Vector[Option[Reading]],
@@ -31,7 +34,9 @@ final case class TeamView(
     alignment: Option[ClockAlignment],
     sensed: Vector[Map[String, SensorReading]],
     forecast: Option[Forecast] = None,
-    estimates: Option[Vector[Estimate]] = None
+    estimates: Option[Vector[Estimate]] = None,
+    knows: Knowledge = Knowledge.All,
+    strangers: Option[Forecast] = None
 ):
   def withReading(reading: Reading): TeamView =
     copy(
@@ -48,7 +53,16 @@ final case class TeamView(
 
   def withMove(move: SentCommand): TeamView = copy(moves = moves.updated(move.vehicle, Some(move)))
 
-  def withEvent(event: ForecastEvent): TeamView = copy(forecast = forecast.map(_.withEvent(event)))
+  def withEvent(event: ForecastEvent): TeamView = copy(
+    forecast = forecast.map(_.withEvent(event)),
+    strangers = event match
+      case _: ForecastEvent.Seen => strangers.map(_.withEvent(event))
+      case _                     => strangers
+  )
+
+  /** The view with the forecast of one vehicle's controller. */
+  def of(vehicle: Int): TeamView = strangers.fold(this): others =>
+    copy(forecast = forecast.map(own => others.withVehicleOf(own, vehicle)))
 
   /** A vehicle's state: as estimated, or else as read. */
   def kinematics(vehicle: Int): Kinematics =
@@ -57,6 +71,17 @@ final case class TeamView(
   /** The last heading commanded to a vehicle, as far as known; before the first command that of the start. */
   def headingRad(vehicle: Int, fleet: Fleet): Double =
     moves(vehicle).fold(fleet.agents(vehicle).startHeading.value)(_.heading.value)
+
+  /** The heading of another vehicle as policies see it, rad: the last commanded, or where commands of others
+    * are not known, the direction in which it moves; of one that stands still, that of the start.
+    */
+  def seenHeadingRad(vehicle: Int, fleet: Fleet): Double = knows match
+    case Knowledge.All       => headingRad(vehicle, fleet)
+    case Knowledge.Positions =>
+      val velocity = kinematics(vehicle).velocityNed
+      if StrictMath.hypot(velocity.x, velocity.y) < TeamView.StillMps then
+        fleet.agents(vehicle).startHeading.value
+      else StrictMath.atan2(velocity.y, velocity.x)
 
   /** Whether a reading is newer than the one held: a late answer never overrides a newer one. */
   def isNews(reading: Reading): Boolean =
@@ -69,5 +94,8 @@ final case class TeamView(
   def isComplete: Boolean = readings.forall(_.isDefined)
 
 object TeamView:
+  /** A vehicle slower than this stands still: it has no direction. */
+  private val StillMps = 0.1
+
   def empty(vehicles: Int): TeamView =
     TeamView(Vector.fill(vehicles)(None), Vector.fill(vehicles)(None), None, Vector.fill(vehicles)(Map.empty))

@@ -10,6 +10,7 @@ import skein.port.CommandPlan
 import skein.record.EventKind
 import skein.signal.ClockAlignment
 import skein.units.*
+import skein.vehicle.ConstantVelocity
 
 /** Folds loop events into team views and emits decision requests. */
 private final class TeamViewing(
@@ -37,10 +38,16 @@ private final class TeamViewing(
   /** [[view]] with all data that a forecast needs. */
   def viewWithForecast: Flow[LoopEvent, DecisionRequest, NotUsed] =
     viewFrom(
-      nothingSeen.copy(forecast = Some(Forecast(vehicles.map(settings.model).toVector)))
+      nothingSeen.copy(
+        forecast = Some(Forecast(vehicles.map(settings.model).toVector)),
+        strangers = Option.when(settings.knows == Knowledge.Positions)(
+          Forecast(vehicles.map(_ => ConstantVelocity).toVector)
+        )
+      )
     )
 
-  private def nothingSeen = TeamView.empty(fleet.agents.size).copy(alignment = clocks)
+  private def nothingSeen =
+    TeamView.empty(fleet.agents.size).copy(alignment = clocks, knows = settings.knows)
 
   private def viewFrom(start: TeamView): Flow[LoopEvent, DecisionRequest, NotUsed] =
     val meter = parts.meter("view")

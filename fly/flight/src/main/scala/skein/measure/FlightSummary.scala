@@ -26,6 +26,7 @@ import skein.units.Decimals.fixed
   * @param commandAgesMs of commands that carry out a decision: from the sampling of the vehicle's own physics
   *   to the sending of the command
   * @param imageless its cameras without any of the requested images, each with the reason in a line
+  * @param isInPacket whether its commands carried plans, to a buffer beside the vehicle
   */
 final case class FlightSummary(
     flight: FlightRow,
@@ -48,7 +49,8 @@ final case class FlightSummary(
     commandAgesMs: Option[Distribution],
     noResult: Option[NoResult],
     starved: Option[String],
-    imageless: Vector[String]
+    imageless: Vector[String],
+    isInPacket: Boolean
 ):
 
   /** The distance between the first pursuer and the first evader, where all play against one opponent each;
@@ -151,7 +153,8 @@ object FlightSummary:
       commandAgesMs(recording).filter(_ => noResult.isEmpty),
       noResult,
       recording.events.find(_.kind == EventKind.Starved).map(_.detail),
-      imageless(recording)
+      imageless(recording),
+      recording.heading.parameter("planInPacket").contains("true")
     )
 
   /** Its cameras without any of the images to be recorded, with the reasons. */

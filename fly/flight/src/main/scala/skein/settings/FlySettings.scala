@@ -5,7 +5,7 @@ import java.nio.file.Path
 import pureconfig.*
 import pureconfig.error.CannotConvert
 import scala.util.Try
-import skein.loop.{AnyLoop, Deadline, Fallback, JointPlanning, LoopKind, LoopSettings, PlanSettings, Planning}
+import skein.loop.*
 import skein.loop.learning.{Learning, LearningPolicy, Lessons, LearnerUpdate}
 import skein.policy.{Agent, Fleet, LearnedPolicy}
 import skein.port.Moves
@@ -25,6 +25,7 @@ import skein.vehicle.VehicleKind
   * @param movesInFlight limit of unanswered moves of one vehicle; more than 2 are for links that never
   *   deliver several simultaneously: see [[skein.flow.Steer]]
   * @param planInPacket whether `predictive` sends plans to a buffer beside the vehicle: see [[LoopSettings]]
+  * @param knows what the controller of a vehicle knows of the others, in all loops
   * @param plant the built-in simulator's kind of multirotor
   * @param wire protocol of the vehicles
   * @param solver a remote solver for additional flights, beside those that decide in this process; a decision
@@ -47,6 +48,7 @@ final case class FlySettings(
     predictor: PredictionModel = PredictionModel.Quadrotor,
     movesInFlight: Int = Moves.InFlight,
     planInPacket: Boolean = false,
+    knows: Knowledge = Knowledge.All,
     plant: SimulatedBody = SimulatedBody.AirSim,
     wire: Wire = Wire.AirSim,
     solver: Option[SolverChoice] = None,
@@ -104,6 +106,7 @@ final case class FlySettings(
         model = vehicle => predictor.forAgent(agents(vehicle)),
         planning = planning.keeping(scenario),
         movesInFlight = movesInFlight,
+        knows = knows,
         deadline = deadline.map(Deadline(_, fallback))
       )
     if scenario.isAsPublished then timely.asPublished else timely
@@ -257,6 +260,7 @@ object FlySettings:
       ),
       Moves.mistake(settings.movesInFlight).map("moves-in-flight: " + _),
       packetMistake(settings).map("plan-in-packet: " + _),
+      knowsMistake(settings).map("knows: " + _),
       Option.when(settings.solver.isDefined && !settings.loops.exists(decidedElsewhere))(
         "solver: expected with a loop whose decisions can be made elsewhere, came with paused alone"
       ),
@@ -325,6 +329,14 @@ object FlySettings:
     else
       settings.cars.headOption.map(car => s"expected multirotors, which hold plans, came the car ${car.name}")
 
+  private def knowsMistake(settings: FlySettings): Option[String] =
+    val all = settings.knows == Knowledge.All
+    if !all && settings.loops.contains(LoopKind.Plan) then
+      Some("expected all with the loop plan, which plans against the policies of others, came positions")
+    else if !all && settings.solver.isDefined then
+      Some("expected all with a solver, which is told every command, came positions")
+    else None
+
   private def isRightAltitude(altitudeM: Double) = altitudeM > 0 && altitudeM <= MostAltitudeM
 
   /** Whether a policy can replace one in this fleet: its opponent is the nearest of another role. */
@@ -376,6 +388,7 @@ object FlySettings:
 
   private given ConfigReader[NamedScene] = parsed("scene", NamedScene.read)
   private given ConfigReader[Wire]       = parsed("wire", Wire.parse)
+  private given ConfigReader[Knowledge]  = parsed("knowledge", Knowledge.parse)
 
   private given ConfigReader[SimulatedBody] = parsed("plant", SimulatedBody.parse)
 

@@ -2,7 +2,7 @@ package skein.settings
 
 import scala.compiletime.{constValueTuple, summonAll}
 import scala.deriving.Mirror
-import skein.loop.{AnyLoop, Fallback, PlanSettings}
+import skein.loop.{AnyLoop, Fallback, Knowledge, PlanSettings}
 import skein.record.ParameterRow
 import skein.scenario.{Scenario, Scenarios}
 import skein.signal.LatencyProfile
@@ -66,6 +66,13 @@ private[settings] object RecordedSetting:
       _.label,
       isUsual = _ == Wire.AirSim
     )(Wire.parse(_).toOption)
+
+  given RecordedSetting[Knowledge] =
+    Text[Knowledge](
+      Knowledge.values.map(_.label).mkString(" or "),
+      _.label,
+      isUsual = _ == Knowledge.All
+    )(Knowledge.parse(_).toOption)
 
   given RecordedSetting[SolverChoice] =
     Text[SolverChoice]("where a solver is", _.text)(SolverChoice.parse(_).toOption)

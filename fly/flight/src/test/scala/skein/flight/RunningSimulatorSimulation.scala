@@ -274,6 +274,21 @@ class RunningSimulatorSimulation extends munit.FunSuite, Unhurried:
     assert(high.max > 2 && high.max < 15, s"the highest were at ${high.max} m")
     assert(seen.last.forall(_.velocityNed.norm < 0.3), seen.last)
 
+  test("a flight whose simulator another client resets while its vehicles fly to their starts says so"):
+    val outcome = on(duel): bench =>
+      import bench.system.dispatcher
+      given ActorSystem = bench.system
+      val flown         = bench.command(brief)
+      after(5.seconds)(bench.operate(_.reset())).zip(flown).map(_._2)
+    val told = outcome.map(_.size).left.getOrElse("it flew")
+    assert(
+      told.contains(
+        "no longer gives Evader to this flight: it was started again or reset, or another client took api " +
+          "control away"
+      ),
+      told
+    )
+
   test("a camera's field of view is requested again if the request was lost"):
     val filmed          = brief.copy(images = List(ImageSource.Camera("front_center", 5)))
     val (asked, images) = on(duel): bench =>

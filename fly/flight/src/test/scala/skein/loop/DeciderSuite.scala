@@ -46,6 +46,20 @@ class DeciderSuite extends munit.FunSuite:
     assertEquals(second.elapsed, Span.ofMillis(150))
     assertEquals(second.sequence, 1L)
 
+  test("another's heading is the one commanded, or where commands are not known, its direction of motion"):
+    def seen(knows: Knowledge, velocity: Vector3) =
+      val moving = reading(0, 21, 4, 1010, 100, 120)
+      val state  = moving.state.copy(value = moving.state.value.copy(velocityNed = velocity))
+      val known  =
+        view.withReading(moving.copy(sequence = 1, state = state)).withMove(sent(0, 2.5, millis(150)))
+      pursuer.observation(pursuer.start, known.copy(knows = knows), millis(200)).headings.map(_.value)
+    assertEquals(seen(Knowledge.All, Vector3(0, 3, 0)), Vector(2.5, 0.0))
+    assertEquals(seen(Knowledge.Positions, Vector3(0, 3, 0)), Vector(math.Pi / 2, 0.0))
+    assertEquals(
+      seen(Knowledge.Positions, Vector3(0, 0.05, 5)),
+      Vector(scenario.agents(0).startHeading.value, 0.0)
+    )
+
   test("no vehicle receives a heading that is not finite"):
     val lost = Decider(scenario, 1, skein.policy.PaperPursuer(Double.NaN))
     val told = intercept[OwnFailure](lost.decide(lost.start, view, millis(200)))

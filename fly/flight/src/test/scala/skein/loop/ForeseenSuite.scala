@@ -1,12 +1,12 @@
 package skein.loop
 
 import skein.forecast.{Commanded, Forecast, ForecastEvent}
-import skein.policy.{Action, ActionGuidance}
+import skein.policy.{Action, ActionGuidance, Fleet, Flee}
 import skein.port.CommandPlan
 import skein.scenario.PaperDuel
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
-import skein.vehicle.QuadrotorModel
+import skein.vehicle.{ConstantVelocity, QuadrotorModel}
 
 class ForeseenSuite extends munit.FunSuite:
   private val fleet    = PaperDuel().fleet
@@ -34,13 +34,13 @@ class ForeseenSuite extends munit.FunSuite:
   private val view = predicted(seen, now)
 
   test("as many actions are foreseen as a plan may have, a period apart, from when a command acts"):
-    val all = foreseen.actions(view, starts.map(Foreseen.Mind(_, None)), now)
+    val all = foreseen.actions(0, view, starts.map(Foreseen.Mind(_, None)), now)
     assertEquals(all.map(_.size), Vector.fill(2)(CommandPlan.Most))
     val moments = Vector.tabulate(CommandPlan.Most)(number => millis(70) + period * number.toLong)
     assertEquals(all.map(_.map(_.at)), Vector.fill(2)(moments))
 
   test("what is foreseen is what is decided, period by period, where nothing else is read"):
-    val all  = foreseen.actions(view, starts.map(Foreseen.Mind(_, None)), now)
+    val all  = foreseen.actions(0, view, starts.map(Foreseen.Mind(_, None)), now)
     val sent = all.zipWithIndex.foldLeft(seen): (view, planned) =>
       val commands = planned._1.map((at, action) =>
         Commanded(0, ActionGuidance.of(action), now, actsAt = Some(at))
@@ -64,9 +64,40 @@ class ForeseenSuite extends munit.FunSuite:
     val (memory, decision) = deciders(0).decide(starts(0), view, now)
     val minds              = Vector(Foreseen.Mind(memory, Some(decision)), Foreseen.Mind(starts(1), None))
     assertEquals(
-      foreseen.actions(view, minds, now),
-      foreseen.actions(view, starts.map(Foreseen.Mind(_, None)), now)
+      foreseen.actions(0, view, minds, now),
+      foreseen.actions(0, view, starts.map(Foreseen.Mind(_, None)), now)
     )
+
+  test("where others' policies are not known, a plan does not depend on them, and flies them straight on"):
+    val stranger = Fleet(fleet.agents.updated(0, fleet.agents(0).copy(policy = Flee(3))))
+    val blind    = predicted(
+      seen
+        .copy(
+          knows = Knowledge.Positions,
+          strangers = seen.forecast.map(known =>
+            val straight = Forecast(fleet.agents.map(_ => ConstantVelocity))
+            known.tracks.zipWithIndex.foldLeft(straight):
+              case (forecast, (track, vehicle)) =>
+                forecast.withEvent(ForecastEvent.Seen(vehicle, track.get.newest))
+          )
+        )
+        .of(1),
+      now
+    )
+    def plans(fleet: Fleet, view: TeamView) =
+      val deciders = fleet.agents.indices.map(Decider(fleet, _))
+      Foreseen(fleet, deciders, period).actions(
+        1,
+        view,
+        deciders.map(decider =>
+          Foreseen.Mind(decider.start, None)
+        ).toVector,
+        now
+      )
+    val known = predicted(seen, now)
+    assertEquals(plans(fleet, blind), plans(stranger, blind))
+    assertNotEquals(plans(fleet, known), plans(stranger, known))
+    assertEquals(plans(fleet, blind).map(_.size), Vector(0, CommandPlan.Most))
 
   test("a vehicle's plan begins with its decision, and a view without predictions makes none"):
     val foresight          = Foresight(foreseen, starts)

@@ -101,6 +101,18 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
       Right("plan: Pursuer plans; Evader flies by its own policy")
     )
 
+  test("knowledge of positions alone is refused where others' commands or policies are needed"):
+    assertTold("knows = some", "2: skein.fly.knows: expected all or positions, came 'some'")
+    assertTold(
+      "knows = positions, loops = [plan]",
+      "2: skein.fly.knows: expected all with the loop plan, which plans against the policies of others, " +
+        "came positions"
+    )
+    assertTold(
+      "knows = positions, solver = \"link:vpn\", loops = [stream]",
+      "2: skein.fly.knows: expected all with a solver, which is told every command, came positions"
+    )
+
   test("plan-in-packet is refused where no plan could be sent"):
     def refused(text: String)(why: String) = assertTold(text, s"2: skein.fly.plan-in-packet: expected $why")
     refused("plan-in-packet = true, loops = [stream]"):

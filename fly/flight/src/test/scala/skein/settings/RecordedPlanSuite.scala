@@ -1,6 +1,6 @@
 package skein.settings
 
-import skein.loop.{Fallback, LoopKind, PlanSettings}
+import skein.loop.{Fallback, Knowledge, LoopKind, PlanSettings}
 import skein.policy.Role
 import skein.record.{ParameterRow, Recording, RecordingHeader, Samples}
 import skein.scenario.{PaperDuel, Scenarios}
@@ -20,6 +20,7 @@ class RecordedPlanSuite extends munit.FunSuite:
     predictor = right(PredictionModel.parse("drag")),
     movesInFlight = 6,
     planInPacket = true,
+    knows = Knowledge.Positions,
     plant = right(SimulatedBody.recorded("mujoco:gone.xml")),
     wire = Wire.Mavlink,
     images = List(ImageSource.Seen, right(ImageSource.parse("front@10"))),
@@ -47,6 +48,7 @@ class RecordedPlanSuite extends munit.FunSuite:
         "predictor"      -> "drag",
         "movesInFlight"  -> "6",
         "planInPacket"   -> "true",
+        "knows"          -> "positions",
         "plant"          -> "mujoco:gone.xml",
         "wire"           -> "mavlink",
         "solver"         -> "link:vpn",

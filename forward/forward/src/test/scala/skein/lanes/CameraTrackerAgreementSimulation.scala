@@ -9,6 +9,7 @@ import skein.lanes.timetable.{Timetable, TimetableEye, TimetableVehicles}
 import skein.optimise.LatencyBudget
 import skein.policy.{PaperEvader, PaperPursuer, HeadingPolicy}
 import skein.simd.WorldRandom
+import skein.testing.Lengthy
 import skein.units.Instant
 import skein.vehicle.ReducedModel
 
@@ -16,8 +17,13 @@ import skein.vehicle.ReducedModel
   * evader in equal images of every world, and take equal decisions, except where a bearing, a range, or a
   * number that a policy compares is so near to a threshold that rounding decides.
   */
-class CameraTrackerAgreementSimulation extends munit.FunSuite:
-  import CameraTrackerAgreementSimulation.*
+class CameraTrackerAgreementSimulation extends CameraTrackerAgreement(isDaily = true)
+
+/** The other combinations. */
+class CameraTrackerCombinationsSimulation extends CameraTrackerAgreement(isDaily = false), Lengthy
+
+abstract class CameraTrackerAgreement(isDaily: Boolean) extends munit.FunSuite:
+  import CameraTrackerAgreement.*
   import DuelAgreement.Event
 
   private val worlds = DuelKernel.WORLDS
@@ -75,6 +81,7 @@ class CameraTrackerAgreementSimulation extends munit.FunSuite:
       LoopTiming.Predictive(predictor = model.predictor)
     )
     episode <- 0 until 2
+    if isDaily == (episode == 0)
   do
     test(s"${timing.productPrefix}, episode $episode: equal detections and decisions in each world compared"):
       val key      = WorldRandom.key(5, 0, episode)
@@ -111,8 +118,8 @@ class CameraTrackerAgreementSimulation extends munit.FunSuite:
       override def shareEpisodes: Boolean    = true
       def key(world: Int): Int               = episode
       def link(world: Int): Delays           = DelayTable.vpn
-      def pursuer(world: Int): HeadingPolicy = CameraTrackerAgreementSimulation.this.pursuer(world)
-      def evader(world: Int): HeadingPolicy  = CameraTrackerAgreementSimulation.this.evader(world)
+      def pursuer(world: Int): HeadingPolicy = CameraTrackerAgreement.this.pursuer(world)
+      def evader(world: Int): HeadingPolicy  = CameraTrackerAgreement.this.evader(world)
     val batch = DuelBatch(duel, timing, model, threads = 1)
     val told  = batch.engine(pursuer(0), evader(0), shareEpisodes = true, Seq(DelayTable.vpn)).text
     assert(told.startsWith("SIMD"), told)
@@ -128,13 +135,15 @@ class CameraTrackerAgreementSimulation extends munit.FunSuite:
       case ("lag", "pursuer") => isStream || name == "vpn" || isWild(name)
       case ("lag", _)         => name == "vpn"
       case (_, who)           => who == "pursuer" && name == "vpn" && timing != LoopTiming.Sequential()
+    if isDaily == (plant == "lag" && name == "vpn" || isStream && isWild(name) || plant == "drag")
   do
     test(
       s"separate delays, $plant, $timing over $name, camera of the $who: equal detections and decisions in each world"
     ):
       agreeAlone(seeing, timing, model, link)
 
-  for timing <- Seq(LoopTiming.Sequential(2.5), LoopTiming.Futures(0.03), LoopTiming.stream(0.03)) do
+  for timing <- Seq(LoopTiming.Sequential(2.5), LoopTiming.Futures(0.03), LoopTiming.stream(0.03)) if isDaily
+  do
     test(
       s"separate delays, $timing, images every 30 ms: equal detections and decisions in each world compared"
     ):
@@ -211,7 +220,7 @@ class CameraTrackerAgreementSimulation extends munit.FunSuite:
         else Vector.empty
       Agreement.Departure(1, event.k, event.timeS, Vector(1.0 -> 1.0), near)
 
-private object CameraTrackerAgreementSimulation:
+private object CameraTrackerAgreement:
   /** An image of the SIMD engine in a world.
     *
     * @param inputs of the sensor's formula, without errors

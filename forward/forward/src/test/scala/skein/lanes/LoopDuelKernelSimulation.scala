@@ -21,13 +21,15 @@ import skein.policy.{HeadingPolicy, PaperEvader, PaperPursuer}
 import skein.port.Moves
 import skein.signal.Impairment
 import skein.simd.WorldRandom
+import skein.testing.Lengthy
 import skein.units.Span
 import skein.vehicle.{ConstantVelocity, ReducedModel}
 
-class LoopDuelKernelSimulation extends munit.FunSuite:
-  private val worlds = DuelKernel.WORLDS
-  private val lag    = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
-  private val models = Seq[(String, VelocityResponse)](
+/** The two engines' flights of duels in which every world has delays of its own. */
+abstract class LoopDuelKernelAgreement(isDaily: Boolean) extends munit.FunSuite:
+  protected val worlds = DuelKernel.WORLDS
+  protected val lag    = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
+  protected val models = Seq[(String, VelocityResponse)](
     "lag"           -> lag,
     "no lag"        -> VelocityResponses.Ideal,
     "drag"          -> PlantResponse(ReducedModel.AirSim),
@@ -36,11 +38,11 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
     "tilting"       -> PlantResponse(Tilting(0.95, 0.9, 0.2, 0.05))
   )
 
-  private val keys     = Array.tabulate(worlds)(WorldRandom.key(3, 1, _))
-  private val captureM = 3.9f
+  protected val keys     = Array.tabulate(worlds)(WorldRandom.key(3, 1, _))
+  protected val captureM = 3.9f
 
   // The evader does not start straight ahead, on a threshold of its pursuer.
-  private def duel(world: Int, durationS: Double): Duel = Duel(
+  protected def duel(world: Int, durationS: Double): Duel = Duel(
     Duel.paper.pursuer.copy(
       policy = PaperPursuer(0.6 + 0.008 * world)
     ),
@@ -48,7 +50,7 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
     durationS
   )
 
-  private def fly(
+  protected def fly(
       timing: LoopTiming,
       link: TabledDelays,
       durationS: Double,
@@ -66,7 +68,7 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
     kernel.fly(keys, Array.fill(worlds)(link), captureM)
     kernel
 
-  private def loops(model: VelocityResponse) = Seq(
+  protected def loops(model: VelocityResponse) = Seq(
     LoopTiming.Sequential(),
     LoopTiming.Futures(),
     LoopTiming.Stream(),
@@ -74,20 +76,21 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
     LoopTiming.Predictive(predictor = model.predictor)
   )
 
-  private def wild(meanMs: Double, jitterMs: Double) = DelayTable.of(LatencyBudget.link(meanMs, jitterMs).get)
+  protected def wild(meanMs: Double, jitterMs: Double) =
+    DelayTable.of(LatencyBudget.link(meanMs, jitterMs).get)
 
   /** A link that is busy for about a second, and quiet for half of one. */
-  private val changing = AlternatingDelays(wild(200, 300), DelayTable.direct, 1.0, 0.5)
+  protected val changing = AlternatingDelays(wild(200, 300), DelayTable.direct, 1.0, 0.5)
 
   /** Bursts, and outages of 0.4 s, over a link that changes. */
-  private val impaired = LossyDelays.of(
+  protected val impaired = LossyDelays.of(
     AlternatingDelays(DelayTable.vpn, DelayTable.direct, 0.5, 0.8),
     Seq(Impairment.Loss(0.05, 4), Impairment.Outage(Span.ofMillis(400), Span.ofSeconds(2))),
     timeoutS = 0.237,
     packetsPerS = 40
   )
 
-  private val links = Seq[(String, TabledDelays)](
+  protected val links = Seq[(String, TabledDelays)](
     "none"                        -> DelayTable.none,
     "direct"                      -> DelayTable.direct,
     "vpn"                         -> DelayTable.vpn,
@@ -101,7 +104,7 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
     "one with bursts and outages" -> impaired
   )
 
-  private def agreement(
+  protected def agreement(
       timing: LoopTiming,
       link: TabledDelays,
       durationS: Double,
@@ -109,7 +112,7 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
   ) =
     unseen(timing, link, durationS, model)(duel(_, durationS).pursuer.policy.asInstanceOf[HeadingPolicy])
 
-  private def unseen(timing: LoopTiming, link: TabledDelays, durationS: Double, model: VelocityResponse)(
+  protected def unseen(timing: LoopTiming, link: TabledDelays, durationS: Double, model: VelocityResponse)(
       pursuer: Int => HeadingPolicy
   ) =
     DuelAgreement.alone(duel(0, durationS), timing, model, _ => link, keys(_), captureM)(
@@ -122,6 +125,7 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
     timing            <- loops(model)
     (name, link)      <- links
     if vehicles == "lag" || name == "vpn" || name.startsWith("110")
+    if isDaily == (name == "vpn" || vehicles == "lag" && !name.startsWith("300"))
   do
     test(
       s"$vehicles, $timing over $name: the scalar reference's " +
@@ -142,6 +146,7 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
     )
     (name, link) <-
       links.filter((name, _) => name == "vpn" || name.startsWith("300") || name.startsWith("one "))
+    if isDaily == (most == 3 && vehicles == "lag")
   do
     test(
       s"$vehicles, $timing over $name with $most moves in flight: the scalar reference's decisions and flight"
@@ -151,11 +156,14 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
   for
     (vehicles, model) <- models.filter((name, _) => name == "lag" || name == "drag")
     (name, link)      <- links.filter((name, _) => name.startsWith("300"))
+    if isDaily == (vehicles == "lag")
   do
     test(s"$vehicles over $name, with as many moves in flight as may be: the scalar reference's flight"):
       val most = Steering(mostOutstanding = Moves.MostInFlight)
       agreement(LoopTiming.Stream(0.02, steering = most), link, 5, model).check(name, 0 until worlds by 3)
 
+/** Each vehicle over one link, one vehicle over most, and what is not a combination. */
+class LoopDuelKernelSimulation extends LoopDuelKernelAgreement(isDaily = true):
   private val unseenPursuers = Seq[(String, Int => HeadingPolicy)](
     "remembers"                    -> (world => TrendPursuer(2 + 0.02 * world, 0.5, 1)),
     "asks for velocities and ages" -> (world => AgeAwarePursuer(8, 0.01 * world, 1))
@@ -270,3 +278,6 @@ class LoopDuelKernelSimulation extends munit.FunSuite:
         val beside = fly(timing, link, 20, lag, some)
         for world <- 0 until worlds by 3 do
           assertEquals(beside(DuelNumber.MeanLast10s)(world), before(world), s"world $world")
+
+/** The other combinations. */
+class LoopDuelKernelCombinationsSimulation extends LoopDuelKernelAgreement(isDaily = false), Lengthy

@@ -1,0 +1,34 @@
+package skein.policy
+
+/** Keeps a place beside another vehicle, at a fixed offset in the world.
+  *
+  * @param leader its place in the scenario
+  * @param northM of the place, from the leader; likewise `eastM`
+  * @param mostMps limit of the commanded speed
+  */
+final case class Shadowing(
+    leader: Int,
+    northM: Double,
+    eastM: Double,
+    mostMps: Double,
+    pursuit: Pursuit = Pursuit()
+) extends Policy:
+
+  type Memory = Unit
+  def start: Unit = ()
+
+  def choose(seen: Observation, memory: Unit): (Action, Unit) =
+    val self  = seen.self
+    val north = pursuit.along(
+      seen.northM(leader) + northM,
+      seen.northMps(leader),
+      seen.northM(self),
+      seen.northMps(self)
+    )
+    val east = pursuit.along(
+      seen.eastM(leader) + eastM,
+      seen.eastMps(leader),
+      seen.eastM(self),
+      seen.eastMps(self)
+    )
+    (Weave.level(seen, StrictMath.atan2(east, north), StrictMath.hypot(north, east).min(mostMps)), ())

@@ -1,0 +1,55 @@
+package skein.policy
+
+import skein.units.Vector3
+
+/** Flies arcs to the left and right in turn, each for another time. Its path does not depend on the others,
+  * nor on how old its data is.
+  *
+  * @param turnRadps turn rate of the commanded velocity
+  * @param leastS shortest time of an arc
+  * @param mostS longest
+  * @param course the number of a sequence of times: others make other paths
+  */
+final case class Weave(speedMps: Double, turnRadps: Double, leastS: Double, mostS: Double, course: Double = 0)
+    extends Policy:
+
+  type Memory = Weave.Arc
+  def start: Weave.Arc = Weave.Arc(0, 0, 0)
+
+  def choose(seen: Observation, arc: Weave.Arc): (Action, Weave.Arc) =
+    val elapsed = seen.elapsed.toSeconds
+    val isOver  = arc.leftS <= elapsed
+    // The arc ends when its time is over, not at the decision after that: the path is that of any period.
+    val before  = if isOver then arc.leftS else elapsed
+    val number  = if isOver then arc.number + 1 else arc.number
+    val left    = if isOver then leastS + (mostS - leastS) * drawn(number) else arc.leftS
+    val heading =
+      arc.headingRad + turnRadps * (side(arc.number) * before + side(number) * (elapsed - before))
+    val remains = left - (if isOver then elapsed - before else elapsed)
+    (Weave.level(seen, heading, speedMps), Weave.Arc(heading, remains, number))
+
+  /** 1 for an arc to the right, those with even numbers, else -1. */
+  private def side(number: Double): Double = 1 - 2 * (number - 2 * math.floor(number / 2))
+
+  /** A number from 0 to 1 for an arc: multiples of the golden ratio spread evenly (Weyl's sequence), and are
+    * arithmetic, so that SIMD repeats them.
+    */
+  private def drawn(number: Double): Double =
+    val spread = 0.6180339887498949 * number + 0.7548776662466927 * course
+    spread - math.floor(spread)
+
+object Weave:
+  /** @param leftS time left in the arc
+    * @param number of the arc, from 1 on; 0 before the first decision
+    */
+  final case class Arc(headingRad: Double, leftS: Double, number: Double)
+
+  /** A velocity on a heading that climbs or sinks to the altitude of the start, by 1 m/s per metre and 2 m/s
+    * at most. AirSim's vehicle follows it three times faster than a heading at an altitude.
+    */
+  private[policy] def level(seen: Observation, headingRad: Double, speedMps: Double): Action =
+    Action.Velocity(Vector3(
+      speedMps * StrictMath.cos(headingRad),
+      speedMps * StrictMath.sin(headingRad),
+      (seen.startDown.value - seen.downM(seen.self)).max(-2.0).min(2.0)
+    ))
