@@ -10,7 +10,6 @@ import skein.port.CommandPlan
 import skein.record.EventKind
 import skein.signal.ClockAlignment
 import skein.units.*
-import skein.vehicle.ConstantVelocity
 
 /** Folds loop events into team views and emits decision requests. */
 private final class TeamViewing(
@@ -41,7 +40,7 @@ private final class TeamViewing(
       nothingSeen.copy(
         forecast = Some(Forecast(vehicles.map(settings.model).toVector)),
         strangers = Option.when(settings.knows == Knowledge.Positions)(
-          Forecast(vehicles.map(_ => ConstantVelocity).toVector)
+          Forecast(vehicles.map(vehicle => Knowledge.stranger(settings.model(vehicle))).toVector)
         )
       )
     )
