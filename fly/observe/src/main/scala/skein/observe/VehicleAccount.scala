@@ -3,7 +3,7 @@ package skein.observe
 import skein.units.{Instant, Span}
 
 /** Sums up the commands to one vehicle. Mutable. */
-private[observe] final class VehicleAccount(name: String):
+private[observe] final class VehicleAccount(val name: String):
   import VehicleAccount.PhysicsStep
 
   private val ownAge      = Samples()
