@@ -119,7 +119,6 @@ object ObserveCommand
       _ <- show(observed, TopicTables.findings(observed) ++ loop.remarks, folder, options)
     yield ()
 
-  /** Prints a loop of topics, and writes it. */
   private def show(
       observed: ObservedTopics,
       findings: Vector[String],

@@ -7,7 +7,6 @@ import skein.units.Decimals.{brief, fixed}
 /** Measurements of a loop whose messages are topics', as tables and sentences. */
 object TopicTables:
 
-  /** Tables for people. */
   def tables(observed: ObservedTopics): Vector[Section] =
     Vector(vehicles(observed), topics(observed)).flatten
 

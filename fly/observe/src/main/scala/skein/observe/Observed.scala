@@ -118,12 +118,3 @@ final case class Stall(at: Span, length: Span, method: String)
   * @param agesMs mean age of the own data of each vehicle that was read before a command to it
   */
 final case class Progress(lasted: Span, commands: Long, agesMs: Vector[(vehicle: String, ms: Double)])
-
-object Progress:
-  private[observe] def apply(lasted: Span, vehicles: Iterator[VehicleAccount]): Progress =
-    val all = vehicles.toVector
-    Progress(
-      lasted,
-      all.map(_.commands).sum,
-      all.flatMap(one => one.ownAgeMs.map(ms => (vehicle = one.name, ms = ms)))
-    )

@@ -95,7 +95,7 @@ final class TopicAccount:
   def messages: Long = added
 
   /** The progress, at constant cost for any number of observations. */
-  def progress: Progress = Progress(lasted, vehicles.all.map(_.account))
+  def progress: Progress = VehicleAccount.progress(lasted, vehicles.all.map(_.account))
 
   private def lasted: Span = begunAt.fold(Span.Zero)(lastAt.since)
 

@@ -35,7 +35,8 @@ private[rosbag] final class TopicLoop(readings: Set[String], commands: Set[Strin
   private def measured(kind: TopicKind, name: String, hasHeader: Boolean): Topic =
     val vehicle = vehicleOf(name)
     (message, at) =>
-      val stamp = if hasHeader then firstTime(message) else None
+      // A stamp of zero was not filled in.
+      val stamp = if hasHeader then firstTime(message).filter(_ > Instant.Epoch) else None
       val time  = clock.timeOf(at)
       kind match
         case TopicKind.Commands =>

@@ -92,6 +92,13 @@ class GraphLoopSuite extends munit.FunSuite:
     assertEquals(graph.ages, Vector(50.0, 40.0))
     assertEquals(graph.loop.observed.caused, 1L)
 
+  test("a reading whose stamp was not filled in is as old as its arrival"):
+    val graph = Graph()
+    usual(graph)
+    graph.reading("a", -1_000_000, 20)
+    graph.command("a", ms = 50, stampMs = 50)
+    assertEquals(graph.ages, Vector(30.0))
+
   test("messages that were taken topic by topic are counted in the order of their arrival"):
     val graph = Graph()
     usual(graph)
