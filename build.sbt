@@ -258,10 +258,10 @@ lazy val observe = project.in(file("fly/observe"))
   .dependsOn(flight % "compile->compile;test->test", link % "test->test")
   .settings(underAgent, libraryDependencies ++= munit)
 
-/** Bags of ROS 2: recordings written as bags, and the loops of bags measured. */
+/** Bags of ROS 2: recordings written as bags, and the loops of bags and graphs measured. */
 lazy val rosbag = project.in(file("fly/rosbag"))
-  .settings(artifact("rosbag", "Bags of ROS 2: recordings as bags, and what a bag says of a loop's timing"))
-  .dependsOn(observe, ros, flight % "test->test")
+  .settings(artifact("rosbag", "Bags of ROS 2: recordings as bags, and what a bag or a graph says of a loop's timing"))
+  .dependsOn(observe, ros % "compile->compile;test->test", flight % "test->test")
   .settings(underAgent, libraryDependencies ++= munit)
 
 /** Episodes step by step, for learners. */

@@ -2,15 +2,15 @@ package skein.cli
 
 import java.io.IOException
 import java.nio.file.Path
-import java.util.concurrent.{CountDownLatch, Executors}
+import java.util.concurrent.{CountDownLatch, Executors, TimeUnit}
 import mainargs.{Flag, ParserForClass, arg}
 import org.apache.pekko.actor.ActorSystem
-import scala.concurrent.duration.DurationInt
 import skein.figures.ObservedFigure
 import skein.link.*
-import skein.observe.{Observed, ObservedCommand, ObservedVehicle, ObservingProxy, OutsideProgram}
+import skein.observe.*
 import skein.report.{ObservedTables, Paragraph, Section, TopicTables}
-import skein.rosbag.BagLoop
+import skein.ros.RosNode
+import skein.rosbag.{BagLoop, GraphLoop}
 import skein.units.{Clock, Expect}
 
 /** Command-line options of `./skein observe`, with their help texts. */
@@ -30,13 +30,18 @@ final case class ObserveOptions(
     )
     bag: Option[String],
     @arg(doc =
-      "with --bag: a topic that vehicles are read by, for example /uav1/odom; can be repeated; without it, " +
-        "topics of odometry and poses"
+      "instead of a simulator's wire: topics of a running graph of ROS 2, which must be installed; domain and " +
+        "middleware are those of the environment"
+    )
+    ros: Flag,
+    @arg(doc =
+      "with --bag or --ros: a topic that vehicles are read by, for example /uav1/odom; can be repeated; " +
+        "without it, topics of odometry and poses"
     )
     readings: Seq[String],
     @arg(doc =
-      "with --bag: a topic of commands, for example /uav1/cmd_vel; can be repeated; without it, topics of " +
-        "twists and poses named cmd, command, setpoint, target or goal"
+      "with --bag or --ros: a topic of commands, for example /uav1/cmd_vel; can be repeated; without it, " +
+        "topics of twists and poses named cmd, command, setpoint, target or goal"
     )
     commands: Seq[String],
     @arg(doc =
@@ -60,52 +65,84 @@ object ObserveOptions:
   private val Seed      = 1L
 
   extension (options: ObserveOptions)
-    /** Options that say something of a program, and nothing of a bag. */
-    def ofProgram: Vector[String] =
+    /** Options of the wire to a simulator, which neither a bag nor topics have. */
+    def ofWire: Vector[String] =
       Vector(
         "--listen"    -> (options.listen != Listen),
         "--simulator" -> (options.simulator != Simulator),
         "--link"      -> (options.link != Link),
-        "--seed"      -> (options.seed != Seed),
-        "a program"   -> options.command.words.nonEmpty
+        "--seed"      -> (options.seed != Seed)
       ).collect { case (name, true) => name }
 
 /** `./skein observe`: measures the control loop of any program that flies by AirSim's interface, from between
-  * it and the simulator, or of any graph of ROS 2, by a bag.
+  * it and the simulator, or of any graph of ROS 2, by its topics or a bag.
   */
 object ObserveCommand
     extends OptionsCommand[ObserveOptions](
       "observe",
-      "measures the loop of any AirSim program, or of a bag of ROS 2: how old its data is, and why",
+      "measures the loop of any AirSim program, or of a graph or bag of ROS 2: how old its data is, and why",
       ParserForClass[ObserveOptions]
     ):
 
   protected def execute(options: ObserveOptions): Either[String, Unit] = options.bag match
-    case Some(bag) => observeBag(Path.of(bag), options)
-    case None      => observeProgram(options)
+    case Some(bag)                 => observeBag(Path.of(bag), options)
+    case None if options.ros.value => observeGraph(options)
+    case None                      => observeProgram(options)
 
   private def observeBag(bag: Path, options: ObserveOptions): Either[String, Unit] =
+    val others = options.ofWire ++ Option.when(options.ros.value)("--ros") ++
+      Option.when(options.command.words.nonEmpty)("a program")
     for
-      _ <- Expect.that(options.ofProgram.isEmpty):
-        s"--bag: the bag is measured, and no program; came ${options.ofProgram.mkString(", ")} too"
-      folder   <- options.out.fold(Right(None))(OutFolder.made("--out", _).map(Some(_)))
+      _ <- Expect.that(others.isEmpty):
+        s"--bag: the bag is measured, and no program; came ${others.mkString(", ")} too"
+      folder   <- folderOf(options)
       observed <- BagLoop(options.readings.toSet, options.commands.toSet).observed(bag)
-      tables = TopicTables.tables(observed)
-      shown  = Shown(options.json.value)
-      _      = shown.tables(tables, text(tables, TopicTables.findings(observed)))
-      _ <- folder.fold(Right(()))(write(tables, observed.log, observed.vehicles, _, shown))
+      _        <- show(observed, TopicTables.findings(observed), folder, options)
     yield ()
+
+  private def observeGraph(options: ObserveOptions): Either[String, Unit] =
+    val command = options.command.words
+    for
+      _ <- Expect.that(options.ofWire.isEmpty):
+        s"--ros: topics are measured, and no simulator's wire; came ${options.ofWire.mkString(", ")} too"
+      _      <- RosNode.missing.toLeft(()).left.map("--ros: " + _)
+      folder <- folderOf(options)
+      loop   <- GraphLoop.open(options.readings.toSet, options.commands.toSet, Clock.system)
+        .left.map("--ros: " + _)
+      ended =
+        Shown(options.json.value)
+          .say("measuring topics of ROS 2" + (if command.isEmpty then "; Ctrl-C ends it" else ""))
+        try telling(loop.progress)(untilEnd(command))
+        finally loop.close()
+      _ <- ended
+      observed = loop.observed
+      _ <- show(observed, TopicTables.findings(observed) ++ loop.remarks, folder, options)
+    yield ()
+
+  private def show(
+      observed: ObservedTopics,
+      findings: Vector[String],
+      folder: Option[Path],
+      options: ObserveOptions
+  ): Either[String, Unit] =
+    val shown = Shown(options.json.value)
+    val data  = TopicTables.data(observed, findings)
+    shown.tables(data, text(TopicTables.tables(observed), findings))
+    folder.fold(Right(()))(write(data, observed.log, observed.vehicles, _, shown))
+
+  private def folderOf(options: ObserveOptions): Either[String, Option[Path]] =
+    options.out.fold(Right(None))(OutFolder.made("--out", _).map(Some(_)))
 
   private def observeProgram(options: ObserveOptions): Either[String, Unit] =
     for
       _ <- Expect.that(options.readings.isEmpty && options.commands.isEmpty):
-        "--readings, --commands: expected with --bag alone"
+        "--readings, --commands: expected with --bag or --ros alone"
       listenAt  <- Address.parse(options.listen).left.map("--listen: " + _)
       simulator <- Address.parse(options.simulator).left.map("--simulator: " + _)
       _         <- Expect.that(listenAt.port == 0 || listenAt != simulator):
         s"--listen: expected another address than the simulator's, came $listenAt twice"
       profile  <- Arguments.latency(options.link).left.map("--link: " + _)
-      folder   <- options.out.fold(Right(None))(OutFolder.made("--out", _).map(Some(_)))
+      folder   <- folderOf(options)
       observed <- observe(listenAt, simulator, LinkProfile.symmetric(profile), options)
       _        <- folder.fold(Right(())):
         write(ObservedTables.data(observed), observed.log, observed.vehicles, _, Shown(options.json.value))
@@ -159,11 +196,7 @@ object ObserveCommand
           (if profile == LinkProfile.none then "" else s" over ${profile.toServer.name}") +
           (if command.isEmpty then "; connect your program there, Ctrl-C ends it" else "")
       )
-      val telling = system.scheduler.scheduleWithFixedDelay(TellEvery, TellEvery)(() =>
-        ObservedTables.line(proxy.progress).foreach(Console.err.println)
-      )(using system.dispatcher)
-      val ended = if command.isEmpty then untilInterrupted() else runToEnd(command)
-      telling.cancel()
+      val ended = telling(proxy.progress)(untilEnd(command))
       Edge.await(proxy.close())
       val observed = proxy.observed
       shown.tables(
@@ -175,6 +208,21 @@ object ObserveCommand
     finally
       reader.shutdown()
       Edge.await(system.terminate()): Unit
+
+  /** Prints the progress every few seconds until `body` ends. */
+  private def telling[A](progress: => Progress)(body: => A): A =
+    val timer = Executors.newSingleThreadScheduledExecutor(Thread.ofPlatform().daemon().factory())
+    timer.scheduleWithFixedDelay(
+      () => ObservedTables.line(progress).foreach(Console.err.println),
+      TellEveryS,
+      TellEveryS,
+      TimeUnit.SECONDS
+    ): Unit
+    try body
+    finally timer.shutdown()
+
+  private def untilEnd(command: Seq[String]): Either[String, Unit] =
+    if command.isEmpty then untilInterrupted() else runToEnd(command)
 
   private def untilInterrupted(): Either[String, Unit] =
     val stopped = CountDownLatch(1)
@@ -195,4 +243,4 @@ object ObserveCommand
   private def text(tables: Vector[Section], findings: Vector[String]): String =
     (Section.text(tables) +: "" +: findings.flatMap(Paragraph.lines(_, 100))).mkString("\n")
 
-  private val TellEvery = 5.seconds
+  private val TellEveryS = 5L

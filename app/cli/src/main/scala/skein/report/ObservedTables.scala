@@ -131,8 +131,15 @@ object ObservedTables:
   /** Progress in one line; None before the first command. */
   def line(progress: Progress): Option[String] =
     Option.when(progress.commands > 0):
-      val age = progress.ageMs.fold("never read")(ms => s"data ${ms.brief} ms old")
+      val age = progress.agesMs match
+        case Vector()                        => "never read"
+        case Vector(one)                     => s"data ${one.ms.brief} ms old"
+        case all if all.sizeIs <= MostInLine =>
+          all.map(one => s"${one.vehicle} ${one.ms.brief}").mkString("data of ", ", ", " ms old")
+        case all => s"data of ${all.size} vehicles up to ${all.map(_.ms).max.brief} ms old"
       s"${progress.lasted.toSeconds.fixed(0)} s: ${progress.commands} commands, $age"
+
+  private val MostInLine = 4
 
   private[report] def mean(samples: Option[Distribution]) = samples.fold("")(_.mean.brief)
   private[report] def p99(samples: Option[Distribution])  = samples.fold("")(_.p99.brief)

@@ -10,12 +10,16 @@ object TopicTables:
   def tables(observed: ObservedTopics): Vector[Section] =
     Vector(vehicles(observed), topics(observed)).flatten
 
+  /** Tables for scripts, with the findings. */
+  def data(observed: ObservedTopics, findings: Vector[String]): Vector[Section] =
+    tables(observed) ++ section("Findings", Vector("<finding"), findings.map(Vector(_)))
+
   private def vehicles(observed: ObservedTopics) = ages(
     observed.vehicles,
     unnamed = "(the only)",
     bounds = Vector.empty,
     further = Vector.empty,
-    "Ages count from the stamp of a reading's header to when the command was recorded; means, and 99th percentiles."
+    "Ages count from the stamp of a reading's header to when the command was received; means, and 99th percentiles."
   )
 
   private def topics(observed: ObservedTopics) = section(
@@ -37,10 +41,10 @@ object TopicTables:
         topic.backwards.toString
       ),
     "Every: the median; a gap is longer than two and a half of it. Came after: from a header's stamp to when its " +
-      "message was recorded."
+      "message was received."
   )
 
-  /** A paragraph for each finding, and one for what a bag leaves open. */
+  /** A paragraph for each finding, and one for what topics leave open. */
   def findings(observed: ObservedTopics): Vector[String] =
     def seconds(ms: Double)          = s"${(ms / 1e3).fixed(2)} s"
     def broken(topic: ObservedTopic) =
@@ -50,17 +54,22 @@ object TopicTables:
       if observed.caused == observed.commands then
         "Every command has the stamp of the reading that caused it."
       else if observed.caused == 0 then
-        "No command has the stamp of a reading: the newest one recorded before it is assumed."
+        "No command has the stamp of a reading: the newest one received before it is assumed."
       else
         s"${observed.caused} of ${observed.commands} commands have the stamp of the reading that caused them; behind " +
-          "the others the newest one recorded before is assumed."
+          "the others the newest one received before is assumed."
     val clocks = Option.when(observed.byOtherClock.nonEmpty):
       s"The stamps of ${observed.byOtherClock.map(name => if name.isEmpty then "the vehicle" else name).mkString(", ")} are by " +
-        "another clock than the recorder's: ages lack the way of the fastest message."
+        "another clock than the times of reception: ages lack the way of the fastest message."
+    val ours = "Times are by the clock of the machine that received the messages."
+    val time = observed.simulated.fold(ours): by =>
+      val before =
+        if by.before == 0 then "" else s" ${by.before} messages from before it began are not counted."
+      s"Times are simulated, by /clock: known to within its step of ${by.step.toMillis.brief} ms.$before"
     val more = Option.when(observed.notKept > 0)(s"${observed.notKept} messages are not counted.")
     (if observed.commands == 0 then Vector("There is no command, so there is no loop to judge.")
      else Vector.empty) ++
       observed.topics.filter(_.gaps > 0).map(broken) ++ observed.topics.filter(
         _.backwards > 0
       ).map(disorder) ++
-      assumed ++ clocks ++ more
+      assumed ++ clocks ++ Option.when(observed.topics.nonEmpty)(time) ++ more

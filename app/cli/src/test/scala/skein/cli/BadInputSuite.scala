@@ -161,6 +161,23 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       Seq("--bag", "walk.mcap", "--link", "vpn", "--seed", "2"),
       "skein observe: --bag: the bag is measured, and no program; came --link, --seed too"
     )
+    assertRefused(
+      ObserveCommand,
+      Seq("--bag", "walk.mcap", "--ros", "--", "true"),
+      "skein observe: --bag: the bag is measured, and no program; came --ros, a program too"
+    )
+
+  test("options of observe that a graph of ROS 2 has no use for are refused with it"):
+    assertRefused(
+      ObserveCommand,
+      Seq("--ros", "--link", "vpn", "--listen", "127.0.0.1:0"),
+      "skein observe: --ros: topics are measured, and no simulator's wire; came --listen, --link too"
+    )
+    assertRefused(
+      ObserveCommand,
+      Seq("--readings", "/a/odom"),
+      "--readings, --commands: expected with --bag or --ros alone"
+    )
 
   test("options that only MAVLink uses are refused without it"):
     assertRefused(FlyCommand(), Seq("--simulator", "tcp://127.0.0.1:5760"), "tcp:// is for --mavlink alone")

@@ -379,6 +379,8 @@ object DocumentedCommands:
     "fly --ros --loop predictive --link none --link vpn --duration 60s" -> classOf[FlyRosSuite],
     "benchmark"                                                         -> classOf[BenchmarkSimulation],
     "benchmark --policy FILE"                                           -> classOf[BenchmarkSimulation],
+    "observe --ros"                                                     -> classOf[ObserveRosSuite],
+    "observe --ros -- python my_node.py"                                -> classOf[ObserveRosSuite],
     "serve --ros"                                                       -> classOf[ServeRosSuite],
     "serve --ros --settings three.json"                                 -> classOf[ServeRosSuite],
     "serve --ros --settings three.json --speed 10"                      -> classOf[ServeRosSuite],

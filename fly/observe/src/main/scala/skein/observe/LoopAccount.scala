@@ -201,11 +201,8 @@ final class LoopAccount:
   private def commands: Long = vehicles.all.map(_.account.commands).sum
 
   /** The progress, at constant cost for any number of observations. */
-  def progress: Progress = Progress(
-    begunAt.fold(Span.Zero)(lastAt.since),
-    commands,
-    vehicles.all.flatMap(_.account.ownAgeMs).maxOption
-  )
+  def progress: Progress =
+    VehicleAccount.progress(begunAt.fold(Span.Zero)(lastAt.since), vehicles.all.map(_.account))
 
   /** The complete observations so far; sorts every sample. */
   def observed: Observed =

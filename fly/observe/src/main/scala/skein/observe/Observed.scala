@@ -115,7 +115,6 @@ final case class Stall(at: Span, length: Span, method: String)
 
 /** The progress of an observation.
   *
-  * @param ageMs mean age of the own data of the vehicle whose data is oldest; absent before the first command
-  *   to a vehicle that was read
+  * @param agesMs mean age of the own data of each vehicle that was read before a command to it
   */
-final case class Progress(lasted: Span, commands: Long, ageMs: Option[Double])
+final case class Progress(lasted: Span, commands: Long, agesMs: Vector[(vehicle: String, ms: Double)])

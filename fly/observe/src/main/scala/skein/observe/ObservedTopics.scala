@@ -15,6 +15,7 @@ enum TopicKind(val label: String):
   * @param byOtherClock vehicles whose stamps are by another clock than the times at which messages arrived
   * @param notKept messages of vehicles or topics beyond the most
   * @param log of the first [[LoopAccount.MostLogged]] commands
+  * @param simulated where times are those of a simulation
   */
 final case class ObservedTopics(
     lasted: Span,
@@ -23,9 +24,17 @@ final case class ObservedTopics(
     caused: Long,
     byOtherClock: Vector[String],
     notKept: Long,
-    log: Vector[ObservedCommand]
+    log: Vector[ObservedCommand],
+    simulated: Option[SimulatedTime]
 ):
   def commands: Long = vehicles.map(_.commands).sum
+
+/** The simulated time of a graph.
+  *
+  * @param step usual time from one of its messages to the next, to within which it is known
+  * @param before messages from before it began, which are not counted otherwise
+  */
+final case class SimulatedTime(step: Span, before: Long)
 
 /** The messages of one topic.
   *

@@ -27,6 +27,7 @@ final class TopicAccount:
   private val log      = mutable.ArrayBuffer.empty[ObservedCommand]
   private var caused   = 0L
   private var notKept  = 0L
+  private var added    = 0L
   private var begunAt  = Option.empty[Instant]
   private var lastAt   = Instant.Epoch
 
@@ -38,10 +39,19 @@ final class TopicAccount:
   def reading(vehicle: String, topic: String, stamp: Option[Instant], at: Instant): Unit =
     received(vehicle, topic, TopicKind.Readings, stamp, at).foreach(_.read(stamp, at))
 
-  /** Adds a command that was sent; its parameters are those of [[reading]]. */
-  def command(vehicle: String, topic: String, stamp: Option[Instant], at: Instant): Unit =
+  /** Adds a command that was sent; its parameters are those of [[reading]].
+    *
+    * @param mayBeNow whether its stamp may say when it was sent, so that it names no reading
+    */
+  def command(
+      vehicle: String,
+      topic: String,
+      stamp: Option[Instant],
+      at: Instant,
+      mayBeNow: Boolean = false
+  ): Unit =
     for commanded <- received(vehicle, topic, TopicKind.Commands, stamp, at) do
-      val cause = stamp.flatMap(commanded.readingOf)
+      val cause = if mayBeNow then None else stamp.flatMap(commanded.readingOf)
       if cause.isDefined then caused += 1
       val rest    = vehicles.all.filterNot(_ eq commanded).toVector
       val own     = cause.orElse(commanded.newest).map(commanded.ageMs(_, at))
@@ -68,6 +78,7 @@ final class TopicAccount:
       stamp: Option[Instant],
       at: Instant
   ): Option[Vehicle] =
+    added += 1
     if begunAt.isEmpty then begunAt = Some(at)
     lastAt = lastAt.max(at)
     val known =
@@ -80,15 +91,24 @@ final class TopicAccount:
     if known.isEmpty then notKept += 1
     known
 
+  /** Number of readings and commands so far, kept or not. */
+  def messages: Long = added
+
+  /** The progress, at constant cost for any number of observations. */
+  def progress: Progress = VehicleAccount.progress(lasted, vehicles.all.map(_.account))
+
+  private def lasted: Span = begunAt.fold(Span.Zero)(lastAt.since)
+
   /** The complete observations so far; sorts every sample. */
   def observed: ObservedTopics = ObservedTopics(
-    begunAt.fold(Span.Zero)(lastAt.since),
+    lasted,
     vehicles.all.map(_.account.observed).toVector,
     topics.all.map(_.observed).toVector,
     caused,
     vehicles.all.filter(_.isByOtherClock).map(_.name).toVector,
     notKept,
-    log.toVector
+    log.toVector,
+    simulated = None
   )
 
 object TopicAccount:

@@ -3,7 +3,7 @@ package skein.observe
 import skein.units.{Instant, Span}
 
 /** Sums up the commands to one vehicle. Mutable. */
-private[observe] final class VehicleAccount(name: String):
+private[observe] final class VehicleAccount(val name: String):
   import VehicleAccount.PhysicsStep
 
   private val ownAge      = Samples()
@@ -55,6 +55,16 @@ private[observe] final class VehicleAccount(name: String):
     leftRunning
   )
 
-private object VehicleAccount:
+private[observe] object VehicleAccount:
+
+  /** The progress of an observation of these vehicles. */
+  def progress(lasted: Span, vehicles: Iterator[VehicleAccount]): Progress =
+    val all = vehicles.toVector
+    Progress(
+      lasted,
+      all.map(_.commands).sum,
+      all.flatMap(one => one.ownAgeMs.map(ms => (vehicle = one.name, ms = ms)))
+    )
+
   /** AirSim's physics step: a command replaced within it never takes effect. */
   private val PhysicsStep = Span.ofMillis(3)

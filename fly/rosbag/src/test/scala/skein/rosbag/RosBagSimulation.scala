@@ -64,6 +64,6 @@ class RosBagSimulation extends munit.FunSuite, TemporaryFolders, Unhurried:
 
   test("the vehicle of a topic is its first part"):
     assertEquals(
-      Vector("/uav1/mavros/odom", "/uav1/cmd_vel", "/odom").map(BagLoop.vehicleOf),
+      Vector("/uav1/mavros/odom", "/uav1/cmd_vel", "/odom").map(TopicLoop.vehicleOf),
       Vector("uav1", "uav1", "")
     )

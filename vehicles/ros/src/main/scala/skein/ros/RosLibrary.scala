@@ -16,7 +16,6 @@ import java.lang.invoke.MethodHandle
 import java.nio.file.{Files, Path}
 import scala.collection.concurrent.TrieMap
 import scala.util.Try
-import skein.ros.message.MessageType
 
 /** ROS 2's C client library `librcl` of an installed ROS 2, called without a build and without generated
   * code. Skein contains no part of it. It stays loaded until the process ends.
@@ -101,20 +100,23 @@ private[ros] final class RosLibrary private (folders: Vector[Path], rcl: SymbolL
 
   private val supports = TrieMap.empty[String, Either[String, MemorySegment]]
 
-  /** ROS 2's description of a message type, from the library of its package.
+  /** ROS 2's description of a message type such as `nav_msgs/msg/Odometry`, from the library of its package.
     *
     * @return Left if the package is not installed
     */
-  def typeSupport(kind: MessageType[?]): Either[String, MemorySegment] =
-    supports.getOrElseUpdate(kind.toString, described(kind))
+  def typeSupport(kind: String): Either[String, MemorySegment] =
+    supports.getOrElseUpdate(kind, described(kind))
 
-  private def described(kind: MessageType[?]): Either[String, MemorySegment] =
-    val file   = System.mapLibraryName(s"${kind.packageName}__rosidl_typesupport_c")
-    val symbol =
-      s"rosidl_typesupport_c__get_message_type_support_handle__${kind.packageName}__msg__${kind.name}"
+  private def described(kind: String): Either[String, MemorySegment] = kind match
+    case Kind(packageName, name) => described(kind, packageName, name)
+    case _                       => Left(s"expected a type such as nav_msgs/msg/Odometry, came $kind")
+
+  private def described(kind: String, packageName: String, name: String): Either[String, MemorySegment] =
+    val file   = System.mapLibraryName(s"${packageName}__rosidl_typesupport_c")
+    val symbol = s"rosidl_typesupport_c__get_message_type_support_handle__${packageName}__msg__$name"
     for
       path <- folders.map(_.resolve(file)).find(Files.isRegularFile(_)).toRight(
-        s"expected ROS 2's package ${kind.packageName} for $kind, it is not installed"
+        s"expected ROS 2's package $packageName for $kind, it is not installed"
       )
       library <- load(path)
       address <-
@@ -124,11 +126,24 @@ private[ros] final class RosLibrary private (folders: Vector[Path], rcl: SymbolL
       .invokeWithArguments()
       .asInstanceOf[MemorySegment]
 
+  /** The text of a type's `.msg` file, which stands in the folder `share` beside `lib`; empty without one. */
+  def definition(kind: String): String = kind match
+    case Kind(packageName, name) =>
+      folders
+        .map(_.resolveSibling("share").resolve(packageName).resolve("msg").resolve(s"$name.msg"))
+        .find(file => Files.isRegularFile(file) && Files.size(file) <= MostDefinition)
+        .flatMap(file => Try(Files.readString(file)).toOption)
+        .getOrElse("")
+    case _ => ""
+
 private[ros] object RosLibrary:
   val Ok: Int        = 0
   val TimedOut: Int  = 2
   val NothingToTake  = 401
   val NothingToAwait = 901
+
+  private val Kind           = "([A-Za-z][A-Za-z0-9_]*)/msg/([A-Za-z][A-Za-z0-9_]*)".r
+  private val MostDefinition = 64L << 10
 
   private[ros] def words(count: Int): StructLayout =
     MemoryLayout.structLayout(MemoryLayout.sequenceLayout(count, JAVA_LONG))

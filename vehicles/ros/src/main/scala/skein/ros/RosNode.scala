@@ -5,7 +5,7 @@ import java.lang.foreign.{Arena, MemorySegment}
 import java.util.concurrent.atomic.{AtomicLong, AtomicReference}
 import scala.util.control.NonFatal
 import skein.ros.message.{Cdr, MessageType}
-import skein.units.{Clock, Span}
+import skein.units.{Clock, Instant, Span}
 
 /** A node of ROS 2: it publishes topics and subscribes to them, as serialized messages. Domain, middleware
   * and security are those of the environment, as for every node (`ROS_DOMAIN_ID`, `RMW_IMPLEMENTATION`).
@@ -19,7 +19,7 @@ final class RosNode private (
     context: MemorySegment,
     node: MemorySegment,
     clock: Clock
-) extends AutoCloseable:
+) extends RosGraph:
   import RosNode.*
 
   private val allocator          = library.allocator(arena)
@@ -29,16 +29,15 @@ final class RosNode private (
   private val malformed          = AtomicLong()
   private val noted              = AtomicReference(Vector.empty[String])
   @volatile private var isClosed = false
+  @volatile private var watcher  = Option.empty[RosWatcher]
 
   /** Messages that the middleware did not take. */
   def failed: Long = failures.get
 
-  /** Received messages that were malformed, longer than 64 MiB, or of no use. */
   def refused: Long = malformed.get
 
-  /** What went wrong so far, each kind once: the first malformed message of a topic, and topics that others
-    * use with another type, so that nothing is received from them. At most 16 lines.
-    */
+  def lost: Long = readers.get.map(_.lost.count).sum
+
   def notes: Vector[String] = noted.get
 
   private def note(line: String): Unit =
@@ -53,7 +52,7 @@ final class RosNode private (
   def publish[A](topic: String, qos: Qos = Qos.Reliable)(using
       kind: MessageType[A]
   ): Either[String, RosPublisher[A]] =
-    opened(topic): support =>
+    opened(topic, kind.toString): support =>
       val publisher = arena.allocate(PointerRoom, 8)
       val options   = withQos(library.senderOptions(arena), qos)
       library.call(library.initSender, publisher, node, support, arena.allocateFrom(topic), options)
@@ -69,18 +68,31 @@ final class RosNode private (
   def subscribe[A](topic: String, qos: Qos = Qos.BestEffort)(receive: A => Unit)(using
       kind: MessageType[A]
   ): Either[String, Unit] =
-    opened(topic): support =>
+    reading(topic, kind.toString, qos, MostBytes): (message, _) =>
+      Cdr.message(message)(using kind.cdr).map(receive)
+
+  def subscribeRaw(topic: String, kind: String, qos: Qos, most: Int)(
+      receive: (Array[Byte], Instant) => Unit
+  ): Either[String, Unit] =
+    reading(topic, kind, qos, most)((message, at) => Right(receive(message, at)))
+
+  private def reading(topic: String, kind: String, qos: Qos, most: Long)(
+      read: (Array[Byte], Instant) => Either[String, Unit]
+  ): Either[String, Unit] =
+    opened(topic, kind): support =>
       val subscription = arena.allocate(PointerRoom, 8)
       val options      = withQos(library.readerOptions(arena), qos)
       library.call(library.initReader, subscription, node, support, arena.allocateFrom(topic), options)
       val bytes = arena.allocate(24 + RosLibrary.AllocatorLayout.byteSize, 8)
       library.call(library.initBytes, bytes, FirstBytes, allocator)
-      def read(message: Array[Byte]) = Cdr.message(message)(using kind.cdr).map(receive)
-      readers.updateAndGet(_ :+ Reader(topic, kind.toString, subscription, bytes, read)): Unit
+      readers.updateAndGet(_ :+ Reader(topic, kind, subscription, bytes, most, read)): Unit
 
-  private def opened[A](topic: String)(open: MemorySegment => A)(using
-      kind: MessageType[?]
-  ): Either[String, A] =
+  def definition(kind: String): String = library.definition(kind)
+
+  /** Lets `watching` see the graph from now on. */
+  def watch(watching: RosWatcher): Unit = watcher = Some(watching)
+
+  private def opened[A](topic: String, kind: String)(open: MemorySegment => A): Either[String, A] =
     library.typeSupport(kind).flatMap: support =>
       synchronized:
         if isClosed then Left(s"$topic: the node is closed")
@@ -97,8 +109,10 @@ final class RosNode private (
       var awaits  = 0
       var lookAt  = clock.now() + LookEvery
       val taken   = own.allocate(InfoRoom, 8)
+      val found   = own.allocate(TypesRoom, 8)
       while !isClosed do
-        val all = readers.get
+        val all     = readers.get
+        val begunAt = clock.now()
         if all.size > awaits then
           if awaits > 0 then library.call(library.endWait, waitSet)
           waitSet = own.allocate(WaitSetRoom, 8)
@@ -115,9 +129,12 @@ final class RosNode private (
             case RosLibrary.Ok       => all.foreach(takeFrom(_, taken))
             case RosLibrary.TimedOut => ()
             case other               => throw RosFailure(s"rcl_wait: ${library.reason(other)}")
+          watcher.foreach(_.upTo(begunAt))
         if clock.now() >= lookAt then
           lookAt = clock.now() + LookEvery
-          lookForOtherTypes(all, own)
+          val topics = topicsAndTypes(found)
+          noteOtherTypes(all, topics)
+          watcher.foreach(_.topics(topics))
       if awaits > 0 then library.call(library.endWait, waitSet)
     catch case failure: RosFailure => note(s"nothing is received any more: ${failure.getMessage}")
     finally own.close()
@@ -128,11 +145,15 @@ final class RosNode private (
       left -= 1
       library.status(library.take, one.subscription, one.bytes, info, MemorySegment.NULL) match
         case RosLibrary.Ok =>
+          one.lost.add(
+            (info.get(JAVA_LONG, PublisherAt), info.get(JAVA_LONG, PublisherAt + 8)),
+            info.get(JAVA_LONG, NumberAt)
+          )
           val length = one.bytes.get(JAVA_LONG, 8)
           if length > MostBytes then refuse(one.topic, s"expected at most $MostBytes bytes, came $length")
           else
-            val message = one.bytes.get(ADDRESS, 0).reinterpret(length).toArray(JAVA_BYTE)
-            try one.read(message).left.foreach(refuse(one.topic, _))
+            val message = one.bytes.get(ADDRESS, 0).reinterpret(length.min(one.most)).toArray(JAVA_BYTE)
+            try one.read(message, arrivedAt(info)).left.foreach(refuse(one.topic, _))
             catch case NonFatal(failure) => refuse(one.topic, failure.toString)
         case other =>
           left = 0
@@ -144,18 +165,32 @@ final class RosNode private (
     if !noted.get.exists(_.startsWith(begin)) then note(begin + why)
     malformed.incrementAndGet(): Unit
 
-  /** Topics of ours that others publish, or read, as another type: ROS 2 does not connect them and says
+  /** When a message was received: as the middleware says, or else now. */
+  private def arrivedAt(info: MemorySegment): Instant =
+    val now      = clock.now()
+    val received = Instant.ofNanos(info.get(JAVA_LONG, ReceivedAt))
+    if now.since(received) < MostApart && received.since(now) < MostApart then received else now
+
+  /** All topics of the graph, with the types by which nodes use them. */
+  private def topicsAndTypes(found: MemorySegment): Vector[(String, Vector[String])] =
+    found.fill(0): Unit
+    if library.status(library.topicTypes, node, allocator, false, found) != RosLibrary.Ok then Vector.empty
+    else
+      val names  = texts(found)
+      val types  = found.get(ADDRESS, StringsRoom).reinterpret(names.size * StringsRoom)
+      val topics = names.zipWithIndex.map((name, index) =>
+        name -> texts(types.asSlice(index * StringsRoom, StringsRoom))
+      )
+      library.status(library.endTypes, found): Unit
+      topics
+
+  /** Notes topics of ours that others publish, or read, as another type: ROS 2 does not connect them and says
     * nothing.
     */
-  private def lookForOtherTypes(all: Vector[Reader], own: Arena): Unit =
-    val found = own.allocate(TypesRoom, 8)
-    if library.status(library.topicTypes, node, allocator, false, found) == RosLibrary.Ok then
-      val names = texts(found)
-      val types = found.get(ADDRESS, StringsRoom).reinterpret(names.size * StringsRoom)
-      for (name, index) <- names.zipWithIndex; reader <- all if reader.topic == name do
-        for other <- texts(types.asSlice(index * StringsRoom, StringsRoom)) if other != reader.kind do
-          note(s"$name: expected ${reader.kind}, a node uses $other, which is not received")
-      library.status(library.endTypes, found): Unit
+  private def noteOtherTypes(all: Vector[Reader], topics: Vector[(String, Vector[String])]): Unit =
+    val types = topics.toMap
+    for reader <- all; other <- types.getOrElse(reader.topic, Vector.empty) if other != reader.kind do
+      note(s"${reader.topic}: expected ${reader.kind}, a node uses $other, which is not received")
 
   /** An `rcutils_string_array_t`: how many texts, and where they are. */
   private def texts(array: MemorySegment): Vector[String] =
@@ -193,8 +228,10 @@ object RosNode:
       val kind: String,
       val subscription: MemorySegment,
       val bytes: MemorySegment,
-      val read: Array[Byte] => Either[String, Unit]
-  )
+      val most: Long,
+      val read: (Array[Byte], Instant) => Either[String, Unit]
+  ):
+    val lost = LostMessages()
 
   /** Bytes for a struct of one or a few pointers. */
   private val PointerRoom = 64L
@@ -202,8 +239,16 @@ object RosNode:
   /** Bytes for `rcl_wait_set_t`: six arrays with their sizes, and a pointer; some reserve. */
   private val WaitSetRoom = 256L
 
-  /** Bytes for `rmw_message_info_t`, with reserve. */
-  private val InfoRoom = 512L
+  /** Bytes for `rmw_message_info_t`, with reserve; where the time of reception stands in it, the message's
+    * number, and the publisher's identifier. In Foxy constants stand in these two places.
+    */
+  private val InfoRoom    = 512L
+  private val ReceivedAt  = 8L
+  private val NumberAt    = 16L
+  private val PublisherAt = 40L
+
+  /** How far the middleware's clock may be from ours; some middleware fills in nothing. */
+  private val MostApart = Span.ofSeconds(10)
 
   /** Bytes of `rcutils_string_array_t`: size, address, allocator. */
   private val StringsRoom = 16 + RosLibrary.AllocatorLayout.byteSize
@@ -220,7 +265,7 @@ object RosNode:
   private val MostAtOnce = 64
 
   private val Patience   = Span.ofMillis(100)
-  private val LookEvery  = Span.ofSeconds(2)
+  private val LookEvery  = Span.ofMillis(500)
   private val JoinMillis = 2_000L
 
   /** Why no node can be opened here, if none can: ROS 2 is not installed, or not in the environment. */

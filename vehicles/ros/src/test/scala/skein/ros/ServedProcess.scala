@@ -30,8 +30,11 @@ private[ros] object ServedProcess:
     * @param port of AirSim's wire
     */
   def start(variables: Map[String, String], speed: Double, port: Int): ServedProcess =
-    val builder = program(variables, "serveOnRos", speed.toString, port.toString)
-    val process = builder.start()
+    start(program(variables, "serveOnRos", speed.toString, port.toString))
+
+  /** Starts a program that prints `serving`, and ends when its input does. */
+  def start(program: ProcessBuilder): ServedProcess =
+    val process = program.start()
     val lines   = ConcurrentLinkedQueue[String]()
     val serving = scala.concurrent.Promise[Boolean]()
     Thread.ofPlatform().daemon().start: () =>
