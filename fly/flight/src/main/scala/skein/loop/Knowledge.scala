@@ -13,8 +13,8 @@ enum Knowledge(val label: String):
   case Positions extends Knowledge("positions")
 
 object Knowledge:
-  /** The model by which a vehicle is predicted whose commands are not known: the turn of its last two readings
-    * goes on, unless its own model is straight on.
+  /** The model by which a vehicle is predicted whose commands are not known: the turn of its last two
+    * readings goes on, unless its own model is straight on.
     */
   def stranger(model: VehicleModel[?]): VehicleModel[?] =
     if model == ConstantVelocity then ConstantVelocity else ConstantTurn

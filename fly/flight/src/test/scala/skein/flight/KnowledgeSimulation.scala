@@ -34,7 +34,9 @@ class KnowledgeSimulation extends munit.FunSuite, TemporaryFolders, Unhurried:
     errors(errors.size * 95 / 100)
 
   for inPacket <- Seq(false, true) do
-    test(s"the own vehicle is predicted by its model, the other by its readings; plans in packets: $inPacket"):
+    test(
+      s"the own vehicle is predicted by its model, the other by its readings; plans in packets: $inPacket"
+    ):
       val known                   = settings(LoopKind.Predictive, inPacket).copy(knows = Knowledge.All)
       def errors(of: FlySettings) = PredictionErrors.of(fly(of).recording, isDuel = true).get
       val (told, blind)           = (errors(known), errors(settings(LoopKind.Predictive, inPacket)))
