@@ -77,7 +77,7 @@ object BenchmarkSet:
   /** The set of `./skein benchmark`, of [[Version]]. */
   val Published: BenchmarkSet = BenchmarkSet(
     tasks = Vector("duel", "surround", "formation", "crossing", "shadow").map(Named.of) :+
-      Named("hidden shadow", "scenario = shadow, knows = positions"),
+      Named("hidden-shadow", "scenario = shadow, knows = positions"),
     links = Vector("direct", "vpn", "constant:200ms", "constant:400ms", "loss:5%/4,vpn"),
     worlds = Vector(
       Named("as modelled", "airsim"),

@@ -9,7 +9,7 @@ import skein.units.Expect
 /** Command-line options of `./skein benchmark`, with their help texts. */
 final case class BenchmarkOptions(
     @arg(doc =
-      "a task: duel, surround, formation, crossing, shadow or 'hidden shadow'; can be repeated; without one, and without " +
+      "a task: duel, surround, formation, crossing, shadow or hidden-shadow; can be repeated; without one, and without " +
         "--scenario, all"
     )
     task: Seq[String],

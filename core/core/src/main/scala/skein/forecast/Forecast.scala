@@ -61,7 +61,7 @@ final case class Forecast private (
     tracks.zip(estimates).flatMap: (track, estimate) =>
       for track <- track; delays <- delays yield track.courseAt(estimate.predictedFor, delays, now)
 
-  /** This forecast with one vehicle as another forecast predicts it. Both must have had the same readings. */
+  /** This forecast with one vehicle as another forecast predicts it. Both must have had equal readings. */
   def withVehicleOf(other: Forecast, vehicle: Int): Forecast = copy(
     models = models.updated(vehicle, other.models(vehicle)),
     tracks = tracks.updated(vehicle, other.tracks(vehicle))

@@ -29,12 +29,12 @@ final class Bodies(shapes: IndexedSeq[Bodies.Shaped], places: Array[Double]) ext
     )
 
 object Bodies:
-  /** A vehicle wherever it is. */
+  /** What all bodies of one vehicle share: its name, and its parts in its own frame. */
   final case class Shaped(name: String, parts: Vector[SceneObject.Part])
 
   val Numbers = 7
 
-  /** The numbers of these places, by vehicle. */
+  /** Packs places of vehicles as a body holds them, [[Numbers]] each. */
   def places(all: Iterator[(position: Vector3, orientation: Quaternion)]): Array[Double] =
     all.flatMap(at =>
       val (p, q) = (at.position, at.orientation)
