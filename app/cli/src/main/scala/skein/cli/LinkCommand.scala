@@ -69,8 +69,8 @@ object LinkCommand
       _        <- Expect.that(!options.buffer.value || !options.udp.value)(
         "--buffer: expected without --udp, for a simulator that speaks AirSim's protocol over TCP"
       )
-      profile  <- profileOf(options)
-      _        <- serve(listenAt, to, profile, options)
+      profile <- profileOf(options)
+      _       <- serve(listenAt, to, profile, options)
     yield ()
 
   private def profileOf(options: LinkOptions): Either[String, LinkProfile] =

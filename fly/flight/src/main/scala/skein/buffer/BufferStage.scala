@@ -197,7 +197,7 @@ private[buffer] object BufferStage:
   /** Most moves of a connection whose answers are noticed. */
   val MostMoves = 1024
 
-  /** Who knows all connections. Thread-safe. */
+  /** Decides on the calls of all connections together. Thread-safe. */
   trait Judge:
     def judge(wish: Wish): Future[Verdict]
 

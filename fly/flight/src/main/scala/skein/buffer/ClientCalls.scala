@@ -8,7 +8,7 @@ import skein.rpc.{FrameLimits, Framed, Framer, RpcMessage}
   * plans that are too long.
   */
 private[buffer] enum Piece:
-  /** Passes, whatever it means. */
+  /** Concerns no plan, or is not understood, and passes. */
   case Rest(bytes: ByteString)
 
   /** A call that concerns the buffer.

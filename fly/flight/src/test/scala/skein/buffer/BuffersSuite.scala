@@ -44,7 +44,7 @@ class BuffersSuite extends munit.FunSuite:
         // What a buffer in the simulator would do, by its own clock.
         var own                       = PlanBuffer.empty[PlannedMove]
         var changes                   = Vector.empty[(Instant, PlannedMove)]
-        var arrived = Vector.empty[Instant]
+        var arrived                   = Vector.empty[Instant]
         def change(at: Instant): Unit = for due <- own.due(at) do
           if !changes.lastOption.exists(_._2 eq due.action) then changes :+= ((at, due.action))
         def until(at: Instant): Unit =
@@ -69,7 +69,8 @@ class BuffersSuite extends munit.FunSuite:
         bench.pass(3000)
         until(bench.simulated)
         assert(bench.mostUnanswered <= 2, s"seed $seed")
-        val within = (0.2 + 1.5) * speed.max(1) // half a round trip; the answer of the one before, and its handover
+        val within =
+          (0.2 + 1.5) * speed.max(1) // half a round trip; the answer of the one before, and its handover
         val lasted = changes.zip(changes.drop(1).map(_._1) :+ bench.simulated)
         for ((at, move), end) <- lasted if end.since(at).toMillis > 2 * within do
           val done = bench.performed.find(one => one.move.at == move.at && speedOf(one.move) == speedOf(move))
@@ -87,12 +88,12 @@ class BuffersSuite extends munit.FunSuite:
           assert(isDue || isEven, s"seed $seed: ${atMs(one.move.at)} was never due")
 
   test("a clock that seems to go back by a little repeats no move"):
-    val now    = Instant.Epoch + Span.ofSeconds(9)
-    val moves  = Vector(north(100, 1), north(200, 2))
-    val plan   = VehicleBuffer().received(1, moves, Start)
+    val now                = Instant.Epoch + Span.ofSeconds(9)
+    val moves              = Vector(north(100, 1), north(200, 2))
+    val plan               = VehicleBuffer().received(1, moves, Start)
     def at(timeMs: Double) = Start + Span.ofMillis(timeMs)
-    val first  = plan.sent(plan.next(at(101), now).get, now).ended(now)
-    val second = first.sent(first.next(at(200), now + Span.ofMillis(1)).get, now).ended(now)
+    val first              = plan.sent(plan.next(at(101), now).get, now).ended(now)
+    val second             = first.sent(first.next(at(200), now + Span.ofMillis(1)).get, now).ended(now)
     assertEquals(second.next(at(199.5), now + Span.ofMillis(2)), None)
     assertEquals(second.wakeAt(None, maySend = true, now), None)
     // A newer plan replaces what was sent, from an earlier moment on.

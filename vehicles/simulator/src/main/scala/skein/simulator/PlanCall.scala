@@ -71,7 +71,7 @@ private[skein] object PlanCall:
   /** The function's name. It is not one of AirSim's. */
   val Function = "skeinFollowPlan"
 
-  /** The functions that move a multirotor. */
+  /** The functions that move a multirotor, by their names. */
   private[simulator] lazy val functions: Map[String, ServerMethod] =
     MoveMethods.all.map(function => function.name -> function).toMap
 
