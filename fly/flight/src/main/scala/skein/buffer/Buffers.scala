@@ -14,8 +14,8 @@ import upack.{Bool, Msg}
   * unless the simulator's clock is known from a reading just before. While moves of plans are due the clock
   * is read every [[Buffers.ReadEvery]]. While it stands still, or no reading is answered, no move is sent.
   *
-  * Plans outlast the connections over which they came, as in the built-in simulator: they end with their last
-  * move. They end earlier when a client moves the vehicle, cancels its task, takes api control from it,
+  * Plans outlast the connections over which they arrived, as in the built-in simulator: they end with their
+  * last move. They end earlier when a client moves the vehicle, cancels its task, takes api control from it,
   * places it or resets the simulator.
   *
   * @param unnamed the vehicle that calls without a name mean
@@ -39,7 +39,7 @@ private[buffer] final case class Buffers(
   import Buffers.*
 
   /** The buffers after a call of a client, which is judged now or later. */
-  def came(ticket: Long, wish: Wish, now: Instant): Stepped = (wish match
+  def received(ticket: Long, wish: Wish, now: Instant): Stepped = (wish match
     case Wish.Plan(Left(mistake)) => refused(ticket, mistake)
     case Wish.Plan(Right(plan))   => planned(ticket, plan, now)
     case Wish.Move(vehicle)       => moved(ticket, vehicle)(_.forgotten)

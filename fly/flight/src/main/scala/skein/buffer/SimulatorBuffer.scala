@@ -40,7 +40,7 @@ final class SimulatorBuffer private (
   private object judge extends BufferStage.Judge:
     def judge(wish: Wish): Future[Verdict] =
       val verdict = Promise[Verdict]()
-      keeper ! Message.Came(wish, verdict)
+      keeper ! Message.Received(wish, verdict)
       verdict.future
     def answered(vehicle: String): Unit = keeper ! Message.Answered(vehicle)
     def lost(): Unit                    = keeper ! Message.Lost
@@ -79,7 +79,7 @@ object SimulatorBuffer:
   private val AnswerWithin = Span.ofSeconds(2)
 
   private[buffer] enum Message:
-    case Came(wish: Wish, verdict: Promise[Verdict])
+    case Received(wish: Wish, verdict: Promise[Verdict])
 
     case Answered(vehicle: String)
 
@@ -112,11 +112,11 @@ object SimulatorBuffer:
     def behavior: Behavior[Message] = Behaviors.receiveMessage: message =>
       val now = clock.now()
       message match
-        case Message.Came(wish, verdict) =>
+        case Message.Received(wish, verdict) =>
           val ticket = nextTicket
           nextTicket += 1
           verdicts.update(ticket, verdict)
-          follow(buffers.came(ticket, wish, now))
+          follow(buffers.received(ticket, wish, now))
         case Message.Answered(vehicle)                => follow(buffers.answered(vehicle, now))
         case Message.Looked(vehicle, answer, default) =>
           unnamed = unnamed.orElse(default)

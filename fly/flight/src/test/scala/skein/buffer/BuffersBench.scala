@@ -66,7 +66,7 @@ private[buffer] final class BuffersBench(roundTrip: Span = Span.ofMillis(0.4), s
     do ()
     clock = until
 
-  def come(ticket: Long, wish: Wish): Unit = follow(buffers.came(ticket, wish, clock))
+  def come(ticket: Long, wish: Wish): Unit = follow(buffers.received(ticket, wish, clock))
 
   /** A plan for `Drone` of moves to the north at these times, in ms of the simulator's clock since its start.
     */
