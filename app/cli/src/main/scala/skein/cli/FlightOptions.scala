@@ -84,7 +84,7 @@ final case class FlightOptions(
       name = "plan-in-packet",
       doc =
         "each command of `predictive` carries its plan for the next moments: a buffer beside the vehicle " +
-          "performs what is due, through delays and losses; built-in simulator alone"
+          "performs what is due, through delays and losses; the built-in simulator has one, and link --buffer"
     )
     planInPacket: Flag,
     @arg(doc =

@@ -3,9 +3,12 @@ package skein.cli
 import java.util.concurrent.CountDownLatch
 import mainargs.{Flag, ParserForClass, arg}
 import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.stream.scaladsl.BidiFlow
+import skein.buffer.{BufferCounts, SimulatorBuffer}
 import skein.link.*
 import skein.signal.{Bandwidth, Impairment, LatencyProfile}
-import skein.units.{Clock, Decimals, Span}
+import skein.units.{Clock, Decimals, Expect, Span}
+import skein.units.Decimals.fixed
 
 /** Command-line options of `./skein link`, with their help texts. */
 final case class LinkOptions(
@@ -18,6 +21,11 @@ final case class LinkOptions(
         "so a later one may arrive first"
     )
     udp: Flag,
+    @arg(doc =
+      "keeps a buffer of plans beside the simulator behind the link, for fly --plan-in-packet against AirSim: " +
+        "performs each action at its moment by the simulator's own moves"
+    )
+    buffer: Flag,
     @arg(doc =
       "latency in both directions: none, direct, vpn, vpn-mixed, constant:200ms, uniform:10ms..40ms, " +
         "lognormal:36ms,0.3 or file:PATH; times are round trips; " +
@@ -58,8 +66,11 @@ object LinkCommand
     for
       listenAt <- Address.parse(options.listen).left.map("--listen: " + _)
       to       <- Address.parse(options.to).left.map("--to: " + _)
-      profile  <- profileOf(options)
-      _        <- serve(listenAt, to, profile, options)
+      _        <- Expect.that(!options.buffer.value || !options.udp.value)(
+        "--buffer: expected without --udp, for a simulator that speaks AirSim's protocol over TCP"
+      )
+      profile <- profileOf(options)
+      _       <- serve(listenAt, to, profile, options)
     yield ()
 
   private def profileOf(options: LinkOptions): Either[String, LinkProfile] =
@@ -111,17 +122,28 @@ object LinkCommand
       val link      = EmulatedLink(profile, options.seed, Clock.system)
       val isUdp     = options.udp.value
       val transport = if isUdp then UdpTransport() else TcpTransport()
-      val proxy     = Edge.await(
-        LinkProxy.start(listenAt, to, link, transport, unreachable = warn, isDatagrams = isUdp)
+      val buffer    = Option.when(options.buffer.value)(
+        SimulatorBuffer.start(to, transport, Clock.system, lost => Console.err.println(s"skein link: $lost"))
       )
+      val proxy = Edge.await(LinkProxy.start(
+        listenAt,
+        to,
+        link,
+        transport,
+        unreachable = warn,
+        isDatagrams = isUdp,
+        beside = () => buffer.fold[LinkProxy.Passing](BidiFlow.identity)(_.passing())
+      ))
       Console.out.println(
-        s"${if isUdp then "UDP " else ""}${proxy.address} leads to $to, ${described(profile)}; Ctrl-C ends it"
+        s"${if isUdp then "UDP " else ""}${proxy.address} leads to $to, ${described(profile)}" +
+          s"${if buffer.isDefined then ", with a buffer of plans there" else ""}; Ctrl-C ends it"
       )
       val stopped = CountDownLatch(1)
       Edge.untilInterrupted(() => stopped.countDown(), GraceMillis):
         stopped.await()
         Edge.await(proxy.close()): Unit
         Console.out.println(summary(proxy.counts, isUdp))
+        buffer.foreach(beside => Console.out.println(summary(beside.counts)))
       Right(())
     catch case error: TransportError => Left(error.getMessage)
     finally Edge.await(system.terminate()): Unit
@@ -143,3 +165,10 @@ object LinkCommand
       s"${counts.bytesToClient} bytes to the client, ${counts.bytesLost} bytes lost, " +
       s"${counts.stalls} stalls, ${counts.disconnects} disconnects, ${counts.bytesHeldBack} " +
       s"bytes waited at their sender, at most ${counts.longestWait.toMillis.round} ms to be sent; $packets"
+
+  private def summary(counts: BufferCounts): String =
+    import counts.*
+    s"${Decimals.counted(plans, "plan")} taken, $stalePlans late or again, $refusedPlans refused; " +
+      s"${Decimals.counted(moves, "move")}, $failedMoves failed, at most ${latest.toMillis.fixed(1)} ms after " +
+      s"their moments; ${Decimals.counted(heldCalls, "call")} waited for the buffer's moves, " +
+      s"${Decimals.counted(lostConnections, "connection")} not understood"

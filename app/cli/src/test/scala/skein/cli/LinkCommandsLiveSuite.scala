@@ -71,6 +71,10 @@ class LinkCommandsLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders:
       "skein link: --listen: expected HOST:PORT, for example 127.0.0.1:41451, came 'here'"
     )
     val between = Seq("--listen", "127.0.0.1:0", "--to", "127.0.0.1:1")
+    assertEquals(
+      run(LinkCommand, between ++ Seq("--udp", "--buffer")*)._3.trim,
+      "skein link: --buffer: expected without --udp, for a simulator that speaks AirSim's protocol over TCP"
+    )
     for (option, more) <- Seq("--profile" -> Nil, "--to-client" -> Seq("--rate", "50mbit")) do
       val told = run(LinkCommand, between ++ Seq(option, "dsl") ++ more*)._3
       assert(told.startsWith(s"skein link: $option: ") && told.contains("vpn-mixed"), told)

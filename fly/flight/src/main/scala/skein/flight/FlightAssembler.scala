@@ -309,8 +309,8 @@ final class FlightAssembler(
         answers =>
           for error <- answers.flatMap(_.left.toOption).headOption do
             throw CannotFly(
-              "plan-in-packet: expected vehicles of the built-in simulator, which hold plans, " +
-                s"came ${reached.where}: ${error.message}"
+              "plan-in-packet: expected a buffer of plans beside the vehicles, as the built-in simulator has and " +
+                s"`skein link --buffer` puts before AirSim, came ${reached.where}: ${error.message}"
             )
 
   private def fromSource(plan: FlightPlan, source: VehicleSource, opened: Opened): Future[ConnectedFleet] =

@@ -319,7 +319,7 @@ object FlySettings:
     else if !settings.loops.contains(LoopKind.Predictive) then
       Some("expected with the loop predictive, which foresees its commands, came without it")
     else if settings.wire == Wire.Mavlink then
-      Some("expected vehicles of the built-in simulator over AirSim's protocol, came mavlink")
+      Some("expected vehicles over AirSim's protocol, came mavlink")
     else if settings.deadline.isDefined || settings.solver.isDefined then
       Some("expected without deadline and solver, since the policy is asked for later moments too")
     else if settings.policies.exists(OutsidePolicy.decides) then

@@ -119,7 +119,8 @@ class PlanInPacketSimulation extends munit.FunSuite, TemporaryFolders, Unhurried
     assertEquals(
       result,
       Left(
-        "plan-in-packet: expected vehicles of the built-in simulator, which hold plans, came our rovers: " +
+        "plan-in-packet: expected a buffer of plans beside the vehicles, as the built-in simulator has and " +
+          "`skein link --buffer` puts before AirSim, came our rovers: " +
           "plan 0: no buffer beside this vehicle holds plans"
       )
     )

@@ -118,7 +118,7 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
     refused("plan-in-packet = true, loops = [stream]"):
       "with the loop predictive, which foresees its commands, came without it"
     refused("plan-in-packet = true, loops = [predictive], wire = mavlink"):
-      "vehicles of the built-in simulator over AirSim's protocol, came mavlink"
+      "vehicles over AirSim's protocol, came mavlink"
     refused("plan-in-packet = true, loops = [predictive], deadline = 20 ms"):
       "without deadline and solver, since the policy is asked for later moments too"
     refused("plan-in-packet = true, loops = [predictive], solver = \"link:vpn\""):

@@ -32,7 +32,7 @@ final class Conversation(connection: Int):
 
   /** The parser of one direction of the connection. */
   private final class Side:
-    private val framer = new Framer(Listening, KeptBytes)
+    private val framer = new Framer(FrameLimits.Listening, KeptBytes)
     private var isLost = false
 
     def length: Long = framer.valueBytes
@@ -53,9 +53,6 @@ final class Conversation(connection: Int):
 
 object Conversation:
   private val KeptBytes = 64 << 10
-
-  /** Limits of the framing: it keeps [[KeptBytes]] of a message, however long it is. */
-  private val Listening = FrameLimits(frameBytes = Int.MaxValue, elements = Int.MaxValue)
 
   /** The vehicle's name: the last parameter, unless a flag or a camera's settings follow it. */
   private def vehicleOf(method: String, params: IndexedSeq[Msg]): String =

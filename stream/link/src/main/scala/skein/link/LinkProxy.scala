@@ -36,6 +36,8 @@ object LinkProxy:
     * @param unreachable called with the reason when the server of an accepted connection cannot be reached
     * @param isDatagrams whether the transport carries datagrams: see [[EmulatedLink.connection]]
     * @param watching sees what passes each connection, and the link's delay with it
+    * @param beside makes what stands at the server's side of the link, for each connection: unlike `watching`
+    *   it may take bytes out and add others
     */
   def start(
       listenAt: Address,
@@ -45,7 +47,8 @@ object LinkProxy:
       maxConnections: Int = 1024,
       unreachable: Throwable => Unit = _ => (),
       isDatagrams: Boolean = false,
-      watching: Watching = Watching.Nobody
+      watching: Watching = Watching.Nobody,
+      beside: () => Passing = () => BidiFlow.identity
   )(using ActorSystem): Future[LinkProxy] =
     given ExecutionContext = ExecutionContext.parasitic
     val switch             = KillSwitches.shared("link-proxy")
@@ -62,6 +65,7 @@ object LinkProxy:
         .opened(seat.number)
         .atop(BidiFlow.fromFlows(switch.flow, noting.via(switch.flow)))
         .atop(link.connection(TransportError.Lost(to, "the link broke"), isDatagrams))
+        .atop(beside())
         .joinMat(transport.connect(to))(Keep.right)
       val (sent, (reached, answered)) = client
         .watchTermination()(Keep.right)
@@ -88,16 +92,18 @@ object LinkProxy:
       .run()
       .map(LinkProxy(_, link, switch))
 
+  /** What stands in a connection: its first side is the client's. */
+  type Passing = BidiFlow[ByteString, ByteString, ByteString, ByteString, NotUsed]
+
   /** Sees the connections of a proxy. Thread-safe. */
   trait Watching:
     /** A connection was accepted: its bytes to the server and back pass through this, unchanged. */
-    def opened(connection: Long): BidiFlow[ByteString, ByteString, ByteString, ByteString, NotUsed]
+    def opened(connection: Long): Passing
 
     /** Called once, when nothing more passes in either direction. */
     def closed(connection: Long): Unit
 
   object Watching:
     object Nobody extends Watching:
-      def opened(connection: Long): BidiFlow[ByteString, ByteString, ByteString, ByteString, NotUsed] =
-        BidiFlow.identity
-      def closed(connection: Long): Unit = ()
+      def opened(connection: Long): Passing = BidiFlow.identity
+      def closed(connection: Long): Unit    = ()

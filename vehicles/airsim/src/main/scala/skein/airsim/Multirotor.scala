@@ -181,7 +181,7 @@ final class Multirotor(
 
   /** Gives the vehicle's buffer a plan of velocities; it is answered as soon as the buffer has it, and
     * awaited as long as the plan lasts. Plans may overtake one another, since each takes the connection on
-    * which least is on its way. Only the built-in simulator supports this.
+    * which least is on its way. The built-in simulator supports this, and `link --buffer` before another one.
     *
     * @param number greater than that of all plans before
     * @return None if an action of the plan is none by velocity
@@ -195,6 +195,19 @@ final class Multirotor(
     Option.when(calls.size == plan.actions.size):
       val acts = plan.actions.headOption.fold(Span.Zero)(first => last.since(first.at))
       call("skeinFollowPlan", Seq(Int64(number), Arr(calls*)), once.copy(timeout = client.timeout + acts))
+
+  /** Calls a function that moves the vehicle, by its name.
+    *
+    * @param params without the vehicle
+    * @param withdrawn when it completes, the answer is no longer awaited
+    */
+  def perform(
+      method: String,
+      params: Seq[Msg],
+      lasts: Span,
+      withdrawn: Future[?]
+  ): Future[Either[RpcError, Boolean]] =
+    call(method, params, moving(lasts).copy(withdrawn = Some(withdrawn)))
 
   /** Ends all plans before this number, even those that arrive later, and lets the vehicle hover. */
   def endPlans(number: Long): Future[Either[RpcError, Boolean]] =

@@ -24,6 +24,10 @@ final case class FrameLimits(
     s"limits must be positive: $this"
   )
 
+object FrameLimits:
+  /** Of one who listens and keeps only the beginning of a message, however long it is: see [[Framer]]. */
+  val Listening: FrameLimits = FrameLimits(frameBytes = Int.MaxValue, elements = Int.MaxValue)
+
 /** The result of reading on from a [[Framer]]. */
 enum Framed:
   /** The encoded bytes of exactly one MessagePack value. */

@@ -58,6 +58,25 @@ object RpcMessage:
       if at(id) < 0x80 then Some(at(id).toLong)
       else Option.when(bytes > 0)((1 to bytes).foldLeft(0L)((value, i) => value << 8 | at(id + i)))
 
+  /** The id of a request or a reply of which only the beginning is known. */
+  private[skein] def idIn(beginning: Array[Byte]): Option[Long] =
+    val reader = MessageReader.of(beginning)
+    MessageReader.attempt:
+      val length = reader.array()
+      reader.skip()
+      Option.when(length == 4)(reader.long())
+    .toOption.flatten
+
+  /** Id and method of a request of which only the beginning is known; without an id, of a notification. */
+  private[skein] def headOf(beginning: Array[Byte]): Option[(id: Option[Long], method: String)] =
+    val reader = MessageReader.of(beginning)
+    MessageReader.attempt:
+      val length = reader.array()
+      reader.skip()
+      val id = Option.when(length == 4)(reader.long())
+      Option.when(length == 3 || length == 4)((id = id, method = reader.string()))
+    .toOption.flatten
+
   def fromServer(frame: Array[Byte]): RpcMessage = decode(frame):
     case Arr(fields) if fields.length == 4 => idOf(fields(1)).map(Reply(_, fields(2), fields(3)))
     case Arr(fields)                       => Right(Ignored(s"an array of ${fields.length}"))

@@ -24,6 +24,16 @@ class RpcMessageSuite extends munit.FunSuite:
           assertEquals(Wire.toValue(read), Wire.toValue(result), s"seed $seed")
         case other => fail(s"$other, seed $seed")
 
+  test("id and method of a call are read from its beginning"):
+    val call = Wire.pack(Arr(Int32(0), Int32(70_000), Str("simSetMesh"), Arr(Binary(new Array[Byte](100)))))
+    assertEquals(RpcMessage.headOf(call.take(30)), Some((id = Some(70_000L), method = "simSetMesh")))
+    assertEquals(RpcMessage.headOf(call.take(8)), None)
+    assertEquals(
+      RpcMessage.headOf(Wire.pack(Arr(Int32(2), Str("ping"), Arr()))),
+      Some((id = None, method = "ping"))
+    )
+    assertEquals(RpcMessage.headOf(Wire.pack(Obj())), None)
+
   test("integers take their shortest form at every boundary"):
     val edges = (0 to 63).flatMap(bit => Seq(1L << bit, (1L << bit) - 1, -(1L << bit), -(1L << bit) - 1))
     for edge <- edges do

@@ -13,3 +13,11 @@ private[simulator] object Rpclib:
   def threw(method: String, arguments: Int, text: String): String =
     s"rpclib: function '$method' (called with $arguments arg(s)) threw an exception. " +
       s"The exception contained this information: $text."
+
+  /** The text of the exception in an error of a function that threw. */
+  def information(error: String): Option[String] = error match
+    case Threw(text) => Some(text)
+    case _           => None
+
+  private val Threw =
+    raw"(?s)rpclib: function .* threw an exception\. The exception contained this information: (.*)\.".r

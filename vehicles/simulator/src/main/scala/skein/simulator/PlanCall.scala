@@ -1,0 +1,104 @@
+package skein.simulator
+
+import skein.port.CommandPlan
+import skein.units.*
+import upack.{Arr, Float32, Msg, Str}
+
+/** A function of AirSim's that moves a vehicle, and the moment from which it acts.
+  *
+  * @param at on the simulator's clock
+  * @param params of the function, without the vehicle
+  */
+private[skein] final case class PlannedMove(at: Instant, method: String, params: Vector[Msg]):
+
+  /** The longest time that it moves the vehicle for; of a hover, none. */
+  def lasts: Span = limit.fold(Span.Zero)((_, seconds) => Move.span(seconds))
+
+  /** This move, begun so much after its moment and ended at its own end; None if that has passed. */
+  def begun(late: Span): Option[PlannedMove] = limit match
+    case None                     => Some(this)
+    case Some(_) if late >= lasts => None
+    case Some((place, seconds))   =>
+      val left = Float32((seconds - late.max(Span.Zero).toSeconds).toFloat)
+      Some(copy(params = params.updated(place, left)))
+
+  /** Where its duration, or its time limit, stands among the parameters, and what it is. */
+  private def limit: Option[(Int, Float)] =
+    for
+      place   <- PlannedMove.limits.get(method)
+      param   <- params.lift(place)
+      seconds <- PlanCall.read[Float](param)
+    yield (place, seconds)
+
+private[skein] object PlannedMove:
+  /** An end to every plan: the vehicle holds its position. */
+  def hover(at: Instant): PlannedMove = PlannedMove(at, "hover", Vector.empty)
+
+  private[simulator] val limits: Map[String, Int] =
+    Map("takeoff" -> 0, "land" -> 0, "goHome" -> 0, "rotateToYaw" -> 1, "rotateByYawRate" -> 1) ++
+      Map("moveOnPath" -> 2, "moveToZ" -> 2, "moveByManual" -> 3, "moveToPosition" -> 4, "moveToGPS" -> 4) ++
+      Seq("", "Z", "BodyFrame", "ZBodyFrame").map(form => s"moveByVelocity$form" -> 3) ++
+      Seq("Z", "Throttle").flatMap(last =>
+        Seq("RollPitchYaw", "RollPitchYawrate", "AngleRates").map(first => s"moveBy$first$last" -> 4)
+      ) + ("moveByMotorPWMs" -> 4)
+
+  private[simulator] given Argument[PlannedMove] =
+    case Arr(values) if values.size == 3 =>
+      PlannedMove(
+        summon[Argument[Instant]].read(values(0)),
+        summon[Argument[String]].read(values(1)),
+        values(2) match
+          case Arr(params) => params.toVector
+          case _           => throw BadArgument("expected a list of parameters")
+      )
+    case _ => throw BadArgument("expected a moment, a function's name and its parameters")
+
+/** A call that gives a vehicle a plan, as far as it is read without knowing the vehicle. The built-in
+  * simulator and a buffer beside another simulator take it.
+  */
+private[skein] final case class PlanCall(sequence: Long, moves: Vector[PlannedMove], vehicle: String):
+
+  /** Why these moves are not a plan's, if they are not. */
+  private[simulator] def mistake: Option[String] =
+    CommandPlan.mistake(moves.map(_.at)).orElse(moves.flatMap(wrong).headOption)
+
+  private def wrong(move: PlannedMove): Option[String] = PlanCall.functions.get(move.method) match
+    case None           => Some(s"expected a function that moves, came '${move.method}'")
+    case Some(function) =>
+      Option.unless(function.takes(move.params :+ Str(vehicle)))(s"wrong parameters of ${move.method}")
+
+private[skein] object PlanCall:
+  /** The function's name. It is not one of AirSim's. */
+  val Function = "skeinFollowPlan"
+
+  /** The functions that move a multirotor, by their names. */
+  private[simulator] lazy val functions: Map[String, ServerMethod] =
+    MoveMethods.all.map(function => function.name -> function).toMap
+
+  def isMove(method: String): Boolean = functions.contains(method)
+
+  /** Reads the parameters of a call; `Left` is the text of the error that the built-in simulator answers. */
+  def of(params: IndexedSeq[Msg]): Either[String, PlanCall] =
+    if params.size != Arity then Left(Rpclib.arity(Function, passed = params.size, wanted = Arity))
+    else
+      val call: Either[String, PlanCall] =
+        try
+          Right(PlanCall(
+            summon[Argument[Argument.Unsigned32]].read(params(0)),
+            summon[Argument[Seq[PlannedMove]]].read(params(1)).toVector,
+            summon[Argument[String]].read(params(2))
+          ))
+        catch case bad: BadArgument => Left(bad.getMessage)
+      call.flatMap(read => read.mistake.toLeft(read)).left.map(refusal)
+
+  /** The error's text for a plan that is refused. */
+  def refusal(reason: String): String = Rpclib.threw(Function, Arity, reason)
+
+  /** What AirSim's server says in an error's text; the text itself if it has another form. */
+  def reasonIn(error: String): String = Rpclib.information(error).getOrElse(error)
+
+  private[simulator] def read[A](param: Msg)(using argument: Argument[A]): Option[A] =
+    try Some(argument.read(param))
+    catch case _: BadArgument => None
+
+  private val Arity = 3
