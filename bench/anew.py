@@ -70,7 +70,8 @@ def main() -> int:
     parser.add_argument("--only", default="", help="commands that contain this text alone")
     options = parser.parse_args()
     folder = os.path.abspath(options.folder)
-    os.makedirs(folder, exist_ok=True)
+    if not options.list:
+        os.makedirs(folder, exist_ok=True)
     rows, failed, policy = [], 0, None
     for number, (page, command) in enumerate(commands(), 1):
         if options.only not in command:
@@ -86,6 +87,8 @@ def main() -> int:
             told = f"{took:.0f} s" + ("" if status == 0 else f", failed with status {status}")
         print(f"{number:02}  {told:<40}  {command}", flush=True)
         rows.append(f"| {number:02} | {page} | `{command}` | {told} |")
+    if options.list:
+        return 0
     with open(os.path.join(folder, "README.md"), "w", encoding="utf-8") as table:
         table.write("| | page | command | took |\n|---|---|---|---|\n" + "\n".join(rows) + "\n")
     return 1 if failed else 0

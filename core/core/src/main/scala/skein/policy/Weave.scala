@@ -18,14 +18,14 @@ final case class Weave(speedMps: Double, turnRadps: Double, leastS: Double, most
 
   def choose(seen: Observation, arc: Weave.Arc): (Action, Weave.Arc) =
     val elapsed = seen.elapsed.toSeconds
-    val isOver  = arc.leftS <= elapsed
+    val left    = arc.leftS - elapsed
+    val isOver  = left <= 0
     // The arc ends when its time is over, not at the decision after that: the path is that of any period.
     val before  = if isOver then arc.leftS else elapsed
     val number  = if isOver then arc.number + 1 else arc.number
-    val left    = if isOver then leastS + (mostS - leastS) * drawn(number) else arc.leftS
+    val remains = if isOver then left + (leastS + (mostS - leastS) * drawn(number)) else left
     val heading =
       arc.headingRad + turnRadps * (side(arc.number) * before + side(number) * (elapsed - before))
-    val remains = left - (if isOver then elapsed - before else elapsed)
     (Weave.level(seen, heading, speedMps), Weave.Arc(heading, remains, number))
 
   /** 1 for an arc to the right, those with even numbers, else -1. */

@@ -60,19 +60,8 @@ private[settings] object RecordedSetting:
   given RecordedSetting[SimulatedBody] =
     Text[SimulatedBody](SimulatedBody.forms, _.text, isUsual = _.isAirSim)(SimulatedBody.recorded(_).toOption)
 
-  given RecordedSetting[Wire] =
-    Text[Wire](
-      Wire.values.map(_.label).mkString(" or "),
-      _.label,
-      isUsual = _ == Wire.AirSim
-    )(Wire.parse(_).toOption)
-
-  given RecordedSetting[Knowledge] =
-    Text[Knowledge](
-      Knowledge.values.map(_.label).mkString(" or "),
-      _.label,
-      isUsual = _ == Knowledge.All
-    )(Knowledge.parse(_).toOption)
+  given RecordedSetting[Wire]      = labelled(Wire.values, _.label, usual = Wire.AirSim)
+  given RecordedSetting[Knowledge] = labelled(Knowledge.values, _.label, usual = Knowledge.All)
 
   given RecordedSetting[SolverChoice] =
     Text[SolverChoice]("where a solver is", _.text)(SolverChoice.parse(_).toOption)
@@ -140,6 +129,11 @@ private[settings] object RecordedSetting:
   given times: RecordedSetting[Span]                 = Elsewhere()
   given seeds: RecordedSetting[Long]                 = Elsewhere()
   given policies: RecordedSetting[List[PolicyFile]]  = Elsewhere()
+
+  private def labelled[A](values: Array[A], label: A => String, usual: A): RecordedSetting[A] =
+    Text[A](values.map(label).mkString(" or "), label, isUsual = _ == usual)(text =>
+      values.find(label(_) == text)
+    )
 
   /** A single parameter.
     *
