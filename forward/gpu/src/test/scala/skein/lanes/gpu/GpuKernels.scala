@@ -15,7 +15,7 @@ import skein.vehicle.{Quadrotor, ReducedModel}
   def duels(name: String, model: VelocityResponse, pursuer: HeadingPolicy) =
     val vehicle = GpuVehicle.of(model).fold(sys.error, identity)
     val forms   = Vector(PaperEvader(), pursuer).map(PolicyLanes.get)
-    val asked   = Set(DuelNumber.MeanLast10s)
+    val asked   = Set(PairNumber.MeanLast10s)
     val kernel  =
       GpuDuelKernel(
         InterpretedGpu(),

@@ -1,0 +1,95 @@
+package skein.lanes
+
+import skein.forward.{Delays, LoopTiming, TabledDelays}
+import skein.lanes.loop.{LaneAgents, LoopKernel, LoopLanes}
+import skein.lanes.policy.{OpponentLanes, TeamLanes}
+import skein.lanes.score.Scoreboard
+import skein.lanes.timetable.{TimetableAgents, TimetableKernel, Timetables}
+
+/** Teams of one form in many worlds, with their scores. Mutable. */
+private[lanes] abstract class LaneTeams(form: TeamForm):
+  protected val scores: Scoreboard = Scoreboard(form.scores, form.inSpace)
+  private val held                 = Array.ofDim[PreparedTeam](TimetableKernel.WORLDS)
+
+  protected def members: Array[? <: TeamMember]
+
+  /** Sets a world's candidate. */
+  final def take(world: Int, team: PreparedTeam): Unit = if team ne held(world) then
+    held(world) = team
+    var self = 0
+    while self < members.length do
+      members(self).take(world, team.vehicles(self), team.ofPolicies(self))
+      self += 1
+    scores.take(world, team.vehicles, team.ofQuantities)
+
+  /** Simulates one episode in each world.
+    *
+    * @param filled number of worlds that count
+    */
+  def fly(links: Array[Delays], keys: Array[Int], filled: Int): Unit
+
+  /** Copies the results of the first worlds.
+    *
+    * @param worldOf numbers of these worlds among all
+    */
+  final def tell(worldOf: Array[Int], filled: Int, into: TeamOutcomes): Unit =
+    var score = 0
+    for (effort, number) <- form.efforts.zipWithIndex do
+      val told = into.values(number)
+      effort match
+        case Some(vehicle) =>
+          val rad = members(vehicle).effortRad
+          for lane <- 0 until filled do told(worldOf(lane)) = rad(lane)
+        case None =>
+          for lane <- 0 until filled do told(worldOf(lane)) = scores.value(score, lane)
+          score += 1
+
+/** Teams whose worlds all have one episode.
+  *
+  * @param first one of them, whose vehicles are alike
+  */
+private[lanes] final class EpisodeTeams(
+    form: TeamForm,
+    first: TeamCandidate,
+    episodes: Episodes,
+    timetables: Timetables
+) extends LaneTeams(form):
+  private val flown: Array[? <: TimetableAgents & TeamMember] = form.policies match
+    case team: TeamLanes    => TeamAgents.of(first.engagement.agents, form.vehicles, TeamViews(team))
+    case two: OpponentLanes =>
+      Opponents.inEpisode(first.engagement.agents, form.vehicles, Opponents.policiesOf(two), Opponents.eyesOf(two))
+  private val kernel = TimetableKernel(flown.map(identity[TimetableAgents]), scores)
+
+  protected def members: Array[? <: TeamMember] = flown
+
+  def fly(links: Array[Delays], keys: Array[Int], filled: Int): Unit =
+    val (link, key) = (links(0), keys(0))
+    val timetable   = timetables.getOrMake(episodes.nameOf(link, key, form)):
+      episodes.timetable(link, key, form)
+    kernel.fly(timetable, filled)
+
+/** Teams whose worlds have separate delays.
+  *
+  * @param first one of them, whose vehicles are alike
+  * @param maxDelayS of the links
+  */
+private[lanes] final class LoopTeams(
+    form: TeamForm,
+    first: TeamCandidate,
+    timing: LoopTiming,
+    maxDelayS: Double
+) extends LaneTeams(form):
+  private val loop         = LoopLanes(timing, form.count, form.durationS, maxDelayS, form.sees)
+  private val (flown, eye) = form.policies match
+    case team: TeamLanes =>
+      (LoopTeamAgents.of(first.engagement.agents, loop, form.vehicles, TeamViews(team)), None)
+    case two: OpponentLanes =>
+      Opponents.inLoop(first.engagement.agents, loop, form.vehicles, Opponents.policiesOf(two), two.cameras)
+  private val kernel = LoopKernel(loop, flown.map(identity[LaneAgents]), scores)
+
+  protected def members: Array[? <: TeamMember] = flown
+
+  def fly(links: Array[Delays], keys: Array[Int], filled: Int): Unit =
+    val tabled = links.map(_.asInstanceOf[TabledDelays])
+    eye.foreach(_.start(keys, tabled))
+    kernel.fly(keys, tabled)
