@@ -1,6 +1,6 @@
 package skein.lanes
 
-import skein.forward.{Delays, LoopTiming, TabledDelays}
+import skein.forward.{LoopTiming, TabledDelays}
 import skein.lanes.loop.{LaneAgents, LoopKernel, LoopLanes}
 import skein.lanes.policy.{OpponentLanes, TeamLanes}
 import skein.lanes.score.Scoreboard
@@ -14,19 +14,25 @@ private[lanes] abstract class LaneTeams(form: TeamForm):
   protected def members: Array[? <: TeamMember]
 
   /** Sets a world's candidate. */
-  final def take(world: Int, team: PreparedTeam): Unit = if team ne held(world) then
-    held(world) = team
-    var self = 0
-    while self < members.length do
-      members(self).take(world, team.vehicles(self), team.ofPolicies(self))
-      self += 1
-    scores.take(world, team.vehicles, team.ofQuantities)
+  final def take(world: Int, team: PreparedTeam): Unit =
+    val before = held(world)
+    if team ne before then
+      held(world) = team
+      var self = 0
+      while self < members.length do
+        val agent = team.vehicles(self)
+        // Neighbours often have the very same opponent.
+        if before == null || (agent ne before.vehicles(self)) then
+          members(self).take(world, agent, team.ofPolicies(self))
+        self += 1
+      scores.take(world, team.vehicles, team.ofQuantities)
 
   /** Simulates one episode in each world.
     *
-    * @param filled number of worlds that count
+    * @param worldOf numbers of these worlds among all
+    * @param filled number of worlds that count, from the first
     */
-  def fly(links: Array[Delays], keys: Array[Int], filled: Int): Unit
+  def fly(worlds: TeamWorlds, worldOf: Array[Int], filled: Int): Unit
 
   /** Copies the results of the first worlds.
     *
@@ -62,8 +68,8 @@ private[lanes] final class EpisodeTeams(
 
   protected def members: Array[? <: TeamMember] = flown
 
-  def fly(links: Array[Delays], keys: Array[Int], filled: Int): Unit =
-    val (link, key) = (links(0), keys(0))
+  def fly(worlds: TeamWorlds, worldOf: Array[Int], filled: Int): Unit =
+    val (link, key) = (worlds.link(worldOf(0)), worlds.key(worldOf(0)))
     val timetable   = timetables.getOrMake(episodes.nameOf(link, key, form)):
       episodes.timetable(link, key, form)
     kernel.fly(timetable, filled)
@@ -89,7 +95,7 @@ private[lanes] final class LoopTeams(
 
   protected def members: Array[? <: TeamMember] = flown
 
-  def fly(links: Array[Delays], keys: Array[Int], filled: Int): Unit =
-    val tabled = links.map(_.asInstanceOf[TabledDelays])
-    eye.foreach(_.start(keys, tabled))
-    kernel.fly(keys, tabled)
+  def fly(worlds: TeamWorlds, worldOf: Array[Int], filled: Int): Unit =
+    val (keys, links) = (worldOf.map(worlds.key), worldOf.map(worlds.link(_).asInstanceOf[TabledDelays]))
+    eye.foreach(_.start(keys, links))
+    kernel.fly(keys, links)

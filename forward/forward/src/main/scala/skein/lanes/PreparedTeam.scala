@@ -38,13 +38,14 @@ private[lanes] final class PreparedTeam(
   lazy val form: Option[TeamForm] = lanes.toOption
   lazy val isStepped: Boolean     = stepped.isDefined
 
-  def vehicles: Vector[RolloutAgent] = candidate.engagement.agents
+  val vehicles: Array[RolloutAgent] = candidate.engagement.agents.toArray
 
-  lazy val ofPolicies: Vector[PolicyNumbers] = form.toVector.flatMap: form =>
+  lazy val ofPolicies: Array[PolicyNumbers] = form.toArray.flatMap: form =>
     vehicles.zipWithIndex.map((agent, self) => form.policies.numbersOf(self, agent.policy))
 
-  lazy val ofQuantities: Vector[Array[Double]] = form.toVector.flatMap: form =>
-    candidate.quantities.zipWithIndex.map((each, number) => form.scores.parametersOf(number, each.quantity))
+  lazy val ofQuantities: Array[Array[Double]] = form.toArray.flatMap: form =>
+    candidate.quantities.toArray.zipWithIndex.map: (each, number) =>
+      form.scores.parametersOf(number, each.quantity)
 
 /** The episodes that teams share, under one loop's timing. */
 private[lanes] final class Episodes(timing: LoopTiming):

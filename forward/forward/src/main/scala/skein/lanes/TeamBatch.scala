@@ -200,14 +200,13 @@ final class TeamBatch(
     private var lastShares         = false
 
     def fly(worlds: TeamWorlds, prepared: Array[PreparedTeam], numbers: Array[Int], into: TeamOutcomes): Unit =
-      val filled   = mutable.LinkedHashSet.empty[Flight]
+      val filled   = mutable.ArrayBuffer.empty[Flight]
       val unfilled = Array.newBuilder[Int]
       for world <- numbers do
         val team   = prepared(world)
-        val flight = team.form.fold(null)(flightOf(_, team, worlds, world))
+        val flight = if team.form.isEmpty then null else flightOf(team.form.get, team, worlds, world)
         if flight != null then
-          flight.add(world, team)
-          filled += flight
+          if flight.add(world, team) then filled += flight
         else if team.isStepped then unfilled += world
         else into.set(world, scalar.fly(team.candidate, worlds.link(world), worlds.key(world)))
       for flight <- filled do flight.fly(worlds, into)
@@ -231,39 +230,37 @@ final class TeamBatch(
     private def newFlight(form: TeamForm, first: TeamCandidate, together: Boolean) =
       if together then
         val teams = EpisodeTeams(form, first, episodes, timetables)
-        Flight(_ => teams)
-      else Flight(BySlowest(LoopTeams(form, first, timing, _))(_))
+        Flight((_, _) => teams)
+      else
+        val teams = BySlowest(LoopTeams(form, first, timing, _))
+        Flight((worlds, worldOf) => teams(worldOf.map(worlds.link)))
 
     private def steppedTeams(first: PreparedTeam) =
-      SteppedTeams(timing, SteppedRollouts.of(model, first.vehicles).get)
+      SteppedTeams(timing, SteppedRollouts.of(model, first.candidate.engagement.agents).get)
 
   /** SIMD simulation of candidates of one form.
     *
-    * @param teams for links, by lane
+    * @param teams that fly worlds, by their numbers
     */
-  private final class Flight(teams: Array[Delays] => LaneTeams):
-    private val worlds  = TimetableKernel.WORLDS
-    private val worldOf = Array.ofDim[Int](worlds)
-    private val held    = Array.ofDim[PreparedTeam](worlds)
-    private val links   = Array.ofDim[Delays](worlds)
-    private val keys    = Array.ofDim[Int](worlds)
+  private final class Flight(teams: (TeamWorlds, Array[Int]) => LaneTeams):
+    private val worldOf = Array.ofDim[Int](TimetableKernel.WORLDS)
+    private val held    = Array.ofDim[PreparedTeam](TimetableKernel.WORLDS)
     private var filled  = 0
 
-    def add(world: Int, prepared: PreparedTeam): Unit =
+    /** @return whether it is the first */
+    def add(world: Int, prepared: PreparedTeam): Boolean =
       worldOf(filled) = world
       held(filled) = prepared
       filled += 1
+      filled == 1
 
-    def fly(of: TeamWorlds, into: TeamOutcomes): Unit =
-      for lane <- 0 until worlds do
-        // Lanes that no world needs fly the last one again.
-        if lane >= filled then
-          worldOf(lane) = worldOf(lane - 1)
-          held(lane) = held(lane - 1)
-        links(lane) = of.link(worldOf(lane))
-        keys(lane) = of.key(worldOf(lane))
-      val flying = teams(links)
-      for lane <- 0 until worlds do flying.take(lane, held(lane))
-      flying.fly(links, keys, filled)
+    def fly(worlds: TeamWorlds, into: TeamOutcomes): Unit =
+      // Lanes that no world needs fly the last one again.
+      for lane <- filled until worldOf.length do
+        worldOf(lane) = worldOf(filled - 1)
+        held(lane) = held(filled - 1)
+      val flying = teams(worlds, worldOf)
+      for lane <- worldOf.indices do flying.take(lane, held(lane))
+      flying.fly(worlds, worldOf, filled)
       flying.tell(worldOf, filled, into)
       filled = 0

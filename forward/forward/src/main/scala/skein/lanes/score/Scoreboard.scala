@@ -52,10 +52,19 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, inSpace: Boolean = fals
           shown.call.input(place, parameters(number), parameter * worlds)
 
   /** Sets the parameters of a world's quantities. */
-  def take(world: Int, vehicles: Vector[RolloutAgent], numbers: Vector[Array[Double]]): Unit =
-    for (vehicle, i) <- vehicles.zipWithIndex do altitudes(i * worlds + world) = vehicle.altitudeDownM.toFloat
-    for (values, number) <- numbers.zipWithIndex; i <- values.indices do
-      parameters(number)(i * worlds + world) = values(i).toFloat
+  def take(world: Int, vehicles: Array[RolloutAgent], numbers: Array[Array[Double]]): Unit =
+    var vehicle = 0
+    while vehicle < vehicles.length do
+      altitudes(vehicle * worlds + world) = vehicles(vehicle).altitudeDownM.toFloat
+      vehicle += 1
+    var number = 0
+    while number < numbers.length do
+      val (values, into) = (numbers(number), parameters(number))
+      var i              = 0
+      while i < values.length do
+        into(i * worlds + world) = values(i).toFloat
+        i += 1
+      number += 1
 
   /** Sets the limit of a quantity that is awaited. */
   def limit(number: Int, most: Float): Unit = shared(ScoreLanes.ownParameter(number)) = most

@@ -83,9 +83,9 @@ private[lanes] final class GpuTeams(
   private def kernelOf(form: TeamForm, first: PreparedTeam, layout: GpuLayout): GpuFlightKernel =
     form.policies match
       case two: OpponentLanes =>
-        GpuOpponentKernel(gpu, first.vehicles, vehicle, prediction, form, two, layout)
+        GpuOpponentKernel(gpu, first.vehicles.toVector, vehicle, prediction, form, two, layout)
       case team: TeamLanes =>
-        GpuTeamKernel(gpu, first.vehicles, vehicle, prediction, team, form.scores, layout)
+        GpuTeamKernel(gpu, first.vehicles.toVector, vehicle, prediction, team, form.scores, layout)
 
 private object GpuTeams:
   /** Number of candidates whose policies a thread reads in one piece of work. */
