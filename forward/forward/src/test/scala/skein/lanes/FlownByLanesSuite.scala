@@ -75,10 +75,10 @@ class FlownByLanesSuite extends munit.FunSuite:
   for
     (plant, model)   <- plants
     timing           <- loops(model)
-    (worlds, shared) <- Seq("duels, shared delays" -> true, "duels, own delays" -> false)
+    (worlds, shared) <- Seq("shared delays" -> true, "own delays" -> false)
   do
     test(
-      s"$worlds, ${nameOf(timing)}, $plant: the engine says what the table does, and flies as the reference"
+      s"duels, $worlds, ${nameOf(timing)}, $plant: the engine says what the table does, and flies as the reference"
     ):
       val batch = PairBatch(duel, timing, model, threads = 1)
       val said  = table((worlds, nameOf(timing)))(plant)
@@ -93,10 +93,10 @@ class FlownByLanesSuite extends munit.FunSuite:
   for
     (plant, model)   <- plants
     timing           <- loops(model)
-    (worlds, shared) <- Seq("duels, shared delays" -> true, "duels, own delays" -> false)
+    (worlds, shared) <- Seq("shared delays" -> true, "own delays" -> false)
   do
     test(
-      s"$worlds, ${nameOf(timing)}, $plant, with a sensor: the engine agrees with the text below the table"
+      s"duels, $worlds, ${nameOf(timing)}, $plant, with a sensor: the engine agrees with the text below the table"
     ):
       val seeing = duel.copy(pursuer = duel.pursuer.copy(eye = Some(GuideCamera.model)))
       val engine = PairBatch(seeing, timing, model, threads = 1)
@@ -143,7 +143,7 @@ class FlownByLanesSuite extends munit.FunSuite:
           Vector(Judged(OffRing(surround.ringM), Reduction.Rms, 0))
         )
       val batch = TeamBatch(timing, model, threads = 1)
-      for (worlds, shared) <- Seq("teams, shared delays" -> true, "teams, own delays" -> false) do
+      for (worlds, shared) <- Seq("shared delays" -> true, "own delays" -> false) do
         val engine = batch.engine(team, shared, Seq(DelayTable.vpn)).text
         assertEquals(word(engine), table((worlds, nameOf(timing)))(plant), engine)
 
@@ -162,8 +162,7 @@ class FlownByLanesSuite extends munit.FunSuite:
   test("the table has a row for all that the engines fly, and no other"):
     val all =
       for
-        worlds <-
-          Seq("duels, shared delays", "duels, own delays", "teams, shared delays", "teams, own delays")
+        worlds <- Seq("shared delays", "own delays")
         timing <- loops(VelocityResponses.Ideal)
       yield (worlds, nameOf(timing))
     assertEquals(table.keySet, all.toSet)
