@@ -18,7 +18,7 @@ import skein.lanes.loop.LoopLanes;
 import skein.lanes.policy.Directions;
 import skein.lanes.policy.LaneObservation;
 import skein.lanes.policy.LanePolicy;
-import skein.lanes.policy.PolicyNumbers;
+import skein.lanes.policy.VehicleNumbers;
 
 /** One of two that play against one another, in many worlds with separate delays. */
 final class LoopOpponentAgents extends LaneAgents implements TeamMember {
@@ -47,8 +47,8 @@ final class LoopOpponentAgents extends LaneAgents implements TeamMember {
   }
 
   @Override
-  public void take(int world, RolloutAgent agent, PolicyNumbers numbers) {
-    vehicles.place(world, agent);
+  public void take(int world, VehicleNumbers numbers) {
+    vehicles.place(world, numbers);
     policy.put(world, numbers);
   }
 

@@ -4,7 +4,7 @@ import java.util.Arrays;
 import skein.forward.RolloutAgent;
 import skein.lanes.policy.LaneObservation;
 import skein.lanes.policy.LanePolicy;
-import skein.lanes.policy.PolicyNumbers;
+import skein.lanes.policy.VehicleNumbers;
 import skein.lanes.timetable.Timetable;
 import skein.lanes.timetable.TimetableAgents;
 import skein.lanes.timetable.TimetableEye;
@@ -49,8 +49,8 @@ final class OpponentAgents extends TimetableAgents implements TeamMember {
   }
 
   @Override
-  public void take(int world, RolloutAgent agent, PolicyNumbers numbers) {
-    vehicles.place(world, agent);
+  public void take(int world, VehicleNumbers numbers) {
+    vehicles.place(world, numbers);
     policy.put(world, numbers);
   }
 

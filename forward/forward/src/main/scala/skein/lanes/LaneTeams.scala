@@ -8,7 +8,7 @@ import skein.lanes.timetable.{TimetableAgents, TimetableKernel, Timetables}
 
 /** Teams of one form in many worlds, with their scores. Mutable. */
 private[lanes] abstract class LaneTeams(form: TeamForm):
-  protected val scores: Scoreboard = Scoreboard(form.scores, form.inSpace)
+  protected val scores: Scoreboard = Scoreboard(form.scores, form.altitudesDownM)
   private val held                 = Array.ofDim[PreparedTeam](TimetableKernel.WORLDS)
 
   protected def members: Array[? <: TeamMember]
@@ -20,12 +20,11 @@ private[lanes] abstract class LaneTeams(form: TeamForm):
       held(world) = team
       var self = 0
       while self < members.length do
-        val agent = team.vehicles(self)
-        // Neighbours often have the very same opponent.
-        if before == null || (agent ne before.vehicles(self)) then
-          members(self).take(world, agent, team.ofPolicies(self))
+        val numbers = team.numbers(self)
+        // Candidates often have the very same opponent.
+        if before == null || (numbers ne before.numbers(self)) then members(self).take(world, numbers)
         self += 1
-      scores.take(world, team.vehicles, team.ofQuantities)
+      if form.hasParameters then scores.take(world, team.ofQuantities)
 
   /** Simulates one episode in each world.
     *

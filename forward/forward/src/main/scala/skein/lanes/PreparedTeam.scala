@@ -2,7 +2,7 @@ package skein.lanes
 
 import scala.util.hashing.MurmurHash3
 import skein.forward.{Delays, LoopTiming, RolloutAgent}
-import skein.lanes.policy.{PolicyNumbers, TeamPolicies}
+import skein.lanes.policy.{TeamPolicies, VehicleNumbers}
 import skein.lanes.score.ScoreLanes
 import skein.lanes.timetable.Timetable
 
@@ -25,6 +25,20 @@ private[lanes] final case class TeamForm(
   /** Whether somebody knows another vehicle by a camera alone. */
   def sees: Boolean = policies.eyes.nonEmpty
 
+  /** Whether quantities differ in numbers. */
+  val hasParameters: Boolean = scores.judged.indices.exists(scores.parameters(_) > 0)
+
+  private val last = Array.ofDim[(RolloutAgent, VehicleNumbers)](policies.count)
+
+  /** The numbers of a vehicle: one object for what is the very same agent as the one before. */
+  def numbersOf(self: Int, agent: RolloutAgent): VehicleNumbers =
+    val known = last(self)
+    if known != null && (known._1 eq agent) then known._2
+    else
+      val numbers = VehicleNumbers(agent, policies.numbersOf(self, agent.policy))
+      last(self) = (agent, numbers)
+      numbers
+
 /** A candidate with the numbers by which it differs from others of its form.
   *
   * @param lanes its form, or why SIMD does not support it
@@ -35,15 +49,18 @@ private[lanes] final class PreparedTeam(
     lanes: => Either[String, TeamForm],
     stepped: => Option[Engine]
 ):
-  lazy val form: Option[TeamForm] = lanes.toOption
-  lazy val isStepped: Boolean     = stepped.isDefined
+  /** Null if SIMD does not support it. */
+  lazy val form: TeamForm     = lanes.getOrElse(null)
+  lazy val isStepped: Boolean = stepped.isDefined
 
-  val vehicles: Array[RolloutAgent] = candidate.engagement.agents.toArray
+  def vehicles: Vector[RolloutAgent] = candidate.engagement.agents
 
-  lazy val ofPolicies: Array[PolicyNumbers] = form.toArray.flatMap: form =>
-    vehicles.zipWithIndex.map((agent, self) => form.policies.numbersOf(self, agent.policy))
+  /** By vehicle; of a form. */
+  lazy val numbers: Array[VehicleNumbers] =
+    Array.tabulate(form.count)(self => form.numbersOf(self, vehicles(self)))
 
-  lazy val ofQuantities: Array[Array[Double]] = form.toArray.flatMap: form =>
+  /** By quantity; of a form. */
+  lazy val ofQuantities: Array[Array[Double]] =
     candidate.quantities.toArray.zipWithIndex.map: (each, number) =>
       form.scores.parametersOf(number, each.quantity)
 

@@ -183,7 +183,7 @@ final class TeamBatch(
 
   /** Number of worlds that a thread takes together, by one of them. */
   private def batchOf(team: PreparedTeam): Int =
-    if team.form.isDefined then TimetableKernel.WORLDS
+    if team.form != null then TimetableKernel.WORLDS
     else if team.isStepped then SteppedRollouts.worldsOf(model, team.vehicles.size)
     else ScalarTeam.Worlds
 
@@ -204,7 +204,7 @@ final class TeamBatch(
       val unfilled = Array.newBuilder[Int]
       for world <- numbers do
         val team   = prepared(world)
-        val flight = if team.form.isEmpty then null else flightOf(team.form.get, team, worlds, world)
+        val flight = if team.form == null then null else flightOf(team.form, team, worlds, world)
         if flight != null then
           if flight.add(world, team) then filled += flight
         else if team.isStepped then unfilled += world
@@ -236,7 +236,7 @@ final class TeamBatch(
         Flight((worlds, worldOf) => teams(worldOf.map(worlds.link)))
 
     private def steppedTeams(first: PreparedTeam) =
-      SteppedTeams(timing, SteppedRollouts.of(model, first.candidate.engagement.agents).get)
+      SteppedTeams(timing, SteppedRollouts.of(model, first.vehicles).get)
 
   /** SIMD simulation of candidates of one form.
     *

@@ -29,7 +29,7 @@ object PairKernels:
     val judged = PairNumber.values.toVector.map(_.judged(duel, timing, captureM)).collect { case each: Judged =>
       each
     }
-    Scoreboard(ScoreLanes.of(judged, 2).fold(throw _, identity))
+    Scoreboard(ScoreLanes.of(judged, 2).fold(throw _, identity), Vector(0, 0))
 
   /** Candidates of one episode. */
   def shared(

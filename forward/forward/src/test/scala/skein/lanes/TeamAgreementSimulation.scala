@@ -11,7 +11,7 @@ import skein.forward.{
   Rollout,
   VelocityResponses
 }
-import skein.lanes.policy.TeamLanes
+import skein.lanes.policy.{TeamLanes, VehicleNumbers}
 import skein.lanes.timetable.{Timetable, TimetableAgents, TimetableKernel, TimetableScores, TimetableVehicles}
 import skein.policy.{Action, Observation, Policy}
 import skein.scenario.{Crossing, Formation, Scenario, Surround}
@@ -59,7 +59,7 @@ class TeamAgreementSimulation extends munit.FunSuite, Unhurried:
         drawn.map(each => policies(each).zipWithIndex.map((policy, self) => lanes.numbersOf(self, policy)))
       for world <- 0 until worlds; self <- 0 until lanes.count do
         val own = numbers(world)(self)
-        agents(self).take(world, drawn(world).agents(self), own)
+        agents(self).take(world, VehicleNumbers(drawn(world).agents(self), own))
       TimetableKernel(agents.map(identity[TimetableAgents]), NoScores)
         .fly(Timetable.of(lanes.count, 6, timing, DelayTable.vpn, key, model), worlds)
       val forms     = Vector.tabulate(lanes.count)(self => Form(lanes, self))

@@ -3,7 +3,7 @@ package skein.lanes
 import scala.collection.mutable.ArrayBuffer
 import skein.forward.*
 import skein.identify.Tilting
-import skein.lanes.policy.TeamLanes
+import skein.lanes.policy.{TeamLanes, VehicleNumbers}
 import skein.lanes.score.{Judged, OfMoment}
 import skein.lanes.timetable.{Timetable, TimetableAgents, TimetableKernel, TimetableScores}
 import skein.optimise.LatencyBudget
@@ -134,7 +134,7 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
     for (each, world) <- all.zipWithIndex do
       for (agent, self) <- agents.zipWithIndex do
         val own = each.agents(self)
-        agent.take(world, own, lanes.numbersOf(self, own.policy))
+        agent.take(world, VehicleNumbers(own, lanes.numbersOf(self, own.policy)))
     TimetableKernel(agents.map(identity[TimetableAgents]), places)
       .fly(Timetable.of(count, durationS, timing, link, key, model), worlds)
     for world <- 0 until worlds by every do

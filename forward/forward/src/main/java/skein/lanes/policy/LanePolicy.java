@@ -78,18 +78,19 @@ public class LanePolicy {
 
   /** Sets a world's parameters of a policy that is known to be of this form. */
   public void put(int world, HeadingPolicy policy) {
-    put(world, form.parametersOf(policy), form.initialOf(policy));
+    double[] values = form.parametersOf(policy);
+    for (int i = 0; i < values.length; i++) parameters[place(i, world)] = (float) values[i];
+    double[] remembered = form.initialOf(policy);
+    for (int i = 0; i < remembered.length; i++)
+      initial[i * WORLDS + world] = (float) remembered[i];
   }
 
   /** Sets the numbers of a world's policy. */
-  public void put(int world, PolicyNumbers numbers) {
-    put(world, numbers.parameters(), numbers.memory());
-  }
-
-  private void put(int world, double[] values, double[] remembered) {
-    for (int i = 0; i < values.length; i++) parameters[place(i, world)] = (float) values[i];
-    for (int i = 0; i < remembered.length; i++)
-      initial[i * WORLDS + world] = (float) remembered[i];
+  public void put(int world, VehicleNumbers numbers) {
+    float[] values = numbers.policy();
+    int count = numbers.parameters();
+    for (int i = 0; i < count; i++) parameters[place(i, world)] = values[i];
+    for (int i = count; i < values.length; i++) initial[(i - count) * WORLDS + world] = values[i];
   }
 
   private int place(int parameter, int world) {

@@ -1,5 +1,6 @@
 package skein.lanes.policy
 
+import skein.forward.RolloutAgent
 import skein.fusion.SensorModel
 import skein.policy.Policy
 
@@ -30,3 +31,18 @@ private[lanes] trait TeamPolicies:
   * @param memory before its first decision
   */
 private[lanes] final case class PolicyNumbers(parameters: Array[Double], memory: Array[Double])
+
+/** The numbers by which a vehicle in one world differs from those of other worlds: few objects, since each
+  * world reads those of its own.
+  *
+  * @param policy its parameters, then its memory before the first decision
+  */
+private[lanes] final class VehicleNumbers(agent: RolloutAgent, numbers: PolicyNumbers):
+  val northM: Float          = agent.startX.toFloat
+  val eastM: Float           = agent.startY.toFloat
+  val downM: Float           = agent.altitudeDownM.toFloat
+  val cos: Float             = StrictMath.cos(agent.startHeadingRad).toFloat
+  val sin: Float             = StrictMath.sin(agent.startHeadingRad).toFloat
+  val speedMps: Float        = agent.speed.toFloat
+  val parameters: Int        = numbers.parameters.length
+  val policy: Array[Float]   = (numbers.parameters ++ numbers.memory).map(_.toFloat)

@@ -5,7 +5,7 @@ import scala.collection.mutable
 import skein.forward.RolloutAgent
 import skein.gpu.{Gpu, Ptx, PtxExpressions, Variables}
 import skein.lanes.{PreparedTeam, TeamForm}
-import skein.lanes.policy.{OpponentLanes, PolicyLanes}
+import skein.lanes.policy.{OpponentLanes, PolicyLanes, VehicleNumbers}
 import skein.lanes.timetable.Timetable
 
 /** Two that play against one another, on a GPU. A side each: the numbers of its policy, its initial memory,
@@ -40,16 +40,14 @@ private[lanes] final class GpuOpponentKernel(
 
   /** Nearly always all of one side are the very same. */
   private def side(teams: Array[PreparedTeam], self: Int): (Array[Float], Array[Int]) =
-    val known    = IdentityHashMap[RolloutAgent, Integer]()
+    val known    = IdentityHashMap[VehicleNumbers, Integer]()
     val numbers  = mutable.ArrayBuilder.ofFloat()
     val numberOf = teams.map: team =>
-      val agent = team.vehicles(self)
-      val number = known.putIfAbsent(agent, known.size)
+      val own    = team.numbers(self)
+      val number = known.putIfAbsent(own, known.size)
       if number != null then number.intValue
       else
-        val own = team.ofPolicies(self)
-        for values <- Seq(own.parameters, own.memory, Array(agent.startX, agent.startY)); value <- values do
-          numbers += value.toFloat
+        numbers ++= own.policy += own.northM += own.eastM
         known.size - 1
     (numbers.result(), numberOf)
 

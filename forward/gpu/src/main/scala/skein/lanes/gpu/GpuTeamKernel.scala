@@ -101,8 +101,5 @@ private object GpuTeamKernel:
 
   /** The numbers of one candidate. */
   private def numbersOf(team: PreparedTeam): Array[Float] =
-    val starts = team.vehicles.zip(team.ofPolicies).flatMap: (agent, own) =>
-      val headingRad = agent.startHeadingRad
-      Vector(agent.startX, agent.startY, StrictMath.cos(headingRad), StrictMath.sin(headingRad)) ++
-        own.parameters
-    (starts ++ team.ofQuantities.flatten).map(_.toFloat).toArray
+    team.numbers.flatMap(own => Array(own.northM, own.eastM, own.cos, own.sin) ++ own.policy) ++
+      team.ofQuantities.flatten.map(_.toFloat)

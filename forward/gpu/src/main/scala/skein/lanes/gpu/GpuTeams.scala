@@ -32,17 +32,19 @@ private[lanes] final class GpuTeams(
   ): Accelerated =
     val each  = worlds.episodesOfEach
     val teams = Array.tabulate(GpuEpisodes.candidatesOf(worlds))(number => prepared(number * each))
-    GpuEpisodes.inParallel(teams.length, Chunk, threads)(i => teams(i).ofPolicies: Unit): Unit
+    GpuEpisodes.inParallel(teams.length, Chunk, threads)(i => if teams(i).form != null then teams(i).numbers: Unit): Unit
     val (known, unknown) =
-      teams.indices.toArray.partition(teams(_).form.exists(_.policies.refusedByGpu.isEmpty))
+      teams.indices.toArray.partition(number => isOnGpu(teams(number)))
     val flown = GpuParts(known, each, onProgress, isCancelled)
-      .fly(teams(_).form.get, form => form.count * form.durationS / periodS): (form, some, numbers) =>
+      .fly(teams(_).form, form => form.count * form.durationS / periodS): (form, some, numbers) =>
         val names   = numbers.toVector.map(i => episodes.nameOf(worlds.link(i), worlds.key(i), form))
         val held    = episodesFor(form)
         val brought = held.bring(names, isCancelled): i =>
           episodes.timetable(worlds.link(numbers(i)), worlds.key(numbers(i)), form)
         brought.map(fly(form, some, some.map(teams), numbers, _, held.layout, each, into)).isDefined
     Accelerated(flown, GpuEpisodes.worldsOf(unknown, each))
+
+  private def isOnGpu(team: PreparedTeam) = team.form != null && team.form.policies.refusedByGpu.isEmpty
 
   private def episodesFor(form: TeamForm): GpuEpisodes =
     val shows = form.policies.isInstanceOf[TeamLanes]
@@ -83,9 +85,9 @@ private[lanes] final class GpuTeams(
   private def kernelOf(form: TeamForm, first: PreparedTeam, layout: GpuLayout): GpuFlightKernel =
     form.policies match
       case two: OpponentLanes =>
-        GpuOpponentKernel(gpu, first.vehicles.toVector, vehicle, prediction, form, two, layout)
+        GpuOpponentKernel(gpu, first.vehicles, vehicle, prediction, form, two, layout)
       case team: TeamLanes =>
-        GpuTeamKernel(gpu, first.vehicles.toVector, vehicle, prediction, team, form.scores, layout)
+        GpuTeamKernel(gpu, first.vehicles, vehicle, prediction, team, form.scores, layout)
 
 private object GpuTeams:
   /** Number of candidates whose policies a thread reads in one piece of work. */
