@@ -78,6 +78,7 @@ object WarmUp:
       // Vehicles by MAVLink climb to their starts first, which would take a minute.
       wire = Wire.AirSim,
       solver = None,
+      decentralised = false,
       links = List(LatencyProfile.none),
       duration = settings.duration.min(Rehearsed),
       period = settings.period.min(RehearsalPeriod)

@@ -41,7 +41,8 @@ private final class Rows(fleet: Fleet):
     val now                        = decision.decidedAt
     val own                        = view.readings(self).get
     val opponent                   = view.readings(other).get
-    val opponentHeading            = view.headingRad(other, fleet)
+    val opponentHeading            =
+      view.moves(other).fold(view.seenHeadingRad(other, fleet))(_.heading.value)
     val (here, there)              = (view.kinematics(self), view.kinematics(other))
     val toOpponent                 = there.positionNed - here.positionNed
     val (toEvader, pursuerHeading) = fleet.agents(self).role match

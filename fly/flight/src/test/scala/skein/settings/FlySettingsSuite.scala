@@ -113,6 +113,23 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
       "2: skein.fly.knows: expected all with a solver, which is told every command, came positions"
     )
 
+  test("decentralised is refused where one controller decides for all, or is told of the others"):
+    def refused(text: String)(why: String) = assertTold(text, s"2: skein.fly.decentralised: expected $why")
+    refused("decentralised = true, loops = [stream, plan]"):
+      "loops that decide for each vehicle by itself (paused, sequential, futures, stream, predictive), came plan"
+    refused("decentralised = true, loops = [stream], wire = mavlink"):
+      "vehicles over AirSim's protocol, came mavlink"
+    refused("decentralised = true, loops = [stream], solver = \"link:vpn\""):
+      "no solver, which decides for all"
+    refused("decentralised = true, scenario = crossing, crossing.vehicles = 60"):
+      "at most 50 vehicles, came 60"
+    val read = right(this.read("skein.fly.decentralised = true"))
+    assertEquals(read.loopSettings.knows, Knowledge.Positions)
+    assertEquals(
+      read.plans.map(plan => (plan.loop == LoopKind.Paused, read.isDecentralised(plan))).distinct,
+      Vector((true, false), (false, true))
+    )
+
   test("plan-in-packet is refused where no plan could be sent"):
     def refused(text: String)(why: String) = assertTold(text, s"2: skein.fly.plan-in-packet: expected $why")
     refused("plan-in-packet = true, loops = [stream]"):
