@@ -44,7 +44,7 @@ private[flight] final class AirSimFleet(
       monitor: FlightMonitor
   ): Future[ConnectedFleet] =
     for
-      ready <- prepare(plan, address)
+      ready   <- prepare(plan, address)
       clients <- lines(plan).foldLeft(Future.successful(Vector.empty[AirSimClient])): (before, line) =>
         before.flatMap(clients => connect(plan, address, line, opened, monitor).map(clients :+ _))
       reached = clients.map: client =>
@@ -59,11 +59,14 @@ private[flight] final class AirSimFleet(
       ports   = vehicles.zip(cameras).zip(logs).map: (looking, log) =>
         val (vehicle, eyes) = looking
         val isPaused        = plan.loop == LoopKind.Paused
-        val seen            = eyes.map(one => one.eye.sensor -> (if isPaused then one.looking else one.sensor))
+        val seen = eyes.map(one => one.eye.sensor -> (if isPaused then one.looking else one.sensor))
         Equipped.by(settings.scenario, port(vehicle, monitor), vehicle, seen.toMap, log.scan)
       apart =
         if !settings.isDecentralised(plan) then Vector.empty
-        else reached.zip(ports).zipWithIndex.map { case ((seen, own), self) => seen.map(port(_, monitor)).updated(self, own) }
+        else
+          reached.zip(ports).zipWithIndex.map { case ((seen, own), self) =>
+            seen.map(port(_, monitor)).updated(self, own)
+          }
       _ <- if settings.world.isEmpty then Future.unit else watchContacts(opened, address, vehicles, monitor)
       beside = opened.closing(
         AirSimClient(

@@ -11,8 +11,8 @@ import skein.signal.ClockAlignment
   * @param cameras with recognisers
   * @param films of their other cameras
   * @param clocks the vehicles' clock against the controller's, if it is known already
-  * @param apart all vehicles as the controller of each reaches them, where each has one; `vehicles` are then as
-  *   their own controllers reach them
+  * @param apart all vehicles as the controller of each reaches them, where each has one; `vehicles` are then
+  *   as their own controllers reach them
   */
 private[flight] final case class ConnectedFleet(
     vehicles: Vector[VehiclePort],

@@ -129,8 +129,9 @@ final class FlightAssembler(
               case Wire.AirSim => airSim.connect(plan, server.fold(simulator.get)(_.address), opened, monitor)
               case Wire.Mavlink => overMavlink(plan, server, opened, monitor)
         _ <- packets(plan, reached)
-        _ <- Team.missingSensor(fleet, reached.vehicles, fleet.agents.indices.toVector).fold(reached.ping())(missing =>
-          Future.failed(CannotFly(missing))
+        _ <- Team.missingSensor(fleet, reached.vehicles, fleet.agents.indices.toVector).fold(reached.ping())(
+          missing =>
+            Future.failed(CannotFly(missing))
         )
       yield
         val loopSettings = settings.loopSettings(plan)

@@ -10,8 +10,8 @@ import skein.signal.{Kinematics, Stamped}
 final case class Reading(vehicle: Int, sequence: Long, state: Stamped[Kinematics])
 
 object Reading:
-  /** The number of a controller's n-th reading of a vehicle. Of C controllers with a vehicle each, number c has
-    * the numbers c, c + C, c + 2C, …: no two readings have one number, and it says whose a reading is.
+  /** The number of a controller's n-th reading of a vehicle. Of C controllers with a vehicle each, number c
+    * has the numbers c, c + C, c + 2C, …: no two readings have one number, and it says whose a reading is.
     */
   private[loop] def number(nth: Long, own: Vector[Int], vehicles: Int): Long =
     if own.sizeIs == vehicles then nth else nth * vehicles + own.head

@@ -29,14 +29,16 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
   private val readings =
     if paused then recording.readings.map(read => read.copy(state = PausedLoop.timeless(read.state)))
     else recording.readings
-  private val bySequence = readings.map(reading => (reading.vehicle, reading.sequence) -> reading).toMap
+  private val bySequence  = readings.map(reading => (reading.vehicle, reading.sequence) -> reading).toMap
   private val controllers = Reading.controllers(recording.heading)
 
   /** What each controller was answered, by vehicle. */
   private val heard = Vector.tabulate(controllers): controller =>
     fleet.agents.map: agent =>
       Heard(
-        readings.filter(read => read.vehicle == agent.name && read.sequence % controllers == controller).map(message)
+        readings.filter(read => read.vehicle == agent.name && read.sequence % controllers == controller).map(
+          message
+        )
       )
   private val sighted  = recording.sightings.groupBy(sighting => (sighting.decider, sighting.decision))
   private val measured = recording.measurements

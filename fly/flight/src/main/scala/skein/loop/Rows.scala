@@ -38,10 +38,10 @@ private final class Rows(fleet: Fleet):
 
   def decision(decision: Decision): DecisionRow =
     import decision.{opponent as other, view, vehicle as self}
-    val now                        = decision.decidedAt
-    val own                        = view.readings(self).get
-    val opponent                   = view.readings(other).get
-    val opponentHeading            =
+    val now             = decision.decidedAt
+    val own             = view.readings(self).get
+    val opponent        = view.readings(other).get
+    val opponentHeading =
       view.moves(other).fold(view.seenHeadingRad(other, fleet))(_.heading.value)
     val (here, there)              = (view.kinematics(self), view.kinematics(other))
     val toOpponent                 = there.positionNed - here.positionNed

@@ -133,8 +133,8 @@ private final class TeamSteering(
     val _ = moves.updateAndGet(vehicle, sent => (sent :+ answer).takeRight(settings.movesInFlight.max(2)))
     answer
 
-  /** Commands its vehicles to hover, up to [[UntilCertain.Attempts]] times, once no other command is
-    * pending; records a vehicle that never confirms it. Completes after every move has been answered, too.
+  /** Commands its vehicles to hover, up to [[UntilCertain.Attempts]] times, once no other command is pending;
+    * records a vehicle that never confirms it. Completes after every move has been answered, too.
     */
   def hoverAll()(using ActorSystem): Future[Unit] =
     Future.traverse(own)(hover).map(_ => ())

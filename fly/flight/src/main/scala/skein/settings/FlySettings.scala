@@ -360,7 +360,9 @@ object FlySettings:
         .map(loop =>
           s"expected loops that decide for each vehicle by itself (${Apart}), came ${loop.label}"
         )
-        .orElse(Option.when(settings.wire == Wire.Mavlink)("expected vehicles over AirSim's protocol, came mavlink"))
+        .orElse(Option.when(
+          settings.wire == Wire.Mavlink
+        )("expected vehicles over AirSim's protocol, came mavlink"))
         .orElse(Option.when(settings.solver.isDefined)("expected no solver, which decides for all"))
         .orElse(Option.when(isTold && settings.knows == Knowledge.All)(
           "expected knows positions, since controllers tell one another no commands, came all"

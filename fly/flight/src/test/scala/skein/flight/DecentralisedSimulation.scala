@@ -51,7 +51,9 @@ class DecentralisedSimulation extends munit.FunSuite, TemporaryFolders, Optimise
       )
 
   for (loop, scenario) <- loops.map((_, PaperDuel())) :+ (LoopKind.Stream, Surround()) do
-    test(s"${loop.label}, ${scenario.name}: without a link, controllers decide as a single one that knows positions"):
+    test(
+      s"${loop.label}, ${scenario.name}: without a link, controllers decide as a single one that knows positions"
+    ):
       val apart  = settings(loop, LatencyProfile.none, scenario)
       val single = decisions(fly(apart.copy(decentralised = false, knows = Knowledge.Positions)).recording)
       assertEquals(decisions(fly(apart).recording), single)
@@ -64,15 +66,16 @@ class DecentralisedSimulation extends munit.FunSuite, TemporaryFolders, Optimise
     )
 
   for loop <- loops do
-    folder.test(s"${loop.label}: equal seeds give equal flights, others others, and a recording replays"): folder =>
-      // In two duels a decision's opponent depends on readings that it does not record.
-      val flight = settings(loop, scenario = PaperDuel(pairs = 2))
-      val flown  = fly(flight)
-      assertNotEquals(fly(flight, seed = 2).digest, flown.digest)
-      val file = flight.plans.head.file(folder)
-      assert(flown.writeTo(file).isRight)
-      val replayed = Replayed.of(file).fold(fail(_), identity)
-      assertEquals((replayed.decidedAgain, replayed.isSame), (None, true))
+    folder.test(s"${loop.label}: equal seeds give equal flights, others others, and a recording replays"):
+      folder =>
+        // In two duels a decision's opponent depends on readings that it does not record.
+        val flight = settings(loop, scenario = PaperDuel(pairs = 2))
+        val flown  = fly(flight)
+        assertNotEquals(fly(flight, seed = 2).digest, flown.digest)
+        val file = flight.plans.head.file(folder)
+        assert(flown.writeTo(file).isRight)
+        val replayed = Replayed.of(file).fold(fail(_), identity)
+        assertEquals((replayed.decidedAgain, replayed.isSame), (None, true))
 
   for loop <- loops do
     test(s"${loop.label}: a decision is made from its own controller's readings, and its ages are theirs"):

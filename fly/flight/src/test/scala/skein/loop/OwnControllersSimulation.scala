@@ -57,7 +57,15 @@ class OwnControllersSimulation extends munit.FunSuite, Optimised:
       val hold     = Hold()
       val ports    = fleet.agents.map(_ => world.ports.map(Watched(_)))
       val teams    = ports.zipWithIndex.map: (seen, self) =>
-        Team(fleet, seen, clock, recorder, LoopSettings(knows = Knowledge.Positions), only = Some(self), hold = hold)
+        Team(
+          fleet,
+          seen,
+          clock,
+          recorder,
+          LoopSettings(knows = Knowledge.Positions),
+          only = Some(self),
+          hold = hold
+        )
       if held then
         for (after, act) <- Seq[(Int, () => Any)](2 -> (() => hold.hold()), 4 -> (() => hold.release())) do
           system.scheduler.scheduleOnce(Span.ofSeconds(after).toDuration)(act(): Unit): Unit
@@ -93,7 +101,8 @@ class OwnControllersSimulation extends munit.FunSuite, Optimised:
   test("while a flight is held, no controller decides"):
     val decided = fly(LoopKind.Stream, held = true).recording.decisions
     val start   = decided.map(_.decidedAt).min
-    val seconds = decided.map(made => (made.vehicle, made.decidedAt.since(start).toSeconds)).groupMap(_._1)(_._2)
+    val seconds =
+      decided.map(made => (made.vehicle, made.decidedAt.since(start).toSeconds)).groupMap(_._1)(_._2)
     assertEquals(seconds.keySet, Set("Pursuer", "Evader"))
     for (vehicle, times) <- seconds do
       assert(times.exists(_ < 1.8) && times.exists(_ > 4), vehicle)

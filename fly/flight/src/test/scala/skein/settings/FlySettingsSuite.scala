@@ -2,7 +2,7 @@ package skein.settings
 
 import com.typesafe.config.ConfigFactory
 import java.nio.file.Files
-import skein.loop.{LoopKind, Planning}
+import skein.loop.{Knowledge, LoopKind, Planning}
 import skein.policy.{PolicyFamily, Role}
 import skein.scenario.{PaperDuel, Scenarios, Surround}
 import skein.signal.LatencyProfile
@@ -123,7 +123,7 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
       "no solver, which decides for all"
     refused("decentralised = true, scenario = crossing, crossing.vehicles = 60"):
       "at most 50 vehicles, came 60"
-    val read = right(this.read("skein.fly.decentralised = true"))
+    val read = this.read("skein.fly.decentralised = true").fold(fail(_), identity)
     assertEquals(read.loopSettings.knows, Knowledge.Positions)
     assertEquals(
       read.plans.map(plan => (plan.loop == LoopKind.Paused, read.isDecentralised(plan))).distinct,
