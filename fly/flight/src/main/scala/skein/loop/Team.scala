@@ -34,7 +34,7 @@ final class Team(
 
   val vehicles: Range = ports.indices
 
-  /** The vehicles for which it decides. */
+  /** The vehicles for which it decides, and which it commands. */
   val own: Vector[Int] = only.fold(vehicles.toVector)(Vector(_))
   for missing <- Team.missingSensor(fleet, ports, own) do throw IllegalArgumentException(missing)
 

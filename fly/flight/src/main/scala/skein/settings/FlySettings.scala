@@ -365,7 +365,7 @@ object FlySettings:
         )("expected vehicles over AirSim's protocol, came mavlink"))
         .orElse(Option.when(settings.solver.isDefined)("expected no solver, which decides for all"))
         .orElse(Option.when(isTold && settings.knows == Knowledge.All)(
-          "expected knows positions, since controllers tell one another no commands, came all"
+          "expected knows positions, since no message carries the commands of others, came all"
         ))
         .orElse(Option.when(settings.fleet.agents.sizeIs > MostControllers)(
           s"expected at most ${MostControllers} vehicles, came ${settings.fleet.agents.size}"

@@ -19,7 +19,7 @@ class DecentralisedSimulation extends munit.FunSuite, TemporaryFolders, Optimise
       loop: LoopKind,
       link: LatencyProfile = LatencyProfile.vpn,
       scenario: Scenario = PaperDuel(),
-      seconds: Int = 6
+      seconds: Int = 4
   ) = FlySettings(
     List(loop),
     List(link),
