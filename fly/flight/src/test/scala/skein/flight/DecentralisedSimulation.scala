@@ -102,7 +102,8 @@ class DecentralisedSimulation extends munit.FunSuite, TemporaryFolders, Optimise
     val traces    = RoundTripTrace.of(recording)
     assertEquals(traces.size, 4)
     assertEquals(traces.flatMap(_.lost).count(identity), 0)
-    assertEquals(traces.map(_.roundTripsMs.flatten).distinct.size, 4)
+    // The first ones, before any command: later, one connection carries what the other does not.
+    assertEquals(traces.map(_.roundTripsMs.head).distinct.size, 4)
 
   for inPacket <- Seq(false, true) do
     test(s"the own vehicle is predicted by its model, others by what is read of them; in packets: $inPacket"):
