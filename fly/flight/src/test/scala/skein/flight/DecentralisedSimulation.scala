@@ -1,13 +1,19 @@
 package skein.flight
 
+import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.{ExecutionContext, Future}
+import skein.link.{MemoryNetwork, NetworkPlan}
+import skein.loop.learning.Learning
 import skein.loop.{FlightOutcome, Knowledge, LoopKind}
 import skein.measure.{PredictionErrors, RoundTripTrace}
+import skein.policy.Role
 import skein.record.{DecisionRow, MemoryRecorder, Recording}
 import skein.scenario.{PaperDuel, Scenario, Scenarios, Surround}
-import skein.settings.FlySettings
+import skein.settings.{ChosenPolicy, FlySettings, PolicyFile}
 import skein.signal.LatencyProfile
 import skein.testing.{Optimised, TemporaryFolders}
 import skein.units.*
+import skein.vtime.VirtualTime
 
 /** Flights in virtual time in which each vehicle has a controller of its own. */
 class DecentralisedSimulation extends munit.FunSuite, TemporaryFolders, Optimised:
@@ -113,3 +119,25 @@ class DecentralisedSimulation extends munit.FunSuite, TemporaryFolders, Optimise
       def p95M(of: PredictionErrors) = of.samples.map(_._2).sorted.apply(of.samples.size * 95 / 100)
       assert(p95M(found.own) < 0.01, s"own ${p95M(found.own)} m")
       assert(p95M(found.others) > 0.01, s"others ${p95M(found.others)} m")
+
+  test("one learner for all, and vehicles that are reached once for all, are refused in a line"):
+    val flight   = settings(LoopKind.Stream)
+    val learning = ChosenPolicy("own", PolicyFile.paperOf(Role.Pursuer), Some(Learning.Again(0, Map.empty)))
+    assertEquals(
+      VirtualFlights.fly(flight, flight.plans.head.copy(policy = Some(learning))).map(_ => ()),
+      Left("decentralised: expected policies that do not learn in flight, which is one learner for all")
+    )
+    object Topics extends VehicleSource:
+      def where: String               = "ROS 2"
+      def open(names: Vector[String]) = Future.never
+    val started = VirtualTime
+      .run(seed = 1): system =>
+        given ActorSystem      = system
+        given ExecutionContext = system.dispatcher
+        val clock              = Clock.ofNanos(VirtualTime.clock(system))
+        val host               = MemoryNetwork(NetworkPlan(), 1, clock).host("localhost")
+        val assembler = FlightAssembler(host, clock, flight, simulator = None, elsewhere = Some(Topics))
+        val plan      = flight.plans.head
+        assembler.start(plan, MemoryRecorder(assembler.heading(plan, "virtual"))).map(_.map(_ => ()))
+      .value
+    assertEquals(started, Left("decentralised: expected vehicles over AirSim's protocol, came those of ROS 2"))
