@@ -70,7 +70,7 @@ final class MarginTrial(
 
   /** Uses a simulator, with observers that the user starts before it and closes. */
   private def simulated[A](settings: SimulatorSettings)(
-      use: (SimulatorServer, Transport, EmulatedLink => ObservingProxy) => A
+      use: (SimulatorServer, Transport, EmulatedLink => ObservingProxy[Observed]) => A
   ): A =
     val transport = TcpTransport()
     val server    = awaited(SimulatorServer.start(settings, transport, clock))
@@ -85,7 +85,7 @@ final class MarginTrial(
       awaited(server.close()): Unit
       reader.shutdown()
 
-  private def flown(server: SimulatorServer, proxy: ObservingProxy, isStopped: () => Boolean) =
+  private def flown(server: SimulatorServer, proxy: ObservingProxy[Observed], isStopped: () => Boolean) =
     val port    = proxy.address.port.toString
     val watched =
       try
@@ -106,7 +106,7 @@ final class MarginTrial(
   /** Watches one run: where the vehicles truly are, and how busy the machine is. */
   private final class Watch(
       server: SimulatorServer,
-      proxy: ObservingProxy,
+      proxy: ObservingProxy[Observed],
       program: OutsideProgram,
       isStopped: () => Boolean
   ):
