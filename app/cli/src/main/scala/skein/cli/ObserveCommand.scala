@@ -231,7 +231,7 @@ object ObserveCommand
     try
       val link  = EmulatedLink(profile, options.seed, Clock.system)
       val proxy = Edge.await(
-        ObservingProxy.of(
+        ObservingProxy.start(
           analysis,
           listenAt,
           simulator,

@@ -8,7 +8,7 @@ import scala.concurrent.{Await, ExecutionContext, Future}
 import skein.airsim.{AirSimClient, Multirotor, WorldSettings}
 import skein.flight.{Lateness, Preparation}
 import skein.link.*
-import skein.observe.{CallKind, Observed, ObservingProxy, OutsideProgram}
+import skein.observe.{AirSimAnalysis, CallKind, Observed, ObservingProxy, OutsideProgram}
 import skein.rpc.RpcClient
 import skein.scenario.{Scenario, Track, Tracks}
 import skein.scene.Scene
@@ -79,7 +79,16 @@ final class MarginTrial(
       use(
         server,
         transport,
-        link => awaited(ObservingProxy.start(AnyPort, server.address, link, transport, clock, reader))
+        link =>
+          awaited(ObservingProxy.start(
+            AirSimAnalysis(),
+            AnyPort,
+            server.address,
+            link,
+            transport,
+            clock,
+            reader
+          ))
       )
     finally
       awaited(server.close()): Unit

@@ -51,18 +51,6 @@ object ObservingProxy:
     case Closed(connection: Int, at: Instant)
     case End(looked: () => Unit)
 
-  /** Starts listening for clients of AirSim's protocol; see [[of]]. */
-  def start(
-      listenAt: Address,
-      simulator: Address,
-      link: EmulatedLink,
-      transport: Transport,
-      clock: Clock,
-      reader: Executor,
-      unreachable: Throwable => Unit = _ => ()
-  )(using ActorSystem): Future[ObservingProxy[Observed]] =
-    of(AirSimAnalysis(), listenAt, simulator, link, transport, clock, reader, unreachable)
-
   /** Starts listening. Fails with a [[TransportError]] if that is not possible.
     *
     * @param link emulated between the observer and the simulator
@@ -71,7 +59,7 @@ object ObservingProxy:
     *   simulator, or speaks another protocol: see [[LinkProxy]], whose places its connections have
     * @param isDatagrams whether the transport carries datagrams
     */
-  def of[A](
+  def start[A](
       analysis: Analysis[A],
       listenAt: Address,
       simulator: Address,
@@ -79,7 +67,7 @@ object ObservingProxy:
       transport: Transport,
       clock: Clock,
       reader: Executor,
-      unreachable: Throwable => Unit,
+      unreachable: Throwable => Unit = _ => (),
       isDatagrams: Boolean = false
   )(using ActorSystem): Future[ObservingProxy[A]] =
     given ExecutionContext = ExecutionContext.parasitic

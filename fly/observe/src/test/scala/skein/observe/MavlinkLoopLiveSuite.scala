@@ -32,7 +32,7 @@ class MavlinkLoopLiveSuite extends munit.FunSuite, Unhurried:
     try
       val loop  = MavlinkLoop(isDatagrams = true)
       val proxy = await(
-        ObservingProxy.of(
+        ObservingProxy.start(
           loop,
           anyPort,
           server.peerAddresses.head,

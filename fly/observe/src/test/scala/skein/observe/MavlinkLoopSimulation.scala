@@ -69,7 +69,7 @@ class MavlinkLoopSimulation extends munit.FunSuite, Unhurried:
       val truth      = Truth(MavlinkLoop(isDatagrams = false), clock.now())
       for
         server <- SimulatorServer.start(world, network.host("simulator"), clock)
-        proxy  <- ObservingProxy.of(
+        proxy  <- ObservingProxy.start(
           truth,
           Address("controller", 5761),
           server.peerAddresses.head,
