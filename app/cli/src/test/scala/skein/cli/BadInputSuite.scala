@@ -176,7 +176,28 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     assertRefused(
       ObserveCommand,
       Seq("--readings", "/a/odom"),
-      "--readings, --commands: expected with --bag or --ros alone"
+      "--readings: expected with --bag, --ros or --mavlink alone"
+    )
+    assertRefused(
+      ObserveCommand,
+      Seq("--commands", "/a/cmd_vel"),
+      "--commands: expected with --bag or --ros alone"
+    )
+    assertRefused(
+      ObserveCommand,
+      Seq("--mavlink", "--readings", "POSITION"),
+      "--readings: expected GLOBAL_POSITION_INT, LOCAL_POSITION_NED, ODOMETRY, ATTITUDE, ATTITUDE_QUATERNION, " +
+        "came POSITION"
+    )
+    assertRefused(
+      ObserveCommand,
+      Seq("--simulator", "tcp://127.0.0.1:5760"),
+      "--simulator: expected HOST:PORT"
+    )
+    assertRefused(
+      ObserveCommand,
+      Seq("--mavlink", "--listen", "127.0.0.1:14580"),
+      "--listen: expected another address than the simulator's, came 127.0.0.1:14580 twice"
     )
 
   test("options that only MAVLink uses are refused without it"):
