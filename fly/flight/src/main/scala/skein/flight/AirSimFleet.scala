@@ -52,7 +52,7 @@ private[flight] final class AirSimFleet(
           // Altitudes count from where each vehicle starts, as in its own frame.
           vehicle.over(client, vehicle.originNed.copy(z = 0), index)
         )
-      vehicles = ready.indices.toVector.map(own => reached(own % reached.size)(own))
+      vehicles = ready.indices.toVector.map(at => reached(settings.own.indexOf(at).max(0) % reached.size)(at))
       logs = vehicles.map(ImageRecorder(_, monitor, sensor => isWatched || settings.recordedImaging(sensor)))
       cameras = vehicles.zip(logs).map(look(plan, _, monitor, _))
       films   = vehicles.zip(logs).flatMap(film(plan, _, monitor, _))
@@ -64,9 +64,9 @@ private[flight] final class AirSimFleet(
       apart =
         if !settings.isDecentralised(plan) then Vector.empty
         else
-          reached.zip(ports).zipWithIndex.map { case ((seen, own), self) =>
-            seen.map(port(_, monitor)).updated(self, own)
-          }
+          settings.own.zip(reached).map((self, seen) =>
+            (self = self, vehicles = seen.map(port(_, monitor)).updated(self, ports(self)))
+          )
       _ <- if settings.world.isEmpty then Future.unit else watchContacts(opened, address, vehicles, monitor)
       beside = opened.closing(
         AirSimClient(
@@ -74,7 +74,11 @@ private[flight] final class AirSimFleet(
           Asking.Timeout
         )
       )(_.close())
-      custody = Custody(vehicles.map(_.over(beside)), address, monitor.isLanding)
+      custody = Custody(
+        vehicles.filter(one => settings.commands(one.name)).map(_.over(beside)),
+        address,
+        monitor.isLanding
+      )
     yield ConnectedFleet(
       ports,
       Some(AirSimTime(clients.head)),
@@ -92,8 +96,9 @@ private[flight] final class AirSimFleet(
   private def lines(plan: FlightPlan): Vector[Line] =
     if !settings.isDecentralised(plan) then Vector((vehicle = None, seed = plan.seed))
     else
-      settings.fleet.agents.zipWithIndex.map: (agent, index) =>
-        (vehicle = Some(agent.name), seed = SplitMix64.seedOf(plan.seed, index))
+      settings.own.map(self =>
+        (vehicle = Some(settings.fleet.agents(self).name), seed = SplitMix64.seedOf(plan.seed, self))
+      )
 
   private def connect(
       plan: FlightPlan,
@@ -118,16 +123,17 @@ private[flight] final class AirSimFleet(
       recorder: Recorder,
       log: ImageRecorder
   ): Vector[CameraSensor] =
-    settings.scenario.eyes.filter(_.vehicle == vehicle.name).map: eye =>
-      if isWatched || settings.recordedImaging.nonEmpty then log.ask(eye.camera)
-      CameraSensor(
-        eye,
-        vehicle.eyes,
-        plan.seed,
-        clock,
-        (kind, detail) => recorder.offer(Event(clock.now(), kind, Some(vehicle.name), detail)),
-        log.image
-      )
+    settings.scenario.eyes.filter(eye => eye.vehicle == vehicle.name && settings.commands(eye.vehicle)).map:
+      eye =>
+        if isWatched || settings.recordedImaging.nonEmpty then log.ask(eye.camera)
+        CameraSensor(
+          eye,
+          vehicle.eyes,
+          plan.seed,
+          clock,
+          (kind, detail) => recorder.offer(Event(clock.now(), kind, Some(vehicle.name), detail)),
+          log.image
+        )
 
   /** The vehicle's cameras that are only filmed, not used by decisions. */
   private def film(
@@ -170,7 +176,8 @@ private[flight] final class AirSimFleet(
     val client      = AirSimClient(RpcClient(transport, address, clock))
     val preparation = Preparation(client, clock, () => calledOff(plan.id))
     val prepared    =
-      if startsAirborne then preparation.place(settings.fleet) else preparation.climb(settings.fleet, address)
+      if startsAirborne then preparation.place(settings.fleet)
+      else preparation.climb(settings.fleet, address, settings.commands)
     prepared
       .flatMap(result => client.close().map(_ => result))
       .map(_.fold(reason => throw CannotFly(reason), identity))

@@ -129,9 +129,8 @@ final class FlightAssembler(
               case Wire.AirSim => airSim.connect(plan, server.fold(simulator.get)(_.address), opened, monitor)
               case Wire.Mavlink => overMavlink(plan, server, opened, monitor)
         _ <- packets(plan, reached)
-        _ <- Team.missingSensor(fleet, reached.vehicles, fleet.agents.indices.toVector).fold(reached.ping())(
-          missing =>
-            Future.failed(CannotFly(missing))
+        _ <- Team.missingSensor(fleet, reached.vehicles, settings.own).fold(reached.ping())(missing =>
+          Future.failed(CannotFly(missing))
         )
       yield
         val loopSettings = settings.loopSettings(plan)
@@ -159,7 +158,7 @@ final class FlightAssembler(
         )
         val teams =
           if reached.apart.isEmpty then Vector(team(reached.vehicles, None))
-          else reached.apart.zipWithIndex.map((vehicles, self) => team(vehicles, Some(self)))
+          else reached.apart.map(one => team(one.vehicles, Some(one.self)))
         val startedAt = clock.now()
         val watchdog  = SimulatorWatchdog(
           monitor,

@@ -43,6 +43,7 @@ object WarmUp:
     val short    = settings.copy(
       duration = settings.duration.min(Flown),
       policies = policies,
+      only = None,
       onlyPolicies = settings.onlyPolicies && policies.nonEmpty,
       solver = settings.solver.map(_ => SolverChoice.Link(LatencyProfile.direct))
     )
@@ -79,6 +80,7 @@ object WarmUp:
       wire = Wire.AirSim,
       solver = None,
       decentralised = false,
+      only = None,
       links = List(LatencyProfile.none),
       duration = settings.duration.min(Rehearsed),
       period = settings.period.min(RehearsalPeriod)

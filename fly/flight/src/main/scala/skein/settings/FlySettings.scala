@@ -28,6 +28,7 @@ import skein.vehicle.VehicleKind
   * @param knows what the controller of a vehicle knows of the others, in all loops
   * @param decentralised whether each vehicle has a controller of its own, with a link of its own; then
   *   controllers know of the others what they read. `paused`, the truth, has one and no link
+  * @param only the vehicle that this process flies, in a running simulator, where others fly the rest
   * @param plant the built-in simulator's kind of multirotor
   * @param wire protocol of the vehicles
   * @param solver a remote solver for additional flights, beside those that decide in this process; a decision
@@ -52,6 +53,7 @@ final case class FlySettings(
     planInPacket: Boolean = false,
     knows: Knowledge = Knowledge.All,
     decentralised: Boolean = false,
+    only: Option[String] = None,
     plant: SimulatedBody = SimulatedBody.AirSim,
     wire: Wire = Wire.AirSim,
     solver: Option[SolverChoice] = None,
@@ -79,7 +81,7 @@ final case class FlySettings(
   /** The cameras that are used for the recording alone, with their periods. */
   def filmed: Vector[(sensor: ImagingSensor, every: Span)] =
     for
-      agent <- fleet.agents
+      agent <- fleet.agents if commands(agent.name)
       case ImageSource.Camera(name, hz) <- images.toVector
     yield (ImagingSensor.camera(agent.name, name, "Scene"), Span.ofSeconds(1 / hz))
 
@@ -98,6 +100,13 @@ final case class FlySettings(
 
   /** Whether each vehicle has a controller of its own in a flight. */
   def isDecentralised(plan: FlightPlan): Boolean = decentralised && plan.loop != LoopKind.Paused
+
+  /** Whether this process flies the vehicle of this name. */
+  def commands(vehicle: String): Boolean = only.forall(_ == vehicle)
+
+  /** The vehicles that this process flies, by their places in the scenario. */
+  def own: Vector[Int] =
+    fleet.agents.indices.toVector.filter(self => commands(fleet.agents(self).name))
 
   /** The deadline of a flight's decisions, if there is one. */
   def deadlineOf(plan: FlightPlan): Option[Span] =
@@ -275,6 +284,7 @@ object FlySettings:
       packetMistake(settings).map("plan-in-packet: " + _),
       knowsMistake(settings).map("knows: " + _),
       apartMistake(settings, isTold = optionAt("knows", config).isDefined).map("decentralised: " + _),
+      onlyMistake(settings).map("only: " + _),
       Option.when(settings.solver.isDefined && !settings.loops.exists(decidedElsewhere))(
         "solver: expected with a loop whose decisions can be made elsewhere, came with paused alone"
       ),
@@ -370,6 +380,15 @@ object FlySettings:
         .orElse(Option.when(settings.fleet.agents.sizeIs > MostControllers)(
           s"expected at most ${MostControllers} vehicles, came ${settings.fleet.agents.size}"
         ))
+
+  private def onlyMistake(settings: FlySettings): Option[String] =
+    settings.only.flatMap: name =>
+      if !settings.decentralised then Some(s"expected decentralised with it, came '$name' without")
+      else if settings.own.isEmpty then
+        Some(s"expected one of ${settings.fleet.agents.map(_.name).mkString(", ")}, came '$name'")
+      else
+        Option.when(settings.loops.contains(LoopKind.Paused)):
+          "expected loops other than paused, which stops the time of all vehicles"
 
   private def isRightAltitude(altitudeM: Double) = altitudeM > 0 && altitudeM <= MostAltitudeM
 

@@ -140,4 +140,7 @@ class DecentralisedSimulation extends munit.FunSuite, TemporaryFolders, Optimise
         val plan      = flight.plans.head
         assembler.start(plan, MemoryRecorder(assembler.heading(plan, "virtual"))).map(_.map(_ => ()))
       .value
-    assertEquals(started, Left("decentralised: expected vehicles over AirSim's protocol, came those of ROS 2"))
+    assertEquals(
+      started,
+      Left("decentralised: expected vehicles over AirSim's protocol, came those of ROS 2")
+    )

@@ -123,6 +123,12 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
       "no solver, which decides for all"
     refused("decentralised = true, scenario = crossing, crossing.vehicles = 60"):
       "at most 50 vehicles, came 60"
+    def refusedOnly(text: String)(why: String) = assertTold(text, s"2: skein.fly.only: expected $why")
+    refusedOnly("only = Pursuer, loops = [stream]")("decentralised with it, came 'Pursuer' without")
+    refusedOnly("decentralised = true, only = Hare, loops = [stream]"):
+      "one of Evader, Pursuer, came 'Hare'"
+    refusedOnly("decentralised = true, only = Evader"):
+      "loops other than paused, which stops the time of all vehicles"
     val read = this.read("skein.fly.decentralised = true").fold(fail(_), identity)
     assertEquals(read.loopSettings.knows, Knowledge.Positions)
     assertEquals(
