@@ -47,7 +47,7 @@ final class RosPublisher[A] private[ros] (
           library.reason(status): Unit
           failures.incrementAndGet(): Unit
 
-  /** Whether anything subscribes to it. */
+  /** Whether a subscription of any node matches it now; false after the end of its node. */
   def isRead: Boolean = synchronized:
     isOpen && {
       val count = room.allocate(8, 8)

@@ -5,7 +5,7 @@ import scala.collection.immutable.ArraySeq
 import skein.ros.message.*
 import skein.units.{Instant, Radians, Quaternion as Rotation, Vector3 as Ned}
 
-/** Images and scans as messages. */
+/** Images and scans, with their frames, as messages of `sensor_msgs` and `geometry_msgs`. */
 object SensorMessages:
   /** A part of a topic's or a frame's name: what is no letter, digit or `_` becomes `_`. */
   def token(name: String): String =

@@ -13,7 +13,7 @@ import skein.signal.Stamped
 import skein.units.{Clock as OwnClock, Instant, Radians, Vector3 as Ned}
 
 /** Cameras and lidars of a simulator's vehicles as topics: `/NAME/CAMERA/image_raw` with
-  * `/NAME/CAMERA/camera_info`, and `/NAME/LIDAR/points`, each with its frame in `/tf`. They are asked for
+  * `/NAME/CAMERA/camera_info`, and `/NAME/LIDAR/points`, each with its frame in `/tf`. They are requested
   * every 100 ms of simulated time, by AirSim's wire, while something subscribes. If the last image or scan of
   * a sensor has not come by then, one is left out, and counted.
   */
@@ -21,10 +21,10 @@ final class SimulatedSensors private (sensors: Vector[SimulatedSensors.Sensor], 
     extends AutoCloseable:
   private var looks = 0L
 
-  /** Images and scans that were left out. */
+  /** Images and scans that were left out, because the last one of the sensor had not come. */
   def skipped: Long = sensors.map(_.skipped.get).sum
 
-  /** The first failure of each sensor. */
+  /** The first failure of each sensor, with its topic. */
   def notes: Vector[String] = sensors.flatMap(_.failure)
 
   /** To be called for each of the simulator's instants, which are 20 ms apart. */
