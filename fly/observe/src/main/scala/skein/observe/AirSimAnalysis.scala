@@ -4,7 +4,9 @@ import org.apache.pekko.util.ByteString
 import scala.collection.mutable
 import skein.units.Instant
 
-/** Analyses AirSim's wire. */
+/** Analyses the MessagePack-RPC of AirSim's clients: calls are commands, readings and all else by their
+  * names.
+  */
 final class AirSimAnalysis extends Analysis[Observed]:
   private val account       = LoopAccount()
   private val conversations = mutable.LongMap.empty[Conversation]

@@ -45,7 +45,6 @@ final class MavlinkLoop(isDatagrams: Boolean, readings: Set[String] = Set.empty)
         val frames = if isDatagrams then reader.readDatagram(piece) else reader.read(piece)
         frames.foreach(passed(_, at))
 
-  /** Takes a frame that passed. */
   def passed(frame: Frame, at: Instant): Unit = frame.message match
     case Timesync(0, ours, _, _) =>
       pending(ours) = at
@@ -85,7 +84,7 @@ final class MavlinkLoop(isDatagrams: Boolean, readings: Set[String] = Set.empty)
     val before = account.observed
     before.copy(notKept = before.notKept + over)
 
-  /** What was not understood, in a line each. */
+  /** Counts of what could not be analysed, each as a sentence for a person. */
   def remarks: Vector[String] =
     val all = readers.valuesIterator.map(_.counts).foldLeft(counts)(sum)
     Vector(
