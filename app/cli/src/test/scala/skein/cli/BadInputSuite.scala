@@ -319,6 +319,7 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
 
   test("an impossible solver is reported before the flight, with what was expected"):
     val virtual = Seq("--clock", "virtual")
+    val alone = Seq("--decentralised", "--only", "Pursuer", "--loop", "stream")
     for
       (command, words, expected) <- Seq(
         (FlyCommand(), Seq("--solver", "pekko://127.0.0.1:1"), "not Pekko's remoting"),
@@ -336,6 +337,9 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
         ),
         (FlyCommand(), virtual ++ Seq("--solver", "link:vpm"), "vpm"),
         (FlyCommand(), virtual ++ Seq("--twins", "2"), "not together with --clock virtual"),
+        (FlyCommand(), virtual ++ alone, "--only: expected with --simulator"),
+        (SpreadCommand("skein.cli.Main"), alone, "--only: expected with fly alone"),
+        (FlyCommand(), Seq("--decentralised", "--knows", "all"), "--decentralised: expected knows positions"),
         (
           FlyCommand(),
           virtual ++ Seq("--solver", "link:vpn", "--loop", "paused"),

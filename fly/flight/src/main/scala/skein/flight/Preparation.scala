@@ -43,7 +43,7 @@ final class Preparation(
     * in AirSim if it is. Vehicles on the ground take off.
     *
     * @param at its address
-    * @param commands which vehicles are flown there, by name; all are returned
+    * @param commands which vehicles fly there, by name; all are returned
     */
   def climb(
       fleet: Fleet,
