@@ -319,7 +319,7 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
 
   test("an impossible solver is reported before the flight, with what was expected"):
     val virtual = Seq("--clock", "virtual")
-    val alone = Seq("--decentralised", "--only", "Pursuer", "--loop", "stream")
+    val alone   = Seq("--decentralised", "--only", "Pursuer", "--loop", "stream")
     for
       (command, words, expected) <- Seq(
         (FlyCommand(), Seq("--solver", "pekko://127.0.0.1:1"), "not Pekko's remoting"),
