@@ -37,11 +37,17 @@ object GpuRates:
         share: Int,
         pursuer: Int => HeadingPolicy
     ) =
-      val count    = candidates / share
+      val count = candidates / share
       flown(name, timing, model, 2, Vector.tabulate(count)(i => Works.team(pursuer(i))))
     def teams(name: String, vehicles: Int, share: Int, candidate: Int => TeamCandidate) =
       val count = candidates / share
-      flown(name, LoopTiming.Stream(), Works.model, vehicles, Vector.tabulate(count)(i => candidate(i % 1024)))
+      flown(
+        name,
+        LoopTiming.Stream(),
+        Works.model,
+        vehicles,
+        Vector.tabulate(count)(i => candidate(i % 1024))
+      )
     def flown(
         name: String,
         timing: LoopTiming,

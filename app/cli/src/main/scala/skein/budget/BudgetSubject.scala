@@ -103,8 +103,7 @@ final class TeamSubject(
       outcomes.flown == worlds.size,
       Vector.tabulate(cells.links.size): link =>
         RunningStats.of(cells.episodes): episode =>
-          objective.value(outcomes, link * cells.episodes + episode, durationS)
-      ,
+          objective.value(outcomes, link * cells.episodes + episode, durationS),
       BudgetSubject.Stopped
     )
 

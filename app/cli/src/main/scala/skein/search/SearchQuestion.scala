@@ -112,7 +112,7 @@ private final class SearchedFamily(
   export family.{name, space}
   val baseline: Baseline                       = Baseline.of(paper)
   def label(candidate: Vector[Double]): String = policy(candidate).label
-  def subject(axes: String): String = s"${question.role} ${family.name} ($axes) against ${opponent.label}"
+  def subject(axes: String): String   = s"${question.role} ${family.name} ($axes) against ${opponent.label}"
   def isFast(engine: Engine): Boolean = engine.isFast
 
   def scenario(candidate: Vector[Double]): Scenario =

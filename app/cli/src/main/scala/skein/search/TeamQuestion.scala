@@ -155,7 +155,7 @@ private final class SearchedScenario(question: TeamQuestion, kind: ScenarioKind[
 
   def name: String                             = kind.name
   def label(candidate: Vector[Double]): String = told(candidate, " ")(_.significant(4))
-  def subject(axes: String): String = s"${kind.name} of ${scenario(space.defaults).agents.size} ($axes)"
+  def subject(axes: String): String   = s"${kind.name} of ${scenario(space.defaults).agents.size} ($axes)"
   def isFast(engine: Engine): Boolean = engine.fliesByLanes
 
   /** The scenario with its default settings. */
@@ -183,7 +183,8 @@ private final class SearchedScenario(question: TeamQuestion, kind: ScenarioKind[
     (Engagement.inSpace(flown.fleet, durationS), by.copy(terms = terms))
 
   override lazy val isAtOnePace: Boolean =
-    val paces = (space.defaults +: space.grid(2)).map(scenario(_).agents.map(each => (each.speed, each.startHeading)))
+    val paces =
+      (space.defaults +: space.grid(2)).map(scenario(_).agents.map(each => (each.speed, each.startHeading)))
     paces.distinct.size == 1
 
   def effort(together: Engine, alone: Engine, by: Conditions.Resolved): Effort = Effort.ofTeam(together)

@@ -150,8 +150,8 @@ final case class LearnSetup(
 
   /** Evaluators of policies of [[family]], and of the baseline. */
   def judges(threads: Int): Judge => ValueEvaluator =
-    val batch                                       = conditions.batch(threads)
-    val team                                        = flown
+    val batch  = conditions.batch(threads)
+    val team   = flown
     val judged = game.objective.judged(team.durationS, conditions.timing.periodS)
     def evaluator(of: Vector[Double] => Engagement) = TeamEvaluator(
       batch,

@@ -44,7 +44,9 @@ final case class Engagement(
 
   /** With another policy of the agents of a role. */
   def flownBy(role: Role, policy: Policy): Engagement =
-    copy(agents = agents.zip(roles).map((agent, own) => if own == role then agent.copy(policy = policy) else agent))
+    copy(agents =
+      agents.zip(roles).map((agent, own) => if own == role then agent.copy(policy = policy) else agent)
+    )
 
   def hasCars: Boolean = agents.exists(_.kind == VehicleKind.Car)
 

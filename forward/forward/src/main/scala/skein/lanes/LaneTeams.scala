@@ -62,7 +62,12 @@ private[lanes] final class EpisodeTeams(
   private val flown: Array[? <: TimetableAgents & TeamMember] = form.policies match
     case team: TeamLanes    => TeamAgents.of(first.engagement.agents, form.vehicles, TeamViews(team))
     case two: OpponentLanes =>
-      Opponents.inEpisode(first.engagement.agents, form.vehicles, Opponents.policiesOf(two), Opponents.eyesOf(two))
+      Opponents.inEpisode(
+        first.engagement.agents,
+        form.vehicles,
+        Opponents.policiesOf(two),
+        Opponents.eyesOf(two)
+      )
   private val kernel = TimetableKernel(flown.map(identity[TimetableAgents]), scores)
 
   protected def members: Array[? <: TeamMember] = flown

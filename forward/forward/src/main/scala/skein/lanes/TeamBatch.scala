@@ -16,12 +16,12 @@ import skein.units.Expect
   *
   * Candidates whose policies and quantities are formulas run on SIMD: worlds that share episodes by
   * [[TimetableKernel]], all of an episode by one [[skein.lanes.timetable.Timetable]], which is computed once;
-  * others by [[skein.lanes.loop.LoopKernel]]. Two that play against one another by [[skein.policy.HeadingPolicy]] decide by
-  * [[OpponentLanes]], others by [[TeamLanes]]. Quadrotors and MuJoCo bodies of other teams are stepped side
-  * by side under the scalar loops ([[SteppedRollouts]]). All else runs on the scalar reference
-  * ([[skein.forward.Rollout]]), which the engine's text states. `docs/engines.md` has the table. The engine
-  * of a world depends on its candidate, its link and `shareEpisodes` alone, so results do not depend on
-  * threads, on a call's other worlds or on their order. One call at a time.
+  * others by [[skein.lanes.loop.LoopKernel]]. Two that play against one another by
+  * [[skein.policy.HeadingPolicy]] decide by [[OpponentLanes]], others by [[TeamLanes]]. Quadrotors and MuJoCo
+  * bodies of other teams are stepped side by side under the scalar loops ([[SteppedRollouts]]). All else runs
+  * on the scalar reference ([[skein.forward.Rollout]]), which the engine's text states. `docs/engines.md` has
+  * the table. The engine of a world depends on its candidate, its link and `shareEpisodes` alone, so results
+  * do not depend on threads, on a call's other worlds or on their order. One call at a time.
   *
   * @param accelerator simulates the candidates of [[Worlds.episodesOfEach]] that are formulas, if it supports
   *   the loop and the vehicles
@@ -58,11 +58,11 @@ final class TeamBatch(
     * @param links of the worlds: SIMD does not support delays that are long for the period, or recorded
     */
   def engine(candidate: TeamCandidate, shareEpisodes: Boolean, links: Seq[Delays]): Engine =
-    val form                        = lanesOf(candidate)
-    def together(form: TeamForm)    = shareEpisodes || episodes.areOne(form)
-    def refused(by: Delays)         = form.toOption.flatMap(form => refusal(form, together(form), by))
-    val worlds                      = if form.exists(together) then "candidates of an episode" else "worlds"
-    val byGpu                       = form.toOption.flatMap(_.policies.refusedByGpu).map(Left(_))
+    val form                     = lanesOf(candidate)
+    def together(form: TeamForm) = shareEpisodes || episodes.areOne(form)
+    def refused(by: Delays)      = form.toOption.flatMap(form => refusal(form, together(form), by))
+    val worlds                   = if form.exists(together) then "candidates of an episode" else "worlds"
+    val byGpu                    = form.toOption.flatMap(_.policies.refusedByGpu).map(Left(_))
     Engine.of(
       // Refused over the fastest link, it is over any.
       form.flatMap(_ => refused(DelayTable.none).toLeft(s"${LaneMath.LANES} $worlds at a time")),
@@ -199,7 +199,12 @@ final class TeamBatch(
     private var lastFlight: Flight = null
     private var lastShares         = false
 
-    def fly(worlds: TeamWorlds, prepared: Array[PreparedTeam], numbers: Array[Int], into: TeamOutcomes): Unit =
+    def fly(
+        worlds: TeamWorlds,
+        prepared: Array[PreparedTeam],
+        numbers: Array[Int],
+        into: TeamOutcomes
+    ): Unit =
       val filled   = mutable.ArrayBuffer.empty[Flight]
       val unfilled = Array.newBuilder[Int]
       for world <- numbers do

@@ -85,10 +85,10 @@ object Objective:
     val numbers =
       arguments.map(_.split(',').toVector.map(_.trim.toDoubleOption.filter(x => x > 0 && x < 1e6)))
     (name, numbers) match
-      case ("last10s", None)                                       => Right(DistanceTerm.Last10s)
-      case ("mean", None)                                          => Right(DistanceTerm.Mean)
-      case ("min", None)                                           => Right(DistanceTerm.Min)
-      case ("effort", None)                                        => Right(EffortTerm(if role == Role.Pursuer then 1 else 0))
+      case ("last10s", None) => Right(DistanceTerm.Last10s)
+      case ("mean", None)    => Right(DistanceTerm.Mean)
+      case ("min", None)     => Right(DistanceTerm.Min)
+      case ("effort", None)  => Right(EffortTerm(if role == Role.Pursuer then 1 else 0))
       case ("capture", Some(Vector(Some(radiusM), Some(withinS)))) =>
         Right(DistanceTerm.Capture(radiusM, withinS))
       case ("captureTime", Some(Vector(Some(radiusM)))) => Right(DistanceTerm.CaptureTime(radiusM))
@@ -104,13 +104,14 @@ object Objective:
   /** A scenario's measures that forward simulation supports, by their keys: those of a quantity, in their
     * order.
     */
-  def measures(scenario: Scenario): ListMap[String, Measure] = byKey(scenario.measures.filter(_.reduced.nonEmpty))
+  def measures(scenario: Scenario): ListMap[String, Measure] =
+    byKey(scenario.measures.filter(_.reduced.nonEmpty))
 
   private def byKey(measures: Vector[Measure]) =
     measures.map(measure => ScenarioTerm.keyOf(measure) -> measure).to(ListMap)
 
-  /** Reads `off-ring + 0.1*gap`, with an optional direction before it: a scenario's measures of a quantity, as
-    * [[Objective.judged]] requires.
+  /** Reads `off-ring + 0.1*gap`, with an optional direction before it: a scenario's measures of a quantity,
+    * as [[Objective.judged]] requires.
     *
     * @param otherwise the default direction
     * @return Left states what was expected, what was given, and at which character

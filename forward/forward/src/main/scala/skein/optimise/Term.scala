@@ -54,12 +54,11 @@ enum DistanceTerm(val key: String, val unit: String) extends Term:
   case CaptureTime(radiusM: Double) extends DistanceTerm(s"captureTime($radiusM)", "s")
 
   def judged(durationS: Double, periodS: Double): Option[Judged] = Some(this match
-    case Last10s             => Judged(Separation, Reduction.Mean, Rollout.last10sFromS(durationS, periodS))
-    case Mean                => Judged(Separation, Reduction.Mean, 0)
-    case Min                 => Judged(Separation, Reduction.Least, 0)
-    case Capture(radiusM, _) => Judged(Separation, OfMoment.FirstWithin(radiusM), 0)
-    case CaptureTime(radiusM) => Judged(Separation, OfMoment.FirstWithin(radiusM), 0)
-  )
+    case Last10s              => Judged(Separation, Reduction.Mean, Rollout.last10sFromS(durationS, periodS))
+    case Mean                 => Judged(Separation, Reduction.Mean, 0)
+    case Min                  => Judged(Separation, Reduction.Least, 0)
+    case Capture(radiusM, _)  => Judged(Separation, OfMoment.FirstWithin(radiusM), 0)
+    case CaptureTime(radiusM) => Judged(Separation, OfMoment.FirstWithin(radiusM), 0))
 
   def value(told: Float, durationS: Double): Double = this match
     // The time of a score is known as a Float alone: a capture exactly then counts.
@@ -69,7 +68,7 @@ enum DistanceTerm(val key: String, val unit: String) extends Term:
 
 /** The effort of a vehicle. */
 final case class EffortTerm(vehicle: Int) extends Term:
-  def key: String                                                 = "effort"
-  def unit: String                                                = "rad"
+  def key: String                                                = "effort"
+  def unit: String                                               = "rad"
   def judged(durationS: Double, periodS: Double): Option[Effort] = Some(Effort(vehicle))
-  def value(told: Float, durationS: Double): Double               = told
+  def value(told: Float, durationS: Double): Double              = told

@@ -84,11 +84,11 @@ abstract class CameraTrackerAgreement(isDaily: Boolean) extends munit.FunSuite:
     if isDaily == (episode == 0)
   do
     test(s"${timing.productPrefix}, episode $episode: equal detections and decisions in each world compared"):
-      val key      = WorldRandom.key(5, 0, episode)
-      val forms    = CameraTrackerLanes.of(camera).fold(fail(_), identity)
-      val eye      = SharedEye(forms, duel.pursuer, duel.evader)
-      val lanes    = PairAgreement.taken(pursuer, evader)
-      val flown    = PairKernels.shared(duel, timing, model, lanes, DelayTable.vpn, key, 0, Map(1 -> eye))
+      val key   = WorldRandom.key(5, 0, episode)
+      val forms = CameraTrackerLanes.of(camera).fold(fail(_), identity)
+      val eye   = SharedEye(forms, duel.pursuer, duel.evader)
+      val lanes = PairAgreement.taken(pursuer, evader)
+      val flown = PairKernels.shared(duel, timing, model, lanes, DelayTable.vpn, key, 0, Map(1 -> eye))
       isFlownByBatch(timing, key, flown)
       val agreement = new PairAgreement(
         duel,

@@ -20,7 +20,8 @@ class GuideSuite extends munit.FunSuite:
 
   test("a SIMD search of the example's policy finds a better one than the middle"):
     import GuideExample.*
-    val engine = TeamBatch(timing, lag).engine(candidate(leads.space.defaults), true, Seq(DelayTable.vpn)).text
+    val engine =
+      TeamBatch(timing, lag).engine(candidate(leads.space.defaults), true, Seq(DelayTable.vpn)).text
     assert(engine.startsWith("SIMD"), engine)
     val middle = evaluator.tallies(Vector(leads.space.defaults), 0 until 20).head.mean
     assert(best._2.mean < middle, s"${best._2.mean} against $middle")

@@ -16,8 +16,7 @@ import skein.optimise.LatencyBudget
 import skein.policy.{PaperEvader, PaperPursuer}
 import skein.simd.WorldRandom
 
-/** Two under `stream` with a lag, which has its own implementation
-  * ([[skein.lanes.loop.LagVehicles]]).
+/** Two under `stream` with a lag, which has its own implementation ([[skein.lanes.loop.LagVehicles]]).
   */
 class LagPairsSuite extends munit.FunSuite:
   private val worlds = PairKernels.WORLDS

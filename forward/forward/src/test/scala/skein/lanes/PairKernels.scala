@@ -14,7 +14,8 @@ final class PairKernel(
     members: Array[? <: TeamMember],
     scores: Scoreboard
 ):
-  private val judged = PairNumber.values.toVector.filter(_.judged(duel, timing, captureM).isInstanceOf[Judged])
+  private val judged =
+    PairNumber.values.toVector.filter(_.judged(duel, timing, captureM).isInstanceOf[Judged])
 
   def apply(number: PairNumber): Array[Float] = number match
     case PairNumber.EvaderEffort  => members(0).effortRad
@@ -26,8 +27,9 @@ object PairKernels:
   val WORLDS: Int = LanePolicy.WORLDS
 
   private def scoreboard(duel: Duel, timing: LoopTiming, captureM: Float): Scoreboard =
-    val judged = PairNumber.values.toVector.map(_.judged(duel, timing, captureM)).collect { case each: Judged =>
-      each
+    val judged = PairNumber.values.toVector.map(_.judged(duel, timing, captureM)).collect {
+      case each: Judged =>
+        each
     }
     Scoreboard(ScoreLanes.of(judged, 2).fold(throw _, identity), Vector(0, 0))
 
@@ -45,8 +47,9 @@ object PairKernels:
     val vehicles = LaneDynamics.under(timing, model).fold(munit.Assertions.fail(_), identity)
     val members  = Opponents.inEpisode(Vector(duel.evader, duel.pursuer), vehicles, policies, eyes)
     val scores   = scoreboard(duel, timing, captureM)
-    val sensors  = Vector(duel.evader, duel.pursuer).map(_.eye).zipWithIndex.collect { case (Some(eye), self) =>
-      self -> eye
+    val sensors  = Vector(duel.evader, duel.pursuer).map(_.eye).zipWithIndex.collect {
+      case (Some(eye), self) =>
+        self -> eye
     }.toMap
     val timetable = Timetable.of(2, duel.durationS, timing, link, key, vehicles, sensors)
     TimetableKernel(members.map(identity), scores).fly(timetable, WORLDS)
@@ -73,7 +76,7 @@ object PairKernels:
     val cameras = agents.map(_.eye).zipWithIndex.collect { case (Some(eye), self) =>
       self -> CameraTrackerLanes.of(eye).fold(munit.Assertions.fail(_), identity)
     }.toMap
-    val loop           = LoopLanes(timing, 2, duel.durationS, links.map(_.maxS).max, cameras.nonEmpty, shortCut)
+    val loop = LoopLanes(timing, 2, duel.durationS, links.map(_.maxS).max, cameras.nonEmpty, shortCut)
     val (members, eye) = Opponents.inLoop(agents, loop, vehicles, policies, cameras, newEye)
     val scores         = scoreboard(duel, timing, captureM)
     val kernel         = LoopKernel(loop, members.map(identity), scores)

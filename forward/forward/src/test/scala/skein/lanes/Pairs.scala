@@ -38,14 +38,14 @@ final class PairOutcomes(asked: Set[PairNumber], size: Int, of: TeamOutcomes):
   private val places = PairNumber.values.filter(asked).zipWithIndex.toMap
   private val none   = Array.fill(size)(Float.NaN)
 
-  def flown: Int                               = of.flown
+  def flown: Int                              = of.flown
   def apply(number: PairNumber): Array[Float] = places.get(number).fold(none)(of.values(_))
-  def minDistanceM: Array[Float]               = this(PairNumber.MinDistance)
-  def meanDistanceM: Array[Float]              = this(PairNumber.MeanDistance)
-  def meanLast10sM: Array[Float]               = this(PairNumber.MeanLast10s)
-  def captureS: Array[Float]                   = this(PairNumber.Capture)
-  def pursuerEffortRad: Array[Float]           = this(PairNumber.PursuerEffort)
-  def evaderEffortRad: Array[Float]            = this(PairNumber.EvaderEffort)
+  def minDistanceM: Array[Float]              = this(PairNumber.MinDistance)
+  def meanDistanceM: Array[Float]             = this(PairNumber.MeanDistance)
+  def meanLast10sM: Array[Float]              = this(PairNumber.MeanLast10s)
+  def captureS: Array[Float]                  = this(PairNumber.Capture)
+  def pursuerEffortRad: Array[Float]          = this(PairNumber.PursuerEffort)
+  def evaderEffortRad: Array[Float]           = this(PairNumber.EvaderEffort)
 
 /** A [[TeamBatch]] of two; the policies come from the worlds. */
 final class PairBatch(
@@ -58,13 +58,23 @@ final class PairBatch(
 ):
   private val batch = TeamBatch(timing, model, threads, accelerator, isReference)
 
-  private def candidate(pursuer: HeadingPolicy, evader: HeadingPolicy, asked: Set[PairNumber], radiusM: Double) =
+  private def candidate(
+      pursuer: HeadingPolicy,
+      evader: HeadingPolicy,
+      asked: Set[PairNumber],
+      radiusM: Double
+  ) =
     TeamCandidate(
       Engagement.of(duel.copy(duel.pursuer.copy(policy = pursuer), duel.evader.copy(policy = evader))),
       PairNumber.values.toVector.filter(asked).map(_.judged(duel, timing, radiusM))
     )
 
-  def engine(pursuer: HeadingPolicy, evader: HeadingPolicy, shareEpisodes: Boolean, links: Seq[Delays]): Engine =
+  def engine(
+      pursuer: HeadingPolicy,
+      evader: HeadingPolicy,
+      shareEpisodes: Boolean,
+      links: Seq[Delays]
+  ): Engine =
     batch.engine(candidate(pursuer, evader, PairNumber.all, 0), shareEpisodes, links)
 
   def fly(

@@ -57,7 +57,8 @@ class ObjectiveSuite extends munit.FunSuite:
       def value(text: String, role: Role = Role.Pursuer) =
         val objective = read(text, role)
         val candidate = TeamCandidate(Engagement.of(own), objective.judged(20, timing.periodS))
-        val evaluator = TeamEvaluator(TeamBatch(timing, model, 1), _ => candidate, DelayTable.direct, objective, 1)
+        val evaluator =
+          TeamEvaluator(TeamBatch(timing, model, 1), _ => candidate, DelayTable.direct, objective, 1)
         evaluator.tallies(Vector(Vector.empty), 0 until 1).head.mean
       assertEqualsDouble(value("captureTime(4.5)"), one.captureS.min(20), 1e-5)
       assertEqualsDouble(value("capture(4.5, 8)"), if one.captureS <= 8 then 1 else 0, 0)

@@ -54,11 +54,11 @@ class SideTaskSimulation extends munit.FunSuite:
       assertEqualsDouble(mean, flown.meanDistanceM, 0.05)
 
   test("a learned policy with SIMD equals the scalar reference"):
-    val policy = LearnedPolicy(LearnedPolicy.shape(Vector(16, 16)), SideTask.parameters(drawn(16, 16)), 1, 0)
-    val duel   = Duel.paperAt(20, 20)
+    val policy  = LearnedPolicy(LearnedPolicy.shape(Vector(16, 16)), SideTask.parameters(drawn(16, 16)), 1, 0)
+    val duel    = Duel.paperAt(20, 20)
     val pursued = duel.copy(pursuer = duel.pursuer.copy(policy = policy))
-    val team   = TeamCandidate(Engagement.of(pursued), Vector(Judged(Separation, Reduction.Mean, 0)))
-    val worlds = new TeamWorlds:
+    val team    = TeamCandidate(Engagement.of(pursued), Vector(Judged(Separation, Reduction.Mean, 0)))
+    val worlds  = new TeamWorlds:
       def size                                 = 4
       override def shareEpisodes               = true
       def key(world: Int): Int                 = world

@@ -38,11 +38,11 @@ private[lanes] final case class PolicyNumbers(parameters: Array[Double], memory:
   * @param policy its parameters, then its memory before the first decision
   */
 private[lanes] final class VehicleNumbers(agent: RolloutAgent, numbers: PolicyNumbers):
-  val northM: Float          = agent.startX.toFloat
-  val eastM: Float           = agent.startY.toFloat
-  val downM: Float           = agent.altitudeDownM.toFloat
-  val cos: Float             = StrictMath.cos(agent.startHeadingRad).toFloat
-  val sin: Float             = StrictMath.sin(agent.startHeadingRad).toFloat
-  val speedMps: Float        = agent.speed.toFloat
-  val parameters: Int        = numbers.parameters.length
-  val policy: Array[Float]   = (numbers.parameters ++ numbers.memory).map(_.toFloat)
+  val northM: Float        = agent.startX.toFloat
+  val eastM: Float         = agent.startY.toFloat
+  val downM: Float         = agent.altitudeDownM.toFloat
+  val cos: Float           = StrictMath.cos(agent.startHeadingRad).toFloat
+  val sin: Float           = StrictMath.sin(agent.startHeadingRad).toFloat
+  val speedMps: Float      = agent.speed.toFloat
+  val parameters: Int      = numbers.parameters.length
+  val policy: Array[Float] = (numbers.parameters ++ numbers.memory).map(_.toFloat)

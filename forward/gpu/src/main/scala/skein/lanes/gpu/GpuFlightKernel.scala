@@ -34,6 +34,7 @@ private[lanes] abstract class GpuFlightKernel(
 
     def show(now: GpuRecord): Unit
     def decide(self: Int, now: GpuRecord): Unit
+
     /** A parameter of a quantity; see [[ScoreLanes.Source.Parameter]]. */
     def quantity(number: Int, parameter: Int): Int
 

@@ -32,7 +32,9 @@ private[lanes] final class GpuTeams(
   ): Accelerated =
     val each  = worlds.episodesOfEach
     val teams = Array.tabulate(GpuEpisodes.candidatesOf(worlds))(number => prepared(number * each))
-    GpuEpisodes.inParallel(teams.length, Chunk, threads)(i => if teams(i).form != null then teams(i).numbers: Unit): Unit
+    GpuEpisodes.inParallel(teams.length, Chunk, threads)(i =>
+      if teams(i).form != null then teams(i).numbers: Unit
+    ): Unit
     val (known, unknown) =
       teams.indices.toArray.partition(number => isOnGpu(teams(number)))
     val flown = GpuParts(known, each, onProgress, isCancelled)
@@ -71,7 +73,7 @@ private[lanes] final class GpuTeams(
     for (episode, at) <- flown.zipWithIndex do
       var (score, effort) = (0, form.scores.initial.size)
       for (told, ofEffort) <- into.values.zip(form.efforts) do
-        def first(place: Int)                           = (place * flown.size + at) * teams.length
+        def first(place: Int)                      = (place * flown.size + at) * teams.length
         def tell(from: Int)(value: Float => Float) = for i <- teams.indices do
           told(candidates(i) * each + numbers(at)) = value(came(from + i))
         if ofEffort.isDefined then
