@@ -22,7 +22,6 @@ trait PosedSearch:
 trait Searched:
   def space: SearchSpace
 
-  /** Name of the policy family or scenario. */
   def name: String
 
   /** What is searched and its opponent, in a line.
@@ -36,7 +35,6 @@ trait Searched:
 
   def baseline: Baseline
 
-  /** The scenario that a candidate flies in. */
   def scenario(candidate: Vector[Double]): Scenario
 
   /** What flies by forward simulation, with its own objective.

@@ -1,7 +1,7 @@
 package skein.search
 
 import com.typesafe.config.ConfigUtil.quoteString
-import skein.forward.{Delays, Engagement}
+import skein.forward.Engagement
 import skein.lanes.Engine
 import skein.optimise.{Objective, RunningStats, ScenarioTerm}
 import skein.policy.{Axis, SearchSpace}
@@ -135,20 +135,7 @@ object TeamQuestion:
             s"nearest is '${Nearest.to(varied.key, numbers.keys.toSeq)}'"
         )
 
-/** The engine that evaluates a team's candidates.
-  *
-  * @param isVirtual whether only some candidates are evaluated a second
-  */
-enum TeamEngine(val isVirtual: Boolean, val vehicles: String, val model: String):
-  /** Forward simulation with measures of quantities. */
-  case Reduced(conditions: Conditions.Resolved, delays: Delays)
-      extends TeamEngine(false, conditions.vehicle.description, conditions.vehicle.name)
-
-  /** By measures of whole flights. */
-  case Whole(flights: WholeFlights)
-      extends TeamEngine(flights.engine.kind == Engine.Kind.Flights, flights.vehicles, flights.model)
-
-/** Settings of a scenario. */
+/** Settings of a scenario within their bounds, each candidate as it flies. */
 private final class SearchedScenario(question: TeamQuestion, kind: ScenarioKind[?], val space: SearchSpace)
     extends Searched:
   import question.conditions.durationS

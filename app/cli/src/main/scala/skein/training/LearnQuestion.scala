@@ -143,7 +143,6 @@ final case class LearnSetup(
   /** Number of rounds from one evaluation of the policy to the next. */
   val roundsPerScore: Int = (rounds / LearnSetup.Scores).max(1)
 
-  /** The flight with the baseline's policies. */
   private def flown: Engagement = game.opponent match
     case Some(other) => Engagement.of(conditions.duel).flownBy(other.role, other.policy)
     case None        => Engagement.of(game.scenario.fleet, conditions.duel.durationS)

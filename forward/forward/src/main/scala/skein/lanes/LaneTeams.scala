@@ -13,7 +13,7 @@ private[lanes] abstract class LaneTeams(form: TeamForm):
 
   protected def members: Array[? <: TeamMember]
 
-  /** Sets a world's candidate. */
+  /** Sets a world's candidate, which must be of this form. */
   final def take(world: Int, team: PreparedTeam): Unit =
     val before = held(world)
     if team ne before then

@@ -25,7 +25,6 @@ private[lanes] final case class TeamForm(
   /** Whether somebody knows another vehicle by a camera alone. */
   def sees: Boolean = policies.eyes.nonEmpty
 
-  /** Whether quantities differ in numbers. */
   val hasParameters: Boolean = scores.judged.indices.exists(scores.parameters(_) > 0)
 
   private val last = Array.ofDim[(RolloutAgent, VehicleNumbers)](policies.count)
@@ -49,17 +48,17 @@ private[lanes] final class PreparedTeam(
     lanes: => Either[String, TeamForm],
     stepped: => Option[Engine]
 ):
-  /** Null if SIMD does not support it. */
+  /** Null if SIMD does not support its policies or quantities. */
   lazy val form: TeamForm     = lanes.getOrElse(null)
   lazy val isStepped: Boolean = stepped.isDefined
 
   def vehicles: Vector[RolloutAgent] = candidate.engagement.agents
 
-  /** By vehicle; of a form. */
+  /** By vehicle; only where it has a [[form]]. */
   lazy val numbers: Array[VehicleNumbers] =
     Array.tabulate(form.count)(self => form.numbersOf(self, vehicles(self)))
 
-  /** By quantity; of a form. */
+  /** By quantity; only where it has a [[form]]. */
   lazy val ofQuantities: Array[Array[Double]] =
     candidate.quantities.toArray.zipWithIndex.map: (each, number) =>
       form.scores.parametersOf(number, each.quantity)

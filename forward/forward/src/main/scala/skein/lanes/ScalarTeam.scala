@@ -51,7 +51,7 @@ private[skein] object ScalarTeam:
   /** Number of worlds that a thread takes together. */
   private[lanes] val Worlds = 16
 
-/** A judged number of an episode. Mutable. */
+/** A judged number of one episode, from its values. Mutable. */
 private final class Tally(val judged: Judged):
   private val values = ArrayBuilder.ofDouble()
   private var firstS = Double.PositiveInfinity
@@ -60,7 +60,7 @@ private final class Tally(val judged: Judged):
     case OfMoment.FirstWithin(limit) => if value <= limit then firstS = firstS.min(timeS)
     case _                           => values += value
 
-  /** The number; NaN where nothing counted. */
+  /** The number so far; NaN where no value counted. */
   def value: Double =
     def all = ArraySeq.unsafeWrapArray(values.result())
     judged.reduction match

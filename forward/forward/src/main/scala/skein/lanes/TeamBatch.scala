@@ -252,7 +252,7 @@ final class TeamBatch(
     private val held    = Array.ofDim[PreparedTeam](TimetableKernel.WORLDS)
     private var filled  = 0
 
-    /** @return whether it is the first */
+    /** @return whether it is the first since the last flight */
     def add(world: Int, prepared: PreparedTeam): Boolean =
       worldOf(filled) = world
       held(filled) = prepared

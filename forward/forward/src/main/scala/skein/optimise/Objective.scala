@@ -13,7 +13,7 @@ import skein.scenario.{Measure, Scenario}
 final case class Objective(terms: Vector[(Double, Term)], direction: Direction):
   require(terms.nonEmpty, "an objective needs at least one term")
 
-  /** The weights and measures of a scenario. */
+  /** The weights with a scenario's measures, without other terms. */
   def measures: Vector[(Double, Measure)] = terms.collect { case (weight, ScenarioTerm(measure)) =>
     weight -> measure
   }

@@ -6,7 +6,7 @@ import skein.scenario.{Measure, Reduction, Separation, Window}
 
 /** A number of a flight that an objective weighs. */
 trait Term:
-  /** Its name in an objective. */
+  /** Its name, as users write it in an objective. */
   def key: String
 
   def unit: String
@@ -16,11 +16,10 @@ trait Term:
 
   /** Its value in an episode.
     *
-    * @param told the computed number
+    * @param computed the number of [[judged]]
     */
-  def value(told: Float, durationS: Double): Double
+  def value(computed: Float, durationS: Double): Double
 
-/** A measure of a scenario. */
 final case class ScenarioTerm(measure: Measure) extends Term:
   def key: String  = ScenarioTerm.keyOf(measure)
   def unit: String = measure.unit
@@ -32,7 +31,7 @@ final case class ScenarioTerm(measure: Measure) extends Term:
       case Window.Last(seconds)  => durationS - math.floor(seconds / periodS + 1e-9) * periodS
     Judged(by.quantity, by.reduction, fromS)
 
-  def value(told: Float, durationS: Double): Double = told
+  def value(computed: Float, durationS: Double): Double = computed
 
 object ScenarioTerm:
   def keyOf(measure: Measure): String = measure.name.replace(' ', '-')
@@ -60,15 +59,14 @@ enum DistanceTerm(val key: String, val unit: String) extends Term:
     case Capture(radiusM, _)  => Judged(Separation, OfMoment.FirstWithin(radiusM), 0)
     case CaptureTime(radiusM) => Judged(Separation, OfMoment.FirstWithin(radiusM), 0))
 
-  def value(told: Float, durationS: Double): Double = this match
+  def value(computed: Float, durationS: Double): Double = this match
     // The time of a score is known as a Float alone: a capture exactly then counts.
-    case Capture(_, withinS) => if told <= withinS.toFloat then 1.0 else 0.0
-    case CaptureTime(_)      => told.toDouble.min(durationS)
-    case _                   => told
+    case Capture(_, withinS) => if computed <= withinS.toFloat then 1.0 else 0.0
+    case CaptureTime(_)      => computed.toDouble.min(durationS)
+    case _                   => computed
 
-/** The effort of a vehicle. */
 final case class EffortTerm(vehicle: Int) extends Term:
   def key: String                                                = "effort"
   def unit: String                                               = "rad"
   def judged(durationS: Double, periodS: Double): Option[Effort] = Some(Effort(vehicle))
-  def value(told: Float, durationS: Double): Double              = told
+  def value(computed: Float, durationS: Double): Double              = computed

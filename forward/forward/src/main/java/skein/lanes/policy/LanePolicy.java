@@ -85,7 +85,7 @@ public class LanePolicy {
       initial[i * WORLDS + world] = (float) remembered[i];
   }
 
-  /** Sets the numbers of a world's policy. */
+  /** Sets the numbers of a world's policy, which must be of this form. */
   public void put(int world, VehicleNumbers numbers) {
     float[] values = numbers.policy();
     int count = numbers.parameters();

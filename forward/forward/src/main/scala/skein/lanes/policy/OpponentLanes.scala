@@ -29,7 +29,6 @@ private[lanes] final case class OpponentLanes private (
   val eyes: Map[Int, SensorModel] =
     agents.zipWithIndex.flatMap((agent, self) => agent.eye.map(self -> _)).toMap
 
-  /** The compiled cameras. */
   def cameras: Map[Int, CameraTrackerLanes.Forms] =
     eyes.view.mapValues(OpponentLanes.cameraOf(_).fold(sys.error, identity)).toMap
 

@@ -16,7 +16,7 @@ private[lanes] trait TeamPolicies:
   /** By vehicle, the camera that is its only knowledge of its one opponent. */
   def eyes: Map[Int, SensorModel]
 
-  /** Why no GPU flies them; None if one does. */
+  /** Why no GPU flies such a team; None if one does. */
   def refusedByGpu: Option[String]
 
   /** Number of candidates with shared episodes that take no longer than one. */

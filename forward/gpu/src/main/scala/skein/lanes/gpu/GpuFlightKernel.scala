@@ -38,7 +38,7 @@ private[lanes] abstract class GpuFlightKernel(
     /** A parameter of a quantity; see [[ScoreLanes.Source.Parameter]]. */
     def quantity(number: Int, parameter: Int): Int
 
-    /** The [[efforts]] of a world. */
+    /** A world's [[efforts]], in the order of the results. */
     def besides: Vector[Int] = Vector.empty
 
   /** Makes the part of the kernel.

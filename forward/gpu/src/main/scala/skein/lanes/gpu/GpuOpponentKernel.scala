@@ -108,7 +108,6 @@ private[lanes] final class GpuOpponentKernel(
   override protected def efforts: Int = form.efforts.flatten.size
 
 private object GpuOpponentKernel:
-  /** Count of the numbers of one side. */
   private def numbers(form: PolicyLanes): Int = form.parameters + form.memories + 2
 
   /** Count of all quantities' parameters, if they have any. */
