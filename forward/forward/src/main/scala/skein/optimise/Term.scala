@@ -20,6 +20,7 @@ trait Term:
     */
   def value(computed: Float, durationS: Double): Double
 
+/** A measure of a scenario, named by its key: `off-ring`. */
 final case class ScenarioTerm(measure: Measure) extends Term:
   def key: String  = ScenarioTerm.keyOf(measure)
   def unit: String = measure.unit
@@ -65,6 +66,7 @@ enum DistanceTerm(val key: String, val unit: String) extends Term:
     case CaptureTime(_)      => computed.toDouble.min(durationS)
     case _                   => computed
 
+/** The control effort of a vehicle, by its place in the team. */
 final case class EffortTerm(vehicle: Int) extends Term:
   def key: String                                                = "effort"
   def unit: String                                               = "rad"
