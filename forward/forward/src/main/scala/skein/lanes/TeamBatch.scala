@@ -58,7 +58,23 @@ final class TeamBatch(
     * @param links of the worlds: SIMD does not support delays that are long for the period, or recorded
     */
   def engine(candidate: TeamCandidate, shareEpisodes: Boolean, links: Seq[Delays]): Engine =
-    val form                     = lanesOf(candidate)
+    val form  = lanesOf(candidate)
+    val asked = (form, shareEpisodes, links)
+    if found._1 == asked then found._2
+    else
+      val engine = engineOf(candidate, form, shareEpisodes, links)
+      if engine.fliesByLanes then found = (asked, engine)
+      engine
+
+  /** What the last engine was for, of those that fly by lanes: a search wants it of every candidate. */
+  @volatile private var found: ((Either[String, TeamForm], Boolean, Seq[Delays]), Engine) = (null, null)
+
+  private def engineOf(
+      candidate: TeamCandidate,
+      form: Either[String, TeamForm],
+      shareEpisodes: Boolean,
+      links: Seq[Delays]
+  ): Engine =
     def together(form: TeamForm) = shareEpisodes || episodes.areOne(form)
     def refused(by: Delays)      = form.toOption.flatMap(form => refusal(form, together(form), by))
     val worlds                   = if form.exists(together) then "candidates of an episode" else "worlds"
