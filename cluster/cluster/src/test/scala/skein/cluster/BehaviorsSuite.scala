@@ -227,33 +227,46 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
     )
     val worker  = Heard[ToWorker]()
     val promise = Promise[CoordinatorBehavior.Outcome]()
+    val wanted  = LinkedBlockingQueue[String]()
     coordinator ! Message.Ask("anna", 1, "one", 7, Set.empty, worker.actor)
-    coordinator ! CoordinatorBehavior.Compute(Vector(ArraySeq[Byte](1)), _ => (), () => (), promise)
+    coordinator ! CoordinatorBehavior.Compute(
+      Vector(ArraySeq[Byte](1)),
+      _ => (),
+      () => wanted.add("wanted"): Unit,
+      promise
+    )
     assertEquals(worker.next(), Message.Give(7, 1, ArraySeq[Byte](1)))
+    assertEquals(wanted.asScala.toVector, Vector("wanted"))
     ledger.close()
 
   test("nothing is done before a coordinator's first message"):
     assertEquals(ClusterProgress(), ClusterProgress(Coordinator(), done = 0, of = 0, resumed = 0, died = 0))
 
-  test("the receiver of news that a worker joined or was lost sees it in the progress"):
-    val ledger      = newLedger()
-    val latest      = AtomicReference(ClusterProgress())
-    val seen        = LinkedBlockingQueue[(WorkerEvent, ClusterProgress)]()
-    val coordinator =
-      system.spawnAnonymous(CoordinatorBehavior(
-        Job(7, "one", question),
-        ledger,
-        event => seen.add(event -> latest.get): Unit,
-        latest.set,
-        _ => ()
-      ))
-    def next() = Option(seen.poll(30, TimeUnit.SECONDS)).getOrElse(fail("nothing was told"))
-    coordinator ! Message.Ask("anna", 1, "one", 7, Set.empty, Heard[ToWorker]().actor)
-    val (joined, withAnna) = next()
-    assertEquals(joined, WorkerEvent.Joined("anna", 1))
-    assertEquals(withAnna.coordinator.workers.keySet, Set("anna"))
-    coordinator ! CoordinatorBehavior.Ended("anna")
-    val (lost, without) = next()
-    assertEquals(lost, WorkerEvent.Lost("anna", 0))
-    assertEquals((without.died, without.coordinator.workers("anna").isHere), (1, false))
-    ledger.close()
+  for gone <- Seq(
+      CoordinatorBehavior.Ended("anna"),
+      CoordinatorBehavior.Unreachable(system.deadLetters.path.address),
+      CoordinatorBehavior.Removed(system.deadLetters.path.address)
+    )
+  do
+    test(s"the receiver of news that a worker joined or is ${gone.getClass.getSimpleName} sees it in the progress"):
+      val ledger      = newLedger()
+      val latest      = AtomicReference(ClusterProgress())
+      val seen        = LinkedBlockingQueue[(WorkerEvent, ClusterProgress)]()
+      val coordinator =
+        system.spawnAnonymous(CoordinatorBehavior(
+          Job(7, "one", question),
+          ledger,
+          event => seen.add(event -> latest.get): Unit,
+          latest.set,
+          _ => ()
+        ))
+      def next() = Option(seen.poll(30, TimeUnit.SECONDS)).getOrElse(fail("nothing was told"))
+      coordinator ! Message.Ask("anna", 1, "one", 7, Set.empty, Heard[ToWorker]().actor)
+      val (joined, withAnna) = next()
+      assertEquals(joined, WorkerEvent.Joined("anna", 1))
+      assertEquals(withAnna.coordinator.workers.keySet, Set("anna"))
+      coordinator ! gone
+      val (lost, without) = next()
+      assertEquals(lost, WorkerEvent.Lost("anna", 0))
+      assertEquals((without.died, without.coordinator.workers("anna").isHere), (1, false))
+      ledger.close()
