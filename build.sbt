@@ -255,7 +255,7 @@ lazy val torture = project.in(file("fly/torture"))
 /** Any program's loop, measured from between it and its simulator. */
 lazy val observe = project.in(file("fly/observe"))
   .settings(artifact("observe", "Any program's control loop, measured from outside"))
-  .dependsOn(flight % "compile->compile;test->test", link % "test->test")
+  .dependsOn(flight % "compile->compile;test->test", mavlink, link % "test->test")
   .settings(underAgent, libraryDependencies ++= munit)
 
 /** Bags of ROS 2: recordings written as bags, and the loops of bags and graphs measured. */

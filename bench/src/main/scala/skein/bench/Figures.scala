@@ -1,7 +1,7 @@
 package skein.bench
 
 import skein.forward.{DelayTable, LoopTiming}
-import skein.lanes.{DuelNumber, DuelWorlds}
+import skein.lanes.{TeamCandidate, TeamWorlds}
 import skein.lanes.plant.LaneQuadrotors
 import skein.optimise.LatencyBudget
 import skein.simd.WorldRandom
@@ -66,7 +66,7 @@ object Figures:
   private def candidates(evaluations: Int, episodes: Int): Double =
     val worlds   = Works.Candidates(evaluations, evaluations / episodes, DelayTable.vpn, 1)
     val outcomes = Works.batch(LoopTiming.Stream(), cores).fly(worlds)
-    outcomes.meanLast10sM.map(_.toDouble).sum / evaluations
+    outcomes.values(0).map(_.toDouble).sum / evaluations
 
   /** Links with mean round trips from 20 to 215 ms and jitters from 0 to 38 ms. */
   private val links: Vector[DelayTable] = Vector.tabulate(800): cell =>
@@ -76,11 +76,10 @@ object Figures:
     ).getOrElse(LatencyBudget.link(20, 10).get))
 
   private def budget(episodes: Int): Double =
-    val worlds = new DuelWorlds:
-      private val all                     = Works.Candidates(1000, 1, DelayTable.vpn, 1)
-      def size: Int                       = episodes
-      def key(world: Int): Int            = WorldRandom.key(1, 0, world % 1000)
-      def link(world: Int): DelayTable    = links(world / 1000)
-      override def asked: Set[DuelNumber] = all.asked
-      export all.{evader, pursuer}
-    Works.batch(LoopTiming.Stream(), cores).fly(worlds).meanLast10sM.map(_.toDouble).sum / episodes
+    val worlds = new TeamWorlds:
+      private val all                          = Works.Candidates(1000, 1, DelayTable.vpn, 1)
+      def size: Int                            = episodes
+      def key(world: Int): Int                 = WorldRandom.key(1, 0, world % 1000)
+      def link(world: Int): DelayTable         = links(world / 1000)
+      def candidate(world: Int): TeamCandidate = all.candidate(world)
+    Works.batch(LoopTiming.Stream(), cores).fly(worlds).values(0).map(_.toDouble).sum / episodes

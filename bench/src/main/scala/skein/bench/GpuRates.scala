@@ -5,7 +5,7 @@ import skein.gpu.{CudaGpu, Gpu}
 import skein.lanes.*
 import skein.lanes.gpu.{GpuAccelerator, GpuQuadrotors}
 import skein.lanes.plant.LaneQuadrotors
-import skein.policy.{NeuralPolicy, NeuralShape, PaperEvader, PaperPursuer, HeadingPolicy}
+import skein.policy.{HeadingPolicy, NeuralPolicy, NeuralShape, PaperPursuer}
 import skein.simd.WorldRandom
 import skein.units.Vector3
 import skein.vehicle.{Quadrotor, ReducedModel}
@@ -17,7 +17,6 @@ import skein.vehicle.{Quadrotor, ReducedModel}
   */
 object GpuRates:
   private val Episodes = 32
-  private val asked    = Set(DuelNumber.MeanLast10s)
   private val network  = NeuralShape(Vector(16, 16))
   private val weights  = Vector.tabulate(network.parameters)(i => math.sin(i * 1.7))
 
@@ -38,20 +37,27 @@ object GpuRates:
         share: Int,
         pursuer: Int => HeadingPolicy
     ) =
-      val count    = candidates / share
-      val policies = Vector.tabulate(count)(pursuer)
-      val onGpu    = DuelBatch(Duel.paper, timing, model, accelerator = accelerator)
-      val here     = DuelBatch(Duel.paper, timing, model)
-      row(name, gpu, 2, count, count / 64)(
-        count => onGpu.fly(Duels(count, policies)).meanLast10sM,
-        count => here.fly(Duels(count, policies)).meanLast10sM
-      )
+      val count = candidates / share
+      flown(name, timing, model, 2, Vector.tabulate(count)(i => Works.team(pursuer(i))))
     def teams(name: String, vehicles: Int, share: Int, candidate: Int => TeamCandidate) =
       val count = candidates / share
-      val teams = Vector.tabulate(count)(i => candidate(i % 1024))
-      val onGpu = TeamBatch(LoopTiming.Stream(), Works.model, accelerator = accelerator)
-      val here  = TeamBatch(LoopTiming.Stream(), Works.model)
-      row(name, gpu, vehicles, count, count / 64)(
+      flown(
+        name,
+        LoopTiming.Stream(),
+        Works.model,
+        vehicles,
+        Vector.tabulate(count)(i => candidate(i % 1024))
+      )
+    def flown(
+        name: String,
+        timing: LoopTiming,
+        model: VelocityResponse,
+        vehicles: Int,
+        teams: Vector[TeamCandidate]
+    ) =
+      val onGpu = TeamBatch(timing, model, accelerator = accelerator)
+      val here  = TeamBatch(timing, model)
+      row(name, gpu, vehicles, teams.size, teams.size / 64)(
         count => onGpu.fly(Teams(count, teams)).values(0),
         count => here.fly(Teams(count, teams)).values(0)
       )
@@ -95,22 +101,12 @@ object GpuRates:
       s"$differ of ${onCpu * Episodes}"
     )
 
-  private trait Together(candidates: Int) extends Worlds:
-    def size: Int                       = candidates * Episodes
-    override def shareEpisodes: Boolean = true
-    override def episodesOfEach: Int    = Episodes
-    def key(world: Int): Int            = WorldRandom.key(3, 0, world % Episodes)
-    def link(world: Int): DelayTable    = DelayTable.vpn
-
-  private final class Duels(candidates: Int, policies: Vector[HeadingPolicy]) extends DuelWorlds,
-        Together(candidates):
-    private val evader                     = PaperEvader()
-    override def asked: Set[DuelNumber]    = GpuRates.asked
-    def pursuer(world: Int): HeadingPolicy = policies(world / Episodes)
-    def evader(world: Int): HeadingPolicy  = this.evader
-
-  private final class Teams(candidates: Int, teams: Vector[TeamCandidate]) extends TeamWorlds,
-        Together(candidates):
+  private final class Teams(candidates: Int, teams: Vector[TeamCandidate]) extends TeamWorlds:
+    def size: Int                            = candidates * Episodes
+    override def shareEpisodes: Boolean      = true
+    override def episodesOfEach: Int         = Episodes
+    def key(world: Int): Int                 = WorldRandom.key(3, 0, world % Episodes)
+    def link(world: Int): DelayTable         = DelayTable.vpn
     def candidate(world: Int): TeamCandidate = teams(world / Episodes)
 
   private def quadrotor(gpu: Gpu, vehicles: Int): Unit =

@@ -10,7 +10,7 @@ import scala.concurrent.{Await, Future}
 import scala.util.Using
 import skein.link.*
 import skein.measure.Distribution
-import skein.observe.ObservingProxy
+import skein.observe.{AirSimAnalysis, ObservingProxy}
 import skein.units.*
 import skein.units.Decimals.fixed
 
@@ -67,7 +67,15 @@ object ObserverCost:
       val at    = Address("127.0.0.1", server.getLocalPort)
       val link  = EmulatedLink(LinkProfile.none, 0, Clock.system)
       val proxy = await(
-        ObservingProxy.start(Address("127.0.0.1", 0), at, link, TcpTransport(), Clock.system, reader)
+        ObservingProxy.start(
+          AirSimAnalysis(),
+          Address("127.0.0.1", 0),
+          at,
+          link,
+          TcpTransport(),
+          Clock.system,
+          reader
+        )
       )
       measure(Client(at.port, answerBytes), Client(proxy.address.port, answerBytes))
       await(proxy.close()): Unit

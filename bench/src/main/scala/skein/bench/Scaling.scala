@@ -5,7 +5,7 @@ import skein.scenario.PaperDuel
 import skein.simd.WorldRandom
 
 /** How does the rate of forward simulation grow with the size of a batch, the number of threads and the size
-  * of a team? `stream` over `vpn`, 60 s, the reduced model; duels by [[skein.lanes.DuelBatch]], teams by
+  * of a team? `stream` over `vpn`, 60 s, the reduced model; duels by [[skein.lanes.TeamBatch]], teams by
   * [[skein.forward.Rollout]]. Run: `./sbtw "bench/runMain skein.bench.Scaling"`.
   */
 object Scaling:
@@ -54,7 +54,7 @@ object Scaling:
       val witness = Seq.tabulate(calls): call =>
         val outcomes =
           batch.fly(Works.Candidates(worlds, perEpisode, DelayTable.vpn, round * 1000 + call))
-        outcomes.meanLast10sM.map(_.toDouble).sum / worlds
+        outcomes.values(0).map(_.toDouble).sum / worlds
       val seconds = (System.nanoTime() - start) * 1e-9
       Rate(calls * worlds * 1200 / seconds / 1e6, 0, witness.sum / calls)
     .reduce(_.best(_))

@@ -1,9 +1,11 @@
 package skein.bench
 
-import skein.forward.{DelayTable, Duel, LoopTiming, PlantResponse, Rollout, VelocityResponses}
-import skein.lanes.{DuelBatch, DuelNumber, DuelWorlds}
+import skein.forward.{DelayTable, Engagement, LoopTiming, PlantResponse, Rollout, VelocityResponses}
+import skein.lanes.{TeamBatch, TeamCandidate, TeamWorlds}
 import skein.lanes.plant.LaneQuadrotors
-import skein.policy.{NeuralPolicy, NeuralShape, PaperEvader, PaperPursuer, HeadingPolicy}
+import skein.optimise.DistanceTerm
+import skein.policy.{HeadingPolicy, NeuralPolicy, NeuralShape, PaperPursuer, Role}
+import skein.scenario.PaperDuel
 import skein.simd.WorldRandom
 import skein.units.Vector3
 import skein.vehicle.{Quadrotor, Setpoint}
@@ -37,11 +39,11 @@ object Works:
 
   private def duels(name: String, worlds: Int, perEpisode: Int): Work = Work(name, AgentStep): thread =>
     val outcomes = batch(LoopTiming.Stream(), 1).fly(Candidates(worlds, perEpisode, DelayTable.vpn, thread))
-    (worlds * 1200.0, outcomes.meanLast10sM.map(_.toDouble).sum / worlds)
+    (worlds * 1200.0, outcomes.values(0).map(_.toDouble).sum / worlds)
 
   val streamScalar: Work = Work("stream over vpn, scalar", AgentStep): thread =>
     val episodes = 256
-    val rollout  = Rollout(Duel.paper, LoopTiming.Stream(), DelayTable.vpn, model)
+    val rollout  = Rollout(duel, LoopTiming.Stream(), DelayTable.vpn, model)
     val sum      = (0 until episodes).map(i => rollout.fly(WorldRandom.key(thread, 0, i)).meanLast10sM).sum
     (episodes * 1200.0, sum / episodes)
 
@@ -66,18 +68,16 @@ object Works:
 
   /** A searched network policy: pursuers with weights of their own, candidates of one episode. */
   val networkByLanes: Work = Work("network, candidates of 8 episodes", AgentStep): thread =>
-    val worlds   = 2048
-    val policies = Array.tabulate(256)(i => NeuralPolicy(network, weights.map(_ * (0.5 + i / 256.0))))
-    val all      = new DuelWorlds:
-      def size: Int                          = worlds
-      override def shareEpisodes: Boolean    = true
-      override def asked: Set[DuelNumber]    = Works.asked
-      def key(world: Int): Int               = WorldRandom.key(thread, 0, world / 256)
-      def link(world: Int): DelayTable       = DelayTable.vpn
-      def pursuer(world: Int): HeadingPolicy = policies(world % 256)
-      def evader(world: Int): HeadingPolicy  = Works.evader
+    val worlds = 2048
+    val flown  = Array.tabulate(256)(i => team(NeuralPolicy(network, weights.map(_ * (0.5 + i / 256.0)))))
+    val all    = new TeamWorlds:
+      def size: Int                            = worlds
+      override def shareEpisodes: Boolean      = true
+      def key(world: Int): Int                 = WorldRandom.key(thread, 0, world / 256)
+      def link(world: Int): DelayTable         = DelayTable.vpn
+      def candidate(world: Int): TeamCandidate = flown(world % 256)
     val outcomes = batch(LoopTiming.Stream(), 1).fly(all)
-    (worlds * 1200.0, outcomes.meanLast10sM.map(_.toDouble).sum / worlds)
+    (worlds * 1200.0, outcomes.values(0).map(_.toDouble).sum / worlds)
 
   val networkScalar: Work = Work("network, scalar", Decision): thread =>
     val steps  = 500_000
@@ -87,18 +87,19 @@ object Works:
       sum += policy.turnRate((i % 512 + thread) * 0.01, i % 512 * 0.01, 0, 0, i % 512 * 0.01)
     (steps.toDouble, sum / steps)
 
-  def batch(timing: LoopTiming, threads: Int): DuelBatch = DuelBatch(Duel.paper, timing, model, threads)
+  def batch(timing: LoopTiming, threads: Int): TeamBatch = TeamBatch(timing, model, threads)
+
+  val duel: Engagement = Engagement.of(PaperDuel().fleet)
+
+  /** The paper's duel with another pursuer, judged as a search for the distance judges it. */
+  def team(pursuer: HeadingPolicy): TeamCandidate =
+    TeamCandidate(duel.flownBy(Role.Pursuer, pursuer), DistanceTerm.Last10s.judged(60, 0.1).toVector)
 
   /** Pursuers of different turn rates, `perEpisode` of them in each episode. */
-  final class Candidates(val size: Int, perEpisode: Int, delays: DelayTable, seed: Long) extends DuelWorlds:
-    override def shareEpisodes: Boolean    = perEpisode > 1
-    override def asked: Set[DuelNumber]    = Works.asked
-    def key(world: Int): Int               = WorldRandom.key(seed, 0, world / perEpisode)
-    def link(world: Int): DelayTable       = delays
-    def pursuer(world: Int): HeadingPolicy = PaperPursuer(0.8 + 0.4 * (world % 1024) / 1024)
-    def evader(world: Int): HeadingPolicy  = Works.evader
+  final class Candidates(val size: Int, perEpisode: Int, delays: DelayTable, seed: Long) extends TeamWorlds:
+    override def shareEpisodes: Boolean      = perEpisode > 1
+    def key(world: Int): Int                 = WorldRandom.key(seed, 0, world / perEpisode)
+    def link(world: Int): DelayTable         = delays
+    def candidate(world: Int): TeamCandidate = pursuers(world % pursuers.length)
 
-  private val evader = PaperEvader()
-
-  /** The objective of a search for the distance. */
-  private val asked = Set(DuelNumber.MeanLast10s)
+  private val pursuers = Array.tabulate(1024)(i => team(PaperPursuer(0.8 + 0.4 * i / 1024)))

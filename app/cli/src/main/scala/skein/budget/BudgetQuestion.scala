@@ -1,9 +1,11 @@
 package skein.budget
 
+import skein.forward.Engagement
+import skein.lanes.Engine
 import skein.optimise.Objective
 import skein.policy.Role
 import skein.scenario.Scenarios
-import skein.search.Conditions
+import skein.search.{Conditions, Effort}
 import skein.settings.{PolicyFile, ScenarioSettings}
 import upickle.default.ReadWriter
 
@@ -35,9 +37,23 @@ object BudgetQuestion:
         role      <- PolicyFile.role(role)
         policy    <- PolicyFile.parse(role, policy).left.map("--policy: " + _)
         opponent  <- PolicyFile.parse(Role.opponentOf(role), opponent).left.map("--opponent: " + _)
-        objective <- Objective.parse(objective, role).left.map("--objective: " + _)
+        objective <- Objective.ofRole(objective, role).left.map("--objective: " + _)
         flown     <- conditions.resolved
-      yield DuelSubject(conditions, flown, policy, opponent, objective, seed, threads)
+      yield
+        def pair(of: Conditions.Resolved) =
+          Engagement.of(of.duel).flownBy(role, policy.policy).flownBy(opponent.role, opponent.policy)
+        def effort(alone: Engine) = Effort.of(alone, alone, flown.vehicle, flown.sees)
+        TeamSubject(
+          conditions,
+          flown,
+          policy.label,
+          pair(flown),
+          pair(flown.paused),
+          objective,
+          effort,
+          seed,
+          threads
+        )
 
   /** A question about a scenario.
     *

@@ -1,11 +1,9 @@
 package skein.budget
 
-import skein.forward.DelayTable
-import skein.lanes.{DuelNumber, DuelWorlds, Engine}
+import skein.forward.{DelayTable, Engagement}
+import skein.lanes.{Engine, TeamCandidate, TeamWorlds}
 import skein.optimise.{Objective, RunningStats}
-import skein.policy.{HeadingPolicy, Role}
 import skein.search.{Conditions, Effort}
-import skein.settings.PolicyFile
 import skein.signal.LatencyDistribution
 import skein.simd.WorldRandom
 
@@ -53,41 +51,25 @@ final case class BudgetCells(
     episodes: Int,
     onProgress: Long => Unit = _ => (),
     isCancelled: () => Boolean = () => false
-):
-  /** The statistics of each cell, after its [[CellWorlds]] were simulated.
-    *
-    * @param flown number of worlds that were simulated
-    * @param value of a world
-    * @return Left states that it was stopped before
-    */
-  def tallies(flown: Int)(value: Int => Double): Either[String, Vector[RunningStats]] = Either.cond(
-    flown == links.size * episodes,
-    Vector.tabulate(links.size)(link =>
-      RunningStats.of(episodes)(episode => value(link * episodes + episode))
-    ),
-    BudgetSubject.Stopped
-  )
-
-/** The worlds of cells that are simulated together: every link has the same episodes, and the links follow
-  * each other.
-  */
-abstract class CellWorlds(links: Vector[DelayTable], each: Int, seed: Long):
-  private val tables               = links.toArray
-  private val keys                 = Array.tabulate(each)(WorldRandom.key(seed, 0, _))
-  def size: Int                    = tables.length * each
-  def key(world: Int): Int         = keys(world % each)
-  def link(world: Int): DelayTable = tables(world / each)
+)
 
 object BudgetSubject:
   val Stopped = "stopped before the map was whole"
 
-/** A policy's result in the paper's duel, as a budget's subject. */
-final class DuelSubject(
+/** A team in forward simulation, with numbers of its episodes.
+  *
+  * @param team what flies
+  * @param atRest what flies in a world that waits for the controller
+  * @param effort of an engine
+  */
+final class TeamSubject(
     named: Conditions,
     flown: Conditions.Resolved,
-    policy: PolicyFile,
-    opponent: PolicyFile,
+    label: String,
+    team: Engagement,
+    atRest: Engagement,
     objective: Objective,
+    effort: Engine => Effort,
     seed: Long,
     threads: Int
 ) extends BudgetSubject(
@@ -95,38 +77,44 @@ final class DuelSubject(
       named.periodMs,
       named.durationS,
       flown.vehicle.description,
-      policy.label,
+      label,
       objective.formula,
       objective.unit
     ):
-  private val batch             = flown.batch(threads)
-  private val (pursuer, evader) =
-    if policy.role == Role.Pursuer then (policy.policy, opponent.policy) else (opponent.policy, policy.policy)
+  private val batch     = flown.batch(threads)
+  private val candidate = of(team)
+
+  private def of(team: Engagement) = TeamCandidate(team, objective.judged(durationS, flown.timing.periodS))
 
   /** Simulates the paused loop, which waits for every answer, so that neither delay nor chance matters. */
   def truth: Either[String, Double] =
-    val paused = flown.paused.batch(1).fly(Worlds(Vector(DelayTable.none), 1), objective.captureRadiusM)
-    Right(objective.value(paused, 0, policy.role, durationS))
-
-  def cellEpisodes(links: Vector[LatencyDistribution]): Int =
-    val alone = engine(links)
-    Effort.of(alone, alone, flown.vehicle, flown.sees).cellEpisodes
+    val paused = flown.paused.batch(1).fly(Worlds(of(atRest), Vector(DelayTable.none), 1))
+    Right(objective.value(paused, 0, durationS))
 
   def engine(links: Vector[LatencyDistribution]): Engine =
-    batch.engine(pursuer, evader, shareEpisodes = false, links.map(DelayTable.of))
+    batch.engine(candidate, shareEpisodes = false, links.map(DelayTable.of))
+
+  def cellEpisodes(links: Vector[LatencyDistribution]): Int = effort(engine(links)).cellEpisodes
 
   def tallies(cells: BudgetCells): Either[String, Vector[RunningStats]] =
-    val outcomes = batch.fly(
-      Worlds(cells.links.map(DelayTable.of), cells.episodes),
-      objective.captureRadiusM,
-      cells.onProgress(_),
-      cells.isCancelled
+    val worlds   = Worlds(candidate, cells.links.map(DelayTable.of), cells.episodes)
+    val outcomes = batch.fly(worlds, cells.onProgress(_), cells.isCancelled)
+    Either.cond(
+      outcomes.flown == worlds.size,
+      Vector.tabulate(cells.links.size): link =>
+        RunningStats.of(cells.episodes): episode =>
+          objective.value(outcomes, link * cells.episodes + episode, durationS),
+      BudgetSubject.Stopped
     )
-    cells.tallies(outcomes.flown)(objective.value(outcomes, _, policy.role, durationS))
 
-  private final class Worlds(links: Vector[DelayTable], each: Int)
-      extends CellWorlds(links, each, seed),
-        DuelWorlds:
-    override def asked: Set[DuelNumber]    = objective.asked(policy.role)
-    def pursuer(world: Int): HeadingPolicy = DuelSubject.this.pursuer
-    def evader(world: Int): HeadingPolicy  = DuelSubject.this.evader
+  /** The worlds of cells that are simulated together: every link has the same episodes, and the links follow
+    * each other.
+    */
+  private final class Worlds(candidate: TeamCandidate, links: Vector[DelayTable], each: Int)
+      extends TeamWorlds:
+    private val tables                       = links.toArray
+    private val keys                         = Array.tabulate(each)(WorldRandom.key(seed, 0, _))
+    def size: Int                            = tables.length * each
+    def key(world: Int): Int                 = keys(world % each)
+    def link(world: Int): DelayTable         = tables(world / each)
+    def candidate(world: Int): TeamCandidate = candidate

@@ -3,9 +3,9 @@ package skein.budget
 import java.util.concurrent.atomic.AtomicLong
 import skein.flight.InParallel
 import skein.forward.*
-import skein.lanes.{Engine, TeamBatch, TeamCandidate, TeamOutcomes, TeamWorlds}
+import skein.lanes.Engine
 import skein.loop.LoopKind
-import skein.optimise.{RunningStats, TeamObjective}
+import skein.optimise.{Objective, RunningStats, ScenarioTerm}
 import skein.scenario.{Scenario, Scenarios, Tracks}
 import skein.search.{Conditions, Effort, WholeFlights}
 import skein.signal.{LatencyDistribution, LatencyProfile}
@@ -13,7 +13,7 @@ import skein.signal.{LatencyDistribution, LatencyProfile}
 /** A budget's question about a scenario: a sum of its measures, under a loop. */
 final case class ScenarioQuestion(
     scenario: Scenario,
-    objective: TeamObjective,
+    objective: Objective,
     conditions: Conditions,
     seed: Long,
     threads: Int
@@ -36,8 +36,20 @@ final case class ScenarioQuestion(
             .copy(plant = plant, altitudeM = -engagement.agents.head.altitudeDownM)
             .resolved
         yield WholeFlights
-          .whole(engagement, objective.measures)
-          .fold(TeamSubject(this, engagement, flown))(FlownSubject.forward(this, flown, _))
+          .whole(engagement, objective)
+          .fold(team(engagement, flown))(FlownSubject.forward(this, flown, _))
+
+  private def team(engagement: Engagement, flown: Conditions.Resolved) = TeamSubject(
+    conditions,
+    flown,
+    scenario.title,
+    engagement,
+    engagement,
+    objective,
+    Effort.ofTeam,
+    seed,
+    threads
+  )
 
 object ScenarioQuestion:
 
@@ -54,46 +66,11 @@ object ScenarioQuestion:
       first <- scenario.measures.headOption.toRight(
         s"--scenario: expected one with measures; ${scenario.name} has none"
       )
-      asked <- TeamObjective
-        .ofAll(objective.getOrElse(TeamObjective.keyOf(first)), scenario)
+      asked <- Objective
+        .ofScenario(objective.getOrElse(ScenarioTerm.keyOf(first)), scenario)
         .left
         .map("--objective: " + _)
     yield ScenarioQuestion(scenario, asked, conditions, seed, threads)
-
-/** A scenario in forward simulation, with measures of quantities. */
-final class TeamSubject(question: ScenarioQuestion, engagement: Engagement, flown: Conditions.Resolved)
-    extends ScenarioSubject(question, flown.vehicle.description):
-  private val candidate =
-    TeamCandidate(engagement, TeamObjective.judged(question.objective.measures, durationS, periodMs * 1e-3))
-
-  private def batch(timing: LoopTiming, threads: Int) = TeamBatch(timing, flown.vehicle.response, threads)
-
-  private val cells = batch(flown.timing, question.threads)
-
-  def truth: Either[String, Double] =
-    val paused = batch(flown.paused.timing, 1).fly(Worlds(Vector(DelayTable.none), 1))
-    Right(value(paused, 0))
-
-  def engine(links: Vector[LatencyDistribution]): Engine =
-    cells.engine(candidate, shareEpisodes = false, links.map(DelayTable.of))
-
-  def cellEpisodes(links: Vector[LatencyDistribution]): Int = Effort.ofTeam(engine(links)).cellEpisodes
-
-  def tallies(asked: BudgetCells): Either[String, Vector[RunningStats]] =
-    val outcomes = cells.fly(
-      Worlds(asked.links.map(DelayTable.of), asked.episodes),
-      asked.onProgress(_),
-      asked.isCancelled
-    )
-    asked.tallies(outcomes.flown)(value(outcomes, _))
-
-  private def value(outcomes: TeamOutcomes, world: Int) =
-    outcomes.sum(question.objective.terms.map(_._1), world)
-
-  private final class Worlds(links: Vector[DelayTable], each: Int)
-      extends CellWorlds(links, each, question.seed),
-        TeamWorlds:
-    def candidate(world: Int): TeamCandidate = TeamSubject.this.candidate
 
 /** A scenario with any measures: each is taken of a whole flight.
   *
@@ -106,7 +83,15 @@ final class FlownSubject private (
     told: Engine,
     effort: Effort,
     over: Option[LatencyDistribution] => Int => Either[String, Tracks]
-) extends ScenarioSubject(question, vehicles):
+) extends BudgetSubject(
+      question.conditions.loopText,
+      question.conditions.periodMs,
+      question.conditions.durationS,
+      vehicles,
+      question.scenario.title,
+      question.objective.formula,
+      question.objective.unit
+    ):
 
   def engine(links: Vector[LatencyDistribution]): Engine = told
 
@@ -115,7 +100,7 @@ final class FlownSubject private (
   def truth: Either[String, Double] = value(None, 0).map(_.getOrElse(Double.NaN))
 
   private def value(link: Option[LatencyDistribution], episode: Int): Either[String, Option[Double]] =
-    over(link)(episode).map(WholeFlights.sum(question.objective.terms, _))
+    over(link)(episode).map(WholeFlights.sum(question.objective.measures, _))
 
   def tallies(cells: BudgetCells): Either[String, Vector[RunningStats]] =
     val done = AtomicLong()
@@ -169,16 +154,4 @@ object FlownSubject:
           link.fold(LatencyProfile.none)(LatencyProfile.Steady("cell", _)),
           question.seed
         )(question.scenario, _)
-    )
-
-/** A scenario's result, as a budget's subject. */
-sealed abstract class ScenarioSubject(question: ScenarioQuestion, vehicles: String)
-    extends BudgetSubject(
-      question.conditions.loopText,
-      question.conditions.periodMs,
-      question.conditions.durationS,
-      vehicles,
-      question.scenario.title,
-      question.objective.formula,
-      question.objective.unit
     )

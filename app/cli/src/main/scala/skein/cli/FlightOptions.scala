@@ -92,6 +92,14 @@ final case class FlightOptions(
         "their commands and policies"
     )
     knows: Option[String],
+    @arg(doc =
+      "gives each vehicle a controller of its own, with a link of its own, that knows of the others what it reads"
+    )
+    decentralised: Flag,
+    @arg(doc =
+      "with --decentralised and fly --simulator: flies this vehicle alone, beside processes that fly the others"
+    )
+    only: Option[String],
     @arg(doc = "deadline of each decision, for example 20ms; without it, the loop waits for policies")
     deadline: Option[String],
     @arg(doc =

@@ -87,7 +87,9 @@ final class FlyCommand(using Scenarios)
         "--scene is for the built-in simulator; --simulator has a scene of its own"
       _ <- Expect.that(simulator.isEmpty || settings.plant.isAirSim):
         "--plant is for the built-in simulator; --simulator has models of its own"
-      twins = options.twins.getOrElse(FlyCommand.Twins)
+      _ <- Expect.that(settings.only.isEmpty || simulator.isDefined && options.twins.forall(_ == 0)):
+        "--only: expected with --simulator, where other processes fly the rest, and without --twins"
+      twins = options.twins.getOrElse(if settings.only.isEmpty then FlyCommand.Twins else 0)
       _     <- Expect.that(twins >= 0)(s"--twins: expected 0 or more, came $twins")
       _     <- options.view.mistake.toLeft(())
       clock <- ClockKind.parse(options.clock).left.map("--clock: " + _)

@@ -4,7 +4,7 @@ import java.nio.file.{Files, Path}
 import mainargs.{Flag, ParserForClass, arg}
 import skein.flight.NotFlown
 import skein.learn.LearnerSettings
-import skein.optimise.{Evaluator, RunningStats, TeamObjective}
+import skein.optimise.{Evaluator, Objective, RunningStats}
 import skein.measure.FlightSummary
 import skein.policy.{NeuralShape, Role}
 import skein.report.{Section, Typed}
@@ -286,7 +286,7 @@ object LearnCommand:
       start      <- range(options.start.getOrElse(if isGame then "3..30" else "0..5"))
       usual = Option.when(isGame)("last10s")
       objective <- ForwardOptions.objectiveOf(forward.objective.orElse(usual), scenario, set)(
-        TeamObjective.measures(_).keys
+        Objective.measures(_).keys
       )
     yield LearnQuestion(
       algorithm,

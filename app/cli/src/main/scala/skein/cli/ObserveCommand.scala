@@ -15,10 +15,18 @@ import skein.units.{Clock, Expect}
 
 /** Command-line options of `./skein observe`, with their help texts. */
 final case class ObserveOptions(
-    @arg(doc = "where the program connects, in place of the simulator; 0.0.0.0 opens it to other machines")
-    listen: String = ObserveOptions.Listen,
-    @arg(doc = "the simulator: AirSim, one of its forks, or ./skein serve")
-    simulator: String = ObserveOptions.Simulator,
+    @arg(doc =
+      "where the program connects, in place of the simulator; 0.0.0.0 opens it to other machines; without it, " +
+        "127.0.0.1:41452, with --mavlink 127.0.0.1:14680"
+    )
+    listen: Option[String],
+    @arg(doc =
+      "the simulator: AirSim, one of its forks, or ./skein serve; with --mavlink a vehicle's UDP port, or " +
+        "tcp://HOST:PORT; without it, 127.0.0.1:41451, with --mavlink 127.0.0.1:14580"
+    )
+    simulator: Option[String],
+    @arg(doc = "the program speaks MAVLink 2, as to PX4, and not AirSim's protocol")
+    mavlink: Flag,
     @arg(doc =
       "a network that is emulated between the program and the simulator: direct, vpn, constant:200ms, …"
     )
@@ -36,7 +44,8 @@ final case class ObserveOptions(
     ros: Flag,
     @arg(doc =
       "with --bag or --ros: a topic that vehicles are read by, for example /uav1/odom; can be repeated; " +
-        "without it, topics of odometry and poses"
+        "without it, topics of odometry and poses; with --mavlink a message, for example ATTITUDE; without it, " +
+        "those of positions"
     )
     readings: Seq[String],
     @arg(doc =
@@ -59,28 +68,27 @@ final case class ObserveOptions(
 )
 
 object ObserveOptions:
-  private val Listen    = "127.0.0.1:41452"
-  private val Simulator = "127.0.0.1:41451"
-  private val Link      = "none"
-  private val Seed      = 1L
+  private val Link = "none"
+  private val Seed = 1L
 
   extension (options: ObserveOptions)
     /** Options of the wire to a simulator, which neither a bag nor topics have. */
     def ofWire: Vector[String] =
       Vector(
-        "--listen"    -> (options.listen != Listen),
-        "--simulator" -> (options.simulator != Simulator),
+        "--listen"    -> options.listen.isDefined,
+        "--simulator" -> options.simulator.isDefined,
+        "--mavlink"   -> options.mavlink.value,
         "--link"      -> (options.link != Link),
         "--seed"      -> (options.seed != Seed)
       ).collect { case (name, true) => name }
 
-/** `./skein observe`: measures the control loop of any program that flies by AirSim's interface, from between
-  * it and the simulator, or of any graph of ROS 2, by its topics or a bag.
+/** `./skein observe`: measures the control loop of any program that flies by AirSim's interface or by
+  * MAVLink, from between it and the simulator, or of any graph of ROS 2, by its topics or a bag.
   */
 object ObserveCommand
     extends OptionsCommand[ObserveOptions](
       "observe",
-      "measures the loop of any AirSim program, or of a graph or bag of ROS 2: how old its data is, and why",
+      "measures the loop of any AirSim or MAVLink program, or of a graph or bag of ROS 2: how old its data is",
       ParserForClass[ObserveOptions]
     ):
 
@@ -134,18 +142,54 @@ object ObserveCommand
     options.out.fold(Right(None))(OutFolder.made("--out", _).map(Some(_)))
 
   private def observeProgram(options: ObserveOptions): Either[String, Unit] =
+    val isMavlink = options.mavlink.value
+    val isTcp     = !isMavlink || options.simulator.exists(_.startsWith(Tcp))
+    val unknown   = options.readings.find(!MavlinkLoop.Readings.contains(_))
     for
-      _ <- Expect.that(options.readings.isEmpty && options.commands.isEmpty):
-        "--readings, --commands: expected with --bag or --ros alone"
-      listenAt  <- Address.parse(options.listen).left.map("--listen: " + _)
-      simulator <- Address.parse(options.simulator).left.map("--simulator: " + _)
-      _         <- Expect.that(listenAt.port == 0 || listenAt != simulator):
+      _ <- Expect.that(isMavlink || options.readings.isEmpty):
+        "--readings: expected with --bag, --ros or --mavlink alone"
+      _ <- Expect.that(options.commands.isEmpty)("--commands: expected with --bag or --ros alone")
+      _ <- Expect.that(!isMavlink || unknown.isEmpty):
+        s"--readings: expected ${MavlinkLoop.Readings.mkString(", ")}, came ${unknown.get}"
+      usual = if isMavlink then (14680, 14580) else (41452, 41451)
+      listenAt  <- address("--listen", options.listen, usual._1)
+      simulator <-
+        address(
+          "--simulator",
+          options.simulator.map(at => if isMavlink then at.stripPrefix(Tcp) else at),
+          usual._2
+        )
+      _ <- Expect.that(listenAt.port == 0 || listenAt != simulator):
         s"--listen: expected another address than the simulator's, came $listenAt twice"
-      profile  <- Arguments.latency(options.link).left.map("--link: " + _)
-      folder   <- folderOf(options)
-      observed <- observe(listenAt, simulator, LinkProfile.symmetric(profile), options)
-      _        <- folder.fold(Right(())):
-        write(ObservedTables.data(observed), observed.log, observed.vehicles, _, Shown(options.json.value))
+      profile <- Arguments.latency(options.link).left.map("--link: " + _)
+      folder  <- folderOf(options)
+      wire = Wire(listenAt, simulator, LinkProfile.symmetric(profile), isTcp)
+      _ <- if isMavlink then observeMavlink(wire, folder, options) else observeAirSim(wire, folder, options)
+    yield ()
+
+  private def address(option: String, text: Option[String], usualPort: Int): Either[String, Address] =
+    text.fold(Right(Address("127.0.0.1", usualPort)))(Address.parse).left.map(s"$option: " + _)
+
+  private def observeMavlink(
+      wire: Wire,
+      folder: Option[Path],
+      options: ObserveOptions
+  ): Either[String, Unit] =
+    val loop = MavlinkLoop(isDatagrams = !wire.isTcp, options.readings.toSet)
+    for
+      (observed, ended) <- observe(loop, wire, options)
+      _                 <- show(observed, TopicTables.findings(observed) ++ loop.remarks, folder, options)
+      _                 <- ended
+    yield ()
+
+  private def observeAirSim(wire: Wire, folder: Option[Path], options: ObserveOptions): Either[String, Unit] =
+    val shown = Shown(options.json.value)
+    for
+      (observed, ended) <- observe(AirSimAnalysis(), wire, options)
+      data = ObservedTables.data(observed)
+      _    = shown.tables(data, text(ObservedTables.tables(observed), ObservedTables.findings(observed)))
+      _ <- ended
+      _ <- folder.fold(Right(()))(write(data, observed.log, observed.vehicles, _, shown))
     yield ()
 
   private def write(
@@ -167,12 +211,19 @@ object ObserveCommand
       )
       .map(files => shown.say(s"written: ${files.mkString(", ")}"))
 
-  private def observe(
-      listenAt: Address,
-      simulator: Address,
-      profile: LinkProfile,
+  /** Where a program and its simulator are, and what is between them. */
+  private final case class Wire(listenAt: Address, simulator: Address, profile: LinkProfile, isTcp: Boolean)
+
+  /** Observes until the program ends.
+    *
+    * @return Left if it could not begin; else what was observed, and whether the program could be run
+    */
+  private def observe[A](
+      analysis: Analysis[A],
+      wire: Wire,
       options: ObserveOptions
-  ): Either[String, Observed] =
+  ): Either[String, (A, Either[String, Unit])] =
+    import wire.*
     given system: ActorSystem   = ActorSystem("skein")
     val reader                  = Executors.newSingleThreadExecutor(Thread.ofPlatform().daemon().factory())
     val shown                   = Shown(options.json.value)
@@ -181,13 +232,15 @@ object ObserveCommand
       val link  = EmulatedLink(profile, options.seed, Clock.system)
       val proxy = Edge.await(
         ObservingProxy.start(
+          analysis,
           listenAt,
           simulator,
           link,
-          TcpTransport(),
+          if isTcp then TcpTransport() else UdpTransport(),
           Clock.system,
           reader,
-          unreachable = warn
+          unreachable = warn,
+          isDatagrams = !isTcp
         )
       )
       val command = options.command.words
@@ -198,12 +251,7 @@ object ObserveCommand
       )
       val ended = telling(proxy.progress)(untilEnd(command))
       Edge.await(proxy.close())
-      val observed = proxy.observed
-      shown.tables(
-        ObservedTables.data(observed),
-        text(ObservedTables.tables(observed), ObservedTables.findings(observed))
-      )
-      ended.map(_ => observed)
+      Right((proxy.observed, ended))
     catch case error: TransportError => Left(error.getMessage)
     finally
       reader.shutdown()
@@ -244,3 +292,4 @@ object ObserveCommand
     (Section.text(tables) +: "" +: findings.flatMap(Paragraph.lines(_, 100))).mkString("\n")
 
   private val TellEveryS = 5L
+  private val Tcp        = "tcp://"

@@ -1,5 +1,8 @@
 package skein.cli
 
+import org.apache.pekko.actor.ActorSystem
+import skein.airsim.WorldSettings
+import skein.link.Address
 import skein.ros.{RosNode, SimulatedTopics}
 import skein.simulator.SimulatorServer
 import skein.units.Clock
@@ -7,19 +10,29 @@ import skein.units.Clock
 /** The node of `./skein serve --ros`, and what a person learns of it. */
 private[cli] final class RosSide private (node: RosNode, val topics: SimulatedTopics):
   private var said   = Set.empty[String]
-  private var counts = (skipped = 0L, refused = 0L, failed = 0L)
+  private var counts = (skipped = 0L, images = 0L, refused = 0L, failed = 0L)
 
-  /** Lets the topics fly the vehicles, and prints what is missing. */
-  def fly(server: SimulatorServer): Unit =
-    for line <- topics.missing ++ topics.fly(server).left.toOption do Console.out.println(s"ROS 2: $line")
+  /** Lets the topics fly the vehicles and show their sensors, and prints what is missing. */
+  def fly(server: SimulatorServer, world: WorldSettings)(using ActorSystem): Unit =
+    // A server that listens on all addresses is reached on loopback.
+    val here = Address("127.0.0.1", server.address.port)
+    for line <- topics.missing ++ topics.fly(server).left.toOption ++ topics.show(world, here).left.toOption
+    do
+      Console.out.println(s"ROS 2: $line")
 
   /** Lines about what has gone wrong since the last call. */
   def news(): Seq[String] =
-    val now   = (skipped = topics.skipped, refused = node.refused, failed = node.failed)
-    val lines = node.notes.filterNot(said)
+    val now = (
+      skipped = topics.skipped,
+      images = topics.skippedImages,
+      refused = node.refused,
+      failed = node.failed
+    )
+    val lines = (node.notes ++ topics.notes).filterNot(said)
     val count = Option.when(now != counts):
       Seq(
         now.skipped -> "moments not published, the machine is too slow",
+        now.images  -> "images or scans not published",
         now.refused -> "messages refused",
         now.failed  -> "messages not sent"
       ).collect { case (count, what) if count > 0 => s"$count $what" }.mkString(", ")

@@ -4,7 +4,7 @@ import java.nio.file.{Files, Path}
 import mainargs.{Flag, ParserForClass, arg}
 import skein.gpu.CudaGpu
 import skein.lanes.gpu.GpuAccelerator
-import skein.optimise.{CmaEs, SearchState, TeamObjective}
+import skein.optimise.{CmaEs, ScenarioTerm, SearchState}
 import skein.policy.PolicyFamily
 import skein.report.Typed
 import skein.scenario.Scenarios
@@ -126,7 +126,7 @@ final class SearchCommand(program: String)(using scenarios: Scenarios)
       _         <- ForwardOptions.ofDuels("--family" -> options.family, "--role" -> options.role)(forward)
       set       <- Arguments.settings(options.set)
       objective <- ForwardOptions.objectiveOf(forward.objective, scenario, set.toMap)(
-        _.measures.map(TeamObjective.keyOf)
+        _.measures.map(ScenarioTerm.keyOf)
       )
       period     <- Span.parse(options.period.getOrElse("100ms")).left.map("--period: " + _)
       conditions <- forward.conditions(period, ForwardOptions.durationOf(scenario, set.toMap))

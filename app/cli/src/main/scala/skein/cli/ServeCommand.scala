@@ -184,7 +184,7 @@ object ServeCommand
     try
       val server =
         Edge.await(SimulatorServer.start(settings, TcpTransport(), Clock.system, ros.map(_.topics)))
-      ros.foreach(_.fly(server))
+      ros.foreach(_.fly(server, settings.world))
       val vehicles = settings.world.vehicles.map(vehicle => TextTable.printable(vehicle.name)).mkString(", ")
       val mavlink  = settings.mavlink.fold(""): open =>
         s", and by MAVLink from UDP ports ${open.udp.map(port =>

@@ -44,6 +44,7 @@ final class SpreadCommand(program: String)(using Scenarios)
     for
       settings <- options.flights.settings
       _        <- SolverOptions.virtual(settings)
+      _        <- Expect.that(settings.only.isEmpty)("--only: expected with fly alone")
       _        <- Expect.that(settings.images.isEmpty):
         "--images: expected with fly alone; spread keeps no recordings"
       _ <- Expect.that(options.seeds >= 1 && options.seeds <= SpreadCommand.MostSeeds):

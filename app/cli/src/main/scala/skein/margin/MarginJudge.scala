@@ -1,6 +1,6 @@
 package skein.margin
 
-import skein.optimise.TeamObjective
+import skein.optimise.ScenarioTerm
 import skein.scenario.{Measure, Scenario, Series, Tracks}
 import skein.units.Vector3
 
@@ -34,7 +34,7 @@ object MarginJudge:
       vehicles: Int
   ): Either[String, MarginJudge] =
     val own   = scenario.toVector.flatMap(_.measures)
-    val names = own.map(TeamObjective.keyOf) ++ Vector("printed", "contacts", "separation", "distance", Place)
+    val names = own.map(ScenarioTerm.keyOf) ++ Vector("printed", "contacts", "separation", "distance", Place)
     def pair(measure: Measure) = Either.cond(
       vehicles >= 2,
       Flown(measure),
@@ -44,7 +44,7 @@ object MarginJudge:
     text match
       case None       => own.headOption.fold(expected("nothing"))(first => Right(Flown(first)))
       case Some(word) =>
-        own.find(TeamObjective.keyOf(_) == word).map(Flown(_)).map(Right(_)).getOrElse:
+        own.find(ScenarioTerm.keyOf(_) == word).map(Flown(_)).map(Right(_)).getOrElse:
           word match
             case "printed"          => Right(Printed)
             case "contacts"         => Right(Contacts)

@@ -8,7 +8,7 @@ import scala.concurrent.{Await, ExecutionContext, Future}
 import skein.airsim.{AirSimClient, Multirotor, WorldSettings}
 import skein.flight.{Lateness, Preparation}
 import skein.link.*
-import skein.observe.{CallKind, Observed, ObservingProxy, OutsideProgram}
+import skein.observe.{AirSimAnalysis, CallKind, Observed, ObservingProxy, OutsideProgram}
 import skein.rpc.RpcClient
 import skein.scenario.{Scenario, Track, Tracks}
 import skein.scene.Scene
@@ -70,7 +70,7 @@ final class MarginTrial(
 
   /** Uses a simulator, with observers that the user starts before it and closes. */
   private def simulated[A](settings: SimulatorSettings)(
-      use: (SimulatorServer, Transport, EmulatedLink => ObservingProxy) => A
+      use: (SimulatorServer, Transport, EmulatedLink => ObservingProxy[Observed]) => A
   ): A =
     val transport = TcpTransport()
     val server    = awaited(SimulatorServer.start(settings, transport, clock))
@@ -79,13 +79,22 @@ final class MarginTrial(
       use(
         server,
         transport,
-        link => awaited(ObservingProxy.start(AnyPort, server.address, link, transport, clock, reader))
+        link =>
+          awaited(ObservingProxy.start(
+            AirSimAnalysis(),
+            AnyPort,
+            server.address,
+            link,
+            transport,
+            clock,
+            reader
+          ))
       )
     finally
       awaited(server.close()): Unit
       reader.shutdown()
 
-  private def flown(server: SimulatorServer, proxy: ObservingProxy, isStopped: () => Boolean) =
+  private def flown(server: SimulatorServer, proxy: ObservingProxy[Observed], isStopped: () => Boolean) =
     val port    = proxy.address.port.toString
     val watched =
       try
@@ -106,7 +115,7 @@ final class MarginTrial(
   /** Watches one run: where the vehicles truly are, and how busy the machine is. */
   private final class Watch(
       server: SimulatorServer,
-      proxy: ObservingProxy,
+      proxy: ObservingProxy[Observed],
       program: OutsideProgram,
       isStopped: () => Boolean
   ):

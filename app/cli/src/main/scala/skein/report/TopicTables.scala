@@ -17,9 +17,11 @@ object TopicTables:
   private def vehicles(observed: ObservedTopics) = ages(
     observed.vehicles,
     unnamed = "(the only)",
-    bounds = Vector.empty,
+    bounds =
+      if observed.vehicles.forall(_.boundMs.isEmpty) then Vector.empty
+      else Vector("± ms" -> (_.boundMs.fold("")(_.brief))),
     further = Vector.empty,
-    "Ages count from the stamp of a reading's header to when the command was received; means, and 99th percentiles."
+    "Ages count from the stamp of a reading to when the command was received; means, and 99th percentiles."
   )
 
   private def topics(observed: ObservedTopics) = section(

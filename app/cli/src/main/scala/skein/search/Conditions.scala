@@ -1,7 +1,7 @@
 package skein.search
 
 import skein.forward.{Delays, Duel, LinkDelays, LoopTiming, VelocityResponse}
-import skein.lanes.{Accelerator, DuelBatch}
+import skein.lanes.{Accelerator, TeamBatch}
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
 import skein.port.Moves
 import skein.scenario.{PaperDuel, Scenarios}
@@ -69,11 +69,11 @@ final case class Conditions(
 object Conditions:
 
   final case class Resolved(timing: LoopTiming, vehicle: VehicleChoice, duel: Duel):
-    def batch(threads: Int, accelerator: Option[Accelerator] = None): DuelBatch =
-      DuelBatch(duel, timing, vehicle.response, threads, accelerator)
+    def batch(threads: Int, accelerator: Option[Accelerator] = None): TeamBatch =
+      TeamBatch(timing, vehicle.response, threads, accelerator)
 
     /** The scalar reference engine, on one thread. */
-    def reference: DuelBatch = DuelBatch(duel, timing, vehicle.response, threads = 1, isReference = true)
+    def reference: TeamBatch = TeamBatch(timing, vehicle.response, threads = 1, isReference = true)
 
     /** Whether the pursuer observes the evader only through a sensor. */
     def sees: Boolean = duel.pursuer.eye.isDefined

@@ -1,9 +1,10 @@
 package skein.search
 
-import skein.lanes.{Accelerator, Engine}
+import skein.forward.{Delays, Engagement}
+import skein.lanes.{Accelerator, Engine, TeamBatch, TeamCandidate}
 import skein.optimise.*
 import skein.policy.SearchSpace
-import skein.scenario.Scenarios
+import skein.scenario.{Scenario, Scenarios}
 
 /** A search's question in the user's words: enough to continue it, or to repeat it. */
 trait PosedSearch:
@@ -17,25 +18,13 @@ trait PosedSearch:
   /** The names in the question, some of which may be those of files. */
   final def named: Seq[String] = Seq(link, conditions.plant) ++ conditions.eye
 
-/** A search whose question is resolved: processes that resolve equal questions evaluate with identical bits.
-  */
-trait ReadySearch:
-  val question: PosedSearch
-  def search: Search
+/** What a search varies, and what flies with it. */
+trait Searched:
   def space: SearchSpace
-  val objective: SummedMeasures[?]
 
-  /** The vehicle model: in a line for people, and in a word. */
-  def vehicles: String
-  def model: String
-
-  /** This search with an accelerator that simulates its candidates. */
-  def acceleratedBy(accelerator: Option[Accelerator]): ReadySearch
-
-  /** Name of the policy family or scenario that is searched. */
   def name: String
 
-  /** The subject of the search and its opponent, in a line.
+  /** What is searched and its opponent, in a line.
     *
     * @param axes the searched parameters
     */
@@ -46,65 +35,149 @@ trait ReadySearch:
 
   def baseline: Baseline
 
+  def scenario(candidate: Vector[Double]): Scenario
+
+  /** What flies by forward simulation, with its own objective.
+    *
+    * @param candidate of the baseline where that is judged
+    * @param by the objective of a candidate with default parameters
+    */
+  def team(candidate: Vector[Double], judge: Judge, by: Objective): (Engagement, Objective)
+
+  /** Whether all candidates' vehicles have equal speeds and first headings. */
+  def isAtOnePace: Boolean = true
+
+  /** Whether an engine is so fast that the scalar reference checks it. */
+  def isFast(engine: Engine): Boolean
+
+  /** @param together of candidates
+    * @param alone of the winner
+    */
+  def effort(together: Engine, alone: Engine, by: Conditions.Resolved): Effort
+
+  /** The result as a file that `./skein fly` accepts: its name and its text. */
+  def file(found: Found, of: ReadySearch): (String, String)
+
+/** A search whose question is resolved: processes that resolve equal questions evaluate with identical bits.
+  *
+  * @param objective of a candidate with default parameters
+  * @param fresh episodes for the winner, if the user chose
+  * @param accelerator that simulates the candidates, if requested
+  */
+final case class ReadySearch(
+    question: PosedSearch,
+    searched: Searched,
+    objective: Objective,
+    flownBy: TeamEngine,
+    by: SearchMethod,
+    fresh: Option[Int],
+    seed: Long,
+    accelerator: Option[Accelerator] = None
+):
+  export flownBy.{isVirtual, model, vehicles}
+  export objective.{formula, text, unit}
+  export question.{link, method}
+  export searched.{baseline, label, name, scenario, space, subject}
+
+  val search: Search =
+    val leastPlayOff = if isVirtual then ReadySearch.LeastPlayOff else Search.LeastPlayOff
+    Search(space, by, objective.direction, seed, leastPlayOff)
+
+  /** This search with an accelerator that simulates its candidates. */
+  def acceleratedBy(accelerator: Option[Accelerator]): ReadySearch = copy(accelerator = accelerator)
+
   /** Evaluators in this process, for one call at a time. */
-  def judges(threads: Int): Judge => ValueEvaluator
+  def judges(threads: Int): Judge => ValueEvaluator = flownBy match
+    case TeamEngine.Reduced(conditions, delays) =>
+      val batch = conditions.batch(threads, accelerator)
+      val each  = Judge.values.toVector.map(judge => evaluator(batch, delays, judge, share(judge)))
+      judge => each(judge.ordinal)
+    case TeamEngine.Whole(flights) =>
+      val same = WholeFlightEvaluator(flights, scenario, objective, threads)
+      _ => same
+
+  private def evaluator(batch: TeamBatch, delays: Delays, judge: Judge, share: Boolean) =
+    TeamEvaluator(batch, team(_, judge), delays, objective, seed, share, space.defaults)
+
+  private def team(candidate: Vector[Double], judge: Judge): TeamCandidate =
+    val (flown, own) = searched.team(candidate, judge, objective)
+    TeamCandidate(flown, own.judged(durationS, periodMs * 1e-3), searched.isAtOnePace)
 
   /** A candidate's statistics by the scalar reference; None where that is the engine anyhow, or forward
     * simulation cannot be used.
     */
-  def reference(candidate: Vector[Double], episodes: Range): Option[RunningStats]
+  def reference(candidate: Vector[Double], episodes: Range): Option[RunningStats] = flownBy match
+    case TeamEngine.Reduced(conditions, delays) if searched.isFast(engine(candidate, Judge.Winner)) =>
+      val scalar = evaluator(conditions.reference, delays, Judge.Winner, share = false)
+      Some(scalar.tallies(Vector(candidate), episodes).head)
+    case _ => None
 
   /** What flies a candidate, or the baseline, where it is judged. */
-  def engine(candidate: Vector[Double], judge: Judge): Engine
+  def engine(candidate: Vector[Double], judge: Judge): Engine = flownBy match
+    case TeamEngine.Reduced(_, delays) => asked.engine(team(candidate, judge), share(judge), Seq(delays))
+    case TeamEngine.Whole(flights)     => flights.engine
+
+  /** A batch that is only queried for the engine of a candidate; for measures of quantities. */
+  private lazy val asked: TeamBatch = flownBy match
+    case TeamEngine.Reduced(conditions, _) => conditions.batch(1, accelerator)
+    case _: TeamEngine.Whole => throw IllegalStateException("whole flights are flown by no batch")
+
+  private def share(judge: Judge) = judge == Judge.Candidates && sharing
+
+  /** Whether candidates share episodes: an episode's timetable costs as much as it saves some hundred
+    * candidates, so few fly faster each with delays of its own.
+    */
+  private lazy val sharing: Boolean = flownBy match
+    case TeamEngine.Reduced(_, delays) =>
+      def alone = asked.engine(team(space.defaults, Judge.Candidates), shareEpisodes = false, Seq(delays))
+      accelerator.nonEmpty || by.together(space.dimension) >= ReadySearch.ShareFrom || !alone.isFast
+    case _: TeamEngine.Whole => false
 
   /** Describes the engine of the candidates, and if they differ, those of the winner's fresh episodes and of
     * the baseline.
     */
-  final def engines: String =
-    val together = engine(space.defaults, Judge.Candidates)
-    val fresh    =
-      Vector(engine(space.defaults, Judge.Winner), engine(baseline.candidate, Judge.Baseline)).distinct
+  def engines: String =
+    val together = flown(Judge.Candidates)
+    val fresh    = Vector(flown(Judge.Winner), engine(baseline.candidate, Judge.Baseline)).distinct
     together.text + (if fresh == Vector(together) then ""
                      else fresh.mkString("; fresh episodes: ", "; the baseline's: ", ""))
 
-  /** Whether candidates share episodes: an episode's timetable costs as much as it saves some hundred
-    * candidates, so few fly faster each with delays of its own.
-    *
-    * @param alone what flies them so
-    * @param accelerator flies shared episodes only
-    */
-  protected final def shares(by: SearchMethod, accelerator: Option[Accelerator], alone: => Engine): Boolean =
-    accelerator.nonEmpty || by.together(space.dimension) >= ReadySearch.ShareFrom || !alone.isFast
+  private def flown(judge: Judge) = engine(space.defaults, judge)
 
   /** How many episodes are flown in a second, for people; where that is few, by flying one. */
-  def rate(threads: Int): Option[String] = None
+  def rate(threads: Int): Option[String] = flownBy match
+    case _: TeamEngine.Reduced     => None
+    case TeamEngine.Whole(flights) => Some(flights.rate(scenario(space.defaults), objective, threads))
 
   /** Whether it uses forward simulation, and not flights in virtual time. */
-  def fliesForward: Boolean = true
+  def fliesForward: Boolean = !isVirtual
 
-  def effort: Effort
+  def effort: Effort = flownBy match
+    case TeamEngine.Reduced(conditions, _) =>
+      searched.effort(flown(Judge.Candidates), flown(Judge.Winner), conditions)
+    case TeamEngine.Whole(flights) => flights.effort
 
   /** Episodes of a block of work for other processes: about half a second of one core. */
-  def blockEpisodes: Int
+  def blockEpisodes: Int = flownBy match
+    case TeamEngine.Reduced(conditions, _) =>
+      Effort.blockEpisodes(searched.isFast(flown(Judge.Candidates)), conditions.vehicle)
+    case TeamEngine.Whole(flights) => flights.blockEpisodes
 
-  /** Fresh episodes for the winner, if the user chose. */
-  def fresh: Option[Int]
+  def file(found: Found): (String, String) = searched.file(found, this)
 
-  /** The result as a file that `./skein fly` accepts: its name and its text. */
-  def file(found: Found): (String, String)
+  def loop: String      = question.conditions.loopText
+  def durationS: Double = question.conditions.durationS
+  def periodMs: Double  = question.conditions.periodMs
 
-  export objective.{formula, text, unit}
-  export question.{link, method}
-  final def loop: String      = question.conditions.loopText
-  final def durationS: Double = question.conditions.durationS
-  final def periodMs: Double  = question.conditions.periodMs
-
-  final def under: String = s"$loop over $link"
+  def under: String = s"$loop over $link"
 
   def title: String = s"$name, $under"
 
   /** The objective with its unit, for the axis of a picture. */
-  def measure: String = WeightedSum.withUnit(formula, unit)
+  def measure: String = objective.title
 
 object ReadySearch:
   private val ShareFrom = 256
+
+  /** Fewest candidates in the play-off when flights are slow. */
+  private val LeastPlayOff = 2

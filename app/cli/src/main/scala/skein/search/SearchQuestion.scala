@@ -1,17 +1,10 @@
 package skein.search
 
-import skein.forward.Delays
-import skein.lanes.{Accelerator, DuelBatch, Engine}
-import skein.optimise.{
-  DuelEvaluator,
-  Objective,
-  RunningStats,
-  Search,
-  SearchMethod,
-  ValueEvaluator
-}
-import skein.policy.{HeadingPolicy, PolicyFamily, Role, SearchSpace}
-import skein.scenario.Scenarios
+import skein.forward.{Duel, Engagement}
+import skein.lanes.Engine
+import skein.optimise.{Objective, Search, SearchMethod}
+import skein.policy.{PolicyFamily, Role}
+import skein.scenario.{Scenario, Scenarios}
 import skein.settings.PolicyFile
 import skein.units.Expect
 import upickle.default.ReadWriter
@@ -39,11 +32,11 @@ final case class SearchQuestion(
     fresh: Option[Int] = None
 ) extends PosedSearch derives ReadWriter:
 
-  def setup(using scenarios: Scenarios): Either[String, SearchSetup] =
+  def setup(using scenarios: Scenarios): Either[String, ReadySearch] =
     for
       family    <- scenarios.family(family).left.map("--family: " + _)
       role      <- PolicyFile.roleOf(family, Some(role)).left.map("--role: " + _)
-      objective <- Objective.parse(objective, role).left.map("--objective: " + _)
+      objective <- Objective.ofRole(objective, role).left.map("--objective: " + _)
       flown     <- conditions.resolved
       delays    <- conditions.delays(link, vehicles = 2).left.map("--link: " + _)
       opponent  <- PolicyFile
@@ -53,7 +46,9 @@ final case class SearchQuestion(
       _ <- Expect.that(fresh.forall(count => count >= 2 && count <= SearchQuestion.MostEpisode)):
         s"--fresh: expected 2 to ${SearchQuestion.MostEpisode}, came ${fresh.getOrElse(0)}"
       method <- SearchQuestion.method(method, candidates, episodes, population, family.space.dimension)
-    yield SearchSetup(this, family, role, objective, flown, delays, opponent, method)
+    yield
+      val searched = SearchedFamily(this, family, role, flown.duel, opponent)
+      ReadySearch(this, searched, objective, TeamEngine.Reduced(flown, delays), method, fresh, seed)
 
 object SearchQuestion:
   val Methods             = "grid, random, cross-entropy, cma-es, racing"
@@ -100,103 +95,47 @@ object SearchQuestion:
         case other => Left(s"--method: expected one of $Methods, came '$other'")
     yield method
 
-/** A search for a duel's policy, ready to run.
+/** A family's policies for one role, against an opponent.
   *
-  * @param accelerator that simulates the candidates, if requested
+  * @param duel that they fly in
   */
-final case class SearchSetup(
+private final class SearchedFamily(
     question: SearchQuestion,
     family: PolicyFamily,
     role: Role,
-    objective: Objective,
-    conditions: Conditions.Resolved,
-    delays: Delays,
-    opponent: PolicyFile,
-    by: SearchMethod,
-    accelerator: Option[Accelerator] = None
-) extends ReadySearch:
-  def space: SearchSpace = family.space
-  def name: String       = family.name
-  def vehicles: String   = conditions.vehicle.description
-  def model: String      = conditions.vehicle.name
-  def blockEpisodes: Int = Effort.blockEpisodes(flown(Judge.Candidates).isFast, conditions.vehicle)
-  def fresh: Option[Int] = question.fresh
-  def label(candidate: Vector[Double]): String = policy(candidate).label
-  def subject(axes: String): String = s"${question.role} ${family.name} ($axes) against ${opponent.label}"
-
-  def acceleratedBy(accelerator: Option[Accelerator]): SearchSetup = copy(accelerator = accelerator)
-
-  val search: Search = Search(space, by, objective.direction, question.seed)
-
+    duel: Duel,
+    opponent: PolicyFile
+) extends Searched:
   private val paper = PolicyFile.paperOf(role)
+  private val pair  = Engagement.of(duel).flownBy(opponent.role, opponent.policy)
 
-  val baseline: Baseline = Baseline.of(paper)
+  export family.{name, space}
+  val baseline: Baseline                       = Baseline.of(paper)
+  def label(candidate: Vector[Double]): String = policy(candidate).label
+  def subject(axes: String): String   = s"${question.role} ${family.name} ($axes) against ${opponent.label}"
+  def isFast(engine: Engine): Boolean = engine.isFast
+
+  def scenario(candidate: Vector[Double]): Scenario =
+    throw UnsupportedOperationException("a policy of a family flies by forward simulation")
+
+  def team(candidate: Vector[Double], judge: Judge, by: Objective): (Engagement, Objective) =
+    (pair.flownBy(role, (if judge == Judge.Baseline then paper.family else family).policy(candidate)), by)
+
+  def effort(together: Engine, alone: Engine, by: Conditions.Resolved): Effort =
+    Effort.of(together, alone, by.vehicle, by.sees)
 
   private def policy(candidate: Vector[Double]) = PolicyFile(role, family, candidate)
 
-  def batch(threads: Int): DuelBatch = conditions.batch(threads, accelerator)
-
-  /** @param many whether many candidates will have equal episodes */
-  def evaluator(
-      batch: DuelBatch,
-      of: PolicyFamily = family,
-      many: Boolean = true
-  ): ValueEvaluator = DuelEvaluator(
-    batch,
-    durationS,
-    of,
-    role,
-    opponent.policy,
-    delays,
-    objective,
-    question.seed,
-    shareEpisodes = many
-  )
-
-  def judges(threads: Int): Judge => ValueEvaluator =
-    val flown = batch(threads)
-    val each  = Judge.values.toVector.map:
-      case Judge.Candidates => evaluator(flown, many = sharing)
-      case Judge.Winner     => evaluator(flown, many = false)
-      case Judge.Baseline   => evaluator(flown, paper.family, many = false)
-    judge => each(judge.ordinal)
-
-  def reference(candidate: Vector[Double], episodes: Range): Option[RunningStats] =
-    Option.when(flown(Judge.Winner).isFast)(
-      evaluator(conditions.reference, many = false).tallies(Vector(candidate), episodes).head
-    )
-
-  def effort: Effort =
-    Effort.of(flown(Judge.Candidates), flown(Judge.Winner), conditions.vehicle, conditions.sees)
-
-  private def flown(judge: Judge) = engine(space.defaults, judge)
-
-  def engine(candidate: Vector[Double], judge: Judge): Engine =
-    val of = if judge == Judge.Baseline then paper.family else family
-    engine(of.policy(candidate), judge == Judge.Candidates && sharing)
-
-  private def engine(policy: HeadingPolicy, share: Boolean): Engine =
-    val (pursuer, evader) = pair(policy)
-    asked.engine(pursuer, evader, share, Seq(delays))
-
-  private lazy val sharing = shares(by, accelerator, engine(family.defaultPolicy, share = false))
-
-  /** Only queried for the engine's name. */
-  private lazy val asked = batch(1)
-
-  private def pair(of: HeadingPolicy): (HeadingPolicy, HeadingPolicy) =
-    if role == Role.Pursuer then (of, opponent.policy) else (opponent.policy, of)
-
   /** The found policy as a policy file: its name and its text. */
-  def file(found: Found): (String, String) =
+  def file(found: Found, of: ReadySearch): (String, String) =
     val remarks =
-      SearchResult.objective(text, unit, found.fresh, baseline.name, found.baseline) +
+      SearchResult.objective(of.text, of.unit, found.fresh, baseline.name, found.baseline) +
         SearchResult.question(
           "found",
           question,
           "by"            -> "./skein search",
           "complete"      -> found.state.isDone,
-          "vehicles"      -> conditions.vehicle.description,
+          "vehicles"      -> of.vehicles,
           "episodesFlown" -> found.state.flown.toDouble
         )
     "policy.conf" -> policy(found.best).hocon(remarks)

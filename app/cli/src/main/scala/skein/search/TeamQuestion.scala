@@ -1,16 +1,9 @@
 package skein.search
 
 import com.typesafe.config.ConfigUtil.quoteString
-import skein.forward.{Delays, Engagement}
-import skein.lanes.{Accelerator, Engine, TeamBatch, TeamCandidate}
-import skein.optimise.{
-  RunningStats,
-  Search,
-  SearchMethod,
-  TeamEvaluator,
-  TeamObjective,
-  ValueEvaluator
-}
+import skein.forward.Engagement
+import skein.lanes.Engine
+import skein.optimise.{Objective, RunningStats, ScenarioTerm}
 import skein.policy.{Axis, SearchSpace}
 import skein.scenario.{Nearest, Scenario, ScenarioKind, ScenarioText, Scenarios}
 import skein.settings.{ConfigKeys, ScenarioSettings, TextFile}
@@ -44,7 +37,7 @@ final case class TeamQuestion(
 ) extends PosedSearch derives ReadWriter:
   import TeamQuestion.*
 
-  def setup(using scenarios: Scenarios): Either[String, TeamSetup] =
+  def setup(using scenarios: Scenarios): Either[String, ReadySearch] =
     for
       ready <- read(plantIsTold = conditions.plant != Plant)
       _     <- Expect.that(!ready.isVirtual || ready.search.expected <= WholeFlights.MostVirtual):
@@ -56,7 +49,7 @@ final case class TeamQuestion(
     *
     * @param plantIsTold whether a user chose the plant
     */
-  def read(plantIsTold: Boolean)(using scenarios: Scenarios): Either[String, TeamSetup] =
+  def read(plantIsTold: Boolean)(using scenarios: Scenarios): Either[String, ReadySearch] =
     for
       kind  <- scenarios.kind(scenario).left.map("--scenario: " + _)
       _     <- Expect.that(vary.nonEmpty)("--vary: expected a setting to search, for example ring-m=4..12")
@@ -73,12 +66,12 @@ final case class TeamQuestion(
           space.grid(2)
         )(corner => ScenarioSettings.ofKeys(kind, settings(set, space, corner))).left.map("--vary: " + _)
       _  <- Expect.that(fresh >= 2 && fresh <= MostFresh)(s"--fresh: expected 2 to $MostFresh, came $fresh")
-      by <- TeamObjective.ofAll(objective, plain).left.map("--objective: " + _)
+      by <- Objective.ofScenario(objective, plain).left.map("--objective: " + _)
       // A measure's name may contain a setting's value.
-      _      <- Expect.each(corners)(TeamObjective.ofAll(objective, _)).left.map("--objective, --vary: " + _)
+      _      <- Expect.each(corners)(Objective.ofScenario(objective, _)).left.map("--objective, --vary: " + _)
       engine <- engine(by, plain +: corners, plantIsTold)
       method <- SearchQuestion.method(method, candidates, episodes, population, vary.size)
-    yield TeamSetup(this, kind, space, by, engine, method)
+    yield ReadySearch(this, SearchedScenario(this, kind, space), by, engine, method, Some(fresh), seed)
 
   /** Chooses the engine: SIMD, where forward simulation supports the policies and the measures; world by
     * world, where the scenario says when it is over, or measures are of whole flights; else flights in
@@ -86,7 +79,7 @@ final case class TeamQuestion(
     *
     * @param all the scenario with the plain settings, first, and with the bounds of the searched ones
     */
-  private def engine(by: TeamObjective, all: Vector[Scenario], plantIsTold: Boolean)(using
+  private def engine(by: Objective, all: Vector[Scenario], plantIsTold: Boolean)(using
       Scenarios
   ): Either[String, TeamEngine] =
     Expect.each(all)(WholeFlights.engagement(_, conditions.durationS)) match
@@ -110,7 +103,7 @@ final case class TeamQuestion(
           flown  <- conditions.copy(plant = plant, altitudeM = altitudesM(all.head).head).resolved
           delays <- conditions.delays(link, engagements.head.agents.size).left.map("--link: " + _)
         yield WholeFlights
-          .whole(engagements.head, by.measures)
+          .whole(engagements.head, by)
           .fold(TeamEngine.Reduced(flown, delays)): why =>
             TeamEngine.Whole(WholeFlights.scalar(flown, delays, seed, why))
 
@@ -142,45 +135,15 @@ object TeamQuestion:
             s"nearest is '${Nearest.to(varied.key, numbers.keys.toSeq)}'"
         )
 
-/** The engine that evaluates a team's candidates.
-  *
-  * @param isVirtual whether only some candidates are evaluated a second
-  */
-enum TeamEngine(val isVirtual: Boolean, val vehicles: String, val model: String):
-  /** Forward simulation with measures of quantities. */
-  case Reduced(conditions: Conditions.Resolved, delays: Delays)
-      extends TeamEngine(false, conditions.vehicle.description, conditions.vehicle.name)
-
-  /** By measures of whole flights. */
-  case Whole(flights: WholeFlights)
-      extends TeamEngine(flights.engine.kind == Engine.Kind.Flights, flights.vehicles, flights.model)
-
-/** A search over a scenario's settings, ready to run.
-  *
-  * @param objective of the scenario with its default settings
-  * @param accelerator that simulates the candidates, if requested
-  */
-final case class TeamSetup(
-    question: TeamQuestion,
-    kind: ScenarioKind[?],
-    space: SearchSpace,
-    objective: TeamObjective,
-    flownBy: TeamEngine,
-    by: SearchMethod,
-    accelerator: Option[Accelerator] = None
-) extends ReadySearch:
-  export flownBy.{isVirtual, model, vehicles}
-
-  def acceleratedBy(accelerator: Option[Accelerator]): TeamSetup = copy(accelerator = accelerator)
-
-  val search: Search =
-    if isVirtual then Search(space, by, objective.direction, question.seed, TeamSetup.LeastPlayOff)
-    else Search(space, by, objective.direction, question.seed)
+/** Settings of a scenario within their bounds, each candidate as it flies. */
+private final class SearchedScenario(question: TeamQuestion, kind: ScenarioKind[?], val space: SearchSpace)
+    extends Searched:
+  import question.conditions.durationS
 
   def name: String                             = kind.name
-  def fresh: Option[Int]                       = Some(question.fresh)
   def label(candidate: Vector[Double]): String = told(candidate, " ")(_.significant(4))
-  def subject(axes: String): String = s"${kind.name} of ${scenario(space.defaults).agents.size} ($axes)"
+  def subject(axes: String): String   = s"${kind.name} of ${scenario(space.defaults).agents.size} ($axes)"
+  def isFast(engine: Engine): Boolean = engine.fliesByLanes
 
   /** The scenario with its default settings. */
   val baseline: Baseline =
@@ -194,94 +157,37 @@ final case class TeamSetup(
   private def told(candidate: Vector[Double], between: String)(number: Double => String) =
     space.axes.zip(candidate).map((axis, value) => axis.name + between + number(value)).mkString(", ")
 
-  private def batch(of: Conditions.Resolved, threads: Int) =
-    TeamBatch(of.timing, of.vehicle.response, threads, accelerator)
-
-  def judges(threads: Int): Judge => ValueEvaluator = flownBy match
-    case TeamEngine.Reduced(conditions, delays) =>
-      val flown         = batch(conditions, threads)
-      val (shared, own) = (evaluator(flown, delays, share = true), evaluator(flown, delays, share = false))
-      judge => if share(judge) then shared else own
-    case TeamEngine.Whole(flights) =>
-      val same = WholeFlightEvaluator(flights, scenario, objective, threads)
-      _ => same
-
-  private def evaluator(batch: TeamBatch, delays: Delays, share: Boolean) =
-    TeamEvaluator(
-      batch,
-      candidate,
-      delays,
-      objective.terms.map(_._1),
-      question.seed,
-      share,
-      space.defaults
-    )
-
-  private def share(judge: Judge) = judge == Judge.Candidates && sharing
-
-  private lazy val sharing = flownBy match
-    case TeamEngine.Reduced(_, delays) =>
-      shares(by, accelerator, asked.engine(candidate(space.defaults), shareEpisodes = false, Seq(delays)))
-    case _: TeamEngine.Whole => false
-
-  def reference(candidate: Vector[Double], episodes: Range): Option[RunningStats] = flownBy match
-    case TeamEngine.Reduced(conditions, delays)
-        if engine(candidate, Judge.Winner).fliesByLanes =>
-      val scalar = TeamBatch(conditions.timing, conditions.vehicle.response, threads = 1, isReference = true)
-      Some(evaluator(scalar, delays, share = false).tallies(Vector(candidate), episodes).head)
-    case _ => None
-
   /** The scenario with a candidate's settings, which have been validated. */
   def scenario(candidate: Vector[Double]): Scenario =
     ScenarioSettings
       .candidate(kind, TeamQuestion.settings(question.set, space, candidate))
       .fold(mistake => throw IllegalArgumentException(mistake), identity)
 
-  def engine(candidate: Vector[Double], judge: Judge): Engine = flownBy match
-    case TeamEngine.Reduced(_, delays) => asked.engine(this.candidate(candidate), share(judge), Seq(delays))
-    case TeamEngine.Whole(flights)     => flights.engine
+  def team(candidate: Vector[Double], judge: Judge, by: Objective): (Engagement, Objective) =
+    val flown = scenario(candidate)
+    val own   = Objective.measures(flown).values.map(each => each.name -> each).toMap
+    val terms = by.measures.map((weight, measure) => (weight, ScenarioTerm(own(measure.name))))
+    (Engagement.inSpace(flown.fleet, durationS), by.copy(terms = terms))
 
-  override def rate(threads: Int): Option[String] = flownBy match
-    case _: TeamEngine.Reduced     => None
-    case TeamEngine.Whole(flights) => Some(flights.rate(scenario(space.defaults), objective, threads))
+  override lazy val isAtOnePace: Boolean =
+    val paces =
+      (space.defaults +: space.grid(2)).map(scenario(_).agents.map(each => (each.speed, each.startHeading)))
+    paces.distinct.size == 1
 
-  override def fliesForward: Boolean = !isVirtual
-
-  private def flown = engine(space.defaults, Judge.Candidates)
-
-  /** A batch that is only queried for the engine of a candidate; for teams with measures of quantities. */
-  private lazy val asked: TeamBatch = flownBy match
-    case TeamEngine.Reduced(conditions, _) => batch(conditions, 1)
-    case _: TeamEngine.Whole => throw IllegalStateException("whole flights are flown by no batch")
-
-  def effort: Effort = flownBy match
-    case _: TeamEngine.Reduced     => Effort.ofTeam(flown)
-    case TeamEngine.Whole(flights) => flights.effort
-
-  def blockEpisodes: Int = flownBy match
-    case TeamEngine.Reduced(conditions, _) => Effort.blockEpisodes(flown.fliesByLanes, conditions.vehicle)
-    case TeamEngine.Whole(flights)         => flights.blockEpisodes
-
-  private def candidate(values: Vector[Double]): TeamCandidate =
-    val own      = scenario(values)
-    val measures = TeamObjective.measures(own).values.map(measure => measure.name -> measure).toMap
-    TeamCandidate(
-      Engagement.inSpace(own.fleet, durationS),
-      TeamObjective.judged(objective.measures.map(each => measures(each.name)), durationS, periodMs * 1e-3)
-    )
+  def effort(together: Engine, alone: Engine, by: Conditions.Resolved): Effort = Effort.ofTeam(together)
 
   /** The result as a configuration that `./skein fly --config` accepts: its name and its text. */
-  def file(found: Found): (String, String) =
-    def interval(tally: RunningStats) = SearchResult.interval(tally, unit)
+  def file(found: Found, of: ReadySearch): (String, String) =
+    def interval(tally: RunningStats) = SearchResult.interval(tally, of.unit)
     val settings                      = TeamQuestion.settings(question.set, space, found.best).toVector.sorted
     val flown                         =
       s"loop ${question.conditions.loopText} every ${question.conditions.periodMs} ms over ${question.link}"
     "scenario.conf" ->
-      s"""# $text
+      s"""# ${of.text}
          |# ${interval(found.fresh)}: mean over ${found.fresh.count} fresh episodes, 95 %; ${interval(
           found.baseline
         )} with ${baseline.label}
-         |# found by ./skein search: ${question.method}, ${found.state.flown} episodes, $flown; $vehicles
+         |# found by ./skein search: ${question.method}, ${found.state.flown} episodes, $flown; ${of.vehicles}
          |skein.fly {
          |  scenario = ${
           if ScenarioText.isText(question.scenario) then quoteString(question.scenario) else kind.name
@@ -291,7 +197,3 @@ final case class TeamSetup(
          |  }
          |}
          |""".stripMargin
-
-object TeamSetup:
-  /** Fewest candidates in the play-off when flights are slow. */
-  private val LeastPlayOff = 2

@@ -4,7 +4,7 @@ import skein.flight.{InParallel, VirtualFlights}
 import skein.forward.*
 import skein.lanes.Engine
 import skein.loop.LoopKind
-import skein.optimise.{TeamObjective, ValueEvaluator}
+import skein.optimise.{Objective, ScenarioTerm, ValueEvaluator}
 import skein.scenario.{Measure, Scenario, Track, Tracks}
 import skein.settings.{FlySettings, VehicleChoice}
 import skein.signal.LatencyProfile
@@ -30,15 +30,15 @@ final class WholeFlights private (
     *
     * @return Left states why the episode could not be completed
     */
-  def value(scenario: Scenario, objective: TeamObjective, episode: Int): Either[String, Double] =
+  def value(scenario: Scenario, objective: Objective, episode: Int): Either[String, Double] =
     val measures = scenario.measures.map(measure => measure.name -> measure).toMap
-    val terms    = objective.terms.map((weight, measure) => (weight, measures(measure.name)))
+    val terms    = objective.measures.map((weight, measure) => (weight, measures(measure.name)))
     fly(scenario, episode).map(
       WholeFlights.sum(terms, _).getOrElse(objective.direction.sign * WholeFlights.Never)
     )
 
   /** How many episodes it flies in a second, for people. Flies twice to know. */
-  def rate(scenario: Scenario, objective: TeamObjective, threads: Int): String =
+  def rate(scenario: Scenario, objective: Objective, threads: Int): String =
     def flown = value(scenario, objective, 0)
     val _     = flown
     val from  = System.nanoTime()
@@ -139,8 +139,8 @@ object WholeFlights:
     )
 
   /** Why a scenario needs whole flights, world by world; None if its quantities suffice. */
-  def whole(flown: Engagement, measures: Vector[Measure]): Option[String] =
-    val plain = measures.filter(_.reduced.isEmpty).map(TeamObjective.keyOf)
+  def whole(flown: Engagement, objective: Objective): Option[String] =
+    val plain = objective.measures.map(_._2).filter(_.reduced.isEmpty).map(ScenarioTerm.keyOf)
     if flown.isOver.nonEmpty then Some("it says itself when it is over")
     else
       Option.when(plain.nonEmpty)(
@@ -202,7 +202,7 @@ object WholeFlights:
 final class WholeFlightEvaluator(
     flights: WholeFlights,
     scenario: Vector[Double] => Scenario,
-    objective: TeamObjective,
+    objective: Objective,
     threads: Int
 ) extends ValueEvaluator:
 

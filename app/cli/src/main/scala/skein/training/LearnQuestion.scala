@@ -2,10 +2,10 @@ package skein.training
 
 import skein.environment.{EnvironmentBatch, EnvironmentSettings}
 import skein.forward.{Delays, Engagement}
-import skein.lanes.{Engine, TeamBatch, TeamCandidate}
+import skein.lanes.{Engine, TeamCandidate}
 import skein.learn.{Algorithm, LearnerSettings, SideTask}
-import skein.optimise.{DuelEvaluator, Objective, TeamEvaluator, TeamObjective, ValueEvaluator, WeightedSum}
-import skein.policy.{Fleet, LearnedPolicy, PolicyFamily, Role}
+import skein.optimise.{Objective, TeamEvaluator, ValueEvaluator}
+import skein.policy.{LearnedPolicy, PolicyFamily, Role}
 import skein.scenario.{PaperDuel, ScenarioText, Scenarios}
 import skein.search.{Baseline, Conditions, Judge}
 import skein.settings.{PolicyFile, ScenarioSettings}
@@ -76,17 +76,17 @@ final case class LearnQuestion(
 
   private def duel(role: Role)(using Scenarios): Either[String, LearnGame] =
     for
-      by    <- Objective.parse(objective, role).left.map("--objective: " + _)
+      by    <- Objective.ofRole(objective, role).left.map("--objective: " + _)
       other <- PolicyFile.parse(Role.opponentOf(role), opponent).left.map("--opponent: " + _)
-    yield LearnGame.OfDuel(by, other, PaperDuel(altitudeM = conditions.altitudeM))
+    yield LearnGame(by, PaperDuel(altitudeM = conditions.altitudeM), Some(other))
 
   private def team(role: Role)(using scenarios: Scenarios): Either[String, LearnGame] =
     for
       kind   <- scenarios.kind(scenario).left.map("--scenario: " + _)
       stated <- ScenarioSettings.ofKeys(kind, set).left.map("--set: " + _)
       by     <-
-        TeamObjective.parse(objective, stated, TeamObjective.naturally(role)).left.map("--objective: " + _)
-    yield LearnGame.OfTeam(by, stated)
+        Objective.ofQuantities(objective, stated, Objective.naturally(role)).left.map("--objective: " + _)
+    yield LearnGame(by, stated)
 
 object LearnQuestion:
   given ReadWriter[LearnerSettings] = ReadWriter.derived
@@ -125,17 +125,14 @@ final case class LearnSetup(
 ):
   val family: PolicyFamily = PolicyFamily.learned(LearnedPolicy.shape(question.learner.hidden))
 
-  private def isOfTeam = game match
-    case _: LearnGame.OfTeam => true
-    case _: LearnGame.OfDuel => false
+  private def isOfTeam = game.opponent.isEmpty
 
   /** The baseline of every result: the paper's policy of the role, or the result of the scenario's own
     * policies.
     */
-  val baseline: Baseline = game match
-    case _: LearnGame.OfDuel    => Baseline.of(PolicyFile.paperOf(role))
-    case team: LearnGame.OfTeam =>
-      Baseline("own", s"${team.scenario.name}'s own", Vector.empty, "its own policies")
+  val baseline: Baseline =
+    if isOfTeam then Baseline("own", s"${game.scenario.name}'s own", Vector.empty, "its own policies")
+    else Baseline.of(PolicyFile.paperOf(role))
 
   /** Steps of each environment between two points at which everything may be saved. */
   val stepsPerRound: Int = (question.lessonS * 1000 / question.conditions.periodMs).round.toInt.max(1)
@@ -146,49 +143,29 @@ final case class LearnSetup(
   /** Number of rounds from one evaluation of the policy to the next. */
   val roundsPerScore: Int = (rounds / LearnSetup.Scores).max(1)
 
-  /** Evaluators of policies of [[family]], and of the baseline. */
-  def judges(threads: Int): Judge => ValueEvaluator = game match
-    case duel: LearnGame.OfDuel =>
-      val batch                       = conditions.batch(threads)
-      def evaluator(of: PolicyFamily) = DuelEvaluator(
-        batch,
-        conditions.duel.durationS,
-        of,
-        role,
-        duel.against.policy,
-        delays,
-        duel.objective,
-        question.seed,
-        shareEpisodes = false
-      )
-      val (paper, learned) = (evaluator(PolicyFamily.paperOf(role)), evaluator(family))
-      judge => if judge == Judge.Baseline then paper else learned
-    case team: LearnGame.OfTeam =>
-      val batch = TeamBatch(conditions.timing, conditions.vehicle.response, threads)
-      def evaluator(of: Vector[Double] => Fleet) =
-        TeamEvaluator(
-          batch,
-          candidate(team, of),
-          delays,
-          team.objective.terms.map(_._1),
-          question.seed,
-          shareEpisodes = false
-        )
-      val own     = evaluator(_ => team.scenario.fleet)
-      val learned = evaluator(PolicyFile(role, family, _).flownIn(team.scenario.fleet))
-      judge => if judge == Judge.Baseline then own else learned
+  private def flown: Engagement = game.opponent match
+    case Some(other) => Engagement.of(conditions.duel).flownBy(other.role, other.policy)
+    case None        => Engagement.of(game.scenario.fleet, conditions.duel.durationS)
 
-  private def candidate(team: LearnGame.OfTeam, fleet: Vector[Double] => Fleet)(parameters: Vector[Double]) =
-    val durationS = conditions.duel.durationS
-    TeamCandidate(
-      Engagement.of(fleet(parameters), durationS),
-      TeamObjective.judged(team.objective.measures, durationS, conditions.timing.periodS)
+  /** Evaluators of policies of [[family]], and of the baseline. */
+  def judges(threads: Int): Judge => ValueEvaluator =
+    val batch  = conditions.batch(threads)
+    val team   = flown
+    val judged = game.objective.judged(team.durationS, conditions.timing.periodS)
+    def evaluator(of: Vector[Double] => Engagement) = TeamEvaluator(
+      batch,
+      parameters => TeamCandidate(of(parameters), judged),
+      delays,
+      game.objective,
+      question.seed,
+      shareEpisodes = false
     )
+    val (own, learned) = (evaluator(_ => team), evaluator(from => team.flownBy(role, family.policy(from))))
+    judge => if judge == Judge.Baseline then own else learned
 
   /** What flies while it learns. */
-  def engine: Engine = game match
-    case _: LearnGame.OfTeam => EnvironmentBatch.engineOf(question.scenario)
-    case _                   => EnvironmentBatch.EngineOfGame
+  def engine: Engine =
+    if isOfTeam then EnvironmentBatch.engineOf(question.scenario) else EnvironmentBatch.EngineOfGame
 
   /** @return Left states what was expected and what was given */
   def task(using Scenarios): Either[String, SideTask] =
@@ -216,7 +193,7 @@ final case class LearnSetup(
     s"${question.algorithm}, ${question.role}$where, ${question.conditions.loop} over ${question.link}"
 
   /** The objective with its unit, for the axis of a picture. */
-  def measure: String = WeightedSum.withUnit(game.formula, game.unit)
+  def measure: String = game.objective.title
 
   /** Whether learning used the scenario's own policies for all others, as its flights do. */
   def isFlownAsTaught: Boolean = game.opponent.forall(other => other == PolicyFile.paperOf(other.role))

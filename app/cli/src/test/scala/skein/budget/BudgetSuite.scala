@@ -2,7 +2,7 @@ package skein.budget
 
 import skein.lanes.Engine
 import skein.scenario.Scenarios
-import skein.optimise.{Direction, DuelMeasure, LatencyBudget, Objective, RunningStats}
+import skein.optimise.{LatencyBudget, RunningStats}
 import skein.plot.Mark
 import skein.policy.{PolicyFamily, Role}
 import skein.optimise.LatencyBudget.Bound
@@ -19,17 +19,16 @@ class BudgetSuite extends munit.FunSuite, Optimised:
   private val axes = BudgetAxes.of(200, 5, 60, 3)
 
   private def sweep(loop: String, episodes: Int, threads: Int = 2, durationS: Double = 60) =
-    val named = Conditions(loop, "reduced", 100, durationS)
+    val question = BudgetQuestion.OfDuel(
+      "pursuer",
+      paper.text,
+      PolicyFile.paperOf(Role.Evader).text,
+      "last10s",
+      Conditions(loop, "reduced", 100, durationS),
+      seed = 1
+    )
     BudgetSweep(
-      DuelSubject(
-        named,
-        named.resolved.fold(fail(_), identity),
-        paper,
-        PolicyFile.paperOf(Role.Evader),
-        Objective(Vector(1.0 -> DuelMeasure.Last10s), Direction.Minimise),
-        seed = 1,
-        threads
-      ),
+      question.subject(threads).fold(fail(_), identity),
       axes,
       Tolerance.Share(0.05),
       Some(episodes)

@@ -176,7 +176,28 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     assertRefused(
       ObserveCommand,
       Seq("--readings", "/a/odom"),
-      "--readings, --commands: expected with --bag or --ros alone"
+      "--readings: expected with --bag, --ros or --mavlink alone"
+    )
+    assertRefused(
+      ObserveCommand,
+      Seq("--commands", "/a/cmd_vel"),
+      "--commands: expected with --bag or --ros alone"
+    )
+    assertRefused(
+      ObserveCommand,
+      Seq("--mavlink", "--readings", "POSITION"),
+      "--readings: expected GLOBAL_POSITION_INT, LOCAL_POSITION_NED, ODOMETRY, ATTITUDE, ATTITUDE_QUATERNION, " +
+        "came POSITION"
+    )
+    assertRefused(
+      ObserveCommand,
+      Seq("--simulator", "tcp://127.0.0.1:5760"),
+      "--simulator: expected HOST:PORT"
+    )
+    assertRefused(
+      ObserveCommand,
+      Seq("--mavlink", "--listen", "127.0.0.1:14580"),
+      "--listen: expected another address than the simulator's, came 127.0.0.1:14580 twice"
     )
 
   test("options that only MAVLink uses are refused without it"):
@@ -298,6 +319,7 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
 
   test("an impossible solver is reported before the flight, with what was expected"):
     val virtual = Seq("--clock", "virtual")
+    val alone   = Seq("--decentralised", "--only", "Pursuer", "--loop", "stream")
     for
       (command, words, expected) <- Seq(
         (FlyCommand(), Seq("--solver", "pekko://127.0.0.1:1"), "not Pekko's remoting"),
@@ -315,6 +337,9 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
         ),
         (FlyCommand(), virtual ++ Seq("--solver", "link:vpm"), "vpm"),
         (FlyCommand(), virtual ++ Seq("--twins", "2"), "not together with --clock virtual"),
+        (FlyCommand(), virtual ++ alone, "--only: expected with --simulator"),
+        (SpreadCommand("skein.cli.Main"), alone, "--only: expected with fly alone"),
+        (FlyCommand(), Seq("--decentralised", "--knows", "all"), "--decentralised: expected knows positions"),
         (
           FlyCommand(),
           virtual ++ Seq("--solver", "link:vpn", "--loop", "paused"),

@@ -12,7 +12,7 @@ import skein.cluster.{CoordinatorNode, Endpoint}
 import skein.flight.SolvedFlight
 import skein.hil.AutopilotKind
 import skein.link.*
-import skein.observe.ObservingProxy
+import skein.observe.{AirSimAnalysis, ObservingProxy}
 import skein.record.Samples
 import skein.report.DuelReport
 import skein.rpc.RpcClient
@@ -79,7 +79,15 @@ class BrowserAttackLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, 
     val direct = EmulatedLink(LinkProfile.none, 1, Clock.system)
     val reader = ExecutionContext.global
     val seen   =
-      Edge.await(ObservingProxy.start(free, plain.address, direct, transport, Clock.system, reader))
+      Edge.await(ObservingProxy.start(
+        AirSimAnalysis(),
+        free,
+        plain.address,
+        direct,
+        transport,
+        Clock.system,
+        reader
+      ))
     Using.resource(Ledger.open(
       out.resolve(Ledger.Name),
       ArraySeq.fill[Byte](32)(0)

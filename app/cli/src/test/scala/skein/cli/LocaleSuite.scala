@@ -35,7 +35,7 @@ class LocaleSuite extends munit.FunSuite:
           Right((3, Crossing(minimumM = 1.5)))
         )
         assertEquals(Crossing().name, "crossing")
-        assertEquals(Objective.parse("min", Role.Pursuer).map(_.text), Right("minimise min"))
+        assertEquals(Objective.ofRole("min", Role.Pursuer).map(_.text), Right("minimise min"))
       finally Locale.setDefault(before)
 
   test("an unknown option is reported in a Turkish locale as in any other"):

@@ -10,7 +10,7 @@ import skein.testing.{Optimised, TemporaryFolders}
 class SearchEnginesSuite extends munit.FunSuite, TemporaryFolders, Optimised:
   private given Scenarios = Scenarios.ours
 
-  private def setup(loop: String, link: String, eye: Option[String], candidates: Int = 256): SearchSetup =
+  private def setup(loop: String, link: String, eye: Option[String], candidates: Int = 256): ReadySearch =
     SearchQuestion(
       family = "lead-pursuit",
       role = "pursuer",

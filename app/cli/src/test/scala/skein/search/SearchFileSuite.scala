@@ -33,7 +33,7 @@ class SearchFileSuite extends munit.FunSuite, TemporaryFolders, Optimised:
   for method <- SearchQuestion.Methods.split(", ").toSeq do
     test(s"$method, written down and read back after every step, ends as an unbroken search"):
       val ready                       = setup(method)
-      val evaluator                   = ready.evaluator(ready.batch(2))
+      val evaluator                   = ready.judges(2)(Judge.Candidates)
       def through(state: SearchState) =
         val text = SearchFile.json(SearchFile(SearchFile.Version, ready.question, state))
         SearchFile.parse(text).fold(mistake => fail(mistake), identity)
@@ -136,7 +136,7 @@ class SearchFileSuite extends munit.FunSuite, TemporaryFolders, Optimised:
     val run    = SearchRun(
       ready.search,
       ready.question,
-      ready.evaluator(ready.batch(1)),
+      ready.judges(1)(Judge.Candidates),
       folder,
       () => System.nanoTime()
     )
@@ -152,7 +152,7 @@ class SearchFileSuite extends munit.FunSuite, TemporaryFolders, Optimised:
   ):
     val folder = temporaryFolder()
     val ready  = setup("cma-es")
-    val flying = ready.evaluator(ready.batch(1))
+    val flying = ready.judges(1)(Judge.Candidates)
     var calls  = 0
     val cut    = new Evaluator:
       def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[RunningStats] =
@@ -208,7 +208,10 @@ class SearchFileSuite extends munit.FunSuite, TemporaryFolders, Optimised:
     for (moves, text) <- Seq(2 -> "predictive", 6 -> "predictive with 6 moves in flight") do
       val ready = asked(moves).setup.fold(fail(_), identity)
       assertEquals(ready.loop, text)
-      assertEquals(LoopTiming.steeringOf(ready.conditions.timing).mostOutstanding, moves)
+      ready.flownBy match
+        case TeamEngine.Reduced(conditions, _) =>
+          assertEquals(LoopTiming.steeringOf(conditions.timing).mostOutstanding, moves)
+        case other => fail(other.toString)
 
   for
     (name, wrong, parts) <- Seq(

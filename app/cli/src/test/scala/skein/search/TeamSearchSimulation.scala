@@ -1,7 +1,7 @@
 package skein.search
 
 import com.typesafe.config.ConfigFactory
-import skein.optimise.{Evaluator, Search, SearchState, TeamObjective}
+import skein.optimise.{Evaluator, ScenarioTerm, Search, SearchState}
 import skein.scenario.*
 import skein.settings.ScenarioSettings
 import skein.testing.Optimised
@@ -79,7 +79,7 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
           "the reference was asked for"
         ))
       case other => fail(other.toString)
-    def mean(of: TeamSetup) =
+    def mean(of: ReadySearch) =
       of.judges(1)(Judge.Candidates).tallies(Vector(Vector(8.0, 8.0)), 0 until 2).head.mean
     // The window's first and last instants differ by up to half a period, in which a vehicle flies 0.4 m.
     assertEqualsDouble(mean(reduced.copy(flownBy = whole)), mean(reduced), 0.1)
@@ -131,7 +131,7 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
     assertEquals(
       mistake(question.copy(objective = "surrounded")),
       "--objective: objective 'surrounded', at character 1: expected one of " +
-        s"${Surround().measures.map(TeamObjective.keyOf).mkString(", ")}, came 'surrounded'"
+        s"${Surround().measures.map(ScenarioTerm.keyOf).mkString(", ")}, came 'surrounded'"
     )
     assertEquals(
       Varied.parse("ring-m=12..4"),
@@ -149,7 +149,7 @@ object TeamSearchSimulation:
   import skein.simd.WorldRandom
 
   /** Positions of all vehicles in the last 10 s of an episode, simulated by the scalar engine. */
-  private def flown(scenario: Scenario, setup: TeamSetup, episode: Int): Vector[Positions] =
+  private def flown(scenario: Scenario, setup: ReadySearch, episode: Int): Vector[Positions] =
     val (conditions, delays) = setup.flownBy match
       case TeamEngine.Reduced(conditions, delays) => (conditions, delays)
       case other: TeamEngine.Whole                => throw AssertionError(other.toString)
@@ -157,7 +157,7 @@ object TeamSearchSimulation:
     val count      = engagement.agents.size
     val seen       = Vector.newBuilder[(Double, Double, Double)]
     Rollout(engagement, conditions.timing, delays, conditions.vehicle.response).fly(
-      WorldRandom.key(setup.question.seed, 0, episode),
+      WorldRandom.key(setup.seed, 0, episode),
       observer = new LoopObserver:
         override def scored(timeS: Double, vehicle: Int, x: Double, y: Double, z: Double): Unit =
           seen += ((timeS, x, y))

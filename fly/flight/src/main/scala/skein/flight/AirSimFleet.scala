@@ -7,10 +7,11 @@ import skein.link.*
 import skein.forward.Asking
 import skein.loop.{AnyLoop, LoopKind}
 import skein.policy.Fleet
+import skein.port.VehiclePort
 import skein.record.*
 import skein.rpc.{RpcClient, RpcEvent, RpcSettings}
 import skein.settings.{FlightPlan, FlySettings}
-import skein.signal.LatencyProfile
+import skein.signal.{LatencyProfile, SplitMix64}
 import skein.units.*
 import skein.units.Decimals.fixed
 
@@ -33,8 +34,8 @@ private[flight] final class AirSimFleet(
 )(using system: ActorSystem):
   import system.dispatcher
 
-  /** Brings the vehicles to their starts, and connects them over the link of the plan. The connections are
-    * added to `opened`, to be closed with it.
+  /** Brings the vehicles to their starts, and connects them over the link of the plan, or the controller of
+    * each over one of its own. The connections are added to `opened`, to be closed with it.
     */
   def connect(
       plan: FlightPlan,
@@ -43,27 +44,29 @@ private[flight] final class AirSimFleet(
       monitor: FlightMonitor
   ): Future[ConnectedFleet] =
     for
-      ready <- prepare(plan, address)
-      proxy <- between(plan, address)
-      client = opened.closing(
-        fly(plan, proxy.fold(address)(opened.closing(_)(_.close()).address), monitor)
-      )(_.close())
-      vehicles = ready.zipWithIndex.map((vehicle, index) =>
-        // Altitudes count from where each vehicle starts, as in its own frame.
-        vehicle.over(client, vehicle.originNed.copy(z = 0), index)
-      )
+      ready   <- prepare(plan, address)
+      clients <- lines(plan).foldLeft(Future.successful(Vector.empty[AirSimClient])): (before, line) =>
+        before.flatMap(clients => connect(plan, address, line, opened, monitor).map(clients :+ _))
+      reached = clients.map: client =>
+        ready.zipWithIndex.map((vehicle, index) =>
+          // Altitudes count from where each vehicle starts, as in its own frame.
+          vehicle.over(client, vehicle.originNed.copy(z = 0), index)
+        )
+      vehicles = ready.indices.toVector.map(at => reached(settings.own.indexOf(at).max(0) % reached.size)(at))
       logs = vehicles.map(ImageRecorder(_, monitor, sensor => isWatched || settings.recordedImaging(sensor)))
       cameras = vehicles.zip(logs).map(look(plan, _, monitor, _))
       films   = vehicles.zip(logs).flatMap(film(plan, _, monitor, _))
       ports   = vehicles.zip(cameras).zip(logs).map: (looking, log) =>
         val (vehicle, eyes) = looking
-        val port            = Vehicles.port(
-          vehicle,
-          lost => monitor.offer(Event(clock.now(), EventKind.TimedOut, Some(vehicle.name), lost))
-        )
-        val isPaused = plan.loop == LoopKind.Paused
-        val seen     = eyes.map(one => one.eye.sensor -> (if isPaused then one.looking else one.sensor))
-        Equipped.by(settings.scenario, port, vehicle, seen.toMap, log.scan)
+        val isPaused        = plan.loop == LoopKind.Paused
+        val seen = eyes.map(one => one.eye.sensor -> (if isPaused then one.looking else one.sensor))
+        Equipped.by(settings.scenario, port(vehicle, monitor), vehicle, seen.toMap, log.scan)
+      apart =
+        if !settings.isDecentralised(plan) then Vector.empty
+        else
+          settings.own.zip(reached).map((self, seen) =>
+            (self = self, vehicles = seen.map(port(_, monitor)).updated(self, ports(self)))
+          )
       _ <- if settings.world.isEmpty then Future.unit else watchContacts(opened, address, vehicles, monitor)
       beside = opened.closing(
         AirSimClient(
@@ -71,16 +74,47 @@ private[flight] final class AirSimFleet(
           Asking.Timeout
         )
       )(_.close())
-      custody = Custody(vehicles.map(_.over(beside)), address, monitor.isLanding)
+      custody = Custody(
+        vehicles.filter(one => settings.commands(one.name)).map(_.over(beside)),
+        address,
+        monitor.isLanding
+      )
     yield ConnectedFleet(
       ports,
-      Some(AirSimTime(client)),
+      Some(AirSimTime(clients.head)),
       address.toString,
-      () => client.ping(),
+      () => clients.head.ping(),
       custody.ask,
       cameras.flatten,
-      films
+      films,
+      apart = apart
     )
+
+  /** A controller's link: the only one, or that of a vehicle's controller. */
+  private type Line = (vehicle: Option[String], seed: Long)
+
+  private def lines(plan: FlightPlan): Vector[Line] =
+    if !settings.isDecentralised(plan) then Vector((vehicle = None, seed = plan.seed))
+    else
+      settings.own.map(self =>
+        (vehicle = Some(settings.fleet.agents(self).name), seed = SplitMix64.seedOf(plan.seed, self))
+      )
+
+  private def connect(
+      plan: FlightPlan,
+      address: Address,
+      line: Line,
+      opened: Opened,
+      monitor: FlightMonitor
+  ): Future[AirSimClient] =
+    between(plan.link, line.seed, address).map: proxy =>
+      val at = proxy.fold(address)(opened.closing(_)(_.close()).address)
+      opened.closing(fly(plan.loop, line, at, monitor))(_.close())
+
+  private def port(vehicle: VehicleClient, recorder: Recorder): VehiclePort = Vehicles.port(
+    vehicle,
+    lost => recorder.offer(Event(clock.now(), EventKind.TimedOut, Some(vehicle.name), lost))
+  )
 
   /** The cameras of a vehicle that the scenario's recognisers use. */
   private def look(
@@ -89,16 +123,17 @@ private[flight] final class AirSimFleet(
       recorder: Recorder,
       log: ImageRecorder
   ): Vector[CameraSensor] =
-    settings.scenario.eyes.filter(_.vehicle == vehicle.name).map: eye =>
-      if isWatched || settings.recordedImaging.nonEmpty then log.ask(eye.camera)
-      CameraSensor(
-        eye,
-        vehicle.eyes,
-        plan.seed,
-        clock,
-        (kind, detail) => recorder.offer(Event(clock.now(), kind, Some(vehicle.name), detail)),
-        log.image
-      )
+    settings.scenario.eyes.filter(eye => eye.vehicle == vehicle.name && settings.commands(eye.vehicle)).map:
+      eye =>
+        if isWatched || settings.recordedImaging.nonEmpty then log.ask(eye.camera)
+        CameraSensor(
+          eye,
+          vehicle.eyes,
+          plan.seed,
+          clock,
+          (kind, detail) => recorder.offer(Event(clock.now(), kind, Some(vehicle.name), detail)),
+          log.image
+        )
 
   /** The vehicle's cameras that are only filmed, not used by decisions. */
   private def film(
@@ -141,31 +176,32 @@ private[flight] final class AirSimFleet(
     val client      = AirSimClient(RpcClient(transport, address, clock))
     val preparation = Preparation(client, clock, () => calledOff(plan.id))
     val prepared    =
-      if startsAirborne then preparation.place(settings.fleet) else preparation.climb(settings.fleet, address)
+      if startsAirborne then preparation.place(settings.fleet)
+      else preparation.climb(settings.fleet, address, settings.commands)
     prepared
       .flatMap(result => client.close().map(_ => result))
       .map(_.fold(reason => throw CannotFly(reason), identity))
 
   /** Starts the emulated link, if the flight has one. */
-  private def between(plan: FlightPlan, simulator: Address): Future[Option[LinkProxy]] =
-    if plan.link == LatencyProfile.none then Future.successful(None)
+  private def between(link: LatencyProfile, seed: Long, simulator: Address): Future[Option[LinkProxy]] =
+    if link == LatencyProfile.none then Future.successful(None)
     else
-      val link = EmulatedLink(LinkProfile.symmetric(plan.link), plan.seed, clock)
-      LinkProxy.start(AirSimFleet.anyPort, simulator, link, transport).map(Some(_))
+      val emulated = EmulatedLink(LinkProfile.symmetric(link), seed, clock)
+      LinkProxy.start(AirSimFleet.anyPort, simulator, emulated, transport).map(Some(_))
 
-  private def fly(plan: FlightPlan, address: Address, recorder: Recorder): AirSimClient =
+  private def fly(loop: AnyLoop, line: Line, address: Address, recorder: Recorder): AirSimClient =
     val rpc = RpcClient(
       transport,
       address,
       clock,
-      AirSimFleet.rpcSettings(plan.loop),
-      plan.seed,
+      AirSimFleet.rpcSettings(loop),
+      line.seed,
       event =>
         AirSimFleet.eventOf(event).foreach((kind, detail) =>
-          recorder.offer(Event(clock.now(), kind, None, detail))
+          recorder.offer(Event(clock.now(), kind, line.vehicle, detail))
         )
     )
-    AirSimClient(rpc, timeout = AirSimFleet.timeout(plan.loop))
+    AirSimClient(rpc, timeout = AirSimFleet.timeout(loop))
 
 /** Time-outs of AirSim's client, and the events of the client that a recording keeps. */
 object AirSimFleet:

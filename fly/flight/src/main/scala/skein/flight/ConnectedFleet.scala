@@ -11,6 +11,8 @@ import skein.signal.ClockAlignment
   * @param cameras with recognisers
   * @param films of their other cameras
   * @param clocks the vehicles' clock against the controller's, if it is known already
+  * @param apart all vehicles as the controller of one reaches them, for each vehicle that has one here;
+  *   `vehicles` are then as their own controllers reach them
   */
 private[flight] final case class ConnectedFleet(
     vehicles: Vector[VehiclePort],
@@ -20,7 +22,8 @@ private[flight] final case class ConnectedFleet(
     isOther: () => Future[Either[String, Option[String]]],
     cameras: Vector[CameraSensor] = Vector.empty,
     films: Vector[FilmedCamera] = Vector.empty,
-    clocks: Option[ClockAlignment] = None
+    clocks: Option[ClockAlignment] = None,
+    apart: Vector[(self: Int, vehicles: Vector[VehiclePort])] = Vector.empty
 )
 
 /** A flight cannot be started; the reason is a line for the user. */

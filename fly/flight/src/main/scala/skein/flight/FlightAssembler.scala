@@ -7,13 +7,14 @@ import org.apache.pekko.stream.scaladsl.Flow
 import org.apache.pekko.util.ByteString
 import scala.concurrent.{ExecutionContext, Future}
 import skein.airsim.{Vehicles, WorldSettings}
+import skein.flow.Hold
 import skein.forward.Asking
 import skein.link.*
 import skein.loop.*
 import skein.loop.learning.{Learning, Lessons, LessonsAgain, LessonsBeside}
 import skein.loop.planning.{CountedPlanWorkers, PlanThread, PlanWorkers, ThreadedPlanWorkers}
 import skein.policy.Fleet
-import skein.port.{CommandPlan, VehicleError}
+import skein.port.{CommandPlan, VehicleError, VehiclePort}
 import skein.record.*
 import skein.settings.{ChosenPolicy, FlightPlan, FlySettings, PolicyFile, RecordedPlan, Wire}
 import skein.signal.LatencyProfile
@@ -119,6 +120,7 @@ final class FlightAssembler(
           hasPlaces = isAirSims,
           movesLast = Option.when(isAirSims)(settings.loopSettings(plan).moveDuration)
         )
+        _       <- notApart(plan).fold(Future.unit)(why => Future.failed(CannotFly(s"decentralised: $why")))
         solver  <- solverOf(plan, opened, monitor)
         reached <- elsewhere match
           case Some(source) => fromSource(plan, source, opened)
@@ -127,7 +129,7 @@ final class FlightAssembler(
               case Wire.AirSim => airSim.connect(plan, server.fold(simulator.get)(_.address), opened, monitor)
               case Wire.Mavlink => overMavlink(plan, server, opened, monitor)
         _ <- packets(plan, reached)
-        _ <- Team.missingSensor(fleet, reached.vehicles).fold(reached.ping())(missing =>
+        _ <- Team.missingSensor(fleet, reached.vehicles, settings.own).fold(reached.ping())(missing =>
           Future.failed(CannotFly(missing))
         )
       yield
@@ -140,8 +142,23 @@ final class FlightAssembler(
               Future.successful(Done)
         val endCondition = EndCondition(settings.scenario, plan.loop == LoopKind.Paused, monitor)
         val flown        = plan.policy.fold(plan.fleet(settings))(learning(plan, _, opened, monitor))
-        val team         =
-          Team(flown, reached.vehicles, clock, endCondition, loopSettings, planners, solver, reached.clocks)
+        val hold         = Hold()
+
+        def team(vehicles: Vector[VehiclePort], only: Option[Int]) = Team(
+          flown,
+          vehicles,
+          clock,
+          endCondition,
+          loopSettings,
+          planners,
+          solver,
+          reached.clocks,
+          only,
+          hold
+        )
+        val teams =
+          if reached.apart.isEmpty then Vector(team(reached.vehicles, None))
+          else reached.apart.map(one => team(one.vehicles, Some(one.self)))
         val startedAt = clock.now()
         val watchdog  = SimulatorWatchdog(
           monitor,
@@ -152,18 +169,19 @@ final class FlightAssembler(
           reached.isOther,
           () => reached.ping().map { case Right(_) => true; case _ => false },
           isShared,
-          () => team.underDecision,
+          () => teams.flatMap(_.underDecision).headOption,
           line => tell(s"${plan.id}: $line")
         )
         val flight = Flight.start(
           plan.loop,
-          team,
+          teams.head,
           reached.time,
           settings.duration,
           clock,
           endCondition,
           () => watchdog.onTime,
-          on
+          on,
+          teams.tail
         )
         endCondition.isOver.foreach(_ => flight.complete())
         if plan.loop != LoopKind.Paused then
@@ -177,8 +195,8 @@ final class FlightAssembler(
         Right(FlightAssembly(
           plan,
           flight,
-          RunningGraph(team.meters, flight.streams),
-          team.hold,
+          RunningGraph(teams.head.meters, flight.streams),
+          hold,
           monitor,
           watchdog,
           startedAt,
@@ -296,6 +314,16 @@ final class FlightAssembler(
         () => Future.successful(Right(custody.check())),
         clocks = link.clocks
       )
+
+  /** Why each vehicle cannot have a controller of its own in this flight, if it should. */
+  private def notApart(plan: FlightPlan): Option[String] =
+    if !settings.isDecentralised(plan) then None
+    else
+      elsewhere
+        .map(source => s"expected vehicles over AirSim's protocol, came those of ${source.where}")
+        .orElse:
+          Option.when(plan.policy.exists(_.learning.isDefined)):
+            "expected policies that do not learn in flight, which is one learner for all"
 
   /** Asks the vehicles whether they hold plans, if the flight sends them. */
   private def packets(plan: FlightPlan, reached: ConnectedFleet): Future[Unit] =

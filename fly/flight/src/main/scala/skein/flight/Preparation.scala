@@ -43,15 +43,21 @@ final class Preparation(
     * in AirSim if it is. Vehicles on the ground take off.
     *
     * @param at its address
+    * @param commands which vehicles fly there, by name; all are returned
     */
-  def climb(fleet: Fleet, at: Address): Future[Either[String, Vector[VehicleClient]]] = prepared:
+  def climb(
+      fleet: Fleet,
+      at: Address,
+      commands: String => Boolean = _ => true
+  ): Future[Either[String, Vector[VehicleClient]]] = prepared:
     for
       paused <-
         client.isPaused().map(_.fold(error => throw NotReady(AirSimError.ofFirst(error, at)), identity))
-      _        <- if paused then call(client.resume()) else Future.unit
-      vehicles <- everyVehicle(fleet)((vehicle, agent) => Future.successful((vehicle, agent)))
-      _        <- Future.traverse(vehicles.collect { case (car: Car, agent) => (car, agent) })(park)
-      _        <- StartPositioning
+      _   <- if paused then call(client.resume()) else Future.unit
+      all <- everyVehicle(fleet)((vehicle, agent) => Future.successful((vehicle, agent)))
+      vehicles = all.filter((_, agent) => commands(agent.name))
+      _ <- Future.traverse(vehicles.collect { case (car: Car, agent) => (car, agent) })(park)
+      _ <- StartPositioning
         .fly(vehicles.collect { case (multirotor: Multirotor, agent) =>
           StartPositioning.Starting(
             agent.startPositionNed + Vector3(0, 0, multirotor.originNed.z),
@@ -62,7 +68,7 @@ final class Preparation(
         .recoverWith:
           case failed: NotReady =>
             taken(vehicles.map(_._1), at).map(why => throw why.fold(failed)(NotReady(_)))
-    yield vehicles.map(_._1)
+    yield all.map(_._1)
 
   /** What became of the api control of the first vehicle that has lost it. */
   private def taken(vehicles: Vector[VehicleClient], at: Address): Future[Option[String]] =

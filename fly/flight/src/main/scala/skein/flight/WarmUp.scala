@@ -43,6 +43,7 @@ object WarmUp:
     val short    = settings.copy(
       duration = settings.duration.min(Flown),
       policies = policies,
+      only = None,
       onlyPolicies = settings.onlyPolicies && policies.nonEmpty,
       solver = settings.solver.map(_ => SolverChoice.Link(LatencyProfile.direct))
     )
@@ -78,6 +79,8 @@ object WarmUp:
       // Vehicles by MAVLink climb to their starts first, which would take a minute.
       wire = Wire.AirSim,
       solver = None,
+      decentralised = false,
+      only = None,
       links = List(LatencyProfile.none),
       duration = settings.duration.min(Rehearsed),
       period = settings.period.min(RehearsalPeriod)

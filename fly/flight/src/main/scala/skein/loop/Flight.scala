@@ -5,6 +5,7 @@ import org.apache.pekko.actor.{Actor, ActorSystem, Props}
 import org.apache.pekko.stream.{KillSwitches, Materializer, SharedKillSwitch, SystemMaterializer}
 import org.apache.pekko.stream.scaladsl.RunnableGraph
 import scala.concurrent.{Future, Promise}
+import scala.util.Success
 import skein.port.SteppedTime
 import skein.record.{EventKind, Recorder}
 import skein.units.*
@@ -52,6 +53,8 @@ object Flight:
     * flight.
     *
     * @param loop one of Skein's, or a user's own
+    * @param others the controllers of the other vehicles, where each vehicle has one: a graph of its own. The
+    *   first that ends or fails ends all
     * @param time advances the simulator; only `paused` needs it
     * @param onTime the outcome when its time is over
     * @param on the materializer of one of Skein's loops, else the system's. A separate one can report the
@@ -65,31 +68,37 @@ object Flight:
       clock: Clock,
       recorder: Recorder,
       onTime: () => FlightOutcome = () => FlightOutcome.Completed,
-      on: Option[Materializer] = None
+      on: Option[Materializer] = None,
+      others: Vector[Team] = Vector.empty
   )(using
       system: ActorSystem
   ): Flight =
     import system.dispatcher
     val isPaused = loop == LoopKind.Paused
     require(!isPaused || time.isDefined, "paused needs a simulator whose time passes in steps")
-    val switch             = KillSwitches.shared("flight")
-    val stopping           = Promise[FlightOutcome]()
-    val (running, streams) = loop match
+    val switch          = KillSwitches.shared("flight")
+    val stopping        = Promise[FlightOutcome]()
+    def run(team: Team) = loop match
       case own: OwnLoop   => runOwn(own, team, switch, stopping.future)
       case kind: LoopKind =>
         val here = on.getOrElse(SystemMaterializer(system).materializer)
         val run  =
           graph(kind, team, time, duration, clock, switch, () => stopping.isCompleted).run()(using here)
-        (run, Future.successful(here))
+        (running = run, streams = Future.successful(here))
+    val runs = (team +: others).map(team => (team, run(team)))
 
     recorder.failure.foreach(error => stopping.trySuccess(FlightOutcome.Failed(error.message)))
     val timer = Option.when(!isPaused):
       system.scheduler.scheduleOnce(duration.toDuration)(stopping.trySuccess(onTime()): Unit)
     stopping.future.foreach(_ => switch.shutdown())
 
-    val landed = running.transformWith: ended =>
+    def landed(team: Team, running: Future[Done]): Future[Unit] = running.transformWith: ended =>
       timer.foreach(_.cancel())
       val failure = ended.failed.toOption.map(error => Option(error.getMessage).getOrElse(error.toString))
+        .map(reason =>
+          if others.isEmpty then reason
+          else s"the controller of ${team.fleet.agents(team.own.head).name}: $reason"
+        )
       stopping.trySuccess(failure.fold(onTime())(FlightOutcome.Failed(_)))
       failure.foreach(team.log.note(EventKind.Aborted, None, _))
       val hovering = loop match
@@ -97,8 +106,9 @@ object Flight:
         case LoopKind.Paused                => Future.unit
         case _: LoopKind if failure.isEmpty => Future.unit
         case _                              => team.hoverAll()
-      hovering.transformWith(_ => stopping.future)
-    Flight(stopping, landed.map(recorded(recorder, _)), streams)
+      hovering.transform(_ => Success(()))
+    val allLanded = Future.traverse(runs)((team, graph) => landed(team, graph.running))
+    Flight(stopping, allLanded.flatMap(_ => stopping.future).map(recorded(recorder, _)), runs.head._2.streams)
 
   /** The outcome after the last records. These follow the end of the flight's time; if the recorder failed,
     * so has the flight.

@@ -20,8 +20,8 @@ object FuturesLoop:
       .mapConcat: ticks =>
         if ticks > 1 then
           team.log.note(EventKind.Skipped, None, s"${ticks - 1} steps missed: too many futures run")
-        team.vehicles
-      .mapAsyncUnordered(team.settings.window * team.vehicles.size)(vehicle =>
+        team.own
+      .mapAsyncUnordered(team.settings.window * team.own.size)(vehicle =>
         team.readAll().map(_.map(LoopEvent.Seen(_, Set(vehicle))))
       )
       .collect { case Right(seen) => seen }

@@ -23,11 +23,9 @@ object PredictiveLoop:
 
       observed ~> cast
       // The end overtakes what waits: a vehicle that cannot be commanded takes no more of it.
-      for vehicle <- team.vehicles do
+      for vehicle <- team.own do
         cast ~> newest(team, Some(vehicle)) ~> team.predict(vehicle) ~>
-          team.decide(vehicle).via(team.foresee(vehicle)).via(stop.flow) ~> team.steer(vehicle) ~> steered.in(
-            vehicle
-          )
+          team.decide(vehicle).via(team.foresee(vehicle)).via(stop.flow) ~> team.steer(vehicle) ~> steered
 
       steered ~> fan
       fan ~> team.record

@@ -29,9 +29,17 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
   private val readings =
     if paused then recording.readings.map(read => read.copy(state = PausedLoop.timeless(read.state)))
     else recording.readings
-  private val bySequence = readings.map(reading => (reading.vehicle, reading.sequence) -> reading).toMap
-  private val heard      =
-    fleet.agents.map(agent => Heard(readings.filter(_.vehicle == agent.name).map(message)))
+  private val bySequence  = readings.map(reading => (reading.vehicle, reading.sequence) -> reading).toMap
+  private val controllers = Reading.controllers(recording.heading)
+
+  /** What each controller was answered, by vehicle. */
+  private val heard = Vector.tabulate(controllers): controller =>
+    fleet.agents.map: agent =>
+      Heard(
+        readings.filter(read => read.vehicle == agent.name && read.sequence % controllers == controller).map(
+          message
+        )
+      )
   private val sighted  = recording.sightings.groupBy(sighting => (sighting.decider, sighting.decision))
   private val measured = recording.measurements
     .map(read => (read.vehicle, read.sensor, read.sequence) -> read)
@@ -174,7 +182,7 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
         alignment = recorded.trueAge.map(alignment),
         sensed = empty.sensed.updated(self, sensed)
       )
-      val possible = views(known, recorded)
+      val possible = views(known, recorded, heard(self % controllers))
       possible
         .find(view => fleet.opponentOf(self, view.kinematics(_).positionNed) == other)
         .getOrElse(possible.head)
@@ -226,7 +234,7 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
   /** The candidate views with readings of vehicles that the decision did not use. The view was drawn at some
     * moment after the used readings were received, so there is one for each reading received since.
     */
-  private def views(known: TeamView, recorded: DecisionRow): Vector[TeamView] =
+  private def views(known: TeamView, recorded: DecisionRow, heard: Vector[Heard]): Vector[TeamView] =
     val earliest = recorded.own.state.receivedAt.max(recorded.opponent.state.receivedAt)
     val others   = fleet.agents.indices.filter(known.readings(_).isEmpty).toVector
     val moments  = others.flatMap(heard(_).between(earliest, recorded.decidedAt))

@@ -38,10 +38,11 @@ private final class Rows(fleet: Fleet):
 
   def decision(decision: Decision): DecisionRow =
     import decision.{opponent as other, view, vehicle as self}
-    val now                        = decision.decidedAt
-    val own                        = view.readings(self).get
-    val opponent                   = view.readings(other).get
-    val opponentHeading            = view.headingRad(other, fleet)
+    val now             = decision.decidedAt
+    val own             = view.readings(self).get
+    val opponent        = view.readings(other).get
+    val opponentHeading =
+      view.moves(other).fold(view.seenHeadingRad(other, fleet))(_.heading.value)
     val (here, there)              = (view.kinematics(self), view.kinematics(other))
     val toOpponent                 = there.positionNed - here.positionNed
     val (toEvader, pursuerHeading) = fleet.agents(self).role match

@@ -13,12 +13,11 @@ object SequentialLoop:
 
   def apply(team: Team, stop: SharedKillSwitch)(using system: ActorSystem): RunnableGraph[Future[Done]] =
     import system.dispatcher
-    val everyone = team.vehicles.toSet
-    val steps    = Source
+    val steps = Source
       .unfoldAsync(Span.Zero)(pause =>
         after(pause.toDuration, system.scheduler)(team.readAll()).map(readings =>
           Some((team.settings.period, readings))
         )
       )
-      .collect { case Right(readings) => LoopEvent.Seen(readings, everyone) }
+      .collect { case Right(readings) => LoopEvent.Seen(readings, team.own.toSet) }
     SnapshotGraph(team, steps.via(stop.flow), stop)

@@ -26,9 +26,9 @@ object SnapshotGraph:
       val fan     = builder.add(team.fan)
 
       // The end overtakes what waits: a vehicle that cannot be commanded takes no more of it.
-      for vehicle <- team.vehicles do
+      for vehicle <- team.own do
         cast ~> team.decide(vehicle) ~> team.newest(vehicle).via(stop.flow) ~>
-          team.steer(vehicle) ~> steered.in(vehicle)
+          team.steer(vehicle) ~> steered
 
       snapshots.addAttributes(team.named("snapshots")) ~> events.in(0)
       for (said, sensor) <- sensed.zipWithIndex do said.via(stop.flow) ~> events.in(1 + sensor)

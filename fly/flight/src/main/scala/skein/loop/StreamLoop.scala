@@ -24,7 +24,7 @@ object StreamLoop:
 
       for vehicle <- team.vehicles do
         team.sense(vehicle, start).via(stop.flow).map((vehicle, _)) ~> readings.in(vehicle)
-        cast ~> pacedDecisions(team, vehicle) ~> team.steer(vehicle) ~> steered.in(vehicle)
+      for vehicle <- team.own do cast ~> pacedDecisions(team, vehicle) ~> team.steer(vehicle) ~> steered
 
       readings ~> team.joinLatest ~> events.in(0)
       for (said, sensor) <- sensed.zipWithIndex do said.via(stop.flow) ~> events.in(1 + sensor)

@@ -13,6 +13,9 @@ import skein.units.*
   *
   * @param solver decides instead of the policies; the settings then have a deadline
   * @param clocks the vehicles' clock against the controller's, as far as known before the first reading
+  * @param only the vehicle of a controller of its own, which reads all vehicles and commands this one;
+  *   without it, all are commanded
+  * @param hold while it is held, the vehicles hover without decisions; they are still read
   */
 final class Team(
     val fleet: Fleet,
@@ -22,24 +25,27 @@ final class Team(
     val settings: LoopSettings,
     workers: PlanWorkers = PlanWorkers.none,
     solver: Option[Solver] = None,
-    clocks: Option[ClockAlignment] = None
+    clocks: Option[ClockAlignment] = None,
+    only: Option[Int] = None,
+    val hold: Hold = Hold()
 )(using ExecutionContext):
   require(ports.size == fleet.agents.size, "one vehicle per agent")
   require(solver.isEmpty || settings.deadline.isDefined, "who is asked elsewhere needs a deadline")
-  for missing <- Team.missingSensor(fleet, ports) do throw IllegalArgumentException(missing)
 
-  val vehicles: Range  = ports.indices
+  val vehicles: Range = ports.indices
+
+  /** The vehicles for which it decides, and which it commands. */
+  val own: Vector[Int] = only.fold(vehicles.toVector)(Vector(_))
+  for missing <- Team.missingSensor(fleet, ports, own) do throw IllegalArgumentException(missing)
+
   private val deciders = vehicles.map(Decider(fleet, _))
   val log: TeamLog     = TeamLog(fleet, deciders, clock, recorder)
 
-  /** While it is held, all vehicles hover without decisions; they are still read. */
-  val hold: Hold = Hold()
-
   private val parts    = TeamParts(fleet)
-  private val sensing  = TeamSensing(fleet, ports, clock, settings, clocks, parts, log)
-  private val viewing  = TeamViewing(fleet, settings, clocks, hold, sensing, parts, log)
+  private val sensing  = TeamSensing(fleet, ports, own, clock, settings, clocks, parts, log)
+  private val viewing  = TeamViewing(fleet, own, settings, clocks, hold, sensing, parts, log)
   private val deciding = TeamDeciding(fleet, clock, settings, deciders, workers, solver, sensing, parts, log)
-  private val steering = TeamSteering(ports, clock, settings, hold, sensing, parts, log)
+  private val steering = TeamSteering(ports, own, clock, settings, hold, sensing, parts, log)
 
   export parts.{meters, named}
   export sensing.{isNewer, joinLatest, read, readAll, sense, senseAll, sensed, ticks}
@@ -65,8 +71,13 @@ final class Team(
 object Team:
 
   /** A sensor that a policy requests and its vehicle lacks, as a line for the user. */
-  private[skein] def missingSensor(fleet: Fleet, vehicles: Vector[VehiclePort]): Option[String] =
-    fleet.agents.lazyZip(vehicles).flatMap((agent, vehicle) =>
+  private[skein] def missingSensor(
+      fleet: Fleet,
+      vehicles: Vector[VehiclePort],
+      own: Vector[Int]
+  ): Option[String] =
+    own.flatMap(self =>
+      val (agent, vehicle) = (fleet.agents(self), vehicles(self))
       agent.policy.sensors.toVector.sorted.filterNot(vehicle.sensors.contains).map: name =>
         val known = vehicle.sensors.keys.toVector.sorted
         val has   = if known.isEmpty then "it has none" else s"expected one of ${known.mkString(", ")}"

@@ -15,6 +15,7 @@ import skein.units.*
 private final class TeamSensing(
     fleet: Fleet,
     ports: Vector[VehiclePort],
+    own: Vector[Int],
     clock: Clock,
     settings: LoopSettings,
     clocksBefore: Option[ClockAlignment],
@@ -37,7 +38,7 @@ private final class TeamSensing(
     * @param isRunning whether the simulator's clock runs by itself
     */
   private def read(vehicle: Int, isRunning: Boolean): Future[Either[VehicleError, Reading]] =
-    val sequence = asked.getAndIncrement(vehicle)
+    val sequence = Reading.number(asked.getAndIncrement(vehicle), own, ports.size)
     val meter    = meters(vehicle)
     meter.called()
     ports(vehicle)
@@ -85,7 +86,7 @@ private final class TeamSensing(
       .addAttributes(parts.named("sense", vehicle))
 
   /** Joins the newest readings of all vehicles, each with its vehicle; emits when one is new, for decisions
-    * of all.
+    * of its own.
     */
   def joinLatest: Flow[(Int, Reading), LoopEvent, NotUsed] =
     val everyone = ports.indices.toSet
@@ -97,10 +98,10 @@ private final class TeamSensing(
             log.note(EventKind.Dropped, Some(vehicle), s"reading ${reading.sequence} is stale")
         )
       )
-      .map(newest => LoopEvent.Seen(newest.values.toVector, everyone))
+      .map(newest => LoopEvent.Seen(newest.values.toVector, own.toSet))
       .addAttributes(parts.named("join latest"))
 
-  private val sensors = ports.indices.toVector.flatMap: vehicle =>
+  private val sensors = own.flatMap: vehicle =>
     fleet.agents(vehicle).policy.sensors.toVector.sorted.map: name =>
       TeamSensor(vehicle, name, ports(vehicle).sensors(name), log)
 

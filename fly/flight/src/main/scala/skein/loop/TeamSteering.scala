@@ -16,6 +16,7 @@ import skein.units.*
 /** Commands a team's vehicles, records the results, and feeds them back into the loop. */
 private final class TeamSteering(
     ports: Vector[VehiclePort],
+    own: Vector[Int],
     clock: Clock,
     settings: LoopSettings,
     hold: Hold,
@@ -132,11 +133,11 @@ private final class TeamSteering(
     val _ = moves.updateAndGet(vehicle, sent => (sent :+ answer).takeRight(settings.movesInFlight.max(2)))
     answer
 
-  /** Commands every vehicle to hover, up to [[UntilCertain.Attempts]] times, once no other command is
-    * pending; records a vehicle that never confirms it. Completes after every move has been answered, too.
+  /** Commands its vehicles to hover, up to [[UntilCertain.Attempts]] times, once no other command is pending;
+    * records a vehicle that never confirms it. Completes after every move has been answered, too.
     */
   def hoverAll()(using ActorSystem): Future[Unit] =
-    Future.traverse(ports.indices.toVector)(hover).map(_ => ())
+    Future.traverse(own)(hover).map(_ => ())
 
   private def hover(vehicle: Int)(using ActorSystem): Future[Unit] =
     val sent = moves.get(vehicle)
@@ -155,7 +156,7 @@ private final class TeamSteering(
     Future.traverse(calls)(_.transform(_ => Success(()))).map(_ => ())
 
   def steered: Graph[UniformFanInShape[SteeringEvent, SteeringEvent], NotUsed] =
-    Merge[SteeringEvent](ports.size).addAttributes(parts.named("steered"))
+    Merge[SteeringEvent](own.size).addAttributes(parts.named("steered"))
 
   /** Broadcasts to the recording, back into the loop, and to its end. */
   def fan: Graph[UniformFanOutShape[SteeringEvent, SteeringEvent], NotUsed] =

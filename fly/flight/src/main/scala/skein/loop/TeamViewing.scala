@@ -14,6 +14,7 @@ import skein.units.*
 /** Folds loop events into team views and emits decision requests. */
 private final class TeamViewing(
     fleet: Fleet,
+    own: Vector[Int],
     settings: LoopSettings,
     clocks: Option[ClockAlignment],
     hold: Hold,
@@ -27,8 +28,7 @@ private final class TeamViewing(
   def events(sources: Int): Graph[MergePreferred.MergePreferredShape[LoopEvent], NotUsed] =
     MergePreferred[LoopEvent](sources, eagerComplete = true).addAttributes(parts.named("events"))
 
-  def cast(deciders: Int =
-    vehicles.size): Graph[UniformFanOutShape[DecisionRequest, DecisionRequest], NotUsed] =
+  def cast(deciders: Int = own.size): Graph[UniformFanOutShape[DecisionRequest, DecisionRequest], NotUsed] =
     Broadcast[DecisionRequest](deciders).addAttributes(parts.named("cast"))
 
   /** Folds events into views; emits those that need a decision. */
@@ -89,8 +89,8 @@ private final class TeamViewing(
   private def request(view: TeamView, deciders: Set[Int]) =
     Option.when(view.isComplete && !hold.isHeld)(DecisionRequest(view, deciders))
 
-  /** Emits once a period, half-way between two requests, that all vehicles are due to decide. */
+  /** Emits once a period, half-way between two requests, that its vehicles are due to decide. */
   def due(start: Instant): Source[LoopEvent, NotUsed] =
     sensing.ticks(
       start + settings.period / 2
-    ).map(_ => LoopEvent.Due(vehicles.toSet)).addAttributes(parts.named("due"))
+    ).map(_ => LoopEvent.Due(own.toSet)).addAttributes(parts.named("due"))

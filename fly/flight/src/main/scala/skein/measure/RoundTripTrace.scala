@@ -1,5 +1,6 @@
 package skein.measure
 
+import skein.loop.Reading
 import skein.record.Recording
 import skein.units.Expect
 
@@ -16,20 +17,22 @@ final case class RoundTripTrace(sentAtS: Vector[Double], roundTripsMs: Vector[Op
 object RoundTripTrace:
   private val MostMs = 3_600_000.0
 
-  /** The readings of a recording, by vehicle. A reading that was not answered in time is missing, and counts
-    * as lost.
+  /** The readings of a recording, by controller and vehicle. A reading that was not answered in time is
+    * missing, and counts as lost.
     */
   def of(recording: Recording): Vector[RoundTripTrace] =
-    recording.readings.groupBy(_.vehicle).values.toVector.map: readings =>
-      val known       = readings.map(reading => reading.sequence -> reading.state).toMap
-      val numbers     = known.keys.min to known.keys.max
-      val trips       = numbers.map(known.get).toVector
-      val (from, til) = (known(numbers.head).sentAt, known(numbers.last).sentAt)
-      val everyS      = til.since(from).toSeconds / (trips.size - 1).max(1)
-      RoundTripTrace(
-        trips.zipWithIndex.map((state, i) => state.fold(from.toSeconds + i * everyS)(_.sentAt.toSeconds)),
-        trips.map(_.map(state => state.receivedAt.since(state.sentAt).toMillis))
-      )
+    val controllers = Reading.controllers(recording.heading)
+    recording.readings.groupBy(read => (read.vehicle, read.sequence % controllers)).values.toVector.map:
+      readings =>
+        val known       = readings.map(reading => reading.sequence -> reading.state).toMap
+        val numbers     = known.keys.min to known.keys.max by controllers
+        val trips       = numbers.map(known.get).toVector
+        val (from, til) = (known(numbers.head).sentAt, known(numbers.last).sentAt)
+        val everyS      = til.since(from).toSeconds / (trips.size - 1).max(1)
+        RoundTripTrace(
+          trips.zipWithIndex.map((state, i) => state.fold(from.toSeconds + i * everyS)(_.sentAt.toSeconds)),
+          trips.map(_.map(state => state.receivedAt.since(state.sentAt).toMillis))
+        )
 
   /** Reads the output of `ping`, or lines `time_s,rtt_ms` with nothing behind the comma for a request without
     * an answer.

@@ -26,6 +26,9 @@ import skein.vehicle.VehicleKind
   *   deliver several simultaneously: see [[skein.flow.Steer]]
   * @param planInPacket whether `predictive` sends plans to a buffer beside the vehicle: see [[LoopSettings]]
   * @param knows what the controller of a vehicle knows of the others, in all loops
+  * @param decentralised whether each vehicle has a controller of its own, with a link of its own; then
+  *   controllers know of the others what they read. `paused`, the truth, has one and no link
+  * @param only the vehicle that this process flies, in a running simulator, where others fly the rest
   * @param plant the built-in simulator's kind of multirotor
   * @param wire protocol of the vehicles
   * @param solver a remote solver for additional flights, beside those that decide in this process; a decision
@@ -49,6 +52,8 @@ final case class FlySettings(
     movesInFlight: Int = Moves.InFlight,
     planInPacket: Boolean = false,
     knows: Knowledge = Knowledge.All,
+    decentralised: Boolean = false,
+    only: Option[String] = None,
     plant: SimulatedBody = SimulatedBody.AirSim,
     wire: Wire = Wire.AirSim,
     solver: Option[SolverChoice] = None,
@@ -76,7 +81,7 @@ final case class FlySettings(
   /** The cameras that are used for the recording alone, with their periods. */
   def filmed: Vector[(sensor: ImagingSensor, every: Span)] =
     for
-      agent <- fleet.agents
+      agent <- fleet.agents if commands(agent.name)
       case ImageSource.Camera(name, hz) <- images.toVector
     yield (ImagingSensor.camera(agent.name, name, "Scene"), Span.ofSeconds(1 / hz))
 
@@ -93,6 +98,16 @@ final case class FlySettings(
       loopSettings.copy(seed = plan.seed, planInPacket = planInPacket && plan.loop == LoopKind.Predictive)
     if plan.solver.isEmpty then all else all.copy(deadline = Some(Deadline(deadlineOf(plan).get, fallback)))
 
+  /** Whether each vehicle has a controller of its own in a flight. */
+  def isDecentralised(plan: FlightPlan): Boolean = decentralised && plan.loop != LoopKind.Paused
+
+  /** Whether this process flies the vehicle of this name. */
+  def commands(vehicle: String): Boolean = only.forall(_ == vehicle)
+
+  /** The vehicles that this process flies, by their places in the scenario. */
+  def own: Vector[Int] =
+    fleet.agents.indices.toVector.filter(self => commands(fleet.agents(self).name))
+
   /** The deadline of a flight's decisions, if there is one. */
   def deadlineOf(plan: FlightPlan): Option[Span] =
     if plan.solver.isEmpty then deadline else deadline.orElse(Some(period))
@@ -106,7 +121,7 @@ final case class FlySettings(
         model = vehicle => predictor.forAgent(agents(vehicle)),
         planning = planning.keeping(scenario),
         movesInFlight = movesInFlight,
-        knows = knows,
+        knows = if decentralised then Knowledge.Positions else knows,
         deadline = deadline.map(Deadline(_, fallback))
       )
     if scenario.isAsPublished then timely.asPublished else timely
@@ -140,7 +155,9 @@ final case class FlySettings(
         loop <- loops if loop != LoopKind.Paused
       yield (loop, link)
     (truth.toVector ++ others).distinct.zipWithIndex.map:
-      case ((loop, link), index) => FlightPlan(s"${loop.label}-${link.name}", loop, link, seed + index)
+      case ((loop, link), index) =>
+        val plan = FlightPlan(s"${loop.label}-${link.name}", loop, link, seed + index)
+        if isDecentralised(plan) then plan.copy(id = s"${plan.id}-decentralised") else plan
 
 /** A policy that replaces the scenario's.
   *
@@ -197,6 +214,11 @@ object FlySettings:
   /** Greatest altitude, m: forward simulation and the built-in simulator use the air density at the ground.
     */
   val MostAltitudeM = 1000.0
+
+  /** Most controllers of one flight: each opens five connections, and the built-in simulator takes 256. */
+  val MostControllers = 50
+
+  private val Apart = "paused, sequential, futures, stream, predictive"
 
   /** Reads `skein.fly`.
     *
@@ -261,6 +283,8 @@ object FlySettings:
       Moves.mistake(settings.movesInFlight).map("moves-in-flight: " + _),
       packetMistake(settings).map("plan-in-packet: " + _),
       knowsMistake(settings).map("knows: " + _),
+      apartMistake(settings, isTold = optionAt("knows", config).isDefined).map("decentralised: " + _),
+      onlyMistake(settings).map("only: " + _),
       Option.when(settings.solver.isDefined && !settings.loops.exists(decidedElsewhere))(
         "solver: expected with a loop whose decisions can be made elsewhere, came with paused alone"
       ),
@@ -336,6 +360,35 @@ object FlySettings:
     else if !all && settings.solver.isDefined then
       Some("expected all with a solver, which is told every command, came positions")
     else None
+
+  private def apartMistake(settings: FlySettings, isTold: Boolean): Option[String] =
+    val other =
+      settings.loops.collectFirst { case loop if loop == LoopKind.Plan || loop.isInstanceOf[OwnLoop] => loop }
+    if !settings.decentralised then None
+    else
+      other
+        .map(loop =>
+          s"expected loops that decide for each vehicle by itself (${Apart}), came ${loop.label}"
+        )
+        .orElse(Option.when(
+          settings.wire == Wire.Mavlink
+        )("expected vehicles over AirSim's protocol, came mavlink"))
+        .orElse(Option.when(settings.solver.isDefined)("expected no solver, which decides for all"))
+        .orElse(Option.when(isTold && settings.knows == Knowledge.All)(
+          "expected knows positions, since no message carries the commands of others, came all"
+        ))
+        .orElse(Option.when(settings.fleet.agents.sizeIs > MostControllers)(
+          s"expected at most ${MostControllers} vehicles, came ${settings.fleet.agents.size}"
+        ))
+
+  private def onlyMistake(settings: FlySettings): Option[String] =
+    settings.only.flatMap: name =>
+      if !settings.decentralised then Some(s"expected decentralised with it, came '$name' without")
+      else if settings.own.isEmpty then
+        Some(s"expected one of ${settings.fleet.agents.map(_.name).mkString(", ")}, came '$name'")
+      else
+        Option.when(settings.loops.contains(LoopKind.Paused)):
+          "expected loops other than paused, which stops the time of all vehicles"
 
   private def isRightAltitude(altitudeM: Double) = altitudeM > 0 && altitudeM <= MostAltitudeM
 

@@ -50,8 +50,14 @@ object RecordedPlan:
   /** The parameters that [[of]] needs in addition to the columns of every recording. */
   def parameters(flown: FlySettings, plan: FlightPlan): Seq[ParameterRow] =
     val deadline = flown.deadlineOf(plan)
-    val ofFlight =
-      flown.copy(scene = Some(flown.world), solver = plan.solver, deadline = deadline, onlyPolicies = false)
+    val ofFlight = flown.copy(
+      scene = Some(flown.world),
+      solver = plan.solver,
+      deadline = deadline,
+      onlyPolicies = false,
+      knows = flown.loopSettings.knows,
+      decentralised = flown.isDecentralised(plan)
+    )
     val ofPolicy = plan.policy.toSeq.flatMap: chosen =>
       Seq(
         ParameterRow(PolicyName, chosen.name),

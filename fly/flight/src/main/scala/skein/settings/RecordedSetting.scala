@@ -50,6 +50,8 @@ private[settings] object RecordedSetting:
   def written[A](name: String, value: A)(using setting: RecordedSetting[A]): Seq[ParameterRow] =
     setting.written(name, value)
 
+  given name: RecordedSetting[String] = Text[String]("a name", identity)(Some(_))
+
   given int: RecordedSetting[Int] = Text[Int]("a whole number", _.toString)(_.toIntOption)
 
   given boolean: RecordedSetting[Boolean] =

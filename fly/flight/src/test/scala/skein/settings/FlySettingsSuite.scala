@@ -2,7 +2,7 @@ package skein.settings
 
 import com.typesafe.config.ConfigFactory
 import java.nio.file.Files
-import skein.loop.{LoopKind, Planning}
+import skein.loop.{Knowledge, LoopKind, Planning}
 import skein.policy.{PolicyFamily, Role}
 import skein.scenario.{PaperDuel, Scenarios, Surround}
 import skein.signal.LatencyProfile
@@ -111,6 +111,29 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
     assertTold(
       "knows = positions, solver = \"link:vpn\", loops = [stream]",
       "2: skein.fly.knows: expected all with a solver, which is told every command, came positions"
+    )
+
+  test("decentralised is refused where one controller decides for all, or is told of the others"):
+    def refused(text: String)(why: String) = assertTold(text, s"2: skein.fly.decentralised: expected $why")
+    refused("decentralised = true, loops = [stream, plan]"):
+      "loops that decide for each vehicle by itself (paused, sequential, futures, stream, predictive), came plan"
+    refused("decentralised = true, loops = [stream], wire = mavlink"):
+      "vehicles over AirSim's protocol, came mavlink"
+    refused("decentralised = true, loops = [stream], solver = \"link:vpn\""):
+      "no solver, which decides for all"
+    refused("decentralised = true, scenario = crossing, crossing.vehicles = 60"):
+      "at most 50 vehicles, came 60"
+    def refusedOnly(text: String)(why: String) = assertTold(text, s"2: skein.fly.only: expected $why")
+    refusedOnly("only = Pursuer, loops = [stream]")("decentralised with it, came 'Pursuer' without")
+    refusedOnly("decentralised = true, only = Hare, loops = [stream]"):
+      "one of Evader, Pursuer, came 'Hare'"
+    refusedOnly("decentralised = true, only = Evader"):
+      "loops other than paused, which stops the time of all vehicles"
+    val read = this.read("skein.fly.decentralised = true").fold(fail(_), identity)
+    assertEquals(read.loopSettings.knows, Knowledge.Positions)
+    assertEquals(
+      read.plans.map(plan => (plan.loop == LoopKind.Paused, read.isDecentralised(plan))).distinct,
+      Vector((true, false), (false, true))
     )
 
   test("plan-in-packet is refused where no plan could be sent"):

@@ -7,21 +7,20 @@ import org.apache.pekko.NotUsed
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.stream.scaladsl.{BidiFlow, Flow}
 import org.apache.pekko.util.ByteString
-import scala.collection.mutable
 import scala.concurrent.{ExecutionContext, Future, Promise}
 import skein.link.*
 import skein.units.{Clock, Instant}
 
 /** A proxy between clients and their simulator that analyses their loop. It changes nothing: bytes pass in
-  * their order, none is added, held back or lost, whatever they mean.
+  * their order, none is added, held back or lost, whatever they mean; datagrams as the link lets them.
   *
   * What passes is looked at elsewhere, one piece after the other. That may lag behind by
   * [[ObservingProxy.MostWaiting]]; what comes beyond is passed on and not looked at, which is counted, and
-  * its connection is not understood any more.
+  * its connection is not analysed any more, unless it carries datagrams.
   */
-final class ObservingProxy private (
+final class ObservingProxy[A] private (
     proxy: LinkProxy,
-    looking: ObservingProxy.Looking
+    looking: ObservingProxy.Looking[A]
 ):
   import ObservingProxy.*
 
@@ -32,7 +31,7 @@ final class ObservingProxy private (
   def progress: Progress = looking.progress
 
   /** The observations so far; later messages are analysed after it. */
-  def observed: Observed = looking.observed
+  def observed: A = looking.observed
 
   /** Accepts no more connections, closes the open ones, and analyses what has passed until now. */
   def close(): Future[Done] =
@@ -58,23 +57,27 @@ object ObservingProxy:
     * @param reader executes the analysis; a separate thread in real time
     * @param unreachable called with the reason, if an accepted connection cannot be continued to the
     *   simulator, or speaks another protocol: see [[LinkProxy]], whose places its connections have
+    * @param isDatagrams whether the transport carries datagrams
     */
-  def start(
+  def start[A](
+      analysis: Analysis[A],
       listenAt: Address,
       simulator: Address,
       link: EmulatedLink,
       transport: Transport,
       clock: Clock,
       reader: Executor,
-      unreachable: Throwable => Unit = _ => ()
-  )(using ActorSystem): Future[ObservingProxy] =
+      unreachable: Throwable => Unit = _ => (),
+      isDatagrams: Boolean = false
+  )(using ActorSystem): Future[ObservingProxy[A]] =
     given ExecutionContext = ExecutionContext.parasitic
-    val looking            = Looking(reader)
+    val looking            = Looking(analysis, reader)
 
     def passing(connection: Int, isFromClient: Boolean, whole: Whole): Flow[ByteString, ByteString, NotUsed] =
       Flow[ByteString].map: bytes =>
         if whole.is then
-          whole.is = looking.offer(Piece.Bytes(connection, isFromClient, bytes, clock.now()))
+          whole.is =
+            looking.offer(Piece.Bytes(connection, isFromClient, bytes, clock.now())) || isDatagrams
         bytes
 
     object watching extends LinkProxy.Watching:
@@ -86,7 +89,15 @@ object ObservingProxy:
       def closed(connection: Long): Unit = looking.add(Piece.Closed(connection.toInt, clock.now()))
 
     LinkProxy
-      .start(listenAt, simulator, link, transport, unreachable = unreachable, watching = watching)
+      .start(
+        listenAt,
+        simulator,
+        link,
+        transport,
+        unreachable = unreachable,
+        isDatagrams = isDatagrams,
+        watching = watching
+      )
       .map(ObservingProxy(_, looking))
 
   /** Whether all bytes of a connection were analysed. */
@@ -94,19 +105,17 @@ object ObservingProxy:
     @volatile var is = true
 
   /** Analyses pieces in their order, one at a time. Thread-safe; adding never blocks. */
-  private final class Looking(reader: Executor):
-    private val pieces        = ConcurrentLinkedQueue[Piece]()
-    private val count         = AtomicInteger()
-    private val waiting       = AtomicLong()
-    private val missed        = AtomicLong()
-    private val account       = LoopAccount()
-    private val conversations = mutable.LongMap.empty[Conversation]
+  private final class Looking[A](analysis: Analysis[A], reader: Executor):
+    private val pieces  = ConcurrentLinkedQueue[Piece]()
+    private val count   = AtomicInteger()
+    private val waiting = AtomicLong()
+    private val missed  = AtomicLong()
 
-    def progress: Progress = synchronized(account.progress)
+    def progress: Progress = synchronized(analysis.progress)
 
-    def observed: Observed = synchronized:
-      account.passedOver(missed.getAndSet(0))
-      account.observed
+    def observed: A = synchronized:
+      analysis.passedOver(missed.getAndSet(0))
+      analysis.observed
 
     /** Adds a piece; false if the queue is full, and then the piece is skipped. */
     def offer(piece: Piece.Bytes): Boolean =
@@ -128,18 +137,9 @@ object ObservingProxy:
         left = count.decrementAndGet() > 0
 
     private def look(piece: Piece): Unit = piece match
-      case Piece.Opened(connection, at) =>
-        synchronized:
-          conversations(connection) = Conversation(connection)
-          account.add(Passed.Opened(connection, at))
+      case Piece.Opened(connection, at)                     => synchronized(analysis.opened(connection, at))
       case Piece.Bytes(connection, isFromClient, bytes, at) =>
         waiting.addAndGet(-bytes.size): Unit
-        synchronized:
-          conversations.get(connection).foreach: known =>
-            val passed = if isFromClient then known.fromClient(bytes, at) else known.fromSimulator(bytes, at)
-            passed.foreach(account.add)
-      case Piece.Closed(connection, at) =>
-        synchronized:
-          conversations.remove(connection): Unit
-          account.add(Passed.Closed(connection, at))
-      case Piece.End(looked) => looked()
+        synchronized(analysis.passed(connection, isFromClient, bytes, at))
+      case Piece.Closed(connection, at) => synchronized(analysis.closed(connection, at))
+      case Piece.End(looked)            => looked()

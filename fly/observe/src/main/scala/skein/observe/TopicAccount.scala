@@ -1,7 +1,7 @@
 package skein.observe
 
 import scala.collection.mutable
-import skein.signal.FastestMessage
+import skein.signal.{ClockAlignment, FastestMessage, Stamped}
 import skein.units.{Instant, Span}
 
 /** Analyses a loop from messages of topics: readings of vehicles, and commands to them. Mutable; one thread
@@ -11,10 +11,10 @@ import skein.units.{Instant, Span}
   * assumed to be based on the newest reading before it. An age counts from the reading's stamp; of a reading
   * without one, from its arrival.
   *
-  * Nothing goes there and back by which clocks could be compared. If the first stamp of a vehicle is within
-  * [[TopicAccount.SameClock]] of the time at which its message arrived, stamps are taken as they are.
-  * Otherwise they are by another clock, such as simulated time, and [[skein.signal.FastestMessage]] relates
-  * the two: ages lack the way of the fastest message.
+  * If the first stamp of a vehicle is within [[TopicAccount.SameClock]] of the time at which its message
+  * arrived, stamps are taken as they are. Otherwise they are by another clock, such as simulated time. What
+  * goes there and back relates the two ([[exchanged]]), with a bound. Without that,
+  * [[skein.signal.FastestMessage]] does: ages lack the way of the fastest message.
   *
   * Memory: [[TopicAccount.MostVehicles]] vehicles, [[TopicAccount.MostTopics]] topics, a million samples of
   * each quantity, and [[LoopAccount.MostLogged]] commands.
@@ -64,12 +64,23 @@ final class TopicAccount:
         0,
         own,
         others.maxOption,
-        None,
+        commanded.boundMs,
         account.commandedAt.map(at.since(_).toMillis),
         rest.flatMap(_.account.commandedAt).maxOption.map(at.since(_).toMillis)
       )
       if log.size < LoopAccount.MostLogged then log += command
       account.add(command, at, others ++ own)
+
+  /** Compares a vehicle's clock with ours.
+    *
+    * @param sentAt when the question passed
+    * @param answeredAt by the vehicle's clock
+    * @param receivedAt when the answer passed
+    */
+  def exchanged(vehicle: String, sentAt: Instant, answeredAt: Instant, receivedAt: Instant): Unit =
+    for known <- vehicles.get(vehicle)(Vehicle(vehicle)) do
+      val exchange = Stamped((), answeredAt, sentAt, receivedAt)
+      known.clock = Some(known.clock.fold(ClockAlignment.of(exchange))(_.updated(exchange)))
 
   private def received(
       vehicle: String,
@@ -129,12 +140,16 @@ object TopicAccount:
   private final class Vehicle(val name: String):
     val account        = VehicleAccount(name)
     var newest         = Option.empty[Reading]
+    var clock          = Option.empty[ClockAlignment]
     private val stamps = mutable.LinkedHashMap.empty[Instant, Reading]
 
     private var isFirst = true
     private var fastest = Option.empty[FastestMessage]
 
-    def isByOtherClock: Boolean = fastest.isDefined
+    def isByOtherClock: Boolean = clock.isEmpty && fastest.isDefined
+
+    /** Half width of the uncertainty of ages; absent where the clocks were not compared. */
+    def boundMs: Option[Double] = clock.map(_.uncertainty.toMillis)
 
     def read(stamp: Option[Instant], at: Instant): Unit =
       val reading = Reading(stamp, at)
@@ -150,7 +165,8 @@ object TopicAccount:
     def readingOf(stamp: Instant): Option[Reading] = stamps.get(stamp)
 
     def ageMs(reading: Reading, now: Instant): Double =
-      now.since(reading.stamp.fold(reading.at)(_ + fastest.fold(Span.Zero)(_.offset))).toMillis
+      val offset = clock.map(_.offset).orElse(fastest.map(_.offset)).getOrElse(Span.Zero)
+      now.since(reading.stamp.fold(reading.at)(_ + offset)).toMillis
 
   private final class Topic(name: String, kind: TopicKind):
     private val between   = Samples()

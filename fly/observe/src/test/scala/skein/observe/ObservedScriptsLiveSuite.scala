@@ -59,7 +59,15 @@ class ObservedScriptsLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Wait
       await(beside.close()): Unit
       val emulated = EmulatedLink(LinkProfile.symmetric(link), 1, clock)
       val proxy    =
-        await(ObservingProxy.start(anyPort, server.address, emulated, transport, clock, reader))
+        await(ObservingProxy.start(
+          AirSimAnalysis(),
+          anyPort,
+          server.address,
+          emulated,
+          transport,
+          clock,
+          reader
+        ))
       val program = OutsideProgram.start(
         Seq(
           client.python().toString,

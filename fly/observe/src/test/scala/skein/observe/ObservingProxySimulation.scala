@@ -43,6 +43,7 @@ class ObservingProxySimulation extends munit.FunSuite, Unhurried:
           server <- SimulatorServer.start(settings, network.host("simulator"), clock)
           link = EmulatedLink(LinkProfile.symmetric(profile), seed, clock)
           proxy <- ObservingProxy.start(
+            AirSimAnalysis(),
             Address("controller", 41452),
             server.address,
             link,
@@ -91,6 +92,7 @@ class ObservingProxySimulation extends munit.FunSuite, Unhurried:
         for
           server <- SimulatorServer.start(settings, network.host("simulator"), clock)
           proxy  <- ObservingProxy.start(
+            AirSimAnalysis(),
             Address("controller", 41452),
             server.address,
             EmulatedLink(LinkProfile.none, 7, clock),

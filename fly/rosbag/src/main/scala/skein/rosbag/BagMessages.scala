@@ -1,14 +1,14 @@
 package skein.rosbag
 
 import java.nio.{ByteBuffer, ByteOrder}
-import scala.collection.immutable.ArraySeq
 import scala.collection.mutable
 import skein.policy.Action
 import skein.record.*
 import skein.ros.message.*
-import skein.ros.{RosFrames, TwistCommand, VehicleMessages}
+import skein.ros.SensorMessages.token
+import skein.ros.{RosFrames, SensorMessages, TwistCommand, VehicleMessages}
 import skein.signal.Kinematics
-import skein.units.{Instant, Quaternion as Rotation, Vector3 as Ned}
+import skein.units.{Instant, Vector3 as Ned}
 
 /** A message of a bag.
   *
@@ -37,7 +37,7 @@ final class BagMessages(rows: Vector[Record]):
 
   private def of(row: Record): Vector[BagMessage] = row match
     case reading: ReadingRow =>
-      val (vehicle, motion) = (BagMessages.token(reading.vehicle), reading.state.value)
+      val (vehicle, motion) = (token(reading.vehicle), reading.state.value)
       val (at, stamp)       = (reading.state.receivedAt, reading.state.validAt + offset)
       motions(reading.vehicle) = motion
       Vector(
@@ -51,35 +51,35 @@ final class BagMessages(rows: Vector[Record]):
     case command: CommandRow => commanded(command).toVector
     case image: CameraImage  =>
       val (at, stamp) = (image.receivedAt, image.validAt + offset)
-      val name        = s"${BagMessages.token(image.vehicle)}/${BagMessages.token(image.camera)}"
+      val name        = s"${token(image.vehicle)}/${token(image.camera)}"
       val optical     = s"$name/optical"
-      val bytesAPixel = image.pixels.size / (image.width * image.height).max(1)
-      val toEnu       = RosFrames.toEnu(image.orientation) * BagMessages.FluFromOptical
+      val header      = Header(Time.of(stamp), optical)
       Vector(
-        frame(at, VehicleMessages.transform(stamp, optical, image.positionNed, toEnu)),
+        frame(at, SensorMessages.optical(stamp, optical, image.positionNed, image.orientation)),
         message(
           s"/$name/image_raw",
           at,
-          Image(
-            Header(Time.of(stamp), optical),
-            image.height.toInt,
+          SensorMessages.image(
+            header,
             image.width.toInt,
+            image.height.toInt,
             image.encoding,
-            0,
-            (image.width * bytesAPixel).toInt,
-            ArraySeq.unsafeWrapArray(image.pixels.bytes)
+            image.pixels.bytes
           )
         )
       )
     case cloud: Cloud =>
       val (at, stamp) = (cloud.receivedAt, cloud.validAt + offset)
-      val name        = s"${BagMessages.token(cloud.vehicle)}/${BagMessages.token(cloud.lidar)}"
+      val name        = s"${token(cloud.vehicle)}/${token(cloud.lidar)}"
+      val seen        = ByteBuffer.wrap(cloud.xyz.bytes).order(ByteOrder.LITTLE_ENDIAN).asFloatBuffer
+      val scan        = SensorMessages.points(Header(Time.of(stamp), name), seen.remaining / 3): number =>
+        RosFrames.swapBody(Ned(seen.get(3 * number), seen.get(3 * number + 1), seen.get(3 * number + 2)))
       Vector(
         frame(
           at,
           VehicleMessages.transform(stamp, name, cloud.positionNed, RosFrames.toEnu(cloud.orientation))
         ),
-        message(s"/$name/points", at, BagMessages.points(Header(Time.of(stamp), name), cloud))
+        message(s"/$name/points", at, scan)
       )
     case _ => Vector.empty
 
@@ -92,7 +92,7 @@ final class BagMessages(rows: Vector[Record]):
       motion <- motions.get(command.vehicle)
       twist  <- TwistCommand.of(action, motion).toOption
     yield message(
-      s"/${BagMessages.token(command.vehicle)}/cmd_vel",
+      s"/${token(command.vehicle)}/cmd_vel",
       command.sentAt,
       TwistStamped(Header(Time.of(command.sentAt), VehicleMessages.World), twist)
     )
@@ -101,34 +101,3 @@ final class BagMessages(rows: Vector[Record]):
 
   private def message[A](topic: String, at: Instant, value: A)(using kind: MessageType[A]) =
     BagMessage(topic, kind, at, Cdr.bytes(value)(using kind.cdr))
-
-private object BagMessages:
-  /** From a camera's optical frame (x right, y down, z forward; REP 103) to its front, left, up. */
-  private val FluFromOptical = Rotation(0.5, -0.5, 0.5, -0.5)
-
-  def token(name: String): String =
-    val plain = name.map(letter => if letter < 128 && letter.isLetterOrDigit then letter else '_')
-    if plain.headOption.forall(_.isDigit) then s"_$plain" else plain
-
-  /** A scan, its points in the frame front, left, up. */
-  private def points(header: Header, cloud: Cloud): PointCloud2 =
-    val seen = ByteBuffer.wrap(cloud.xyz.bytes).order(ByteOrder.LITTLE_ENDIAN)
-    val flu  = ByteBuffer.allocate(cloud.xyz.size).order(ByteOrder.LITTLE_ENDIAN)
-    while seen.remaining >= PointBytes do
-      val point = RosFrames.swapBody(Ned(seen.getFloat, seen.getFloat, seen.getFloat))
-      flu.putFloat(point.x.toFloat).putFloat(point.y.toFloat).putFloat(point.z.toFloat): Unit
-    val count = cloud.xyz.size / PointBytes
-    PointCloud2(
-      header,
-      1,
-      count,
-      Vector("x", "y", "z").zipWithIndex.map((name, at) => PointField(name, 4 * at, Float32, 1)),
-      isBigendian = false,
-      PointBytes,
-      PointBytes * count,
-      ArraySeq.unsafeWrapArray(flu.array),
-      isDense = true
-    )
-
-  private val PointBytes    = 12
-  private val Float32: Byte = 7

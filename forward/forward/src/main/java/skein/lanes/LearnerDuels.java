@@ -18,7 +18,7 @@ import skein.lanes.timetable.TimetableScores;
 import skein.policy.HeadingPolicy;
 
 /** Simulates duels in {@link #WORLDS} worlds side by side, by one timetable, and stops whenever an external
- * learner must decide: the duels of {@link TimetableDuels}, for learners. The evader is vehicle 0. Allocates
+ * learner must decide: the duels of {@link TeamBatch}, for learners. The evader is vehicle 0. Allocates
  * nothing after construction, unless a timetable needs more places than any before.
  *
  * <p>An external decision is represented by a policy of a single number, which is set before each decision.
@@ -34,7 +34,7 @@ public final class LearnerDuels implements TimetableScores {
   private static final float TOLERANCE_S = 1e-4f;
 
   private final LanePolicy[] policies;
-  private final DuelAgents[] agents;
+  private final OpponentAgents[] agents;
   private final LaneObservation observation = new LaneObservation();
   private final float[] north = new float[WORLDS], east = new float[WORLDS];
   private final boolean[] isOutside;
@@ -63,9 +63,9 @@ public final class LearnerDuels implements TimetableScores {
     }
     float[] effort = new float[WORLDS];
     agents =
-        new DuelAgents[] {
-          new DuelAgents(0, duel.evader(), model, policies[0], effort, observation, isOutside[0], null),
-          new DuelAgents(1, duel.pursuer(), model, policies[1], effort, observation, isOutside[1], null)
+        new OpponentAgents[] {
+          new OpponentAgents(0, duel.evader(), model, policies[0], effort, observation, isOutside[0], null),
+          new OpponentAgents(1, duel.pursuer(), model, policies[1], effort, observation, isOutside[1], null)
         };
     kernel = new TimetableKernel(agents, this);
   }

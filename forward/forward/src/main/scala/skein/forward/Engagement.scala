@@ -1,6 +1,6 @@
 package skein.forward
 
-import skein.policy.{Assignment, Fleet, Role}
+import skein.policy.{Assignment, Fleet, Policy, Role}
 import skein.scenario.{Known, OwnEnd, Scenario}
 import skein.vehicle.VehicleKind
 
@@ -41,6 +41,12 @@ final case class Engagement(
 
   lazy val isTraced: Boolean =
     agents.indices.forall(self => Level.formula(agents(self).policy, self, assignment, false).isRight)
+
+  /** With another policy of the agents of a role. */
+  def flownBy(role: Role, policy: Policy): Engagement =
+    copy(agents =
+      agents.zip(roles).map((agent, own) => if own == role then agent.copy(policy = policy) else agent)
+    )
 
   def hasCars: Boolean = agents.exists(_.kind == VehicleKind.Car)
 

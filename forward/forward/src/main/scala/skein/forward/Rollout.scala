@@ -95,6 +95,10 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
       loop.controllers.map(_.skipped).sum
     )
 
+  /** Control effort of a vehicle in the last episode: the sum of all changes of its commanded heading, rad.
+    */
+  private[skein] def effortRad(vehicle: Int): Double = loop.controllers(vehicle).effortRad
+
   /** The outcomes of the last episode, one for each evader in the engagement's order; in a team without
     * sides, one for each vehicle.
     */

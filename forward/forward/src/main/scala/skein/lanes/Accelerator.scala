@@ -1,7 +1,6 @@
 package skein.lanes
 
-import skein.forward.{Delays, LoopTiming, VelocityResponse}
-import skein.lanes.timetable.Timetable
+import skein.forward.{LoopTiming, VelocityResponse}
 
 /** Simulates candidates through shared episodes in place of this machine's processors, as a GPU does.
   * Outcomes are identical, to the bit.
@@ -10,28 +9,16 @@ trait Accelerator:
   /** The engine, with the number of candidates of some episodes that keeps it busy. */
   def engine: Engine
 
-  /** Prepares duels.
-    *
-    * @param threads that prepare flights
-    * @return Left states why it does not support such duels
-    */
-  private[lanes] def duels(
-      episodes: DuelEpisodes,
-      response: VelocityResponse,
-      threads: Int
-  ): Either[String, AcceleratedDuels]
-
   /** Prepares teams.
     *
     * @param threads that prepare flights
-    * @param timetable of an episode, for teams of a form
     * @return Left states why it does not support such teams
     */
   private[lanes] def teams(
       timing: LoopTiming,
       response: VelocityResponse,
       threads: Int,
-      timetable: (Delays, Int, TeamForm) => Timetable
+      episodes: Episodes
   ): Either[String, AcceleratedTeams]
 
 private[lanes] object Accelerator:
@@ -49,20 +36,6 @@ private[lanes] object Accelerator:
       offer <- flights
     yield offer.flatMap: _ =>
       Either.cond(together, by.engine, "the GPU flies candidates that share episodes")
-
-/** Duels on an accelerator; one call at a time, not thread-safe. */
-private[lanes] trait AcceleratedDuels:
-  /** Simulates the candidates whose policies are formulas, unless it is cancelled.
-    *
-    * @param worlds with [[Worlds.episodesOfEach]]
-    */
-  def fly(
-      worlds: DuelWorlds,
-      captureRadiusM: Float,
-      into: DuelOutcomes,
-      onProgress: Int => Unit,
-      isCancelled: () => Boolean
-  ): Accelerated
 
 /** Teams on an accelerator; one call at a time, not thread-safe. */
 private[lanes] trait AcceleratedTeams:
@@ -92,10 +65,10 @@ private[lanes] object Accelerated:
     *
     * @param flights see [[Accelerator.instead]]
     */
-  def first[F](flights: Option[Either[String, F]], worlds: Worlds, together: Boolean)(
+  def first[F](flights: Option[Either[String, F]], worlds: Worlds)(
       fly: F => Accelerated
   ): Accelerated =
     flights
       .flatMap(_.toOption)
-      .filter(_ => together && worlds.episodesOfEach > 0)
+      .filter(_ => worlds.shareEpisodes && worlds.episodesOfEach > 0)
       .fold(Accelerated(0, Array.range(0, worlds.size)))(fly)

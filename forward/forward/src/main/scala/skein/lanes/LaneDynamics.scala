@@ -1,7 +1,6 @@
 package skein.lanes
 
 import skein.forward.{
-  Duel,
   RolloutAgent,
   LoopTiming,
   Nanos,
@@ -39,18 +38,9 @@ private[skein] trait LaneDynamics extends TimetableDynamics:
 
 private[skein] object LaneDynamics:
   /** The dynamics of a model; Left states why SIMD does not support it. */
-  def of(model: VelocityResponse, duel: Duel): Either[String, LaneDynamics] =
-    of(model, Seq(duel.pursuer, duel.evader))
-
-  /** The dynamics of these vehicles; Left states why SIMD does not support them with this model. */
-  def of(model: VelocityResponse, vehicles: Seq[RolloutAgent]): Either[String, LaneDynamics] = model match
+  def of(model: VelocityResponse): Either[String, LaneDynamics] = model match
     case quadrotor: QuadrotorResponse =>
-      val lowest = -vehicles.map(_.altitudeDownM).max
-      for
-        _ <- Expect.that(lowest >= LeastAltitudeM):
-          s"the lanes know no ground and fly from $LeastAltitudeM m altitude on"
-        lanes <- QuadrotorLanes.of(quadrotor.quadrotor)
-      yield QuadrotorDynamics(quadrotor, lanes)
+      QuadrotorLanes.of(quadrotor.quadrotor).map(QuadrotorDynamics(quadrotor, _))
     case PlantResponse(plant)   => PlantLanes.of(plant).map(PlantDynamics(_))
     case SpatialResponse(plant) => PlantLanes.of(plant).map(PlantDynamics(_))
     case _                      => Left("the lanes do not know the vehicle")
@@ -59,22 +49,19 @@ private[skein] object LaneDynamics:
     *
     * @return Left states why SIMD does not support it
     */
-  def under(timing: LoopTiming, model: VelocityResponse, duel: Duel): Either[String, LaneDynamics] =
-    under(timing, model, Seq(duel.pursuer, duel.evader))
-
-  /** The dynamics of these vehicles under a loop; Left states why SIMD does not support them. */
-  def under(
-      timing: LoopTiming,
-      model: VelocityResponse,
-      vehicles: Seq[RolloutAgent]
-  ): Either[String, LaneDynamics] =
-    of(model, vehicles).flatMap: vehicles =>
+  def under(timing: LoopTiming, model: VelocityResponse): Either[String, LaneDynamics] =
+    of(model).flatMap: vehicles =>
       timing match
         case _: LoopTiming.Predictive if model.isInstanceOf[SpatialResponse] =>
           Left("SIMD does not predict climbs")
         case predictive: LoopTiming.Predictive =>
           LanePredictor.of(predictive.predictor).map(PredictedDynamics(vehicles, _))
         case _ => Right(vehicles)
+
+  /** Checks where vehicles start; Left states why SIMD does not fly them from there. */
+  def isHighEnough(model: VelocityResponse, vehicles: Seq[RolloutAgent]): Either[String, Unit] = Expect.that(
+    !model.isInstanceOf[QuadrotorResponse] || vehicles.forall(-_.altitudeDownM >= LeastAltitudeM)
+  )(s"the lanes know no ground and fly from $LeastAltitudeM m altitude on")
 
   /** Least altitude of the start, m: AirSim's quadrotor loses height while it turns. */
   private val LeastAltitudeM = 5.0

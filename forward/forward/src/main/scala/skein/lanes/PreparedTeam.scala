@@ -1,39 +1,80 @@
 package skein.lanes
 
-import skein.forward.RolloutAgent
-import skein.lanes.policy.TeamLanes
+import scala.util.hashing.MurmurHash3
+import skein.forward.{Delays, LoopTiming, RolloutAgent}
+import skein.lanes.policy.{TeamPolicies, VehicleNumbers}
 import skein.lanes.score.ScoreLanes
+import skein.lanes.timetable.Timetable
 
 /** What teams that are simulated side by side have in common.
   *
+  * @param efforts by judged number, the vehicle whose effort it is; else it is the next one of the scores
   * @param altitudesDownM of vehicles that fly level
   */
 private[lanes] final case class TeamForm(
-    team: TeamLanes,
+    policies: TeamPolicies,
     scores: ScoreLanes,
+    efforts: Vector[Option[Int]],
     durationS: Double,
     altitudesDownM: Vector[Double]
 )(val vehicles: LaneDynamics):
-  def inSpace: Boolean = team.inSpace
+  override val hashCode: Int = MurmurHash3.caseClassHash(this)
 
-  /** Whether decisions need more than readings and their own times. */
-  def asksMore: Boolean = team.asksMore.contains(true)
+  export policies.{count, inSpace}
+
+  /** Whether somebody knows another vehicle by a camera alone. */
+  def sees: Boolean = policies.eyes.nonEmpty
+
+  val hasParameters: Boolean = scores.judged.indices.exists(scores.parameters(_) > 0)
+
+  private val last = Array.ofDim[(RolloutAgent, VehicleNumbers)](policies.count)
+
+  /** The numbers of a vehicle: one object for what is the very same agent as the one before. */
+  def numbersOf(self: Int, agent: RolloutAgent): VehicleNumbers =
+    val known = last(self)
+    if known != null && (known._1 eq agent) then known._2
+    else
+      val numbers = VehicleNumbers(agent, policies.numbersOf(self, agent.policy))
+      last(self) = (agent, numbers)
+      numbers
 
 /** A candidate with the numbers by which it differs from others of its form.
   *
-  * @param form None if SIMD does not support it
-  * @param steps whether its vehicles are stepped side by side instead
+  * @param lanes its form, or why SIMD does not support it
+  * @param stepped the engine that steps its vehicles side by side, if any
   */
 private[lanes] final class PreparedTeam(
     val candidate: TeamCandidate,
-    val form: Option[TeamForm],
-    steps: => Boolean
+    lanes: => Either[String, TeamForm],
+    stepped: => Option[Engine]
 ):
-  lazy val isStepped: Boolean        = steps
+  /** Null if SIMD does not support its policies or quantities. */
+  lazy val form: TeamForm     = lanes.getOrElse(null)
+  lazy val isStepped: Boolean = stepped.isDefined
+
   def vehicles: Vector[RolloutAgent] = candidate.engagement.agents
 
-  val ofPolicies: Vector[MemberNumbers] = form.toVector.flatMap: form =>
-    vehicles.zipWithIndex.map: (agent, self) =>
-      MemberNumbers(form.team.parametersOf(self, agent.policy), form.team.startOf(self, agent.policy))
-  val ofQuantities: Vector[Array[Double]] = form.toVector.flatMap: form =>
-    candidate.judged.zipWithIndex.map((each, number) => form.scores.parametersOf(number, each.quantity))
+  /** By vehicle; only where it has a [[form]]. */
+  lazy val numbers: Array[VehicleNumbers] =
+    Array.tabulate(form.count)(self => form.numbersOf(self, vehicles(self)))
+
+  /** By quantity; only where it has a [[form]]. */
+  lazy val ofQuantities: Array[Array[Double]] =
+    candidate.quantities.toArray.zipWithIndex.map: (each, number) =>
+      form.scores.parametersOf(number, each.quantity)
+
+/** The episodes that teams share, under one loop's timing. */
+private[lanes] final class Episodes(timing: LoopTiming):
+  /** Whether all worlds of teams of a form have one episode: worlds that wait for their controller have no
+    * delays.
+    */
+  def areOne(form: TeamForm): Boolean = timing.isInstanceOf[LoopTiming.Paused] && !form.sees
+
+  /** The key by which an episode differs from others. */
+  def nameOf(link: Delays, key: Int, form: TeamForm): Any =
+    val delays = if areOne(form) then () else (link, key)
+    (delays, form.count, form.durationS, form.policies.needsMore, form.policies.eyes)
+
+  def timetable(link: Delays, key: Int, form: TeamForm): Timetable =
+    import form.policies.{eyes, needsMore}
+    Timetable.of(form.count, form.durationS, timing, link, key, form.vehicles, eyes, needsMore)

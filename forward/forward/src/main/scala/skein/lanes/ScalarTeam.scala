@@ -1,17 +1,19 @@
 package skein.lanes
 
-import scala.collection.mutable.ArrayBuffer
+import scala.collection.immutable.ArraySeq
+import scala.collection.mutable.ArrayBuilder
 import skein.forward.{Delays, LoopObserver, LoopTiming, Rollout, VelocityResponse}
-import skein.scenario.{Positions, Quantity}
+import skein.lanes.score.{Effort, Judged, OfMoment}
+import skein.scenario.{Positions, Quantity, Reduction}
 
 /** The scalar reference for a team's results. Mutable.
   *
   * @param model of the vehicles of one rollout
   */
 private[skein] final class ScalarTeam(timing: LoopTiming, model: => VelocityResponse):
-  private var last: (TeamCandidate, Delays)                = (null, null)
-  private var rollout: Rollout                             = null
-  private var found: Vector[ArrayBuffer[(Double, Double)]] = Vector.empty
+  private var last: (TeamCandidate, Delays) = (null, null)
+  private var rollout: Rollout              = null
+  private var tallies: Vector[Tally]        = Vector.empty
 
   /** Simulates one episode; returns its values of the judged numbers. */
   def fly(candidate: TeamCandidate, link: Delays, key: Int): Vector[Double] =
@@ -23,13 +25,16 @@ private[skein] final class ScalarTeam(timing: LoopTiming, model: => VelocityResp
     if asked != last then
       last = asked
       rollout = Rollout(candidate.engagement, timing, link, model)
-    found = candidate.judged.map(_ => ArrayBuffer.empty)
+    tallies = candidate.quantities.map(Tally(_))
     rollout.start(key, 0, Judging(candidate))
     rollout
 
   /** The results of the finished episode, one per judged number. */
   private[lanes] def values: Vector[Double] =
-    last._1.judged.zip(found).map((each, at) => each.of(at.toVector))
+    val next = tallies.iterator
+    last._1.judged.map:
+      case Effort(vehicle) => rollout.effortRad(vehicle)
+      case _: Judged       => next.next().value
 
   private final class Judging(candidate: TeamCandidate) extends LoopObserver:
     private val count                = candidate.engagement.agents.size
@@ -37,10 +42,32 @@ private[skein] final class ScalarTeam(timing: LoopTiming, model: => VelocityResp
 
     override def scored(timeS: Double, vehicle: Int, x: Double, y: Double, z: Double): Unit =
       northM(vehicle) = x; eastM(vehicle) = y; downM(vehicle) = z
-      if vehicle == count - 1 && candidate.judged.exists(_.counts(timeS)) then
+      if vehicle == count - 1 && candidate.quantities.exists(_.counts(timeS)) then
         val places = Positions(IArray.from(northM), IArray.from(eastM), IArray.from(downM))
-        for (each, at) <- candidate.judged.zip(found) if each.counts(timeS) do
-          at += ((timeS, Quantity.told(each.quantity, places)))
+        for tally <- tallies if tally.judged.counts(timeS) do
+          tally.add(timeS, Quantity.told(tally.judged.quantity, places))
+
+private[skein] object ScalarTeam:
+  /** Number of worlds that a thread takes together. */
+  private[lanes] val Worlds = 16
+
+/** A judged number of one episode, from its values. Mutable. */
+private final class Tally(val judged: Judged):
+  private val values = ArrayBuilder.ofDouble()
+  private var firstS = Double.PositiveInfinity
+
+  def add(timeS: Double, value: Double): Unit = judged.reduction match
+    case OfMoment.FirstWithin(limit) => if value <= limit then firstS = firstS.min(timeS)
+    case _                           => values += value
+
+  /** The number so far; NaN where no value counted. */
+  def value: Double =
+    def all = ArraySeq.unsafeWrapArray(values.result())
+    judged.reduction match
+      case OfMoment.FirstWithin(_) => firstS
+      case _ if values.length == 0 => Double.NaN
+      case OfMoment.Newest         => all.last
+      case reduction: Reduction    => reduction.of(all)
 
 /** Simulates a team's vehicles side by side, and their loops by the scalar reference. Mutable. */
 private final class SteppedTeams(timing: LoopTiming, stepped: SteppedRollouts):

@@ -100,11 +100,11 @@ private object SteppedRollouts:
     val each = vehicles.size
     model match
       case stepped: SteppedResponse =>
-        val worlds = (MostVehicles / each).max(1)
+        val worlds = worldsOf(model, each)
         val flown  = stepped.together(worlds * each)
         Some(new SteppedRollouts(stepped, stepped.stepS, stepped.hoveredS, worlds, each, flown))
       case quadrotor: QuadrotorResponse if fliesByLanes(quadrotor, vehicles) =>
-        val worlds = LaneQuadrotors.VEHICLES / each
+        val worlds = worldsOf(model, each)
         Some(
           new SteppedRollouts(
             quadrotor,
@@ -129,9 +129,18 @@ private object SteppedRollouts:
         ))
       case _ => None
 
+  /** Number of worlds that are stepped together.
+    *
+    * @param each number of vehicles per world
+    */
+  def worldsOf(model: VelocityResponse, each: Int): Int = model match
+    case _: SteppedResponse => (MostVehicles / each).max(1)
+    case _                  => LaneQuadrotors.VEHICLES / each
+
   private val Loops = "their loops by the scalar engine"
 
   private def fliesByLanes(model: QuadrotorResponse, vehicles: Seq[RolloutAgent]) =
-    LaneSupport.present.isRight && LaneDynamics.of(model, vehicles).isRight
+    LaneSupport.present.isRight && LaneDynamics.of(model).isRight &&
+      LaneDynamics.isHighEnough(model, vehicles).isRight
 
   private val MostVehicles = 64

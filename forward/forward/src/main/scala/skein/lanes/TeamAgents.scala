@@ -3,7 +3,7 @@ package skein.lanes
 import java.util.Arrays
 import skein.forward.RolloutAgent
 import skein.lanes.loop.{LaneAgents, LaneOffers, LaneVectors, LoopLanes}
-import skein.lanes.policy.{Directions, TeamLanes}
+import skein.lanes.policy.{Directions, TeamLanes, VehicleNumbers}
 import skein.lanes.timetable.{Timetable, TimetableAgents, ViewCall}
 
 /** The values that several vehicles of a team compute from one view, in many worlds. Mutable. */
@@ -102,14 +102,14 @@ private[lanes] final class TeamDecisions(self: Int, team: TeamViews, altitudesDo
     known(vehicle) = Directions(WORLDS)
 
   /** Sets a world's initial heading and policy parameters. The policy must be of this form. */
-  def take(world: Int, agent: RolloutAgent, numbers: MemberNumbers): Unit =
-    startCos(world) = StrictMath.cos(agent.startHeadingRad).toFloat
-    startSin(world) = StrictMath.sin(agent.startHeadingRad).toFloat
-    cruise(world) = agent.speed.toFloat
-    startDown(world) = agent.altitudeDownM.toFloat
-    import numbers.{parameters as own, memory as first}
-    for number <- own.indices do parameters(number * WORLDS + world) = own(number).toFloat
-    for number <- first.indices do initial(number * WORLDS + world) = first(number).toFloat
+  def take(world: Int, numbers: VehicleNumbers): Unit =
+    startCos(world) = numbers.cos
+    startSin(world) = numbers.sin
+    cruise(world) = numbers.speedMps
+    startDown(world) = numbers.downM
+    val count = numbers.parameters
+    for number <- 0 until count do parameters(number * WORLDS + world) = numbers.policy(number)
+    for number <- 0 until memories do initial(number * WORLDS + world) = numbers.policy(count + number)
 
   /** Resets to the start of an episode, of which the first worlds count. */
   def start(worlds: Int): Unit =
@@ -179,17 +179,13 @@ private[lanes] final class TeamDecisions(self: Int, team: TeamViews, altitudesDo
 private object TeamDecisions:
   private val Never = -1
 
-/** The numbers of one vehicle's policy in a world.
-  *
-  * @param parameters of its form
-  * @param memory before its first decision
-  */
-private[lanes] final case class MemberNumbers(parameters: Array[Double], memory: Array[Double])
-
 /** One vehicle of a team, simulated in many worlds. */
 private[lanes] trait TeamMember:
   /** Sets where a world's vehicle starts, and the numbers of its policy, which must be of this form. */
-  def take(world: Int, agent: RolloutAgent, numbers: MemberNumbers): Unit
+  def take(world: Int, numbers: VehicleNumbers): Unit
+
+  /** The effort by world, where it was asked for. */
+  def effortRad: Array[Float] = Array.emptyFloatArray
 
 /** A vehicle with equal delays in all worlds.
   *
@@ -216,9 +212,9 @@ private[lanes] class TeamAgents(
   /** Stores the headings commanded to this vehicle from now on. */
   private def keepHeadings(): Unit = if told == null then told = Directions(0)
 
-  def take(world: Int, agent: RolloutAgent, numbers: MemberNumbers): Unit =
-    vehicles.place(world, agent)
-    decisions.take(world, agent, numbers)
+  def take(world: Int, numbers: VehicleNumbers): Unit =
+    vehicles.place(world, numbers)
+    decisions.take(world, numbers)
 
   override def start(timetable: Timetable, worlds: Int): Unit =
     super.start(timetable, worlds)
@@ -298,9 +294,9 @@ private[lanes] final class LoopTeamAgents private (
 
   loop.carryForward(self, agent.copy(speed = 1), vehicles)
 
-  def take(world: Int, agent: RolloutAgent, numbers: MemberNumbers): Unit =
-    vehicles.place(world, agent)
-    decisions.take(world, agent, numbers)
+  def take(world: Int, numbers: VehicleNumbers): Unit =
+    vehicles.place(world, numbers)
+    decisions.take(world, numbers)
 
   override def start(): Unit =
     super.start()

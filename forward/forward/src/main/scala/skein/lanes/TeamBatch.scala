@@ -1,22 +1,27 @@
 package skein.lanes
 
 import java.util.IdentityHashMap
+import java.util.concurrent.ConcurrentHashMap
 import scala.collection.mutable
-import skein.forward.{Delays, LoopTiming, SpatialResponse, TabledDelays, VelocityResponse}
-import skein.lanes.loop.{BySlowest, LaneAgents, LoopKernel, LoopLanes}
-import skein.lanes.policy.TeamLanes
-import skein.lanes.score.{ScoreLanes, Scoreboard}
-import skein.lanes.timetable.{Timetable, TimetableAgents, TimetableKernel, Timetables}
-import skein.simd.{LaneFunction, LaneMath}
+import skein.forward.{DelayTable, Delays, Engagement, LoopTiming, SpatialResponse, VelocityResponse}
+import skein.lanes.loop.BySlowest
+import skein.lanes.policy.{OpponentLanes, TeamLanes, TeamPolicies}
+import skein.lanes.score.{Effort, ScoreLanes}
+import skein.lanes.timetable.{TimetableKernel, Timetables}
+import skein.simd.LaneMath
 import skein.units.Expect
 
-/** Simulates many candidates of a team under one loop's timing, on all cores. Candidates whose policies and
-  * quantities are formulas run on SIMD: worlds that share episodes by [[TimetableKernel]], all of an episode
-  * by one [[Timetable]], which is computed once; others by [[LoopKernel]]. Quadrotors and MuJoCo bodies of
-  * other teams are stepped side by side under the scalar loops ([[SteppedRollouts]]). All else runs on the
-  * scalar reference ([[skein.forward.Rollout]]), which the engine's text states. The engine of a world
-  * depends on its candidate, its link and `shareEpisodes` alone, so results do not depend on threads, on a
-  * call's other worlds or on their order. One call at a time.
+/** Simulates many candidates of a team under one loop's timing, on all cores: the entry point of forward
+  * simulation for searches and maps. A duel is a team of two.
+  *
+  * Candidates whose policies and quantities are formulas run on SIMD: worlds that share episodes by
+  * [[TimetableKernel]], all of an episode by one [[skein.lanes.timetable.Timetable]], which is computed once;
+  * others by [[skein.lanes.loop.LoopKernel]]. Two that play against one another by
+  * [[skein.policy.HeadingPolicy]] decide by [[OpponentLanes]], others by [[TeamLanes]]. Quadrotors and MuJoCo
+  * bodies of other teams are stepped side by side under the scalar loops ([[SteppedRollouts]]). All else runs
+  * on the scalar reference ([[skein.forward.Rollout]]), which the engine's text states. `docs/engines.md` has
+  * the table. The engine of a world depends on its candidate, its link and `shareEpisodes` alone, so results
+  * do not depend on threads, on a call's other worlds or on their order. One call at a time.
   *
   * @param accelerator simulates the candidates of [[Worlds.episodesOfEach]] that are formulas, if it supports
   *   the loop and the vehicles
@@ -31,87 +36,113 @@ final class TeamBatch(
 ):
   require(threads > 0, s"threads must be positive, got $threads")
 
+  private val inSpace    = model.isInstanceOf[SpatialResponse]
+  private val episodes   = Episodes(timing)
   private val timetables = Timetables()
   private val workers    = Vector.fill(threads)(Worker())
 
-  private val accelerated: Option[Either[String, AcceleratedTeams]] =
-    accelerator.map(_.teams(timing, model, threads, timetable))
+  private val dynamics: Either[String, LaneDynamics] =
+    for
+      _        <- LaneSupport.present
+      _        <- Expect.that(!isReference)("the reference was asked for")
+      vehicles <- LaneDynamics.under(timing, model)
+    yield vehicles
 
-  private def timetable(link: Delays, key: Int, form: TeamForm): Timetable =
-    Timetable.of(form.team.count, form.durationS, timing, link, key, form.vehicles, tellsMore = form.asksMore)
+  private val accelerated: Option[Either[String, AcceleratedTeams]] =
+    accelerator.map(_.teams(timing, model, threads, episodes))
 
   /** The engine for such a team.
     *
     * @param shareEpisodes see [[TeamWorlds.shareEpisodes]]; on a GPU, only worlds with
     *   [[Worlds.episodesOfEach]] run
-    * @param links of the worlds
+    * @param links of the worlds: SIMD does not support delays that are long for the period, or recorded
     */
   def engine(candidate: TeamCandidate, shareEpisodes: Boolean, links: Seq[Delays]): Engine =
-    val together = shares(shareEpisodes)
-    val lanes    = lanesOf(candidate)
-    val worlds   = if together then "candidates of an episode" else "worlds"
-    val isPlain  = lanes.exists(_.team.isPlain)
+    val form                     = lanesOf(candidate)
+    def together(form: TeamForm) = shareEpisodes || episodes.areOne(form)
+    def refused(by: Delays)      = form.toOption.flatMap(form => refusal(form, together(form), by))
+    val worlds                   = if form.exists(together) then "candidates of an episode" else "worlds"
+    val byGpu                    = form.toOption.flatMap(_.policies.refusedByGpu).map(Left(_))
     Engine.of(
-      lanes.map(_ => s"${LaneMath.LANES} $worlds at a time"),
-      lanes.fold(_ => Nil, form => links.map(refusal(form, together, _))),
-      steppedOf(candidate),
-      if isPlain then Accelerator.engine(accelerator, accelerated, together)
-      else
-        accelerated.map(_ =>
-          Left("the GPU flies teams without memory that look at the newest readings alone")
-        )
+      // Refused over the fastest link, it is over any.
+      form.flatMap(_ => refused(DelayTable.none).toLeft(s"${LaneMath.LANES} $worlds at a time")),
+      links.map(refused),
+      steppedOf(candidate.engagement),
+      accelerator.flatMap(_ => byGpu).orElse:
+        Accelerator.engine(accelerator, accelerated, form.exists(together))
       ,
-      LaneFunction.COUNT
+      form.fold(_ => 1, _.policies.sideBySide)
     )
 
-  private def steppedOf(candidate: TeamCandidate) =
+  private def steppedOf(engagement: Engagement): Option[Engine] =
     SteppedRollouts
-      .engine(model, candidate.engagement.agents)
-      .filterNot(_ =>
-        isReference || candidate.engagement.hasCars || model.isSpatial && candidate.engagement.climbs.isDefined
-      )
+      .engine(model, engagement.agents)
+      .filterNot: _ =>
+        isReference || engagement.hasCars || engagement.agents.exists(_.eye.isDefined) ||
+          model.isSpatial && engagement.climbs.isDefined
 
-  /** Whether worlds share episodes. A world that waits for its controller has no delays: all worlds share
-    * their episode.
+  /** Why SIMD does not support worlds of a form with these delays.
+    *
+    * @param together whether they share their episodes
     */
-  private def shares(asked: Boolean): Boolean = asked || timing.isInstanceOf[LoopTiming.Paused]
+  private def refusal(form: TeamForm, together: Boolean, link: Delays): Option[String] =
+    if together then None
+    else
+      val seen =
+        for
+          _ <- Expect.that(form.vehicles.fliesAlone):
+            "quadrotors of which one sees by a sensor fly by lanes where candidates share episodes"
+          _ <- Expect.that(!timing.isInstanceOf[LoopTiming.Paused]):
+            "who sees by a sensor while the world waits flies by lanes where candidates share episodes"
+          _ <- Expect.that(form.policies.eyes.size == 1):
+            "two that see one another by sensors fly by lanes where candidates share episodes"
+        yield ()
+      seen.left.toOption.filter(_ => form.sees).orElse:
+        LoopSupport.refusal(timing, form.count, link, form.vehicles)
 
-  private def refusal(form: TeamForm, share: Boolean, link: Delays): Option[String] =
-    if share then None else LoopSupport.refusal(timing, form.team.count, link, form.vehicles)
+  /** One object for each form, which is compared by its reference then. */
+  private val forms = ConcurrentHashMap[TeamForm, TeamForm]()
 
   private def lanesOf(candidate: TeamCandidate): Either[String, TeamForm] =
-    val engagement = candidate.engagement
-    val inSpace    = model.isInstanceOf[SpatialResponse]
+    import candidate.{engagement, quantities}
+    val efforts = candidate.judged.map:
+      case Effort(vehicle) => Some(vehicle)
+      case _               => None
     for
-      _        <- LaneSupport.present
-      _        <- Expect.that(!isReference)("the reference was asked for")
+      vehicles <- dynamics
       _        <- Expect.that(!engagement.hasCars)("it has cars")
-      vehicles <- LaneDynamics.under(timing, model, engagement.agents)
-      team     <- TeamLanes
-        .of(
-          engagement.agents.map(_.policy),
-          engagement.assignment,
-          timing.isInstanceOf[LoopTiming.Predictive],
-          inSpace
-        )
+      _        <- LaneDynamics.isHighEnough(model, engagement.agents)
+      policies <- Option
+        .when(candidate.areAtOnePace)(OpponentLanes.of(engagement, efforts.flatten.contains, inSpace))
+        .flatten
+        .getOrElse(teamOf(engagement, efforts.flatten))
+      scores <- ScoreLanes
+        .of(quantities, engagement.agents.size)
+        .left
+        .map(refused => s"a quantity is no formula: ${refused.getMessage}")
+    yield
+      val altitudes = if inSpace then Vector.empty else engagement.agents.map(_.altitudeDownM)
+      val form      = TeamForm(policies, scores, efforts, engagement.durationS, altitudes)(vehicles)
+      val known     = forms.putIfAbsent(form, form)
+      if known == null then form else known
+
+  private def teamOf(engagement: Engagement, efforts: Vector[Int]): Either[String, TeamPolicies] =
+    for
+      _ <- Expect.that(efforts.isEmpty):
+        "efforts are summed by lanes of two that play against one another by headings"
+      _ <- Expect.that(engagement.agents.forall(_.eye.isEmpty)):
+        "who sees by a sensor flies by lanes against one other, both by headings"
+      isPredicted = timing.isInstanceOf[LoopTiming.Predictive]
+      team <- TeamLanes
+        .of(engagement.agents.map(_.policy), engagement.assignment, isPredicted, inSpace)
         .left
         .map(refused => s"a policy is no formula: ${refused.getMessage}")
       _ <- team.leaves(engagement.agents).filterNot(_ => inSpace).toLeft(())
       _ <- Expect.that(!team.looksUp || !model.regardsYaw):
         "a policy asks how high vehicles are, and the quadrotor's height is not told side by side"
-      _ <- Expect.that(
-        !team.turns || !model.regardsYaw
-      )("a policy may turn its vehicle, and this one keeps its yaw")
-      scores <- ScoreLanes
-        .of(candidate.judged, engagement.agents.size)
-        .left
-        .map(refused => s"a quantity is no formula: ${refused.getMessage}")
-    yield TeamForm(
-      team,
-      scores,
-      engagement.durationS,
-      if inSpace then Vector.empty else engagement.agents.map(_.altitudeDownM)
-    )(vehicles)
+      _ <- Expect.that(!team.turns || !model.regardsYaw):
+        "a policy may turn its vehicle, and this one keeps its yaw"
+    yield team
 
   /** Simulates all worlds, unless it is cancelled.
     *
@@ -126,25 +157,35 @@ final class TeamBatch(
       isCancelled: () => Boolean = () => false
   ): TeamOutcomes =
     val known                              = IdentityHashMap[TeamCandidate, PreparedTeam]()
+    var last: PreparedTeam                 = null
     def prepare(number: Int): PreparedTeam =
-      known.computeIfAbsent(
-        worlds.candidate(number),
-        each => PreparedTeam(each, lanesOf(each).toOption, steppedOf(each).isDefined)
-      )
+      val candidate = worlds.candidate(number)
+      if last == null || (last.candidate ne candidate) then
+        last = known.computeIfAbsent(
+          candidate,
+          PreparedTeam(_, lanesOf(candidate), steppedOf(candidate.engagement))
+        )
+      last
     val judged   = if worlds.size == 0 then 0 else worlds.candidate(0).judged.size
     val outcomes = TeamOutcomes(Vector.fill(judged)(Array.ofDim[Float](worlds.size)))
-    val together = shares(worlds.shareEpisodes)
-    val came     = Accelerated.first(accelerated, worlds, together):
+    val came     = Accelerated.first(accelerated, worlds):
       _.fly(worlds, prepare, outcomes, onProgress, isCancelled)
     val prepared = Array.ofDim[PreparedTeam](worlds.size)
     for world <- came.left do prepared(world) = prepare(world)
+    val most    = came.left.headOption.fold(1)(world => batchOf(prepared(world)))
     val batches =
-      if together then WorldBatches.byEpisode(worlds, came.left, TimetableKernel.WORLDS)
-      else WorldBatches.inOrder(came.left, LoopKernel.WORLDS)
+      if worlds.shareEpisodes then WorldBatches.byEpisode(worlds, came.left, most)
+      else WorldBatches.inOrder(came.left, most)
     outcomes.flown = came.flown +
       LaneThreads.run(workers, batches, isCancelled, done => onProgress(came.flown + done)): (worker, some) =>
-        worker.fly(worlds, prepared, some, together, outcomes)
+        worker.fly(worlds, prepared, some, outcomes)
     outcomes
+
+  /** Number of worlds that a thread takes together, by one of them. */
+  private def batchOf(team: PreparedTeam): Int =
+    if team.form != null then TimetableKernel.WORLDS
+    else if team.isStepped then SteppedRollouts.worldsOf(model, team.vehicles.size)
+    else ScalarTeam.Worlds
 
   /** State of one thread, reused from batch to batch. Mutable. */
   private final class Worker:
@@ -152,99 +193,79 @@ final class TeamBatch(
     private val stepped = mutable.HashMap.empty[Int, SteppedTeams]
     private val scalar  = ScalarTeam(timing, model)
 
+    // Of the world before: neighbours often have one form and link.
+    private var lastForm: TeamForm = null
+    private var lastLink: Delays   = null
+    private var lastFlight: Flight = null
+    private var lastShares         = false
+
     def fly(
         worlds: TeamWorlds,
         prepared: Array[PreparedTeam],
         numbers: Array[Int],
-        share: Boolean,
         into: TeamOutcomes
     ): Unit =
-      val filled   = mutable.LinkedHashSet.empty[Flight]
+      val filled   = mutable.ArrayBuffer.empty[Flight]
       val unfilled = Array.newBuilder[Int]
       for world <- numbers do
-        prepared(world).form match
-          case Some(form) if refusal(form, share, worlds.link(world)).isEmpty =>
-            val first  = prepared(world).candidate
-            val flight = byForm.getOrElseUpdate(
-              (form, share),
-              if share then
-                val team = EpisodeTeam(form, first)
-                Flight(_ => team)
-              else Flight(BySlowest(LoopTeam(form, first, _))(_))
-            )
-            flight.add(world, prepared(world))
-            filled += flight
-          case _ if prepared(world).isStepped => unfilled += world
-          case _                              =>
-            into.set(world, scalar.fly(worlds.candidate(world), worlds.link(world), worlds.key(world)))
+        val team   = prepared(world)
+        val flight = if team.form == null then null else flightOf(team.form, team, worlds, world)
+        if flight != null then
+          if flight.add(world, team) then filled += flight
+        else if team.isStepped then unfilled += world
+        else into.set(world, scalar.fly(team.candidate, worlds.link(world), worlds.key(world)))
       for flight <- filled do flight.fly(worlds, into)
-      for (count, some) <- unfilled.result().groupBy(worlds.candidate(_).engagement.agents.size) do
-        stepped.getOrElseUpdate(count, steppedTeams(worlds.candidate(some(0)))).fly(worlds, some, into)
+      for (count, some) <- unfilled.result().groupBy(prepared(_).vehicles.size) do
+        stepped.getOrElseUpdate(count, steppedTeams(prepared(some(0)))).fly(worlds, some, into)
 
-    private def steppedTeams(first: TeamCandidate) =
-      SteppedTeams(timing, SteppedRollouts.of(model, first.engagement.agents).get)
+    /** What flies a world by SIMD; null if nothing does. */
+    private def flightOf(form: TeamForm, team: PreparedTeam, worlds: TeamWorlds, world: Int): Flight =
+      val link   = worlds.link(world)
+      val shares = worlds.shareEpisodes
+      if (form ne lastForm) || (link ne lastLink) || shares != lastShares then
+        lastForm = form
+        lastLink = link
+        lastShares = shares
+        val together = shares || episodes.areOne(form)
+        lastFlight =
+          if refusal(form, together, link).isDefined then null
+          else byForm.getOrElseUpdate((form, together), newFlight(form, team.candidate, together))
+      lastFlight
+
+    private def newFlight(form: TeamForm, first: TeamCandidate, together: Boolean) =
+      if together then
+        val teams = EpisodeTeams(form, first, episodes, timetables)
+        Flight((_, _) => teams)
+      else
+        val teams = BySlowest(LoopTeams(form, first, timing, _))
+        Flight((worlds, worldOf) => teams(worldOf.map(worlds.link)))
+
+    private def steppedTeams(first: PreparedTeam) =
+      SteppedTeams(timing, SteppedRollouts.of(model, first.vehicles).get)
 
   /** SIMD simulation of candidates of one form.
     *
-    * @param team makes the team for links, by lane
+    * @param teams that fly worlds, by their numbers
     */
-  private final class Flight(team: Array[Delays] => Team):
+  private final class Flight(teams: (TeamWorlds, Array[Int]) => LaneTeams):
     private val worldOf = Array.ofDim[Int](TimetableKernel.WORLDS)
     private val held    = Array.ofDim[PreparedTeam](TimetableKernel.WORLDS)
     private var filled  = 0
 
-    def add(world: Int, prepared: PreparedTeam): Unit =
+    /** @return whether it is the first since the last flight */
+    def add(world: Int, prepared: PreparedTeam): Boolean =
       worldOf(filled) = world
       held(filled) = prepared
       filled += 1
+      filled == 1
 
     def fly(worlds: TeamWorlds, into: TeamOutcomes): Unit =
       // Lanes that no world needs fly the last one again.
       for lane <- filled until worldOf.length do
         worldOf(lane) = worldOf(filled - 1)
         held(lane) = held(filled - 1)
-      val links  = worldOf.map(worlds.link)
-      val flying = team(links)
-      for lane <- worldOf.indices do
-        val vehicles = held(lane).candidate.engagement.agents
-        for (member, self) <- flying.members.zipWithIndex do
-          member.take(lane, vehicles(self), held(lane).ofPolicies(self))
-        flying.scores.take(lane, vehicles, held(lane).ofQuantities)
-      flying.fly(links, worldOf.map(worlds.key), filled)
-      for lane <- 0 until filled; number <- into.values.indices do
-        into.values(number)(worldOf(lane)) = flying.scores.value(number, lane)
+      val flying = teams(worlds, worldOf)
+      for lane <- worldOf.indices do flying.take(lane, held(lane))
+      flying.fly(worlds, worldOf, filled)
+      flying.tell(worldOf, filled, into)
       filled = 0
-
-  /** A team in many worlds, with its scores. */
-  private abstract class Team(form: TeamForm):
-    val scores: Scoreboard         = Scoreboard(form.scores, form.inSpace)
-    protected val views: TeamViews = TeamViews(form.team)
-    def members: Array[? <: TeamMember]
-
-    /** Simulates one episode in each world.
-      *
-      * @param filled number of worlds that count
-      */
-    def fly(links: Array[Delays], keys: Array[Int], filled: Int): Unit
-
-  /** A team whose worlds all have one episode. */
-  private final class EpisodeTeam(form: TeamForm, first: TeamCandidate) extends Team(form):
-    private val count              = form.team.count
-    val members: Array[TeamAgents] = TeamAgents.of(first.engagement.agents, form.vehicles, views)
-    private val kernel             = TimetableKernel(members.map(identity[TimetableAgents]), scores)
-
-    def fly(links: Array[Delays], keys: Array[Int], filled: Int): Unit =
-      val (link, key) = (links(0), keys(0))
-      val made        =
-        timetables.getOrMake((link, key, count, form.durationS, form.asksMore))(timetable(link, key, form))
-      kernel.fly(made, filled)
-
-  /** A team whose worlds have separate delays. */
-  private final class LoopTeam(form: TeamForm, first: TeamCandidate, maxDelayS: Double) extends Team(form):
-    private val loop                   = LoopLanes(timing, form.team.count, form.durationS, maxDelayS)
-    val members: Array[LoopTeamAgents] =
-      LoopTeamAgents.of(first.engagement.agents, loop, form.vehicles, views)
-    private val kernel = LoopKernel(loop, members.map(identity[LaneAgents]), scores)
-
-    def fly(links: Array[Delays], keys: Array[Int], filled: Int): Unit =
-      kernel.fly(keys, links.map(_.asInstanceOf[TabledDelays]))

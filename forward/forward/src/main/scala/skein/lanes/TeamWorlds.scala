@@ -1,7 +1,7 @@
 package skein.lanes
 
 import skein.forward.Engagement
-import skein.lanes.score.Judged
+import skein.lanes.score.{Effort, Judged}
 
 /** The worlds of one call of [[TeamBatch]]: a candidate and a link each. */
 trait TeamWorlds extends Worlds:
@@ -12,8 +12,15 @@ trait TeamWorlds extends Worlds:
   *
   * @param judged the numbers to compute; equal in count and form for every candidate, except for numbers in
   *   the quantities
+  * @param areAtOnePace whether candidates beside it have its vehicles' speeds and first headings: then two
+  *   that play against one another by [[skein.policy.HeadingPolicy]] fly fastest
   */
-final class TeamCandidate(val engagement: Engagement, val judged: Vector[Judged])
+final class TeamCandidate(
+    val engagement: Engagement,
+    val judged: Vector[Judged | Effort],
+    val areAtOnePace: Boolean = true
+):
+  private[lanes] val quantities: Vector[Judged] = judged.collect { case each: Judged => each }
 
 /** The results of each world.
   *
@@ -26,13 +33,6 @@ final class TeamOutcomes private[lanes] (val values: Vector[Array[Float]]):
   def flown: Int = done
 
   private[lanes] def flown_=(worlds: Int): Unit = done = worlds
-
-  /** A weighted sum of a world's results.
-    *
-    * @param weights by judged number
-    */
-  def sum(weights: Vector[Double], world: Int): Double =
-    weights.indices.map(number => weights(number) * values(number)(world)).sum
 
   private[lanes] def set(world: Int, came: Vector[Double]): Unit =
     for (value, number) <- came.zipWithIndex do values(number)(world) = value.toFloat

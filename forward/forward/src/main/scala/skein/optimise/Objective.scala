@@ -1,141 +1,142 @@
 package skein.optimise
 
-import skein.lanes.{DuelNumber, DuelOutcomes}
+import scala.collection.immutable.ListMap
+import skein.lanes.TeamOutcomes
+import skein.lanes.score.{Effort, Judged}
 import skein.policy.Role
-import skein.units.Expect
+import skein.scenario.{Measure, Scenario}
 
-/** A measure of an episode, by the name that users give. */
-enum DuelMeasure:
-  case Last10s
-
-  case Mean
-
-  case Min
-
-  /** Sum of the changes of the judged vehicle's commanded heading, rad. */
-  case Effort
-
-  /** 1 if the distance was at most `radiusM` within the first `withinS` of the episode, else 0: its mean is
-    * the probability of capture.
-    */
-  case Capture(radiusM: Double, withinS: Double)
-
-  /** First time at which the distance was at most `radiusM`, s; the episode's duration if it never was. */
-  case CaptureTime(radiusM: Double)
-
-  def text: String = this match
-    case Last10s                   => "last10s"
-    case Mean                      => "mean"
-    case Min                       => "min"
-    case Effort                    => "effort"
-    case Capture(radiusM, withinS) => s"capture($radiusM, $withinS)"
-    case CaptureTime(radiusM)      => s"captureTime($radiusM)"
-
-  /** The number of an episode's outcome that it needs.
-    *
-    * @param role of the judged vehicle
-    */
-  def number(role: Role): DuelNumber = this match
-    case Last10s                        => DuelNumber.MeanLast10s
-    case Mean                           => DuelNumber.MeanDistance
-    case Min                            => DuelNumber.MinDistance
-    case Capture(_, _) | CaptureTime(_) => DuelNumber.Capture
-    case Effort if role == Role.Pursuer => DuelNumber.PursuerEffort
-    case Effort                         => DuelNumber.EvaderEffort
-
-  def unit: String = this match
-    case Last10s | Mean | Min => "m"
-    case Effort               => "rad"
-    case Capture(_, _)        => ""
-    case CaptureTime(_)       => "s"
-
-  /** The radius that counts as a capture, for the measures that have one. */
-  def captureRadiusM: Option[Double] = this match
-    case Capture(radiusM, _)  => Some(radiusM)
-    case CaptureTime(radiusM) => Some(radiusM)
-    case _                    => None
-
-/** The objective of a search for a duel's policy.
+/** The objective of a search: a weighted sum of numbers of a flight, averaged over episodes.
   *
-  * @param terms weight and measure; all measures of captures have one radius
+  * @param terms weights and numbers
   */
-final case class Objective(terms: Vector[(Double, DuelMeasure)], direction: Direction)
-    extends SummedMeasures[DuelMeasure](_.text, _.unit):
+final case class Objective(terms: Vector[(Double, Term)], direction: Direction):
   require(terms.nonEmpty, "an objective needs at least one term")
-  require(
-    terms.flatMap((_, measure) => measure.captureRadiusM).distinct.size <= 1,
-    "all capture measures of an objective must name the same radius"
-  )
 
-  /** The radius within which an episode counts as a capture, m; 0 if no measure needs one. */
-  def captureRadiusM: Double = terms.flatMap((_, measure) => measure.captureRadiusM).headOption.getOrElse(0.0)
+  /** The weights with a scenario's measures, without other terms. */
+  def measures: Vector[(Double, Measure)] = terms.collect { case (weight, ScenarioTerm(measure)) =>
+    weight -> measure
+  }
 
-  /** The numbers of an episode that it needs.
+  /** What forward simulation computes of an episode; the terms must not need whole flights. */
+  def judged(durationS: Double, periodS: Double): Vector[Judged | Effort] =
+    terms.map((_, term) => term.judged(durationS, periodS).get)
+
+  /** The value in one world.
     *
-    * @param role whose effort counts
+    * @param outcomes of [[judged]]
     */
-  def asked(role: Role): Set[DuelNumber] = terms.map((_, measure) => measure.number(role)).toSet
-
-  /** The value in one episode.
-    *
-    * @param role whose effort counts
-    */
-  def value(outcomes: DuelOutcomes, world: Int, role: Role, durationS: Double): Double =
-    var sum = 0.0
-    for (weight, measure) <- terms do
-      val told         = outcomes(measure.number(role))(world)
-      val came: Double = measure match
-        // The time of a score is known as a Float alone: a capture exactly then counts.
-        case DuelMeasure.Capture(_, withinS) => if told <= withinS.toFloat then 1.0 else 0.0
-        case DuelMeasure.CaptureTime(_)      => told.toDouble.min(durationS)
-        case _                               => told
-      sum += weight * came
+  def value(outcomes: TeamOutcomes, world: Int, durationS: Double): Double =
+    var sum    = 0.0
+    var number = 0
+    while number < terms.size do
+      val (weight, term) = terms(number)
+      sum += weight * term.value(outcomes.values(number)(world), durationS)
+      number += 1
     sum
 
-object Objective:
-  private val Forms =
-    "last10s, mean, min, effort, capture(RADIUS_M, WITHIN_S), captureTime(RADIUS_M)"
+  /** The text that is read, without the direction. */
+  def formula: String = terms.zipWithIndex
+    .map:
+      case ((1.0, term), 0)    => term.key
+      case ((weight, term), 0) => s"$weight*${term.key}"
+      case ((weight, term), _) =>
+        val factor = if weight.abs == 1 then "" else s"${weight.abs}*"
+        s"${if weight < 0 then "-" else "+"} $factor${term.key}"
+    .mkString(" ")
 
-  /** Reads a measure's name, or a sum such as `0.7*last10s + 0.3*effort`, with an optional `minimise` or
-    * `maximise` before it. The default minimises a sum, and takes the role's direction for a single measure.
+  def text: String = s"${direction.text} $formula"
+
+  /** Unit of the value, if all terms agree; else empty. */
+  def unit: String = terms.map((_, term) => term.unit).distinct match
+    case Vector(one) => one
+    case _           => ""
+
+  /** The formula with its unit, for the axis of a picture. */
+  def title: String = if unit.isEmpty then formula else s"$formula, $unit"
+
+object Objective:
+
+  /** Reads the objective of one of two that play against one another: a name, or a sum such as `0.7*last10s +
+    * 0.3*effort`, with an optional `minimise` or `maximise` before it. The default minimises a sum, and takes
+    * the role's direction for a single term. The evader is vehicle 0.
     *
+    * @param role whose effort counts
     * @return Left states what was expected, what was given, and at which character
     */
-  def parse(text: String, role: Role): Either[String, Objective] =
-    for
-      sum <- WeightedSum.parse(text, Forms)(measureOf)
-      read = sum.terms
-      _ <- Expect.that(read.flatMap((_, measure) => measure.captureRadiusM).distinct.size <= 1):
-        s"objective '$text': expected one capture radius, came " +
-          s"${read.flatMap((_, m) => m.captureRadiusM).distinct.mkString(" and ")} m"
-    yield Objective(read, sum.stated.getOrElse(naturally(read, role)))
+  def ofRole(text: String, role: Role): Either[String, Objective] =
+    WeightedSum
+      .parse(text, RoleForms)(termOf(role, _, _))
+      .map(sum => Objective(sum.terms, sum.stated.getOrElse(naturally(sum.terms, role))))
 
-  private def naturally(terms: Vector[(Double, DuelMeasure)], role: Role): Direction = terms match
-    case Vector((1.0, measure)) =>
-      val pursuerWantsMore = measure match
-        case DuelMeasure.Capture(_, _) => true
-        case _                         => false
-      measure match
-        case DuelMeasure.Effort => Direction.Minimise
-        case _                  =>
-          if pursuerWantsMore == (role == Role.Pursuer) then Direction.Maximise else Direction.Minimise
-    case _ => Direction.Minimise
+  private val RoleForms = "last10s, mean, min, effort, capture(RADIUS_M, WITHIN_S), captureTime(RADIUS_M)"
 
-  private def measureOf(name: String, arguments: Option[String]): Either[String, DuelMeasure] =
+  private def naturally(terms: Vector[(Double, Term)], role: Role): Direction = terms match
+    case Vector((1.0, DistanceTerm.Capture(_, _))) =>
+      if role == Role.Pursuer then Direction.Maximise else Direction.Minimise
+    case Vector((1.0, _: DistanceTerm)) => naturally(role)
+    case _                              => Direction.Minimise
+
+  /** The default direction: a pursuer minimises, an evader maximises. */
+  def naturally(role: Role): Direction =
+    if role == Role.Evader then Direction.Maximise else Direction.Minimise
+
+  private def termOf(role: Role, name: String, arguments: Option[String]): Either[String, Term] =
     val numbers =
       arguments.map(_.split(',').toVector.map(_.trim.toDoubleOption.filter(x => x > 0 && x < 1e6)))
     (name, numbers) match
-      case ("last10s", None)                                       => Right(DuelMeasure.Last10s)
-      case ("mean", None)                                          => Right(DuelMeasure.Mean)
-      case ("min", None)                                           => Right(DuelMeasure.Min)
-      case ("effort", None)                                        => Right(DuelMeasure.Effort)
+      case ("last10s", None) => Right(DistanceTerm.Last10s)
+      case ("mean", None)    => Right(DistanceTerm.Mean)
+      case ("min", None)     => Right(DistanceTerm.Min)
+      case ("effort", None)  => Right(EffortTerm(if role == Role.Pursuer then 1 else 0))
       case ("capture", Some(Vector(Some(radiusM), Some(withinS)))) =>
-        Right(DuelMeasure.Capture(radiusM, withinS))
-      case ("captureTime", Some(Vector(Some(radiusM)))) => Right(DuelMeasure.CaptureTime(radiusM))
+        Right(DistanceTerm.Capture(radiusM, withinS))
+      case ("captureTime", Some(Vector(Some(radiusM)))) => Right(DistanceTerm.CaptureTime(radiusM))
       case ("capture", Some(Vector(_, _))) | ("captureTime", Some(Vector(_))) =>
         Left(
           "expected capture(RADIUS_M, WITHIN_S) or captureTime(RADIUS_M) with numbers above 0 and below a million, " +
             s"came '$name(${arguments.get})'"
         )
-      case _ =>
-        Left(s"expected one of $Forms, came '$name${arguments.fold("")(a => s"($a)")}'")
+      case _ => Left(s"expected one of $RoleForms, came '${call(name, arguments)}'")
+
+  private def call(name: String, arguments: Option[String]) = name + arguments.fold("")(a => s"($a)")
+
+  /** A scenario's measures that forward simulation supports, by their keys: those of a quantity, in their
+    * order.
+    */
+  def measures(scenario: Scenario): ListMap[String, Measure] =
+    byKey(scenario.measures.filter(_.reduced.nonEmpty))
+
+  private def byKey(measures: Vector[Measure]) =
+    measures.map(measure => ScenarioTerm.keyOf(measure) -> measure).to(ListMap)
+
+  /** Reads `off-ring + 0.1*gap`, with an optional direction before it: a scenario's measures of a quantity,
+    * as [[Objective.judged]] requires.
+    *
+    * @param otherwise the default direction
+    * @return Left states what was expected, what was given, and at which character
+    */
+  def ofQuantities(text: String, scenario: Scenario, otherwise: Direction): Either[String, Objective] =
+    val known  = measures(scenario)
+    val others = scenario.measures.filter(_.reduced.isEmpty).map(ScenarioTerm.keyOf)
+    read(text, known, otherwise): name =>
+      val note = if others.contains(name) then s": $name is told of recorded flights alone" else ""
+      if known.isEmpty then (s"another scenario, since ${scenario.name} has no measure of a quantity", note)
+      else (s"one of ${known.keys.mkString(", ")}", note)
+
+  /** Reads a sum of any measures of the scenario; minimises by default. */
+  def ofScenario(text: String, scenario: Scenario): Either[String, Objective] =
+    val known = byKey(scenario.measures)
+    if known.isEmpty then Left(s"expected a scenario with measures; ${scenario.name} has none")
+    else read(text, known, Direction.Minimise)(_ => (s"one of ${known.keys.mkString(", ")}", ""))
+
+  /** @param expected in place of an unknown name, and a note behind it */
+  private def read(text: String, known: ListMap[String, Measure], otherwise: Direction)(
+      expected: String => (String, String)
+  ): Either[String, Objective] = WeightedSum
+    .parse(text, known.keys.mkString(", "), hyphened = true): (name, arguments) =>
+      val (these, note) = expected(name)
+      known.get(name).filter(_ => arguments.isEmpty).map(ScenarioTerm(_)).toRight(
+        s"expected $these, came '${call(name, arguments)}'$note"
+      )
+    .map(sum => Objective(sum.terms, sum.stated.getOrElse(otherwise)))

@@ -230,7 +230,7 @@ object Search:
   val PlayOffFrom: Int = 1 << 24
 
   // A tenth of the search's episodes, within these bounds.
-  private val LeastPlayOff = 64
+  val LeastPlayOff         = 64
   private val MostPlayOff  = 1024L
   private val PlayOffRound = 64
   private val MostListed   = 16384

@@ -1,14 +1,15 @@
 package skein.optimise
 
 import skein.forward.Delays
-import skein.lanes.{Engine, TeamBatch, TeamCandidate, TeamWorlds}
+import skein.lanes.{TeamBatch, TeamCandidate, TeamWorlds}
+import skein.simd.WorldRandom
 
 /** Simulates a team's candidates in [[TeamBatch]].
   *
-  * @param candidate made from parameters; a pure function
-  * @param weights of the judged numbers, in their order: the weighted sum is the objective
-  * @param seed of the delays
-  * @param shareEpisodes see [[WorldsEvaluator]]
+  * @param candidate made from parameters, with the objective's numbers; a pure function
+  * @param seed of the delays, which are equal for all candidates
+  * @param shareEpisodes see [[skein.lanes.Worlds.shareEpisodes]]: for many candidates; a single one runs
+  *   faster without
   * @param usual parameters of a typical candidate, from which the number that run side by side is derived, if
   *   they share episodes
   */
@@ -16,24 +17,34 @@ final class TeamEvaluator(
     batch: TeamBatch,
     candidate: Vector[Double] => TeamCandidate,
     link: Delays,
-    weights: Vector[Double],
+    objective: Objective,
     seed: Long,
     shareEpisodes: Boolean = true,
     usual: Vector[Double] = Vector.empty
-) extends WorldsEvaluator(link, seed, shareEpisodes):
+) extends ValueEvaluator:
 
-  protected def engine: Engine = batch.engine(candidate(usual), shareEpisodes, Seq(link))
+  override def sideBySide: Int =
+    if shareEpisodes then batch.engine(candidate(usual), shareEpisodes, Seq(link)).sideBySide else 1
 
-  protected def flown(
+  def valuesUnless(isCancelled: () => Boolean)(
       candidates: Vector[Vector[Double]],
-      keys: Array[Int],
-      isCancelled: () => Boolean
-  ): Option[Int => Double] =
-    val worlds   = Teams(candidates.map(candidate).toArray, keys)
+      episodes: Range
+  ): Option[Vector[Array[Double]]] =
+    val keys     = episodes.map(WorldRandom.key(seed, 0, _)).toArray
+    val teams    = candidates.map(candidate).toArray
+    val worlds   = Worlds(teams, keys)
     val outcomes = batch.fly(worlds, isCancelled = isCancelled)
-    Option.when(outcomes.flown == worlds.size)(outcomes.sum(weights, _))
+    Option.when(outcomes.flown == worlds.size):
+      Vector.tabulate(teams.length): number =>
+        val durationS = teams(number).engagement.durationS
+        Array.tabulate(keys.length): episode =>
+          objective.value(outcomes, number * keys.length + episode, durationS)
 
-  private final class Teams(teams: Array[TeamCandidate], keys: Array[Int])
-      extends EachOf(teams, keys),
-        TeamWorlds:
-    def candidate(world: Int): TeamCandidate = of(world)
+  /** The worlds of all candidates, by candidate and episode. */
+  private final class Worlds(teams: Array[TeamCandidate], keys: Array[Int]) extends TeamWorlds:
+    def size: Int                            = teams.length * keys.length
+    override def shareEpisodes: Boolean      = TeamEvaluator.this.shareEpisodes
+    override def episodesOfEach: Int         = keys.length
+    def key(world: Int): Int                 = keys(world % keys.length)
+    def link(world: Int): Delays             = TeamEvaluator.this.link
+    def candidate(world: Int): TeamCandidate = teams(world / keys.length)

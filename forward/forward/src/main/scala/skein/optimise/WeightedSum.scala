@@ -65,34 +65,3 @@ object WeightedSum:
             )
 
     terms(0, Vector.empty).map(WeightedSum(_, stated))
-
-  /** The formula with its unit, for the axis of a picture. */
-  def withUnit(formula: String, unit: String): String = if unit.isEmpty then formula else s"$formula, $unit"
-
-/** The objective of a search: a weighted sum of measures, averaged over episodes. Its `terms` are weights
-  * with their measures.
-  *
-  * @param keyOf the name of a measure in the formula
-  * @param unitOf a measure's unit
-  */
-trait SummedMeasures[M](keyOf: M => String, unitOf: M => String):
-  def terms: Vector[(Double, M)]
-
-  def direction: Direction
-
-  /** The text that [[WeightedSum.parse]] reads, without the direction. */
-  def formula: String = terms.zipWithIndex
-    .map:
-      case ((1.0, measure), 0)    => keyOf(measure)
-      case ((weight, measure), 0) => s"$weight*${keyOf(measure)}"
-      case ((weight, measure), _) =>
-        val factor = if weight.abs == 1 then "" else s"${weight.abs}*"
-        s"${if weight < 0 then "-" else "+"} $factor${keyOf(measure)}"
-    .mkString(" ")
-
-  def text: String = s"${direction.text} $formula"
-
-  /** Unit of the value, if all terms agree; else empty. */
-  def unit: String = terms.map((_, measure) => unitOf(measure)).distinct match
-    case Vector(one) => one
-    case _           => ""

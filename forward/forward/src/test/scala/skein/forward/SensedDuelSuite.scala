@@ -1,7 +1,7 @@
 package skein.forward
 
 import skein.fusion.{Exposure, SensorModel}
-import skein.lanes.{DuelBatch, DuelWorlds}
+import skein.lanes.{PairBatch, PairWorlds}
 import skein.policy.{PaperEvader, PaperPursuer, HeadingPolicy}
 import skein.signal.{LatencyDistribution, SplitMix64}
 import skein.simd.WorldRandom
@@ -104,10 +104,10 @@ class SensedDuelSuite extends munit.FunSuite:
       // Beside the pursuer's way, so that no rounding decides to which side anybody turns.
       val seeing = duel(Some(camera))
       val beside = seeing.copy(evader = seeing.evader.copy(startY = 2), durationS = 12)
-      val batch  = DuelBatch(beside, timing, PlantResponse(ReducedModel.AirSimLag), threads = 1)
+      val batch  = PairBatch(beside, timing, PlantResponse(ReducedModel.AirSimLag), threads = 1)
       val engine = batch.engine(pursuer, evader, shareEpisodes = false, Seq(DelayTable.vpn)).text
       assert(engine.startsWith("SIMD, "), engine)
-      val worlds = new DuelWorlds:
+      val worlds = new PairWorlds:
         def size: Int                          = 40
         def key(world: Int): Int               = WorldRandom.key(world, 0, 0)
         def link(world: Int): Delays           = DelayTable.vpn
@@ -121,7 +121,7 @@ class SensedDuelSuite extends munit.FunSuite:
 
   test("eyes that SIMD does not support use the scalar engine, and the engine's text states it"):
     def told(duel: Duel, model: VelocityResponse) =
-      DuelBatch(duel, predictive, model, threads = 1)
+      PairBatch(duel, predictive, model, threads = 1)
         .engine(pursuer, evader, shareEpisodes = false, Seq(DelayTable.vpn)).text
     val seeing = duel(Some(camera))
     val both   = told(
@@ -138,6 +138,6 @@ class SensedDuelSuite extends munit.FunSuite:
     )
 
   test("a sensor with errors too small for floats uses the scalar engine"):
-    val batch  = DuelBatch(duel(Some(exact)), predictive, PlantResponse(ReducedModel.AirSimLag), threads = 1)
+    val batch  = PairBatch(duel(Some(exact)), predictive, PlantResponse(ReducedModel.AirSimLag), threads = 1)
     val engine = batch.engine(pursuer, evader, shareEpisodes = true, Seq(DelayTable.vpn)).text
     assert(engine.startsWith("scalar: the lanes know sensors with deviations of"), engine)

@@ -7,10 +7,10 @@ import skein.simd.WorldRandom
 import skein.testing.Unhurried
 import skein.vehicle.ReducedModel
 
-/** SIMD and the scalar engine take equal decisions in every world: [[DuelAgreement]]. */
+/** SIMD and the scalar engine take equal decisions in every world: [[PairAgreement]]. */
 class AgreementSimulation extends munit.FunSuite, Unhurried:
   private val lag    = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
-  private val worlds = DuelKernel.WORLDS
+  private val worlds = PairKernels.WORLDS
 
   /** The paper's duel, with the evader's start moved from straight ahead, which is a threshold of most
     * pursuers.
@@ -44,7 +44,7 @@ class AgreementSimulation extends munit.FunSuite, Unhurried:
       Seq(LoopTiming.Stream(), LoopTiming.Sequential(), LoopTiming.Predictive(predictor = lag.predictor))
   do
     test(s"$pursuer against $evader, ${timing.productPrefix}: equal decisions in each world compared"):
-      DuelAgreement
+      PairAgreement
         .shared(duel, timing, lag, DelayTable.vpn, WorldRandom.key(2, 0, 0))(
           each(19, drawPursuer),
           each(23, drawEvader)
@@ -54,7 +54,7 @@ class AgreementSimulation extends munit.FunSuite, Unhurried:
   for (pursuer, draw) <- pursuers do
     test(s"$pursuer, separate delays in each world: equal decisions in each world compared"):
       for timing <- Seq(LoopTiming.Stream(), LoopTiming.Sequential(), LoopTiming.Futures()) do
-        DuelAgreement
+        PairAgreement
           .alone(duel, timing, lag, _ => DelayTable.vpn, WorldRandom.key(2, 1, _))(
             each(29, draw),
             each(31, drawn(PolicyFamily.paperEvader))
@@ -78,7 +78,7 @@ class AgreementSimulation extends munit.FunSuite, Unhurried:
   do
     test(s"with $name, ${timing.productPrefix}: equal decisions in each world compared"):
       for draw <- Seq(drawn(PolicyFamily.paperPursuer), trend) do
-        DuelAgreement
+        PairAgreement
           .shared(duel, timing, vehicle, DelayTable.vpn, WorldRandom.key(2, 2, 0))(
             each(37, draw),
             each(41, drawn(PolicyFamily.paperEvader))
@@ -94,7 +94,7 @@ class AgreementSimulation extends munit.FunSuite, Unhurried:
         "each world: the same decisions in each compared"
     ):
       for draw <- Seq(drawn(PolicyFamily.paperPursuer), trend) do
-        DuelAgreement
+        PairAgreement
           .alone(
             duel,
             timing,

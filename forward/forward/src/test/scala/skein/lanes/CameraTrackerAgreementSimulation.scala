@@ -5,7 +5,7 @@ import skein.formula.ErrorBound
 import skein.forward.*
 import skein.lanes.loop.{LaneAgents, LoopEye, LoopLanes}
 import skein.lanes.policy.CameraTrackerLanes
-import skein.lanes.timetable.{Timetable, TimetableEye, TimetableVehicles}
+import skein.lanes.timetable.{TimetableEye, TimetableVehicles}
 import skein.optimise.LatencyBudget
 import skein.policy.{PaperEvader, PaperPursuer, HeadingPolicy}
 import skein.simd.WorldRandom
@@ -24,9 +24,9 @@ class CameraTrackerCombinationsSimulation extends CameraTrackerAgreement(isDaily
 
 abstract class CameraTrackerAgreement(isDaily: Boolean) extends munit.FunSuite:
   import CameraTrackerAgreement.*
-  import DuelAgreement.Event
+  import PairAgreement.Event
 
-  private val worlds = DuelKernel.WORLDS
+  private val worlds = PairKernels.WORLDS
   private val model  = PlantResponse(ReducedModel.AirSimLag)
   private val camera = GuideCamera.model
 
@@ -84,19 +84,13 @@ abstract class CameraTrackerAgreement(isDaily: Boolean) extends munit.FunSuite:
     if isDaily == (episode == 0)
   do
     test(s"${timing.productPrefix}, episode $episode: equal detections and decisions in each world compared"):
-      val key      = WorldRandom.key(5, 0, episode)
-      val forms    = CameraTrackerLanes.of(camera).fold(fail(_), identity)
-      val eye      = SharedEye(forms, duel.pursuer, duel.evader)
-      val lanes    = DuelAgreement.taken(pursuer, evader)
-      val vehicles = LaneDynamics.under(timing, model, duel).fold(fail(_), identity)
-      val flown    = TimetableDuels(duel, timing, vehicles, lanes(1), lanes(0), DuelNumber.all, eye, null)
-      flown.fly(
-        Timetable.of(2, duel.durationS, timing, DelayTable.vpn, key, vehicles, Map(1 -> camera)),
-        worlds,
-        0
-      )
+      val key   = WorldRandom.key(5, 0, episode)
+      val forms = CameraTrackerLanes.of(camera).fold(fail(_), identity)
+      val eye   = SharedEye(forms, duel.pursuer, duel.evader)
+      val lanes = PairAgreement.taken(pursuer, evader)
+      val flown = PairKernels.shared(duel, timing, model, lanes, DelayTable.vpn, key, 0, Map(1 -> eye))
       isFlownByBatch(timing, key, flown)
-      val agreement = new DuelAgreement(
+      val agreement = new PairAgreement(
         duel,
         timing,
         model,
@@ -112,18 +106,18 @@ abstract class CameraTrackerAgreement(isDaily: Boolean) extends munit.FunSuite:
       agreement.check(s"episode $episode", 0 until worlds by 5)
 
   /** The batch of forward simulation gives these results, to the bit. */
-  private def isFlownByBatch(timing: LoopTiming, episode: Int, kernel: DuelKernel): Unit =
-    val all = new DuelWorlds:
+  private def isFlownByBatch(timing: LoopTiming, episode: Int, kernel: PairKernel): Unit =
+    val all = new PairWorlds:
       def size: Int                          = worlds
       override def shareEpisodes: Boolean    = true
       def key(world: Int): Int               = episode
       def link(world: Int): Delays           = DelayTable.vpn
       def pursuer(world: Int): HeadingPolicy = CameraTrackerAgreement.this.pursuer(world)
       def evader(world: Int): HeadingPolicy  = CameraTrackerAgreement.this.evader(world)
-    val batch = DuelBatch(duel, timing, model, threads = 1)
+    val batch = PairBatch(duel, timing, model, threads = 1)
     val told  = batch.engine(pursuer(0), evader(0), shareEpisodes = true, Seq(DelayTable.vpn)).text
     assert(told.startsWith("SIMD"), told)
-    assertEquals(batch.fly(all).meanDistanceM.toSeq, kernel(DuelNumber.MeanDistance).toSeq)
+    assertEquals(batch.fly(all).meanDistanceM.toSeq, kernel(PairNumber.MeanDistance).toSeq)
 
   for
     (plant, model) <- plants
@@ -162,10 +156,10 @@ abstract class CameraTrackerAgreement(isDaily: Boolean) extends munit.FunSuite:
       link: TabledDelays
   ): Unit =
     val seed            = 8
-    val lanes           = DuelAgreement.taken(pursuer, evader)
+    val lanes           = PairAgreement.taken(pursuer, evader)
     var eye: OwnEye     = null
     def key(world: Int) = WorldRandom.key(seed, 0, world)
-    val flown           = DuelAgreement.flownAlone(
+    val flown           = PairAgreement.flownAlone(
       seeing,
       timing,
       model,
@@ -177,7 +171,7 @@ abstract class CameraTrackerAgreement(isDaily: Boolean) extends munit.FunSuite:
         eye = OwnEye(forms, own, opponent, loop, ours, theirs)
         eye
     )
-    val agreement = new DuelAgreement(
+    val agreement = new PairAgreement(
       seeing,
       timing,
       model,
@@ -250,7 +244,7 @@ private object CameraTrackerAgreement:
     ): Unit =
       super.expose(image, ours, oursAt, theirs, theirsAt, times, at)
       val shown = found(image)
-      looks += Vector.tabulate(DuelKernel.WORLDS): world =>
+      looks += Vector.tabulate(PairKernels.WORLDS): world =>
         val (we, they) = (oursAt + world, theirsAt + world)
         Looked(
           forms,
@@ -274,7 +268,7 @@ private object CameraTrackerAgreement:
       ours: LaneAgents,
       theirs: LaneAgents
   ) extends LoopEye(forms, own, opponent, loop, ours, theirs):
-    val looks: Vector[ArrayBuffer[Looked]] = Vector.fill(DuelKernel.WORLDS)(ArrayBuffer.empty)
+    val looks: Vector[ArrayBuffer[Looked]] = Vector.fill(PairKernels.WORLDS)(ArrayBuffer.empty)
 
     override def keep(n: Int, world: Int): Unit =
       super.keep(n, world)

@@ -9,17 +9,17 @@ import skein.vehicle.ReducedModel
 class EffortSuite extends munit.FunSuite:
   private val duel = Duel.paper.copy(durationS = 5)
 
-  private def flown(shared: Boolean, efforts: Boolean, timing: LoopTiming): DuelOutcomes =
-    val worlds = new DuelWorlds:
+  private def flown(shared: Boolean, efforts: Boolean, timing: LoopTiming): PairOutcomes =
+    val worlds = new PairWorlds:
       def size: Int                       = 200
       override def shareEpisodes: Boolean = shared
-      override def asked: Set[DuelNumber] =
-        if efforts then super.asked else Set(DuelNumber.MeanDistance, DuelNumber.MinDistance)
+      override def asked: Set[PairNumber] =
+        if efforts then super.asked else Set(PairNumber.MeanDistance, PairNumber.MinDistance)
       def key(world: Int): Int               = WorldRandom.key(1, 0, if shared then world % 2 else world)
       def link(world: Int): Delays           = DelayTable.vpn
       def pursuer(world: Int): HeadingPolicy = PaperPursuer(0.6 + 0.002 * world)
       def evader(world: Int): HeadingPolicy  = PaperEvader()
-    DuelBatch(duel, timing, PlantResponse(ReducedModel.AirSimLag), threads = 1).fly(worlds)
+    PairBatch(duel, timing, PlantResponse(ReducedModel.AirSimLag), threads = 1).fly(worlds)
 
   for
     shared <- Seq(true, false)

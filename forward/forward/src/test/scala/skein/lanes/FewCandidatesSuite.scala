@@ -29,9 +29,9 @@ class FewCandidatesSuite extends munit.FunSuite, Unhurried:
     Seq(LoopTiming.Stream(), LoopTiming.Sequential(), LoopTiming.Predictive(predictor = model.predictor))
 
   private def duels(duel: Duel, timing: LoopTiming, model: VelocityResponse, count: Int) =
-    val batch = DuelBatch(duel, timing, model, threads = 1)
+    val batch = PairBatch(duel, timing, model, threads = 1)
     val came  = batch.fly(
-      new DuelWorlds:
+      new PairWorlds:
         def size: Int                          = count
         override def shareEpisodes: Boolean    = true
         def key(world: Int): Int               = WorldRandom.key(3, 1, 1)
@@ -39,7 +39,7 @@ class FewCandidatesSuite extends munit.FunSuite, Unhurried:
         def pursuer(world: Int): HeadingPolicy = PaperPursuer(0.6 + 1e-2 * world)
         def evader(world: Int): HeadingPolicy  = PaperEvader()
     )
-    DuelNumber.values.toVector.map(came(_).take(few).toVector)
+    PairNumber.values.toVector.map(came(_).take(few).toVector)
 
   private def teams(timing: LoopTiming, model: VelocityResponse, count: Int) =
     TeamBatch(timing, model, threads = 1)

@@ -43,7 +43,7 @@ class FlownByLanesSuite extends munit.FunSuite:
     "a formula"                    -> PaperPursuer(),
     "a formula that remembers"     -> TrendPursuer(3, 0.5, 1),
     "a formula that asks for ages" -> AgeAwarePursuer(8, 1, 1),
-    "no formula"                   -> DuelBatchSimulation.Straight
+    "no formula"                   -> PairBatchSimulation.Straight
   )
 
   /** The table's entries for worlds under a loop, by plant. */
@@ -75,12 +75,12 @@ class FlownByLanesSuite extends munit.FunSuite:
   for
     (plant, model)   <- plants
     timing           <- loops(model)
-    (worlds, shared) <- Seq("duels, shared delays" -> true, "duels, own delays" -> false)
+    (worlds, shared) <- Seq("shared delays" -> true, "own delays" -> false)
   do
     test(
-      s"$worlds, ${nameOf(timing)}, $plant: the engine says what the table does, and flies as the reference"
+      s"duels, $worlds, ${nameOf(timing)}, $plant: the engine says what the table does, and flies as the reference"
     ):
-      val batch = DuelBatch(duel, timing, model, threads = 1)
+      val batch = PairBatch(duel, timing, model, threads = 1)
       val said  = table((worlds, nameOf(timing)))(plant)
       for (kind, policy) <- policies do
         val engine = batch.engine(policy, PaperEvader(), shared, Seq(DelayTable.vpn)).text
@@ -93,13 +93,13 @@ class FlownByLanesSuite extends munit.FunSuite:
   for
     (plant, model)   <- plants
     timing           <- loops(model)
-    (worlds, shared) <- Seq("duels, shared delays" -> true, "duels, own delays" -> false)
+    (worlds, shared) <- Seq("shared delays" -> true, "own delays" -> false)
   do
     test(
-      s"$worlds, ${nameOf(timing)}, $plant, with a sensor: the engine agrees with the text below the table"
+      s"duels, $worlds, ${nameOf(timing)}, $plant, with a sensor: the engine agrees with the text below the table"
     ):
       val seeing = duel.copy(pursuer = duel.pursuer.copy(eye = Some(GuideCamera.model)))
-      val engine = DuelBatch(seeing, timing, model, threads = 1)
+      val engine = PairBatch(seeing, timing, model, threads = 1)
         .engine(PaperPursuer(), PaperEvader(), shared, Seq(DelayTable.vpn)).text
       val said    = table((worlds, nameOf(timing)))(plant)
       val isTimed = shared || !timing.isInstanceOf[LoopTiming.Paused]
@@ -111,12 +111,12 @@ class FlownByLanesSuite extends munit.FunSuite:
   do
     test(s"predictive by $plant itself, ${if shared then "shared" else "own"} delays: it flies by lanes"):
       val model  = PlantResponse(plant)
-      val batch  = DuelBatch(duel, LoopTiming.Predictive(predictor = model.predictor), model, threads = 1)
+      val batch  = PairBatch(duel, LoopTiming.Predictive(predictor = model.predictor), model, threads = 1)
       val engine = batch.engine(PaperPursuer(), PaperEvader(), shared, Seq(DelayTable.vpn)).text
       assertEquals(word(engine), "SIMD", engine)
 
-  private def agree(batch: DuelBatch, timing: LoopTiming, model: VelocityResponse, shared: Boolean): Unit =
-    val all = new DuelWorlds:
+  private def agree(batch: PairBatch, timing: LoopTiming, model: VelocityResponse, shared: Boolean): Unit =
+    val all = new PairWorlds:
       def size: Int                          = 24
       override def shareEpisodes: Boolean    = shared
       def key(world: Int): Int               = WorldRandom.key(5, 0, if shared then 1 else world)
@@ -143,7 +143,7 @@ class FlownByLanesSuite extends munit.FunSuite:
           Vector(Judged(OffRing(surround.ringM), Reduction.Rms, 0))
         )
       val batch = TeamBatch(timing, model, threads = 1)
-      for (worlds, shared) <- Seq("teams, shared delays" -> true, "teams, own delays" -> false) do
+      for (worlds, shared) <- Seq("shared delays" -> true, "own delays" -> false) do
         val engine = batch.engine(team, shared, Seq(DelayTable.vpn)).text
         assertEquals(word(engine), table((worlds, nameOf(timing)))(plant), engine)
 
@@ -162,8 +162,7 @@ class FlownByLanesSuite extends munit.FunSuite:
   test("the table has a row for all that the engines fly, and no other"):
     val all =
       for
-        worlds <-
-          Seq("duels, shared delays", "duels, own delays", "teams, shared delays", "teams, own delays")
+        worlds <- Seq("shared delays", "own delays")
         timing <- loops(VelocityResponses.Ideal)
       yield (worlds, nameOf(timing))
     assertEquals(table.keySet, all.toSet)

@@ -39,16 +39,20 @@ object GuideExample:
   // guide: end
 
   // guide: search
-  import skein.forward.{DelayTable, Duel, LoopTiming, VelocityResponses}
-  import skein.lanes.DuelBatch
-  import skein.optimise.{Direction, DuelEvaluator, DuelMeasure, Objective}
-  import skein.policy.PaperEvader
+  import skein.forward.{DelayTable, Engagement, LoopTiming, VelocityResponses}
+  import skein.lanes.{TeamBatch, TeamCandidate}
+  import skein.optimise.{Direction, DistanceTerm, Objective, TeamEvaluator}
+  import skein.scenario.PaperDuel
 
-  val lag       = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
-  val batch     = DuelBatch(Duel.paper, LoopTiming.Stream(), lag)
-  val nearest   = Objective(Vector(1.0 -> DuelMeasure.Last10s), Direction.Minimise)
-  val evaluator =
-    DuelEvaluator(batch, 60, leads, Role.Pursuer, PaperEvader(), DelayTable.vpn, nearest, seed = 1)
+  val duel    = Engagement.of(PaperDuel().fleet, durationS = 60)
+  val timing  = LoopTiming.Stream()
+  val lag     = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
+  val nearest = Objective(Vector(1.0 -> DistanceTerm.Last10s), Direction.Minimise)
+
+  def candidate(parameters: Vector[Double]): TeamCandidate =
+    TeamCandidate(duel.flownBy(Role.Pursuer, leads.policy(parameters)), nearest.judged(60, timing.periodS))
+
+  val evaluator  = TeamEvaluator(TeamBatch(timing, lag), candidate, DelayTable.vpn, nearest, seed = 1)
   val candidates = leads.space.random(200, seed = 1)
   val best       = candidates.zip(evaluator.tallies(candidates, 0 until 20)).minBy(_._2.mean)
   // guide: end

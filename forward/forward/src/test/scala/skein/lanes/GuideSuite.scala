@@ -2,7 +2,6 @@ package skein.lanes
 
 import java.nio.file.{Files, Path}
 import skein.forward.DelayTable
-import skein.policy.PaperEvader
 
 /** The code of the guide on formulas compiles and runs. */
 class GuideSuite extends munit.FunSuite:
@@ -21,7 +20,8 @@ class GuideSuite extends munit.FunSuite:
 
   test("a SIMD search of the example's policy finds a better one than the middle"):
     import GuideExample.*
-    val engine = batch.engine(leads.defaultPolicy, PaperEvader(), true, Seq(DelayTable.vpn)).text
+    val engine =
+      TeamBatch(timing, lag).engine(candidate(leads.space.defaults), true, Seq(DelayTable.vpn)).text
     assert(engine.startsWith("SIMD"), engine)
     val middle = evaluator.tallies(Vector(leads.space.defaults), 0 until 20).head.mean
     assert(best._2.mean < middle, s"${best._2.mean} against $middle")

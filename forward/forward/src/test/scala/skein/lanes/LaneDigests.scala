@@ -65,8 +65,8 @@ object LaneDigests:
       count: Int
   ): Bits =
     val duel = Duel.paper.copy(evader = Duel.paper.evader.copy(startY = evaderAsideM), durationS = 4)
-    val out  = DuelBatch(duel, timing, model, threads = 1).fly(
-      new DuelWorlds:
+    val out  = PairBatch(duel, timing, model, threads = 1).fly(
+      new PairWorlds:
         def size: Int                          = count
         override def shareEpisodes: Boolean    = shared
         def key(world: Int): Int               = WorldRandom.key(5, 0, if shared then 1 else world)
@@ -133,7 +133,7 @@ object LaneDigests:
       shared                <- Seq(true, false)
       ((name, pursuer), at) <- pursuers.zipWithIndex
       // The scalar engine, which knows no lanes, flies the others.
-      if DuelBatch(
+      if PairBatch(
         Duel.paper,
         timing,
         model,

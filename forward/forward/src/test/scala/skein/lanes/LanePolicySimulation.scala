@@ -56,7 +56,7 @@ class LanePolicySimulation extends munit.FunSuite:
             0
           )
           val memory    = policy.start
-          val departure = DuelAgreement.departure(0, 0, 0, policy, seen, memory, lanes.made.last, world)
+          val departure = PairAgreement.departure(0, 0, 0, policy, seen, memory, lanes.made.last, world)
           agreement.add(world, departure):
             // The formula is the policy.
             val heading = policy.decide(seen, memory)._1
@@ -95,8 +95,8 @@ class LanePolicySimulation extends munit.FunSuite:
       val short           = Duel.paper.copy(evader = Duel.paper.evader.copy(startY = 2), durationS = 5)
       def key(world: Int) = WorldRandom.key(1, 0, world)
       val agreement       =
-        if shared then DuelAgreement.shared(short, timing, model, DelayTable.vpn, key(0))
-        else DuelAgreement.alone(short, timing, model, _ => DelayTable.vpn, key)
+        if shared then PairAgreement.shared(short, timing, model, DelayTable.vpn, key(0))
+        else PairAgreement.alone(short, timing, model, _ => DelayTable.vpn, key)
       agreement(pursuers, _ => opponent).check("seed 5", 0 until worlds by 3)
 
 /** A policy of another form, or no formula, depending on `isHasty`. */

@@ -16,7 +16,7 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
     durationS = 6
   )
 
-  private def worlds(shared: Boolean): DuelWorlds = new DuelWorlds:
+  private def worlds(shared: Boolean): PairWorlds = new PairWorlds:
     def size: Int                          = 256
     override def shareEpisodes: Boolean    = shared
     def key(world: Int): Int               = WorldRandom.key(5, 0, world / 128)
@@ -37,7 +37,7 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
       )
   do
     test(s"$name by SIMD under ${timing.productPrefix} equals its scalar simulation"):
-      val batch = DuelBatch(short, timing, vehicle, threads = 1)
+      val batch = PairBatch(short, timing, vehicle, threads = 1)
       assert(batch.engine(PaperPursuer(), PaperEvader(), shareEpisodes = true, Seq(DelayTable.vpn)).isFast)
       val all   = worlds(shared = true)
       val flown = batch.fly(all)
@@ -45,8 +45,8 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
       assert(off.max < 1e-3, off.sorted.takeRight(5))
 
   private def offM(
-      all: DuelWorlds,
-      flown: DuelOutcomes,
+      all: PairWorlds,
+      flown: PairOutcomes,
       timing: LoopTiming,
       vehicle: VelocityResponse,
       world: Int
@@ -70,8 +70,8 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
       )
   do
     test(s"$name by SIMD under ${timing.productPrefix} with separate delays equals its scalar simulation"):
-      val batch = DuelBatch(short, timing, vehicle, threads = 1)
-      val all   = new DuelWorlds:
+      val batch = PairBatch(short, timing, vehicle, threads = 1)
+      val all   = new PairWorlds:
         def size: Int                          = 256
         def key(world: Int): Int               = WorldRandom.key(5, 1, world)
         def link(world: Int): Delays           = if world % 2 == 0 then DelayTable.vpn else DelayTable.direct
@@ -87,7 +87,7 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
       s"a plant that uses one part of its command is predicted by SIMD like by its scalar, shared: $shared"
     ):
       val timing = LoopTiming.Predictive(predictor = train.predictor)
-      val batch  = DuelBatch(short, timing, train, threads = 1)
+      val batch  = PairBatch(short, timing, train, threads = 1)
       assert(batch.engine(PaperPursuer(), PaperEvader(), shared, Seq(DelayTable.vpn)).isFast)
       val all   = worlds(shared)
       val flown = batch.fly(all)
@@ -115,7 +115,7 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
       val duel = short.copy(pursuer = short.pursuer.copy(startX = 7, startY = -3))
       val all  = worlds(shared = true)
       for timing <- Seq(LoopTiming.Stream(), LoopTiming.Sequential()) do
-        val flown = DuelBatch(duel, timing, PlantResponse(plant), threads = 1).fly(all)
+        val flown = PairBatch(duel, timing, PlantResponse(plant), threads = 1).fly(all)
         for world <- 0 until all.size by 5 do
           val own = duel.copy(
             duel.pursuer.copy(policy = all.pursuer(world)),
@@ -139,7 +139,7 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
 
   test("a plant that SIMD does not support is reported"):
     def engine(plant: Plant[?], shared: Boolean, timing: LoopTiming = LoopTiming.Stream()) =
-      DuelBatch(short, timing, PlantResponse(plant), 1)
+      PairBatch(short, timing, PlantResponse(plant), 1)
         .engine(PaperPursuer(), PaperEvader(), shared, Seq(DelayTable.vpn)).text
     assert(engine(bicycle.plant, shared = true).startsWith("SIMD"))
     assert(engine(bicycle.plant, shared = false).startsWith("SIMD"))

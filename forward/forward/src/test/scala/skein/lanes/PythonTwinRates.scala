@@ -4,7 +4,7 @@ import com.sun.management.OperatingSystemMXBean
 import java.lang.management.ManagementFactory
 import java.nio.file.{Files, Path}
 import skein.forward.*
-import skein.optimise.TeamObjective
+import skein.optimise.{Objective, ScenarioTerm}
 import skein.scenario.*
 import skein.simd.WorldRandom
 
@@ -19,7 +19,7 @@ object PythonTwinRates:
     for (name, twin) <- Seq("ring" -> Surround(), "pursuit" -> PaperDuel()); share <- Seq(true, false) do
       val text   = Files.readString(Path.of(arguments(0)).resolve(s"$name.scenario"))
       val python = ScenarioText.read(text).fold(why => throw IllegalArgumentException(why), _.standard)
-      val judged = TeamObjective.judged(TeamObjective.measures(python).values.toVector, 20, 0.1)
+      val judged = Objective.measures(python).values.toVector.flatMap(ScenarioTerm(_).judged(20, 0.1))
       val batch  = TeamBatch(LoopTiming.Stream(), lag, threads = 1)
       def seconds(of: Scenario): Double =
         val team   = TeamCandidate(Engagement.of(of.fleet, durationS = 20), judged)

@@ -86,7 +86,8 @@ class PythonTwinSuite extends munit.FunSuite:
               ).map(each =>
                 Judged(each.quantity, each.reduction, 3)
               )
-          val team   = TeamCandidate(Engagement.of(of.fleet, durationS = 6), judged)
+          // Else two of our own policies would decide by headings alone, and Python's as teams do.
+          val team   = TeamCandidate(Engagement.of(of.fleet, durationS = 6), judged, areAtOnePace = false)
           val worlds = new TeamWorlds:
             def size: Int                            = 8
             override def shareEpisodes: Boolean      = share

@@ -11,7 +11,7 @@ import skein.forward.{
   Rollout,
   VelocityResponses
 }
-import skein.lanes.policy.TeamLanes
+import skein.lanes.policy.{TeamLanes, VehicleNumbers}
 import skein.lanes.timetable.{Timetable, TimetableAgents, TimetableKernel, TimetableScores, TimetableVehicles}
 import skein.policy.{Action, Observation, Policy}
 import skein.scenario.{Crossing, Formation, Scenario, Surround}
@@ -50,16 +50,16 @@ class TeamAgreementSimulation extends munit.FunSuite, Unhurried:
       val random = SplitMix64(seed)
       val drawn  = Vector.fill(worlds)(Engagement.of(draw(random).fleet, 6))
       val key    = WorldRandom.key(2, 0, 0)
-      val model  = LaneDynamics.of(plant, drawn.head.agents).fold(fail(_), identity)
+      val model  = LaneDynamics.of(plant).fold(fail(_), identity)
       val lanes  =
         TeamLanes.of(policies(drawn.head), drawn.head.assignment, isPredicted = false).fold(throw _, identity)
       val team    = TeamViews(lanes)
       val agents  = Array.tabulate(lanes.count)(self => Logged(self, drawn.head.agents(self), model, team))
       val numbers =
-        drawn.map(each => policies(each).zipWithIndex.map((policy, self) => lanes.parametersOf(self, policy)))
+        drawn.map(each => policies(each).zipWithIndex.map((policy, self) => lanes.numbersOf(self, policy)))
       for world <- 0 until worlds; self <- 0 until lanes.count do
-        val own = MemberNumbers(numbers(world)(self), Array.emptyDoubleArray)
-        agents(self).take(world, drawn(world).agents(self), own)
+        val own = numbers(world)(self)
+        agents(self).take(world, VehicleNumbers(drawn(world).agents(self), own))
       TimetableKernel(agents.map(identity[TimetableAgents]), NoScores)
         .fly(Timetable.of(lanes.count, 6, timing, DelayTable.vpn, key, model), worlds)
       val forms     = Vector.tabulate(lanes.count)(self => Form(lanes, self))
@@ -79,7 +79,7 @@ class TeamAgreementSimulation extends munit.FunSuite, Unhurried:
               logs(self).seen(k),
               agents(self).made.take(k + 1).takeRight(2).toVector,
               world,
-              numbers(world)(self)
+              numbers(world)(self).parameters
             )
           .nextOption()
         agreement.add(world, first)(())

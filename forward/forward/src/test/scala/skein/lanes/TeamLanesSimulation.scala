@@ -3,7 +3,7 @@ package skein.lanes
 import scala.collection.mutable.ArrayBuffer
 import skein.forward.*
 import skein.identify.Tilting
-import skein.lanes.policy.TeamLanes
+import skein.lanes.policy.{TeamLanes, VehicleNumbers}
 import skein.lanes.score.{Judged, OfMoment}
 import skein.lanes.timetable.{Timetable, TimetableAgents, TimetableKernel, TimetableScores}
 import skein.optimise.LatencyBudget
@@ -123,7 +123,7 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
     val random = SplitMix64(7)
     val all    = Vector.fill(worlds)(engagement(draw(random), durationS))
     val key    = WorldRandom.key(3, 1, 0)
-    val model  = LaneDynamics.under(timing, plant, all.head.agents).fold(fail(_), identity)
+    val model  = LaneDynamics.under(timing, plant).fold(fail(_), identity)
     val lanes  = TeamLanes
       .of(all.head.agents.map(_.policy), all.head.assignment, isPredicted = false)
       .fold(throw _, identity)
@@ -134,7 +134,7 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
     for (each, world) <- all.zipWithIndex do
       for (agent, self) <- agents.zipWithIndex do
         val own = each.agents(self)
-        agent.take(world, own, MemberNumbers(lanes.parametersOf(self, own.policy), Array.emptyDoubleArray))
+        agent.take(world, VehicleNumbers(own, lanes.numbersOf(self, own.policy)))
     TimetableKernel(agents.map(identity[TimetableAgents]), places)
       .fly(Timetable.of(count, durationS, timing, link, key, model), worlds)
     for world <- 0 until worlds by every do

@@ -14,7 +14,6 @@ import skein.forward.{
 }
 import skein.identify.Tilting
 import skein.lanes.policy.LanePolicy
-import skein.lanes.timetable.Timetable
 import skein.policy.{PaperEvader, PaperPursuer}
 import skein.signal.LatencyDistribution
 import skein.simd.WorldRandom
@@ -22,7 +21,7 @@ import skein.units.Span
 import skein.vehicle.ReducedModel
 
 class TimetableKernelSimulation extends munit.FunSuite:
-  private val worlds = DuelKernel.WORLDS
+  private val worlds = PairKernels.WORLDS
   private val lag    = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
 
   private val turnRates = Array.tabulate(worlds)(i => 0.6f + 0.008f * i)
@@ -51,23 +50,27 @@ class TimetableKernelSimulation extends munit.FunSuite:
       key: Int,
       durationS: Double,
       model: VelocityResponse
-  ): TimetableDuels =
+  ): PairKernel =
     val (pursuers, evaders) = (LanePolicy.of(PaperPursuer()), LanePolicy.of(PaperEvader()))
     for world <- 0 until worlds do
       pursuers.take(world, pursuer(world))
       evaders.take(world, evader(world))
-    val duel   = paper.copy(durationS = durationS)
-    val lanes  = LaneDynamics.under(timing, model, duel).fold(fail(_), identity)
-    val kernel = TimetableDuels(duel, timing, lanes, pursuers, evaders)
-    kernel.fly(Timetable.of(2, durationS, timing, link, key, lanes), worlds, captureM)
-    kernel
+    PairKernels.shared(
+      paper.copy(durationS = durationS),
+      timing,
+      model,
+      Vector(evaders, pursuers),
+      link,
+      key,
+      captureM
+    )
 
   private val loops = TestLoops.unpredicted
 
   /** The predictive loop, with the best model of the vehicles that SIMD supports. */
   private def predicted(model: VelocityResponse): Option[LoopTiming] =
     Some(LoopTiming.Predictive(predictor = model.predictor)).filter(timing =>
-      LaneDynamics.under(timing, model, paper).isRight
+      LaneDynamics.under(timing, model).isRight
     )
 
   private val links = Seq[(String, Delays)](
@@ -92,7 +95,7 @@ class TimetableKernelSimulation extends munit.FunSuite:
     timing                   <- loops ++ predicted(model)
     (name, link)             <- flown
   do
-    // None of these worlds meets a threshold within 5 s: DuelAgreement would name it.
+    // None of these worlds meets a threshold within 5 s: PairAgreement would name it.
     test(
       s"$vehicles, $timing over $name: candidates fly by the " +
         "timetable as by the scalar reference, 5 s to 2 mm"
@@ -104,12 +107,12 @@ class TimetableKernelSimulation extends munit.FunSuite:
         for world <- 0 until worlds by 3 do
           val scalar = Rollout(duel(world, 5), timing, link, model).fly(key, captureM)
           all += 1
-          if (kernel(DuelNumber.MinDistance)(world) - scalar.minDistanceM).abs < 2e-3 &&
-            (kernel(DuelNumber.MeanDistance)(world) - scalar.meanDistanceM).abs < 2e-3 &&
-            (kernel(DuelNumber.PursuerEffort)(world) - scalar.pursuerEffortRad).abs < 2e-3 &&
-            (kernel(DuelNumber.EvaderEffort)(world) - scalar.evaderEffortRad).abs < 2e-3
+          if (kernel(PairNumber.MinDistance)(world) - scalar.minDistanceM).abs < 2e-3 &&
+            (kernel(PairNumber.MeanDistance)(world) - scalar.meanDistanceM).abs < 2e-3 &&
+            (kernel(PairNumber.PursuerEffort)(world) - scalar.pursuerEffortRad).abs < 2e-3 &&
+            (kernel(PairNumber.EvaderEffort)(world) - scalar.evaderEffortRad).abs < 2e-3
           then close += 1
-          if kernel(DuelNumber.Capture)(world) == scalar.captureS.toFloat then captures += 1
+          if kernel(PairNumber.Capture)(world) == scalar.captureS.toFloat then captures += 1
       assert(close == all, s"$close of $all worlds agree")
       assert(captures == all, s"$captures of $all captures agree")
 
@@ -140,8 +143,8 @@ class TimetableKernelSimulation extends munit.FunSuite:
       key: Int,
       durationS: Double,
       model: VelocityResponse
-  ): DuelAgreement =
-    DuelAgreement.shared(paper.copy(durationS = durationS), timing, model, link, key, captureM)(
+  ): PairAgreement =
+    PairAgreement.shared(paper.copy(durationS = durationS), timing, model, link, key, captureM)(
       pursuer,
       evader
     )

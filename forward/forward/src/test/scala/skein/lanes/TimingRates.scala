@@ -44,8 +44,8 @@ import skein.vehicle.ReducedModel
     if only.forall(text => if text.startsWith("-") then !row.contains(text.drop(1)) else row.contains(text))
   do
     val duel  = Duel.paper.copy(pursuer = Duel.paper.pursuer.copy(eye = Option.when(sees)(eye)))
-    val batch = DuelBatch(duel, timing, model, threads = 1)
-    def worlds(count: Int, from: Int): DuelWorlds = new DuelWorlds:
+    val batch = PairBatch(duel, timing, model, threads = 1)
+    def worlds(count: Int, from: Int): PairWorlds = new PairWorlds:
       def size: Int                       = count
       override def shareEpisodes: Boolean = shared
       def key(world: Int): Int            =

@@ -27,14 +27,14 @@ class UnseenPolicySuite extends munit.FunSuite:
       val random   = SplitMix64(7)
       val pursuers = Vector.fill(128)(draw(random))
       val evader   = ChauffeurEvader()
-      val worlds   = new DuelWorlds:
+      val worlds   = new PairWorlds:
         def size: Int                          = pursuers.size
         override def shareEpisodes: Boolean    = shared
         def key(world: Int): Int               = WorldRandom.key(1, 0, if shared then 0 else world)
         def link(world: Int): Delays           = DelayTable.vpn
         def pursuer(world: Int): HeadingPolicy = pursuers(world)
         def evader(world: Int): HeadingPolicy  = UnseenPolicySuite.Evader
-      val batch = DuelBatch(short, timing, model, 1)
+      val batch = PairBatch(short, timing, model, 1)
       assert(
         batch.engine(pursuers.head, evader, shared, Seq(DelayTable.vpn)).isFast,
         batch.engine(pursuers.head, evader, shared, Seq(DelayTable.vpn)).text

@@ -2,8 +2,10 @@ package skein.lanes
 
 import skein.forward.{DelayTable, Duel, LoopTiming, Rollout, VelocityResponses}
 import skein.lanes.policy.{LanePolicy, PolicyLanes}
-import skein.lanes.timetable.Timetable
+import skein.lanes.score.Scoreboard
+import skein.lanes.timetable.{Timetable, TimetableKernel}
 import skein.policy.PolicyFamily
+import skein.scenario.Reduction
 import skein.signal.SplitMix64
 
 /** Measures the speed of a search of policies that the product does not contain: `forward/Test/runMain
@@ -25,24 +27,27 @@ import skein.signal.SplitMix64
   for _ <- 1 to rounds.headOption.getOrElse(2); (name, draw) <- ("paper" -> paper) +: UnseenPolicySuite.Unseen
   do
     val random                   = SplitMix64(3)
-    val candidates               = Array.fill(DuelKernel.WORLDS)(draw(random))
-    val lanes                    = LaneDynamics.of(model, Duel.paper).fold(sys.error, identity)
+    val candidates               = Array.fill(PairKernels.WORLDS)(draw(random))
+    val lanes                    = LaneDynamics.of(model).fold(sys.error, identity)
     val table                    = Timetable.of(2, 60, timing, DelayTable.vpn, 1, lanes)
     val started                  = System.nanoTime
     val pursuers                 = LanePolicy.of(candidates(0))
     val compiledMs               = (System.nanoTime - started) / 1_000_000
     val evaders                  = LanePolicy.of(UnseenPolicySuite.Evader)
-    val kernel                   = TimetableDuels(Duel.paper, timing, lanes, pursuers, evaders)
+    val agents                   = Vector(Duel.paper.evader, Duel.paper.pursuer)
+    val members                  = Opponents.inEpisode(agents, lanes, Vector(evaders, pursuers), Map.empty)
+    val scores                   = Scoreboard.ofDistance(Reduction.Mean -> 50.1)
+    val kernel                   = TimetableKernel(members.map(identity), scores)
     def fly(episodes: Int): Unit = for _ <- 1 to episodes do
-      for world <- 0 until DuelKernel.WORLDS do
+      for world <- 0 until PairKernels.WORLDS do
         pursuers.take(world, candidates(world))
         evaders.take(world, UnseenPolicySuite.Evader)
-      kernel.fly(table, DuelKernel.WORLDS, 0)
+      kernel.fly(table, PairKernels.WORLDS)
     fly(1000)
-    val rate = Vector.fill(5)(200 * DuelKernel.WORLDS * 1200 / seconds(fly(200))).max * 1e-6
+    val rate = Vector.fill(5)(200 * PairKernels.WORLDS * 1200 / seconds(fly(200))).max * 1e-6
     def scalar(count: Int): Unit = for world <- 0 until count do
       val duel = Duel(
-        Duel.paper.pursuer.copy(policy = candidates(world % DuelKernel.WORLDS)),
+        Duel.paper.pursuer.copy(policy = candidates(world % PairKernels.WORLDS)),
         Duel.paper.evader.copy(policy = UnseenPolicySuite.Evader),
         60
       )
@@ -50,7 +55,7 @@ import skein.signal.SplitMix64
     scalar(150)
     val slow    = Vector.fill(3)(60 * 1200 / seconds(scalar(60))).max * 1e-6
     val size    = PolicyLanes.get(candidates(0)).operations
-    val witness = kernel(DuelNumber.MeanLast10s).map(_.toDouble).sum / DuelKernel.WORLDS
+    val witness = scores.values(0).map(_.toDouble).sum / PairKernels.WORLDS
     println(
       f"$name%-8s $rate%6.1f M/s  scalar $slow%.3f M/s  ${rate / slow}%5.0f times  $size%4d operations " +
         f" ${rate * size}%7.0f M operations/s  made in $compiledMs ms  witness $witness%.5f"

@@ -1,19 +1,19 @@
 package skein.optimise
 
-import skein.forward.{DelayTable, Duel, DuelOutcome, LoopTiming, Rollout, VelocityResponses}
-import skein.lanes.{DuelBatch, DuelOutcomes, DuelWorlds}
-import skein.policy.{PaperEvader, PaperPursuer, HeadingPolicy, Role}
+import skein.forward.{DelayTable, Duel, Engagement, LoopTiming, Rollout, VelocityResponses}
+import skein.lanes.{TeamBatch, TeamCandidate}
+import skein.policy.{PaperPursuer, Role}
 import skein.simd.WorldRandom
 
 class ObjectiveSuite extends munit.FunSuite:
   private def read(text: String, role: Role = Role.Pursuer): Objective =
-    Objective.parse(text, role).fold(mistake => fail(mistake), identity)
+    Objective.ofRole(text, role).fold(mistake => fail(mistake), identity)
 
   test("a weighted sum is read term by term, and its text is read back"):
     val objective = read("0.7*last10s + 0.3*effort-2e-1 * capture(4, 20)")
     assertEquals(
       objective.terms,
-      Vector(0.7 -> DuelMeasure.Last10s, 0.3 -> DuelMeasure.Effort, -0.2 -> DuelMeasure.Capture(4, 20))
+      Vector(0.7 -> DistanceTerm.Last10s, 0.3 -> EffortTerm(1), -0.2 -> DistanceTerm.Capture(4, 20))
     )
     assertEquals(objective.direction, Direction.Minimise)
     assertEquals(read(objective.text), objective)
@@ -37,31 +37,36 @@ class ObjectiveSuite extends munit.FunSuite:
       ("capture(4, x)", "character 1", "capture(RADIUS_M, WITHIN_S)"),
       ("capture(-4, 20)", "above 0 and below a million", "came 'capture(-4, 20)'"),
       ("captureTime(1e7)", "above 0 and below a million", "came 'captureTime(1e7)'"),
-      ("captureTime(-1)", "character 1", "captureTime(RADIUS_M)"),
-      ("capture(4, 20) + captureTime(5)", "one capture radius", "4.0 and 5.0")
+      ("captureTime(-1)", "character 1", "captureTime(RADIUS_M)")
     )
   do
     test(s"'$text' is refused with place and expectation"):
-      val mistake = Objective.parse(text, Role.Pursuer).left.getOrElse("accepted")
+      val mistake = Objective.ofRole(text, Role.Pursuer).left.getOrElse("accepted")
       assert(mistake.contains(place) && mistake.contains(expected), mistake)
 
   test("captures, their times and efforts are those of the scalar reference"):
     val duel     = Duel.paper.copy(durationS = 20)
     val model    = VelocityResponses.lag(0.9, 0.8, 0.05)
     val pursuers = Vector(PaperPursuer(0.4), PaperPursuer(1.0), PaperPursuer(1.8))
-    val worlds   = new DuelWorlds:
-      def size: Int                          = pursuers.size
-      def key(world: Int): Int               = WorldRandom.key(1, 0, 0)
-      def link(world: Int): DelayTable       = DelayTable.direct
-      def pursuer(world: Int): HeadingPolicy = pursuers(world)
-      def evader(world: Int): HeadingPolicy  = PaperEvader()
-    val outcomes = DuelBatch(duel, LoopTiming.Futures(), model, 1).fly(worlds, captureRadiusM = 4.5)
-    for (pursuer, world) <- pursuers.zipWithIndex do
+    val timing   = LoopTiming.Futures()
+    val key      = WorldRandom.key(1, 0, 0)
+    for pursuer <- pursuers do
       val own = duel.copy(pursuer = duel.pursuer.copy(policy = pursuer))
-      val one = Rollout(own, LoopTiming.Futures(), DelayTable.direct, model).fly(worlds.key(0), 4.5)
-      def value(text: String, role: Role = Role.Pursuer) = read(text, role).value(outcomes, world, role, 20)
+      val one = Rollout(own, timing, DelayTable.direct, model).fly(key, 4.5)
+      val far = Rollout(own, timing, DelayTable.direct, model).fly(key, 6)
+      def value(text: String, role: Role = Role.Pursuer) =
+        val objective = read(text, role)
+        val candidate = TeamCandidate(Engagement.of(own), objective.judged(20, timing.periodS))
+        val evaluator =
+          TeamEvaluator(TeamBatch(timing, model, 1), _ => candidate, DelayTable.direct, objective, 1)
+        evaluator.tallies(Vector(Vector.empty), 0 until 1).head.mean
       assertEqualsDouble(value("captureTime(4.5)"), one.captureS.min(20), 1e-5)
       assertEqualsDouble(value("capture(4.5, 8)"), if one.captureS <= 8 then 1 else 0, 0)
+      assertEqualsDouble(
+        value("captureTime(4.5) + captureTime(6)"),
+        one.captureS.min(20) + far.captureS.min(20),
+        1e-5
+      )
       assertEqualsDouble(value("effort"), one.pursuerEffortRad, 1e-4)
       assertEqualsDouble(value("effort", Role.Evader), one.evaderEffortRad, 1e-4)
       assertEqualsDouble(
@@ -90,7 +95,6 @@ class ObjectiveSuite extends munit.FunSuite:
     assertEqualsDouble(width(32), 1, 1e-9)
 
   test("a capture at the last moment that counts is one, and one a score later is none"):
-    val outcomes = DuelOutcomes(1)
+    val capture = DistanceTerm.Capture(4, 7.3)
     for (captureS, expected) <- Seq(7.2 -> 1.0, 7.3 -> 1.0, 73 * 0.1 -> 1.0, 7.4 -> 0.0) do
-      outcomes.set(0, DuelOutcome(1, captureS, 1, 1, captureS, 0, 0, 0, 0))
-      assertEquals(read("capture(4, 7.3)").value(outcomes, 0, Role.Pursuer, 20), expected, s"$captureS s")
+      assertEquals(capture.value(captureS.toFloat, 20), expected, s"$captureS s")

@@ -1,7 +1,7 @@
 package skein.planning
 
 import skein.formula.ErrorBound
-import skein.lanes.{Bicycle, DuelAgreement, Rolling, UnseenPolicySuite}
+import skein.lanes.{Bicycle, PairAgreement, Rolling, UnseenPolicySuite}
 import skein.lanes.policy.PolicyLanes
 import skein.policy.{PaperEvader, HeadingPolicy}
 import skein.scenario.Fence
@@ -109,7 +109,7 @@ class PlanKernelSuite extends munit.FunSuite:
       behaviour: Behaviour
   ): Seq[Jump] = behaviour.target match
     case opponent: Target.Opponent =>
-      val log   = DuelAgreement.Log(opponent.policy)
+      val log   = PairAgreement.Log(opponent.policy)
       val alone = situation.copy(behaviours = Vector(Behaviour(opponent.copy(policy = log))))
       ManoeuvreRollout(alone, objective, dtS).fly(manoeuvre): Unit
       val form  = PolicyLanes.get(opponent.policy)

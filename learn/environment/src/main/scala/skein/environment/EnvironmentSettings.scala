@@ -72,7 +72,9 @@ final case class EnvironmentSettings(
       flown <- flown(altitudeM, "reduced", vehicles = 2)
       (timing, delays, vehicle) = flown
       paper                     = Duel.paperAt(altitudeM, episodeS + SpareS)
-      model   <- LaneDynamics.under(timing, vehicle.response, paper).left.map("plant: " + _)
+      _ <- LaneDynamics
+        .isHighEnough(vehicle.response, Seq(paper.evader, paper.pursuer)).left.map("plant: " + _)
+      model   <- LaneDynamics.under(timing, vehicle.response).left.map("plant: " + _)
       against <- told.fold(opponentFile(roles))(file => Right(Some(file)))
       (evader, pursuer) = against.fold((PaperEvader(), PaperPursuer())): file =>
         if file.role == Role.Pursuer then (PaperEvader(), file.policy) else (file.policy, PaperPursuer())

@@ -2,7 +2,7 @@ package skein.environment
 
 import scala.util.Try
 import skein.forward.{Delays, Engagement, LoopTiming, Rollout, VelocityResponse}
-import skein.optimise.TeamObjective
+import skein.optimise.{Objective, ScenarioTerm}
 import skein.policy.{Agent, Fleet, HeadingPolicy, PaperPursuer, Policy, Role}
 import skein.scenario.{Positions, Quantity, Reduction, Scenario, Scenarios}
 import skein.settings.ScenarioSettings
@@ -21,7 +21,7 @@ private[environment] final case class ScenarioSide(
     scenario: Scenario,
     role: Role,
     members: Vector[Int],
-    objective: Option[TeamObjective],
+    objective: Option[Objective],
     timing: LoopTiming,
     link: Delays,
     response: VelocityResponse
@@ -71,7 +71,7 @@ private[environment] final case class ScenarioSide(
     case Some(by) =>
       val places = Positions(IArray.from(northM), IArray.from(eastM), downM)
       var sum    = 0.0
-      for (weight, measure) <- by.terms; reduced <- measure.reduced do
+      for (weight, measure) <- by.measures; reduced <- measure.reduced do
         val paid = Quantity.told(reduced.quantity, places)
         if !paid.isFinite then
           throw OwnFailure(
@@ -108,16 +108,16 @@ private[environment] object ScenarioSide:
       objective <-
         if settings.objective.isEmpty then Right(None)
         else
-          TeamObjective.parse(
+          Objective.ofQuantities(
             settings.objective,
             scenario,
-            TeamObjective.naturally(role)
+            Objective.naturally(role)
           ).left.map("objective: " + _).map(Some(_))
-      _ <- objective.toVector.flatMap(_.measures).find(measure =>
+      _ <- objective.toVector.flatMap(_.measures.map(_._2)).find(measure =>
         !isSummed(measure.reduced.get.reduction)
       ).map: measure =>
         "objective: expected means over time, which can be rewarded " +
-          s"as they come, came ${TeamObjective.keyOf(measure)}"
+          s"as they come, came ${ScenarioTerm.keyOf(measure)}"
       .toLeft(())
       // Teams fly low, where the model of three parameters is not valid.
       flown <- settings.flown(-agents(members.head).startPositionNed.z, "drag", agents.size)

@@ -1,11 +1,11 @@
 package skein.environment
 
 import java.nio.{ByteBuffer, ByteOrder}
-import skein.forward.{Delays, Duel, DuelOutcome, PlantResponse, Rollout}
-import skein.lanes.{DuelBatch, DuelWorlds}
+import skein.forward.{Delays, Duel, DuelOutcome, Engagement, PlantResponse, Rollout}
+import skein.lanes.{TeamBatch, TeamCandidate, TeamWorlds}
 import skein.lanes.LearnerDuels.FIELDS
-import skein.policy.{PaperEvader, PaperPursuer, HeadingPolicy}
-import skein.scenario.Scenarios
+import skein.lanes.score.Judged
+import skein.scenario.{Reduction, Scenarios, Separation}
 import skein.signal.SplitMix64
 import skein.vehicle.ReducedModel
 
@@ -52,18 +52,19 @@ class EnvironmentBatchSimulation extends munit.FunSuite:
     val config = settings.resolved.fold(fail(_), identity)
     val duel   = Duel.paperAt(settings.altitudeM, settings.episodeS)
     val runKey = EnvironmentTimetables.keyOf(EnvironmentTimetables.indexOf(SplitMix64.seedOf(seed, 0)))
-    val worlds = new DuelWorlds:
-      def size                               = 1
-      override def shareEpisodes             = true
-      def key(world: Int): Int               = runKey
-      def link(world: Int): Delays           = config.link
-      def pursuer(world: Int): HeadingPolicy = PaperPursuer()
-      def evader(world: Int): HeadingPolicy  = PaperEvader()
-    val flown = DuelBatch(duel, config.timing, PlantResponse(ReducedModel.AirSimLag), 1).fly(worlds)
+    val judged = Vector(Judged(Separation, Reduction.Least, 0), Judged(Separation, Reduction.Mean, 0))
+    val team   = TeamCandidate(Engagement.of(duel), judged)
+    val worlds = new TeamWorlds:
+      def size                                 = 1
+      override def shareEpisodes               = true
+      def key(world: Int): Int                 = runKey
+      def link(world: Int): Delays             = config.link
+      def candidate(world: Int): TeamCandidate = team
+    val flown = TeamBatch(config.timing, PlantResponse(ReducedModel.AirSimLag), 1).fly(worlds)
     (
       Rollout(duel, config.timing, config.link, PlantResponse(ReducedModel.AirSimLag)).fly(runKey),
-      flown.minDistanceM(0),
-      flown.meanDistanceM(0)
+      flown.values(0)(0),
+      flown.values(1)(0)
     )
 
   for (loop, link) <-

@@ -1,10 +1,11 @@
 package skein.learn
 
 import skein.environment.EnvironmentSettings
-import skein.forward.{DelayTable, Delays, Duel, LinkDelays, LoopTiming, PlantResponse, Rollout}
-import skein.lanes.{DuelBatch, DuelWorlds}
+import skein.forward.{DelayTable, Delays, Duel, Engagement, LinkDelays, LoopTiming, PlantResponse, Rollout}
+import skein.lanes.{TeamBatch, TeamCandidate, TeamWorlds}
+import skein.lanes.score.Judged
 import skein.policy.*
-import skein.scenario.Scenarios
+import skein.scenario.{Reduction, Scenarios, Separation}
 import skein.signal.{LatencyDistribution, LatencyProfile, SplitMix64}
 import skein.units.Span
 import skein.vehicle.ReducedModel
@@ -53,19 +54,19 @@ class SideTaskSimulation extends munit.FunSuite:
       assertEqualsDouble(mean, flown.meanDistanceM, 0.05)
 
   test("a learned policy with SIMD equals the scalar reference"):
-    val policy = LearnedPolicy(LearnedPolicy.shape(Vector(16, 16)), SideTask.parameters(drawn(16, 16)), 1, 0)
-    val duel   = Duel.paperAt(20, 20)
-    val worlds = new DuelWorlds:
-      def size                               = 4
-      override def shareEpisodes             = true
-      def key(world: Int): Int               = world
-      def link(world: Int): Delays           = DelayTable.vpn
-      def pursuer(world: Int): HeadingPolicy = policy
-      def evader(world: Int): HeadingPolicy  = PaperEvader()
-    val batch = DuelBatch(duel, LoopTiming.Stream(), PlantResponse(ReducedModel.AirSimLag), 1)
-    assert(batch.engine(policy, PaperEvader(), shareEpisodes = true, Seq(DelayTable.vpn)).isFast)
-    val flown   = batch.fly(worlds)
+    val policy  = LearnedPolicy(LearnedPolicy.shape(Vector(16, 16)), SideTask.parameters(drawn(16, 16)), 1, 0)
+    val duel    = Duel.paperAt(20, 20)
     val pursued = duel.copy(pursuer = duel.pursuer.copy(policy = policy))
+    val team    = TeamCandidate(Engagement.of(pursued), Vector(Judged(Separation, Reduction.Mean, 0)))
+    val worlds  = new TeamWorlds:
+      def size                                 = 4
+      override def shareEpisodes               = true
+      def key(world: Int): Int                 = world
+      def link(world: Int): Delays             = DelayTable.vpn
+      def candidate(world: Int): TeamCandidate = team
+    val batch = TeamBatch(LoopTiming.Stream(), PlantResponse(ReducedModel.AirSimLag), 1)
+    assert(batch.engine(team, shareEpisodes = true, Seq(DelayTable.vpn)).isFast)
+    val flown   = batch.fly(worlds)
     val rollout = Rollout(pursued, LoopTiming.Stream(), DelayTable.vpn, PlantResponse(ReducedModel.AirSimLag))
     for world <- 0 until 4 do
-      assertEqualsDouble(flown.meanDistanceM(world).toDouble, rollout.fly(world).meanDistanceM, 0.05)
+      assertEqualsDouble(flown.values(0)(world).toDouble, rollout.fly(world).meanDistanceM, 0.05)

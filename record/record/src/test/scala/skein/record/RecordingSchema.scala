@@ -25,7 +25,7 @@ object RecordingSchema:
       |second, `Rad` radians, `RadPerS` radians per second. `North`, `East`, `Down` are axes of the world frame;
       |`Front`, `Right`, `Down` those of the body frame. `validAtNs` (also `ownValidAtNs` and similar), `actsAtNs` and
       |`predictedForNs` are on the simulator's clock, all other instants on the controller's. `sequence` counts the rows
-      |of a vehicle; other tables refer to it. [Concepts](concepts.md#the-words) defines reading, decision and age. Every table begins with `row`, the order in which all rows of the flight
+      |of a vehicle; other tables refer to it. Of readings, [each of several controllers](loops.md#a-controller-for-each-vehicle) has numbers of its own. [Concepts](concepts.md#the-words) defines reading, decision and age. Every table begins with `row`, the order in which all rows of the flight
       |were accepted.
       |
       |```sql
@@ -51,8 +51,8 @@ object RecordingSchema:
         "`ownTrueAge` and `opponentTrueAge` from its valid time, with `uncertainty` as the bound of their " +
         "error. `sinceOwnMove` and `sinceOpponentMove` are the times since the last commands. " +
         "`relativeX` and `relativeY` are the position of the evader relative to the pursuer, along its " +
-        "commanded heading and to the right of it (for other roles, of the opponent relative to the " +
-        "vehicle). `headingBefore` was commanded last, `heading` was decided now. `elapsed` is the time " +
+        "commanded heading, or where that was not known, the direction in which it moved, and to " +
+        "the right of it (for other roles, of the opponent relative to the vehicle). `headingBefore` was commanded last, `heading` was decided now. `elapsed` is the time " +
         "since the vehicle's last decision. `actsAt` is the predicted time at which the command acts, and " +
         "`…Predicted…` are the states predicted for it, if the decision was made from them. `action…` is " +
         "absent where heading and speed, at the altitude of the start, are the whole action."

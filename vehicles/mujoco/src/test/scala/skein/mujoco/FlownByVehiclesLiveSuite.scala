@@ -3,8 +3,8 @@ package skein.mujoco
 import skein.forward.*
 import skein.lanes.*
 import skein.lanes.score.Judged
-import skein.policy.{PaperEvader, PaperPursuer, HeadingPolicy}
-import skein.scenario.{OffRing, Reduction, Surround}
+import skein.policy.{PaperPursuer, Role}
+import skein.scenario.{OffRing, Reduction, Separation, Surround}
 import skein.simd.WorldRandom
 
 /** Checks the statement in docs/engines.md that MuJoCo bodies are simulated as vehicles. `FlownByLanesSuite`
@@ -26,25 +26,23 @@ class FlownByVehiclesLiveSuite extends MujocoHere:
     val duel = Duel.paper.copy(durationS = 2)
     for timing <- loops; shared <- Seq(true, false) do
       val told  = s"${timing.productPrefix}, shared delays: $shared"
-      val batch = DuelBatch(duel, timing, model, threads = 1)
-      val all   = new DuelWorlds:
-        def size: Int                          = 3
-        override def shareEpisodes: Boolean    = shared
-        def key(world: Int): Int               = WorldRandom.key(5, 0, if shared then 1 else world)
-        def link(world: Int): Delays           = DelayTable.vpn
-        def pursuer(world: Int): HeadingPolicy = PaperPursuer(0.6 + 0.04 * world)
-        def evader(world: Int): HeadingPolicy  = PaperEvader(7 + 0.1 * world)
-      val engine = batch.engine(all.pursuer(0), all.evader(0), shared, Seq(DelayTable.vpn)).text
+      val batch = TeamBatch(timing, model, threads = 1)
+      val all   = new TeamWorlds:
+        private val teams = Vector.tabulate(3): world =>
+          val pursued = Engagement.of(duel).flownBy(Role.Pursuer, PaperPursuer(0.6 + 0.04 * world))
+          TeamCandidate(pursued, Vector(Judged(Separation, Reduction.Mean, 0)))
+        def size: Int                            = 3
+        override def shareEpisodes: Boolean      = shared
+        def key(world: Int): Int                 = WorldRandom.key(5, 0, if shared then 1 else world)
+        def link(world: Int): Delays             = DelayTable.vpn
+        def candidate(world: Int): TeamCandidate = teams(world)
+      val engine = batch.engine(all.candidate(0), shared, Seq(DelayTable.vpn)).text
       assertEquals(engine, "vehicles side by side; their loops by the scalar engine", told)
-      val flown = batch.fly(all)
+      val flown = batch.fly(all).values(0)
       for world <- 0 until all.size do
-        val own = Duel(
-          duel.pursuer.copy(policy = all.pursuer(world)),
-          duel.evader.copy(policy = all.evader(world)),
-          duel.durationS
-        )
-        val scalar = Rollout(own, timing, DelayTable.vpn, model).fly(all.key(world))
-        assertEquals(flown.meanDistanceM(world), scalar.meanDistanceM.toFloat, s"$told, world $world")
+        val scalar =
+          Rollout(all.candidate(world).engagement, timing, DelayTable.vpn, model).fly(all.key(world))
+        assertEquals(flown(world), scalar.meanDistanceM.toFloat, s"$told, world $world")
 
   test("teams are simulated vehicle by vehicle under every loop, with the scalar engine's bits"):
     assumeMujoco()

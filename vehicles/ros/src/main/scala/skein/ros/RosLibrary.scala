@@ -45,6 +45,7 @@ private[ros] final class RosLibrary private (folders: Vector[Path], rcl: SymbolL
   val endNode     = status("rcl_node_fini", ADDRESS)
   val initSender  = status("rcl_publisher_init", ADDRESS, ADDRESS, ADDRESS, ADDRESS, ADDRESS)
   val endSender   = status("rcl_publisher_fini", ADDRESS, ADDRESS)
+  val readersOf   = status("rcl_publisher_get_subscription_count", ADDRESS, ADDRESS)
   val publish     = status("rcl_publish_serialized_message", ADDRESS, ADDRESS, ADDRESS)
   val initReader  = status("rcl_subscription_init", ADDRESS, ADDRESS, ADDRESS, ADDRESS, ADDRESS)
   val endReader   = status("rcl_subscription_fini", ADDRESS, ADDRESS)

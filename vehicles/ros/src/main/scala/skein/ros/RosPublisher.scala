@@ -47,6 +47,13 @@ final class RosPublisher[A] private[ros] (
           library.reason(status): Unit
           failures.incrementAndGet(): Unit
 
+  /** Whether a subscription of any node matches it now; false after the end of its node. */
+  def isRead: Boolean = synchronized:
+    isOpen && {
+      val count = room.allocate(8, 8)
+      library.status(library.readersOf, publisher, count) == RosLibrary.Ok && count.get(JAVA_LONG, 0) > 0
+    }
+
   private[ros] def close(node: MemorySegment): Unit = synchronized:
     if isOpen then
       isOpen = false

@@ -2,6 +2,9 @@ package skein.ros
 
 import java.util.concurrent.atomic.{AtomicLong, AtomicReference}
 import java.util.concurrent.{ArrayBlockingQueue, TimeUnit}
+import org.apache.pekko.actor.ActorSystem
+import skein.airsim.WorldSettings
+import skein.link.Address
 import skein.ros.message.*
 import skein.signal.Kinematics
 import skein.policy.Action
@@ -32,8 +35,25 @@ final class SimulatedTopics private (
   private val late               = AtomicLong()
   @volatile private var isClosed = false
 
+  @volatile private var sensors = Option.empty[SimulatedSensors]
+
   /** Instants whose motions were not published, because the machine was too slow. */
   def skipped: Long = late.get
+
+  /** Images and scans that were not published, because the machine was too slow. */
+  def skippedImages: Long = sensors.fold(0L)(_.skipped)
+
+  /** The first failure of each camera and lidar. */
+  def notes: Vector[String] = sensors.fold(Vector.empty)(_.notes)
+
+  /** Publishes images and scans of the simulator from now on: see [[SimulatedSensors]].
+    *
+    * @return Left if ROS 2 cannot publish them
+    */
+  def show(world: WorldSettings, simulator: Address)(using ActorSystem): Either[String, Unit] =
+    SimulatedSensors
+      .open(node, world, simulator, transform => frames.foreach(_.publish(TFMessage(Vector(transform)))))
+      .map(opened => sensors = Some(opened))
 
   def see(at: Instant, seen: Vector[SeenVehicle]): Unit =
     while !queue.offer((at, seen)) do if queue.poll() != null then late.incrementAndGet(): Unit
@@ -72,6 +92,7 @@ final class SimulatedTopics private (
           for at <- last do clock.publish(Clock(Time.of(at)))
         case (at, seen) =>
           publish(at, seen, withFix = count % FixEvery == 0)
+          sensors.foreach(_.look())
           count += 1
           last = Some(at)
 
@@ -89,6 +110,7 @@ final class SimulatedTopics private (
   def close(): Unit =
     isClosed = true
     thread.join(JoinMillis)
+    sensors.foreach(_.close())
 
 object SimulatedTopics:
   private final case class Published(

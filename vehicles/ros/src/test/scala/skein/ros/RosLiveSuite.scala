@@ -34,6 +34,11 @@ class RosLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
         )
         assert(ended.contains("package tf2_msgs for tf2_msgs/msg/TFMessage, it is not installed"), ended)
 
+  test("a camera and lidars are seen, in their frames, with their stamps and the camera's matrix"):
+    conclusive:
+      val ended = serving(speed = 1)(run("see_sensors.py", "5"): Unit)
+      assert(ended.contains("notes: \n") && ended.endsWith("ended"), ended)
+
   test("garbage, foreign frames and foreign types are refused and said, and the vehicles still fly"):
     conclusive:
       val ended = serving(speed = 1):

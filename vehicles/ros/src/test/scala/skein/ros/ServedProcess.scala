@@ -6,8 +6,9 @@ import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Await
 import scala.concurrent.duration.DurationInt
 import scala.jdk.CollectionConverters.*
-import skein.airsim.{VehicleSettings, WorldSettings}
+import skein.airsim.WorldSettings
 import skein.link.{Address, TcpTransport}
+import skein.scene.{Placement, Scene, SceneObject, Shape}
 import skein.simulator.{SimulatorServer, SimulatorSettings}
 import skein.units.{Clock, Vector3}
 
@@ -24,6 +25,19 @@ private[ros] final class ServedProcess private (process: Process, val log: () =>
 
 private[ros] object ServedProcess:
   val Names: Vector[String] = Vector("a", "b", "c")
+
+  /** Vehicle `a` starts elsewhere than in the origin, so that its frames differ from the world's. */
+  val settings: String = """{ "SettingsVersion": 1.2, "SimMode": "Multirotor", "Vehicles": {
+    "a": { "VehicleType": "SimpleFlight", "X": 3, "Y": -2,
+      "Cameras": { "front": { "Z": -1, "CaptureSettings": [
+        { "ImageType": 0, "Width": 64, "Height": 48, "FOV_Degrees": 90 } ] } },
+      "Sensors": {
+        "spin": { "SensorType": 6, "Enabled": true, "Z": -1, "PointsPerSecond": 20000, "Range": 60,
+          "VerticalFOVLower": -1, "VerticalFOVUpper": 1, "DataFrame": "SensorLocalFrame" },
+        "fixed": { "SensorType": 6, "Enabled": true, "Z": -1, "PointsPerSecond": 20000, "Range": 60,
+          "VerticalFOVLower": -1, "VerticalFOVUpper": 1 } } },
+    "b": { "VehicleType": "SimpleFlight", "Y": 4 },
+    "c": { "VehicleType": "SimpleFlight", "Y": 8 } } }"""
 
   /** Starts it, and waits until it serves.
     *
@@ -56,12 +70,13 @@ private[ros] object ServedProcess:
     builder.environment.putAll(variables.asJava)
     builder
 
-/** Serves three vehicles to ROS 2 until its input ends. */
+/** Serves three vehicles to ROS 2 until its input ends; the first has a camera and two lidars before a wall.
+  */
 @main def serveOnRos(speed: Double, port: Int): Unit =
   given system: ActorSystem = ActorSystem("ros")
-  val vehicles              = ServedProcess.Names.zipWithIndex.map((name, index) =>
-    VehicleSettings(name, Vector3(0, 4.0 * index, 0))
-  )
+  val world = WorldSettings.parse(ServedProcess.settings).fold(why => sys.error(why.message), identity)
+  val wall  =
+    SceneObject("wall", Shape.Box(Vector3(0.5, 200, 20)), Placement(Vector3(33.5, 0, 0)), 0xa04020, None)
   val opened =
     for
       node   <- RosNode.open("skein", Clock.system)
@@ -72,16 +87,18 @@ private[ros] object ServedProcess:
       println(why)
       sys.exit(1)
     case Right((node, topics)) =>
-      val settings = SimulatorSettings(WorldSettings(vehicles), Address("127.0.0.1", port), speed = speed)
-      val started  = SimulatorServer.start(settings, TcpTransport(), Clock.system, Some(topics))
-      val server   = Await.result(started, 20.seconds)
+      val settings =
+        SimulatorSettings(world, Address("127.0.0.1", port), speed = speed, scene = Scene(Vector(wall)))
+      val started = SimulatorServer.start(settings, TcpTransport(), Clock.system, Some(topics))
+      val server  = Await.result(started, 20.seconds)
       topics.fly(server).left.foreach(println)
+      topics.show(world, server.address).left.foreach(println)
       println("serving")
       while System.in.read() >= 0 do ()
       topics.close()
       node.close()
       println(s"missing: ${topics.missing.mkString("; ")}")
-      println(s"notes: ${node.notes.mkString("; ")}")
+      println(s"notes: ${(node.notes ++ topics.notes).mkString("; ")}")
       println(s"skipped ${topics.skipped}, refused ${node.refused}, failed ${node.failed}")
       Await.result(server.close(), 10.seconds): Unit
       Await.result(system.terminate(), 10.seconds): Unit

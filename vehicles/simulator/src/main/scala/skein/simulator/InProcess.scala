@@ -60,10 +60,19 @@ private[simulator] final class InProcess(simulation: Simulation, onlooker: Onloo
 
     private def setpoint(vehicle: SimulatedMultirotor, at: Instant): Option[Setpoint] =
       ordered.map: (action, _) =>
-        val now = kinematicsOf(vehicle, at)
-        ActionGuidance.of(own(action(now), vehicle.settings.startNed)).setpoint(
+        val now    = kinematicsOf(vehicle, at)
+        val chosen = if vehicle.isGrounded then lifting(action(now)) else action(now)
+        ActionGuidance.of(own(chosen, vehicle.settings.startNed)).setpoint(
           now.copy(positionNed = vehicle.positionAt(at))
         )
+
+    /** Straight up at first: on the ground AirSim's controller cannot tilt, and what it gives to tilting is
+      * missing in the lift.
+      */
+    private def lifting(action: Action): Action = action match
+      case Action.Velocity(velocity, yaw) if velocity.z < 0 =>
+        Action.Velocity(Vector3(0, 0, velocity.z), yaw)
+      case other => other
 
     /** An action in the vehicle's own frame, which begins at its start. */
     private def own(action: Action, start: Vector3): Action = action match

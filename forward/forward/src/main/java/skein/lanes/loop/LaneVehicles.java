@@ -12,6 +12,7 @@ import jdk.incubator.vector.VectorMask;
 import skein.forward.RolloutAgent;
 import skein.lanes.policy.Directions;
 import skein.lanes.policy.LanePolicy;
+import skein.lanes.policy.VehicleNumbers;
 
 /** The vehicles of one role in many worlds, whose commands take effect at different times in each. Times
  * count from the start of a period; periods are processed in order. {@link LagVehicles} and {@link
@@ -56,11 +57,17 @@ public abstract class LaneVehicles {
     for (int world = 0; world < WORLDS; world++) place(world, agent);
   }
 
-  /** Sets where a world's vehicle starts from now on. */
-  public final void place(int world, RolloutAgent agent) {
+  private void place(int world, RolloutAgent agent) {
     startX[world] = (float) agent.startX();
     startY[world] = (float) agent.startY();
     startZ[world] = (float) agent.altitudeDownM();
+  }
+
+  /** Sets where a world's vehicle starts from now on. */
+  public final void place(int world, VehicleNumbers numbers) {
+    startX[world] = numbers.northM();
+    startY[world] = numbers.eastM();
+    startZ[world] = numbers.downM();
   }
 
   /** Resets to the start of an episode, where the vehicles rest. */

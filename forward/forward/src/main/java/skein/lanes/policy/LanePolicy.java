@@ -85,6 +85,14 @@ public class LanePolicy {
       initial[i * WORLDS + world] = (float) remembered[i];
   }
 
+  /** Sets the numbers of a world's policy, which must be of this form. */
+  public void put(int world, VehicleNumbers numbers) {
+    float[] values = numbers.policy();
+    int count = numbers.parameters();
+    for (int i = 0; i < count; i++) parameters[place(i, world)] = values[i];
+    for (int i = count; i < values.length; i++) initial[(i - count) * WORLDS + world] = values[i];
+  }
+
   private int place(int parameter, int world) {
     return LaneFunction.place(parameter, world, form.parameters());
   }

@@ -3,6 +3,7 @@ package skein.lanes.timetable;
 import skein.forward.RolloutAgent;
 import skein.lanes.policy.Directions;
 import skein.lanes.policy.LanePolicy;
+import skein.lanes.policy.VehicleNumbers;
 
 /** The vehicles of one role in many worlds, simulated by a {@link Timetable}: events happen simultaneously in
  * all worlds, so all that depends on time alone is a constant of the timetable, computed by a corresponding
@@ -41,11 +42,17 @@ public abstract class TimetableVehicles {
     return inSpace;
   }
 
-  /** Sets the start of a world's vehicle to this agent's. */
-  public final void place(int world, RolloutAgent agent) {
+  private void place(int world, RolloutAgent agent) {
     startX[world] = (float) agent.startX();
     startY[world] = (float) agent.startY();
     startZ[world] = (float) agent.altitudeDownM();
+  }
+
+  /** Sets where a world's vehicle starts from now on. */
+  public final void place(int world, VehicleNumbers numbers) {
+    startX[world] = numbers.northM();
+    startY[world] = numbers.eastM();
+    startZ[world] = numbers.downM();
   }
 
   /** Resets to the start of an episode.

@@ -4,9 +4,10 @@ import java.util.concurrent.ConcurrentHashMap
 import scala.collection.mutable
 import skein.formula.{Angles, Evaluation, Node, Op, Trace, Untraceable}
 import skein.forward.{Engagement, RolloutAgent}
+import skein.fusion.SensorModel
 import skein.policy.{Action, Assignment, Policy, PolicyFormula, PolicyInput}
 import skein.policy.PolicyFormula.Motion
-import skein.simd.{BoundFunction, Forms}
+import skein.simd.{BoundFunction, Forms, LaneFunction}
 import skein.units.{Expect, Metres}
 
 /** SIMD decisions of a team's policies in many worlds, compiled from their own methods ([[PolicyFormula]]).
@@ -19,7 +20,7 @@ private[lanes] final class TeamLanes private (
     formulas: Vector[PolicyFormula],
     assignment: Assignment,
     val inSpace: Boolean
-):
+) extends TeamPolicies:
   import TeamLanes.*
 
   val count: Int = formulas.size
@@ -151,7 +152,7 @@ private[lanes] final class TeamLanes private (
   val turns: Boolean = formulas.exists(_.turns)
 
   /** Whether all decide by positions, velocities, time and the own heading alone. */
-  val isPlain: Boolean = !inSpace && formulas.forall(_.memory.isEmpty) && sources.flatten.forall:
+  private val isPlain: Boolean = !inSpace && formulas.forall(_.memory.isEmpty) && sources.flatten.forall:
     case Source.Cos | Source.Sin | Source.Elapsed | _: (Source.Parameter | Source.Shared) => true
     case _                                                                                => false
 
@@ -161,11 +162,17 @@ private[lanes] final class TeamLanes private (
   /** Number of parameters by which a vehicle's policy differs from others of its form. */
   def parameters(self: Int): Int = derived(self).size
 
-  def parametersOf(self: Int, policy: Policy): Array[Double] =
-    numbers(self)(Array.emptyDoubleArray, formulas(self).parametersOf(policy))
+  def numbersOf(self: Int, policy: Policy): PolicyNumbers = PolicyNumbers(
+    numbers(self)(Array.emptyDoubleArray, formulas(self).parametersOf(policy)),
+    formulas(self).startOf(policy)
+  )
 
-  /** The initial memory of a vehicle's policy. */
-  def startOf(self: Int, policy: Policy): Array[Double] = formulas(self).startOf(policy)
+  def needsMore: Boolean          = asksMore.contains(true)
+  def eyes: Map[Int, SensorModel] = Map.empty
+  def sideBySide: Int             = LaneFunction.COUNT
+
+  def refusedByGpu: Option[String] =
+    Option.unless(isPlain)("the GPU flies teams without memory that look at the newest readings alone")
 
   /** Why some agent of a team does not keep the altitude of its start. */
   def leaves(agents: Vector[RolloutAgent]): Option[String] =

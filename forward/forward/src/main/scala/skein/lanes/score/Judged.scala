@@ -10,16 +10,6 @@ import skein.scenario.{Quantity, Reduction}
 final case class Judged(quantity: Quantity, reduction: Reduction | OfMoment, fromS: Double):
   private[lanes] def counts(timeS: Double): Boolean = Judged.counts(timeS, fromS)
 
-  /** Reduces those of the timed values that count; NaN where none counts. */
-  private[lanes] def of(values: IndexedSeq[(Double, Double)]): Double = reduction match
-    case OfMoment.FirstWithin(limit) =>
-      values.collectFirst { case (timeS, value) if value <= limit => timeS }.getOrElse(
-        Double.PositiveInfinity
-      )
-    case _ if values.isEmpty  => Double.NaN
-    case OfMoment.Newest      => values.last._2
-    case reduction: Reduction => reduction.of(values.map(_._2))
-
 object Judged:
   private[lanes] def counts(timeS: Double, fromS: Double): Boolean = timeS > afterS(fromS)
 
@@ -27,6 +17,12 @@ object Judged:
     * millisecond.
     */
   private[lanes] def afterS(fromS: Double): Double = fromS - 3e-4
+
+/** Control effort, a number of a flight: the sum of all changes of a vehicle's commanded heading, each by the
+  * shorter way, rad. SIMD computes it of two that play against one another, where it costs a twentieth of a
+  * flight.
+  */
+final case class Effort(vehicle: Int)
 
 /** Reductions of a quantity's values to one moment. */
 enum OfMoment:

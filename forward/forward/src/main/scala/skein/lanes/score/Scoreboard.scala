@@ -1,16 +1,16 @@
 package skein.lanes.score
 
 import java.util.Arrays
-import skein.forward.RolloutAgent
 import skein.lanes.policy.LaneObservation
 import skein.lanes.timetable.{TimetableAgents, TimetableScores, ViewCall}
 import skein.scenario.Reduction
 
 /** Scores the flights of many worlds, once a period. Mutable.
   *
-  * @param inSpace whether vehicles climb
+  * @param altitudesDownM of vehicles that fly level; empty where they climb
   */
-private[lanes] final class Scoreboard(lanes: ScoreLanes, inSpace: Boolean = false) extends TimetableScores:
+private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[Double])
+    extends TimetableScores:
   import ScoreLanes.Source
 
   private val worlds     = TimetableAgents.WORLDS
@@ -19,7 +19,8 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, inSpace: Boolean = fals
   private val ends       = lanes.places.tail.toArray
   private val counts     = Array.ofDim[Int](judged.size)
   private val shared     = Array.ofDim[Float](ScoreLanes.ownParameter(judged.size))
-  private val altitudes  = Array.ofDim[Float](lanes.count * worlds)
+  private val inSpace    = altitudesDownM.isEmpty
+  private val altitudes  = altitudesDownM.toArray.flatMap(down => Array.fill(worlds)(down.toFloat))
   private val parameters =
     Array.tabulate(judged.size)(number => Array.ofDim[Float](lanes.parameters(number) * worlds))
   private val stages = lanes.stages.map(Stage(_)).toArray
@@ -52,10 +53,9 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, inSpace: Boolean = fals
           shown.call.input(place, parameters(number), parameter * worlds)
 
   /** Sets the parameters of a world's quantities. */
-  def take(world: Int, vehicles: Vector[RolloutAgent], numbers: Vector[Array[Double]]): Unit =
-    for (vehicle, i) <- vehicles.zipWithIndex do altitudes(i * worlds + world) = vehicle.altitudeDownM.toFloat
-    for (values, number) <- numbers.zipWithIndex; i <- values.indices do
-      parameters(number)(i * worlds + world) = values(i).toFloat
+  def take(world: Int, numbers: Array[Array[Double]]): Unit =
+    for number <- numbers.indices; i <- numbers(number).indices do
+      parameters(number)(i * worlds + world) = numbers(number)(i).toFloat
 
   /** Sets the limit of a quantity that is awaited. */
   def limit(number: Int, most: Float): Unit = shared(ScoreLanes.ownParameter(number)) = most
@@ -123,7 +123,8 @@ private[lanes] object Scoreboard:
     *
     * @param by reductions of its values, each from a time on, s
     */
-  def ofDistance(by: (Reduction | OfMoment, Double)*): Scoreboard = Scoreboard(ScoreLanes.ofDistance(by*))
+  def ofDistance(by: (Reduction | OfMoment, Double)*): Scoreboard =
+    Scoreboard(ScoreLanes.ofDistance(by*), Vector(0, 0))
 
   /** The scores for learners: the newest distance, the sum and the least. */
   def ofLearners: Scoreboard = ofDistance((OfMoment.Newest, 0), (Reduction.Mean, 0), (Reduction.Least, 0))

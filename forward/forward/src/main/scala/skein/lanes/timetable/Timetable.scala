@@ -57,8 +57,8 @@ private[skein] object Timetable:
 
   /** The timetable of a world of this key, for this number of vehicles of this kind.
     *
-    * @param eyes of vehicles with cameras, in a duel
-    * @param tellsMore see [[Timetable.more]]; not in a duel by [[skein.lanes.DuelBatch]]
+    * @param eyes of vehicles with cameras, of two
+    * @param tellsMore see [[Timetable.more]]; not of two that decide by [[skein.lanes.policy.OpponentLanes]]
     */
   def of(
       vehicles: Int,

@@ -1,7 +1,9 @@
 package skein.lanes.gpu
 
+import skein.forward.RolloutAgent
 import skein.gpu.{Gpu, GpuBuffer, GpuKernel, Ptx, PtxExpressions, Variables}
-import skein.lanes.score.ScoreLanes
+import skein.lanes.PreparedTeam
+import skein.lanes.score.{OfMoment, ScoreLanes}
 import skein.lanes.timetable.Timetable
 
 /** [[skein.lanes.timetable.TimetableKernel]] on a GPU: a thread simulates one candidate in one episode, and
@@ -10,12 +12,14 @@ import skein.lanes.timetable.Timetable
   *
   * @param sides count of numbers that define the policies of each side
   * @param scores of the flights
+  * @param agents of one candidate, for what all have in common
   */
 private[lanes] abstract class GpuFlightKernel(
     gpu: Gpu,
     layout: GpuLayout,
     sides: Vector[Int],
-    protected val scores: ScoreLanes
+    protected val scores: ScoreLanes,
+    agents: Vector[RolloutAgent]
 ):
   import GpuFlightKernel.*
 
@@ -30,16 +34,12 @@ private[lanes] abstract class GpuFlightKernel(
 
     def show(now: GpuRecord): Unit
     def decide(self: Int, now: GpuRecord): Unit
-    def altitude(vehicle: Int): Int
 
     /** A parameter of a quantity; see [[ScoreLanes.Source.Parameter]]. */
     def quantity(number: Int, parameter: Int): Int
 
-    /** The limit of a judged number that is awaited. */
-    def limit(number: Int): Int
-
-    /** Results of a world in addition to its scores. */
-    def besides: Vector[Int]
+    /** A world's [[efforts]], in the order of the results. */
+    def besides: Vector[Int] = Vector.empty
 
   /** Makes the part of the kernel.
     *
@@ -51,25 +51,24 @@ private[lanes] abstract class GpuFlightKernel(
 
   protected def moreBytes: Int = 0
 
-  /** Count of results per world. */
-  def outcomes: Int
+  /** Count of results in addition to the scores: efforts, by their judged numbers. */
+  protected def efforts: Int = 0
+
+  /** The sets of numbers that define the policies of each side of candidates, concatenated, and the index of
+    * each candidate's set.
+    */
+  def sidesOf(teams: Array[PreparedTeam]): Vector[(Array[Float], Array[Int])]
 
   private lazy val kernel: GpuKernel = gpu.kernel(text, Name)
 
   /** Simulates candidates in episodes.
     *
-    * @param flownBy of each side the sets of numbers that define policies, concatenated, and the index of
-    *   each candidate's set
-    * @param limitM see [[Body.limit]]
-    * @return results by number, then by episode, then by candidate
+    * @return the numbers kept for the scores, then the efforts, each by episode, then by candidate
     */
-  def fly(
-      episodes: Vector[GpuEpisodes.Held],
-      candidates: Int,
-      flownBy: Vector[(Array[Float], Array[Int])],
-      limitM: Float
-  ): Array[Float] =
+  def fly(episodes: Vector[GpuEpisodes.Held], teams: Array[PreparedTeam]): Array[Float] =
+    val candidates            = teams.length
     val worlds                = episodes.size * candidates
+    val outcomes              = scores.initial.size + efforts
     val buffers               = collection.mutable.ArrayBuffer.empty[GpuBuffer]
     def here(made: GpuBuffer) =
       buffers += made
@@ -77,10 +76,10 @@ private[lanes] abstract class GpuFlightKernel(
     try
       val into   = here(gpu.buffer(outcomes.toLong * worlds))
       val blocks = blocksOf(episodes, candidates)
-      val read   = flownBy.zip(sides).flatMap: (told, count) =>
+      val read   = sidesOf(teams).zip(sides).flatMap: (told, count) =>
         Vector(here(gpu.buffer(tiled(told._1, count))), here(gpu.buffer(told._2)))
       val arguments =
-        here(gpu.buffer(blocks)) +: (read ++ Vector(limitM, worlds, into))
+        here(gpu.buffer(blocks)) +: (read ++ Vector(worlds, into))
       kernel(blocks.length / BlockWords, BlockWorlds, arguments*)
       into.floats()
     finally buffers.foreach(_.close())
@@ -119,7 +118,7 @@ private[lanes] abstract class GpuFlightKernel(
         sides.indices.flatMap(side =>
           Seq(s"numbers$side" -> Ptx.Kind.Address, s"flownBy$side" -> Ptx.Kind.Address)
         ) ++
-        Seq("limit" -> Ptx.Kind.Float, "worlds" -> Ptx.Kind.Whole, "into" -> Ptx.Kind.Address),
+        Seq("worlds" -> Ptx.Kind.Whole, "into" -> Ptx.Kind.Address),
       layout.bytes + moreBytes
     )
     private val end, loop, next, stored = code.label()
@@ -242,7 +241,7 @@ private[lanes] abstract class GpuFlightKernel(
         input =>
           scores.source(stage.function.inputs(input)) match
             case Source.Reading(vehicle, field)      => code.loadOwn(seen(vehicle), field)
-            case Source.Altitude(vehicle)            => flying.altitude(vehicle)
+            case Source.Altitude(vehicle)            => code.constant(agents(vehicle).altitudeDownM.toFloat)
             case Source.Kept(place)                  => kept(place)
             case Source.Parameter(number, parameter) => flying.quantity(number, parameter)
         ,
@@ -250,7 +249,9 @@ private[lanes] abstract class GpuFlightKernel(
           if parameter == ScoreLanes.Time then time
           else
             val number = parameter - ScoreLanes.ownParameter(0)
-            if scores.hasShare(number) then code.two("div.rn", one, counted(number)) else flying.limit(number)
+            scores.judged(number).reduction match
+              case OfMoment.FirstWithin(limit) => code.constant(limit.toFloat)
+              case _                           => code.two("div.rn", one, counted(number))
       )
       for (value, place) <- values.zip(stage.places) do code.move(value, kept(place))
 

@@ -2,8 +2,9 @@ package skein.lanes.gpu
 
 import skein.forward.RolloutAgent
 import skein.gpu.{Gpu, Ptx, PtxExpressions}
+import skein.lanes.PreparedTeam
 import skein.lanes.policy.TeamLanes
-import skein.lanes.score.{OfMoment, ScoreLanes}
+import skein.lanes.score.ScoreLanes
 import skein.simd.BoundFunction
 
 /** Teams on a GPU. One side: of each vehicle the start and initial direction, and the numbers of its policy;
@@ -19,7 +20,7 @@ private[lanes] final class GpuTeamKernel(
     team: TeamLanes,
     scores: ScoreLanes,
     layout: GpuLayout
-) extends GpuFlightKernel(gpu, layout, Vector(GpuTeamKernel.numbers(team, scores)), scores):
+) extends GpuFlightKernel(gpu, layout, Vector(GpuTeamKernel.numbers(team, scores)), scores, vehicles):
   import GpuTeamKernel.*
   private val firstDirection = layout.bytes
   private val firstShared    = firstDirection + 8 * team.count
@@ -28,7 +29,8 @@ private[lanes] final class GpuTeamKernel(
 
   protected val withVelocity: Boolean = team.needsVelocity
 
-  val outcomes: Int = scores.initial.size
+  def sidesOf(teams: Array[PreparedTeam]): Vector[(Array[Float], Array[Int])] =
+    Vector((teams.flatMap(numbersOf), teams.indices.toArray))
 
   protected def body(code: Ptx, numbers: Vector[Int => Int]): Body = new Body:
     private val number        = numbers(0)
@@ -83,14 +85,8 @@ private[lanes] final class GpuTeamKernel(
         which => throw IllegalStateException(s"a team's functions have no parameter $which")
       )
 
-    def altitude(vehicle: Int): Int =
-      code.constant(GpuTeamKernel.this.vehicles(vehicle).altitudeDownM.toFloat)
     def quantity(of: Int, parameter: Int): Int =
       number(firstQuantity + (0 until of).map(scores.parameters).sum + parameter)
-    def limit(of: Int): Int = scores.judged(of).reduction match
-      case OfMoment.FirstWithin(limit) => code.constant(limit.toFloat)
-      case other                       => throw IllegalStateException(s"$other has no limit")
-    def besides: Vector[Int] = Vector.empty
 
 private object GpuTeamKernel:
   /** Count of numbers of a vehicle's start: north and east, m, and cosine and sine of its heading. */
@@ -103,17 +99,7 @@ private object GpuTeamKernel:
   private def numbers(team: TeamLanes, scores: ScoreLanes): Int =
     firstOf(team).last + scores.judged.indices.map(scores.parameters).sum
 
-  /** The numbers of one candidate.
-    *
-    * @param ofPolicies by vehicle
-    * @param ofQuantities by judged number
-    */
-  def numbersOf(
-      vehicles: Vector[RolloutAgent],
-      ofPolicies: Vector[Array[Double]],
-      ofQuantities: Vector[Array[Double]]
-  ): Array[Float] =
-    val starts = vehicles.zip(ofPolicies).flatMap: (agent, own) =>
-      val headingRad = agent.startHeadingRad
-      Vector(agent.startX, agent.startY, StrictMath.cos(headingRad), StrictMath.sin(headingRad)) ++ own
-    (starts ++ ofQuantities.flatten).map(_.toFloat).toArray
+  /** The numbers of one candidate. */
+  private def numbersOf(team: PreparedTeam): Array[Float] =
+    team.numbers.flatMap(own => Array(own.northM, own.eastM, own.cos, own.sin) ++ own.policy) ++
+      team.ofQuantities.flatten.map(_.toFloat)

@@ -1,15 +1,14 @@
 package skein.lanes.gpu
 
 import scala.collection.mutable
-import skein.forward.Delays
 import skein.gpu.Gpu
-import skein.lanes.{Accelerated, AcceleratedTeams, PreparedTeam, TeamForm, TeamOutcomes, TeamWorlds}
-import skein.lanes.timetable.Timetable
+import skein.lanes.{Accelerated, AcceleratedTeams, Episodes, PreparedTeam, TeamForm, TeamOutcomes, TeamWorlds}
+import skein.lanes.policy.{OpponentLanes, TeamLanes}
 
-/** Simulates teams' candidates on a GPU, each in all episodes, by [[GpuTeamKernel]]. Mutable; one call at a
-  * time.
+/** Simulates teams' candidates on a GPU, each in all episodes, by [[GpuOpponentKernel]] or [[GpuTeamKernel]].
+  * Mutable; one call at a time.
   *
-  * @param threads that make timetables
+  * @param threads that make timetables and read policies
   */
 private[lanes] final class GpuTeams(
     gpu: Gpu,
@@ -17,10 +16,12 @@ private[lanes] final class GpuTeams(
     prediction: Option[GpuPrediction.Kind],
     threads: Int,
     periodS: Double,
-    timetable: (Delays, Int, TeamForm) => Timetable
+    episodes: Episodes
 ) extends AcceleratedTeams:
-  private val onGpu   = mutable.HashMap.empty[Int, GpuEpisodes]
-  private val kernels = mutable.HashMap.empty[(TeamForm, GpuLayout), GpuTeamKernel]
+  import GpuTeams.Chunk
+
+  private val onGpu   = mutable.HashMap.empty[(Int, Boolean), GpuEpisodes]
+  private val kernels = mutable.HashMap.empty[(TeamForm, GpuLayout), GpuFlightKernel]
 
   def fly(
       worlds: TeamWorlds,
@@ -29,45 +30,67 @@ private[lanes] final class GpuTeams(
       onProgress: Int => Unit,
       isCancelled: () => Boolean
   ): Accelerated =
-    val each                   = worlds.episodesOfEach
-    def candidate(number: Int) = prepared(number * each)
-    val (known, unknown)       =
-      Array.range(0, GpuEpisodes.candidatesOf(worlds)).partition(candidate(_).form.exists(_.team.isPlain))
+    val each  = worlds.episodesOfEach
+    val teams = Array.tabulate(GpuEpisodes.candidatesOf(worlds))(number => prepared(number * each))
+    GpuEpisodes.inParallel(teams.length, Chunk, threads)(i =>
+      if teams(i).form != null then teams(i).numbers: Unit
+    ): Unit
+    val (known, unknown) =
+      teams.indices.toArray.partition(number => isOnGpu(teams(number)))
     val flown = GpuParts(known, each, onProgress, isCancelled)
-      .fly(candidate(_).form.get, form => form.team.count * form.durationS / periodS):
-        (form, some, numbers) =>
-          val episodes = onGpu.getOrElseUpdate(
-            form.team.count,
-            GpuEpisodes(gpu, form.team.count, shows = true, threads, GpuParts.MostBytes)
-          )
-          val names   = numbers.toVector.map(i => (worlds.link(i), worlds.key(i), form.durationS))
-          val brought = episodes.bring(names, isCancelled): i =>
-            timetable(worlds.link(numbers(i)), worlds.key(numbers(i)), form)
-          brought
-            .map: flown =>
-              val came = fly(form, some.map(candidate), flown, episodes.layout)
-              for
-                (judged, told) <- form.scores.judged.indices.zip(into.values);
-                (episode, at)  <- flown.zipWithIndex
-              do
-                val outcome = GpuFlightKernel.Outcome(form.scores, judged, episode.scoredAtS)
-                val first   = (outcome.place * flown.size + at) * some.length
-                for i <- some.indices do told(some(i) * each + numbers(at)) = outcome(came(first + i))
-            .isDefined
+      .fly(teams(_).form, form => form.count * form.durationS / periodS): (form, some, numbers) =>
+        val names   = numbers.toVector.map(i => episodes.nameOf(worlds.link(i), worlds.key(i), form))
+        val held    = episodesFor(form)
+        val brought = held.bring(names, isCancelled): i =>
+          episodes.timetable(worlds.link(numbers(i)), worlds.key(numbers(i)), form)
+        brought.map(fly(form, some, some.map(teams), numbers, _, held.layout, each, into)).isDefined
     Accelerated(flown, GpuEpisodes.worldsOf(unknown, each))
 
+  private def isOnGpu(team: PreparedTeam) = team.form != null && team.form.policies.refusedByGpu.isEmpty
+
+  private def episodesFor(form: TeamForm): GpuEpisodes =
+    val shows = form.policies.isInstanceOf[TeamLanes]
+    onGpu.getOrElseUpdate(
+      (form.count, shows),
+      GpuEpisodes(gpu, form.count, shows, threads, GpuParts.MostBytes)
+    )
+
+  /** @param candidates numbers of the teams
+    * @param numbers of the episodes
+    */
   private def fly(
       form: TeamForm,
-      candidates: Array[PreparedTeam],
-      episodes: Vector[GpuEpisodes.Held],
-      layout: GpuLayout
-  ): Array[Float] =
-    val kernel = kernels.getOrElseUpdate(
-      (form, layout),
-      GpuTeamKernel(gpu, candidates(0).vehicles, vehicle, prediction, form.team, form.scores, layout)
-    )
-    val numbers =
-      candidates.map(each =>
-        GpuTeamKernel.numbersOf(each.vehicles, each.ofPolicies.map(_.parameters), each.ofQuantities)
-      )
-    kernel.fly(episodes, candidates.length, Vector((numbers.flatten, candidates.indices.toArray)), 0)
+      candidates: Array[Int],
+      teams: Array[PreparedTeam],
+      numbers: Array[Int],
+      flown: Vector[GpuEpisodes.Held],
+      layout: GpuLayout,
+      each: Int,
+      into: TeamOutcomes
+  ): Unit =
+    val kernel = kernels.getOrElseUpdate((form, layout), kernelOf(form, teams(0), layout))
+    val came   = kernel.fly(flown, teams)
+    for (episode, at) <- flown.zipWithIndex do
+      var (score, effort) = (0, form.scores.initial.size)
+      for (told, ofEffort) <- into.values.zip(form.efforts) do
+        def first(place: Int)                      = (place * flown.size + at) * teams.length
+        def tell(from: Int)(value: Float => Float) = for i <- teams.indices do
+          told(candidates(i) * each + numbers(at)) = value(came(from + i))
+        if ofEffort.isDefined then
+          tell(first(effort))(identity)
+          effort += 1
+        else
+          val outcome = GpuFlightKernel.Outcome(form.scores, score, episode.scoredAtS)
+          tell(first(outcome.place))(outcome(_))
+          score += 1
+
+  private def kernelOf(form: TeamForm, first: PreparedTeam, layout: GpuLayout): GpuFlightKernel =
+    form.policies match
+      case two: OpponentLanes =>
+        GpuOpponentKernel(gpu, first.vehicles, vehicle, prediction, form, two, layout)
+      case team: TeamLanes =>
+        GpuTeamKernel(gpu, first.vehicles, vehicle, prediction, team, form.scores, layout)
+
+private object GpuTeams:
+  /** Number of candidates whose policies a thread reads in one piece of work. */
+  private val Chunk = 256

@@ -1,6 +1,6 @@
 package skein.lanes.gpu
 
-import skein.forward.{DelayTable, Duel, LoopTiming, PlantResponse}
+import skein.forward.{DelayTable, LoopTiming, PlantResponse}
 import skein.gpu.InterpretedGpu
 import skein.lanes.*
 import skein.lanes.timetable.Timetable
@@ -9,7 +9,7 @@ import skein.vehicle.ReducedModel
 
 class GpuEpisodesSuite extends munit.FunSuite:
   private val model =
-    LaneDynamics.of(PlantResponse(ReducedModel.AirSimLag), Duel.paper).fold(fail(_), identity)
+    LaneDynamics.of(PlantResponse(ReducedModel.AirSimLag)).fold(fail(_), identity)
 
   private def timetable(key: Int): Timetable =
     Timetable.of(2, 2, LoopTiming.Stream(), DelayTable.vpn, WorldRandom.key(1, 0, key), model)

@@ -1,12 +1,14 @@
 package skein.lanes.gpu
 
 import java.nio.file.{Files, Path}
-import skein.forward.{Duel, LoopTiming, PlantResponse, VelocityResponse, VelocityResponses}
+import skein.forward.{Duel, Engagement, PlantResponse, VelocityResponse, VelocityResponses}
 import skein.gpu.InterpretedGpu
 import skein.lanes.*
 import skein.lanes.plant.QuadrotorLanes
-import skein.lanes.policy.PolicyLanes
-import skein.policy.{PaperEvader, PaperPursuer, HeadingPolicy}
+import skein.lanes.policy.OpponentLanes
+import skein.lanes.score.ScoreLanes
+import skein.policy.{HeadingPolicy, PaperPursuer, Role}
+import skein.scenario.Reduction
 import skein.vehicle.{Quadrotor, ReducedModel}
 
 /** Writes kernels as they go to a GPU's driver into a folder, to be read, or translated by `ptxas -v`. */
@@ -14,19 +16,11 @@ import skein.vehicle.{Quadrotor, ReducedModel}
   val layout                                                               = GpuLayout(2, shows = false)
   def duels(name: String, model: VelocityResponse, pursuer: HeadingPolicy) =
     val vehicle = GpuVehicle.of(model).fold(sys.error, identity)
-    val forms   = Vector(PaperEvader(), pursuer).map(PolicyLanes.get)
-    val asked   = Set(DuelNumber.MeanLast10s)
-    val kernel  =
-      GpuDuelKernel(
-        InterpretedGpu(),
-        Duel.paper,
-        LoopTiming.Stream().periodS,
-        vehicle,
-        None,
-        forms,
-        asked,
-        layout
-      )
+    val duel    = Engagement.of(Duel.paper).flownBy(Role.Pursuer, pursuer)
+    val two     = OpponentLanes.of(duel, _ => false, inSpace = false).get.fold(sys.error, identity)
+    val scores  = ScoreLanes.ofDistance(Reduction.Mean -> 50.1)
+    val form    = TeamForm(two, scores, Vector(None), 60, Vector(-20, -20))(null)
+    val kernel  = GpuOpponentKernel(InterpretedGpu(), duel.agents, vehicle, None, form, two, layout)
     Files.writeString(Path.of(folder, s"$name.ptx"), kernel.text): Unit
   duels("lag", PlantResponse(ReducedModel.AirSimLag), PaperPursuer())
   duels("drag", PlantResponse(ReducedModel.AirSim), PaperPursuer())

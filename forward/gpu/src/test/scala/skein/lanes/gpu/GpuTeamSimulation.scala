@@ -9,7 +9,7 @@ import skein.scenario.*
 import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
 
-/** As [[GpuDuelSimulation]] for duels, results of teams are bit-identical. */
+/** As [[GpuPairSimulation]] for duels, results of teams are bit-identical. */
 class GpuTeamSimulation extends munit.FunSuite, TestGpus:
   private val lag  = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
   private val drag = PlantResponse(ReducedModel.AirSim)

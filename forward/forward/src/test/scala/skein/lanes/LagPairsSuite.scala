@@ -1,18 +1,25 @@
 package skein.lanes
 
 import scala.collection.mutable.ArrayBuffer
-import skein.forward.{DelayTable, Duel, DuelOutcome, LoopTiming, Rollout, VelocityResponse, VelocityResponses}
-import skein.lanes.loop.LoopLanes
+import skein.forward.{
+  DelayTable,
+  Duel,
+  DuelOutcome,
+  LoopTiming,
+  Rollout,
+  TabledDelays,
+  VelocityResponse,
+  VelocityResponses
+}
 import skein.lanes.policy.LanePolicy
 import skein.optimise.LatencyBudget
 import skein.policy.{PaperEvader, PaperPursuer}
 import skein.simd.WorldRandom
 
-/** [[LoopDuelKernel]] under `stream` with a lag, which has its own implementation
-  * ([[skein.lanes.loop.LagVehicles]]).
+/** Two under `stream` with a lag, which has its own implementation ([[skein.lanes.loop.LagVehicles]]).
   */
-class LagDuelsSuite extends munit.FunSuite:
-  private val worlds = DuelKernel.WORLDS
+class LagPairsSuite extends munit.FunSuite:
+  private val worlds = PairKernels.WORLDS
   private val lag    = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
 
   private val keys      = Array.tabulate(worlds)(WorldRandom.key(3, 1, _))
@@ -21,38 +28,39 @@ class LagDuelsSuite extends munit.FunSuite:
 
   private val captureRadiusM = 3.9f
 
-  private val MaxDelayS = 1.0
-
   private def duel(world: Int, durationS: Double): Duel = Duel(
     Duel.paper.pursuer.copy(policy = PaperPursuer(turnRates(world))),
     Duel.paper.evader.copy(policy = PaperEvader(radii(world))),
     durationS
   )
 
-  private def kernelOf(
-      turnRates: Array[Float],
-      radii: Array[Float],
+  private def flown(
+      links: Array[TabledDelays],
       durationS: Double = 60,
-      shortCut: Boolean = true
-  ): LoopDuelKernel =
+      shortCut: Boolean = true,
+      order: Array[Int] = Array.range(0, worlds)
+  ): PairKernel =
     val (pursuers, evaders) = (LanePolicy.of(PaperPursuer()), LanePolicy.of(PaperEvader()))
-    for world <- 0 until worlds do
-      pursuers.take(world, PaperPursuer(turnRates(world)))
-      evaders.take(world, PaperEvader(radii(world)))
-    val duel = Duel.paper.copy(durationS = durationS)
-    LoopDuelKernel(
-      duel,
-      LoopLanes(LoopTiming.Stream(), 2, durationS, MaxDelayS, shortCut = shortCut),
-      vehicles(lag),
-      pursuers,
-      evaders,
-      DuelNumber.all
+    for (of, world) <- order.zipWithIndex do
+      pursuers.take(world, PaperPursuer(turnRates(of)))
+      evaders.take(world, PaperEvader(radii(of)))
+    PairKernels.alone(
+      Duel.paper.copy(durationS = durationS),
+      LoopTiming.Stream(),
+      lag,
+      Vector(evaders, pursuers),
+      links,
+      order.map(keys),
+      captureRadiusM,
+      shortCut = shortCut
     )
+
+  private def over(link: DelayTable) = Array.fill[TabledDelays](worlds)(link)
 
   private val some = 0 until worlds by 3
 
-  private def agreement(link: DelayTable, durationS: Double, periodS: Double = 0.1): DuelAgreement =
-    DuelAgreement.alone(
+  private def agreement(link: DelayTable, durationS: Double, periodS: Double = 0.1): PairAgreement =
+    PairAgreement.alone(
       Duel.paper.copy(durationS = durationS),
       LoopTiming.stream(periodS),
       lag,
@@ -62,12 +70,9 @@ class LagDuelsSuite extends munit.FunSuite:
     )(world => PaperPursuer(turnRates(world)), world => PaperEvader(radii(world)))
 
   private def vehicles(model: VelocityResponse): LaneDynamics =
-    LaneDynamics.of(model, Duel.paper).fold(fail(_), identity)
+    LaneDynamics.of(model).fold(fail(_), identity)
 
-  private def fly(link: DelayTable, durationS: Double): LoopDuelKernel =
-    val kernel = kernelOf(turnRates, radii, durationS)
-    kernel.fly(keys, Array.fill(worlds)(link), captureRadiusM)
-    kernel
+  private def fly(link: DelayTable, durationS: Double): PairKernel = flown(over(link), durationS)
 
   for (name, link) <- Seq("none" -> DelayTable.none, "direct" -> DelayTable.direct, "vpn" -> DelayTable.vpn)
   do
@@ -75,10 +80,10 @@ class LagDuelsSuite extends munit.FunSuite:
       val kernel = fly(link, 5)
       val equal  = (0 until worlds).count: world =>
         val scalar = Rollout(duel(world, 5), LoopTiming.Stream(), link, lag).fly(keys(world), captureRadiusM)
-        (kernel(DuelNumber.MinDistance)(world) - scalar.minDistanceM).abs < 2e-3 &&
-        (kernel(DuelNumber.MeanDistance)(world) - scalar.meanDistanceM).abs < 2e-3 &&
-        (kernel(DuelNumber.PursuerEffort)(world) - scalar.pursuerEffortRad).abs < 2e-3 &&
-        (kernel(DuelNumber.EvaderEffort)(world) - scalar.evaderEffortRad).abs < 2e-3
+        (kernel(PairNumber.MinDistance)(world) - scalar.minDistanceM).abs < 2e-3 &&
+        (kernel(PairNumber.MeanDistance)(world) - scalar.meanDistanceM).abs < 2e-3 &&
+        (kernel(PairNumber.PursuerEffort)(world) - scalar.pursuerEffortRad).abs < 2e-3 &&
+        (kernel(PairNumber.EvaderEffort)(world) - scalar.evaderEffortRad).abs < 2e-3
       assert(equal == worlds, s"$equal of $worlds worlds agree")
 
     test(s"over $name kernel and scalar reference agree on the mean of 60 s to 1 cm"):
@@ -87,17 +92,17 @@ class LagDuelsSuite extends munit.FunSuite:
       for world <- 0 until worlds do
         scalars += Rollout(duel(world, 60), LoopTiming.Stream(), link, lag).fly(keys(world), captureRadiusM)
       assertEqualsDouble(
-        kernel(DuelNumber.MeanLast10s).sum / worlds,
+        kernel(PairNumber.MeanLast10s).sum / worlds,
         scalars.map(_.meanLast10sM).sum / worlds,
         0.01
       )
       assertEqualsDouble(
-        kernel(DuelNumber.MinDistance).sum / worlds,
+        kernel(PairNumber.MinDistance).sum / worlds,
         scalars.map(_.minDistanceM).sum / worlds,
         0.01
       )
       assertEqualsDouble(
-        kernel(DuelNumber.PursuerEffort).sum / worlds,
+        kernel(PairNumber.PursuerEffort).sum / worlds,
         scalars.map(_.pursuerEffortRad).sum / worlds,
         0.05
       )
@@ -125,28 +130,24 @@ class LagDuelsSuite extends munit.FunSuite:
       agreement(link, 10).check(s"$meanMs ms and $jitterMs ms of jitter", some)
 
     test(s"at $meanMs ms and $jitterMs ms of jitter views by SIMD equal those computed one by one"):
-      val kernel  = kernelOf(turnRates, radii)
-      val longWay = kernelOf(turnRates, radii, shortCut = false)
-      for each <- Seq(kernel, longWay) do each.fly(keys, Array.fill(worlds)(link), captureRadiusM)
-      assertEquals(kernel(DuelNumber.MeanLast10s).toSeq, longWay(DuelNumber.MeanLast10s).toSeq)
-      assertEquals(kernel(DuelNumber.PursuerEffort).toSeq, longWay(DuelNumber.PursuerEffort).toSeq)
+      val kernel  = flown(over(link))
+      val longWay = flown(over(link), shortCut = false)
+      assertEquals(kernel(PairNumber.MeanLast10s).toSeq, longWay(PairNumber.MeanLast10s).toSeq)
+      assertEquals(kernel(PairNumber.PursuerEffort).toSeq, longWay(PairNumber.PursuerEffort).toSeq)
 
   test("a world's result depends on its key and parameters alone, not on its lane or its neighbours"):
     val kernel   = fly(DelayTable.vpn, 60)
-    val before   = kernel(DuelNumber.MeanLast10s).clone
-    val reversed = kernelOf(turnRates.reverse, radii.reverse)
-    reversed.fly(keys.reverse, Array.fill(worlds)(DelayTable.vpn), captureRadiusM)
-    assertEquals(reversed(DuelNumber.MeanLast10s).reverse.toSeq, before.toSeq)
+    val before   = kernel(PairNumber.MeanLast10s).clone
+    val reversed = flown(over(DelayTable.vpn), order = Array.range(0, worlds).reverse)
+    assertEquals(reversed(PairNumber.MeanLast10s).reverse.toSeq, before.toSeq)
 
   test("worlds of different links fly side by side as each would alone"):
     val links  = Vector(DelayTable.none, DelayTable.direct, DelayTable.vpn)
-    val kernel = kernelOf(turnRates, radii)
-    for _ <- 1 to 2 do
-      kernel.fly(keys, Array.tabulate(worlds)(i => links(i / 5 % 3)), captureRadiusM)
-      val alone = links.map(link => fly(link, 60))
-      for world <- 0 until worlds do
-        assertEquals(
-          kernel(DuelNumber.MeanLast10s)(world),
-          alone(world / 5 % 3)(DuelNumber.MeanLast10s)(world),
-          s"world $world"
-        )
+    val kernel = flown(Array.tabulate[TabledDelays](worlds)(i => links(i / 5 % 3)))
+    val alone  = links.map(link => fly(link, 60))
+    for world <- 0 until worlds do
+      assertEquals(
+        kernel(PairNumber.MeanLast10s)(world),
+        alone(world / 5 % 3)(PairNumber.MeanLast10s)(world),
+        s"world $world"
+      )

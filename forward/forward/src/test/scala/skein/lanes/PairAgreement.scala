@@ -3,9 +3,8 @@ package skein.lanes
 import scala.collection.mutable.ArrayBuffer
 import skein.forward.*
 import skein.fusion.Exposure
-import skein.lanes.loop.{LoopEye, LoopLanes}
+import skein.lanes.loop.LoopEye
 import skein.lanes.policy.{LaneObservation, PolicyLanes}
-import skein.lanes.timetable.Timetable
 import skein.policy.{PlanarObservation, HeadingPolicy}
 
 /** Compares duels by SIMD with the scalar engine, decision by decision, by [[Agreement]]. All but the
@@ -15,7 +14,7 @@ import skein.policy.{PlanarObservation, HeadingPolicy}
   * @param lanes by agent, the evader first: the policies of the SIMD engine
   * @param policies by agent, of one world
   */
-private[skein] class DuelAgreement(
+private[skein] class PairAgreement(
     duel: Duel,
     timing: LoopTiming,
     model: VelocityResponse,
@@ -24,9 +23,9 @@ private[skein] class DuelAgreement(
     captureM: Float,
     policies: Vector[Int => HeadingPolicy],
     lanes: Vector[LoggedPolicy],
-    val flown: DuelKernel
+    val flown: PairKernel
 ):
-  import DuelAgreement.*
+  import PairAgreement.*
 
   def check(what: String, worlds: Seq[Int], atLeast: Int = 1)(using munit.Location): Unit =
     val agreement = Agreement()
@@ -115,24 +114,24 @@ private[skein] class DuelAgreement(
   ): Unit =
     def same(what: String, ours: Double, scalar: Double) =
       must(math.abs(ours - scalar) < placesOff(duel.durationS), s"world $world: $what $ours, scalar $scalar")
-    same("least distance", flown(DuelNumber.MinDistance)(world), came.minDistanceM)
-    same("mean distance", flown(DuelNumber.MeanDistance)(world), came.meanDistanceM)
-    same("mean of the last 10 s", flown(DuelNumber.MeanLast10s)(world), came.meanLast10sM)
-    same("pursuer's effort", flown(DuelNumber.PursuerEffort)(world), came.pursuerEffortRad)
-    same("evader's effort", flown(DuelNumber.EvaderEffort)(world), came.evaderEffortRad)
+    same("least distance", flown(PairNumber.MinDistance)(world), came.minDistanceM)
+    same("mean distance", flown(PairNumber.MeanDistance)(world), came.meanDistanceM)
+    same("mean of the last 10 s", flown(PairNumber.MeanLast10s)(world), came.meanLast10sM)
+    same("pursuer's effort", flown(PairNumber.PursuerEffort)(world), came.pursuerEffortRad)
+    same("evader's effort", flown(PairNumber.EvaderEffort)(world), came.evaderEffortRad)
     // One captures a period before the other where that period's distance is within what distances may be
     // off.
-    val sooner = math.min(flown(DuelNumber.Capture)(world), came.captureS)
+    val sooner = math.min(flown(PairNumber.Capture)(world), came.captureS)
     must(
-      flown(DuelNumber.Capture)(world) == came.captureS.toFloat ||
+      flown(PairNumber.Capture)(world) == came.captureS.toFloat ||
         distances.exists((timeS, m) =>
           math.abs(timeS - sooner) < 1e-3 && math.abs(m - captureM) < math.sqrt(2) * placesOff(timeS)
         ),
-      s"world $world: captured after ${flown(DuelNumber.Capture)(world)} s, scalar ${came.captureS} s; " +
+      s"world $world: captured after ${flown(PairNumber.Capture)(world)} s, scalar ${came.captureS} s; " +
         s"nearest to the radius: ${distances.minByOption((_, m) => math.abs(m - captureM))}"
     )
 
-private[skein] object DuelAgreement:
+private[skein] object PairAgreement:
   private val Heading = PolicyLanes.In.Heading
 
   /** Rounding of a time, as a share of a second; grains of 4 ns are exact. */
@@ -200,14 +199,12 @@ private[skein] object DuelAgreement:
       link: Delays,
       key: Int,
       captureM: Float = 0
-  )(pursuer: Int => HeadingPolicy, evader: Int => HeadingPolicy): DuelAgreement =
-    val lanes    = taken(pursuer, evader)
-    val vehicles = LaneDynamics.under(timing, model, duel).fold(munit.Assertions.fail(_), identity)
-    val kernel   = TimetableDuels(duel, timing, vehicles, lanes(1), lanes(0))
-    kernel.fly(Timetable.of(2, duel.durationS, timing, link, key, vehicles), DuelKernel.WORLDS, captureM)
-    DuelAgreement(duel, timing, model, _ => link, _ => key, captureM, Vector(evader, pursuer), lanes, kernel)
+  )(pursuer: Int => HeadingPolicy, evader: Int => HeadingPolicy): PairAgreement =
+    val lanes  = taken(pursuer, evader)
+    val kernel = PairKernels.shared(duel, timing, model, lanes, link, key, captureM)
+    PairAgreement(duel, timing, model, _ => link, _ => key, captureM, Vector(evader, pursuer), lanes, kernel)
 
-  /** Worlds with delays of their own, by [[LoopDuelKernel]]. */
+  /** Worlds with delays of their own, by [[skein.lanes.loop.LoopKernel]]. */
   def alone(
       duel: Duel,
       timing: LoopTiming,
@@ -215,10 +212,10 @@ private[skein] object DuelAgreement:
       link: Int => TabledDelays,
       key: Int => Int,
       captureM: Float = 0
-  )(pursuer: Int => HeadingPolicy, evader: Int => HeadingPolicy): DuelAgreement =
+  )(pursuer: Int => HeadingPolicy, evader: Int => HeadingPolicy): PairAgreement =
     val lanes  = taken(pursuer, evader)
     val kernel = flownAlone(duel, timing, model, link, key, captureM, lanes)
-    DuelAgreement(duel, timing, model, link, key, captureM, Vector(evader, pursuer), lanes, kernel)
+    PairAgreement(duel, timing, model, link, key, captureM, Vector(evader, pursuer), lanes, kernel)
 
   /** The same kernel, when it has flown.
     *
@@ -232,35 +229,16 @@ private[skein] object DuelAgreement:
       key: Int => Int,
       captureM: Float,
       lanes: Vector[LoggedPolicy],
-      newEye: LoopDuelKernel.NewEye = LoopEye(_, _, _, _, _, _)
-  ): LoopDuelKernel =
-    val worlds   = Array.range(0, DuelKernel.WORLDS)
-    val links    = worlds.map(link)
-    val slowestS = links.map(_.maxS).max
-    val vehicles = LaneDynamics.of(model, duel).fold(munit.Assertions.fail(_), identity)
-    munit.Assertions.assertEquals(
-      links.distinct.flatMap(LoopSupport.refusal(timing, 2, _, vehicles)).toSeq,
-      Nil
-    )
-    val eyes   = DuelEyes.of(duel).fold(munit.Assertions.fail(_), identity)
-    val kernel = LoopDuelKernel(
-      duel,
-      LoopLanes(timing, 2, duel.durationS, slowestS, sees = !eyes.isNobody),
-      vehicles,
-      lanes(1),
-      lanes(0),
-      DuelNumber.all,
-      eyes,
-      newEye
-    )
-    kernel.fly(worlds.map(key), links, captureM)
-    kernel
+      newEye: Opponents.NewEye = LoopEye(_, _, _, _, _, _)
+  ): PairKernel =
+    val worlds = Array.range(0, PairKernels.WORLDS)
+    PairKernels.alone(duel, timing, model, lanes, worlds.map(link), worlds.map(key), captureM, newEye)
 
   /** Lanes that fly these, the evader's first. */
   def taken(pursuer: Int => HeadingPolicy, evader: Int => HeadingPolicy): Vector[LoggedPolicy] =
     Vector(evader, pursuer).map: of =>
       val lanes = LoggedPolicy(of(0))
-      for world <- 0 until DuelKernel.WORLDS do lanes.take(world, of(world))
+      for world <- 0 until PairKernels.WORLDS do lanes.take(world, of(world))
       lanes
 
   enum Event:

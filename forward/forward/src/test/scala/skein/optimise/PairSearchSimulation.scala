@@ -1,25 +1,28 @@
 package skein.optimise
 
 import java.util.concurrent.atomic.AtomicInteger
-import skein.forward.{DelayTable, Duel, LoopTiming, Rollout, VelocityResponses}
-import skein.lanes.DuelBatch
-import skein.policy.{PaperEvader, PaperPursuer, PolicyFamily, Role}
+import skein.forward.{DelayTable, Duel, Engagement, LoopTiming, Rollout, VelocityResponses}
+import skein.lanes.{TeamBatch, TeamCandidate}
+import skein.policy.{PaperPursuer, PolicyFamily, Role}
 import skein.simd.WorldRandom
 import skein.testing.Unhurried
 
-class DuelSearchSimulation extends munit.FunSuite, Unhurried:
+class PairSearchSimulation extends munit.FunSuite, Unhurried:
   private val lag   = VelocityResponses.lag(0.9, 0.8, 0.05)
   private val short = Duel.paper.copy(durationS = 15)
 
-  private def game(threads: Int): Evaluator = DuelEvaluator(
-    DuelBatch(short, LoopTiming.Stream(), lag, threads),
-    30,
-    PolicyFamily.paperPursuer,
-    Role.Pursuer,
-    PaperEvader(),
+  private val nearest = Objective(Vector(1.0 -> DistanceTerm.Last10s), Direction.Minimise)
+
+  private def game(threads: Int): Evaluator = TeamEvaluator(
+    TeamBatch(LoopTiming.Stream(), lag, threads),
+    parameters =>
+      val team = Engagement.of(short).flownBy(Role.Pursuer, PolicyFamily.paperPursuer.policy(parameters))
+      TeamCandidate(team, nearest.judged(15, 0.1))
+    ,
     DelayTable.vpn,
-    Objective(Vector(1.0 -> DuelMeasure.Last10s), Direction.Minimise),
-    seed = 1
+    nearest,
+    seed = 1,
+    usual = PolicyFamily.paperPursuer.space.defaults
   )
 
   test("the value of a turn rate is the scalar reference's mean, and does not depend on the threads"):

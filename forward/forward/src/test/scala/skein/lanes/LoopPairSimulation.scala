@@ -14,7 +14,6 @@ import skein.forward.{
   VelocityResponses
 }
 import skein.identify.Tilting
-import skein.lanes.loop.LoopLanes
 import skein.lanes.policy.LanePolicy
 import skein.optimise.LatencyBudget
 import skein.policy.{HeadingPolicy, PaperEvader, PaperPursuer}
@@ -26,8 +25,8 @@ import skein.units.Span
 import skein.vehicle.{ConstantVelocity, ReducedModel}
 
 /** The two engines' flights of duels in which every world has delays of its own. */
-abstract class LoopDuelKernelAgreement(isDaily: Boolean) extends munit.FunSuite:
-  protected val worlds = DuelKernel.WORLDS
+abstract class LoopPairAgreement(isDaily: Boolean) extends munit.FunSuite:
+  protected val worlds = PairKernels.WORLDS
   protected val lag    = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
   protected val models = Seq[(String, VelocityResponse)](
     "lag"           -> lag,
@@ -56,17 +55,20 @@ abstract class LoopDuelKernelAgreement(isDaily: Boolean) extends munit.FunSuite:
       durationS: Double,
       model: VelocityResponse,
       keys: Array[Int] = keys
-  ): LoopDuelKernel =
+  ): PairKernel =
     val (pursuers, evaders) = (LanePolicy.of(PaperPursuer()), LanePolicy.of(PaperEvader()))
     for world <- 0 until worlds do
       pursuers.take(world, PaperPursuer(0.6 + 0.008 * world))
       evaders.take(world, PaperEvader(7 + 0.02 * world))
-    val vehicles = LaneDynamics.of(model, duel(0, durationS)).fold(fail(_), identity)
-    assertEquals(LoopSupport.refusal(timing, 2, link, vehicles), None)
-    val loop   = LoopLanes(timing, 2, durationS, link.maxS)
-    val kernel = LoopDuelKernel(duel(0, durationS), loop, vehicles, pursuers, evaders, DuelNumber.all)
-    kernel.fly(keys, Array.fill(worlds)(link), captureM)
-    kernel
+    PairKernels.alone(
+      duel(0, durationS),
+      timing,
+      model,
+      Vector(evaders, pursuers),
+      Array.fill(worlds)(link),
+      keys,
+      captureM
+    )
 
   protected def loops(model: VelocityResponse) = Seq(
     LoopTiming.Sequential(),
@@ -115,7 +117,7 @@ abstract class LoopDuelKernelAgreement(isDaily: Boolean) extends munit.FunSuite:
   protected def unseen(timing: LoopTiming, link: TabledDelays, durationS: Double, model: VelocityResponse)(
       pursuer: Int => HeadingPolicy
   ) =
-    DuelAgreement.alone(duel(0, durationS), timing, model, _ => link, keys(_), captureM)(
+    PairAgreement.alone(duel(0, durationS), timing, model, _ => link, keys(_), captureM)(
       pursuer,
       duel(_, durationS).evader.policy.asInstanceOf[HeadingPolicy]
     )
@@ -163,7 +165,7 @@ abstract class LoopDuelKernelAgreement(isDaily: Boolean) extends munit.FunSuite:
       agreement(LoopTiming.Stream(0.02, steering = most), link, 5, model).check(name, 0 until worlds by 3)
 
 /** Each vehicle over one link, one vehicle over most, and what is not a combination. */
-class LoopDuelKernelSimulation extends LoopDuelKernelAgreement(isDaily = true):
+class LoopPairSimulation extends LoopPairAgreement(isDaily = true):
   private val unseenPursuers = Seq[(String, Int => HeadingPolicy)](
     "remembers"                    -> (world => TrendPursuer(2 + 0.02 * world, 0.5, 1)),
     "asks for velocities and ages" -> (world => AgeAwarePursuer(8, 0.01 * world, 1))
@@ -272,12 +274,12 @@ class LoopDuelKernelSimulation extends LoopDuelKernelAgreement(isDaily = true):
       s"$timing: a world's result depends on its key and parameters alone, not on its lane or its neighbours"
     ):
       for link <- Seq(wild(150, 150), changing) do
-        val before = fly(timing, link, 20, lag)(DuelNumber.MeanLast10s).clone
+        val before = fly(timing, link, 20, lag)(PairNumber.MeanLast10s).clone
         // The others meet other delays.
         val some   = keys.zipWithIndex.map((key, world) => if world % 3 == 0 then key else key ^ 0x5a5a5a)
         val beside = fly(timing, link, 20, lag, some)
         for world <- 0 until worlds by 3 do
-          assertEquals(beside(DuelNumber.MeanLast10s)(world), before(world), s"world $world")
+          assertEquals(beside(PairNumber.MeanLast10s)(world), before(world), s"world $world")
 
 /** The other combinations. */
-class LoopDuelKernelCombinationsSimulation extends LoopDuelKernelAgreement(isDaily = false), Lengthy
+class LoopPairCombinationsSimulation extends LoopPairAgreement(isDaily = false), Lengthy

@@ -1,60 +1,63 @@
 package skein.lanes.gpu
 
-import skein.forward.Duel
+import java.util.IdentityHashMap
+import scala.collection.mutable
+import skein.forward.RolloutAgent
 import skein.gpu.{Gpu, Ptx, PtxExpressions, Variables}
-import skein.lanes.{DuelKernel, DuelNumber}
-import skein.lanes.policy.PolicyLanes
-import skein.lanes.score.ScoreLanes
+import skein.lanes.{PreparedTeam, TeamForm}
+import skein.lanes.policy.{OpponentLanes, PolicyLanes, VehicleNumbers}
 import skein.lanes.timetable.Timetable
-import skein.policy.HeadingPolicy
 
-/** Duels on a GPU: the evader is vehicle 0, and the first side.
+/** Two that play against one another, on a GPU. A side each: the numbers of its policy, its initial memory,
+  * and its start; and one of the quantities' parameters, if they have any.
   *
-  * @param duel start, speeds and duration
+  * @param agents of one candidate; starts of others are numbers
   */
-private[lanes] final class GpuDuelKernel(
+private[lanes] final class GpuOpponentKernel(
     gpu: Gpu,
-    duel: Duel,
-    periodS: Double,
+    agents: Vector[RolloutAgent],
     vehicle: GpuVehicle.Kind,
     prediction: Option[GpuPrediction.Kind],
-    forms: Vector[PolicyLanes],
-    asked: Set[DuelNumber],
+    form: TeamForm,
+    two: OpponentLanes,
     layout: GpuLayout
 ) extends GpuFlightKernel(
       gpu,
       layout,
-      forms.map(form => form.parameters + form.memories),
-      ScoreLanes.ofDistance(DuelKernel.judged(duel.durationS, periodS, asked).map(_._2)*)
+      two.forms.map(GpuOpponentKernel.numbers) ++ GpuOpponentKernel.ofQuantities(form),
+      form.scores,
+      agents
     ):
-  private val agents  = Vector(duel.evader, duel.pursuer)
-  private val judged  = DuelKernel.judged(duel.durationS, periodS, asked)
-  private val efforts = Vector(DuelNumber.EvaderEffort, DuelNumber.PursuerEffort).map(asked)
+  import two.forms
 
-  val outcomes: Int = scores.initial.size + efforts.count(identity)
+  private val firstStart = forms.map(each => each.parameters + each.memories)
 
   protected val withVelocity: Boolean = forms.exists(_.needsVelocity)
 
-  /** The numbers of one policy: its parameters, then its initial memory. */
-  def numbersOf(side: Int, policy: HeadingPolicy): Array[Float] =
-    (forms(side).parametersOf(policy) ++ forms(side).initialOf(policy)).map(_.toFloat)
+  def sidesOf(teams: Array[PreparedTeam]): Vector[(Array[Float], Array[Int])] =
+    Vector(0, 1).map(side(teams, _)) ++ GpuOpponentKernel.ofQuantities(form).map: _ =>
+      (teams.flatMap(_.ofQuantities.flatten.map(_.toFloat)), teams.indices.toArray)
 
-  /** Index of a number among a world's results, and its conversion. */
-  def outcome(number: DuelNumber, scoredAtS: Array[Float]): (Int, Float => Float) = number match
-    case DuelNumber.EvaderEffort  => (scores.initial.size, identity)
-    case DuelNumber.PursuerEffort => (outcomes - 1, identity)
-    case _                        =>
-      val outcome = GpuFlightKernel.Outcome(scores, judged.indexWhere(_._1 == number), scoredAtS)
-      (outcome.place, outcome(_))
+  /** Nearly always all of one side are the very same. */
+  private def side(teams: Array[PreparedTeam], self: Int): (Array[Float], Array[Int]) =
+    val known    = IdentityHashMap[VehicleNumbers, Integer]()
+    val numbers  = mutable.ArrayBuilder.ofFloat()
+    val numberOf = teams.map: team =>
+      val own    = team.numbers(self)
+      val number = known.putIfAbsent(own, known.size)
+      if number != null then number.intValue
+      else
+        numbers ++= own.policy += own.northM += own.eastM
+        known.size - 1
+    (numbers.result(), numberOf)
 
   protected def body(code: Ptx, numbers: Vector[Int => Int]): Body = new Body:
-    val vehicles: Vector[GpuVehicle] = agents.map: agent =>
-      vehicle(code, agent, code.constant(agent.startX.toFloat), code.constant(agent.startY.toFloat))
+    val vehicles: Vector[GpuVehicle] = agents.zipWithIndex.map: (agent, self) =>
+      vehicle(code, agent, numbers(self)(firstStart(self)), numbers(self)(firstStart(self) + 1))
     val predictions: Vector[GpuPrediction] = prediction.toVector.flatMap(of => agents.map(of(code, _)))
     private val effort                     = Vector.fill(2)(Variables(code, Seq(0f)))
     private val heading = agents.map(each => Variables(code, Seq(each.startHeadingRad.toFloat)))
     private val memory  = forms.map(form => Variables(code, Seq.fill(form.memories)(0f)))
-    private val radius  = code.argument("limit")
 
     def start(): Unit = for self <- 0 to 1 do
       effort(self).start()
@@ -71,10 +74,11 @@ private[lanes] final class GpuDuelKernel(
     def decide(self: Int, now: GpuRecord): Unit =
       import PolicyLanes.In
       val form                         = forms(self)
+      val withEffort                   = two.withEffort(self)
       val seen                         = now.seen()
       val (own, opponent)              = (seen(self), seen(1 - self))
       val Vector(known, before, after) = Vector(2, 3, 4).map(now.place): @unchecked
-      val decided                      = PtxExpressions.write(code, form.nodes(efforts(self)))(
+      val decided                      = PtxExpressions.write(code, form.nodes(withEffort))(
         {
           case read if read < Timetable.Read =>
             code.two("sub.rn", code.loadOwn(opponent, read), code.loadOwn(own, read))
@@ -92,13 +96,20 @@ private[lanes] final class GpuDuelKernel(
       )
       code.storeOwn(decided(0), after, 0)
       code.storeOwn(decided(1), after, 1)
-      if efforts(self) then effort(self).take(Seq(code.two("add.rn", effort(self)(0), decided(2))))
-      val first = form.decided - (if efforts(self) then 0 else 1)
+      if withEffort then effort(self).take(Seq(code.two("add.rn", effort(self)(0), decided(2))))
+      val first = form.decided - (if withEffort then 0 else 1)
       memory(self).take(decided.slice(first, first + form.memories))
       if form.keepsHeading then heading(self).take(Seq(decided(first + form.memories)))
 
-    def altitude(vehicle: Int): Int                = code.constant(agents(vehicle).altitudeDownM.toFloat)
     def quantity(number: Int, parameter: Int): Int =
-      throw IllegalStateException("a distance has no parameters")
-    def limit(number: Int): Int = radius
-    def besides: Vector[Int]    = Vector(0, 1).filter(efforts).map(effort(_)(0))
+      numbers(2)((0 until number).map(scores.parameters).sum + parameter)
+    override def besides: Vector[Int] = form.efforts.flatten.map(effort(_)(0))
+
+  override protected def efforts: Int = form.efforts.flatten.size
+
+private object GpuOpponentKernel:
+  private def numbers(form: PolicyLanes): Int = form.parameters + form.memories + 2
+
+  /** Count of all quantities' parameters, if they have any. */
+  private def ofQuantities(form: TeamForm): Option[Int] =
+    Some(form.scores.judged.indices.map(form.scores.parameters).sum).filter(_ > 0)

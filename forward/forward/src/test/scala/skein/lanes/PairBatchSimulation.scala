@@ -22,14 +22,14 @@ import skein.simd.WorldRandom
 import skein.units.Span
 import skein.vehicle.{ConstantTurn, ReducedModel, PlantModel}
 
-class DuelBatchSimulation extends munit.FunSuite:
-  import DuelBatchSimulation.*
+class PairBatchSimulation extends munit.FunSuite:
+  import PairBatchSimulation.*
 
   private val short = Duel.paper.copy(durationS = 12)
 
   test("threads, the other worlds and their order change no bit"):
-    val all    = DuelBatch(short, LoopTiming.Stream(), lag, threads = 2).fly(mixed(300), captureRadiusM = 5)
-    val single = DuelBatch(short, LoopTiming.Stream(), lag, threads = 1)
+    val all    = PairBatch(short, LoopTiming.Stream(), lag, threads = 2).fly(mixed(300), captureRadiusM = 5)
+    val single = PairBatch(short, LoopTiming.Stream(), lag, threads = 1)
     val backwards = single.fly(reordered(mixed(300), 299 - _), captureRadiusM = 5)
     assertEquals(all.flown, 300)
     for world <- 0 until 300 do
@@ -37,7 +37,7 @@ class DuelBatchSimulation extends munit.FunSuite:
 
   test("worlds whose policies are no formulas fly by the scalar reference, beside the others"):
     val worlds   = mixed(40)
-    val outcomes = DuelBatch(short, LoopTiming.Stream(), lag).fly(worlds, captureRadiusM = 5)
+    val outcomes = PairBatch(short, LoopTiming.Stream(), lag).fly(worlds, captureRadiusM = 5)
     for world <- 0 until worlds.size if worlds.evader(world) == Straight do
       assertEquals(numbers(outcomes, world), scalar(worlds, world, LoopTiming.Stream(), lag), s"world $world")
 
@@ -46,7 +46,7 @@ class DuelBatchSimulation extends munit.FunSuite:
       s"$model, predicted by a model that SIMD does not support, uses the scalar reference, and the engine says so"
     ):
       val timing = LoopTiming.Predictive(predictor = ConstantTurn)
-      val batch  = DuelBatch(short, timing, model, threads = 2)
+      val batch  = PairBatch(short, timing, model, threads = 2)
       val worlds = mixed(20)
       val flown  = batch.fly(worlds, captureRadiusM = 5)
       assert(batch.engine(PaperPursuer(), PaperEvader(), false, Nil).text.startsWith("scalar: "))
@@ -60,7 +60,7 @@ class DuelBatchSimulation extends munit.FunSuite:
   ):
     val near                      = DelayTable.of(LatencyDistribution.Constant(Span.ofMillis(2)))
     val far                       = DelayTable.of(LatencyDistribution.Constant(Span.ofMillis(60)))
-    def batch(timing: LoopTiming) = DuelBatch(short, timing, lag, threads = 1)
+    def batch(timing: LoopTiming) = PairBatch(short, timing, lag, threads = 1)
     def engine(timing: LoopTiming, links: Delays*) =
       batch(timing).engine(PaperPursuer(), PaperEvader(), shareEpisodes = false, links).text
     def isFast(timing: LoopTiming, links: Delays*) =
@@ -96,7 +96,7 @@ class DuelBatchSimulation extends munit.FunSuite:
     assert(clue(engine(most(6), near)).startsWith("SIMD"))
 
   test("progress counts all worlds, and a cancelled call says how many it flew"):
-    val batch = DuelBatch(short, LoopTiming.Stream(), lag, threads = 2)
+    val batch = PairBatch(short, LoopTiming.Stream(), lag, threads = 2)
     val seen  = Vector.newBuilder[Int]
     batch.fly(mixed(600), onProgress = seen += _): Unit
     assertEquals(seen.result().last, 600)
@@ -111,7 +111,7 @@ class DuelBatchSimulation extends munit.FunSuite:
 
   test("who cancels does not wait for vehicles that are stepped side by side for long"):
     val hours = Duel.paper.copy(durationS = 36_000)
-    val batch = DuelBatch(hours, LoopTiming.Stream(), VelocityResponses.quadrotor(), threads = 1)
+    val batch = PairBatch(hours, LoopTiming.Stream(), VelocityResponses.quadrotor(), threads = 1)
     val asked = AtomicInteger()
     // Asked once before the batch, and then while it flies.
     assertEquals(batch.fly(mixed(8), isCancelled = () => asked.incrementAndGet() > 1).flown, 0)
@@ -122,10 +122,10 @@ class DuelBatchSimulation extends munit.FunSuite:
     test(
       s"candidates that share episodes of $timing fly as each alone, whatever their order, number and threads"
     ):
-      val batch     = DuelBatch(short, timing, lag, threads = 2)
+      val batch     = PairBatch(short, timing, lag, threads = 2)
       val worlds    = candidates(150)
       val all       = batch.fly(worlds, captureRadiusM = 5)
-      val backwards = DuelBatch(short, timing, lag, threads = 1)
+      val backwards = PairBatch(short, timing, lag, threads = 1)
         .fly(reordered(worlds, worlds.size - 1 - _), captureRadiusM = 5)
       assertEquals(all.flown, worlds.size)
       assert(batch.engine(PaperPursuer(), PaperEvader(), shareEpisodes = true, Nil).isFast)
@@ -149,7 +149,7 @@ class DuelBatchSimulation extends munit.FunSuite:
       s"candidates with $name that share episodes have by SIMD the results of each alone, close to the scalar engine"
     ):
       val offAxis = Duel(short.pursuer, short.evader.copy(startY = 2), short.durationS)
-      val batch   = DuelBatch(offAxis, LoopTiming.Futures(), model, threads = 2)
+      val batch   = PairBatch(offAxis, LoopTiming.Futures(), model, threads = 2)
       val worlds  = candidates(30)
       assert(batch.engine(PaperPursuer(), PaperEvader(), shareEpisodes = true, Nil).isFast)
       val all       = batch.fly(worlds, captureRadiusM = 5)
@@ -168,9 +168,9 @@ class DuelBatchSimulation extends munit.FunSuite:
     test(s"quadrotors with separate delays under $timing have results close to the scalar engine"):
       val (model, count) = (VelocityResponses.quadrotor(), 150)
       val offAxis        = Duel(short.pursuer, short.evader.copy(startY = 2), short.durationS)
-      val all = DuelBatch(offAxis, timing, model, threads = 2).fly(mixed(count), captureRadiusM = 5)
-      assert(DuelBatch(offAxis, timing, model).engine(PaperPursuer(), Straight, false, Nil).isFast)
-      val single    = DuelBatch(offAxis, timing, model, threads = 1)
+      val all = PairBatch(offAxis, timing, model, threads = 2).fly(mixed(count), captureRadiusM = 5)
+      assert(PairBatch(offAxis, timing, model).engine(PaperPursuer(), Straight, false, Nil).isFast)
+      val single    = PairBatch(offAxis, timing, model, threads = 1)
       val backwards = single.fly(reordered(mixed(count), count - 1 - _), captureRadiusM = 5)
       assertEquals(all.flown, count)
       for world <- 0 until count do
@@ -180,7 +180,7 @@ class DuelBatchSimulation extends munit.FunSuite:
         assert(near.forall((a, b) => a == b || (a - b).abs < 2e-2), s"world $world: ours and scalar $near")
 
   test("low quadrotors fly by the scalar reference, which knows the ground"):
-    val batch = DuelBatch(Duel.paperAt(4.9, 12), LoopTiming.Stream(), VelocityResponses.quadrotor())
+    val batch = PairBatch(Duel.paperAt(4.9, 12), LoopTiming.Stream(), VelocityResponses.quadrotor())
     assertEquals(
       batch.engine(PaperPursuer(), PaperEvader(), shareEpisodes = true, Nil).text,
       "scalar: the lanes know no ground and fly from 5.0 m altitude on"
@@ -188,11 +188,11 @@ class DuelBatchSimulation extends munit.FunSuite:
 
   test("what a world throws reaches the caller"):
     val worlds = mixed(300)
-    val broken = new DuelWorlds:
+    val broken = new PairWorlds:
       export worlds.{evader, key, pursuer, size}
       def link(world: Int): Delays =
         if world == 200 then sys.error("no such link") else worlds.link(world)
-    val thrown = intercept[RuntimeException](DuelBatch(short, LoopTiming.Stream(), lag).fly(broken): Unit)
+    val thrown = intercept[RuntimeException](PairBatch(short, LoopTiming.Stream(), lag).fly(broken): Unit)
     assertEquals(thrown.getMessage, "no such link")
 
   test("without the vector module the scalar engine flies, and says how to get the other"):
@@ -201,7 +201,7 @@ class DuelBatchSimulation extends munit.FunSuite:
       binary,
       "-cp",
       System.getProperty("java.class.path"),
-      "skein.lanes.DuelBatchWithoutVectors"
+      "skein.lanes.PairBatchWithoutVectors"
     ).redirectErrorStream(true).start()
     val lines = process.inputReader.lines.iterator.asScala.toVector
     assertEquals(process.waitFor(), 0, lines.mkString("\n"))
@@ -212,16 +212,16 @@ class DuelBatchSimulation extends munit.FunSuite:
     val here = scalar(mixed(1), 0, LoopTiming.Stream(), lag)
     assertEquals(lines(1), here.toString)
 
-object DuelBatchSimulation:
+object PairBatchSimulation:
   /** Goes straight on, by what is no arithmetic. */
   val Straight: HeadingPolicy.Memoryless = _.ownHeadingRad.toString.toDouble
 
   val lag: PlantResponse = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
 
   /** Worlds of different links and policies; the evader of every seventh goes straight on. */
-  def mixed(count: Int): DuelWorlds =
+  def mixed(count: Int): PairWorlds =
     val links = Vector(DelayTable.vpn, DelayTable.direct, DelayTable.none)
-    new DuelWorlds:
+    new PairWorlds:
       def size: Int                          = count
       def key(world: Int): Int               = WorldRandom.key(7, 1, world)
       def link(world: Int): DelayTable       = links(world / 10 % links.size)
@@ -230,9 +230,9 @@ object DuelBatchSimulation:
         if world % 7 == 6 then Straight else PaperEvader(8 - 0.002 * world)
 
   /** Candidates with 3 episodes over 2 links; the evader of every seventh goes straight on. */
-  def candidates(count: Int): DuelWorlds =
+  def candidates(count: Int): PairWorlds =
     val links = Vector(DelayTable.vpn, DelayTable.direct)
-    new DuelWorlds:
+    new PairWorlds:
       def size: Int                          = count * 6
       override def shareEpisodes: Boolean    = true
       def key(world: Int): Int               = WorldRandom.key(9, 0, world % 3)
@@ -242,8 +242,8 @@ object DuelBatchSimulation:
         else PaperPursuer(0.8 + 0.002 * (world / 6))
       def evader(world: Int): HeadingPolicy = if world % 7 == 6 then Straight else PaperEvader()
 
-  def reordered(worlds: DuelWorlds, number: Int => Int, count: Option[Int] = None): DuelWorlds =
-    new DuelWorlds:
+  def reordered(worlds: PairWorlds, number: Int => Int, count: Option[Int] = None): PairWorlds =
+    new PairWorlds:
       def size: Int                          = count.getOrElse(worlds.size)
       override def shareEpisodes: Boolean    = worlds.shareEpisodes
       def key(world: Int): Int               = worlds.key(number(world))
@@ -251,7 +251,7 @@ object DuelBatchSimulation:
       def pursuer(world: Int): HeadingPolicy = worlds.pursuer(number(world))
       def evader(world: Int): HeadingPolicy  = worlds.evader(number(world))
 
-  def numbers(o: DuelOutcomes, world: Int): Vector[Float] =
+  def numbers(o: PairOutcomes, world: Int): Vector[Float] =
     Vector(
       o.minDistanceM,
       o.meanDistanceM,
@@ -262,7 +262,7 @@ object DuelBatchSimulation:
     ).map(_(world))
 
   def scalar(
-      worlds: DuelWorlds,
+      worlds: PairWorlds,
       world: Int,
       timing: LoopTiming,
       model: VelocityResponse,
@@ -278,9 +278,9 @@ object DuelBatchSimulation:
       .map(_.toFloat)
 
 /** Runs in a JVM without the vector module. */
-object DuelBatchWithoutVectors:
+object PairBatchWithoutVectors:
   def main(args: Array[String]): Unit =
     val batch =
-      DuelBatch(Duel.paper.copy(durationS = 12), LoopTiming.Stream(), DuelBatchSimulation.lag, threads = 1)
+      PairBatch(Duel.paper.copy(durationS = 12), LoopTiming.Stream(), PairBatchSimulation.lag, threads = 1)
     println(batch.engine(PaperPursuer(), PaperEvader(), false, Nil).text)
-    println(DuelBatchSimulation.numbers(batch.fly(DuelBatchSimulation.mixed(1), captureRadiusM = 5), 0))
+    println(PairBatchSimulation.numbers(batch.fly(PairBatchSimulation.mixed(1), captureRadiusM = 5), 0))

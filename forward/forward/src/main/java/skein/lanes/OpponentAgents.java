@@ -4,13 +4,14 @@ import java.util.Arrays;
 import skein.forward.RolloutAgent;
 import skein.lanes.policy.LaneObservation;
 import skein.lanes.policy.LanePolicy;
+import skein.lanes.policy.VehicleNumbers;
 import skein.lanes.timetable.Timetable;
 import skein.lanes.timetable.TimetableAgents;
 import skein.lanes.timetable.TimetableEye;
 import skein.lanes.timetable.TimetableVehicles;
 
-/** One side of a duel in many worlds: decides by the difference of the two vehicles' readings. */
-final class DuelAgents extends TimetableAgents {
+/** One of two that play against one another, in many worlds: decides by the difference of their readings. */
+final class OpponentAgents extends TimetableAgents implements TeamMember {
   private final LanePolicy policy;
   private final float[] effort;
   private final float startHeading;
@@ -28,7 +29,7 @@ final class DuelAgents extends TimetableAgents {
    * @param isTold whether a caller outside the kernel reads all of its observations
    * @param eye the camera that is its only knowledge of the opponent; null if it reads the opponent's state
    */
-  DuelAgents(
+  OpponentAgents(
       int self,
       RolloutAgent agent,
       LaneDynamics model,
@@ -45,6 +46,17 @@ final class DuelAgents extends TimetableAgents {
     this.effort = effort;
     this.observation = observation;
     startHeading = (float) agent.startHeadingRad();
+  }
+
+  @Override
+  public void take(int world, VehicleNumbers numbers) {
+    vehicles.place(world, numbers);
+    policy.put(world, numbers);
+  }
+
+  @Override
+  public float[] effortRad() {
+    return effort;
   }
 
   @Override

@@ -18,9 +18,10 @@ import skein.lanes.loop.LoopLanes;
 import skein.lanes.policy.Directions;
 import skein.lanes.policy.LaneObservation;
 import skein.lanes.policy.LanePolicy;
+import skein.lanes.policy.VehicleNumbers;
 
-/** One side of a duel in many worlds with separate delays: 0 is the evader, 1 the pursuer. */
-final class LoopDuelAgents extends LaneAgents {
+/** One of two that play against one another, in many worlds with separate delays. */
+final class LoopOpponentAgents extends LaneAgents implements TeamMember {
   private static final int WORLDS = LanePolicy.WORLDS;
 
   private final LanePolicy policy;
@@ -36,13 +37,24 @@ final class LoopDuelAgents extends LaneAgents {
   private LoopEye eye;
 
   /** @param effort receives the sums of the changes of the decided headings, rad */
-  LoopDuelAgents(
+  LoopOpponentAgents(
       int self, RolloutAgent agent, LoopLanes loop, LaneDynamics model, LanePolicy policy, float[] effort) {
     super(self, loop, model.deadTimeS(), model.flights(agent, loop));
     this.policy = policy;
     this.effort = effort;
     startHeading = (float) agent.startHeadingRad();
     loop.carryForward(self, agent, vehicles);
+  }
+
+  @Override
+  public void take(int world, VehicleNumbers numbers) {
+    vehicles.place(world, numbers);
+    policy.put(world, numbers);
+  }
+
+  @Override
+  public float[] effortRad() {
+    return effort;
   }
 
   /** Sets the camera that is its only knowledge of the opponent. */

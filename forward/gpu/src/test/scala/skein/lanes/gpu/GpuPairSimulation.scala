@@ -10,7 +10,7 @@ import skein.vehicle.ReducedModel
 /** Results on a GPU are bit-identical to those on the CPU: by an interpreter of the GPU's instructions, and
   * by the GPU itself, where there is one.
   */
-class GpuDuelSimulation extends munit.FunSuite, TestGpus:
+class GpuPairSimulation extends munit.FunSuite, TestGpus:
   override def munitTimeout: scala.concurrent.duration.Duration =
     scala.concurrent.duration.Duration(5, "min")
 
@@ -36,12 +36,12 @@ class GpuDuelSimulation extends munit.FunSuite, TestGpus:
       if world % 2 == 0 then PaperPursuer() else TrendPursuer(3, 0.5, 1)
     ),
     "now and then one that is no formula" -> (world =>
-      if world == 1 then DuelBatchSimulation.Straight else PaperPursuer()
+      if world == 1 then PairBatchSimulation.Straight else PaperPursuer()
     )
   )
 
   private final class Worlds(val size: Int, episodes: Int, link: Delays, of: Int => HeadingPolicy)
-      extends DuelWorlds:
+      extends PairWorlds:
     override def shareEpisodes: Boolean    = true
     override def episodesOfEach: Int       = episodes
     private val pursuers                   = Vector.tabulate(size)(world => of(world / episodes))
@@ -62,15 +62,15 @@ class GpuDuelSimulation extends munit.FunSuite, TestGpus:
   ): Unit =
     val duel   = Duel.paper.copy(evader = Duel.paper.evader.copy(startY = 2), durationS = durationS)
     val worlds = Worlds(size, episodes = 2, link, pursuer)
-    val onCpu  = DuelBatch(duel, timing, model, threads = 1)
-    val onGpu  = DuelBatch(duel, timing, model, threads = 1, Some(GpuAccelerator(gpu)))
+    val onCpu  = PairBatch(duel, timing, model, threads = 1)
+    val onGpu  = PairBatch(duel, timing, model, threads = 1, Some(GpuAccelerator(gpu)))
     assertEquals(
       onGpu.engine(pursuer(0), PaperEvader(), shareEpisodes = true, Seq(link)).text,
       s"GPU, ${gpu.name}: a thread a candidate"
     )
     val (told, wanted) = (onGpu.fly(worlds, 4), onCpu.fly(worlds, 4))
     assertEquals(told.flown, size)
-    for number <- DuelNumber.values; world <- 0 until size do
+    for number <- PairNumber.values; world <- 0 until size do
       assertEquals(
         java.lang.Float.floatToRawIntBits(told(number)(world)),
         java.lang.Float.floatToRawIntBits(wanted(number)(world)),

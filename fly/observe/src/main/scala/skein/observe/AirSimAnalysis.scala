@@ -1,0 +1,31 @@
+package skein.observe
+
+import org.apache.pekko.util.ByteString
+import scala.collection.mutable
+import skein.units.Instant
+
+/** Analyses the MessagePack-RPC of AirSim's clients: calls are commands, readings and all else by their
+  * names.
+  */
+final class AirSimAnalysis extends Analysis[Observed]:
+  private val account       = LoopAccount()
+  private val conversations = mutable.LongMap.empty[Conversation]
+
+  def opened(connection: Int, at: Instant): Unit =
+    conversations(connection) = Conversation(connection)
+    account.add(Passed.Opened(connection, at))
+
+  def passed(connection: Int, isFromClient: Boolean, bytes: ByteString, at: Instant): Unit =
+    for known <- conversations.get(connection) do
+      val passed = if isFromClient then known.fromClient(bytes, at) else known.fromSimulator(bytes, at)
+      passed.foreach(account.add)
+
+  def closed(connection: Int, at: Instant): Unit =
+    conversations.remove(connection): Unit
+    account.add(Passed.Closed(connection, at))
+
+  def passedOver(count: Long): Unit = account.passedOver(count)
+
+  def progress: Progress = account.progress
+
+  def observed: Observed = account.observed

@@ -1,0 +1,74 @@
+package skein.optimise
+
+import skein.forward.Rollout
+import skein.lanes.score.{Effort, Judged, OfMoment}
+import skein.scenario.{Measure, Reduction, Separation, Window}
+
+/** A number of a flight that an objective weighs. */
+trait Term:
+  /** Its name, as users write it in an objective. */
+  def key: String
+
+  def unit: String
+
+  /** What forward simulation computes for it; None if only a whole flight has it. */
+  def judged(durationS: Double, periodS: Double): Option[Judged | Effort]
+
+  /** Its value in an episode.
+    *
+    * @param computed the number of [[judged]]
+    */
+  def value(computed: Float, durationS: Double): Double
+
+/** A measure of a scenario, named by its key: `off-ring`. */
+final case class ScenarioTerm(measure: Measure) extends Term:
+  def key: String  = ScenarioTerm.keyOf(measure)
+  def unit: String = measure.unit
+
+  def judged(durationS: Double, periodS: Double): Option[Judged] = measure.reduced.map: by =>
+    val fromS = by.over match
+      case Window.Whole          => 0
+      case Window.After(seconds) => seconds
+      case Window.Last(seconds)  => durationS - math.floor(seconds / periodS + 1e-9) * periodS
+    Judged(by.quantity, by.reduction, fromS)
+
+  def value(computed: Float, durationS: Double): Double = computed
+
+object ScenarioTerm:
+  def keyOf(measure: Measure): String = measure.name.replace(' ', '-')
+
+/** A number of two that play against one another, by their distance. */
+enum DistanceTerm(val key: String, val unit: String) extends Term:
+  case Last10s extends DistanceTerm("last10s", "m")
+
+  case Mean extends DistanceTerm("mean", "m")
+
+  case Min extends DistanceTerm("min", "m")
+
+  /** 1 if the distance was at most `radiusM` within the first `withinS` of the episode, else 0: its mean is
+    * the probability of capture.
+    */
+  case Capture(radiusM: Double, withinS: Double) extends DistanceTerm(s"capture($radiusM, $withinS)", "")
+
+  /** First time at which the distance was at most `radiusM`, s; the episode's duration if it never was. */
+  case CaptureTime(radiusM: Double) extends DistanceTerm(s"captureTime($radiusM)", "s")
+
+  def judged(durationS: Double, periodS: Double): Option[Judged] = Some(this match
+    case Last10s              => Judged(Separation, Reduction.Mean, Rollout.last10sFromS(durationS, periodS))
+    case Mean                 => Judged(Separation, Reduction.Mean, 0)
+    case Min                  => Judged(Separation, Reduction.Least, 0)
+    case Capture(radiusM, _)  => Judged(Separation, OfMoment.FirstWithin(radiusM), 0)
+    case CaptureTime(radiusM) => Judged(Separation, OfMoment.FirstWithin(radiusM), 0))
+
+  def value(computed: Float, durationS: Double): Double = this match
+    // The time of a score is known as a Float alone: a capture exactly then counts.
+    case Capture(_, withinS) => if computed <= withinS.toFloat then 1.0 else 0.0
+    case CaptureTime(_)      => computed.toDouble.min(durationS)
+    case _                   => computed
+
+/** The control effort of a vehicle, by its place in the team. */
+final case class EffortTerm(vehicle: Int) extends Term:
+  def key: String                                                = "effort"
+  def unit: String                                               = "rad"
+  def judged(durationS: Double, periodS: Double): Option[Effort] = Some(Effort(vehicle))
+  def value(computed: Float, durationS: Double): Double              = computed

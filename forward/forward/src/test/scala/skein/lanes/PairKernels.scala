@@ -1,0 +1,85 @@
+package skein.lanes
+
+import skein.forward.{Delays, Duel, LoopTiming, TabledDelays, VelocityResponse}
+import skein.lanes.loop.{LoopEye, LoopKernel, LoopLanes}
+import skein.lanes.policy.{CameraTrackerLanes, LanePolicy}
+import skein.lanes.score.{Judged, Scoreboard, ScoreLanes}
+import skein.lanes.timetable.{Timetable, TimetableEye, TimetableKernel}
+
+/** What a kernel of two flew last, in each of its worlds. */
+final class PairKernel(
+    duel: Duel,
+    timing: LoopTiming,
+    captureM: Float,
+    members: Array[? <: TeamMember],
+    scores: Scoreboard
+):
+  private val judged =
+    PairNumber.values.toVector.filter(_.judged(duel, timing, captureM).isInstanceOf[Judged])
+
+  def apply(number: PairNumber): Array[Float] = number match
+    case PairNumber.EvaderEffort  => members(0).effortRad
+    case PairNumber.PursuerEffort => members(1).effortRad
+    case _                        => scores.values(judged.indexOf(number))
+
+/** Kernels of two with policies of their own, by vehicle: the evader is the first. */
+object PairKernels:
+  val WORLDS: Int = LanePolicy.WORLDS
+
+  private def scoreboard(duel: Duel, timing: LoopTiming, captureM: Float): Scoreboard =
+    val judged = PairNumber.values.toVector.map(_.judged(duel, timing, captureM)).collect {
+      case each: Judged =>
+        each
+    }
+    Scoreboard(ScoreLanes.of(judged, 2).fold(throw _, identity), Vector(0, 0))
+
+  /** Candidates of one episode. */
+  def shared(
+      duel: Duel,
+      timing: LoopTiming,
+      model: VelocityResponse,
+      policies: Vector[LanePolicy],
+      link: Delays,
+      key: Int,
+      captureM: Float,
+      eyes: Map[Int, TimetableEye] = Map.empty
+  ): PairKernel =
+    val vehicles = LaneDynamics.under(timing, model).fold(munit.Assertions.fail(_), identity)
+    val members  = Opponents.inEpisode(Vector(duel.evader, duel.pursuer), vehicles, policies, eyes)
+    val scores   = scoreboard(duel, timing, captureM)
+    val sensors  = Vector(duel.evader, duel.pursuer).map(_.eye).zipWithIndex.collect {
+      case (Some(eye), self) =>
+        self -> eye
+    }.toMap
+    val timetable = Timetable.of(2, duel.durationS, timing, link, key, vehicles, sensors)
+    TimetableKernel(members.map(identity), scores).fly(timetable, WORLDS)
+    PairKernel(duel, timing, captureM, members, scores)
+
+  /** Worlds with delays of their own. */
+  def alone(
+      duel: Duel,
+      timing: LoopTiming,
+      model: VelocityResponse,
+      policies: Vector[LanePolicy],
+      links: Array[TabledDelays],
+      keys: Array[Int],
+      captureM: Float,
+      newEye: Opponents.NewEye = LoopEye(_, _, _, _, _, _),
+      shortCut: Boolean = true
+  ): PairKernel =
+    val vehicles = LaneDynamics.of(model).fold(munit.Assertions.fail(_), identity)
+    munit.Assertions.assertEquals(
+      links.distinct.flatMap(LoopSupport.refusal(timing, 2, _, vehicles)).toSeq,
+      Nil
+    )
+    val agents  = Vector(duel.evader, duel.pursuer)
+    val cameras = agents.map(_.eye).zipWithIndex.collect { case (Some(eye), self) =>
+      self -> CameraTrackerLanes.of(eye).fold(munit.Assertions.fail(_), identity)
+    }.toMap
+    val loop = LoopLanes(timing, 2, duel.durationS, links.map(_.maxS).max, cameras.nonEmpty, shortCut)
+    val (members, eye) = Opponents.inLoop(agents, loop, vehicles, policies, cameras, newEye)
+    val scores         = scoreboard(duel, timing, captureM)
+    val kernel         = LoopKernel(loop, members.map(identity), scores)
+    eye.foreach(_.start(keys, links))
+    kernel.fly(keys, links)
+    PairKernel(duel, timing, captureM, members, scores)

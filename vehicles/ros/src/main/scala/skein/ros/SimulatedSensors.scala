@@ -1,0 +1,177 @@
+package skein.ros
+
+import java.util.concurrent.atomic.{AtomicBoolean, AtomicLong}
+import java.util.concurrent.{Executors, TimeUnit}
+import org.apache.pekko.actor.ActorSystem
+import scala.concurrent.{ExecutionContext, Future}
+import skein.airsim.{AirSimClient, Eyes, Image, Multirotor, Pixels, Scan, SensorKind, SettingsSection, Shot}
+import skein.airsim.{VehicleSettings, WorldSettings}
+import skein.link.{Address, TcpTransport}
+import skein.ros.message.{Image as ImageMessage, *}
+import skein.rpc.{RpcClient, RpcError}
+import skein.signal.Stamped
+import skein.units.{Clock as OwnClock, Instant, Radians, Vector3 as Ned}
+
+/** Cameras and lidars of a simulator's vehicles as topics: `/NAME/CAMERA/image_raw` with
+  * `/NAME/CAMERA/camera_info`, and `/NAME/LIDAR/points`, each with its frame in `/tf`. They are requested
+  * every 100 ms of simulated time, by AirSim's wire, while something subscribes. If the last image or scan of
+  * a sensor has not come by then, one is left out, and counted.
+  */
+final class SimulatedSensors private (sensors: Vector[SimulatedSensors.Sensor], end: () => Unit)
+    extends AutoCloseable:
+  private var looks = 0L
+
+  /** Images and scans that were left out, because the last one of the sensor had not come. */
+  def skipped: Long = sensors.map(_.skipped.get).sum
+
+  /** The first failure of each sensor, with its topic. */
+  def notes: Vector[String] = sensors.flatMap(_.failure)
+
+  /** To be called for each of the simulator's instants, which are 20 ms apart. */
+  def look(): Unit =
+    if looks % SimulatedSensors.Every == 0 then sensors.foreach(_.look())
+    looks += 1
+
+  def close(): Unit = end()
+
+object SimulatedSensors:
+  /** Instants from one image to the next: 100 ms. */
+  private val Every = 5
+
+  private val Usual = "front_center"
+
+  /** Opens the topics of the cameras that the settings list, or of `front_center`, and of the lidars.
+    *
+    * @param simulator its address
+    * @param frames where transforms go, if they are published
+    * @return Left if ROS 2 cannot publish them
+    */
+  def open(
+      node: RosNode,
+      world: WorldSettings,
+      simulator: Address,
+      frames: TransformStamped => Unit
+  )(using ActorSystem): Either[String, SimulatedSensors] =
+    val client = AirSimClient(RpcClient(TcpTransport(), simulator, OwnClock.system))
+    val thread =
+      Executors.newSingleThreadExecutor(Thread.ofPlatform().daemon().name("skein-ros-sensors").factory())
+    given ExecutionContext = ExecutionContext.fromExecutor(thread)
+    val opened             = Vector.newBuilder[Sensor]
+    val failed             = world.vehicles.iterator.flatMap: vehicle =>
+      val eyes    = Multirotor(client, vehicle.name, vehicle.startNed).eyes
+      val cameras = listed(world, vehicle.name, "Cameras").map(_._1)
+      val made    =
+        (if cameras.isEmpty then Vector(Usual) else cameras).map(camera(
+          node,
+          eyes,
+          vehicle.name,
+          _,
+          frames
+        )) ++
+          vehicle.sensors.collect { case (name, SensorKind.Lidar) =>
+            lidar(node, eyes, vehicle, name, world, frames)
+          }
+      made.flatMap:
+        case Left(why)     => Some(why)
+        case Right(sensor) =>
+          opened += sensor
+          None
+    failed.nextOption().toLeft:
+      SimulatedSensors(
+        opened.result(),
+        () =>
+          client.close(): Unit
+          thread.shutdown()
+          thread.awaitTermination(2, TimeUnit.SECONDS): Unit
+      )
+
+  private def camera(
+      node: RosNode,
+      eyes: Eyes,
+      vehicle: String,
+      camera: String,
+      frames: TransformStamped => Unit
+  )(using ExecutionContext): Either[String, Sensor] =
+    val name  = s"$vehicle/${SensorMessages.token(camera)}"
+    val frame = s"$name/optical"
+    for
+      images <- node.publish[ImageMessage](s"/$name/image_raw")
+      infos  <- node.publish[CameraInfo](s"/$name/camera_info")
+    yield
+      def show(taken: Stamped[Image], fov: Radians): Unit = taken.value.pixels match
+        case Pixels.Bgr(bytes) =>
+          val (image, at) = (taken.value, taken.validAt)
+          val header      = Header(Time.of(at), frame)
+          frames(SensorMessages.optical(at, frame, image.positionNed, image.orientation))
+          infos.publish(SensorMessages.cameraInfo(header, image.width, image.height, fov))
+          images.publish(SensorMessages.image(header, image.width, image.height, "bgr8", bytes.toArray))
+        case _ => ()
+      Sensor(
+        name,
+        () => images.isRead || infos.isRead,
+        () =>
+          eyes.image(Shot(camera)).zip(eyes.fov(camera)).map: (taken, fov) =>
+            for image <- taken; angle <- fov yield show(image, angle)
+      )
+
+  private def lidar(
+      node: RosNode,
+      eyes: Eyes,
+      vehicle: VehicleSettings,
+      lidar: String,
+      world: WorldSettings,
+      frames: TransformStamped => Unit
+  )(using ExecutionContext): Either[String, Sensor] =
+    val name    = s"${vehicle.name}/${SensorMessages.token(lidar)}"
+    val isLocal =
+      listed(world, vehicle.name, "Sensors").exists((of, frame) => of == lidar && frame == "SensorLocalFrame")
+    for clouds <- node.publish[PointCloud2](s"/$name/points") yield
+      def show(scan: Scan, at: Instant): Unit =
+        def point(number: Int) =
+          Ned(scan.points(3 * number), scan.points(3 * number + 1), scan.points(3 * number + 2))
+        if isLocal then
+          frames(VehicleMessages.transform(at, name, scan.positionNed, RosFrames.toEnu(scan.orientation)))
+        val header = Header(Time.of(at), if isLocal then name else VehicleMessages.World)
+        clouds.publish(SensorMessages.points(header, scan.size): number =>
+          if isLocal then RosFrames.swapBody(point(number))
+          else RosFrames.swapWorld(point(number) + vehicle.startNed))
+      Sensor(
+        name,
+        () => clouds.isRead,
+        () => eyes.scan(lidar).map(_.map(taken => show(taken.value, taken.validAt)))
+      )
+
+  /** Names in a part of a vehicle's settings, each with its `DataFrame`. */
+  private def listed(world: WorldSettings, vehicle: String, part: String): Vector[(String, String)] =
+    SettingsSection
+      .read(world.text): root =>
+        root.section("Vehicles").section(vehicle).sections(part).map((name, fields) =>
+          (name, fields.text("DataFrame", ""))
+        )
+      .getOrElse(Vector.empty)
+
+  /** @param isRead whether something subscribes to it
+    * @param take takes an image or a scan, and publishes it
+    */
+  private final class Sensor(
+      name: String,
+      isRead: () => Boolean,
+      take: () => Future[Either[RpcError, Unit]]
+  )(using
+      ExecutionContext
+  ):
+    private val isBusy                    = AtomicBoolean(false)
+    val skipped                           = AtomicLong()
+    @volatile var failure: Option[String] = None
+
+    def look(): Unit =
+      if isRead() then
+        if isBusy.compareAndSet(false, true) then
+          take().onComplete: taken =>
+            for
+              why <- taken.fold(error => Some(error.toString), _.left.toOption.map(_.message))
+              if failure.isEmpty
+            do
+              failure = Some(s"/$name: $why")
+            isBusy.set(false)
+        else skipped.incrementAndGet(): Unit
