@@ -127,7 +127,8 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
     worker ! Message.Give(7, 1, ArraySeq(1))
     Iterator.continually(heard.next()).collectFirst { case done: Message.Done => done }
     for _ <- 1 to 30 do worker ! WorkerBehavior.Beat
-    def untilReport() = Iterator.continually(heard.next()).take(20).takeWhile(_.isInstanceOf[Message.Ask]).size
+    def untilReport() =
+      Iterator.continually(heard.next()).take(20).takeWhile(_.isInstanceOf[Message.Ask]).size
     untilReport(): Unit
     assertEquals((untilReport(), untilReport()), (10, 10))
 
@@ -248,7 +249,9 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
       CoordinatorBehavior.Removed(system.deadLetters.path.address)
     )
   do
-    test(s"the receiver of news that a worker joined or is ${gone.getClass.getSimpleName} sees it in the progress"):
+    test(
+      s"the receiver of news that a worker joined or is ${gone.getClass.getSimpleName} sees it in the progress"
+    ):
       val ledger      = newLedger()
       val latest      = AtomicReference(ClusterProgress())
       val seen        = LinkedBlockingQueue[(WorkerEvent, ClusterProgress)]()

@@ -57,9 +57,13 @@ class ImageTimingSuite extends munit.FunSuite:
     )
     val (taking, knowing) = (ArrayBuffer.empty[(Int, Long)], ArrayBuffer.empty[(Int, Long)])
     val model             =
-      busy.copy(takes = LatencyDistribution.Constant(Span.ofMillis(takesMs)), workers = workers, deadlineS = 1)
+      busy.copy(
+        takes = LatencyDistribution.Constant(Span.ofMillis(takesMs)),
+        workers = workers,
+        deadlineS = 1
+      )
     val timing = new ImageTiming(world, 0, model, link):
-      protected def taken(number: Int): Unit = taking += number -> (world.nowS * 1000).round
+      protected def taken(number: Int): Unit = taking += number  -> (world.nowS * 1000).round
       protected def known(number: Int): Unit = knowing += number -> (world.nowS * 1000).round
     world.start(1, LoopObserver.Nobody)
     timing.start(1)
@@ -69,7 +73,10 @@ class ImageTimingSuite extends munit.FunSuite:
     (taking.toVector, knowing.toVector)
 
   test("two images may be on their way; while as many are, none is taken"):
-    assertEquals(images(160, 1, 2, 1000)._1, Vector(0, 1, 4, 5, 8).map(number => number -> (number * 100L + 160)))
+    assertEquals(
+      images(160, 1, 2, 1000)._1,
+      Vector(0, 1, 4, 5, 8).map(number => number -> (number * 100L + 160))
+    )
 
   test("one recogniser takes the newest image that waits"):
     assertEquals(images(50, 255, 1, 1200)._2, Vector(0 -> 355L, 2 -> 610L, 5 -> 865L, 7 -> 1120L))

@@ -66,4 +66,6 @@ object ReuseSimulation:
   /** The least distance of another vehicle from the first. */
   private case object Nearest extends Quantity:
     def of(at: skein.scenario.Positions): Double =
-      (1 until at.count).map(i => StrictMath.hypot(at.northM(i) - at.northM(0), at.eastM(i) - at.eastM(0))).min
+      (1 until at.count).map(i =>
+        StrictMath.hypot(at.northM(i) - at.northM(0), at.eastM(i) - at.eastM(0))
+      ).min
