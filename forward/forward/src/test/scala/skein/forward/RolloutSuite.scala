@@ -134,6 +134,13 @@ class RolloutSuite extends munit.FunSuite:
       Rollout(Duel.paper, LoopTiming.Stream(patienceS = patienceS), DelayTable.none, lag).fly(0)
     assertEquals((flown(0.1).decisions, flown(0).decisions), (1200, 2398))
 
+  test("stream goes on, by its patience, without a vehicle that answers no more"):
+    val link: Delays =
+      (_, line, step, _, _) => if line == Delays.answer(0, 1) && step > 0 then 1L << 40 else 0L
+    val timing = LoopTiming.Stream(patienceS = 0.05)
+    // The first view is of the start; in each of the 599 periods after it one waits in vain.
+    assertEquals(Rollout(Duel.paper, timing, link, lag).fly(0).decisions, 1200)
+
   test("the last ten seconds of a minute begin after its fiftieth: their mean is of a hundred distances"):
     assertEqualsDouble(Rollout.last10sFromS(60, 0.1), 50.1, 1e-9)
     assertEqualsDouble(Rollout.last10sFromS(12, 0.25), 2.25, 1e-9)
