@@ -25,9 +25,9 @@ private[lanes] final case class TeamForm(
   /** Whether somebody knows another vehicle by a camera alone. */
   def sees: Boolean = policies.eyes.nonEmpty
 
-  val hasParameters: Boolean = scores.judged.indices.exists(scores.parameters(_) > 0)
+  lazy val hasParameters: Boolean = scores.judged.indices.exists(scores.parameters(_) > 0)
 
-  private val last = Array.ofDim[(RolloutAgent, VehicleNumbers)](policies.count)
+  private lazy val last = Array.ofDim[(RolloutAgent, VehicleNumbers)](policies.count)
 
   /** The numbers of a vehicle: one object for what is the very same agent as the one before. */
   def numbersOf(self: Int, agent: RolloutAgent): VehicleNumbers =

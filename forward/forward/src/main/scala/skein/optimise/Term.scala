@@ -71,4 +71,4 @@ final case class EffortTerm(vehicle: Int) extends Term:
   def key: String                                                = "effort"
   def unit: String                                               = "rad"
   def judged(durationS: Double, periodS: Double): Option[Effort] = Some(Effort(vehicle))
-  def value(computed: Float, durationS: Double): Double              = computed
+  def value(computed: Float, durationS: Double): Double          = computed

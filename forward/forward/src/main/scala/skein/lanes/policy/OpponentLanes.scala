@@ -26,7 +26,7 @@ private[lanes] final case class OpponentLanes private (
   def needsMore: Boolean = false
   def sideBySide: Int    = LaneMath.LANES
 
-  val eyes: Map[Int, SensorModel] =
+  lazy val eyes: Map[Int, SensorModel] =
     agents.zipWithIndex.flatMap((agent, self) => agent.eye.map(self -> _)).toMap
 
   def cameras: Map[Int, CameraTrackerLanes.Forms] =
