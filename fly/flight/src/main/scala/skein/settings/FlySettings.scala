@@ -27,7 +27,8 @@ import skein.vehicle.VehicleKind
   * @param planInPacket whether `predictive` sends plans to a buffer beside the vehicle: see [[LoopSettings]]
   * @param knows what the controller of a vehicle knows of the others, in all loops
   * @param decentralised whether each vehicle has a controller of its own, with a link of its own; then
-  *   controllers know of the others what they read. `paused`, the truth, has one, which knows positions too, and no link
+  *   controllers know of the others what they read. `paused`, the truth, has one, which knows positions too,
+  *   and no link
   * @param only the vehicle that this process flies, in a running simulator, where others fly the rest
   * @param plant the built-in simulator's kind of multirotor
   * @param wire protocol of the vehicles

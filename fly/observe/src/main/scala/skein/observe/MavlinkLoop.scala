@@ -5,8 +5,8 @@ import scala.collection.mutable
 import skein.mavlink.*
 import skein.units.Instant
 
-/** Analyses a loop from frames of MAVLink 2 between a program and its vehicles. A vehicle is a system, read by
-  * the messages of its autopilot (component 1). Which side of a connection is the vehicles' is seen by the
+/** Analyses a loop from frames of MAVLink 2 between a program and its vehicles. A vehicle is a system, read
+  * by the messages of its autopilot (component 1). Which side of a connection is the vehicles' is seen by the
   * messages: it is the one that sends no commands.
   *
   * Readings are LOCAL_POSITION_NED, GLOBAL_POSITION_INT and ODOMETRY; commands are
@@ -54,7 +54,10 @@ final class MavlinkLoop(isDatagrams: Boolean, readings: Set[String] = Set.empty)
       pending(ours) = (side, at)
       if pending.size > MostPending then pending -= pending.head._1
     case Timesync(theirs, ours, _, _) =>
-      for (asker, sentAt) <- pending.get(ours) if asker != side && isVehicles(frame, side) && known(frame.system) do
+      for
+        (asker, sentAt) <- pending.get(ours)
+        if asker != side && isVehicles(frame, side) && known(frame.system)
+      do
         account.exchanged(vehicle(frame.system), sentAt, Instant.ofNanos(theirs), at)
     case command: SetPositionTargetLocalNed =>
       commanded("SET_POSITION_TARGET_LOCAL_NED", command.targetSystem, side, at)
@@ -95,13 +98,13 @@ final class MavlinkLoop(isDatagrams: Boolean, readings: Set[String] = Set.empty)
 
   /** Counts of what could not be analysed, each as a sentence for a person. */
   def remarks: Vector[String] =
-    val all = readers.valuesIterator.map(_.counts).foldLeft(counts)(sum)
+    val all    = readers.valuesIterator.map(_.counts).foldLeft(counts)(sum)
     val silent = Option.when(known.isEmpty):
       "No vehicle was heard: is it at that address, and does it send its position by MAVLink 2?"
     silent.toVector ++ Vector(
       all.version1 -> "frames were of MAVLink 1, which is not analysed: expected MAVLink 2",
       all.badChecksum + all.notUnderstood -> "frames were damaged",
-      all.garbageBytes -> "bytes were no frames"
+      all.garbageBytes                    -> "bytes were no frames"
     ).collect { case (count, what) if count > 0 => s"$count $what." }
 
 object MavlinkLoop:

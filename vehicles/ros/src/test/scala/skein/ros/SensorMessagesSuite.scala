@@ -47,7 +47,10 @@ class SensorMessagesSuite extends munit.FunSuite:
       val world = WorldSettings.parse(text).fold(error => fail(error.message), identity)
       SimulatedSensors.mistake(world, world.vehicles.head)
     assertEquals(mistake("\"front\": {}", "spin"), None)
-    assert(mistake("\"front cam\": {}, \"front_cam\": {}", "spin").exists(_.contains("'front cam', 'front_cam'")))
+    assert(mistake(
+      "\"front cam\": {}, \"front_cam\": {}",
+      "spin"
+    ).exists(_.contains("'front cam', 'front_cam'")))
     assert(mistake("\"front\": {}", "front").isDefined)
     assert(mistake("\"front\": {}", "base_link").isDefined)
 
