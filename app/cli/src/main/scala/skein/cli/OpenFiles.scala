@@ -16,6 +16,7 @@ private[cli] object OpenFiles:
   private val OfAFurther   = 24
 
   /** @param controllers of each flight
+    * @param most files that this process may open, where that is known
     */
   def enoughFor(flights: Int, controllers: Int = 1, most: Option[Long] = limit): Either[String, Unit] =
     val needed = OfTheProgram + (OfAFlight + OfAFurther * (controllers - 1)) * flights

@@ -110,7 +110,7 @@ final class MavlinkLoop(isDatagrams: Boolean, readings: Set[String] = Set.empty)
 object MavlinkLoop:
   private type Side = (connection: Int, isFromClient: Boolean)
 
-  /** MAV_COMP_ID_AUTOPILOT1. */
+  /** MAV_COMP_ID_AUTOPILOT1 of the common dialect: the component that flies the vehicle. */
   private val Autopilot = 1
 
   val MostConnections = 256

@@ -84,5 +84,5 @@ private[simulator] final class InProcess(simulation: Simulation, onlooker: Onloo
       case other => other
 
 private object InProcess:
-  /** Slowest climb from the ground, m/s. */
+  /** Slowest climb while a vehicle stands, m/s: the controller lifts it within a second. */
   val LiftMps = 1.0
