@@ -84,5 +84,5 @@ private[simulator] final class InProcess(simulation: Simulation, onlooker: Onloo
       case other => other
 
 private object InProcess:
-  /** Slowest climb while a vehicle stands, m/s: the controller lifts it within a second. */
+  /** Slowest climb while a vehicle stands, m/s. With 0.4 and a turn it was seen to stay on the ground. */
   val LiftMps = 1.0
