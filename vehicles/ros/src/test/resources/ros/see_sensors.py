@@ -32,7 +32,7 @@ def stamp(message):
 
 for got in seen.values():
     stamps = [stamp(one) for one in got]
-    assert stamps == sorted(stamps), stamps
+    assert stamps == sorted(set(stamps)), stamps
 image, info = seen["image"][-1], seen["info"][-1]
 assert (image.width, image.height, image.step, image.encoding) == (64, 48, 192, "bgr8"), image
 assert len(image.data) == 64 * 48 * 3 and len(set(image.data)) > 1, "one colour"

@@ -107,6 +107,8 @@ final class FlyCommand(using Scenarios)
       secured <- options.secured.checked(settings.solver)
       _       <- Expect.that(settings.solver.isEmpty || learning.isEmpty):
         "--learn: a policy learns in the flight's own process; not together with --solver"
+      _ <- Expect.that(!settings.decentralised || learning.isEmpty):
+        "--decentralised: expected policies that do not learn in flight, which is one learner for all"
       _ <- Expect.that(clock == ClockKind.Real || !options.view.view.value):
         "--view shows flights in real time; look at what flew by " +
           "--clock virtual with ./skein replay --view FILE"
@@ -122,7 +124,10 @@ final class FlyCommand(using Scenarios)
         case ClockKind.Real =>
           for
             _ <- nothingToOverwrite(plans ++ plans.flatMap(_.twins(twins)), out)
-            _ <- OpenFiles.enoughFor(plans.size)
+            _ <- OpenFiles.enoughFor(
+              plans.size,
+              if settings.decentralised then settings.fleet.agents.size else 1
+            )
             _ <- FlyCommand.vehiclesThere(settings, simulator)
             _ = Console.err.println(
               s"warming up for ${Decimals.counted(plans.size, "live flight")} of " +

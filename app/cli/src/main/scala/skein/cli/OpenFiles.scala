@@ -7,14 +7,19 @@ import skein.units.Expect
 /** Checks the limit of open files and connections: a low limit looks like a simulator that does not answer.
   */
 private[cli] object OpenFiles:
-  /** Files that the program and each flight need. Measured: about 60 before it flies; 26 for a flight in real
-    * time with simulator and link.
+  /** Files that the program, each flight and each further controller of a flight need. Measured: about 60
+    * before it flies; 26 for a flight in real time with simulator and link; 450 for one with twenty
+    * controllers.
     */
   private val OfTheProgram = 96
   private val OfAFlight    = 30
+  private val OfAFurther   = 24
 
-  def enoughFor(flights: Int, most: Option[Long] = limit): Either[String, Unit] =
-    val needed = OfTheProgram + OfAFlight * flights
+  /** @param controllers of each flight
+    * @param most files that this process may open, where that is known
+    */
+  def enoughFor(flights: Int, controllers: Int = 1, most: Option[Long] = limit): Either[String, Unit] =
+    val needed = OfTheProgram + (OfAFlight + OfAFurther * (controllers - 1)) * flights
     Expect.that(most.forall(_ >= needed)):
       s"expected room for $needed open files for $flights flights in real time, came ${most.getOrElse(0)}; " +
         s"ulimit -n $needed gives it"

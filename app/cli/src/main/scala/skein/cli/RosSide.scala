@@ -2,7 +2,6 @@ package skein.cli
 
 import org.apache.pekko.actor.ActorSystem
 import skein.airsim.WorldSettings
-import skein.link.Address
 import skein.ros.{RosNode, SimulatedTopics}
 import skein.simulator.SimulatorServer
 import skein.units.Clock
@@ -14,8 +13,7 @@ private[cli] final class RosSide private (node: RosNode, val topics: SimulatedTo
 
   /** Lets the topics fly the vehicles and show their sensors, and prints what is missing. */
   def fly(server: SimulatorServer, world: WorldSettings)(using ActorSystem): Unit =
-    // A server that listens on all addresses is reached on loopback.
-    val here = Address("127.0.0.1", server.address.port)
+    val here = ObserveCommand.reachable(server.address)
     for line <- topics.missing ++ topics.fly(server).left.toOption ++ topics.show(world, here).left.toOption
     do
       Console.out.println(s"ROS 2: $line")

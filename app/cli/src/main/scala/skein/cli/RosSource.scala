@@ -52,6 +52,7 @@ private[cli] object RosSource:
           s"expected links without a rate, since messages have no known size, came ${others.map(_.name).mkString(", ")}"
         _ <- Expect.that(cars.isEmpty)(s"expected multirotors alone, came the car ${cars.mkString(", ")}")
         _ <- Expect.that(settings.images.isEmpty)("expected no --images")
+        _ <- Expect.that(!settings.decentralised)("not together with --decentralised")
         _ <- Expect.that(settings.scene.isEmpty && settings.plant.isAirSim):
           "--scene and --plant are for the built-in simulator"
         _ <- RosNode.missing.toLeft(())

@@ -56,8 +56,8 @@ final case class ServeOptions(
     )
     mavlinkInstance: Option[Int],
     @arg(doc =
-      "makes the vehicles part of ROS 2, which must be installed: /NAME/odom, /NAME/imu, /tf and /clock go out, " +
-        "/NAME/cmd_vel and /NAME/setpoint_pose fly them"
+      "makes the vehicles part of ROS 2, which must be installed: /NAME/odom, /NAME/imu, images, scans, /tf and " +
+        "/clock go out, /NAME/cmd_vel and /NAME/setpoint_pose fly them"
     )
     ros: Flag,
     @arg(doc =

@@ -196,6 +196,16 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     )
     assertRefused(
       ObserveCommand,
+      Seq("--mavlink", "--simulator", "nosuch.invalid:14580"),
+      "--simulator: the host nosuch.invalid is not known"
+    )
+    assertRefused(
+      ObserveCommand,
+      Seq("--listen", "0.0.0.0:41451"),
+      "--listen: expected another address than the simulator's, came"
+    )
+    assertRefused(
+      ObserveCommand,
       Seq("--mavlink", "--listen", "127.0.0.1:14580"),
       "--listen: expected another address than the simulator's, came 127.0.0.1:14580 twice"
     )

@@ -60,8 +60,8 @@ class EnvironmentLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
     assert(clue(ended.err).contains("too large"))
 
   test("a low limit of open files is reported before a flight, not as a simulator that does not answer"):
-    assertEquals(OpenFiles.enoughFor(7, Some(1024)), Right(()))
-    assert(clue(OpenFiles.enoughFor(1, Some(64))).left.exists(_.contains("ulimit -n 126")))
+    assertEquals(OpenFiles.enoughFor(7, most = Some(1024)), Right(()))
+    assert(clue(OpenFiles.enoughFor(1, most = Some(64))).left.exists(_.contains("ulimit -n 126")))
 
   test(
     "characters that a terminal cannot show are replaced, whole ones even if their bytes arrive " +

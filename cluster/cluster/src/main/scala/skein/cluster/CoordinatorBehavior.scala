@@ -152,7 +152,6 @@ private[cluster] final class CoordinatorBehavior private (
       state.workers.get(worker).filter(_.isHere).foreach: record =>
         died += 1
         state = state.lost(worker)
-        hungry -= worker
         announce(WorkerEvent.Lost(worker, record.holds.size))
         feed()
 

@@ -144,7 +144,7 @@ private[cluster] object WorkerBehavior:
     case Refused(reason: String)
 
   sealed trait Local
-  private case object Beat extends Local
+  case object Beat extends Local
   private final case class Prepared(run: Long, made: Either[String, ArrayBlockingQueue[BlockSolver]])
       extends Local
   private final case class Solved(

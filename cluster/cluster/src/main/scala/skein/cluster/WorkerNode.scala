@@ -138,7 +138,7 @@ object WorkerNode:
     catch case _: TimeoutException => None
 
   /** Joins the cluster. Reports membership and loss of the coordinator to `work`. */
-  private def member(
+  private[cluster] def member(
       seed: Address,
       work: ActorRef[WorkerBehavior.Command],
       onUp: () => Unit

@@ -5,11 +5,14 @@ import java.util.concurrent.{ConcurrentLinkedQueue, Executors, LinkedBlockingQue
 import org.apache.pekko.actor.{ActorSystem, Address}
 import org.apache.pekko.actor.typed.scaladsl.Behaviors
 import org.apache.pekko.actor.typed.scaladsl.adapter.*
+import org.apache.pekko.cluster.ClusterEvent.{CurrentClusterState, MemberRemoved, UnreachableMember}
+import org.apache.pekko.cluster.MemberStatus
+import org.apache.pekko.cluster.typed.{Cluster, SelfUp}
 import scala.collection.immutable.ArraySeq
 import scala.concurrent.{Await, Promise}
 import scala.concurrent.duration.DurationInt
 import scala.jdk.CollectionConverters.*
-import skein.blocks.Ledger
+import skein.blocks.{Coordinator, Ledger}
 import skein.testing.TemporaryFolders
 
 /** Coordinator and worker, each tested alone, with its messages in a queue. */
@@ -106,6 +109,50 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
     )
     assertEquals(begun.asScala.toVector, Vector[Byte](1, 2, 3))
 
+  test("a worker that has computed blocks reports them once every ten beats"):
+    val heard  = Heard[ToCoordinator]()
+    val solver = new BlockSolverFactory:
+      def of(asked: ArraySeq[Byte]) = Right(() => work => work)
+    // What it reports queues with its requests: one for each beat.
+    val worker = system.spawnAnonymous(WorkerBehavior(
+      heard.actor,
+      WorkerBehavior.Self("anna", 1, "one", solver, System.nanoTime()),
+      pool,
+      text => heard.actor ! Message.Unable(7, "anna", text),
+      _ => ()
+    ))
+    worker ! WorkerBehavior.Member
+    worker ! Message.Welcome(7, question)
+    Iterator.continually(heard.next()).collectFirst { case ask: Message.Ask if ask.run == 7 => () }
+    worker ! Message.Give(7, 1, ArraySeq(1))
+    Iterator.continually(heard.next()).collectFirst { case done: Message.Done => done }
+    for _ <- 1 to 30 do worker ! WorkerBehavior.Beat
+    def untilReport() =
+      Iterator.continually(heard.next()).take(20).takeWhile(_.isInstanceOf[Message.Ask]).size
+    untilReport(): Unit
+    assertEquals((untilReport(), untilReport()), (10, 10))
+
+  test("a worker regards only its coordinator's end as its loss"):
+    val config = NodeConfig.of(Endpoint("127.0.0.1", 0), None).fold(fail(_), identity)
+    val node   = ActorSystem("member", config)
+    try
+      val own                           = Cluster(node.toTyped).selfMember
+      def heard(seed: Address, of: Any) =
+        val work   = LinkedBlockingQueue[WorkerBehavior.Command]()
+        val queued = node.spawnAnonymous(Behaviors.receiveMessage[WorkerBehavior.Command] { message =>
+          work.add(message)
+          Behaviors.same
+        })
+        val member = node.spawnAnonymous(WorkerNode.member(seed, queued, () => ()))
+        member.unsafeUpcast[Any] ! of
+        member ! SelfUp(CurrentClusterState())
+        Option(work.poll(30, TimeUnit.SECONDS)).getOrElse(fail("nothing was said"))
+      val other = own.address.copy(port = Some(1))
+      for gone <- Seq(UnreachableMember(own), MemberRemoved(own, MemberStatus.Up)) do
+        assertEquals(heard(own.address, gone), WorkerBehavior.Unreachable)
+        assertEquals(heard(other, gone), WorkerBehavior.Member)
+    finally Await.result(node.terminate(), 30.seconds): Unit
+
   private def newLedger(): Ledger =
     Ledger.open(temporaryFolder().resolve(Ledger.Name), ArraySeq.fill(32)(7)).fold(fail(_), identity)
 
@@ -169,27 +216,60 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
     coordinator ! Message.Done(7, "anna", 1, 5, ArraySeq(10))
     val all = Await.result(promise.future, 30.seconds)
     assertEquals(all, Right(Some(Vector(10, 20, 10).map(answer => ArraySeq(answer.toByte)))))
+    coordinator ! Message.Ask("ben", 1, "one", 0, Set.empty, worker.actor)
+    assertEquals(worker.next(), Message.Welcome(7, question))
+    assertEquals((latest.get.done, latest.get.of, latest.get.resumed), (0, 0, 0L))
     ledger.close()
 
-  test("the receiver of news that a worker joined or was lost sees it in the progress"):
+  test("a worker that found nothing to do gets a block when there is one, without another request"):
     val ledger      = newLedger()
-    val latest      = AtomicReference(ClusterProgress())
-    val seen        = LinkedBlockingQueue[(WorkerEvent, ClusterProgress)]()
-    val coordinator =
-      system.spawnAnonymous(CoordinatorBehavior(
-        Job(7, "one", question),
-        ledger,
-        event => seen.add(event -> latest.get): Unit,
-        latest.set,
-        _ => ()
-      ))
-    def next() = Option(seen.poll(30, TimeUnit.SECONDS)).getOrElse(fail("nothing was told"))
-    coordinator ! Message.Ask("anna", 1, "one", 7, Set.empty, Heard[ToWorker]().actor)
-    val (joined, withAnna) = next()
-    assertEquals(joined, WorkerEvent.Joined("anna", 1))
-    assertEquals(withAnna.coordinator.workers.keySet, Set("anna"))
-    coordinator ! CoordinatorBehavior.Ended("anna")
-    val (lost, without) = next()
-    assertEquals(lost, WorkerEvent.Lost("anna", 0))
-    assertEquals((without.died, without.coordinator.workers("anna").isHere), (1, false))
+    val coordinator = system.spawnAnonymous(
+      CoordinatorBehavior(Job(7, "one", question), ledger, _ => (), _ => (), _ => ())
+    )
+    val worker  = Heard[ToWorker]()
+    val promise = Promise[CoordinatorBehavior.Outcome]()
+    val wanted  = LinkedBlockingQueue[String]()
+    coordinator ! Message.Ask("anna", 1, "one", 7, Set.empty, worker.actor)
+    coordinator ! CoordinatorBehavior.Compute(
+      Vector(ArraySeq[Byte](1)),
+      _ => (),
+      () => wanted.add("wanted"): Unit,
+      promise
+    )
+    assertEquals(worker.next(), Message.Give(7, 1, ArraySeq[Byte](1)))
+    assertEquals(wanted.asScala.toVector, Vector("wanted"))
     ledger.close()
+
+  test("nothing is done before a coordinator's first message"):
+    assertEquals(ClusterProgress(), ClusterProgress(Coordinator(), done = 0, of = 0, resumed = 0, died = 0))
+
+  for gone <- Seq(
+      CoordinatorBehavior.Ended("anna"),
+      CoordinatorBehavior.Unreachable(system.deadLetters.path.address),
+      CoordinatorBehavior.Removed(system.deadLetters.path.address)
+    )
+  do
+    test(
+      s"the receiver of news that a worker joined or is ${gone.getClass.getSimpleName} sees it in the progress"
+    ):
+      val ledger      = newLedger()
+      val latest      = AtomicReference(ClusterProgress())
+      val seen        = LinkedBlockingQueue[(WorkerEvent, ClusterProgress)]()
+      val coordinator =
+        system.spawnAnonymous(CoordinatorBehavior(
+          Job(7, "one", question),
+          ledger,
+          event => seen.add(event -> latest.get): Unit,
+          latest.set,
+          _ => ()
+        ))
+      def next() = Option(seen.poll(30, TimeUnit.SECONDS)).getOrElse(fail("nothing was told"))
+      coordinator ! Message.Ask("anna", 1, "one", 7, Set.empty, Heard[ToWorker]().actor)
+      val (joined, withAnna) = next()
+      assertEquals(joined, WorkerEvent.Joined("anna", 1))
+      assertEquals(withAnna.coordinator.workers.keySet, Set("anna"))
+      coordinator ! gone
+      val (lost, without) = next()
+      assertEquals(lost, WorkerEvent.Lost("anna", 0))
+      assertEquals((without.died, without.coordinator.workers("anna").isHere), (1, false))
+      ledger.close()

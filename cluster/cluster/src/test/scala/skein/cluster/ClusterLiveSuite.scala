@@ -229,6 +229,9 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       node.stop()
       second.close()
     assert(clue(told.asScala.toVector).exists(_.contains("joined")))
+    // Some of its minute is over when it has lost the first one.
+    val left = told.asScala.toVector.collect { case s"$_; joining again, for $left s at most" => left.toInt }
+    assert(clue(left).nonEmpty && left.forall(_ < 60))
 
   test("beyond loopback no node listens or connects without certificates"):
     val folder  = temporaryFolder()

@@ -61,3 +61,13 @@ class WorkerProcessesSuite extends munit.FunSuite, TemporaryFolders:
     // The tenth and three more.
     assertEquals(ended.get, 13)
     processes.close()
+
+  test("a worker ends once its parent's pipe has closed, whatever bytes arrive before"):
+    val before = System.in
+    val pipe   = java.io.ByteArrayInputStream(Array[Byte](0, 1, -1, 0))
+    val left   = CompletableFuture[Int]()
+    System.setIn(pipe)
+    try
+      WorkerProcesses.endWithParent(() => left.complete(pipe.available): Unit)
+      assertEquals(left.get(60, TimeUnit.SECONDS).toInt, 0)
+    finally System.setIn(before)

@@ -169,7 +169,7 @@ final class FlightAssembler(
           reached.isOther,
           () => reached.ping().map { case Right(_) => true; case _ => false },
           isShared,
-          () => teams.flatMap(_.underDecision).headOption,
+          () => teams.flatMap(_.underDecision).minByOption(_.since),
           line => tell(s"${plan.id}: $line")
         )
         val flight = Flight.start(

@@ -6,6 +6,7 @@ import org.apache.pekko.stream.{KillSwitches, Materializer, SharedKillSwitch, Sy
 import org.apache.pekko.stream.scaladsl.RunnableGraph
 import scala.concurrent.{Future, Promise}
 import scala.util.Success
+import scala.util.control.NonFatal
 import skein.port.SteppedTime
 import skein.record.{EventKind, Recorder}
 import skein.units.*
@@ -85,7 +86,12 @@ object Flight:
         val run  =
           graph(kind, team, time, duration, clock, switch, () => stopping.isCompleted).run()(using here)
         (running = run, streams = Future.successful(here))
-    val runs = (team +: others).map(team => (team, run(team)))
+    val runs =
+      try (team +: others).map(team => (team, run(team)))
+      catch
+        case NonFatal(failure) =>
+          switch.shutdown()
+          throw failure
 
     recorder.failure.foreach(error => stopping.trySuccess(FlightOutcome.Failed(error.message)))
     val timer = Option.when(!isPaused):

@@ -27,7 +27,8 @@ import skein.vehicle.VehicleKind
   * @param planInPacket whether `predictive` sends plans to a buffer beside the vehicle: see [[LoopSettings]]
   * @param knows what the controller of a vehicle knows of the others, in all loops
   * @param decentralised whether each vehicle has a controller of its own, with a link of its own; then
-  *   controllers know of the others what they read. `paused`, the truth, has one and no link
+  *   controllers know of the others what they read. `paused`, the truth, has one, which knows positions too,
+  *   and no link
   * @param only the vehicle that this process flies, in a running simulator, where others fly the rest
   * @param plant the built-in simulator's kind of multirotor
   * @param wire protocol of the vehicles
@@ -283,7 +284,7 @@ object FlySettings:
       Moves.mistake(settings.movesInFlight).map("moves-in-flight: " + _),
       packetMistake(settings).map("plan-in-packet: " + _),
       knowsMistake(settings).map("knows: " + _),
-      apartMistake(settings, isTold = optionAt("knows", config).isDefined).map("decentralised: " + _),
+      apartMistake(settings, isGiven = optionAt("knows", config).isDefined).map("decentralised: " + _),
       onlyMistake(settings).map("only: " + _),
       Option.when(settings.solver.isDefined && !settings.loops.exists(decidedElsewhere))(
         "solver: expected with a loop whose decisions can be made elsewhere, came with paused alone"
@@ -361,7 +362,7 @@ object FlySettings:
       Some("expected all with a solver, which is told every command, came positions")
     else None
 
-  private def apartMistake(settings: FlySettings, isTold: Boolean): Option[String] =
+  private def apartMistake(settings: FlySettings, isGiven: Boolean): Option[String] =
     val other =
       settings.loops.collectFirst { case loop if loop == LoopKind.Plan || loop.isInstanceOf[OwnLoop] => loop }
     if !settings.decentralised then None
@@ -374,7 +375,7 @@ object FlySettings:
           settings.wire == Wire.Mavlink
         )("expected vehicles over AirSim's protocol, came mavlink"))
         .orElse(Option.when(settings.solver.isDefined)("expected no solver, which decides for all"))
-        .orElse(Option.when(isTold && settings.knows == Knowledge.All)(
+        .orElse(Option.when(isGiven && settings.knows == Knowledge.All)(
           "expected knows positions, since no message carries the commands of others, came all"
         ))
         .orElse(Option.when(settings.fleet.agents.sizeIs > MostControllers)(

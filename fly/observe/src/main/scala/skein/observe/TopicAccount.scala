@@ -156,7 +156,13 @@ object TopicAccount:
       for stamped <- stamp do
         if isFirst && !isNear(stamped, at) then fastest = Some(FastestMessage(at.since(stamped), at))
         isFirst = false
+        val before = fastest
         fastest = fastest.map(_.updated(stamped, at))
+        // A vehicle that was switched on again has begun to count its time anew.
+        if before.exists(one => fastest.exists(_.offset > one.offset + FastestMessage.Restart)) then
+          newest = None
+          stamps.clear()
+          clock = None
         stamps(stamped) = reading
         if stamps.size > MostCauses then stamps -= stamps.head._1
       // A message that overtook a newer one is no newer reading.

@@ -17,6 +17,10 @@ class MavlinkLoopSuite extends munit.FunSuite:
 
     def send(system: Int, ms: Double)(message: Message): Unit = pass(bytes(system, message), system > 200, ms)
 
+    /** A message that the program sends by the vehicle's own number. */
+    def asVehicle(component: Int, ms: Double)(message: Message): Unit =
+      pass(FrameWriter(1, component).write(message), true, ms)
+
     def bytes(system: Int, message: Message): Array[Byte] = writers(system - 1).write(message)
 
     def pass(bytes: Array[Byte], isFromClient: Boolean, ms: Double): Unit =
@@ -62,6 +66,32 @@ class MavlinkLoopSuite extends munit.FunSuite:
     here.send(1, 40)(Timesync(1, 77))
     here.setpoint(1, 50)
     assertEquals(here.loop.observed.byOtherClock, Vector("system 1"))
+
+  test("what a program sends by the vehicle's number is no reading and no clock of it"):
+    for component <- Seq(1, 191) do
+      val here = Conversation()
+      here.position(1, 0, 10)
+      here.setpoint(1, 20)
+      here.send(1, 30)(Timesync(0, 5))
+      here.asVehicle(component, 31)(Timesync(777, 5))
+      here.asVehicle(component, 40)(LocalPositionNed(3_000_000, 0, 0, 0, 0, 0, 0))
+      here.setpoint(1, 60)
+      assertEquals(here.ages, Vector(Some(10.0), Some(50.0)), s"component $component")
+      assertEquals(here.loop.observed.byOtherClock, Vector("system 1"))
+
+  test("a vehicle that was switched on again is read by its new clock"):
+    val here = Conversation()
+    here.position(1, 600_000, 600_010)
+    here.timesync(600_020, 600_030)
+    // It counts from 0 again.
+    for ms <- 700_000 to 700_100 by 50 do here.position(1, ms - 699_990, ms.toDouble)
+    here.setpoint(1, 700_120)
+    assertEquals(here.ages, Vector(Some(20.0)))
+
+  test("where no vehicle was heard, that is said"):
+    val here = Conversation()
+    here.setpoint(1, 10)
+    assert(here.loop.remarks.exists(_.startsWith("No vehicle was heard")), here.loop.remarks)
 
   test("a setpoint to system 0 is a command to every vehicle, each with its own data"):
     val here = Conversation()

@@ -129,6 +129,33 @@ class RolloutSuite extends munit.FunSuite:
     assert(flown.skipped > 300, flown)
     assertEqualsDouble(flown.decisions + flown.skipped, 1200, 20)
 
+  test("stream without patience has a view at each reading, with patience at each pair of them"):
+    def flown(patienceS: Double) =
+      Rollout(Duel.paper, LoopTiming.Stream(patienceS = patienceS), DelayTable.none, lag).fly(0)
+    assertEquals((flown(0.1).decisions, flown(0).decisions), (1200, 2398))
+
+  test("stream goes on, by its patience, without a vehicle that answers no more"):
+    val link: Delays =
+      (_, line, step, _, _) => if line == Delays.answer(0, 1) && step > 0 then 1L << 40 else 0L
+    val timing = LoopTiming.Stream(patienceS = 0.05)
+    // The first view is of the start; in each of the 599 periods after it one waits in vain.
+    assertEquals(Rollout(Duel.paper, timing, link, lag).fly(0).decisions, 1200)
+
+  test("the last ten seconds of a minute begin after its fiftieth: their mean is of a hundred distances"):
+    assertEqualsDouble(Rollout.last10sFromS(60, 0.1), 50.1, 1e-9)
+    assertEqualsDouble(Rollout.last10sFromS(12, 0.25), 2.25, 1e-9)
+    val score = Score(last10sFromS = 50.1)
+    for number <- 1 to 600 do score.add(number * 0.1, number)
+    assertEqualsDouble(score.outcome.meanLast10sM, 550.5, 1e-9)
+
+  test("kept are 64 readings of a vehicle, or as many as a loop may still need"):
+    assertEquals(RolloutWorld.ringOf(LoopTiming.Stream(), 2), 64)
+    // Twice the periods in a time-out, the window of 4, and 2.
+    assertEquals(RolloutWorld.ringOf(LoopTiming.Stream(0.01), 2), 106)
+    // Of two vehicles, the periods in two time-outs, the window of 4, and 1.
+    assertEquals(RolloutWorld.ringOf(LoopTiming.Futures(0.02), 2), 110)
+    assertEquals(RolloutWorld.ringOf(LoopTiming.Sequential(0.001), 2), 64)
+
   test("the reduced model follows its differential equation through dead time and commands"):
     val vehicle = VelocityResponses.lag(gain = 0.8, lagS = 0.5, deadTimeS = 0.12).create()
     vehicle.start(0, 0, 0)

@@ -19,6 +19,7 @@ final class RosPublisher[A] private[ros] (
   private var room    = Arena.ofShared()
   private var message = envelope(FirstBytes)
   private var isOpen  = true
+  private val readers = Arena.ofAuto().allocate(8, 8)
 
   /** An `rcutils_uint8_array_t` with its bytes: their address, how many there are, how many there is room
     * for, and an allocator.
@@ -50,8 +51,7 @@ final class RosPublisher[A] private[ros] (
   /** Whether a subscription of any node matches it now; false after the end of its node. */
   def isRead: Boolean = synchronized:
     isOpen && {
-      val count = room.allocate(8, 8)
-      library.status(library.readersOf, publisher, count) == RosLibrary.Ok && count.get(JAVA_LONG, 0) > 0
+      library.status(library.readersOf, publisher, readers) == RosLibrary.Ok && readers.get(JAVA_LONG, 0) > 0
     }
 
   private[ros] def close(node: MemorySegment): Unit = synchronized:

@@ -10,7 +10,7 @@ import skein.link.{Address, TcpTransport}
 import skein.ros.message.{Image as ImageMessage, *}
 import skein.rpc.{RpcClient, RpcError}
 import skein.signal.Stamped
-import skein.units.{Clock as OwnClock, Instant, Radians, Vector3 as Ned}
+import skein.units.{Clock as OwnClock, Expect, Instant, Radians, Vector3 as Ned}
 
 /** Cameras and lidars of a simulator's vehicles as topics: `/NAME/CAMERA/image_raw` with
   * `/NAME/CAMERA/camera_info`, and `/NAME/LIDAR/points`, each with its frame in `/tf`. They are requested
@@ -52,38 +52,53 @@ object SimulatedSensors:
       simulator: Address,
       frames: TransformStamped => Unit
   )(using ActorSystem): Either[String, SimulatedSensors] =
+    for
+      _      <- Expect.each(world.vehicles)(vehicle => mistake(world, vehicle).toLeft(()))
+      opened <- opened(node, world, simulator, frames)
+    yield opened
+
+  /** Why the names of a vehicle's sensors cannot be those of topics and frames, if they cannot. */
+  private[ros] def mistake(world: WorldSettings, vehicle: VehicleSettings): Option[String] =
+    val names = cameras(world, vehicle.name) ++ lidars(vehicle)
+    names.groupBy(SensorMessages.token).collectFirst:
+      case (token, all) if all.sizeIs > 1 || token == "base_link" =>
+        s"expected cameras and lidars of ${vehicle.name} whose names differ in letters and digits, and none called " +
+          s"base_link, came ${all.mkString("'", "', '", "'")}"
+
+  private def cameras(world: WorldSettings, vehicle: String): Vector[String] =
+    val names = listed(world, vehicle, "Cameras").map(_._1)
+    if names.isEmpty then Vector(Usual) else names
+
+  private def lidars(vehicle: VehicleSettings): Vector[String] =
+    vehicle.sensors.collect { case (name, SensorKind.Lidar) => name }.toVector.sorted
+
+  private def opened(
+      node: RosNode,
+      world: WorldSettings,
+      simulator: Address,
+      frames: TransformStamped => Unit
+  )(using ActorSystem): Either[String, SimulatedSensors] =
     val client = AirSimClient(RpcClient(TcpTransport(), simulator, OwnClock.system))
     val thread =
       Executors.newSingleThreadExecutor(Thread.ofPlatform().daemon().name("skein-ros-sensors").factory())
     given ExecutionContext = ExecutionContext.fromExecutor(thread)
-    val opened             = Vector.newBuilder[Sensor]
-    val failed             = world.vehicles.iterator.flatMap: vehicle =>
-      val eyes    = Multirotor(client, vehicle.name, vehicle.startNed).eyes
-      val cameras = listed(world, vehicle.name, "Cameras").map(_._1)
-      val made    =
-        (if cameras.isEmpty then Vector(Usual) else cameras).map(camera(
-          node,
-          eyes,
-          vehicle.name,
-          _,
-          frames
-        )) ++
-          vehicle.sensors.collect { case (name, SensorKind.Lidar) =>
-            lidar(node, eyes, vehicle, name, world, frames)
-          }
-      made.flatMap:
-        case Left(why)     => Some(why)
-        case Right(sensor) =>
-          opened += sensor
-          None
-    failed.nextOption().toLeft:
-      SimulatedSensors(
-        opened.result(),
-        () =>
-          client.close(): Unit
-          thread.shutdown()
-          thread.awaitTermination(2, TimeUnit.SECONDS): Unit
-      )
+    def end(): Unit        =
+      client.close(): Unit
+      thread.shutdown()
+      thread.awaitTermination(2, TimeUnit.SECONDS): Unit
+    val made =
+      for
+        vehicle <- world.vehicles
+        eyes = Multirotor(client, vehicle.name, vehicle.startNed).eyes
+        sensor <-
+          cameras(world, vehicle.name).map(camera(node, eyes, vehicle.name, _, frames)) ++
+            lidars(vehicle).map(lidar(node, eyes, vehicle, _, world, frames))
+      yield sensor
+    Expect.each(made)(identity) match
+      case Right(sensors) => Right(SimulatedSensors(sensors, () => end()))
+      case Left(why)      =>
+        end()
+        Left(why)
 
   private def camera(
       node: RosNode,
@@ -126,7 +141,9 @@ object SimulatedSensors:
     val isLocal =
       listed(world, vehicle.name, "Sensors").exists((of, frame) => of == lidar && frame == "SensorLocalFrame")
     for clouds <- node.publish[PointCloud2](s"/$name/points") yield
-      def show(scan: Scan, at: Instant): Unit =
+      var shownAt                             = Instant.Epoch
+      def show(scan: Scan, at: Instant): Unit = if at > shownAt then
+        shownAt = at
         def point(number: Int) =
           Ned(scan.points(3 * number), scan.points(3 * number + 1), scan.points(3 * number + 2))
         if isLocal then
@@ -165,13 +182,14 @@ object SimulatedSensors:
     @volatile var failure: Option[String] = None
 
     def look(): Unit =
-      if isRead() then
-        if isBusy.compareAndSet(false, true) then
-          take().onComplete: taken =>
-            for
-              why <- taken.fold(error => Some(error.toString), _.left.toOption.map(_.message))
-              if failure.isEmpty
-            do
-              failure = Some(s"/$name: $why")
-            isBusy.set(false)
-        else skipped.incrementAndGet(): Unit
+      // A publisher in work is not asked, which would wait for it.
+      if isBusy.get then skipped.incrementAndGet(): Unit
+      else if isRead() then
+        isBusy.set(true)
+        take().onComplete: taken =>
+          for
+            why <- taken.fold(error => Some(error.toString), _.left.toOption.map(_.message))
+            if failure.isEmpty
+          do
+            failure = Some(s"/$name: $why")
+          isBusy.set(false)

@@ -1,6 +1,7 @@
 package skein.ros
 
 import java.nio.{ByteBuffer, ByteOrder}
+import skein.airsim.WorldSettings
 import skein.ros.message.{Header, Time}
 import skein.units.*
 
@@ -38,6 +39,20 @@ class SensorMessagesSuite extends munit.FunSuite:
   test("an image's rows have no gaps"):
     val image = SensorMessages.image(header, 4, 2, "bgr8", Array.ofDim[Byte](24))
     assertEquals((image.step, image.width, image.height), (12, 4, 2))
+
+  test("sensors whose topics would be one are refused, and one that would take the body's frame"):
+    def mistake(cameras: String, lidar: String) =
+      val text = s"""{ "SettingsVersion": 1.2, "Vehicles": { "a": { "VehicleType": "SimpleFlight",
+        "Cameras": { $cameras }, "Sensors": { "$lidar": { "SensorType": 6, "Enabled": true } } } } }"""
+      val world = WorldSettings.parse(text).fold(error => fail(error.message), identity)
+      SimulatedSensors.mistake(world, world.vehicles.head)
+    assertEquals(mistake("\"front\": {}", "spin"), None)
+    assert(mistake(
+      "\"front cam\": {}, \"front_cam\": {}",
+      "spin"
+    ).exists(_.contains("'front cam', 'front_cam'")))
+    assert(mistake("\"front\": {}", "front").isDefined)
+    assert(mistake("\"front\": {}", "base_link").isDefined)
 
   test("names become parts of topics"):
     assertEquals(

@@ -66,12 +66,12 @@ private[simulator] final class InProcess(simulation: Simulation, onlooker: Onloo
           now.copy(positionNed = vehicle.positionAt(at))
         )
 
-    /** Straight up at first: on the ground AirSim's controller cannot tilt, and what it gives to tilting is
-      * missing in the lift.
+    /** Straight up at first, at [[InProcess.LiftMps]] or more: on the ground AirSim's controller can neither
+      * tilt nor turn, and what it gives to these is missing in the lift.
       */
     private def lifting(action: Action): Action = action match
-      case Action.Velocity(velocity, yaw) if velocity.z < 0 =>
-        Action.Velocity(Vector3(0, 0, velocity.z), yaw)
+      case Action.Velocity(velocity, _) if velocity.z < 0 =>
+        Action.Velocity(Vector3(0, 0, velocity.z.min(-InProcess.LiftMps)))
       case other => other
 
     /** An action in the vehicle's own frame, which begins at its start. */
@@ -82,3 +82,7 @@ private[simulator] final class InProcess(simulation: Simulation, onlooker: Onloo
       case Action.Along(heading, speed, down, yaw) =>
         Action.Along(heading, speed, Metres(down.value - start.z), yaw)
       case other => other
+
+private object InProcess:
+  /** Slowest climb while a vehicle stands, m/s. With 0.4 and a turn it was seen to stay on the ground. */
+  val LiftMps = 1.0

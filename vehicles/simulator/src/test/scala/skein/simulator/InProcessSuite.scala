@@ -67,13 +67,17 @@ class InProcessSuite extends munit.FunSuite:
     assertEquals(flown.last(0).positionNed, Vector3.Zero)
 
   test("a vehicle takes off by an action that leads upwards and to any side"):
-    for side <- Seq(Vector3(3, 1, 0), Vector3(-3, 3, 0), Vector3(0, -3, 0)); up <- Seq(0.5, 3.0) do
+    for
+      side <- Seq(Vector3(3, 1, 0), Vector3(-3, 3, 0), Vector3(0, -3, 0))
+      up   <- Seq(0.5, 3.0)
+      yaw  <- Seq(Yaw.Still, Yaw.Towards(Radians(math.Pi / 2)), Yaw.Turning(1))
+    do
       val flown = Flown()
-      flown.inProcess.act(0, _ => Action.Velocity(side - Vector3(0, 0, up)), None)
+      flown.inProcess.act(0, _ => Action.Velocity(side - Vector3(0, 0, up), yaw), None)
       flown.run(6)
       val at = flown.last(0)
-      assert(at.positionNed.z < -4 * up, s"$side, $up: $at")
-      assert((at.velocityNed - side + Vector3(0, 0, up)).norm < 0.5, s"$side, $up: $at")
+      assert(at.positionNed.z < -4 * up, s"$side, $up, $yaw: $at")
+      assert((at.velocityNed - side + Vector3(0, 0, up)).norm < 0.7, s"$side, $up, $yaw: $at")
 
   test("an action without an end goes on, in the world's frame, until another replaces it"):
     val flown = Flown()

@@ -287,7 +287,7 @@ private final class TimetableCompiler(
     propagations += way.placed(headings(vehicle).place)
     placed += 1
     size += 1
-    for command <- way.commands if command > 0 do headings(vehicle).release(command, at)
+    for command <- way.commands do headings(vehicle).release(command, at)
 
   private def act(note: Note.Act, at: Int): Unit =
     import note.{decision, vehicle}
