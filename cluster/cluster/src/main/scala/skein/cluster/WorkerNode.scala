@@ -137,8 +137,14 @@ object WorkerNode:
     try Some(Await.result(promise.future, nanos.max(0).nanos))
     catch case _: TimeoutException => None
 
+  /** Whether an event says that the member at an address has left, or cannot be reached. */
+  private[cluster] def isLost(address: Address, event: Any): Boolean = event match
+    case UnreachableMember(member) => member.address == address
+    case MemberRemoved(member, _)  => member.address == address
+    case _                         => false
+
   /** Joins the cluster. Reports membership and loss of the coordinator to `work`. */
-  private[cluster] def member(
+  private def member(
       seed: Address,
       work: ActorRef[WorkerBehavior.Command],
       onUp: () => Unit
@@ -149,13 +155,10 @@ object WorkerNode:
       cluster.subscriptions ! Subscribe(context.self, classOf[MemberEvent])
       cluster.subscriptions ! Subscribe(context.self, classOf[ReachabilityEvent])
       cluster.manager ! JoinSeedNodes(Vector(seed))
-      def lostIf(address: Address) = if address == seed then work ! WorkerBehavior.Unreachable
       Behaviors.receiveMessage: event =>
         event match
           case _: SelfUp =>
             onUp()
             work ! WorkerBehavior.Member
-          case UnreachableMember(member) => lostIf(member.address)
-          case MemberRemoved(member, _)  => lostIf(member.address)
-          case _                         => ()
+          case change => if isLost(seed, change) then work ! WorkerBehavior.Unreachable
         Behaviors.same
