@@ -44,6 +44,34 @@ class PatienceSuite extends munit.FunSuite:
     val end = lasts(_ => patience.watch(forMessage = false, forTaking = true, forNothing = false))
     assertEquals(end, (31, ServerLimit.Time, "replies not taken for more than 30 s"))
 
+  test("replies that are all taken once within their time limit are not late"):
+    val patience = Patience(limits)
+    for i <- 1 to 1000 do
+      assertEquals(patience.watch(forMessage = false, forTaking = i % 31 != 0, forNothing = false), None)
+
+  test("limits of one are allowed, and none of nothing"):
+    val least = ServerLimits(
+      inFlightPerConnection = 1,
+      inFlightAssured = 1,
+      inFlightInCommon = 0,
+      unsentBytesPerConnection = 1,
+      connections = 1,
+      heldBytesPerConnection = 1,
+      heldBytesInCommon = 0,
+      strays = 0
+    )
+    for none <- Seq[ServerLimits => ServerLimits](
+        _.copy(inFlightPerConnection = 0),
+        _.copy(inFlightAssured = 0),
+        _.copy(inFlightInCommon = -1),
+        _.copy(unsentBytesPerConnection = 0),
+        _.copy(connections = 0),
+        _.copy(heldBytesPerConnection = 0),
+        _.copy(heldBytesInCommon = -1),
+        _.copy(strays = -1)
+      )
+    do intercept[IllegalArgumentException](none(least)): Unit
+
   test("silence is counted while nothing is in progress, until bytes are received"):
     val patience = Patience(limits)
     def quiet()  = patience.watch(forMessage = false, forTaking = false, forNothing = true)
