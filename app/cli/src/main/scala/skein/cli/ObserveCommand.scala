@@ -1,12 +1,10 @@
 package skein.cli
 
 import java.io.IOException
-import java.net.InetAddress
 import java.nio.file.Path
 import java.util.concurrent.{CountDownLatch, Executors, TimeUnit}
 import mainargs.{Flag, ParserForClass, arg}
 import org.apache.pekko.actor.ActorSystem
-import scala.util.Try
 import skein.figures.ObservedFigure
 import skein.link.*
 import skein.observe.*
@@ -161,8 +159,8 @@ object ObserveCommand
           options.simulator.map(at => if isMavlink then at.stripPrefix(Tcp) else at),
           usual._2
         )
-      _ <- Expect.that(isKnown(simulator))(s"--simulator: the host ${simulator.host} is not known")
-      _ <- Expect.that(listenAt.port == 0 || reachable(listenAt) != reachable(simulator)):
+      there <- Reachable.from(simulator).toRight(s"--simulator: the host ${simulator.host} is not known")
+      _     <- Expect.that(listenAt.port == 0 || !Reachable.from(listenAt).contains(there)):
         s"--listen: expected another address than the simulator's, came $listenAt twice"
       profile <- Arguments.latency(options.link).left.map("--link: " + _)
       folder  <- folderOf(options)
@@ -293,13 +291,6 @@ object ObserveCommand
 
   private def text(tables: Vector[Section], findings: Vector[String]): String =
     (Section.text(tables) +: "" +: findings.flatMap(Paragraph.lines(_, 100))).mkString("\n")
-
-  private def isKnown(address: Address) = Try(InetAddress.getByName(address.host)).isSuccess
-
-  /** Where this machine reaches what listens at an address: on loopback what listens on all. */
-  private[cli] def reachable(address: Address): Address =
-    Try(InetAddress.getByName(address.host)).toOption.fold(address): host =>
-      Address(if host.isAnyLocalAddress then "127.0.0.1" else host.getHostAddress, address.port)
 
   private val TellEveryS = 5L
   private val Tcp        = "tcp://"

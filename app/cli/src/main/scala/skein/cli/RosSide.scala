@@ -13,7 +13,7 @@ private[cli] final class RosSide private (node: RosNode, val topics: SimulatedTo
 
   /** Lets the topics fly the vehicles and show their sensors, and prints what is missing. */
   def fly(server: SimulatorServer, world: WorldSettings)(using ActorSystem): Unit =
-    val here = ObserveCommand.reachable(server.address)
+    val here = Reachable.from(server.address).getOrElse(server.address)
     for line <- topics.missing ++ topics.fly(server).left.toOption ++ topics.show(world, here).left.toOption
     do
       Console.out.println(s"ROS 2: $line")

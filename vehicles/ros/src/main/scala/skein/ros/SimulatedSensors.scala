@@ -52,29 +52,53 @@ object SimulatedSensors:
       simulator: Address,
       frames: TransformStamped => Unit
   )(using ActorSystem): Either[String, SimulatedSensors] =
+    val carried = Carried.of(world)
     for
-      _      <- Expect.each(world.vehicles)(vehicle => mistake(world, vehicle).toLeft(()))
-      opened <- opened(node, world, simulator, frames)
+      _      <- Expect.each(carried)(mistake(_).toLeft(()))
+      opened <- opened(node, carried, simulator, frames)
     yield opened
 
+  /** A vehicle's sensors that are published.
+    *
+    * @param cameras their names
+    * @param lidars names, and whether their points are in their own frame
+    */
+  private[ros] final case class Carried(
+      vehicle: VehicleSettings,
+      cameras: Vector[String],
+      lidars: Vector[(name: String, isLocal: Boolean)]
+  )
+
+  private[ros] object Carried:
+    def of(world: WorldSettings): Vector[Carried] = SettingsSection
+      .read(world.text): root =>
+        val vehicles = root.section("Vehicles")
+        world.vehicles.map: vehicle =>
+          val fields  = vehicles.section(vehicle.name)
+          val cameras = fields.sections("Cameras").map(_._1)
+          val frames  = fields.sections("Sensors").toMap.view.mapValues(_.text("DataFrame", ""))
+          Carried(
+            vehicle,
+            if cameras.isEmpty then Vector(Usual) else cameras,
+            lidars(vehicle)(name => frames.get(name).contains("SensorLocalFrame"))
+          )
+      .getOrElse(world.vehicles.map(each => Carried(each, Vector(Usual), lidars(each)(_ => false))))
+
+    private def lidars(vehicle: VehicleSettings)(isLocal: String => Boolean) =
+      vehicle.sensors.collect { case (name, SensorKind.Lidar) => name }.toVector.sorted.map: name =>
+        (name = name, isLocal = isLocal(name))
+
   /** Why the names of a vehicle's sensors cannot be those of topics and frames, if they cannot. */
-  private[ros] def mistake(world: WorldSettings, vehicle: VehicleSettings): Option[String] =
-    val names = cameras(world, vehicle.name) ++ lidars(vehicle)
+  private[ros] def mistake(carried: Carried): Option[String] =
+    val names = carried.cameras ++ carried.lidars.map(_.name)
     names.groupBy(SensorMessages.token).collectFirst:
       case (token, all) if all.sizeIs > 1 || token == "base_link" =>
-        s"expected cameras and lidars of ${vehicle.name} whose names differ in letters and digits, and none called " +
-          s"base_link, came ${all.mkString("'", "', '", "'")}"
-
-  private def cameras(world: WorldSettings, vehicle: String): Vector[String] =
-    val names = listed(world, vehicle, "Cameras").map(_._1)
-    if names.isEmpty then Vector(Usual) else names
-
-  private def lidars(vehicle: VehicleSettings): Vector[String] =
-    vehicle.sensors.collect { case (name, SensorKind.Lidar) => name }.toVector.sorted
+        s"expected cameras and lidars of ${carried.vehicle.name} whose names differ in letters and digits, and none " +
+          s"called base_link, came ${all.mkString("'", "', '", "'")}"
 
   private def opened(
       node: RosNode,
-      world: WorldSettings,
+      all: Vector[Carried],
       simulator: Address,
       frames: TransformStamped => Unit
   )(using ActorSystem): Either[String, SimulatedSensors] =
@@ -88,11 +112,11 @@ object SimulatedSensors:
       thread.awaitTermination(2, TimeUnit.SECONDS): Unit
     val made =
       for
-        vehicle <- world.vehicles
+        Carried(vehicle, cameras, lidars) <- all
         eyes = Multirotor(client, vehicle.name, vehicle.startNed).eyes
         sensor <-
-          cameras(world, vehicle.name).map(camera(node, eyes, vehicle.name, _, frames)) ++
-            lidars(vehicle).map(lidar(node, eyes, vehicle, _, world, frames))
+          cameras.map(camera(node, eyes, vehicle.name, _, frames)) ++
+            lidars.map(each => lidar(node, eyes, vehicle, each.name, each.isLocal, frames))
       yield sensor
     Expect.each(made)(identity) match
       case Right(sensors) => Right(SimulatedSensors(sensors, () => end()))
@@ -134,12 +158,10 @@ object SimulatedSensors:
       eyes: Eyes,
       vehicle: VehicleSettings,
       lidar: String,
-      world: WorldSettings,
+      isLocal: Boolean,
       frames: TransformStamped => Unit
   )(using ExecutionContext): Either[String, Sensor] =
-    val name    = s"${vehicle.name}/${SensorMessages.token(lidar)}"
-    val isLocal =
-      listed(world, vehicle.name, "Sensors").exists((of, frame) => of == lidar && frame == "SensorLocalFrame")
+    val name = s"${vehicle.name}/${SensorMessages.token(lidar)}"
     for clouds <- node.publish[PointCloud2](s"/$name/points") yield
       var shownAt                             = Instant.Epoch
       def show(scan: Scan, at: Instant): Unit = if at > shownAt then
@@ -157,15 +179,6 @@ object SimulatedSensors:
         () => clouds.isRead,
         () => eyes.scan(lidar).map(_.map(taken => show(taken.value, taken.validAt)))
       )
-
-  /** Names in a part of a vehicle's settings, each with its `DataFrame`. */
-  private def listed(world: WorldSettings, vehicle: String, part: String): Vector[(String, String)] =
-    SettingsSection
-      .read(world.text): root =>
-        root.section("Vehicles").section(vehicle).sections(part).map((name, fields) =>
-          (name, fields.text("DataFrame", ""))
-        )
-      .getOrElse(Vector.empty)
 
   /** @param isRead whether something subscribes to it
     * @param take takes an image or a scan, and publishes it

@@ -45,7 +45,7 @@ class SensorMessagesSuite extends munit.FunSuite:
       val text = s"""{ "SettingsVersion": 1.2, "Vehicles": { "a": { "VehicleType": "SimpleFlight",
         "Cameras": { $cameras }, "Sensors": { "$lidar": { "SensorType": 6, "Enabled": true } } } } }"""
       val world = WorldSettings.parse(text).fold(error => fail(error.message), identity)
-      SimulatedSensors.mistake(world, world.vehicles.head)
+      SimulatedSensors.mistake(SimulatedSensors.Carried.of(world).head)
     assertEquals(mistake("\"front\": {}", "spin"), None)
     assert(mistake(
       "\"front cam\": {}, \"front_cam\": {}",
