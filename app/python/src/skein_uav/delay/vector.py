@@ -11,7 +11,7 @@ from gymnasium.vector.utils import batch_space, create_empty_array
 
 from .arrays import each
 from .core import Delay
-from .spaces import Telling, idle
+from .spaces import Telling, encoding, idle
 
 
 class DelayVectorEnv(VectorWrapper, gym.utils.RecordConstructorArgs):
@@ -49,10 +49,13 @@ class DelayVectorEnv(VectorWrapper, gym.utils.RecordConstructorArgs):
             raise ValueError("env: expected metadata['autoreset_mode'], of gymnasium.vector.AutoresetMode, came none")
         self._mode = AutoresetMode(env.metadata["autoreset_mode"])
         self._idle = idle(env.single_action_space) if idle_action is None else idle_action
-        self._delay = Delay(env.num_envs, step_s, pending=pending, idle_action=self._idle, **settings)
+        encode = encoding(env.single_observation_space, env.single_action_space)
+        own = {"pending": pending, "encode": encode, "idle_action": self._idle}
+        self._delay = Delay(env.num_envs, step_s, **own, **settings)
         self._telling = Telling(
             env.single_observation_space, env.single_action_space, self._delay.longest_age_s, ages, pending
         )
+        self._delay.spare = self._telling.spare
         self.single_observation_space = self._telling.space
         self.observation_space = batch_space(self.single_observation_space, env.num_envs)
         self._like = create_empty_array(env.single_action_space, env.num_envs, fn=np.zeros)
