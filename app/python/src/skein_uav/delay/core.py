@@ -100,8 +100,8 @@ class Delay:
     longest_age_s : float
         Of an observation, s.
     spare : int
-        Columns that are left behind those of an observation, for what is told beside it, where observations are matrices
-        of NumPy and not predicted. To be set before the first.
+        Columns behind those of an observation, for what is told beside it, where observations are matrices of NumPy and
+        not predicted: the age, and others that are left free. To be set before the first.
 
     Raises
     ------
@@ -205,11 +205,12 @@ class Delay:
         if self._observations is None:
             self._like = leaf(observations)
             self._xp = namespace(self._like)
+            self._maximum = self._xp.maximum
             self._room = self._rows_at_once(observations)
-            spare = self.spare if self._xp is np and self._predict is None else 0
+            self._has_room = self.spare > 0 and self._xp is np and self._predict is None
+            spare = self.spare if self._has_room else 0
             self._observations = History(observations, self._kept, self._room, self._count, spare)
-            steps = np.arange(self._kept + self._room)[::-1]
-            self._ages = on(self._like, np.repeat(steps * self.step_s, self._count))
+            self._ages = on(self._like, self._table())
             self._columns = on(self._like, np.arange(self._count))
             self._began = self._row(0)
         if self._actions is None and actions is not None:
@@ -253,7 +254,7 @@ class Delay:
         self.row += 1
         at = self._in_block()
         if began is not None:
-            self._void(on(self._like, began), at)
+            self._void(began if type(began) is np.ndarray and self._xp is np else on(self._like, began), at)
         self._observations.put(at, observations)
         return self._look(at)
 
@@ -273,7 +274,7 @@ class Delay:
                 self._told = each(lambda told, idle: changed(told, which, idle), self._told, self._idle_told)
 
     def _look(self, at: int) -> Seen:
-        self._newest = self._xp.maximum(self._arrived[at], self._began)
+        self._newest = self._maximum(self._arrived[at], self._began)
         newest = self._newest[0]
         observation = self._observations.take(newest)
         if self._is_zero:
@@ -283,8 +284,19 @@ class Delay:
             observation = self._predicted(observation, (self._row(at) - newest) // self._count, at)
         # The table ends with ages of 0, which here are those of this row.
         ages = self._ages[(self._room - 1 - at) * self._count :]
+        if self._has_room:
+            if ages.dtype != observation.dtype:
+                self._ages = self._table().astype(observation.dtype)
+                ages = self._ages[-len(ages) :]
+            age_s = observation[:, -self.spare]
+            ages.take(newest, 0, age_s, "clip")
+            return Seen(observation, age_s, self._told)
         age_s = ages.take(newest) if self._xp is np else ages[newest]
         return Seen(observation, age_s, self._told)
+
+    def _table(self) -> Any:
+        """Ages by places, at the last row."""
+        return np.repeat(np.arange(self._kept + self._room)[::-1] * self.step_s, self._count)
 
     def _row(self, at: Any) -> Any:
         """The places in this row."""
@@ -294,7 +306,7 @@ class Delay:
         newest = -(-at // self._every) - 1
         for step in range(int(self._most[at]) + self._ahead):
             chosen = ((at - lag + step - self._ahead) // self._every).clip(None, newest) * self._every
-            places = self._xp.maximum(self._row(chosen + 1), self._began)
+            places = self._maximum(self._row(chosen + 1), self._began)
             later = self._predict(observation, self._actions.take(places))
             goes = step < lag + self._ahead
             observation = each(lambda old, new: self._xp.where(beside(goes, old), new, old), observation, later)

@@ -35,12 +35,13 @@ class History:
 
     def _hold(self, rows: Tree) -> None:
         self._rows = np.asfortranarray(rows) if self._spare else rows
+        self._columns = self._rows.T if self._spare else None
         self._dtype = rows.dtype if type(rows) is np.ndarray else None
 
     def put(self, row: int, value: Tree) -> None:
         begin = (row + self._kept) * self._count
         slot = slice(begin, begin + self._count)
-        if self._dtype is not None and value.dtype == self._dtype:
+        if self._dtype is not None and (value.dtype is self._dtype or value.dtype == self._dtype):
             self._rows[slot] = value
         else:
             self._hold(each(lambda rows, one: put(_wide(rows, one), slot, one), self._rows, value))
@@ -54,11 +55,11 @@ class History:
             self._hold(each(lambda rows, one: put(rows, slot, changed(rows[slot], which, one)), self._rows, value))
 
     def take(self, places: Any) -> Tree:
-        rows = self._rows
-        if self._spare:
-            width = rows.shape[1]
-            taken = np.empty((width + self._spare, self._count), rows.dtype)
-            rows.T.take(places, 1, taken[:width], "clip")  # else ``out`` is copied
+        rows, columns = self._rows, self._columns
+        if columns is not None:
+            width = len(columns)
+            taken = np.empty((width + self._spare, self._count), self._dtype)
+            columns.take(places, 1, taken[:width], "clip")  # else ``out`` is copied
             return taken.T
         return rows.take(places, 0) if self._dtype is not None else each(lambda one: _taken(one, places), rows)
 

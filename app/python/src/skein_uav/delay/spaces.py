@@ -37,7 +37,7 @@ class Telling:
     space : Space
         Of one environment.
     spare : int
-        Columns behind an observation that `told` can fill, as of `skein_uav.delay.Delay`.
+        Columns behind an observation that `told` fills, as of `skein_uav.delay.Delay`; 0 without ages.
     """
 
     def __init__(
@@ -61,7 +61,8 @@ class Telling:
                 most.append(np.tile(np.ones(action.n) if one_hot else action.high.ravel(), pending))
             low, high = (np.concatenate(parts).astype(observation.dtype) for parts in (least, most))
             self.space = Box(low, high, dtype=observation.dtype)
-            self.spare = len(low) - len(observation.low)
+            self._width = len(low)
+            self.spare = self._width - len(observation.low) if ages else 0
         else:
             parts = {"observation": observation}
             if ages:
@@ -76,6 +77,10 @@ class Telling:
     def told(self, seen: Seen) -> Tree:
         """For a batch."""
         observation = seen.observation
+        if self.spare and type(observation) is np.ndarray and observation.shape[1] == self._width:
+            if self._pending:
+                observation[:, 1 - self.spare :] = seen.pending.reshape(len(observation), -1)
+            return observation
         if not self._ages and not self._pending:
             return observation
         if not self._is_flat:
@@ -86,14 +91,7 @@ class Telling:
                 told["pending"] = seen.pending
             return told
         pending = seen.pending.reshape(len(observation), -1) if self._pending else None
-        if observation.shape[1] == self.space.shape[0]:  # it has room
-            at = observation.shape[1] - self.spare
-            if self._ages:
-                observation[:, at] = seen.age_s
-            if self._pending:
-                observation[:, at + self._ages :] = pending
-            return observation
-        return joined([observation, seen.age_s[:, None] if self._ages else None, pending], self.space.shape[0])
+        return joined([observation, seen.age_s[:, None] if self._ages else None, pending], self._width)
 
 
 def encoding(observation: gym.Space, action: gym.Space) -> Callable[[Tree], Tree] | None:

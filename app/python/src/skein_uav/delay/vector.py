@@ -47,7 +47,8 @@ class DelayVectorEnv(VectorWrapper, gym.utils.RecordConstructorArgs):
             raise ValueError("substeps: wrap each environment in DelayEnv before a vector is made of them")
         if env.metadata.get("autoreset_mode") is None:
             raise ValueError("env: expected metadata['autoreset_mode'], of gymnasium.vector.AutoresetMode, came none")
-        self._mode = AutoresetMode(env.metadata["autoreset_mode"])
+        mode = AutoresetMode(env.metadata["autoreset_mode"])
+        self._resets, self._resets_next = mode is not AutoresetMode.DISABLED, mode is AutoresetMode.NEXT_STEP
         self._idle = idle(env.single_action_space) if idle_action is None else idle_action
         encode = encoding(env.single_observation_space, env.single_action_space)
         own = {"pending": pending, "encode": encode, "idle_action": self._idle}
@@ -78,11 +79,11 @@ class DelayVectorEnv(VectorWrapper, gym.utils.RecordConstructorArgs):
     def step(self, actions: Any) -> tuple[Any, Any, Any, Any, dict[str, Any]]:
         """Decides in every environment, upon what the last call told."""
         observations, rewards, terminated, truncated, infos = self.env.step(self._delay.acting(actions))
-        if self._mode is AutoresetMode.DISABLED:
-            seen = self._delay.seen(observations)
-        elif self._mode is AutoresetMode.NEXT_STEP:
+        if self._resets_next:
             seen = self._delay.seen(observations, self._ended)
             self._ended = terminated | truncated
+        elif not self._resets:
+            seen = self._delay.seen(observations)
         elif "final_obs" in infos:
             seen = self._finals(observations, terminated | truncated, infos)
         else:
