@@ -264,12 +264,13 @@ class Delay:
             which = mask.nonzero()[0]
             if not which.size:
                 return
-            self._began[which] = which + (at + self._kept) * self._count
+            places = which + (at + self._kept) * self._count
+            self._began[which] = places
         else:
-            which = mask
+            which, places = mask, None
             self._began = self._xp.where(mask, self._row(at), self._began)
         if self._actions is not None:
-            self._actions.put_where(which, at, self._idles)
+            self._actions.put_where(which, at, self._idles, places)
             if self._pending:
                 self._told = each(lambda told, idle: changed(told, which, idle), self._told, self._idle_told)
 

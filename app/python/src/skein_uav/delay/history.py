@@ -46,11 +46,17 @@ class History:
         else:
             self._hold(each(lambda rows, one: put(_wide(rows, one), slot, one), self._rows, value))
 
-    def put_where(self, which: Any, row: int, value: Tree) -> None:
-        """Puts the value in a row, in some environments: by their numbers with NumPy, else where flags say so."""
+    def put_where(self, which: Any, row: int, value: Tree, places: Any = None) -> None:
+        """Puts the value in a row, in some environments: by their numbers with NumPy, else where flags say so.
+
+        Parameters
+        ----------
+        places : ndarray, optional
+            Of these numbers in the row, where they are known.
+        """
         slot = self._slot(row, row + 1)
         if self._dtype is not None:
-            self._rows[which + slot.start] = value[which]
+            self._rows[which + slot.start if places is None else places] = value[which]
         else:
             self._hold(each(lambda rows, one: put(rows, slot, changed(rows[slot], which, one)), self._rows, value))
 

@@ -104,7 +104,7 @@ def encoding(observation: gym.Space, action: gym.Space) -> Callable[[Tree], Tree
 
 def _one_hot(table: Any, values: Any, numbers: Any) -> Any:
     if type(numbers) is np.ndarray and table is not None:
-        return table.take(numbers - values[0], 1).T
+        return table.take(numbers - values[0] if values[0] else numbers, 1).T
     return numbers[:, None] == on(numbers, values)
 
 
