@@ -166,7 +166,6 @@ class Delay:
         self._actions: History | None = None
         self._idles: Tree = {}
         self._told: Tree = None
-        self._places: Any = None
         self._is_begun = False
         self.spare = 0
 
@@ -212,6 +211,8 @@ class Delay:
             self._observations = History(observations, self._kept, self._room, self._count, spare)
             self._ages = on(self._like, self._table())
             self._columns = on(self._like, np.arange(self._count))
+            links = self._schedule.count
+            self._of_links = on(self._like, np.arange(-(-self._count // links) * links).reshape(-1, links))
             self._began = self._row(0)
         if self._actions is None and actions is not None:
             self._allocate(actions)
@@ -275,11 +276,13 @@ class Delay:
                 self._told = each(lambda told, idle: changed(told, which, idle), self._told, self._idle_told)
 
     def _look(self, at: int) -> Seen:
-        self._newest = self._maximum(self._arrived[at], self._began)
+        # Environments beyond the links share them in turns.
+        arrived = (self._arrived[at] + self._of_links).reshape(2, -1)[:, : self._count]
+        self._newest = self._maximum(arrived, self._began)
         newest = self._newest[0]
         observation = self._observations.take(newest)
         if self._is_zero:
-            has = self._arrived[at][0] >= self._began
+            has = arrived[0] >= self._began
             observation = each(lambda one: self._xp.where(beside(has, one), one, self._xp.zeros_like(one)), observation)
         if self._predict is not None:
             observation = self._predicted(observation, (self._row(at) - newest) // self._count, at)
@@ -376,7 +379,7 @@ class Delay:
             self._began = (self._began - rows * self._count).clip(-4 * MOST_ROWS * self._count)
 
     def _make_block(self) -> None:
-        """Uploads what the link does in the next rows: the places of what is seen, and of what acts."""
+        """Uploads what the link does in the next rows: where the rows of what is seen, and of what acts, begin."""
         schedule, at = self._schedule, self._schedule.row(self._first)
         rows = min(self._room, schedule.rows - at)
         self._end, block = self._first + rows, slice(at, at + rows)
@@ -387,10 +390,6 @@ class Delay:
         np.multiply(schedule.acts[block], -self._every, out=first[:, 1])
         first[:, 1] += numbers - numbers % self._every + (self._kept + 1)
         first *= self._count
-        columns = np.arange(-(-self._count // schedule.count) * schedule.count).reshape(-1, schedule.count)
-        if self._places is None or self._xp is not np:  # elsewhere an upload may still read them
-            self._places = np.empty((self._room, 2, *columns.shape), np.intp)
-        places = np.add(first[:, :, None], columns, out=self._places[:rows])
-        self._arrived = list(on(self._like, places.reshape(rows, 2, -1)[..., : self._count]))
+        self._arrived = list(on(self._like, first[:, :, None]))
         self._most = schedule.seen[block].max(1)
         self._weights = on(self._like, schedule.weights[block]) if self._is_shared else None
