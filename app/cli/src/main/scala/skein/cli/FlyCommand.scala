@@ -68,12 +68,16 @@ final class FlyCommand(using Scenarios)
   override protected def defaults: Map[String, String]   = FlightOptions.defaults
   override protected def known: Map[String, Seq[String]] = FlightOptions.known
 
+  /** Nodes of others stop for nobody's loop. */
+  private def flights(options: FlyOptions) =
+    if options.ros.value then options.flights.unpaused else options.flights
+
   override protected def check(options: FlyOptions): Either[String, Unit] =
-    options.flights.settings.map(_ => ())
+    flights(options).settings.map(_ => ())
 
   protected def execute(options: FlyOptions): Either[String, Unit] =
     for
-      settings <- options.flights.settings
+      settings <- flights(options).settings
       learning <- options.learning.chosen(settings)
       plans = learning.fold(settings.plans)(settings.plansWith)
       isTcp = options.simulator.exists(_.startsWith(FlyCommand.Tcp))

@@ -18,6 +18,10 @@ class FlyRosSuite extends munit.FunSuite:
     assume(!Seq("AMENT_PREFIX_PATH", "LD_LIBRARY_PATH").exists(sys.env.contains), "ROS 2 may be here")
     assert(said(possible*).contains("--ros: ROS 2 was not found: expected librcl.so in lib of a folder of"))
 
+  test("where no loop is chosen, all fly that do not stop time"):
+    assume(!Seq("AMENT_PREFIX_PATH", "LD_LIBRARY_PATH").exists(sys.env.contains), "ROS 2 may be here")
+    assert(clue(said("--ros", "--link", "none")).contains("ROS 2 was not found"))
+
   for (what, words, expected) <- Seq(
       (
         "a simulator",
