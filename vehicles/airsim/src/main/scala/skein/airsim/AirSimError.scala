@@ -23,7 +23,7 @@ enum AirSimError:
     case Settings(error)                => s"the simulator's settings: ${error.message}"
 
 object AirSimError:
-  /** One line: the simulator lacks these vehicles, and which ones it has. */
+  /** One line that lists the missing vehicles and the vehicles that the simulator has. */
   def unknown(names: Seq[String], existing: Seq[String]): String =
     def listed(all: Seq[String]) = all.map(name => s"'$name'").mkString(", ")
     val has                      = if existing.isEmpty then "it has none" else s"it has ${listed(existing)}"

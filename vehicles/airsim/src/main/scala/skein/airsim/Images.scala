@@ -56,8 +56,8 @@ final case class Image(
 
 /** A lidar's scan.
   *
-  * @param points x, y, z of each, m, in the frame that the lidar's settings name: its own, or the vehicle's
-  *   start's
+  * @param points x, y, z of each, m, in the frame that the lidar's settings choose: the lidar's own, or that
+  *   of its vehicle's start
   * @param segmentation id of the object that each point is on; empty where the simulator does not send it
   * @param positionNed of the lidar, world, m
   */
@@ -95,7 +95,7 @@ final case class Scan(
     found
 
 /** Reads images and scans as AirSim, Colosseum and Cosys-AirSim send them: keys in any order, unknown keys
-  * skipped, missing keys as empty. What cannot be read ends with [[MessageReader]]'s error.
+  * skipped, missing keys as empty. An answer that cannot be read ends with [[MessageReader]]'s error.
   */
 private[airsim] object Images:
 

@@ -75,7 +75,7 @@ object WorldSettings:
   /** Reads a `settings.json`. A file without vehicles gives one, named after its type, as in AirSim. */
   def parse(text: String): Either[SettingsError, WorldSettings] = SettingsSection.read(text)(read(_, text))
 
-  /** The world of these vehicles with their cameras and lidars, and the `settings.json` that says so. */
+  /** The world of these vehicles with their cameras and lidars; its `text` is their `settings.json`. */
   def of(vehicles: Vector[VehicleSettings], equipment: Seq[Equipment] = Nil): WorldSettings =
     WorldSettings(vehicles, text = render(vehicles, equipment))
 

@@ -2,11 +2,11 @@ package skein.rpc
 
 import java.util.concurrent.atomic.AtomicLong
 
-/** Bounds what peers can make us hold, over all connections of one server or client: bytes of memory
-  * (incomplete messages, messages decoded and not yet answered, answers not yet taken), or requests in
+/** Limits what peers can make this process hold, over all connections of one server or client: bytes of
+  * memory (incomplete messages, messages decoded and not yet answered, answers not yet taken), or requests in
   * progress; here all are called bytes.
   *
-  * Every connection may hold `each` bytes whatever the others do; more comes out of `common`, first come,
+  * Every connection may hold `each` bytes whatever the others do; more is taken out of `common`, first come,
   * first served. So a peer that requests little is never refused because of one that requests much, and the
   * total is at most `common` and `each` for every connection. Safe from any thread.
   *

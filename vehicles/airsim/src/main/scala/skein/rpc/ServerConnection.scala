@@ -188,8 +188,8 @@ private[rpc] final class ServerConnection(
 
       private def underWay: Boolean = inFlight > 0 || sending > 0 || writer.length > 0
 
-      /** Whether its memory is granted: if not, it waits until some of its requests are answered and their
-        * replies taken.
+      /** Whether it may take a request: its memory is granted, or nothing is under way whose end would free
+        * some.
         */
       private def hasRoom: Boolean = isGranted || !underWay
 

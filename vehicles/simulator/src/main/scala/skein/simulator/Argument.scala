@@ -57,7 +57,7 @@ private[simulator] object Argument:
     case Arr(values) => values.iterator.map(element.read).toVector
     case _           => badCast
 
-  /** A vector's numbers are metres, metres per second or radians: beyond it they lose their ones. */
+  /** Greatest magnitude of a vector's components, in m, m/s or rad: there a 32-bit float has steps of 64. */
   private val Greatest = 1e9f
 
   given Argument[Vector3r] = checked(record(Vector3r.Zero)): vector =>

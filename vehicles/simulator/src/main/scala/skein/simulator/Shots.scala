@@ -4,8 +4,8 @@ import skein.airsim.wire.*
 import skein.scene.render.{Kind, Raster, PngEncoder, Renderer, View}
 import skein.scene.{Moment, Placement}
 
-/** Images requested together: all of one instant, and, for one camera and size, from one pass. Drawn once, on
-  * any thread.
+/** Images requested together. All show one instant, and images of one camera and size are from one pass. They
+  * are drawn once, on any thread.
   */
 final private[simulator] class Shots private (
     moment: Moment,
@@ -46,7 +46,7 @@ private[simulator] object Shots:
 
   val MostImages = 64
 
-  /** Most bytes of one answer: what our own client accepts. */
+  /** Limit of one answer's bytes, which Skein's own client accepts. */
   val MostBytes: Long = 60L << 20
 
   def noCamera(name: String): String = s"No camera with name $name exist on vehicle"

@@ -33,7 +33,7 @@ final private[simulator] class SimulatedMultirotor(
 
   def flying: Boolean = flown
 
-  /** How often it was moved by other means than flight. */
+  /** Number of resets and of positions set so far, which displace it without flight. */
   def jumps: Long = jumped
 
   def airframe: Airframe = rotorcraft.airframe

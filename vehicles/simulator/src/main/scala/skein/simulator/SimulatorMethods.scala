@@ -27,7 +27,7 @@ private[simulator] object SimulatorMethods:
       else CallOutcome.Threw(s"a wind of at most ${FastestWindMps.round} m/s is wanted")
   )
 
-  /** Rate of a renderer that keeps up with a usual screen, as AirSim's. */
+  /** Rate at which frames are converted to time: that of a renderer that keeps up with a usual screen. */
   private val FramesPerS = 60.0
 
   /** Longest stepped advance, s: a day, far beyond use and far below what would overflow a clock. */

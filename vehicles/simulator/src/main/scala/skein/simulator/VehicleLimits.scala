@@ -4,7 +4,7 @@ import skein.airsim.{VehicleSettings, WorldSettings}
 
 /** Limits on the simulator's vehicles, from its settings and from clients that add some. */
 private[simulator] object VehicleLimits:
-  /** Most vehicles; clients cannot add more. */
+  /** Limit of the vehicles; clients cannot add more. */
   val MostVehicles = 256
 
   val LongestName = 100
