@@ -21,7 +21,7 @@ import skein.units.*
 trait Codec[A]:
   def write(value: A, out: DataOutputStream): Unit
 
-  /** @throws IOException if the bytes are something else; a length beyond the bytes left is refused */
+  /** @throws IOException if the bytes encode no such value, or contain a length beyond the bytes left */
   def read(in: DataInputStream): A
 
   /** A codec of another type with these bytes. */

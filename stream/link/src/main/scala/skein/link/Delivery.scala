@@ -38,7 +38,7 @@ private[link] final class Delivery(
     met = met.filter(_.until > leave)
     after(if isInOrder then lastDue.max(leave + delay) else leave + delay)
 
-  /** When bytes come out that were sent before, and now leave once more: later ones are not in their way. */
+  /** When bytes that are sent again and leave now come out; bytes sent later do not hold them up. */
   def dueAgain(leave: Span, delay: Span): Option[Span] = after(leave + delay)
 
   private def after(earliest: Span): Option[Span] =

@@ -45,7 +45,7 @@ final class EmulatedLink(
     val loss: PacketLoss               = PacketLoss(latency, outageSeed, lossSeed)
     private val duplicateSeed          = SplitMix64.seedOf(lossSeed, 1)
 
-    /** What happens to the packets of a connection.
+    /** How a connection's packets are lost, sent again and duplicated.
       *
       * @param index of the direction and connection
       */

@@ -14,7 +14,8 @@ private[skein] class Places(most: Int, silence: Span):
   private val guests = ConcurrentHashMap[Long, Places.Guest]()
   private val taken  = AtomicInteger()
 
-  /** Whether one more guest is admitted; it has a place then, until it has [[left]]. */
+  /** Admits one more guest, if there is a place for it until it has [[left]]; returns whether it is admitted.
+    */
   def admit(): Boolean = synchronized:
     val free = taken.incrementAndGet() <= most || vacate()
     if !free then

@@ -16,7 +16,7 @@ import scala.util.{Try, Using}
 enum SchedulingPolicy(private val number: Int, priority: Int):
 
   /** Runs when no other thread of the user's session needs the processor, and yields it immediately. Any
-    * process may choose it, and may not leave it.
+    * process may choose this policy but cannot leave it.
     */
   case Idle extends SchedulingPolicy(5, 0)
 
