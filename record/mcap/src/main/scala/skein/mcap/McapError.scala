@@ -15,16 +15,16 @@ final case class Place(offset: Long, inChunk: Int = -1):
 /** Why a file, or its end, cannot be read: the position, what was expected and what was found. */
 enum McapError:
 
-  /** It does not begin with MCAP's magic bytes, or with those of an unknown version. */
+  /** The file does not begin with MCAP's magic bytes, or begins with those of an unknown version. */
   case NotMcap(came: Bytes)
 
-  /** It ends too early, like the file of a killed writer. Everything before has been read. */
+  /** The file ends too early, like that of a killed writer. Everything before its end has been read. */
   case CutOff(at: Place, expected: String, came: Long)
 
-  /** It states a size beyond the reader's limit. */
+  /** The file states a size beyond the reader's limit. */
   case TooLarge(at: Place, what: String, claimed: Long, limit: Long)
 
-  /** It does not have the structure of an MCAP file. */
+  /** The file does not have the structure of an MCAP file. */
   case Malformed(at: Place, expected: String, came: String)
 
   /** A CRC does not match: bytes have changed since they were written. */

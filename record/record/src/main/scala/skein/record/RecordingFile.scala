@@ -45,7 +45,8 @@ private[record] final class RecordingFile private (val path: Path, connection: D
       val _ = RecordingFile.attempt(RecordError.WriteFailed(path, _))(execute("ROLLBACK"))
     write(Seq(record))
 
-  /** Moves the write-ahead log into the file, waits until the disk has it, and closes it, even if that fails.
+  /** Moves the write-ahead log into the file, waits until the disk has stored it, and closes the file, even
+    * if the log could not be moved.
     */
   def close(): Either[RecordError, Written] =
     RecordingFile.attempt(RecordError.WriteFailed(path, _)):

@@ -1,8 +1,8 @@
 package skein.record
 
-/** Receives a flight's rows in addition to its recording: those committed there, in order, with their
-  * numbers. Called by one thread at a time, which is not a control thread. Failures are kept until requested:
-  * the recording continues without the sink.
+/** Receives a flight's rows in addition to its recording: the rows committed there, in order, with their
+  * numbers. Called by one thread at a time, which is not a control thread. A failure is kept as [[failure]],
+  * and the recording continues without the sink.
   */
 trait RowSink:
   /** Takes rows. May take some milliseconds, in which the recording's queue grows. */
