@@ -41,7 +41,7 @@ final case class Tls(keyStore: Path, trustStore: Path, password: String):
             Option(failed.getMessage).getOrElse("a file is damaged or cut off")
         )
 
-  /** Whether the node's own certificate names this host, since the other nodes verify it.
+  /** Checks that the node's own certificate is valid for this host, as the other nodes will.
     *
     * @return Left lists the names in it, or states what is wrong with the files
     */

@@ -5,12 +5,12 @@ import skein.policy.{LearnedPolicy, Role}
 import skein.signal.SplitMix64
 
 /** Continues learning from the transitions of one flight, with a replay learner. Rewards are those of
-  * [[SideTask]]: a small distance is the pursuer's, a great one the evader's. Equal transitions in equal
-  * lessons give equal weights.
+  * [[SideTask]]: the pursuer is rewarded for a small distance, the evader for a great one. Equal transitions
+  * in equal lessons give equal weights.
   *
-  * @param bounds greatest turns of its policies, as a [[LearnedPolicy]]'s last parameters
+  * @param bounds greatest turns of its policies: the last parameters of a [[LearnedPolicy]]
   * @param updates for each transition
-  * @param transitionsPerVersion after which the newest policy is used
+  * @param transitionsPerVersion number of transitions after which the newest policy is used
   */
 final class LearnerInFlight private (
     learner: OffPolicy,
