@@ -34,8 +34,8 @@ trait AutopilotInterface:
     */
   def sense(truth: SensorTruth): Vector[Array[Byte]]
 
-  /** The autopilot has not answered for too long: physics continues without it, until it has answered in time
-    * for a while, unless it shows that it is about to answer.
+  /** Is called when the autopilot has not answered for too long. Physics then continues without it, until it
+    * has answered in time for a while. If it shows that it is about to answer, physics waits on.
     */
   def giveUp(): Unit
 

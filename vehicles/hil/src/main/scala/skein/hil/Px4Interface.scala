@@ -77,7 +77,7 @@ final class Px4Interface(system: Int, sensors: Sensors, from: Span, before: Int 
   def isByClock: Boolean      = true
   def stop(until: Span): Span = due
 
-  /** An autopilot that catches up is waited for, a bounded number of times. */
+  /** Waits no longer for the autopilot; waits on for one that is catching up, a limited number of times. */
   def giveUp(): Unit =
     if catchesUp && postponed < MostPostponed then postponed += 1
     else
@@ -207,7 +207,7 @@ object Px4Interface:
   private val PeriodUsec    = Period.toNanos / 1000
   private val MostLateUsec  = MostLateTicks * PeriodUsec
 
-  /** How often an autopilot that catches up is waited for again. */
+  /** Limit of the times that an autopilot that is catching up is waited for again. */
   private val MostPostponed = 10
 
   private val StateId = 115

@@ -2,15 +2,15 @@ package skein.ros
 
 import skein.units.{Quaternion, Vector3}
 
-/** Between Skein's frames, those of AirSim and MAVLink (world: north, east, down; body: front, right, down),
-  * and those of ROS (REP 103; world: east, north, up; body: front, left, up).
+/** Converts between Skein's frames, which are those of AirSim and MAVLink (world: north, east, down; body:
+  * front, right, down), and those of ROS (REP 103; world: east, north, up; body: front, left, up).
   */
 object RosFrames:
 
-  /** A position or velocity in ENU, from NED; also the other way round. */
+  /** Converts a position or velocity from NED to ENU, or from ENU to NED. */
   def swapWorld(ned: Vector3): Vector3 = Vector3(ned.y, ned.x, -ned.z)
 
-  /** A vector in FLU, from FRD; also the other way round. */
+  /** Converts a vector from FRD to FLU, or from FLU to FRD. */
   def swapBody(frd: Vector3): Vector3 = Vector3(frd.x, -frd.y, -frd.z)
 
   /** The rotation from body FLU to ENU, from that of body FRD to NED; w is not negative. */

@@ -7,9 +7,7 @@ import skein.signal.Kinematics
 import skein.units.{Quaternion, Vector3}
 import skein.vehicle.GoTo
 
-/** A vehicle behind ROS topics in Skein's terms: what its odometry says, and which `cmd_vel` performs an
-  * action.
-  */
+/** Converts odometry to motion in Skein's terms, and actions to the `cmd_vel` that performs them. */
 object TwistCommand:
 
   /** Odometry as a motion in NED. Left states which numbers are no motion. */
