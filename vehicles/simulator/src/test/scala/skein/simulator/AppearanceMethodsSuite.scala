@@ -49,7 +49,7 @@ class AppearanceMethodsSuite extends munit.FunSuite:
     assertEquals(bench.now[Boolean]("simRunConsoleCommand", Str("stat fps")), true)
     assert(bench.error("simSetWeatherParameter", Int32(9), Float32(1)).contains("0 to 8"))
 
-  test("recording is on or off, as last set"):
+  test("recording is on or off, as a client last set it"):
     val bench = Bench()
     assertEquals(bench.now[Boolean]("isRecording"), false)
     bench.tell("startRecording")

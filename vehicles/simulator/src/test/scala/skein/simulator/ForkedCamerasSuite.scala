@@ -64,7 +64,7 @@ class ForkedCamerasSuite extends munit.FunSuite:
       )
     .value
 
-  test("a call refused for its number of arguments is repeated in the other form, once for a client"):
+  test("a call refused for its number of arguments is repeated in the other form, once for each client"):
     val (images, fov, counts) = asked(takes = 2)
     assertEquals(images, Vector(true, true, true))
     assertEqualsDouble(fov.get, 60, 1e-3)

@@ -59,7 +59,7 @@ class MoveSuite extends munit.FunSuite:
     assert(took > 2.9 && took < 3.9, s"took $took s, AirSim's 3.4 s")
     assert(math.abs(bench.position().z + 1.54) < 0.15, s"z = ${bench.position().z}, AirSim's -1.54")
 
-  test("landing from 5.4 m takes AirSim's 26 s, ends on the ground and is noticed as a collision"):
+  test("landing from 5.4 m takes AirSim's 26 s, ends on the ground and counts as a collision"):
     val bench = Bench().hovering(-5.4)
     val move  = bench.call("land", Float32(60), Str(""))
     bench.pass(60)
