@@ -86,7 +86,7 @@ class DigestSuite extends munit.FunSuite, TemporaryFolders:
       Files.delete(file)
       Files.delete(folder)
 
-  test("another value, another order or a missing record changes the digest"):
+  test("a different value, another order or a missing record changes the digest"):
     val all    = Samples.oneOfEach
     val whole  = digest(all*)
     val others = Seq(

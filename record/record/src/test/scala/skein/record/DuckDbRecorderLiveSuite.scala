@@ -77,9 +77,7 @@ class DuckDbRecorderLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolder
       assertEquals(mode.getString(1), "NONE")
     assert(Await.result(recorder.close(), 10.seconds).isRight)
 
-  folder.test(
-    "a deleted file fails the recording immediately, which would otherwise end without a file"
-  ): folder =>
+  folder.test("a deleted file fails the recording immediately, not only at its end"): folder =>
     val file     = folder.resolve("flight.duckdb")
     val recorder = open(file, capacity = 1024)
     recorder.offer(Samples.reading(1))
@@ -102,7 +100,7 @@ class DuckDbRecorderLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolder
     Files.move(folder.resolve("flight.duckdb"), file)
     assert(clue(RecordingReader.read(file)).left.exists(_.message.contains("expected a path without ';'")))
 
-  folder.test("an actor system that ends before the recording is closed leaves it whole"): folder =>
+  folder.test("a recording is complete even if its actor system ends before it is closed"): folder =>
     val file     = folder.resolve("flight.duckdb")
     val early    = ActorSystem("early")
     val opened   = Await.result(DuckDbRecorder.open(file, Samples.heading)(using early), 30.seconds)

@@ -41,8 +41,7 @@ class DecideSuite extends munit.FunSuite:
     assertEquals(decided(OnOverrun.Hold(), 0, 39), Seq(0L -> Decided(0), 139L -> Decided(11)))
 
   test(
-    "a late policy is not waited for, nor called again until it has answered; its late answer is " +
-      "discarded"
+    "a late policy is neither waited for nor called again until it has answered, and its answer is discarded"
   ):
     assertEquals(
       decided(OnOverrun.Hold(), 10, 250, 10, 10, 10),

@@ -50,7 +50,7 @@ class PredictSuite extends munit.FunSuite:
         .runWith(Sink.seq)
     (run.value, verified)
 
-  test("every vehicle is predicted over the round trip of the link, once all were read"):
+  test("every vehicle is predicted over the link's round trip, once readings of all have arrived"):
     val (estimates, _) = predicted()
     assertEquals(estimates.size, 10)
     for vehicles <- estimates do assertEquals(vehicles.map(_.age), Vector(oneWay * 2, oneWay * 2))

@@ -124,7 +124,7 @@ class EscapesSimulation extends munit.FunSuite, Unhurried:
     assertEquals(run.value, 4_500_001_500_000L)
 
   test(
-    "a future that nothing can complete is a deadlock, at the time of the last event, with the actors alive"
+    "a future that nothing can complete is a deadlock, with the time of the last event and the live actors"
   ):
     val error = stopped(): system =>
       system.actorOf(Props(Silent()), "silent"): Unit
