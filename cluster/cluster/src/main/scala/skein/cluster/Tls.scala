@@ -60,8 +60,8 @@ final case class Tls(keyStore: Path, trustStore: Path, password: String):
           s"${keyStore.getParent} shows ${own.flatMap(ShownHosts.of).mkString(", ")}"
       )
 
-  /** Why there is no trusted connection to that endpoint, if certificates are the reason. Takes at most two
-    * seconds for each direction.
+  /** The reason why no trusted connection to that endpoint can be made; None if certificates are not the
+    * reason. Takes at most two seconds for each direction.
     */
   private[cluster] def refusal(at: Endpoint): Option[String] =
     context.toOption.flatMap: made =>

@@ -59,7 +59,7 @@ final class DenseKernel {
     }
   }
 
-  /** Two rows of four vectors each: what the registers hold. */
+  /** Two rows of four vectors each, which fill the registers. */
   private static void two(
       int inner, int columns, float[] a, int aAt, int aRow, int aStep, float[] b, int bAt, float[] c, int cAt) {
     int second = cAt + columns;

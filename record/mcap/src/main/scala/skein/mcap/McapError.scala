@@ -12,7 +12,9 @@ final case class Place(offset: Long, inChunk: Int = -1):
   override def toString: String =
     if inChunk < 0 then s"byte $offset" else s"byte $inChunk of the records of the chunk at byte $offset"
 
-/** Why a file, or its end, cannot be read: the position, what was expected and what was found. */
+/** The reasons why a file, or its end, cannot be read, with the position, what was expected and what was
+  * found.
+  */
 enum McapError:
 
   /** The file does not begin with MCAP's magic bytes, or begins with those of an unknown version. */

@@ -92,7 +92,7 @@ object FlightTopics:
         binary(FoxgloveViews.imageOf(sensor), form.imageSchema)
       )
 
-  /** When the controller knew the record's fact; None if the record does not state it. */
+  /** The time at which the controller knew the record's fact; None if the record does not state it. */
   def knownAt(record: Record): Option[Instant] = record match
     case reading: ReadingRow      => Some(reading.state.receivedAt)
     case measured: MeasurementRow => Some(measured.receivedAt)

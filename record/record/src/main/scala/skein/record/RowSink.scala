@@ -13,5 +13,5 @@ trait RowSink:
   /** Deletes the output, since there was no flight; after [[close]]. */
   def discard(): Unit
 
-  /** Why the sink failed, in a line for a person. */
+  /** The reason why the sink failed, in one line; None if it has not failed. */
   def failure: Option[String]

@@ -13,7 +13,7 @@ package skein.view
 final case class Access(port: Int, origins: Set[String] = Set.empty):
   import Access.*
 
-  /** Why a request is refused, if it is.
+  /** The reason why a request is refused; None if it is accepted.
     *
     * @param headers names in lower case, and values as received
     */

@@ -1,6 +1,6 @@
 package skein.flow
 
-/** What to do when a policy has not decided in time. */
+/** The fallback when a policy has not decided in time. */
 enum OnOverrun[M, -O, +D]:
   /** Send no command: the vehicle continues its last command. */
   case Hold[M]() extends OnOverrun[M, Any, Nothing]
@@ -20,7 +20,7 @@ enum DeadlineResult[+D]:
     */
   case Missed(reason: Overrun, instead: Option[D])
 
-/** Why a policy made no decision. */
+/** The reasons why a policy made no decision. */
 enum Overrun:
   case Late
 

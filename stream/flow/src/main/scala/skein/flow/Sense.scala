@@ -8,7 +8,7 @@ import skein.units.Span
 /** Sends requests periodically and emits the answers in the order of the requests. */
 object Sense:
 
-  /** What to do with an answer that arrives before the answer to an older request. */
+  /** The treatment of an answer that arrives before the answer to an older request. */
   enum Early:
     /** Emit it immediately. The older request's answer is skipped as overtaken when it arrives, unless it is
       * valid at a later time.

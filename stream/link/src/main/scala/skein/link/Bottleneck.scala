@@ -21,7 +21,7 @@ private[link] final class Bottleneck(bandwidth: Bandwidth):
     */
   val pieceBytes: Int = (bandwidth.queueBytes / 8).max(FrameBytes)
 
-  /** When the line will have transmitted everything handed over so far. */
+  /** The time at which the line will have transmitted everything handed over so far. */
   def free(now: Span): Span = synchronized(freeAt.max(now))
 
   /** Takes a piece.

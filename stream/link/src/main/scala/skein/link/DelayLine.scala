@@ -168,7 +168,7 @@ private[link] final class DelayLine(
             ending = None
             end = dueWithLine().map(End(failure, _))
 
-      /** When bytes that enter now would come out if the line took no time. */
+      /** The time at which bytes that enter now would come out if the line took no time. */
       private def dueWithLine(): Option[Span] =
         val now = sinceStart()
         delivery.due(bottleneck.fold(now)(_.free(now)), delivery.delay(now))

@@ -4,9 +4,9 @@ import org.apache.pekko.util.ByteString
 import skein.signal.{PacketLoss, Retransmission, SplitMix64}
 import skein.units.Span
 
-/** How the packets of one direction of one connection are lost, sent again and duplicated. */
+/** The losses, repetitions and duplicates of the packets in one direction of one connection. */
 private[link] enum Packets:
-  /** None is lost, so a stream of bytes need not be cut into packets. */
+  /** No packet is lost, so a stream of bytes need not be cut into packets. */
   case Whole
 
   /** Each piece is a datagram, which may be lost, and may arrive twice. */

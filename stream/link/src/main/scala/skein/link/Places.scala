@@ -44,11 +44,11 @@ private[skein] class Places(most: Int, silence: Span):
 private[skein] object Places:
   /** A holder of a place; called from any thread. */
   trait Guest:
-    /** Whether it has sent a message of the port's protocol. */
+    /** Whether the guest has sent a message of the port's protocol. */
     def hasSpoken: Boolean
 
-    /** How long it has neither sent a request nor waited for an answer. */
+    /** Time since the guest last sent a request or waited for an answer. */
     def silentFor: Span
 
-    /** Closes it: another guest gets its place. */
+    /** Closes the guest's connection: another guest gets its place. */
     def leave(): Unit

@@ -5,13 +5,13 @@ import skein.rpc.RpcError
 import skein.units.Decimals.brief
 import skein.units.Span
 
-/** Why a simulator's vehicle is not available: an expected failure, returned as a value. */
+/** The reasons why a simulator's vehicle is not available: an expected failure, returned as a value. */
 enum AirSimError:
 
   /** The simulator did not answer, or refused the call. */
   case Call(error: RpcError)
 
-  /** It has no vehicle of this name; `existing` lists those it has. */
+  /** The simulator has no vehicle of this name; `existing` lists its vehicles. */
   case UnknownVehicle(name: String, existing: Seq[String])
 
   /** The settings that it sent cannot be read. */

@@ -3,7 +3,7 @@ package skein.airsim
 import skein.rpc.{Bytes, MessageReader}
 import skein.units.*
 
-/** What an image shows, by AirSim's numbers. Cosys-AirSim has further kinds. */
+/** The kinds of images, with AirSim's numbers. Cosys-AirSim has further kinds. */
 enum ImageKind(val number: Int):
   case Scene               extends ImageKind(0)
   case DepthPlanar         extends ImageKind(1)
@@ -16,7 +16,7 @@ enum ImageKind(val number: Int):
   case OpticalFlow         extends ImageKind(8)
   case OpticalFlowVis      extends ImageKind(9)
 
-/** How an image's pixels are encoded on the wire. */
+/** The encodings of an image's pixels on the wire. */
 enum Encoding:
   case Raw
 

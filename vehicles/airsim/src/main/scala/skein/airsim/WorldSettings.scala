@@ -24,7 +24,7 @@ final case class VehicleSettings(
 ):
   def isCar: Boolean = vehicleType.equalsIgnoreCase(WorldSettings.PhysXCar)
 
-  /** Whether it is not a vehicle but a fixed camera. */
+  /** Whether this is a fixed camera and not a vehicle. */
   def isCamera: Boolean = vehicleType.equalsIgnoreCase(WorldSettings.ComputerVision)
 
 /** The part of an AirSim `settings.json` that is read: vehicles with their sensors, origin, wind and clock

@@ -48,7 +48,7 @@ private[rpc] final class ChannelState(
   private var sequence    = 0L
   private var rotation    = 0
 
-  /** When [[expire]] has something to do next. */
+  /** The time at which [[expire]] next has something to do. */
   def nextDeadline: Option[Instant] = if deadlines.isEmpty then None else Some(deadlines.first.deadline)
 
   def submit(call: Call, now: Instant): Unit =

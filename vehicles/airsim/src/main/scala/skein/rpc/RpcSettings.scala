@@ -16,20 +16,21 @@ enum Channel:
   /** Large messages that may wait: images, point clouds. */
   case Bulk
 
-/** What happens to a call that finds no free place in the window. */
+/** The treatment of a call that finds no free place in the window. */
 enum WhenFull:
-  /** It fails immediately with [[RpcError.Overloaded]]. */
+  /** The call fails immediately with [[RpcError.Overloaded]]. */
   case Refuse
 
-  /** It waits in the channel's bounded queue; when that is full too, it fails with [[RpcError.Overloaded]].
+  /** The call waits in the channel's bounded queue; when that is full too, it fails with
+    * [[RpcError.Overloaded]].
     */
   case Wait
 
-/** How one call is made.
+/** Options of one call.
   *
   * @param timeout from the call to its answer, waiting included; then [[RpcError.Timeout]]
-  * @param idempotent may run twice without harm: sent again, a bounded number of times, when its connection
-  *   is lost
+  * @param idempotent whether the call may run twice without harm: then it is sent again, a bounded number of
+  *   times, when its connection is lost
   * @param key calls with equal keys use one connection and are sent in the order of the calls
   * @param withdrawn when it completes, the answer is no longer awaited: [[RpcError.Timeout]] before the
   *   timeout is over

@@ -188,12 +188,12 @@ private[rpc] final class ServerConnection(
 
       private def underWay: Boolean = inFlight > 0 || sending > 0 || writer.length > 0
 
-      /** Whether it may take a request: its memory is granted, or nothing is under way whose end would free
-        * some.
+      /** Whether the connection may take a request: its memory is granted, or nothing is under way whose end
+        * would free some.
         */
       private def hasRoom: Boolean = isGranted || !underWay
 
-      /** Whether it may read the rest of the incomplete message. */
+      /** Whether the connection may read the rest of the incomplete message. */
       private def mayRead: Boolean = isGranted || framer.heldBytes <= limits.heldBytesPerConnection
 
       private def tooMuch(): Unit = refuse(ServerLimit.Held, s"$held bytes of it are held, and $noMore")

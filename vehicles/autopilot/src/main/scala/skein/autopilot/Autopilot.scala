@@ -378,7 +378,7 @@ object Autopilot:
     def whole(index: Int): Int     = if numbers(index).isFinite then numbers(index).toInt else 0
     def isOne(index: Int): Boolean = numbers(index) == 1
 
-  /** Why a command is refused.
+  /** The refusal of a command, with its reason.
     *
     * @param more further lines of the reason
     */

@@ -73,7 +73,7 @@ final class BetaflightInterface(sensors: Sensors, from: Span, speed: Double = 1)
     put(packet, sensors.pressurePa(truth))
     Vector(packet.array)
 
-  /** When the next state after `up` is due, including states that convey the clock rate. */
+  /** The time after `up` at which the next state is due, including states that convey the clock rate. */
   private def nextAfter(up: Span): Span =
     for first <- rateFrom do
       rateFrom = None

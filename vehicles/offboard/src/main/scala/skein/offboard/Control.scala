@@ -81,8 +81,8 @@ final case class Control(
         Option.when(estimate.newest.isEmpty)("ODOMETRY, or LOCAL_POSITION_NED and ATTITUDE_QUATERNION")
       ).flatten
 
-  /** Why the vehicle follows no setpoints: it is disarmed, or in a mode that somebody else chose. None if it
-    * follows them.
+  /** The reason why the vehicle follows no setpoints: it is disarmed, or in a mode that somebody else chose.
+    * None if it follows them.
     */
   def taken: Option[String] = firmware.toOption.flatMap: own =>
     if !isArmed then Some(s"$name is disarmed")

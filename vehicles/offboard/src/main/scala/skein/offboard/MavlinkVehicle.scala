@@ -41,7 +41,7 @@ final class MavlinkVehicle(link: MavlinkLink, number: Int)(using system: ActorSy
   def isArmed: Boolean    = link.control(number).isArmed
   def isOnGround: Boolean = link.control(number).isOnGround
 
-  /** Why the vehicle follows no setpoints; None if it follows them. */
+  /** The reason why the vehicle follows no setpoints; None if it follows them. */
   def taken: Option[String] = link.control(number).taken
 
   private def done(what: (Control, Long, Instant) => Control.Step): Future[Either[VehicleError, Boolean]] =

@@ -26,8 +26,8 @@ trait RosGraph extends AutoCloseable:
   /** Messages that were published and did not arrive, as far as middleware numbers them. */
   def lost: Long
 
-  /** What went wrong so far, each kind once: the first malformed message of a topic, and topics that others
-    * use with another type, so that nothing is received from them. At most 16 lines.
+  /** The problems so far, each kind once: the first malformed message of a topic, and topics that others use
+    * with another type, so that nothing is received from them. At most 16 lines.
     */
   def notes: Vector[String]
 

@@ -270,8 +270,8 @@ object RosNode:
   private val LookEvery  = Span.ofMillis(500)
   private val JoinMillis = 2_000L
 
-  /** Why no node can be opened here: ROS 2 is not installed, or not in the environment. None if one can be
-    * opened.
+  /** The reason why no node can be opened here: ROS 2 is not installed, or not in the environment. None if
+    * one can be opened.
     */
   def missing: Option[String] = RosLibrary.here.left.toOption
 

@@ -30,7 +30,7 @@ final class Bodies(shapes: IndexedSeq[Bodies.Shaped], places: Array[Double]) ext
     )
 
 object Bodies:
-  /** What all bodies of one vehicle share: its name, and its parts in its own frame. */
+  /** The common part of all bodies of one vehicle: its name, and its parts in its own frame. */
   final case class Shaped(name: String, parts: Vector[SceneObject.Part])
 
   val Numbers = 7

@@ -15,7 +15,8 @@ final private[skein] class Solid private (
     val reachM: Double
 ):
 
-  /** Where a ray enters the body: in lengths of the direction, 0 from inside, infinite if not within `limit`.
+  /** The distance at which a ray enters the body, in lengths of the direction: 0 from inside, infinite if not
+    * within `limit`.
     */
   def hit(ox: Double, oy: Double, oz: Double, dx: Double, dy: Double, dz: Double, limit: Double): Double =
     var enter = 0.0

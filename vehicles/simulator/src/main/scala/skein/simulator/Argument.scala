@@ -7,17 +7,18 @@ import skein.airsim.wire.*
 import skein.units.Instant
 import upack.*
 
-/** How AirSim's server reads an argument of this type: the conversions of msgpack-c, which its rpclib uses.
+/** Reads an argument of this type as AirSim's server does, with the conversions of msgpack-c, which its
+  * rpclib uses.
   *
-  *   - A float may be sent as an integer, never as a boolean, a string or nil; a float is no integer, and an
-  *     integer out of its type's range is none.
-  *   - A string may be sent as str or as bin, which old clients send.
-  *   - A map's missing keys keep their defaults and unknown keys are skipped, at any depth; a map with a key
-  *     that is no string, or another kind of value in its place, is refused.
-  *   - A refusal is reported as `std::bad_cast`, without its place.
+  * - A float may be sent as an integer, never as a boolean, a string or nil; a float is not accepted as an
+  *   integer, nor is an integer out of its type's range.
+  * - A string may be sent as str or as bin, which old clients send.
+  * - A map's missing keys keep their defaults and unknown keys are skipped, at any depth; a map with a key
+  *   that is no string, or another kind of value in its place, is refused.
+  * - A refusal is reported as `std::bad_cast`, without its place.
   *
-  * Unlike AirSim it refuses numbers that are not finite, or too large for a 32-bit float argument, or vectors
-  * and positions beyond a limit: they would corrupt physics for good.
+  * Unlike AirSim's server, this refuses numbers that are not finite, or too large for a 32-bit float
+  * argument, or vectors and positions beyond a limit: they would corrupt physics for good.
   */
 private[simulator] trait Argument[A]:
   def read(value: Msg): A
@@ -67,7 +68,7 @@ private[simulator] object Argument:
   given Argument[Quaternionr] = record(Quaternionr(1, 0, 0, 0))
   given Argument[Pose]        = record(Pose(Vector3r.Zero, Quaternionr(1, 0, 0, 0)))
 
-  /** None for a value of the right type whose numbers are not finite. */
+  /** Reads None from a value of the right type whose numbers are not finite. */
   given [A](using argument: Argument[A]): Argument[Option[A]] = value =>
     try Some(argument.read(value))
     catch case _: NotFinite => None
@@ -78,7 +79,7 @@ private[simulator] object Argument:
   given Argument[GeoPoint]    = checked(record(GeoPoint(0, 0, 0))): point =>
     misplaced(point.latitude, point.longitude, point.altitude)
 
-  /** Why this is no geographic position; None if it is one. */
+  /** The reason why this is no geographic position; None if it is one. */
   def misplaced(latitudeDeg: Double, longitudeDeg: Double, altitudeM: Float): Option[String] =
     Option.unless(
       math.abs(latitudeDeg) <= 90 && math.abs(longitudeDeg) <= 360 && math.abs(altitudeM) <= 1e6f

@@ -12,7 +12,7 @@ private[simulator] trait Lockstep:
   /** Is called when physics has reached such a stop. */
   def reached(): Unit
 
-  /** The time to which physics must advance now, whatever the clock says; None: follow the clock. */
+  /** The time to which physics must advance now, whatever the clock shows; None: follow the clock. */
   def goal: Option[Instant]
 
   /** Receives the current time, by the clock of the simulation's caller. */

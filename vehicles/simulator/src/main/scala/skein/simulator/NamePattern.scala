@@ -65,7 +65,7 @@ private[simulator] object NamePattern:
   private def wrong(why: String, text: String): Nothing =
     throw BadArgument(s"no regular expression: $why in '$text'")
 
-  /** How many groups are open before each letter. */
+  /** Number of groups that are open before each letter. */
   private def depths(groups: String): IndexedSeq[Int] = groups.scanLeft(0): (depth, letter) =>
     if letter == '(' then depth + 1 else if letter == ')' then depth - 1 else depth
 

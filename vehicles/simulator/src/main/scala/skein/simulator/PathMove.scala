@@ -5,9 +5,9 @@ import skein.units.*
 import skein.units.Decimals.fixed
 import skein.vehicle.{PathFollowing, Setpoint}
 
-/** How to fly along a path.
+/** Options of a flight along a path.
   *
-  * @param lookaheadM how far ahead on the path to aim; negative: in proportion to the speed
+  * @param lookaheadM distance ahead on the path at which to aim; negative: in proportion to the speed
   * @param adaptive fraction of the distance from the path that is added to the lookahead
   */
 final private[simulator] case class Travel(
@@ -83,7 +83,7 @@ final private[simulator] class PathMove private (
       Move.facing(travel.drivetrain, travel.yaw, way)
     )
 
-  /** The position `distanceM` ahead on the path. Cost: nearby segments are walked, farther ones searched, so
+  /** The position `distanceM` ahead on the path. Nearby segments are walked and farther ones searched, so
     * that thousands of coinciding points cost no more.
     */
   private def ahead(from: Place, distanceM: Double): Place =

@@ -58,7 +58,7 @@ private[skein] object PlannedMove:
   */
 private[skein] final case class PlanCall(sequence: Long, moves: Vector[PlannedMove], vehicle: String):
 
-  /** Why these moves do not form a plan; None if they do. */
+  /** The reason why these moves do not form a plan; None if they do. */
   private[simulator] def mistake: Option[String] =
     CommandPlan.mistake(moves.map(_.at)).orElse(moves.flatMap(wrong).headOption)
 
@@ -94,7 +94,7 @@ private[skein] object PlanCall:
   /** The error's text for a plan that is refused. */
   def refusal(reason: String): String = Rpclib.threw(Function, Arity, reason)
 
-  /** What AirSim's server says in an error's text; the text itself if it has another form. */
+  /** The reason that AirSim's server states in an error's text; the whole text if it has another form. */
   def reasonIn(error: String): String = Rpclib.information(error).getOrElse(error)
 
   private[simulator] def read[A](param: Msg)(using argument: Argument[A]): Option[A] =

@@ -5,8 +5,8 @@ import skein.airsim.wire.{Pose, Quaternionr, Vector3r}
 import skein.scene.{Bodies, Moment, Placement, Scene, SceneObject, Shape}
 import skein.units.Vector3
 
-/** The scene's objects, vehicles and `Ground` by name, and what clients have set for them: scales and
-  * segmentation ids.
+/** The scene's objects, vehicles and `Ground` by name, with the scales and segmentation ids that clients have
+  * set.
   */
 final private[simulator] class SceneObjects(world: World):
   import SceneObjects.*

@@ -34,7 +34,7 @@ final private[simulator] class ServerMethod(
 ):
   def arity: Int = arguments.size
 
-  /** Whether these parameters can be read as its arguments. */
+  /** Whether these parameters can be read as the function's arguments. */
   def takes(params: IndexedSeq[Msg]): Boolean =
     arity == params.size &&
       (try

@@ -74,7 +74,8 @@ private[simulator] object Shots:
       fovDeg(seen)
     )
 
-  /** The camera's field of view, clamped to what an image can have: films and lenses can be set to anything.
+  /** The camera's field of view, clamped to the range of an image, because films and lenses can be set to
+    * anything.
     */
   private def fovDeg(camera: Camera): Double = math.max(0.01, math.min(179.9, camera.fovDeg.toDouble))
 

@@ -16,8 +16,8 @@ final case class SimulatorCall(token: Long, method: String, params: IndexedSeq[M
 /** The answer to a call: its result, a deferred result, or the text of its error. */
 final case class SimulatorAnswer(token: Long, result: Either[String, Msg | Encoded | DeferredResult])
 
-/** A result that takes long to compute, such as an image: of the instant of its request, whenever and on
-  * whatever thread it is computed.
+/** A result that takes long to compute, such as an image. It shows the instant of its request, whenever and
+  * on whatever thread it is computed.
   */
 final class DeferredResult(work: () => Msg | Encoded):
   def result(): Msg | Encoded = work()
@@ -304,7 +304,7 @@ object Simulation:
   /** Steps of one vehicle that one call may compute: some 30 ms. */
   private val LongestRunSteps = 200_000
 
-  /** Checking this many of a scene's objects near a vehicle costs as much as its step. */
+  /** Number of a scene's objects near a vehicle whose check costs as much as the vehicle's step. */
   private val ObjectsOfAStep = 16
 
   /** Steps computed in one go of a stepped advance: some 4 ms, between which other calls are answered. */

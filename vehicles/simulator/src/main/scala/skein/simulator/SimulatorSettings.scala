@@ -10,7 +10,7 @@ import skein.scene.Scene
 import skein.units.*
 import skein.vehicle.RotorcraftKind
 
-/** How the simulator handles moves that arrive faster than they end; see [[Workers]]. */
+/** The treatment of moves that arrive faster than they end; see [[Workers]]. */
 enum Overload:
   /** As AirSim does, with this number of workers. */
   case Workers(count: Int)

@@ -15,5 +15,5 @@ private[simulator] object VehicleLimits:
   val Types: Vector[String] =
     Vector(WorldSettings.SimpleFlight, WorldSettings.PhysXCar, WorldSettings.ComputerVision)
 
-  /** Whether its type is supported, ignoring case. */
+  /** Whether the vehicle's type is supported, ignoring case. */
   def flies(vehicle: VehicleSettings): Boolean = Types.exists(_.equalsIgnoreCase(vehicle.vehicleType))

@@ -154,7 +154,7 @@ final class World(
   /** Whether [[takeEnded]] would return anything. */
   def hasEnded: Boolean = ended.nonEmpty
 
-  /** When, at the earliest, the next move can end. */
+  /** The earliest time at which the next move can end. */
   def nextEndAt: Option[Instant] =
     var next = Option.empty[Instant]
     for move <- moves; running <- move do
