@@ -10,7 +10,7 @@ import scala.collection.mutable
 import scala.util.Using
 
 /** The accepted answers on disk: the first one of each block. A restarted coordinator reads the ledger and
-  * requests no answered block again. If the process dies, a record is either complete or cut off at the next
+  * requests no answered block again. If the process dies, a record is either complete, or removed at the next
   * start.
   *
   * A damaged record is skipped, and its block computed again.

@@ -50,7 +50,8 @@ final class LearnerInFlight private (
 
 object LearnerInFlight:
 
-  /** The result of one decision, as a task's step. A flight is one episode, which its end does not terminate.
+  /** The result of one decision, as a task's step. A flight is one episode; its end counts as truncation, not
+    * as termination.
     */
   private final class OneStep(val reached: Array[Float], reward: Float) extends Task:
     def count: Int                               = 1

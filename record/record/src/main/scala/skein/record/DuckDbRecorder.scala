@@ -75,7 +75,7 @@ object DuckDbRecorder:
 
   val batchSize = 4096
 
-  /** Whether a recording can be created at this path, judged by its name; Left states why not. */
+  /** Checks by its name whether a recording can be created at this path; Left states why it cannot. */
   def free(file: Path): Either[RecordError, Unit] = RecordingFile.free(file)
 
   /** Creates the file and begins to record. Fails if the file exists, or cannot be created.

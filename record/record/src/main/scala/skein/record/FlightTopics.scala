@@ -58,7 +58,7 @@ final class FlightTopics(
   private val views = FoxgloveViews(vehicles, offset, scene, form)
   private var known = from
 
-  /** The messages before the first row. */
+  /** The messages that precede those of the first row. */
   def opening: Vector[FlightMessage] = views.opening(from).map(message(_, "", from, from))
 
   /** @param number index of the row in the recording */

@@ -91,9 +91,7 @@ object McapRecording:
     }
     (estimated ++ assumed).nextOption().getOrElse(Span.Zero)
 
-  /** Writes a flight to a file: its topics and the messages before the first row immediately; then row by
-    * row.
-    */
+  /** Writes a flight to a file: immediately its topics and opening messages, then row by row. */
   private[record] final class Rows(
       mcap: McapWriter,
       vehicles: Vector[String],

@@ -62,5 +62,5 @@ final class MemoryRecorder(heading: RecordingHeader, capacity: Int = MemoryRecor
 
 object MemoryRecorder:
 
-  /** About 1 GB of records; 20 vehicles at 10 Hz for an hour. */
+  /** About 1 GB of records, which 20 vehicles at 10 Hz produce in an hour. */
   val defaultCapacity = 4_000_000

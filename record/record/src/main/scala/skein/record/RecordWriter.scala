@@ -11,7 +11,7 @@ import scala.util.control.NonFatal
   * begins at least `interval` after that one began. Offering a record never waits, not even for a lock that
   * this thread holds while other threads run.
   *
-  * @param capacity records that may wait
+  * @param capacity limit of the records that wait
   * @param batchSize limit of a batch's records
   * @param write a batch; returns false to end
   */

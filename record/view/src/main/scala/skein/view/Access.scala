@@ -38,5 +38,5 @@ object Access:
   private val Own    = Set("127.0.0.1", "localhost", "[::1]")
   private val Scheme = "http://"
 
-  /** The port that browsers leave out. */
+  /** HTTP's default port, which browsers leave out. */
   private val DefaultPort = 80

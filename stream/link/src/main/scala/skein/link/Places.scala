@@ -14,7 +14,8 @@ private[skein] class Places(most: Int, silence: Span):
   private val guests = ConcurrentHashMap[Long, Places.Guest]()
   private val taken  = AtomicInteger()
 
-  /** Admits one more guest, if there is a place for it until it has [[left]]; returns whether it is admitted.
+  /** Admits one more guest if there is a place, which the guest keeps until it has [[left]]; returns whether
+    * it is admitted.
     */
   def admit(): Boolean = synchronized:
     val free = taken.incrementAndGet() <= most || vacate()

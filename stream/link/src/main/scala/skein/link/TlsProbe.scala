@@ -14,7 +14,7 @@ private[skein] object TlsProbe:
   private val Handshake = 22
   private val Version   = 3
 
-  /** Time limit of connecting, and again of the answer: a person waits for the diagnosis. */
+  /** Time limit of connecting, and of waiting for the answer: short, since a person waits for the result. */
   val Within: Span = Span.ofSeconds(2)
 
   /** Sends a TLS ClientHello, and returns whether the answer is TLS, whatever its content. Blocks for

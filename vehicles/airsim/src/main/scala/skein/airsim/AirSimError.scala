@@ -14,7 +14,7 @@ enum AirSimError:
   /** The simulator has no vehicle of this name; `existing` lists its vehicles. */
   case UnknownVehicle(name: String, existing: Seq[String])
 
-  /** The settings that it sent cannot be read. */
+  /** The settings that the simulator sent cannot be read. */
   case Settings(error: SettingsError)
 
   def message: String = this match

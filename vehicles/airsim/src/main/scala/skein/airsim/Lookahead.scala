@@ -5,7 +5,8 @@ import upack.{Float32, Msg}
 
 /** The distance on its path at which a vehicle aims. */
 enum Lookahead:
-  /** In proportion to its speed, and farther while the vehicle is off the path. AirSim's default. */
+  /** A distance in proportion to the speed, and farther while the vehicle is off the path: AirSim's default.
+    */
   case Automatic
 
   case Fixed(distance: Metres)

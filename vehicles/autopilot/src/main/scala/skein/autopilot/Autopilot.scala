@@ -231,7 +231,7 @@ final case class Autopilot(
           )
         ))
 
-  /** Changes that the autopilot makes without a command. */
+  /** Applies the changes that the autopilot makes without a command. */
   private def onItsOwn(motion: VehicleMotion): (Autopilot, Vector[Message]) =
     val now = motion.sinceBoot
     if !isArmed then (this, Vector.empty)

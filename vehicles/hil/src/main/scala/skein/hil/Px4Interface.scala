@@ -212,7 +212,7 @@ object Px4Interface:
 
   private val StateId = 115
 
-  /** Magnetometer and barometer at 50 Hz, as in AirSim. */
+  /** Number of sensor messages for each reading of magnetometer and barometer: 50 Hz, as in AirSim. */
   private val TicksPerSlowReading = 5
 
   /** Interval of satellite fixes, as in PX4's simulated receiver. */

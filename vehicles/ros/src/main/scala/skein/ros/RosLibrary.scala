@@ -166,7 +166,7 @@ private[ros] object RosLibrary:
 
   private val RclName = System.mapLibraryName("rcl")
 
-  /** Folders that may hold ROS 2's libraries, those of overlays first, if one of them has `librcl`. */
+  /** Folders with ROS 2's libraries, overlays first. Left states why there is no `librcl` in any of them. */
   private[ros] def folders(environment: Map[String, String]): Either[String, Vector[Path]] =
     def listed(variable: String) =
       environment.get(

@@ -192,7 +192,7 @@ final class RosNode private (
     for reader <- all; other <- types.getOrElse(reader.topic, Vector.empty) if other != reader.kind do
       note(s"${reader.topic}: expected ${reader.kind}, a node uses $other, which is not received")
 
-  /** An `rcutils_string_array_t`: how many texts, and where they are. */
+  /** Reads an `rcutils_string_array_t`, which is a number of texts and their address. */
   private def texts(array: MemorySegment): Vector[String] =
     val count = array.get(JAVA_LONG, 0)
     if count == 0 then Vector.empty

@@ -27,7 +27,7 @@ private[simulator] trait Argument[A]:
 private[simulator] sealed class BadArgument(text: String)
     extends RuntimeException(text, null, /* enableSuppression = */ false, /* writableStackTrace = */ false)
 
-/** A number that is not finite, or not as a 32-bit float. */
+/** A number that is not finite, or becomes infinite as a 32-bit float. */
 final private[simulator] class NotFinite extends BadArgument("parameters must be finite numbers")
 
 private[simulator] object Argument:
@@ -42,7 +42,7 @@ private[simulator] object Argument:
 
   given Argument[Unsigned32] = integer(_, 0, 0xffffffffL)
 
-  /** A time stamp, nanoseconds: unsigned, up to the greatest signed 64-bit number. */
+  /** Reads a time stamp in nanoseconds: unsigned, up to the greatest signed 64-bit number. */
   given Argument[Instant] = value => Instant.ofNanos(integer(value, 0, Long.MaxValue))
 
   given Argument[Double] = value => finite(number(value))

@@ -111,7 +111,7 @@ final private[simulator] class PathMove private (
 private[simulator] object PathMove:
   private val MostWalked = 64
 
-  /** A position on the path: the segment that starts at that point, and the distance along it. */
+  /** A position on the path: the segment that starts at path point `segment`, and the distance along it. */
   private case class Place(segment: Int, offsetM: Double, point: Vector3)
 
   def order(path: Seq[Vector3], speedMps: Float, timeoutS: Float, travel: Travel): Move.Order = vehicle =>

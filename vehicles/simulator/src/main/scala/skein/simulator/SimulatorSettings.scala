@@ -12,13 +12,14 @@ import skein.vehicle.RotorcraftKind
 
 /** The treatment of moves that arrive faster than they end; see [[Workers]]. */
 enum Overload:
-  /** As AirSim does, with this number of workers. */
+  /** Moves wait as in AirSim, with this number of workers. */
   case Workers(count: Int)
 
-  /** As AirSim does, with its number of workers: one for each vehicle and four more. */
+  /** Moves wait as in AirSim, with its number of workers: one for each vehicle and four more. */
   case AirSim
 
-  /** Without a limit: the newest move replaces the older immediately, and nothing waits. */
+  /** The number of workers is unlimited: the newest move replaces the older immediately, and nothing waits.
+    */
   case Never
 
 /** Settings of a built-in simulator.
