@@ -39,7 +39,7 @@ class DuckDbRecorderLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolder
     assertEquals(Await.result(recorder.close(), 60.seconds).map(_.rows("reading")), Right(offered.toLong))
     assertEquals(read(file).readings.map(_.sequence), Vector.range(1L, offered + 1L))
 
-  folder.test("records beyond the queue's bound fail the recording, and what was queued is written"):
+  folder.test("records beyond the queue's bound fail the recording, and the queued ones are written"):
     folder =>
       val file     = folder.resolve("flight.duckdb")
       val recorder = open(file, capacity = 16)
@@ -68,7 +68,7 @@ class DuckDbRecorderLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolder
       case other                                => fail(s"expected WriteFailed, got $other")
     assertEquals(Await.result(recorder.close(), 10.seconds), Left(failed))
 
-  folder.test("no commit waits for the disk, which may take longer than a kill may cost"): folder =>
+  folder.test("no commit waits for the disk"): folder =>
     val file     = folder.resolve("flight.duckdb")
     val recorder = open(file, capacity = 1024)
     Using.resource(RecordingFile.connect(file, readOnly = false)): beside =>

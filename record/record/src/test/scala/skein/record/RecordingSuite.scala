@@ -81,7 +81,7 @@ class RecordingSuite extends munit.FunSuite, TemporaryFolders:
             assert(why.contains(table), why)
           case other => fail(s"expected a recording or NotARecording, got $other")
 
-  folder.test("a number of every row cannot be null, and its missing column is reported"): folder =>
+  folder.test("a required number cannot be null, and its missing column is reported"): folder =>
     val file = folder.resolve("flight.duckdb")
     record(file, Samples.oneOfEach*)
     for column <- Seq("positionNorthM", "sequence", "vehicle") do

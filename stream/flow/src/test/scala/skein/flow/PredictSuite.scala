@@ -55,7 +55,7 @@ class PredictSuite extends munit.FunSuite:
     assertEquals(estimates.size, 10)
     for vehicles <- estimates do assertEquals(vehicles.map(_.age), Vector(oneWay * 2, oneWay * 2))
 
-  test("commands sent later are predicted for a later time"):
+  test("the states for commands that are sent later are predicted for a later time"):
     val (estimates, _) = predicted(lead = Span.ofMillis(25))
     for vehicles <- estimates do
       assertEquals(vehicles.map(_.age), Vector.fill(2)(oneWay * 2 + Span.ofMillis(25)))

@@ -236,7 +236,7 @@ class DelayLineSuite extends munit.FunSuite:
       times.map(_.zipWithIndex.map((at, i) => at - 10 * i).max)
     .value
 
-  test("over a line with a rate, a command waits for an image on its own connection, and little on another"):
+  test("over a line with a rate, a command waits for images on its own connection, and little for others"):
     val image = 1280 * 720 * 3 // 442 ms at 50 Mbit/s
     assertEqualsDouble(longestDelayMs(0, apart = false), 10, 0.01)
     assert(longestDelayMs(image, apart = false) > 400)

@@ -15,7 +15,7 @@ class PlacesSuite extends munit.FunSuite:
       places.entered(i, guest)
     (places, guests)
 
-  test("256 silent connections exclude no new one, which takes the place of the one silent for longest"):
+  test("256 silent connections do not exclude a new one, which takes the place of the longest silent"):
     val (places, guests) = full(10 to 265*)
     for i <- 1 to 256 do
       assert(places.admit(), s"newcomer $i")

@@ -62,7 +62,7 @@ class PreciseSchedulerLiveSuite extends munit.FunSuite, Timing:
       assert(atRate >= 100 && atRate < 138, s"20 runs of 2 ms every 5 ms took $atRate ms")
       assert(withDelay >= 138, s"20 runs of 2 ms, 5 ms apart, took $withDelay ms")
 
-  test("a cancelled task never runs, its cancellation is reported, and a second one is refused"):
+  test("a cancelled task never runs, its cancellation is reported, and a second cancellation is refused"):
     final class Task extends SchedulerTask:
       @volatile var (ran, told)      = (false, false)
       def run(): Unit                = ran = true

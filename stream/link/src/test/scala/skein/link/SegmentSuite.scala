@@ -16,7 +16,7 @@ class SegmentSuite extends munit.FunSuite:
     segment.lost(ms(100), tcp)
     segment
 
-  test("a lost packet is sent again after the time-out, and each further time-out is twice as long"):
+  test("a lost packet is sent again after the timeout, and each further timeout is twice as long"):
     val segment = lost()
     assertEquals((segment.isLost, segment.againAt), (true, ms(300)))
     segment.lostAgain(ms(300))

@@ -92,7 +92,7 @@ class EscapesSimulation extends munit.FunSuite, Unhurried:
       Source.empty.via(Tcp(system).outgoingConnection("127.0.0.1", 1)).runWith(Sink.ignore)
     assertEquals(error.problem, Problem.Sockets)
 
-  test("two actors that talk for ever without time advancing are a livelock and are named"):
+  test("two actors that talk for ever at one instant are a livelock, whose report names them"):
     val error = stopped(RunLimits(tasksPerInstant = 10_000)): system =>
       val echo = system.actorOf(Props(Echo()), "echo")
       system.actorOf(Props(Echo()), "reply").tell("ball", echo)

@@ -89,7 +89,7 @@ class WorldSettingsSuite extends munit.FunSuite:
       _.vehicles.head
     )
 
-  test("the default vehicle is the one with IsFpvVehicle, else the first by the alphabet"):
+  test("the default vehicle is the one with IsFpvVehicle, else the alphabetically first"):
     def default(text: String) = WorldSettings.parse(text).map(_.defaultVehicle.name)
     assertEquals(default("""{"Vehicles": {"B": {}, "A": {}}}"""), Right("A"))
     assertEquals(default("""{"Vehicles": {"B": {"IsFpvVehicle": true}, "A": {}}}"""), Right("B"))

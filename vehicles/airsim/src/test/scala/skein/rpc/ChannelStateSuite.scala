@@ -90,7 +90,7 @@ class ChannelStateSuite extends munit.FunSuite:
     l.submit("e")
     assertEquals(l.connectionOf("e"), 1)
 
-  test("replies in any order reach their own calls"):
+  test("replies reach their own calls in any order"):
     val l = channel()
     l.open(0, 1)
     Seq("a", "b", "c").foreach(l.submit(_))

@@ -52,7 +52,7 @@ class RpcClientSuite extends munit.FunSuite:
     peer.send(writer.take())
     Future.sequence(calls).map(assertEquals(_, Seq(1, 2, 3).map(n => Right(Int32(n)))))
 
-  rig("a refusal carries the peer's text"): r =>
+  rig("a refusal contains the peer's text"): r =>
     val call = r.call("takeoff")
     val peer = r.transport.peer()
     peer.refuse(peer.request().id, "std::bad_cast")

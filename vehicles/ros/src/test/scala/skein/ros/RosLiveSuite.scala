@@ -34,12 +34,12 @@ class RosLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
         )
         assert(ended.contains("package tf2_msgs for tf2_msgs/msg/TFMessage, it is not installed"), ended)
 
-  test("a camera and lidars are received in their frames, with their stamps and the camera's matrix"):
+  test("a camera and lidars are seen, in their frames, with their stamps and the camera's matrix"):
     conclusive:
       val ended = serving(speed = 1)(run("see_sensors.py", "5"): Unit)
       assert(ended.contains("notes: \n") && ended.endsWith("ended"), ended)
 
-  test("garbage, foreign frames and foreign types are refused and reported, and the vehicles still fly"):
+  test("garbage, foreign frames and foreign types are refused and said, and the vehicles still fly"):
     conclusive:
       val ended = serving(speed = 1):
         run("disturb.py", "1000"): Unit
@@ -52,7 +52,9 @@ class RosLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
         )
       do assert(ended.contains(line), ended)
 
-  test("a vehicle port over remapped topics climbs, knows its ages, and reports a missing vehicle"):
+  test(
+    "a vehicle port over remapped topics climbs, knows its ages, and a vehicle that is not there is named"
+  ):
     conclusive:
       val ended = serving(speed = 1):
         val process = ServedProcess.program(RosHere.variables(), "flyOnRos").start()

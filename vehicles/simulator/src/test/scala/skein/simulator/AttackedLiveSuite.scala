@@ -141,7 +141,7 @@ class AttackedLiveSuite extends munit.FunSuite, Waiting, Unhurried:
       (silent :+ dripping).foreach(_.close())
 
   for isPaused <- Seq(true, false) do
-    test(s"twelve long moves of a client that has left hold nobody up${
+    test(s"twelve long moves of a client that has left delay no other client${
         if isPaused then ", in paused time" else ""
       }"):
       serving(): server =>

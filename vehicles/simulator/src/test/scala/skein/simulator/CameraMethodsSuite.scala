@@ -83,7 +83,7 @@ class CameraMethodsSuite extends munit.FunSuite:
     assertEqualsFloat(x / w, 1f, 1e-5f)
     assertEqualsFloat(y / w, 1f, 1e-5f)
 
-  test("distortion is kept by its parameters' names"):
+  test("distortion parameters are kept by their names"):
     val bench = Bench()
     bench.tell("simSetDistortionParam", Str("0"), Str("K2"), Float32(0.5f), Str(""), Bool(false))
     assertEquals(
@@ -103,7 +103,7 @@ class CameraMethodsSuite extends munit.FunSuite:
     ).contains("No camera with name nose"))
     assert(bench.error("simGetCameraInfo", Str("0"), Str(""), Bool(true)).contains("No external camera"))
 
-  test("detection filters are kept"):
+  test("a camera keeps its detection filters"):
     val bench = Bench()
     for mesh <- Seq("Car*", "Tree*") do
       bench.tell("simAddDetectionFilterMeshName", Str("0"), Int32(0), Str(mesh), Str(""), Bool(false))

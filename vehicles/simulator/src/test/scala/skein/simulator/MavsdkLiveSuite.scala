@@ -41,8 +41,7 @@ class MavsdkLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
     finally sockets.foreach(_.close())
 
   test(
-    "MAVSDK arms three vehicles, takes off, flies velocities, positions and a mission, and lands, all at " +
-      "a time"
+    "MAVSDK arms three vehicles together, takes off, flies velocities, positions and a mission, and lands"
   ):
     Mavsdk.python(): Unit
     conclusive:

@@ -78,7 +78,7 @@ class MoveSuite extends munit.FunSuite:
   for (speed, seconds, from) <-
       Seq((1.0, 25.3, -1.54), (3.0, 7.7, -10.0), (5.0, 5.1, -10.0), (10.0, 3.2, -10.0))
   do
-    test(s"moveToPosition(20, 0, -10) at $speed m/s takes AirSim's $seconds s and ends near"):
+    test(s"moveToPosition(20, 0, -10) at $speed m/s takes AirSim's $seconds s and ends near the goal"):
       val bench = Bench().hovering(from)
       val move  = bench.moveTo(20, 0, -10, speed)
       bench.pass(40)
