@@ -43,7 +43,7 @@ object McapRecording:
         if Files.exists(file) && !Files.isRegularFile(file) then
           McapFile.write(file, options)(write(rows, scene, _))
         else
-          // What was there stays until all of the new file is.
+          // An existing file stays until the new one is complete.
           val folder = Files.createTempDirectory(file.toAbsolutePath.getParent, ".skein")
           val made   = folder.resolve("made.mcap")
           try
@@ -172,7 +172,7 @@ object McapRecording:
   private def gather(file: Path, folder: Path): Either[RecordError, Vector[Gathered]] =
     McapFile.stream(file): records =>
       val outs = mutable.LinkedHashMap.empty[String, RowsFile]
-      // A row whose bytes have not come yet.
+      // A row whose bytes have not been read yet.
       var waiting              = Option.empty[(table: String, row: String)]
       var format               = RecordingFormat.version
       def refused(why: String) = Some(RecordError.NotAnExport(file, why))

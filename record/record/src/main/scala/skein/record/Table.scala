@@ -81,7 +81,7 @@ private[record] final case class Table[A <: Record](
       )
 
 private[record] object Table:
-  // What came with a later format than its table.
+  // Columns of a later format than their table.
   private given action: FieldColumns[Option[Action]] =
     name => added(optional(summon[FieldColumns[Action]](name)))
   private given course: FieldColumns[Option[PlannedPath]] =

@@ -173,7 +173,7 @@ class ViewServerLiveSuite extends munit.FunSuite:
     served =>
       val port    = served.server.port
       val sockets = Vector.fill(200)(Socket("127.0.0.1", port))
-      // They are accepted in their order; the end of a stream, or a reset, is what one sees that was closed.
+      // Sockets are accepted in order; a closed one sees the end of its stream, or a reset.
       for socket <- sockets.dropRight(5) do assertEquals(Try(socket.getInputStream.read()).getOrElse(-1), -1)
       sockets.foreach(_.close())
       assertEquals(served.server.counts.displacedConnections, 195L)

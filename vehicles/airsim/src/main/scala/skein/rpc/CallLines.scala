@@ -38,7 +38,7 @@ final class CallLines[Call](share: Int = 16, batch: Int = 4, isUrgent: Call => B
   private val urgent = ConcurrentLinkedQueue[Place]()
   private val gone   = LongAdder()
 
-  // The taker's: of this round, first those that had been empty; of the next one.
+  // Lines of the taking thread: in this round those that had been empty, then the others; and the next round.
   private val first = ArrayDeque[Line]()
   private var turns = ArrayDeque[Line]()
   private var later = ArrayDeque[Line]()

@@ -177,7 +177,7 @@ private[rpc] final class ServerConnection(
               consumed = true
               segment = 0
             case Framed.Malformed(problem) => refuse(ServerLimit.Malformed, problem)
-        // The rest of it may never arrive: it is worth waiting only for its own requests.
+        // The rest of the message may never arrive: only the connection's own requests are worth waiting for.
         if consumed && reason.isEmpty && !mayRead && !underWay then tooMuch()
         turn.force(inFlight)
         holding.force(held)

@@ -95,7 +95,7 @@ private[ros] final class RosLibrary private (folders: Vector[Path], rcl: SymbolL
     try
       val text = errorText(arena).getString(0)
       resetError.invokeWithArguments(): Unit
-      // Behind it stands the place in the library's source.
+      // The place in the library's source follows.
       s"${text.split(", at /").head} (status $status)"
     finally arena.close()
 

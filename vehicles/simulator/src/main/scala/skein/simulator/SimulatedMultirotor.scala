@@ -157,7 +157,7 @@ final private[simulator] class SimulatedMultirotor(
     flown = true
     jumped += 1
     command(Setpoint.hold(hold), at)
-    // This goal is already what an expired one becomes.
+    // An expired goal becomes this one, too.
     goalExpired = true
     sampledAt = at
 

@@ -9,7 +9,7 @@ private[simulator] object SimulatorMethods:
 
   val all: Seq[ServerMethod] = Seq(
     none("ping")(_ => answer(true)),
-    // Cosys-AirSim 3's client wants this one, AirSim's anything from 1 on.
+    // Cosys-AirSim 3's client requires this version, AirSim's any from 1 on.
     none("getServerVersion")(_ => answer(4)),
     none("getMinRequiredClientVersion")(_ => answer(1)),
     one[Boolean]("simPause")((simulation, on) => done(simulation.setPaused(on))),
