@@ -187,7 +187,7 @@ class ScenarioGroupSuite extends munit.FunSuite:
     for (scenario, why) <- Seq("convoy" -> "which has cars", "forest" -> "which sees by cameras or lidars") do
       assert(clue(refused(surround.copy(scenario = scenario, set = Map.empty))).contains(why))
 
-/** An evader's policy and a pursuer's quantity with values that settings choose. */
+/** A scenario with an evader's policy and a pursuer's quantity that settings choose. */
 final case class Own(policy: String = "", quantity: String = "") extends Scenario:
   def agents: Vector[Agent] = Vector(
     Agent("Evader", Role.Evader, MetresPerSecond(4), Vector3(30, 0, -5), Radians(0), Away(policy)),

@@ -112,7 +112,7 @@ class ShowSuite extends munit.FunSuite:
     show.control(ClientMessage.Playback(playing = false, 1, Some(a + Span.ofMillis(1000)), ""), at(1)): Unit
     assertEquals(seen(show, viewer).map(_.row("sequence").num), Vector(33.0))
 
-  /** The times that the server has sent, s, in order. */
+  /** The times that the server has sent to the viewer, s, in order. */
   private def clock(viewer: Viewer): Vector[Double] = Vector
     .unfold(())(_ => viewer.take().map((_, ())))
     .collect {

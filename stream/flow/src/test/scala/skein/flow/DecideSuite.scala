@@ -11,8 +11,8 @@ import skein.vtime.VirtualTime
 class DecideSuite extends munit.FunSuite:
   private val failure = RuntimeException("no plan")
 
-  /** Decisions with their times in ms, of a policy that answers observation n with 10 n and the number of
-    * decisions before it, after a delay; a negative delay makes it throw.
+  /** Decisions with their times in ms. The policy answers observation n with 10 n and the number of earlier
+    * decisions, after a delay; a negative delay makes it throw.
     */
   private def decided(otherwise: OnOverrun[Int, Int, Int], delaysMs: Int*): Seq[(Long, DeadlineResult[Int])] =
     decidedBy(otherwise, asksAgain = false, delaysMs)

@@ -22,7 +22,7 @@ class PredictSuite extends munit.FunSuite:
       Vector3.Zero
     )
 
-  /** Estimates from readings every 100 ms, and their verified errors. */
+  /** Returns the estimates from readings every 100 ms, and their verified errors. */
   private def predicted(lead: Span = Span.Zero): (Seq[Vector[Estimate]], Seq[Verified]) =
     var verified = Vector.empty[Verified]
     val run      = VirtualTime.run(seed = 1): system =>

@@ -13,7 +13,7 @@ import skein.vtime.VirtualTime
 class LinkProxySuite extends munit.FunSuite:
   private val (proxyAt, serverAt) = (Address("proxy", 1), Address("server", 1))
 
-  /** A client: which of its bytes came back, and when its connection ended, s. */
+  /** A client that records which of its bytes returned, and when its connection ended, s. */
   private final class Client(says: Source[ByteString, Any], world: World)(using ActorSystem):
     private var came                             = 0
     private var ended                            = Option.empty[Double]

@@ -60,7 +60,7 @@ class ServerLimitsSuite extends munit.FunSuite:
       def ask(method: String): Unit =
         send(ByteString(Wire.pack(Arr(Int32(0), Int32(1), Str(method), Arr()))))
 
-      /** Sends a request and awaits its answer: everything sent before has then been handled, too. */
+      /** Sends a request and awaits its answer, by which everything sent before has been handled. */
       def ping(): Unit =
         ask("ping")
         val _ = replies.expectNext()
@@ -88,7 +88,7 @@ class ServerLimitsSuite extends munit.FunSuite:
     finally
       val _ = system.terminate()
 
-  /** The head of a request that is `size` bytes long, with `sent` of them. */
+  /** The first `sent` bytes of a request that is `size` bytes long. */
   private def begun(size: Int, sent: Int): ByteString =
     ByteString(Wire.pack(Arr(Int32(0), Int32(1), Str("f"), Arr(Binary(new Array[Byte](size)))))).take(sent)
 

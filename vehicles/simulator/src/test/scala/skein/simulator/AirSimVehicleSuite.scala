@@ -17,8 +17,8 @@ import skein.vtime.VirtualTime
 class AirSimVehicleSuite extends munit.FunSuite:
   private val address = Address("simulator", 41451)
 
-  /** The simulator's transport without those of its messages for which `isLost` is true. Messages are whole
-    * segments here.
+  /** The simulator's transport without the messages for which `isLost` is true. Each message is a segment
+    * here.
     */
   private final class Lossy(transport: Transport, isLost: RpcMessage => Boolean) extends Transport:
     def connect(to: Address) = transport.connect(to)
@@ -41,8 +41,8 @@ class AirSimVehicleSuite extends munit.FunSuite:
       .filterNot(frame => isLost(RpcMessage.fromServer(frame)))
       .map(ByteString.fromArrayUnsafe)
 
-  /** Two moves 100 ms apart over a link with 40 ms round trips, and then nothing: when, in ms from the
-    * second's sending, and how the first ended, and the reports on lost answers.
+  /** Sends two moves 100 ms apart over a link with 40 ms round trips. Returns when the first ended, in ms
+    * after the second was sent, with its result, and the reports on lost answers.
     */
   private def firstOfTwo(isLost: RpcMessage => Boolean)
       : (Long, Either[VehicleError, Boolean], Vector[String]) =

@@ -9,7 +9,7 @@ import upack.{Int32, Obj, Str, UInt64}
 import upack.Binary
 import upickle.default.{Writer, readBinary, writeMsg}
 
-/** Our encodings, read by an independent library. */
+/** Reads Skein's encodings with an independent library. */
 class WireSuite extends munit.FunSuite:
 
   /** A value's bytes in the server's encoding, after the reply's header of four bytes. */
