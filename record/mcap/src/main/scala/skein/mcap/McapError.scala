@@ -35,7 +35,7 @@ enum McapError:
   /** The bytes of a chunk are no valid output of its compression. */
   case NotDecompressed(at: Place, compression: String, why: String)
 
-  /** A compression other than `zstd`, `lz4` and none. */
+  /** The chunk's compression is neither `zstd` nor `lz4` nor none. */
   case UnknownCompression(at: Place, name: String)
 
   def message: String = this match

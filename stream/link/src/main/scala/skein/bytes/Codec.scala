@@ -24,7 +24,7 @@ trait Codec[A]:
   /** @throws IOException if the bytes encode no such value, or contain a length beyond the bytes left */
   def read(in: DataInputStream): A
 
-  /** A codec of another type with these bytes. */
+  /** A codec of another type with an equal encoding. */
   final def imap[B](to: A => B)(from: B => A): Codec[B] =
     Codec.of[B]((value, out) => write(from(value), out))(in => to(read(in)))
 

@@ -8,10 +8,10 @@ import scala.jdk.CollectionConverters.*
 /** Calls that wait to be run: one queue for each connection, served in rounds. Calls of one connection keep
   * their order.
   *
-  * A call that enters an empty queue goes ahead of all that wait, as long as its connection has had less than
-  * `share` calls in the round: so a client that calls rarely hardly waits for clients that call without a
-  * pause. From a longer queue, `batch` calls are taken in a row: waking a connection for an answer costs more
-  * than running most calls, so it is woken once for several. The first call of a queue waits for at most
+  * A call that enters an empty queue goes ahead of all waiting calls, as long as its connection has had less
+  * than `share` calls in the round: so a client that calls rarely hardly waits for clients that call without
+  * a pause. From a longer queue, `batch` calls are taken in a row: waking a connection for an answer costs
+  * more than running most calls, so it is woken once for several. The first call of a queue waits for at most
   * `share` calls of every other connection.
   *
   * While nothing else can be run, [[takeUrgent]] returns calls that need not wait for the others.

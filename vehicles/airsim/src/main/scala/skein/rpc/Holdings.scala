@@ -38,7 +38,7 @@ private[rpc] final class Holdings(each: Long, common: Long):
         account(to)
       granted
 
-    /** Changes the bytes held to `to`, which exist already, granted or not. */
+    /** Changes the bytes held to `to`, granted or not, because they exist already. */
     def force(to: Long): Unit =
       if !resize(to) then
         val change = beyondOwn(to) - beyondOwn(held)
@@ -46,7 +46,7 @@ private[rpc] final class Holdings(each: Long, common: Long):
         forced += change
         account(to)
 
-    /** Whether the common part now covers all that is held. */
+    /** Whether the common part now covers all bytes held beyond the connection's own part. */
     def isGranted: Boolean =
       if forced > 0 && beyond.get <= common then forced = 0
       forced == 0

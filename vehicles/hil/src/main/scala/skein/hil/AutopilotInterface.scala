@@ -35,7 +35,8 @@ trait AutopilotInterface:
   def sense(truth: SensorTruth): Vector[Array[Byte]]
 
   /** Is called when the autopilot has not answered for too long. Physics then continues without it, until it
-    * has answered in time for a while. If it shows that it is about to answer, physics waits on.
+    * has answered in time for a while. If the autopilot shows that it is about to answer, physics keeps
+    * waiting.
     */
   def giveUp(): Unit
 

@@ -77,7 +77,9 @@ final class Px4Interface(system: Int, sensors: Sensors, from: Span, before: Int 
   def isByClock: Boolean      = true
   def stop(until: Span): Span = due
 
-  /** Waits no longer for the autopilot; waits on for one that is catching up, a limited number of times. */
+  /** Stops waiting for the autopilot. For one that is catching up it keeps waiting, a limited number of
+    * times.
+    */
   def giveUp(): Unit =
     if catchesUp && postponed < MostPostponed then postponed += 1
     else

@@ -126,8 +126,8 @@ final private[simulator] class SimulatedCar(settings: VehicleSettings, worldOrig
 
   private def velocityOf(state: CarState) = Vector3(state.northMps, state.eastMps, 0)
 
-  /** The controls in effect: in a gear chosen by hand the pedal drives in its direction; else a negative
-    * throttle drives in reverse.
+  /** The controls in effect: in a gear chosen by hand the throttle drives in the gear's direction; else a
+    * negative throttle drives in reverse.
     */
   private def acting: CarControls =
     if !controlled then CarControls.Neutral

@@ -93,7 +93,7 @@ final class Workers[Job, Flight](limit: Int, vehicles: Int, handover: Span):
 
   /** Removes moves that wait for the vehicle's lock.
     *
-    * @param all false: only those of clients that have left
+    * @param all whether to remove all of them; else only the moves of clients that have left
     */
   def dismiss(vehicle: Int, all: Boolean): Vector[Flight] =
     val lock = locks(vehicle)

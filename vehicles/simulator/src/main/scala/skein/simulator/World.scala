@@ -179,7 +179,7 @@ final class World(
       shaped = (vehicles, scene.vehicleTagM, shapes)
     Bodies(shaped.shapes, places(at))
 
-  /** The vehicles' places, as [[Bodies]] wants them. */
+  /** The vehicles' places, in the form that [[Bodies]] requires. */
   private[simulator] def places(at: Instant): Array[Double] =
     Bodies.places(vehicles.iterator.map(vehicle => (vehicle.worldPosition(at), vehicle.orientation)))
 
@@ -201,7 +201,7 @@ final class World(
       bodies(at)
     )
 
-  /** Velocity of the air, NED, m/s. */
+  /** Sets the velocity of the air in the world, NED, m/s. */
   def setWind(windNed: Vector3): Unit =
     wind = windNed
     vehicles.foreach(_.setWind(windNed))

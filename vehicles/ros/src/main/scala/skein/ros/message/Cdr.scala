@@ -13,7 +13,7 @@ import scala.deriving.Mirror
 trait Cdr[A]:
   def write(value: A, to: CdrWriter): Unit
 
-  /** @throws CdrError if the bytes are something else; only [[Cdr.message]] calls it */
+  /** @throws CdrError if the bytes encode no such value; only [[Cdr.message]] calls it */
   def read(from: CdrReader): A
 
 object Cdr:
