@@ -22,7 +22,7 @@ final private[skein] case class CarControls(
 final private[skein] case class ComputerVisionState(kinematics_estimated: KinematicsState, timestamp: Instant)
     derives ReadWriter
 
-/** A car's state: speed along the heading in m/s, negative in reverse; the engine's speed in turns a minute. */
+/** A car's state: speed along the heading in m/s, negative in reverse; engine speed in turns a minute. */
 final private[skein] case class CarState(
     speed: Float,
     gear: Int,
