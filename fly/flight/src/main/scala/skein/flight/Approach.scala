@@ -33,8 +33,7 @@ private[flight] final class Approach(
   /** Moves the vehicle until it hovers within `limits` of the goal.
     *
     * @param goalNed in the frame of `vehicle`
-    * @return the last reading; `Left` where a call failed, or the vehicle was not there in twice the time
-    *   that it needs
+    * @return the last reading; `Left` if a call failed, or the vehicle did not arrive within the allowed time
     */
   def to(goalNed: Vector3, limits: Limits): Future[Either[String, Kinematics]] =
     look: start =>
@@ -120,9 +119,9 @@ private[flight] object Approach:
 
   private val Every = Span.ofMillis(100)
 
-  /** Time allowed beyond twice that of the way. */
+  /** Time allowed for the way, in addition to twice its duration at cruise speed. */
   private val Patience = Span.ofSeconds(40)
 
-  /** Limit of readings of a hovering vehicle, and how many in a row must be within the limits. */
+  /** Limit of a hovering vehicle's readings, and how many in a row must be within the tolerances. */
   private val Looks     = 40
   private val GoodLooks = 10

@@ -179,10 +179,10 @@ private[skein] object CameraSensor:
 
   /** Counts of an eye's images. After its end, each due image is in one of the other counts.
     *
-    * @param missed not requested, since others were on their way
+    * @param missed due images that were not requested, since others were still on their way
     * @param lost without a result: the call failed, recognition failed or was late, or a newer one was
     *   received first
-    * @param searched whether or not anything was found in them
+    * @param searched by recognition, with or without a detection
     */
   final case class Counts(due: Long, missed: Long, lost: Long, searched: Long):
     def asked: Long = due - missed

@@ -53,7 +53,8 @@ object LiveFlights:
 
   /** Starts all flights, or none.
     *
-    * @param observe called with every record of a flight that begins with a heading; it must not block
+    * @param observe called with each flight's heading; its result is called with every record of that flight,
+    *   and must not block
     * @param beside receives a flight's rows in addition to its recording, or why it cannot
     * @return Left states why they cannot start; those that had started were stopped again
     */

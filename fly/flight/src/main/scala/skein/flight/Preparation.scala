@@ -70,7 +70,7 @@ final class Preparation(
             taken(vehicles.map(_._1), at).map(why => throw why.fold(failed)(NotReady(_)))
     yield all.map(_._1)
 
-  /** What became of the api control of the first vehicle that has lost it. */
+  /** Why the first vehicle without API control has lost it, if there is one. */
   private def taken(vehicles: Vector[VehicleClient], at: Address): Future[Option[String]] =
     Future
       .traverse(vehicles)(vehicle => vehicle.isApiControlEnabled().map(vehicle.name -> _))

@@ -15,9 +15,9 @@ import skein.units.*
 private final class Foreseen(fleet: Fleet, deciders: IndexedSeq[Decider], period: Span):
   import Foreseen.*
 
-  /** The next actions of a vehicle and of all that are known to decide as it does, [[CommandPlan.Most]] of
-    * each, the first ones for the moments of the view's estimates; of others none. Cost: that many decisions
-    * of each, and the predicted flight of all.
+  /** The next [[CommandPlan.Most]] actions of a vehicle and of every vehicle known to decide as it does, from
+    * the moments of the view's estimates on; none of other vehicles. Cost: as many decisions of each, and the
+    * predicted flight of all.
     *
     * @param view with estimates
     * @param minds by vehicle
@@ -67,8 +67,8 @@ private final class Foreseen(fleet: Fleet, deciders: IndexedSeq[Decider], period
 private object Foreseen:
   type Actions = Vector[(at: Instant, action: Action)]
 
-  /** What a vehicle decides with.
+  /** The state with which a vehicle decides.
     *
-    * @param decision the one that led to this memory, where it was made on the very view
+    * @param decision that led to this memory, if it was made on the present view
     */
   final case class Mind(memory: Memory, decision: Option[Decision])

@@ -3,7 +3,7 @@ package skein.loop
 import skein.forecast.Forecast
 import skein.port.CommandPlan
 
-/** What a running loop foresees: with each decision, the vehicle's further actions. */
+/** Adds to each decision of a running loop the vehicle's foreseen actions. */
 private final class Foresight(foreseen: Foreseen, starts: Vector[Memory]):
   import Foreseen.*
 

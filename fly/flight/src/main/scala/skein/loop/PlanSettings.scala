@@ -102,7 +102,9 @@ final case class PlanSettings(
       _ min _
     )
 
-  /** The altitude nearest to a vehicle's own between floor and ceiling; midway where these are close, m. */
+  /** The altitude nearest to a vehicle's own between floor and ceiling, m; midway between them if they are
+    * close.
+    */
   def altitudeM(ownM: Double): Double =
     val leastM = kept.collect { case Kept.Above(leastM) => leastM + PlanSettings.Doubt }.maxOption
     val mostM  = kept.collect { case Kept.Below(mostM) => mostM - PlanSettings.Doubt }.minOption
@@ -119,7 +121,9 @@ object PlanSettings:
   val CrossEntropy = "cross-entropy"
   val PathIntegral = "path-integral"
 
-  /** Longest search for a plan: the data of its start are older then than those of any other loop. */
+  /** Limit of the deadline: after a longer search, the data behind a plan would be older than in any other
+    * loop.
+    */
   val MostDeadline: Span = Span.ofSeconds(2)
 
   /** Margin added to the separation, since vehicles deviate from their models and commands arrive at other

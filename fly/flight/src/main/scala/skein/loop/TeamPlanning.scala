@@ -101,7 +101,7 @@ private final class TeamPlanning(
     PlannedMove(turn, settings.speedMps(action.speed.value), Vector.empty)
 
 private object TeamPlanning:
-  /** Limit of a turn in a step, of a multirotor that turns on the spot. With less than its policy turns, a
-    * vehicle could not turn back in time.
+  /** Limit of a multirotor's turn in a step. If it were less than the policy's turns, a vehicle could not
+    * turn back in time.
     */
   val MostTurnRad = 1.0

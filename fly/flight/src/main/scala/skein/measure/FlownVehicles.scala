@@ -39,7 +39,8 @@ object FlownVehicles:
         .takeWhile(_.atS <= arrivals.last.atS)
       TimeHistory(s"${recording.flight.id}, ${vehicle.name}", samples, arrivals, commands.last.down.value)
 
-  /** Commands that arrived, with their times on the simulator's clock; none before one that was sent earlier.
+  /** Commands that arrived, with their arrival times on the simulator's clock: never before that of an
+    * earlier command.
     */
   private def arrivalsOf(
       recording: Recording,

@@ -6,11 +6,11 @@ import skein.units.Span
 
 /** The profile of a link, fitted to requests over it.
   *
-  * @param lossShare of all requests, each of which lost nothing or one packet
+  * @param lossShare share of the requests that were lost
   * @param burst mean number of requests that were lost in a row; None if no more than by chance
-  * @param correlatedS for how long a round trip lasts; None if no longer than by chance
+  * @param correlatedS correlation time of successive round trips; None if no longer than by chance
   * @param logNormal median in ms, and standard deviation of the logarithm
-  * @param distance of the log-normal distribution function to the measured one, at most
+  * @param distance greatest distance between the log-normal and the measured distribution function
   */
 final case class LinkFit(
     samples: Int,

@@ -61,7 +61,9 @@ final case class Exchange private (
           (heard.copy(trips = lately, counts = counts.copy(used = counts.used + 1)), Verdict.Counts(asked))
         else (heard.copy(counts = counts.copy(late = counts.late + 1)), Verdict.Late(at.since(asked)))
 
-  /** Counts that the solver reports beyond its last report; to be called after the answer was judged. */
+  /** The counts that the solver reports in excess of its last report; to be called after the answer was
+    * judged.
+    */
   def news(answer: Answer): (Exchange, Told) =
     if !solver.contains(answer.solver) then (this, Told(0, 0))
     else

@@ -6,8 +6,8 @@ import scala.util.control.NonFatal
 import scala.util.{Failure, Success, Try}
 import skein.planning.{JointPlan, JointPlanner, PlanProblem}
 
-/** Searches plans. A problem is searched by several searches side by side that are independent, so that each
-  * result depends on the number of its slices alone.
+/** Searches plans. Several independent searches work on a problem side by side, so that each result depends
+  * only on its number of slices.
   */
 trait PlanWorkers extends AutoCloseable:
 
