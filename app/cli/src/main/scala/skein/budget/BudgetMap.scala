@@ -11,8 +11,8 @@ import upickle.default.{ReadWriter, macroRW, write}
 /** A map of one loop at one period, with its labels.
   *
   * @param policy or scenario
-  * @param engine what flew it
-  * @param marks named links with what was flown over them as they were measured
+  * @param engine that simulated it
+  * @param marks named links, with the results over their measured round trips
   */
 final case class BudgetMap(
     loop: String,
