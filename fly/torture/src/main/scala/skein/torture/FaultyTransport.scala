@@ -13,7 +13,7 @@ import skein.signal.SplitMix64
 import skein.units.*
 import upack.{Arr, Float64, Int32, Msg, Null, Str}
 
-/** A move as it arrived at the simulator: the velocity as on the wire. */
+/** A move on arrival at the simulator, with the velocity in the message. */
 final case class ReceivedMove(at: Instant, vehicle: String, north: Float, east: Float)
 
 /** The simulator's transport with an interceptor that records every move in the order of arrival, and until
