@@ -128,7 +128,7 @@ class BufferSimulation extends munit.FunSuite, Unhurried:
     yield places
 
   for (lan, speed) <- Seq("none" -> 1.0, "constant:1ms" -> 1.0, "none" -> 4.0) do
-    test(s"a vehicle flies as by the simulator's own buffer; near link $lan, clock $speed times as fast"):
+    test(s"a vehicle flies as with the simulator's own buffer; near link $lan, clock $speed times as fast"):
       val own              = on(lan, speed)(bench => flown(bench, Address("simulator", 41451), speed))
       val (places, counts) = on(lan, speed): bench =>
         import bench.system.dispatcher
@@ -140,7 +140,7 @@ class BufferSimulation extends munit.FunSuite, Unhurried:
       assert(counts.moves > 80, counts.toString)
 
   test(
-    "moves reach the simulator within half a round trip and the handover after their moments, two at most"
+    "moves arrive at most half a round trip and the handover late, and at most two are unanswered"
   ):
     val (calls, start, counts) = on("constant:1ms"): bench =>
       import bench.system.dispatcher
@@ -165,7 +165,7 @@ class BufferSimulation extends munit.FunSuite, Unhurried:
       assert(late >= 0 && late < 3, s"move $index was $late ms late")
     assert(counts.latest < Span.ofMillis(3), counts.toString)
 
-  test("the simulator is never asked for a plan, and refusals are those of the simulator's own buffer"):
+  test("the simulator receives no plan, and plans are refused as by the simulator's own buffer"):
     def asked(through: Address)(bench: Bench): Future[Vector[Either[String, Boolean]]] =
       import bench.system.dispatcher
       import upack.{Arr, Int64, Msg, Str}
@@ -199,7 +199,7 @@ class BufferSimulation extends munit.FunSuite, Unhurried:
     assertEquals(own.take(2), Vector(Right(true), Right(true)))
     assert(!seen("skeinFollowPlan"), seen.toString)
 
-  test("whatever else a client sends and hears is byte for byte what passes without a buffer"):
+  test("all other bytes between client and simulator are identical with and without a buffer"):
     def heard(through: Address)(bench: Bench): Future[ByteString] =
       given ActorSystem = bench.system
       import upack.{Arr, Int32, Msg, Obj, Str}

@@ -8,7 +8,9 @@ import skein.units.Clock
 class ObservedGraphLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
 
   for speed <- Seq(1, 4) do
-    test(s"a pilot that sleeps 150 ms between reading and command is said to be so late, at speed $speed"):
+    test(
+      s"a pilot that sleeps 150 ms between reading and command is reported with that delay, at speed $speed"
+    ):
       conclusive:
         val variables    = RosHere.variables()
         val served       = ServedProcess.start(variables, speed, port = 0)

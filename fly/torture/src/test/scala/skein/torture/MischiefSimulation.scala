@@ -32,7 +32,7 @@ class MischiefSimulation extends munit.FunSuite, Unhurried:
 
   private lazy val calm = flown(MessageFaults.None)
 
-  test("without any, every call is answered on the two connections that it takes"):
+  test("without message faults, every call is answered, on two connections"):
     val stats = calm.stats
     assertEquals(
       (stats.refused, stats.timedOut, stats.lost, stats.unexpected, stats.ignored),
@@ -86,7 +86,7 @@ class MischiefSimulation extends munit.FunSuite, Unhurried:
     seen =>
       seen.recording.readings.size < seen.ports.map(_.reads.begun).sum && seen.stats.timedOut == 0
 
-  test("all requested seeds run, each once, several in parallel"):
+  test("all given seeds run, each once, several in parallel"):
     var told = Vector.empty[Long]
     Torture.all(Iterator(1L, 2L, 3L, 4L), FaultPlan.Shortest, threads = 2)(verdict =>
       told :+= verdict.faultPlan.seed
