@@ -23,14 +23,14 @@ class OutsidePolicyLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders
           case other              => throw other
 
   test(
-    "an answer is a share of the pursuer's largest turn, and is clipped to −1 and 1"
+    "an answer is the share of the most that the pursuer turns, and what is beyond is taken for the bound"
   ):
     assertEquals(
       decided(Peer.number(0.5f), Peer.number(-7), Peer.number(1)),
       Seq(Right(0.5 + 0.05), Right(0.5 - 0.1), Right(0.5 + 0.1))
     )
 
-  test("observations are in the frame of the vehicle's own heading"):
+  test("observations are in the frame of the own heading"):
     val straight = seen.copy(ownHeadingRad = 0).fromOwnHeading.toVector
     assertEquals(straight.take(4), Vector(3.0, 4.0, 1.0, -2.0))
     assertEquals(straight.drop(6), Vector(0.1, 0.02, 0.03))
@@ -71,13 +71,13 @@ class OutsidePolicyLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders
         )).getMessage.startsWith("the policy: "))
       assertEquals(peer.asked, 1)
 
-  test("an answer without a request is not used for the next request"):
+  test("an answer without a request is not taken for that to the next request"):
     assertEquals(
       decided(Peer.number(0.5f) ++ Peer.number(-1), Peer.number(0), Peer.number(0)),
       Right(0.55) +: Seq.fill(2)(Left("the policy: expected one answer to a question, came more"))
     )
 
-  test("a process that ends between two requests receives no further ones"):
+  test("a process that ends between two requests has ended, and receives no further ones"):
     val path = temporaryFolder().resolve("policy")
     Using.resource(ServerSocketChannel.open(StandardProtocolFamily.UNIX)): listener =>
       listener.bind(UnixDomainSocketAddress.of(path)): Unit
@@ -87,7 +87,7 @@ class OutsidePolicyLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders
         val reason = intercept[OwnFailure](policy.heading(1, 1, 0, 0, 0, 0, 0.1)).getMessage
         assertEquals(reason, "the policy: its process has ended")
 
-  test("connecting takes no longer than the time-out of an answer"):
+  test("connecting takes no longer than an answer may"):
     val path = temporaryFolder().resolve("policy")
     Using.resource(ServerSocketChannel.open(StandardProtocolFamily.UNIX)): listener =>
       listener.bind(UnixDomainSocketAddress.of(path), 1): Unit
@@ -101,7 +101,7 @@ class OutsidePolicyLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders
         Some(s"expected a policy behind the socket $path: it accepts nobody within 500 ms")
       )
 
-  test("an answer that is not complete in time is discarded, and no further request is sent"):
+  test("an answer that is not complete in time is none, and there is no second question"):
     for part <- Seq(Array.empty[Byte], Array[Byte](0, 0)) do
       Using.resource(Peer((_, _) => Some(part))): peer =>
         val policy = OutsidePolicy.reach(peer.option, Span.ofMillis(30)).fold(fail(_), identity).policy
@@ -110,7 +110,7 @@ class OutsidePolicyLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders
           assertEquals(reason, "the policy: expected an answer within 30 ms, came none")
         assert(peer.asked <= 1)
 
-  test("a request that is not read in time is discarded"):
+  test("a question that is not read in time is not sent"):
     val path = temporaryFolder().resolve("policy")
     Using.resource(ServerSocketChannel.open(StandardProtocolFamily.UNIX)): listener =>
       listener.bind(UnixDomainSocketAddress.of(path)): Unit

@@ -147,7 +147,7 @@ class FailureTellingSimulation extends munit.FunSuite, Unhurried:
     pause <- Seq(Span.ofMillis(200), Span.ofSeconds(3))
   do
     test(
-      s"${loop.label}: a simulator's restart after ${pause.toMillis} ms fails the flight, whose vehicles are lost"
+      s"${loop.label}: a restart of the simulator after ${pause.toMillis} ms fails the flight"
     ):
       val flown = fly(loop, dies = true, restarts = Some(pause))
       // A simulator that is quick to be back is found out by where its vehicles stand.
