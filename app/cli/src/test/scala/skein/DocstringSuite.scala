@@ -43,7 +43,7 @@ class DocstringSuite extends munit.FunSuite:
       yield s"${Documentation.root.relativize(path)}:$one"
     assertEquals(missing.sorted, Vector.empty)
 
-  test("one that is missing is found, annotated or not; a companion and what is private need none"):
+  test("a missing docstring is found, with annotations or not; companions and private definitions need none"):
     val source =
       """/** Has one. */
         |final class Told
@@ -91,7 +91,7 @@ class DocstringSuite extends munit.FunSuite:
   private val mostShort = 249
 
   test(
-    "docstrings that are too short to say more than a name, and words with several meanings, grow no more"
+    "neither short docstrings nor words with several meanings become more frequent"
   ):
     val all   = sources.flatMap(path => texts(Files.readString(path)))
     val short = all.count(_.length <= Short)
@@ -100,7 +100,7 @@ class DocstringSuite extends munit.FunSuite:
     assert(short <= mostShort, s"$short docstrings of at most $Short characters, expected $mostShort at most")
     assertEquals(grown, Vector.empty, "word, how often docstrings say it, how often they may")
 
-  test("a docstring's text is found over several lines, and a word only as a whole"):
+  test("a docstring's text is found over several lines, and only whole words are counted"):
     val found = texts("/** Told\n  * at once. */\nval x = 1 /* told */\n/** Untold. */")
     assertEquals(found, Vector("Told at once.", "Untold."))
     assertEquals((count("told", found), count("at once", found)), (1, 1))

@@ -46,7 +46,9 @@ class BrowserAttackLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, 
     ) ++ text("") ++
       Array[Byte](0x94.toByte, 0, 2) ++ text("simPause") ++ Array[Byte](0x91.toByte, 0xc3.toByte)
 
-  folder.test("a page of another site reads nothing from any port, and none of its data are obeyed"): out =>
+  folder.test(
+    "a page of another site can read nothing from any port, and its requests have no effect"
+  ): out =>
     val (packages, browser) = (needed(JavaScriptTools.packages), needed(JavaScriptTools.browser))
     val transport           = TcpTransport()
     def simulator(mavlink: Option[MavlinkSettings], hil: Option[HilSettings]) =

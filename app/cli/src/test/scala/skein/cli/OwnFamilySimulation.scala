@@ -39,7 +39,9 @@ class OwnFamilySimulation extends munit.FunSuite, TemporaryFolders, Lengthy, Opt
     assertEquals(status, 0, said)
     said
 
-  folder.test("a user's own family is searched with SIMD, run, replayed and swept, by its name"): folder =>
+  folder.test(
+    "a user's own family can be searched with SIMD, flown, replayed and swept by its name"
+  ): folder =>
     val found = done(
       "search --family doubting --candidates 16 --episodes 2 --fresh " +
         s"16 --duration 12s --link vpn --out $folder/found"

@@ -137,7 +137,7 @@ class RosFlightSimulation extends munit.FunSuite, Optimised:
 
   // Odometry is up to 20 ms old, which `predictive` knows of and `stream` does not.
   for (loop, most) <- Seq(LoopKind.Stream -> 0.1, LoopKind.Predictive -> 0.05) do
-    test(s"${loop.label} flies the duel by topics nearly as by the same velocities without them"):
+    test(s"${loop.label} flies the duel by topics nearly as with equal velocities without them"):
       val Seq(topics, direct) = Seq(true, false).map: byTopics =>
         val (outcome, recording) = flown(settings(loop, 40), byTopics).fold(fail(_), identity)
         assertEquals(outcome, FlightOutcome.Completed)
@@ -151,7 +151,7 @@ class RosFlightSimulation extends munit.FunSuite, Optimised:
       assertEquals(outcome, FlightOutcome.Completed)
       assert(recording.decisions.size > 20, recording.decisions.size)
 
-  test("paused, and a link with a rate, are refused before anything moves"):
+  test("paused, and a link with a rate, are refused before any vehicle moves"):
     assert(flown(settings(LoopKind.Paused, 3)).left.exists(_.contains("which vehicles of ROS 2 have not")))
     val slow = LatencyProfile.parse("rate:50mbit,vpn", Left(_)).fold(error => fail(error.message), identity)
     val over = settings(LoopKind.Stream, 3).copy(links = List(slow))

@@ -59,13 +59,13 @@ class PythonPackageLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
       .toVector
     assert(distances.last < distances.head - 2, distances.mkString(", "))
 
-  test("the package passes its own tests, where python3 has what they need"):
+  test("the package passes its own tests, if python3 has the required packages"):
     assumeTestable()
     val passed = ran("python3", "-m", "pytest", "-q", ".", "--ignore=tests/test_notebooks.py")
     assert(passed.isRight, passed.left.getOrElse(""))
 
   for name <- Seq("measure-my-loop", "write-and-search", "train-under-delay", "delay-anywhere") do
-    test(s"the notebook $name runs from top to bottom, where python3 has what it needs"):
+    test(s"the notebook $name runs from top to bottom, if python3 has the required packages"):
       assumeTestable()
       val passed = ran("python3", "-m", "pytest", "-q", "-rs", "-k", name, "tests/test_notebooks.py")
       assert(passed.isRight, passed.left.getOrElse(""))
