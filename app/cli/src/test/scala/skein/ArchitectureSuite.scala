@@ -2,7 +2,7 @@ package skein
 
 import java.nio.file.{Files, Path}
 
-/** Holds the sources to ARCHITECTURE.md: modules, packages, and that imports point downwards. */
+/** Compares the sources with ARCHITECTURE.md: modules, packages, and that imports point downwards. */
 class ArchitectureSuite extends munit.FunSuite:
   private val root =
     Iterator.iterate(Path.of("").toAbsolutePath)(_.getParent).find(at =>

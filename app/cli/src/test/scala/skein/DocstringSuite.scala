@@ -4,7 +4,7 @@ import java.nio.file.{Files, Path}
 import scala.jdk.CollectionConverters.*
 import skein.docs.Documentation
 
-/** Every public definition of the top level says what it is. A companion object may leave that to its class.
+/** Every public definition of the top level has a docstring. A companion object needs none beside its class.
   */
 class DocstringSuite extends munit.FunSuite:
   private val definition =
@@ -72,8 +72,8 @@ class DocstringSuite extends munit.FunSuite:
 
   private val Short = 40
 
-  /** Words with several meanings here, and how often docstrings may still say them. Rewrite a docstring
-    * rather than raise a number; lower it when there are fewer.
+  /** Words with several meanings here, and the limit of their number in docstrings. Rewrite a docstring
+    * rather than raise a limit; lower it when there are fewer.
     */
   private val mostOf = Vector(
     "the same" -> 13,

@@ -37,7 +37,7 @@ class BrowserAttackLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, 
 
   private val free = Address("127.0.0.1", 0)
 
-  /** Calls of MessagePack-RPC whose effect would be noticed. */
+  /** Calls of MessagePack-RPC with an observable effect. */
   private val calls: Array[Byte] =
     def text(said: String) = (0xa0 | said.length).toByte +: said.getBytes("US-ASCII")
     Array[Byte](0x94.toByte, 0, 1) ++ text("enableApiControl") ++ Array[Byte](

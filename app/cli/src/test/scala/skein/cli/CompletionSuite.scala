@@ -9,7 +9,7 @@ class CompletionSuite extends munit.FunSuite:
     val ran = Ran.of(Main.run(words))
     (ran.status, ran.said)
 
-  /** What bash offers for a line whose last word is being typed. */
+  /** Bash's suggestions for a line whose last word is being typed. */
   private def offered(line: String*): Set[String] =
     val script  = printed("completion", "bash")._2
     val words   = line.map(word => s"'$word'").mkString(" ")

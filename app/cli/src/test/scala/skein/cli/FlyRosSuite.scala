@@ -2,7 +2,7 @@ package skein.cli
 
 import skein.scenario.Scenarios
 
-/** `./skein fly --ros`, as far as it goes without ROS 2. */
+/** `./skein fly --ros`, up to the point that needs ROS 2. */
 class FlyRosSuite extends munit.FunSuite:
   private given Scenarios = Scenarios.ours
 

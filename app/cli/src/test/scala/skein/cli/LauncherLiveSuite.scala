@@ -11,7 +11,7 @@ class LauncherLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders:
   private val checkout =
     Iterator.iterate(File("").getAbsoluteFile)(_.getParentFile).find(File(_, "sbtw").exists).get
 
-  /** Where a build puts the program. */
+  /** The path at which a build puts the program. */
   private val program = "app/cli/target/package/skein-1.0-any"
 
   private val copy = FunFixture[Path](

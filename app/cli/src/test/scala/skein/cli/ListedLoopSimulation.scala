@@ -5,7 +5,7 @@ import skein.loop.{LoopEvent, OwnLoop, SnapshotGraph}
 import skein.scenario.Scenarios
 import skein.testing.{TemporaryFolders, Unhurried}
 
-/** A program with a loop of its own, as a user writes it: the vehicles take turns to decide. */
+/** A program with a user's own loop, in which the vehicles take turns to decide. */
 object TakingTurns extends SkeinApp(Scenarios.ours.kinds*):
   override def loops: Seq[OwnLoop] = Seq(
     OwnLoop(

@@ -5,8 +5,8 @@ import skein.report.DuelReport
 import skein.scenario.Scenarios
 import skein.testing.{Lengthy, TemporaryFolders, Waiting}
 
-/** Programs are processes of this machine's shell. A JVM of its own, for the command gives its threads the
-  * lead.
+/** Programs are processes of this machine's shell. Runs in a separate JVM, since the command gives its
+  * threads precedence.
   */
 class MarginCommandLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
   private given Scenarios = DuelReport.scenarios

@@ -16,7 +16,7 @@ final case class Doubting(turnRateRadPerS: Double, doubtS: Double) extends Headi
     val most   = turnRateRadPerS * seen.elapsedS * doubtS / (doubtS + seen.opponentAgeS)
     (seen.ownHeadingRad + wanted.max(-most).min(most), memory)
 
-/** A program with a family of policies of its own, as a user writes it. */
+/** A program with a user's own family of policies. */
 object Doubters extends SkeinApp(Scenarios.ours.kinds*):
   override def policyFamilies: Seq[PolicyFamily] = Seq(family("doubting"))
 

@@ -5,7 +5,7 @@ import scala.jdk.CollectionConverters.*
 import skein.docs.Documentation
 import skein.testing.{TemporaryFolders, Unhurried}
 
-/** Commands take a scenario's file as they take a scenario of the program, and a recording holds it. */
+/** Commands accept a scenario's file like a scenario of the program, and a recording contains its text. */
 class ScenarioFileSimulation extends munit.FunSuite, TemporaryFolders, Unhurried:
   private val ring = Documentation.root.resolve("examples/scenario-in-python/ring.scenario")
 

@@ -3,7 +3,7 @@ package skein.cli
 import java.nio.file.Files
 import skein.testing.TemporaryFolders
 
-/** `./skein serve --ros`, as far as it goes without ROS 2. `RosLiveSuite` has the rest. */
+/** `./skein serve --ros`, up to the point that needs ROS 2; `RosLiveSuite` tests the rest. */
 class ServeRosSuite extends munit.FunSuite, TemporaryFolders:
   private def said(words: String*): String =
     val ran = Ran.of(ServeCommand.run(words))

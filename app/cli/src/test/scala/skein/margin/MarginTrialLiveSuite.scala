@@ -17,7 +17,7 @@ class MarginTrialLiveSuite extends munit.FunSuite, Waiting:
   private val duel     = PaperDuel()
   private val vehicles = duel.agents.map(Vehicles.settings)
 
-  /** The run of a script, and what it printed. */
+  /** The run of a script, and its output. */
   private def run(script: String, seconds: Double, judge: MarginJudge = MarginJudge.Contacts) =
     MarginTrial(
       Seq("bash", "-c", script),

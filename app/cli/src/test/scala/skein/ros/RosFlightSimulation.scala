@@ -17,8 +17,8 @@ import skein.testing.Optimised
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** Flights by odometry and `cmd_vel` in virtual time: all of `fly --ros` and `serve --ros` but the
-  * middleware, of whose place a function call takes.
+/** Flights by odometry and `cmd_vel` in virtual time: all parts of `fly --ros` and `serve --ros` except the
+  * middleware, which function calls replace.
   */
 class RosFlightSimulation extends munit.FunSuite, Optimised:
   private def settings(loop: LoopKind, seconds: Double) = FlySettings(
@@ -30,7 +30,7 @@ class RosFlightSimulation extends munit.FunSuite, Optimised:
     planning = PlanSettings(horizonSteps = 10, slices = 2, blocksPerSlice = 1)
   )
 
-  /** A vehicle without topics between: the truth is read, and the same velocities are flown. */
+  /** A vehicle without topics between: its readings are the truth, and it receives equal velocities. */
   private final class Direct(server: SimulatorServer, index: Int, clock: Clock) extends VehiclePort:
     import scala.concurrent.ExecutionContext.parasitic
     private var flying = Promise[Either[VehicleError, Boolean]]()
@@ -61,7 +61,7 @@ class RosFlightSimulation extends munit.FunSuite, Optimised:
       act(Action.Hover, Span.ofSeconds(1)): Unit
       Future.successful(Right(true))
 
-  /** @param byTopics whether odometry and commands go by messages */
+  /** @param byTopics whether odometry and commands are sent as messages */
   private def flown(
       settings: FlySettings,
       byTopics: Boolean = true

@@ -7,8 +7,8 @@ import scala.sys.process.{Process, ProcessLogger}
 import scala.util.Using
 import skein.testing.{Lengthy, TemporaryFolders}
 
-/** The wheel as a user installs it: in a fresh environment, it trains. Skipped where there is no Python, or
-  * where its packages cannot be fetched. The package's own tests take longer, and run where Python has their
+/** The wheel, installed as by a user into a fresh environment, in which it trains. Skipped without Python, or
+  * if its packages cannot be fetched. The package's own tests take longer, and run where Python has their
   * dependencies.
   */
 class PythonPackageLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:

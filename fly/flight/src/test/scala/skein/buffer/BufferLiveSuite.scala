@@ -60,7 +60,7 @@ class BufferLiveSuite extends munit.FunSuite, Waiting:
       assert(counts.moves > 1 && counts.plans > 1, counts.toString)
       assertEquals((counts.refusedPlans, counts.failedMoves), (0L, 0L))
 
-  /** The vehicle's state at a time of the simulator's clock, or later. */
+  /** The vehicle's state at `at` on the simulator's clock, or later. */
   private def resting(drone: Multirotor, at: Instant): Future[Stamped[Kinematics]] =
     drone.kinematics().map(right).flatMap: seen =>
       if seen.validAt >= at then Future.successful(seen) else after(200.millis)(resting(drone, at))

@@ -17,17 +17,17 @@ import skein.testing.Unhurried
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** The buffer beside the built-in simulator's ordinary moves, in virtual time; the simulator's own buffer is
-  * the oracle.
+/** The external buffer, which uses the built-in simulator's ordinary moves, in virtual time. The simulator's
+  * own buffer is the oracle.
   */
 class BufferSimulation extends munit.FunSuite, Unhurried:
 
   /** A call that has reached the simulator. */
   private final case class Called(at: Instant, method: String)
 
-  /** A simulator, a link with a buffer beside it, and clients of both.
+  /** A simulator, a link with a buffer in front of it, and clients of both.
     *
-    * @param lan between the buffer and the simulator
+    * @param lan link between the buffer and the simulator
     * @param speed of the simulator's clock
     */
   private final class Bench(lan: LatencyProfile, speed: Double)(using val system: ActorSystem):
@@ -94,8 +94,8 @@ class BufferSimulation extends munit.FunSuite, Unhurried:
 
   private def right[E, A](answer: Either[E, A]): A = answer.fold(error => fail(error.toString), identity)
 
-  /** Flies plans of turns, a new one every 100 ms, of which some do not arrive, and reads the position every
-    * 50 ms over a connection of its own.
+  /** Sends plans of turns, a new one every 100 ms, of which some do not arrive, and reads the position every
+    * 50 ms over a separate connection.
     *
     * @param through the address that plans are sent to
     */

@@ -14,7 +14,7 @@ class BuffersSuite extends munit.FunSuite:
 
   private val accepted = Verdict.Answer(Right(Bool(true)))
 
-  /** Speeds and times of the moves that have reached the simulator. */
+  /** Speeds and times of the moves that the simulator received. */
   private def flown(bench: BuffersBench): Vector[(Double, Double)] =
     bench.performed.toVector.map(one => (speedOf(one.move), atMs(one.simulated)))
 

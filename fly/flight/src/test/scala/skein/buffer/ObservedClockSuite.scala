@@ -8,7 +8,7 @@ class ObservedClockSuite extends munit.FunSuite:
 
   private def ms(time: Double) = began + Span.ofMillis(time)
 
-  /** What a simulator's clock shows that has gone at a speed, but stood still meanwhile. */
+  /** A simulator's clock that ran at a constant speed, except for a pause. */
   private final case class Simulator(
       speed: Double,
       stopMs: Double = 1e9,

@@ -41,8 +41,8 @@ class DecentralisedSimulation extends munit.FunSuite, TemporaryFolders, Optimise
     assertEquals(flown.landed.outcome, FlightOutcome.Completed)
     flown.recorder
 
-  /** What was decided when and by which states, without the numbers of the readings, and without what the
-    * others were commanded, which only one controller of all knows.
+  /** The decisions, with their times and states, but without the numbers of the readings and the commands to
+    * other vehicles, which only a single controller knows.
     */
   private def decisions(recording: Recording): Vector[DecisionRow] = recording.decisions
     .sortBy(made => (made.vehicle, made.sequence))

@@ -22,7 +22,7 @@ import skein.testing.Unhurried
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** Flights with a simulator whose clock is wrong, and beside another client of it. */
+/** Flights with a simulator whose clock is wrong, or that has another client. */
 class LyingSimulatorSimulation extends munit.FunSuite, Unhurried:
   private given Scenarios = Scenarios.ours
 

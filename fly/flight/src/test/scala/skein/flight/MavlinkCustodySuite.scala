@@ -1,7 +1,7 @@
 package skein.flight
 
 class MavlinkCustodySuite extends munit.FunSuite:
-  /** What the last check finds, of checks that see these vehicles taken. */
+  /** The result of the last of several checks, each with its set of vehicles that follow no setpoints. */
   private def found(lands: Set[String], taken: Set[String]*): Option[String] =
     var now     = Set.empty[String]
     val custody = MavlinkCustody(

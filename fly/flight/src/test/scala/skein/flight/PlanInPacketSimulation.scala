@@ -80,7 +80,7 @@ class PlanInPacketSimulation extends munit.FunSuite, TemporaryFolders, Unhurried
     assertEquals((replayed.decidedAgain, replayed.isSame), (None, true))
     assert(flown.recording.events.exists(_.kind == EventKind.TimedOut), "no outage came")
 
-  /** A vehicle that moves a little with each command, and holds no plans. */
+  /** A vehicle that moves a little with each command, and accepts no plans. */
   private final class Plain(clock: Clock) extends VehiclePort:
     private var at = Vector3.Zero
 

@@ -244,7 +244,7 @@ class RunningSimulatorSimulation extends munit.FunSuite, Unhurried:
         flown.events.filter(event => event.kind == EventKind.TimedOut && event.detail.contains("cancel"))
       assertEquals(told.size, 1, told.toString)
 
-  /** When moves were sent whose predecessors were answered more than 300 ms later. */
+  /** Times of moves whose predecessors were answered more than 300 ms later. */
   private def answeredLate(recording: Recording): Vector[Instant] =
     val ended = recording.acknowledgements.map(ack => (ack.vehicle, ack.command) -> ack.endedAt).toMap
     for

@@ -15,7 +15,7 @@ import skein.vtime.VirtualTime
 class FailedFlightSuite extends munit.FunSuite:
   private val lost = Left(VehicleError.TimedOut("hover: no answer within 500 ms"))
 
-  /** Counts unfinished calls; its first hovers are lost, and moves also end by themselves. */
+  /** Counts unfinished calls. Its first hovers are lost, and its moves also end by themselves. */
   private final class Counted(port: VehiclePort, lostHovers: Int)(using system: ActorSystem)
       extends VehiclePort:
     import system.dispatcher

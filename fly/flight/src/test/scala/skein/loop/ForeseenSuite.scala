@@ -26,7 +26,7 @@ class ForeseenSuite extends munit.FunSuite:
       val state = Kinematics(agent.startPositionNed, Vector3.Zero, Quaternion.Identity, Vector3.Zero)
       view.withReading(Reading(vehicle, 0, Stamped(state, millis(20), millis(0), millis(40))))
 
-  /** The view of a loop that has sent its commands and asks again `later`, with nothing read since. */
+  /** The view of a loop that has sent its commands and decides again at `now`, without newer readings. */
   private def predicted(view: TeamView, now: Instant) =
     view.copy(estimates = view.forecast.flatMap(_.whenActing(now)))
 

@@ -12,7 +12,7 @@ import skein.testing.Optimised
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** The paper's duel with a controller for each vehicle, seen from the vehicles: who calls them. */
+/** The paper's duel with a controller for each vehicle; the vehicles record which controllers call them. */
 class OwnControllersSimulation extends munit.FunSuite, Optimised:
 
   /** A vehicle as one controller reaches it. */

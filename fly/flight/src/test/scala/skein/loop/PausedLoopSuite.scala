@@ -13,7 +13,7 @@ import skein.vtime.VirtualTime
 class PausedLoopSuite extends munit.FunSuite:
   private val lost = Left(VehicleError.TimedOut("lost: no answer within 500 ms"))
 
-  /** A vehicle whose readings in `failing` fail, and whose first hovers do. */
+  /** A vehicle whose readings in `failing`, and whose first hovers, fail. */
   private final class Fragile(port: VehiclePort, isPaused: () => Boolean, failing: Range, failedHovers: Int)
       extends VehiclePort:
     private var reads, hovers = 0

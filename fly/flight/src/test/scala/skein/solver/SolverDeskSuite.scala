@@ -30,7 +30,7 @@ class SolverDeskSuite extends munit.FunSuite:
         waits = waits.tail
         next.run()
 
-  /** What a desk replies, and whether the message was of use. */
+  /** A desk's replies, and whether the message was useful. */
   private final class Trial(workers: ExecutionContext)(using ActorSystem):
     private var replies = Vector.empty[SolverMessage]
     val desk            =

@@ -12,7 +12,7 @@ import skein.link.*
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** In virtual time, where attempts to connect go as scripted. */
+/** Links in virtual time, whose attempts to connect follow a script. */
 class TcpLinkSuite extends munit.FunSuite:
   private val at      = Address("solver", 7400)
   private val message = ByteString(SolverMessageCodec.bytes(SolverMessage.Unknown(5)))
@@ -31,9 +31,9 @@ class TcpLinkSuite extends munit.FunSuite:
   private val framed     = ByteString(0, 0, 0, message.size.toByte) ++ message
   private val saying     = Source.single(framed).initialDelay(50.millis)
 
-  /** What happens on a link within some seconds.
+  /** The events of a link within some seconds.
     *
-    * @param attempts the first ones; the last repeats
+    * @param attempts results of the first attempts; the last one repeats
     */
   private final class Trial(attempts: Attempt*)(using system: ActorSystem):
     var news     = Vector.empty[LinkNews]

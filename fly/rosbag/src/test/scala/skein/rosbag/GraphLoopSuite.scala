@@ -5,7 +5,7 @@ import skein.ros.message.*
 import skein.ros.{Qos, RosGraph}
 import skein.units.{Expect, Instant, Span}
 
-/** The loop of a graph without a middleware. Times are in milliseconds: of arrivals on the observer's clock.
+/** The loop of a graph without a middleware. Times are in milliseconds; arrivals are on the observer's clock.
   */
 class GraphLoopSuite extends munit.FunSuite:
   private val zero  = Vector3(0, 0, 0)

@@ -15,7 +15,7 @@ import skein.torture.{Disk, FaultyRecorder}
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** What is reported, recorded and answered when a flight goes wrong, and when. */
+/** The reports, records and outcomes of flights with faults, and their times. */
 class FailureTellingSimulation extends munit.FunSuite, Unhurried:
   private def settings(loop: LoopKind) = FlySettings(
     List(loop),

@@ -10,9 +10,7 @@ import skein.signal.Stamped
 import skein.testing.Unhurried
 import skein.units.*
 
-/** The checks find what they are meant to find: the trace of a clean flight is forged in one detail at a
-  * time.
-  */
+/** Each check finds its violation: the trace of a clean flight is forged in one detail after another. */
 class ChecksSimulation extends munit.FunSuite, Unhurried:
   private val clean = undisturbed(LoopKind.Stream)
 

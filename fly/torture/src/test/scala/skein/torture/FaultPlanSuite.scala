@@ -5,7 +5,7 @@ import skein.loop.LoopKind
 import skein.scenario.PaperDuel
 import skein.units.*
 
-/** The faults that seeds draw: enough of every kind, none in the calm. */
+/** The faults drawn from seeds: enough of every kind, and none in the calm. */
 class FaultPlanSuite extends munit.FunSuite:
   private val duration   = Span.ofSeconds(30)
   private val start      = Span.ofMillis(500)

@@ -6,7 +6,7 @@ import skein.scenario.PaperDuel
 import skein.testing.Unhurried
 import skein.units.*
 
-/** Each fault alone really happens, is survived by the loop, and ends when the calm begins. */
+/** Each kind of message fault occurs, does not end the loop, and ceases when the calm begins. */
 class MischiefSimulation extends munit.FunSuite, Unhurried:
   private def flown(messageFaults: MessageFaults): FlightTrace =
     val faultPlan = FaultPlan

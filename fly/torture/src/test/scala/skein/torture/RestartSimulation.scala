@@ -3,7 +3,7 @@ package skein.torture
 import skein.testing.Unhurried
 import skein.units.*
 
-/** Seeds that once were violations, of the loop or of the checks. */
+/** Seeds with earlier violations, by the loop or in the checks. */
 class RestartSimulation extends munit.FunSuite, Unhurried:
   test(
     "restarts before or between the readings of one step, or during an answer, break no rule"
