@@ -56,7 +56,7 @@ final case class BudgetCells(
 object BudgetSubject:
   val Stopped = "stopped before the map was whole"
 
-/** A team in forward simulation, with numbers of its episodes.
+/** A team in forward simulation, whose episodes yield numbers.
   *
   * @param team simulated over links
   * @param atRest simulated in a world that stands still while the controller decides

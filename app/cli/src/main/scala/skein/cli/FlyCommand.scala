@@ -220,8 +220,8 @@ final class FlyCommand(using Scenarios)
         )
         VirtualFlights.fly(settings, due, out)((_, _) => ()).map(flown ++ _)
 
-  /** @param keep a flight's summary under its name: as long as its records are in memory, and while others
-    *   still fly
+  /** @param keep called with each flight's name and summary, while its records are in memory and others still
+    *   run
     */
   private def flyVirtual(
       settings: FlySettings,

@@ -64,7 +64,7 @@ private[flight] final class Approach(
             case None        => after(Every.toDuration)(steer(goal, Some(move)))
         yield next
 
-  /** Commands it to hover, and checks whether it stays. */
+  /** Commands the vehicle to hover, and checks whether it stays at the goal. */
   private def settle(goal: Goal, before: Option[Move]): Future[Either[String, Kinematics]] =
     def watch(looks: Int, good: Int): Future[Either[String, Kinematics]] = look: state =>
       val stays = if goal.isHeld(state) then good + 1 else 0

@@ -16,7 +16,7 @@ import skein.units.Decimals.fixed
   *
   * @param isOther checks whether the simulator is another one; `Left` if it did not answer, else the
   *   evidence, if any
-  * @param answers asks the simulator for a sign of life over the flight's link
+  * @param answers requests a sign of life from the simulator over the flight's link
   * @param isShared whether other clients may take the vehicles: then it is checked every
   *   [[SimulatorWatchdog.AskEvery]]
   * @param within time-out of an answer

@@ -9,8 +9,8 @@ import skein.units.*
 /** A team's decisions, rolled forward by its own policies and the models that predict it: what each vehicle
   * will be commanded if nothing unforeseen happens. Pure.
   *
-  * Each vehicle decides once a period on the predicted states of all. Their readings are taken to be as old
-  * as they are now. Where the policies of others are not known, one vehicle alone decides.
+  * Each vehicle decides once a period on the predicted states of all. Their readings are assumed to keep
+  * their present ages. Where the policies of others are not known, one vehicle alone decides.
   */
 private final class Foreseen(fleet: Fleet, deciders: IndexedSeq[Decider], period: Span):
   import Foreseen.*

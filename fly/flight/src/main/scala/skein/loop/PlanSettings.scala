@@ -20,8 +20,8 @@ import skein.units.*
   * @param slowestShare least commanded speed, as a share of the vehicle's; 1: only its heading is planned
   * @param separationM to be kept from vehicles that are not the opponent; 0: none
   * @param geofenceM to be kept to north and south, east and west of the origin; 0: none
-  * @param kept of the scenario's limits, with a margin of [[PlanSettings.Doubt]], of speeds
-  *   [[PlanSettings.SpeedDoubt]]; not in the text
+  * @param kept the scenario's limits that plans keep, with the margin [[PlanSettings.Doubt]], or
+  *   [[PlanSettings.SpeedDoubt]] of speeds; not part of the text
   */
 final case class PlanSettings(
     deadline: Span = Span.ofMillis(60),
@@ -139,7 +139,7 @@ object PlanSettings:
     PathIntegral -> PlanMethod.PathIntegral(temperature = 0.1)
   )
 
-  /** Blocks for a tenth of a millisecond with SIMD, for two without. */
+  /** Blocks of a slice by default: a slice takes some 0.1 ms with SIMD, and 2 ms without. */
   val defaultBlocks: Int = if Planner.isFast then 4 else 1
 
   /** The text form of a setting, if it is one word. */

@@ -38,10 +38,10 @@ final case class LinkFit(
 object LinkFit:
   /** Fits a link.
     *
-    * Loss: the share of lost requests, and their mean number in a row, which is fitted if it exceeds that of
-    * independent losses, 1/(1 − share), by three standard errors. Correlation: of the ranks r of successive
-    * round trips, which are Δ apart, e^(−Δ/τ), fitted if it exceeds that of independent ones by three
-    * standard errors; ranks, because [[skein.signal.LatencyProfile.Correlated]] holds the share at which the
+    * Loss: the share of lost requests. Their mean number in a row is fitted if it exceeds that of independent
+    * losses, 1/(1 − share), by three standard errors. Correlation: e^(−Δ/τ) between the ranks of successive
+    * round trips, which are Δ apart; fitted if it exceeds that of independent ranks by three standard errors.
+    * Ranks are used because [[skein.signal.LatencyProfile.Correlated]] holds the share at which the
     * distribution is read.
     */
   def of(traces: Seq[RoundTripTrace]): LinkFit =
