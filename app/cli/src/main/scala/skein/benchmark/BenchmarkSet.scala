@@ -71,7 +71,7 @@ object BenchmarkSet:
           ConfigFactory.parseString(text).withFallback(ConfigFactory.load()).resolve.withOnlyPath("skein.fly")
         )
         .left
-        // The text's lines say nothing to a user.
+        // Line numbers of this text mean nothing to a user.
         .map(_.replaceFirst("""^String: \d+: skein\.fly\.[\w.-]+: """, ""))
 
   /** The set of `./skein benchmark`, of [[Version]]. */

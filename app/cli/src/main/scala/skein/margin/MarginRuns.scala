@@ -55,7 +55,7 @@ final class MarginRuns(
       Done(which, ended.run, ended.printed)
 
   private def flown(links: Vector[LatencyProfile], done: Vector[Done]) =
-    // A run that was cut short says nothing.
+    // A run that was cut short is not counted.
     val whole = if isStopped() then done.filter(_.run.value.isRight) else done
     Flown(
       links.zipWithIndex.map((link, index) =>

@@ -148,7 +148,7 @@ private[buffer] final class BufferStage(judge: BufferStage.Judge)
           case Verdict.Pass(vehicle) =>
             outward = outward ++ bytes
             for name <- vehicle do
-              // Without an id, and among too many, its answer would not be noticed.
+              // Without an id, or beyond the limit of moves, its answer would not be noticed.
               val before = id.fold(Option(name))(number =>
                 if moves.size < MostMoves then moves.put(number, name) else Some(name)
               )
@@ -187,7 +187,7 @@ private[buffer] final class BufferStage(judge: BufferStage.Judge)
         own = ByteString.empty
         if !calls.isLost then pieces += Piece.Rest(calls.giveUp())
         judge.lost()
-        // What held bytes waits for no more of them.
+        // Bytes held for an incomplete message pass now.
         proceed()
 
 private[buffer] object BufferStage:

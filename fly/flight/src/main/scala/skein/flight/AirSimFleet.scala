@@ -50,7 +50,7 @@ private[flight] final class AirSimFleet(
         before.flatMap(clients => connect(plan, address, line, opened, monitor).map(clients :+ _))
       reached = clients.map: client =>
         ready.zipWithIndex.map((vehicle, index) =>
-          // Altitudes count from where each vehicle starts, as in its own frame.
+          // Altitudes count from each vehicle's start, as in its own frame.
           vehicle.over(client, vehicle.originNed.copy(z = 0), index)
         )
       vehicles = ready.indices.toVector.map(at => reached(settings.own.indexOf(at).max(0) % reached.size)(at))

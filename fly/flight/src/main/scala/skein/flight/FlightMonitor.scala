@@ -107,7 +107,7 @@ final class FlightMonitor(
       decision <- newest.map(_.row)
       heard    <- heardAt
     yield
-      // From when physics was sampled until the reading came.
+      // From the sampling of physics to the reading's receipt.
       val underWay = decision.trueAge.fold(Span.Zero)(_.own - decision.observations.ownAge)
       val apart    =
         decision.own.state.value.positionNed.horizontalDistance(decision.opponent.state.value.positionNed)

@@ -99,7 +99,7 @@ object LiveFlights:
       .flatMap:
         case Left(reason)    => Future.successful(Left(reason))
         case Right(recorder) =>
-          // Its end is the flight's, of which the graph is asked until then.
+          // It lives as long as the flight, whose graph can be requested until then.
           val own = Materializer(system)
           assembler
             .start(plan, ObservedRecorder(recorder, observe(heading), assembler.keeps), Some(own))

@@ -69,7 +69,7 @@ object ProgressBoard:
       for furthest <- progress.map(_.flown).maxOption if furthest >= shownAt + every do
         shownAt = furthest
         val flights = progress.map(one => s"${one.id} ${one.text.trim}").mkString("; ")
-        // Of flights that start one after another, the last still flies when the first has ended.
+        // When flights start one after another, the last one still runs after the first has ended.
         val flown = progress.map(_.done).max.min(duration).toSeconds
         out.println(s"${flown.fixed(0)} s of ${duration.toSeconds.fixed(0)} s: $flights")
 

@@ -41,8 +41,7 @@ private[flight] final class SimulatorWatchdog(
 
   @volatile private var life = SignsOfLife()
 
-  // When a silence ended last, and when the simulator was known last to be the one that the flight began
-  // with.
+  // When the last silence ended, and when the simulator was last known to be the original one.
   @volatile private var backAt, knownAt = startedAt
   @volatile private var asking          = false
   @volatile private var askedAt         = startedAt
@@ -68,7 +67,7 @@ private[flight] final class SimulatorWatchdog(
   def last(): Future[FlightOutcome] = endedSilent match
     case None        => checked()
     case Some(lasts) =>
-      // An outage of the link at the end of a flight says nothing against it; a dead simulator does.
+      // An outage of the link at the end of a flight does not invalidate it; a dead simulator does.
       val asked = UntilCertain(answers(), AttemptsAtEnd, LookEvery)(identity)
       asked.transformWith:
         case Success(true) => checked()

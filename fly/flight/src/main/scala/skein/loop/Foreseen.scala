@@ -44,7 +44,7 @@ private final class Foreseen(fleet: Fleet, deciders: IndexedSeq[Decider], period
       before ++ action.map(action => (at = course.at, action = action))
     if all.exists(_.sizeIs >= CommandPlan.Most) then all
     else
-      // One that does not decide is predicted from its readings, whatever it is told.
+      // A vehicle that does not decide is predicted from its readings, whatever its commands.
       val flown = courses.lazyZip(actions).map: (course, action) =>
         course.flown(ActionGuidance.of(action.getOrElse(Action.Hover)), period)
       val moved = made.flatten.foldLeft(view)((view, made) => view.withMove(made._2.move(now)))

@@ -9,7 +9,7 @@ private final class Foresight(foreseen: Foreseen, starts: Vector[Memory]):
 
   @volatile private var minds = starts.map(Mind(_, None))
 
-  // The vehicles of a team foresee the same: what was foreseen for one is kept for the others.
+  // Each vehicle of a team foresees equal actions: those foreseen for one are kept for the others.
   @volatile private var last = Option.empty[(Forecast, Vector[Actions])]
 
   /** Notes a decision and the memory after it. */

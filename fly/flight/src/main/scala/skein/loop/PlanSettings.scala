@@ -159,7 +159,7 @@ object PlanSettings:
   private given Word[Double] = word("", _.toString, _.toDoubleOption)
   private given Word[String] = word("", identity, Some(_))
 
-  // The scenario says these.
+  // Set by the scenario.
   private given Word[Vector[Kept]] = Word("", _ => None, _ => Some(Vector.empty))
 
   private val mirror = summon[Mirror.ProductOf[PlanSettings]]

@@ -153,7 +153,7 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
         else before.decide(views, recorded.decidedAt, slices)
       val decisions = made.map(rows.decision)
       val decided   = decisions.map(decision => (decision.vehicle, decision.sequence) -> decision).toMap
-      // Where its number is another, it differs from what is recorded.
+      // If its number is wrong, the comparison with the recorded decision finds that.
       val own = decisions(planners.indexOf(recorded.vehicle))
       (states.copy(jointly = Some(next), decided = decided), own)
 

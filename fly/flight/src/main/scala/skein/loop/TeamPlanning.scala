@@ -56,7 +56,7 @@ private final class TeamPlanning(
     )
     val limits = turningAtOnce(alone.sinceDecisionS)
     Part(
-      // Other speeds than that of the place wanted are for catching up.
+      // The vehicle cruises at the speed of its goal; other speeds serve to catch up with it.
       objective.copy(limits = limits, cruiseSpeed = settings.speedMps(speed(along))),
       alone.copy(suggested = suggested(request, memory, alone, limits)),
       Planning.stream(seed, self, memory)

@@ -35,7 +35,7 @@ object FlownVehicles:
           val Vector3(x, y, _)   = state.value.positionNed
           val Vector3(vx, vy, _) = state.value.velocityNed
           Sample(state.validAt.since(start).toSeconds, x, y, vx, vy)
-        // What it is told to do after its last command, hovering, is not recorded.
+        // The command after its last recorded one, to hover, is not recorded.
         .takeWhile(_.atS <= arrivals.last.atS)
       TimeHistory(s"${recording.flight.id}, ${vehicle.name}", samples, arrivals, commands.last.down.value)
 

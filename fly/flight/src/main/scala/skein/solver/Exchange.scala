@@ -78,7 +78,7 @@ final case class Exchange private (
   /** Aligns the clocks. Another start of a solver has another clock, and begins new counts. */
   private def aligned(answer: Answer, asked: Instant, at: Instant): Exchange =
     val thinking = answer.answeredAt.since(answer.takenAt).max(Span.Zero)
-    // As if it had taken no time: then both ways bound the offset.
+    // As if the solver had taken no time: then both directions bound the offset.
     val seen = Stamped((), answer.takenAt, asked, at - thinking)
     if solver.contains(answer.solver) then
       copy(clocks = Some(clocks.fold(ClockAlignment.of(seen))(_.updated(seen))))

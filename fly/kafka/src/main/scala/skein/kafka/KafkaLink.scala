@@ -45,7 +45,7 @@ final class KafkaLink(topics: KafkaTopics) extends MessageLink:
       case Failure(error) => news(LinkNews.Refused(error.getMessage))
     new OpenLink:
       def send(message: Array[Byte]): Either[String, Unit] =
-        // What is said while it is down is how the broker is found to be back.
+        // Messages are written while the link is down, too: a success shows that the broker is back.
         Expect.that(
           pipe.ready.value.exists(_.isSuccess) && pipe.send(message)
         )(isDown.get.getOrElse(away.get))

@@ -131,11 +131,11 @@ object Checks:
     case _                       => true
 
   private def unbounded(seen: FlightTrace): Vector[String] =
-    // Each sensor that a policy reads is asked beside the vehicle.
+    // Each sensor that a policy reads is requested separately from the vehicle.
     val sensors = seen.faultPlan.scenario.agents.map(_.policy.sensors.size).sum
     val most    = seen.vehicles.size.toLong * (seen.window + Moves.InFlight + SignsOfLife) +
       sensors * seen.window + seen.images.size * ImagesOnTheWay
-    // Where steps take no time, the flight is longer than it took.
+    // Steps may take no time on the controller's clock: then they measure the flight's length.
     val flown = seen.endedAt.since(seen.startedAt).toSeconds.max(seen.steps.begun * seen.period.toSeconds) + 1
     val rows  = Recorded.rows(seen.recording)
     val each  =

@@ -56,7 +56,7 @@ final class FaultyTransport(
     val moves = mutable.LongMap.empty[String]
     val tap   = Flow.fromFunction[Array[Byte], ByteString](request(moves, _))
     val ended = Flow[ByteString].watchTermination(): (_, done) =>
-      // Whatever was under way on a connection that is gone has no answer to come.
+      // Pending calls of a closed connection receive no answer.
       done.onComplete(_ => moves.values.foreach(unanswered(_) -= 1))
       NotUsed
     Flow[ByteString].via(replies(moves)).via(client).via(frames).via(tap).via(ended)
