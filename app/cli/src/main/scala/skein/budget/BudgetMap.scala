@@ -57,7 +57,6 @@ final case class BudgetMap(
     f"${mark.name}%-8s mean ${ms(mark.roundTrip.mean.toMillis)} ms, jitter ${ms(mark.roundTrip.jitter.toMillis)} ms: " +
       came + where
 
-  /** Whether a mark lies within the map's axes. */
   def isOnMap(mark: BudgetMark): Boolean =
     mark.roundTrip.mean.toMillis <= budget.meansMs.last && mark.roundTrip.jitter.toMillis <= budget.jittersMs.last
 

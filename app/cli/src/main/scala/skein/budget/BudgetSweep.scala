@@ -20,7 +20,6 @@ final class BudgetSweep(subject: BudgetSubject, axes: BudgetAxes, tolerance: Tol
   /** Episodes of each cell: the user's number, or as many as are simulated within seconds. */
   lazy val episodes: Int = asked.getOrElse(subject.cellEpisodes(known))
 
-  /** The engine that simulates the cells. */
   def engine: Engine = subject.engine(known)
 
   /** The subject's statistics over a link with these round trips. */

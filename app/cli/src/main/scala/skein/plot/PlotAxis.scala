@@ -26,7 +26,6 @@ object PlotAxis:
     val to    = math.ceil(upper / step - 1e-9) * step
     PlotAxis(label, from, to, ticksBetween(from, to, step))
 
-  /** An axis with exactly these ends. */
   def exactly(label: String, from: Double, to: Double, ticks: Int = 5): PlotAxis =
     PlotAxis(label, from, to, ticksBetween(from, to, niceStep((to - from) / ticks)))
 

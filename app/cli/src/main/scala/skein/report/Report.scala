@@ -126,6 +126,5 @@ object Report:
 
   private val DuckDb = ".duckdb"
 
-  /** Maps items on all cores, keeping their order. */
   private def onAllCores[A, B](items: Seq[A])(f: A => B): Vector[B] =
     InParallel.map(items, Runtime.getRuntime.availableProcessors)(f)

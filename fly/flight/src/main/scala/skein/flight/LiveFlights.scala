@@ -43,7 +43,6 @@ final class LiveFlights private (assembler: Vector[FlightAssembly])(using system
 
   private def of(id: String) = assembler.find(_.plan.id == id)
 
-  /** The running graphs, by the flights' names. */
   def graphs: Vector[(id: String, graph: RunningGraph)] =
     assembler.map(assembly => (assembly.plan.id, assembly.graph))
 

@@ -30,7 +30,6 @@ final class SolverServer private (listening: Listening, switch: SharedKillSwitch
     listening.close()
 
 object SolverServer:
-  /** Limit of simultaneously open connections. */
   val MostConnections = 64
 
   /** Time-out of the first message: a flight says hello as soon as it is connected. */
