@@ -11,8 +11,7 @@ private[cli] object Complaint:
   val MostOfAWord = 200
   val MostOfALine = 1000
 
-  /** Limit of the lines that are shown: a setting in a wrong place makes a mistake of each setting below it.
-    */
+  /** Limit of the lines that are shown: every setting in a misplaced section is a mistake. */
   val MostLines = 12
 
   /** @param reason a line for each mistake

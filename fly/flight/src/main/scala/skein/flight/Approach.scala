@@ -13,9 +13,9 @@ import skein.vehicle.GoTo
 /** Moves one vehicle to a position by velocity commands, turns it to the north on the way, and lets it hover
   * there.
   *
-  * Position commands do not serve: AirSim's hold of a position works only while the vehicle looks north, and
-  * at more than 90° of yaw it drives the vehicle away. Each command replaces the one before; at most two are
-  * unanswered.
+  * Position commands are unsuitable: AirSim's hold of a position works only while the vehicle looks north,
+  * and at more than 90° of yaw it drives the vehicle away. Each command replaces the one before; at most two
+  * are unanswered.
   *
   * @param calledOff why it must stop, evaluated at every step
   */

@@ -68,7 +68,7 @@ class OwnLoopSimulation extends munit.FunSuite, Unhurried:
     val replayed = Replayed.of(file)(using Scenarios.ours).fold(fail(_), identity)
     assertEquals((replayed.isSame, replayed.flownAgain), (true, None))
 
-  test("vehicles hover after a graph that does not command it"):
+  test("vehicles hover at the end even if the graph does not command it"):
     val idle = OwnLoop(
       "idle",
       (team, stop) =>
