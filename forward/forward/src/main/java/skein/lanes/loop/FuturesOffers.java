@@ -14,9 +14,9 @@ import skein.forward.Delays;
 import skein.forward.LoopTiming;
 import skein.forward.TabledDelays;
 
-/** The tasks of the {@code futures} loop: in each period one for each vehicle, which reads all vehicles in
- * sequence, and then offers the readings to its own vehicle. Tasks overlap and overtake. With the window of n
- * tasks full, a new one waits until a task ends: until the n-th latest of all ends.
+/** The tasks of the {@code futures} loop. Every period has one task for each vehicle: it reads all vehicles
+ * in sequence, and then offers the readings to its own vehicle. Tasks overlap and overtake one another. If n
+ * tasks are unfinished, the window's limit, a new task waits until one of them ends.
  */
 final class FuturesOffers extends LaneOffers {
   private static final int STEP = LaneDelays.placeOf(1);
@@ -29,25 +29,27 @@ final class FuturesOffers extends LaneOffers {
 
   private final int periodGrains, timeoutGrains, ahead, most;
 
-  /** Number of steps kept, always a power of two. */
+  /** Number of periods whose tasks are stored; a power of two. */
   private final int ring;
 
   // Tasks by agent and slot, from their own step's begin: when they begin, and when they end with an offer.
   private final int[][][] beginAt, end;
 
-  /** The latest ends of all earlier tasks, the latest first, from the start of the last known step. */
+  /** The n latest ends of all earlier tasks, the latest first, in grains from the start of the last drawn
+   * period.
+   */
   private final int[][] latest;
 
-  /** When the first task began in the last step that was not missed. */
+  /** Start of the first task in the last period that was not missed, in grains. */
   private final int[] began = new int[WORLDS];
 
-  /** 1 where the last drawn step has no tasks. */
+  /** 1 in worlds in which the last drawn period has no tasks, else 0. */
   private final int[] missed = new int[WORLDS];
 
-  /** By vehicle: the delay of a task's request, then of the answer. */
+  /** For each vehicle, the delay of a task's request, then of its answer. */
   private final int[][] drawn;
 
-  /** The oldest step that may still have offers, and the next step to draw. */
+  /** The oldest period with offers that may be pending, and the next period to draw. */
   private int oldest, next;
 
   // By agent: the next offer, the one behind it, and of the next its step and when its task began.
@@ -115,7 +117,7 @@ final class FuturesOffers extends LaneOffers {
     }
   }
 
-  /** The times at which an agent's tasks begin. */
+  /** Computes the times at which an agent's tasks begin. */
   private void begin(int agent, int[] begins) {
     int[] lastOf = latest[most - 1];
     IntVector zero = IntVector.broadcast(INTS, 0);
@@ -133,7 +135,7 @@ final class FuturesOffers extends LaneOffers {
     }
   }
 
-  /** The times at which an agent's tasks end, if they end with an offer. */
+  /** Computes when an agent's tasks end; {@link LaneOffers#NONE} for a task without an offer. */
   private void end(int[] begins, int[] ends) {
     IntVector none = IntVector.broadcast(INTS, NONE),
         past = IntVector.broadcast(INTS, PAST),
@@ -180,8 +182,8 @@ final class FuturesOffers extends LaneOffers {
     return true;
   }
 
-  /** Takes an agent's next offers in worlds where no other agent has an earlier one; at equal times, the
-   * first agent's is first.
+  /** Takes an agent's next offers in worlds where no other agent's offer is earlier. Of offers at equal
+   * times, that of the agent with the lower number is first.
    */
   private boolean take(int agent) {
     int[] own = soonest[agent];
@@ -211,7 +213,7 @@ final class FuturesOffers extends LaneOffers {
     return true;
   }
 
-  /** The times at which an agent's offering tasks read each vehicle; draws their delays again. */
+  /** Computes when the tasks of an agent's offers have read each vehicle; draws their delays again. */
   private void read(int agent) {
     delays.drawInTurn(taken, places, agent, (long) row * periodGrains, goesOn, drawn);
     for (int v = 0; v < vehicles; v++) {
@@ -225,7 +227,7 @@ final class FuturesOffers extends LaneOffers {
     }
   }
 
-  /** Finds an agent's next offers, in vectors in which it consumed some or may have more. */
+  /** Finds an agent's next offer in each world of the vectors that were taken. */
   private void look(int agent) {
     int[][] begins = beginAt[agent], ends = end[agent];
     IntVector none = IntVector.broadcast(INTS, NONE), zero = IntVector.broadcast(INTS, 0);

@@ -18,12 +18,12 @@ import skein.forward.LoopTiming;
 import skein.forward.TabledDelays;
 
 /** The {@code predictive} loop: every vehicle is read once a period, and half-way between two requests all
- * vehicles are offered what is known then. Answers enter a {@link LaneForecast} in the order of their
+ * vehicles are offered what is known at that time. Answers enter a {@link LaneForecast} in the order of their
  * arrival.
  *
- * <p>With the window of n requests full, a request waits until one ends: until the n-th latest of all ends. A
- * request that becomes due meanwhile is missed. Of events in one nanosecond, those known first are first, and
- * time-outs last, as in {@code Rollout}.
+ * <p>If n requests are unanswered, the window's limit, a request waits until one of them ends. A request that
+ * becomes due meanwhile is missed. Of events in one nanosecond, the one that was scheduled first is first,
+ * and time-outs are last, as in {@code Rollout}.
  */
 final class PredictiveOffers extends LaneOffers {
   private static final int STEP = LaneDelays.placeOf(1);
@@ -35,10 +35,10 @@ final class PredictiveOffers extends LaneOffers {
   private final LaneForecast forecast;
   private final int periodGrains, timeoutGrains, due, window;
 
-  /** Number of rows kept, a power of two: covers the time for which a request waits and fails. */
+  /** Number of rows that are stored, a power of two: enough for a request that waits and then times out. */
   private final int ring;
 
-  /** Whether requests may have to wait on some link. */
+  /** Whether a request may have to wait, on at least one link. */
   private boolean mayWait;
 
   // By vehicle: places of the next question's random numbers, when the last one began, and the latest ends
@@ -54,7 +54,7 @@ final class PredictiveOffers extends LaneOffers {
 
   private final int[] there = new int[WORLDS], back = new int[WORLDS];
 
-  /** The oldest row whose answers may be pending. */
+  /** The oldest row whose requests may have pending answers. */
   private int oldest;
 
   private int row;
@@ -154,7 +154,7 @@ final class PredictiveOffers extends LaneOffers {
     }
   }
 
-  /** Computes when the request is sent; one that is missed has no answer. */
+  /** Computes when the request is sent. A missed request has no answer. */
   private void await(int vehicle, int[] asked, int[] answers) {
     int[] begun = began[vehicle], lastOf = latest[vehicle][window - 1];
     IntVector none = IntVector.broadcast(INTS, NONE),
@@ -173,7 +173,7 @@ final class PredictiveOffers extends LaneOffers {
     }
   }
 
-  /** Computes the events after the request, where it is sent. */
+  /** Computes when the request ends, in worlds where it is sent. */
   private void goOn(int vehicle, int[] asked, int[] answers) {
     int[] places = this.places[vehicle];
     IntVector none = IntVector.broadcast(INTS, NONE),
@@ -198,7 +198,10 @@ final class PredictiveOffers extends LaneOffers {
     }
   }
 
-  /** Takes each world's next answer that is known at its decision; returns whether there was any. */
+  /** Takes the next answer of each world that arrives before the decision is due.
+   *
+   * @return whether there was one
+   */
   private boolean take() {
     IntVector none = IntVector.broadcast(INTS, NONE),
         known = IntVector.broadcast(INTS, due),
