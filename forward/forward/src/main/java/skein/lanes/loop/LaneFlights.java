@@ -39,7 +39,7 @@ public abstract class LaneFlights extends LaneVehicles {
   float[] pieces;
 
   /** Number of slots filled so far; slot {@code filled
-   * - 1}, modulo their number, is the newest.
+   *   - 1}, modulo their number, is the newest.
    */
   private int filled;
 
