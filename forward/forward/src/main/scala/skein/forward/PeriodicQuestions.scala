@@ -28,8 +28,8 @@ private[skein] final class PeriodicQuestions(
     waits = false; asked = question; underWay = 0; newest = question - 1; told = newest; oldest = question
     world.schedule(offsetNs + question * periodNs, RolloutWorld.Tick, vehicle, question)
 
-  /** Whether `question` was the newest and the last reading delivered, no earlier request is unanswered, none
-    * waits, and `asked` requests were sent.
+  /** Whether the reading of `question` is the newest and the last delivered, all requests up to it have
+    * ended, all later ones are unanswered, none waits, and as many were sent as given.
     */
   def isUpTo(question: Int, asked: Int): Boolean =
     newest == question && told == question && underWay == asked - 1 - question &&
