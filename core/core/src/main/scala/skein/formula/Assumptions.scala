@@ -10,7 +10,7 @@ private[formula] final class Assumptions:
     case Op.Not    => apply(condition.args(0)).map(!_)
     case _         => known.get(condition)
 
-  /** Traces a branch on which a condition holds, or does not. */
+  /** Traces a branch under the assumption that a condition holds, or that it does not. */
   def under[A](condition: Node, holds: Boolean)(way: => A): A =
     val before = known
     assume(condition, holds)

@@ -6,13 +6,14 @@ import scala.jdk.CollectionConverters.*
 import scala.jdk.OptionConverters.*
 import scala.util.Using
 
-/** Whether a scenario may end before its duration. */
+/** Determines whether a scenario may end before its duration. */
 private[skein] object OwnEnd:
   def has(scenario: Scenario): Boolean =
     val declaring = scenario.getClass.getMethod("isOver", classOf[Known]).getDeclaringClass
     declaring != classOf[Scenario] && !forwards(declaring)
 
-  /** Whether the class only inherits the method: the compiler generates one that calls the trait's. */
+  /** Whether a class only inherits the method; the compiler then generates a method that calls the trait's.
+    */
   private def forwards(declaring: Class[?]): Boolean =
     val file = s"/${declaring.getName.replace('.', '/')}.class"
     Using.resource(declaring.getResourceAsStream(file)): stream =>
