@@ -9,7 +9,7 @@ class StreamOffersSuite extends munit.FunSuite:
   private val worlds    = LaneOffers.WORLDS
   private val durationS = 30.0
 
-  /** Times from the flight's start, in grains, and places from its first request's. */
+  /** A view: its times from the flight's start, in grains, and its places from those of the first request. */
   private final case class Told(
       joinedAt: Long,
       nextAt: Option[Long],
