@@ -16,5 +16,4 @@ final case class Estimate(
     state: Vector[Double] = Vector.empty
 ):
 
-  /** Time from the reading to the predicted moment. */
   def age: Span = predictedFor.since(readAt)

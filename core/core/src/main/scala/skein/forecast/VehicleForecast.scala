@@ -174,7 +174,6 @@ object VehicleForecast:
       Vector.empty
     )
 
-  /** Cubic Hermite interpolation of positions and velocities. */
   private def between(before: Stamped[Kinematics], after: Stamped[Kinematics], validAt: Instant): Vector3 =
     val length = after.validAt.since(before.validAt).toSeconds
     val u      = validAt.since(before.validAt).toSeconds / length

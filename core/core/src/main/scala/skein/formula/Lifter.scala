@@ -60,7 +60,6 @@ private[formula] final class Lifter(files: ClassFiles, val trace: Trace):
       Vector(of)
     )
 
-  /** Name of an object's class, if it is known. */
   def classOf(value: Value): Option[String] = objects.classOfThing(value)
 
   def numberOf(value: Value): Node = flat(value) match

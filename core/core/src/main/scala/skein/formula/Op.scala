@@ -14,7 +14,6 @@ enum Op:
   // Conditions; a comparison with a NaN does not hold.
   case Lt, Le, Eq, Not, And, Or, Always
 
-  /** Whether the operation takes no arguments. */
   def isLeaf: Boolean = this match
     case Const | Input | Param | Always => true
     case _                              => false

@@ -80,7 +80,6 @@ object PolarMeasurement:
       deviation
     )
 
-  /** Rotates v from the sensor's frame to world NED. */
   private def turned(v: Vector3, q: Quaternion): Vector3 =
     val (ux, uy, uz) = (
       q.y * v.z - q.z * v.y + q.w * v.x,

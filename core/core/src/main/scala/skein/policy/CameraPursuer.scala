@@ -43,7 +43,6 @@ final case class CameraPursuer(steers: HeadingPolicy, sensor: Option[String], op
       ()
     )
 
-  /** Estimated position and velocity of the opponent. */
   private def opponent(seen: Observation): (Vector3, Vector3) = sensor match
     case None =>
       val told = seen.vehicles(seen.opponent).kinematics

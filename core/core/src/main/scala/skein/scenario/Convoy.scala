@@ -98,5 +98,5 @@ object Convoy:
   /** Time ahead for which the cars are steered, s: about a driver's time for a turn, plus the tyres' lag. */
   private val AheadS = 1.0
 
-  /** Time for which the vehicles start up, s, and which is not measured. */
+  /** Time in which the vehicles gain speed after the start, s; measures leave it out. */
   private val SettlingS = 10.0

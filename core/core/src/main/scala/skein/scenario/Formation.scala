@@ -88,5 +88,5 @@ final case class Formation(
         )
 
 object Formation:
-  /** Time for which the vehicles start up, s, and which is not measured. */
+  /** Time in which the vehicles gain speed after the start, s; measures leave it out. */
   private val SettlingS = 10.0

@@ -52,7 +52,7 @@ final case class Shadow(
   private def offPlace = Series.of("off the place", "m", Beside(besideM))
 
 object Shadow:
-  /** Time for which the follower starts up, s, and which is not measured. */
+  /** Time in which the follower gains speed after the start, s; measures leave it out. */
   private val SettlingS = 5.0
 
   /** Horizontal distance of the second vehicle from the place `eastM` east of the first, m. */

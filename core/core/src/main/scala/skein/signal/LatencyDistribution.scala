@@ -5,10 +5,8 @@ import skein.units.*
 /** The distribution of round trips, given by its inverse cumulative distribution function. */
 enum LatencyDistribution:
 
-  /** Every round trip takes an equal, constant time. */
   case Constant(roundTrip: Span)
 
-  /** Round trips are uniform between two bounds. */
   case Uniform(least: Span, most: Span)
 
   /** The logarithm is normal with standard deviation `sigma`; half of the round trips are shorter than

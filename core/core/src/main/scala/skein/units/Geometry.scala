@@ -26,7 +26,6 @@ final case class Quaternion(w: Double, x: Double, y: Double, z: Double):
   /** Yaw, rad from north towards east, −π to π. */
   def yawRad: Double = StrictMath.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
 
-  /** Rotates a vector from the body frame to the world. */
   def toWorld(frd: Vector3): Vector3 =
     val (tx, ty, tz) = (
       2 * (y * frd.z - z * frd.y),
@@ -39,7 +38,6 @@ final case class Quaternion(w: Double, x: Double, y: Double, z: Double):
       frd.z + w * tz + x * ty - y * tx
     )
 
-  /** Rotates a vector from the world frame to the body. */
   def toBody(ned: Vector3): Vector3 = Quaternion(w, -x, -y, -z).toWorld(ned)
 
   /** The rotation that consists of `inner`, followed by this one. */

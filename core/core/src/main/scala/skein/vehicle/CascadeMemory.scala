@@ -13,7 +13,6 @@ final private[vehicle] class CascadeMemory:
   private var vertical: VerticalMode | Null     = null
   private var yaw: YawMode | Null               = null
 
-  /** Whether the controller was created in the present update. */
   def isNew(loop: Int): Boolean = created(loop)
 
   /** Starts an update, and resets the controllers of axes whose mode has changed. */

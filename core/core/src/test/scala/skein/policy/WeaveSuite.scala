@@ -21,7 +21,6 @@ class WeaveSuite extends munit.FunSuite:
     Metres(-20)
   )
 
-  /** Headings at the decisions within a minute, rad. */
   private def headings(weave: Weave, periodS: Double): Vector[Double] =
     Iterator
       .iterate((weave.start, 0))((arc, made) =>

@@ -48,7 +48,6 @@ private[skein] final class ScalarTeam(timing: LoopTiming, model: => VelocityResp
           tally.add(timeS, Quantity.told(tally.judged.quantity, places))
 
 private[skein] object ScalarTeam:
-  /** Number of worlds that a thread takes at a time. */
   private[lanes] val Worlds = 16
 
 /** Computes a judged number of one episode from its values. Mutable. */

@@ -85,7 +85,7 @@ private object Passes:
     nodes.foreach(find)
     found.toVector
 
-  /** Divides an order of nodes into passes so that the fewest numbers are stored and loaded.
+  /** Divides nodes, in this order, into passes that store and load as few numbers as possible.
     *
     * @return the end of each pass, as an index in the order
     */

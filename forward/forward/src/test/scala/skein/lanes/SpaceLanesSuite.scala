@@ -126,7 +126,6 @@ object SpaceLanesSuite:
   private case object Height extends Quantity:
     def of(at: Positions): Double = (0 until at.count).map(at.downM(_)).min
 
-  /** Smallest distance in space, m. */
   private case object Apart extends Quantity:
     def of(at: Positions): Double =
       val distances =

@@ -207,7 +207,7 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
   for timing <-
       Seq(LoopTiming.Futures(), LoopTiming.Predictive(predictor = VelocityResponses.quadrotor().predictor))
   do
-    test(s"quadrotors, $timing, own delays over vpn: all worlds agree with the scalar reference, 2 s to 4 mm"):
+    test(s"quadrotors, $timing, own delays over vpn: all agree with the scalar reference, 2 s to 4 mm"):
       val draw = scenarios(0)._2
       agreeAlone(draw, timing, DelayTable.vpn, VelocityResponses.quadrotor(), 4e-3, 2)
 

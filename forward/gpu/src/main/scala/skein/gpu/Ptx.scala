@@ -146,7 +146,6 @@ final class Ptx(name: String, parameters: Seq[(String, Ptx.Kind)], localBytes: I
   private def hex(bits: Int) = HexFormat.of.withUpperCase.toHexDigits(bits)
 
 object Ptx:
-  /** The type of a parameter of a kernel. */
   enum Kind:
     case Address, Whole, Float
 

@@ -2,7 +2,7 @@ package skein.gpu
 
 /** Floats of each thread that change while a kernel runs.
   *
-  * @param initial initial values, set by [[start]]
+  * @param initial values that [[start]] sets
   */
 private[skein] final class Variables(code: Ptx, initial: Seq[Float]):
   private val registers = initial.map(_ => code.fresh()).toArray

@@ -92,7 +92,7 @@ public abstract class LaneFlights extends LaneVehicles {
    */
   abstract void fly(float[] into, int at, boolean withVelocity);
 
-  /** Simulates {@link #chosen} pieces to their ends, in this number of vectors from the first. */
+  /** Simulates the {@link #chosen} pieces of the first {@code count} vectors to their ends. */
   abstract void flyOn(int count);
 
   /** Begins new pieces at the ends computed by {@link #flyOn}, in worlds where {@code acts} is less than

@@ -138,7 +138,6 @@ public final class LaneViews {
     return (int) (Nanos.of(seconds) / GRAIN_NS);
   }
 
-  /** Whether a time is a whole number of grains. */
   public static boolean isWhole(double seconds) {
     return Nanos.of(seconds) % GRAIN_NS == 0;
   }

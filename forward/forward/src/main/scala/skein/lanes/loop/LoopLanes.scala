@@ -20,7 +20,6 @@ private[lanes] final class LoopLanes(
     val sees: Boolean = false,
     shortCut: Boolean = true
 ):
-  /** The model that predicts the vehicles, if the loop predicts. */
   private val predictor: Option[LanePredictor] = timing match
     case predictive: LoopTiming.Predictive => LanePredictor.of(predictive.predictor).toOption
     case _                                 => None

@@ -66,7 +66,6 @@ private[lanes] abstract class CameraTrackerLanes(
   /** Limits the simulation to the first worlds, until the next call. */
   protected def use(worlds: Int): Unit = for call <- Seq(detected, joined, decided) do call.use(worlds)
 
-  /** Resets the estimate to the opponent's start. */
   protected def forget(): Unit =
     for state <- Seq(newest, before) do Arrays.fill(state, 0f)
     Arrays.fill(axis, startAxis)

@@ -18,7 +18,6 @@ class StreamOffersSuite extends munit.FunSuite:
       place: Vector[Int]
   )
 
-  /** All views of each world, in their order. */
   private def views(
       timing: LoopTiming.Stream,
       vehicles: Int,

@@ -58,7 +58,6 @@ class ImageSourceSuite extends munit.FunSuite:
         if source.isFound then Some((source.bearing, source.range)) else None
     )
 
-  /** The events of a flight's images, in order. */
   private def happens(model: SensorModel, agent: Int, link: TabledDelays, key: Int): Vector[Happens] =
     val all      = ArrayBuffer.empty[Happens]
     val observer = new LoopObserver:

@@ -89,13 +89,11 @@ private[lanes] object GpuEpisodes:
     val stride: Int             = timetable.stride
     val scoredAtS: Array[Float] = timetable.scoredAtS
 
-  /** Number of candidates in these worlds. */
   def candidatesOf(worlds: Worlds): Int =
     val each = worlds.episodesOfEach
     require(worlds.size % each == 0, s"${worlds.size} worlds are not $each episodes of every candidate")
     worlds.size / each
 
-  /** All worlds of these candidates, by number. */
   def worldsOf(candidates: Array[Int], each: Int): Array[Int] =
     candidates.flatMap(candidate => Array.range(candidate * each, (candidate + 1) * each))
 

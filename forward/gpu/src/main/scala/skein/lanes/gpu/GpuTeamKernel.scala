@@ -99,7 +99,6 @@ private object GpuTeamKernel:
   private def numbers(team: TeamLanes, scores: ScoreLanes): Int =
     firstOf(team).last + scores.judged.indices.map(scores.parameters).sum
 
-  /** The numbers of one candidate. */
   private def numbersOf(team: PreparedTeam): Array[Float] =
     team.numbers.flatMap(own => Array(own.northM, own.eastM, own.cos, own.sin) ++ own.policy) ++
       team.ofQuantities.flatten.map(_.toFloat)
