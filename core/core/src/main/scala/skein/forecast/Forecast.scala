@@ -17,8 +17,7 @@ final case class Forecast private (
     alignment: Option[ClockAlignment],
     delays: Option[OneWayDelays]
 ):
-  // The vehicles of a team ask the same forecast for the same moment: what one was told is kept for the
-  // others.
+  // The vehicles of a team request equal forecasts for equal moments, so the last result is cached.
   @volatile private var told: Option[(Instant, Vector[Estimate])] = None
 
   def withEvent(event: ForecastEvent): Forecast = event match
@@ -70,12 +69,12 @@ final case class Forecast private (
   )
 
   private def seen(vehicle: Int, reading: Stamped[Kinematics]): Forecast =
-    // What a simulator told before it started again says nothing of what will be.
+    // Readings from before a restart of the simulator are useless for predictions.
     if alignment.exists(_.isOfFormerRun(reading)) then this else seenOfPresent(vehicle, reading)
 
   private def seenOfPresent(vehicle: Int, reading: Stamped[Kinematics]): Forecast =
     val aligned = alignment.fold(ClockAlignment.of(reading))(_.updated(reading))
-    // While the simulator's clock stood still, delays to it meant nothing.
+    // While the simulator's clock stood still, delays measured against it were meaningless.
     val goesOn  = alignment.exists(before => before.restarts == aligned.restarts && !before.standsStill)
     val current = delays.filter(_ => goesOn).fold(OneWayDelays.of(reading))(_.updated(reading))
     val track   = tracks(vehicle).fold(firstSeen(vehicle, reading)): track =>

@@ -90,7 +90,7 @@ final class Angles(
         case Cos   => cosSinOf(node.args(0))._1
         case Add   => plus(inner(node.args(0)), inner(node.args(1)))
         case Mul   => times(inner(node.args(0)), inner(node.args(1)))
-        // A side is asked for, not an angle.
+        // Only the side is needed, not the angle.
         case Signum if angleOf(node.args(0)).isDefined => target.unary(Signum, angleOf(node.args(0)).get.y)
         case Lt if sizeOf(node.args(1)).isDefined && isFixed(node.args(0)) =>
           target.lt(sizeOf(node.args(1)).get.x, cosine(node.args(0)))
@@ -175,7 +175,7 @@ final class Angles(
       def clean(value: Double) = target.const(if math.abs(value) < 1e-15 then 0 else value)
       Some(Direction(clean(StrictMath.cos(node.value)), clean(StrictMath.sin(node.value)), isUnit = true))
     case Neg => directionOf(node.args(0)).map(way => way.copy(y = target.neg(way.y)))
-    // By one of two known angles: turned both ways, for quarter turns cost nothing.
+    // One of two known angles is added: both sums are computed, since quarter turns cost nothing.
     case Add if isChoiceOfQuarters(node.args(1)) => either(node.args(0), node.args(1))
     case Add if isChoiceOfQuarters(node.args(0)) => either(node.args(1), node.args(0))
     case Add                                     => both(node).map(turned(_, _))

@@ -66,7 +66,8 @@ final class Answer private[formula] (value: Value, lifter: Lifter):
                   Path(Some(at), PathStep.Of(field))
                 )
             else if as.getClass.getName.startsWith("scala.Tuple") then
-              // A tuple of numbers has a class of its own, and another one where a condition has chosen them.
+              // A tuple of numbers has a specialised class, and the generic one after a choice by a
+              // condition.
               val parts = as.asInstanceOf[Product]
               for i <- 0 until parts.productArity do
                 val part = Answer(value, lifter).get(s"_${i + 1}")

@@ -36,7 +36,8 @@ private[formula] final class MethodCode(
     val successors   = Array.tabulate(end)(nextOf)
     val predecessors = Array.fill(end + 1)(mutable.ArrayBuffer.empty[Int])
     for i <- 0 until end; next <- successors(i) do predecessors(next) += i
-    // Backwards from the end, in the order in which a depth-first walk ends; −1 from where none leads there.
+    // Backwards from the end, in the order in which a depth-first walk finishes; −1 if an instruction is not
+    // reached.
     val order = mutable.ArrayBuffer.empty[Int]
     val seen  = mutable.BitSet(end)
     val walk  = mutable.Stack((end, 0))

@@ -117,7 +117,7 @@ private[formula] final class Calls(
   private def intrinsic(owner: String, name: String, desc: String, args: Vector[Value]): Option[Value] =
     (owner, name) match
       case ("java/lang/Math" | "java/lang/StrictMath", _) => numbers.function(owner, name, desc, args)
-      // It is thrown, and refused then.
+      // The exception is thrown later, and refused then.
       case (thrown, "<init>") if classOf[Throwable].isAssignableFrom(files.load(thrown)) => Some(Null)
       case ("java/lang/Object", "<init>")                                                => Some(Null)
       case ("java/lang/System", "arraycopy")                                             => copied(args)

@@ -177,7 +177,7 @@ object Formula:
       def ofFields(className: String, fields: Map[String, Value], name: String): Vector[(String, Node)] =
         fieldsOf(files.load(className)).toVector
           .map(_.getName)
-          // A pair of doubles is of a class of its own, whose inherited fields are empty.
+          // A pair of doubles has a specialised class, whose inherited fields are empty.
           .filter(each => fields.contains(each) && fields(each) != Null)
           .flatMap(each => outputsOf(fields(each), if name == Answer then each else s"$name.$each"))
 

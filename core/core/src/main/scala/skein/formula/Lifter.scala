@@ -25,7 +25,7 @@ private[formula] final class Lifter(files: ClassFiles, val trace: Trace):
   private var steps                = 0
   private var calls: List[Calling] = Nil
 
-  // Where what was called answered last, until the method itself has answered.
+  // Source line of the last call's result, until the method itself has returned.
   private var answeredAt = ""
   private var isDone     = false
   import numbers.*

@@ -23,7 +23,7 @@ private[formula] final class Objects(
   private val params = mutable.LinkedHashMap.empty[Path, Node]
   private val alike  = mutable.LinkedHashMap.empty[Guard, Unit]
 
-  // Of the arguments' examples: what stands for their numbers, and what is not to be read of them.
+  // Of the arguments' examples: the nodes of their numbers, and the reasons why fields must not be read.
   private val inputs  = mutable.HashMap.empty[Path, Node]
   private val unknown = mutable.HashMap.empty[String, String]
 

@@ -79,7 +79,7 @@ final case class Avoidance(
     val relative = own - its
     val square   = northM * northM + eastM * eastM
     if square <= apartM * apartM then
-      // Too near already: apart again after a short while, not after the horizon.
+      // Already too near: must be apart again after a short time, not after the horizon.
       fromDisc(own, relative, Velocity(northM, eastM) * (1 / PartingS), apartM / PartingS)
     else
       val centre  = Velocity(northM, eastM) * (1 / horizonS)
@@ -102,7 +102,7 @@ final case class Avoidance(
     val off    = relative - centre
     val length = math.sqrt(off dot off)
     val back   = math.sqrt(centre dot centre)
-    // In its very middle every way out is as short: then back, away from the other one.
+    // At the centre all ways out are equally long; the one away from the other vehicle is taken.
     val normal =
       if length > 0 then off * (1 / length)
       else if back > 0 then centre * (-1 / back)

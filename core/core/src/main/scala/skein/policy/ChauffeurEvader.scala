@@ -47,7 +47,7 @@ final case class ChauffeurEvader(turningRadiusM: Double = 8.0, speedRatio: Doubl
     val aside = math.IEEEremainder(ownHeadingRad - opponentHeadingRad, 2 * math.Pi)
     if math.abs(aside) >= leastAside && math.abs(aside) <= math.Pi / 2 + ChauffeurEvader.Rounding then
       ownHeadingRad
-    // It does not turn back across the bow of a pursuer who has turned after it.
+    // The evader does not turn back across the bow of a pursuer that has turned after it.
     else
       opponentHeadingRad + (if math.abs(aside) > leastAside / 2 then math.signum(aside)
                             else side) * math.Pi / 2
@@ -59,7 +59,7 @@ final case class ChauffeurEvader(turningRadiusM: Double = 8.0, speedRatio: Doubl
   private def turn(x: Double, toCentre: Double): Double =
     val square = x * x + toCentre * toCentre - turningRadiusM * turningRadiusM
     if square < 0 then StrictMath.atan2(toCentre, -x)
-    // The tangent point's direction from the centre is a quarter turn behind that of the tangent.
+    // The direction from the centre to the tangent point is a quarter turn behind that of the tangent.
     else StrictMath.atan2(-toCentre, x) + StrictMath.atan2(turningRadiusM, math.sqrt(square))
 
 object ChauffeurEvader:

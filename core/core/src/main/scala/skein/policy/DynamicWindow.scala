@@ -42,7 +42,7 @@ final case class DynamicWindow(
         best(seen.own.kinematics.positionNed, seen.own.kinematics.velocityNed, seen.headingRad, scan)
     (seen.along(heading, speed), ())
 
-  // The instants looked at, and how far the velocity has carried until then.
+  // The instants to check, and the time for which the velocity has carried the vehicle until each.
   private val instants       = (1 to (horizonS / StepS).toInt).map(_ * StepS).toArray
   private val carries        = instants.map(FirstOrderLag(lagS).carriesS)
   private val (laneN, laneE) =
@@ -51,7 +51,7 @@ final case class DynamicWindow(
   /** Heading, rad, and speed, m/s, of the best candidate. */
   private def best(position: Vector3, velocity: Vector3, lastRad: Double, scan: Sensed): (Double, Double) =
     val points = near(position, scan)
-    // Back to the lane over some way, not straight.
+    // Back to the lane at an angle, not straight across.
     val aside        = -(position.x - laneNorthM) * laneE + (position.y - laneEastM) * laneN
     val aimRad       = laneHeading.value - StrictMath.atan2(aside, AheadM)
     val (aimN, aimE) = (StrictMath.cos(aimRad), StrictMath.sin(aimRad))
@@ -123,7 +123,7 @@ object DynamicWindow:
   private val Turns  = (-24 to 24).sortBy(_.abs).map(turn => StrictMath.toRadians(5.0 * turn))
   private val Shares = Vector(1.0, 0.65, 0.3)
 
-  // How much each thing counts.
+  // Weights of the terms.
   private val Ahead  = 1.0
   private val Clear  = 2.0
   private val Hit    = 5.0

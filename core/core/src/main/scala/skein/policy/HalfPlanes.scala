@@ -46,7 +46,7 @@ private[policy] final class HalfPlanes(val count: Int):
     var worst = Double.NegativeInfinity
     for round <- 0 until taken.count do
       if takeMostBroken(found, taken, round) > worst + Slack then
-        // In the minimum with it, it is the worst.
+        // In the minimum with this half plane, it is the worst one.
         found = taken.whereWorst(round).inTurn(
           Velocity(
             wanted.north + Weight * taken.normalNorth(round),
@@ -99,7 +99,7 @@ private[policy] final class HalfPlanes(val count: Int):
     for k <- 0 until number do
       val rise  = normalEast(k) * north - normalNorth(k) * east
       val lacks = least(k) - (normalNorth(k) * footNorth + normalEast(k) * footEast)
-      // Along an edge beside it, the other half plane holds everywhere or nowhere.
+      // Along a parallel edge, the other half plane holds everywhere or nowhere.
       val from = lacks / (rise + Tiny)
       if rise >= 0 then low = low.max(from) else high = high.min(from)
     val along = ((wanted.east - footEast) * north - (wanted.north - footNorth) * east) / square

@@ -30,7 +30,7 @@ final case class KeepSlot(
     val heading                   = circuit.headingRad(place)
     val (cos, sin)                = (StrictMath.cos(heading), StrictMath.sin(heading))
     val (northOffset, eastOffset) = (aheadM * cos - rightM * sin, aheadM * sin + rightM * cos)
-    // How fast the place on the circuit moves when the leader flies beside it.
+    // Speed at which the place on the circuit moves, while the leader flies beside it.
     val (nearNorth, nearEast) = circuit.point(place)
     val toTheRightM  = -(seen.northM(leader) - nearNorth) * sin + (seen.eastM(leader) - nearEast) * cos
     val curvature    = circuit.curvaturePerM(place)
@@ -65,7 +65,7 @@ final case class KeepSlot(
     val heading               = circuit.headingRad(place)
     val (cos, sin)            = (StrictMath.cos(heading), StrictMath.sin(heading))
     val (nearNorth, nearEast) = circuit.point(here)
-    // The leader's distance from the circuit is kept, to its right.
+    // The leader's distance to the right of the circuit stays constant.
     val beside = -(seen.northM(leader) - nearNorth) * StrictMath.sin(direction) +
       (seen.eastM(leader) - nearEast) * StrictMath.cos(direction) + rightM
     val (north, east) = circuit.point(place)

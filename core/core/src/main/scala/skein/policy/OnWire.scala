@@ -18,7 +18,7 @@ private[skein] object OnWire:
     case other => other
 
   def of(setpoint: Setpoint): Setpoint =
-    // Angles that hold an attitude go in radians.
+    // Angles of an attitude are sent in radians.
     if setpoint.horizontal == skein.vehicle.HorizontalMode.Angles then setpoint
     else if setpoint.yaw == YawMode.Rate && setpoint.yawGoal == 0 then setpoint
     else setpoint.copy(yawGoal = math.toRadians(math.toDegrees(setpoint.yawGoal).toFloat))

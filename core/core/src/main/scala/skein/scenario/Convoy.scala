@@ -90,7 +90,7 @@ final case class Convoy(
     )
 
 object Convoy:
-  // Places of the vehicles; those of the drones' scores follow the leader's.
+  // Indices of the vehicles. The drones follow the leading car, as the scores of slots require.
   private val Lead   = 0
   private val Drones = 1 to 3
   private val Rear   = 4

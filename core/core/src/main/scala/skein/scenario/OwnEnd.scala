@@ -20,7 +20,7 @@ private[skein] object OwnEnd:
       val methods = ClassFile.of().parse(stream.readAllBytes()).methods.asScala
       methods.filter(_.methodName.equalsString("isOver")).flatMap(_.code.toScala).forall: code =>
         val instructions = code.elementList.asScala.collect { case each: Instruction => each }
-        // Loads this and the argument, calls, and returns.
+        // The four instructions load `this` and the argument, call the method, and return.
         instructions.size == 4 && instructions.exists:
           case call: InvokeInstruction => call.name.equalsString("isOver$")
           case _                       => false

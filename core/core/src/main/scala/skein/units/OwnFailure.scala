@@ -21,7 +21,7 @@ object OwnFailure:
     * @throws OwnFailure if the code throws
     */
   def told[A](whose: => String)(answer: => A): A =
-    // Not `NonFatal`: a recursion without end and a class that is missing are mistakes of the user's too.
+    // Not `NonFatal`, because an endless recursion and a missing class are users' mistakes too.
     try answer
     catch
       case asItIs: (OwnFailure | InterruptedException | OutOfMemoryError | ControlThrowable) => throw asItIs
@@ -40,7 +40,7 @@ object OwnFailure:
   /** The stack frames in the package of the user code, without those of libraries that it calls. */
   private def own(frames: Vector[StackTraceElement]): Vector[StackTraceElement] =
     val (asked, asking) = frames.span(frame => frame.getClassName != getClass.getName)
-    // Without who asked, it was made elsewhere than thrown.
+    // Without a frame of this object, the exception was created elsewhere than thrown.
     val room = asked.findLast(isUsers).filter(_ => asking.nonEmpty).map(_.getClassName)
     room.fold(asked)(name => asked.filter(_.getClassName.startsWith(name.take(name.lastIndexOf('.') + 1))))
 

@@ -93,7 +93,7 @@ object AdaptiveQuadrotor extends VehicleModel[AdaptiveQuadrotor.Learning]:
     val before    = learning.belief.drifted(drifts, sinceSeen.toSeconds, priors)
     val after     = measured.indices.foldLeft(before): (belief, i) =>
       val effects = Vector.tabulate(moves.size)(j => (predicted(j + 1)(i) - predicted.head(i)) / moves(j))
-      // What earlier outputs of this reading have changed already changes what is predicted of this one.
+      // The update by an earlier output of this reading already changes the prediction of this output.
       val explained = (belief.mean.lazyZip(before.mean).map(_ - _)).lazyZip(effects).map(_ * _).sum
       belief.updated(effects, measured(i) - predicted.head(i) - explained, Noises(i))
     val belief                    = after.within(most)

@@ -67,7 +67,7 @@ open class FlightController(val gains: ControllerGains, stepS: Double):
   private def control(state: QuadrotorState, setpoint: Setpoint): Unit =
     import state.{qw, qx, qy, qz}
 
-    // Rows of the rotation from body to world; transposed they turn world into body.
+    // Rows of the rotation from body to world; their transpose rotates from world to body.
     val r00 = 1 - 2 * (qy * qy + qz * qz)
     val r10 = 2 * (qx * qy + qw * qz)
     val r20 = 2 * (qx * qz - qw * qy)
@@ -132,7 +132,7 @@ open class FlightController(val gains: ControllerGains, stepS: Double):
 
   /** Output of the vertical velocity's controller for a velocity error, −1 to 1. */
   protected def climb(state: QuadrotorState, setpoint: Setpoint, error: Double): Double =
-    // A controller just created does not integrate: its clock has not advanced yet.
+    // A new controller does not integrate, because its clock has not advanced yet.
     if state.verticalMode eq setpoint.vertical then
       state.verticalIntegral = unit(state.verticalIntegral * verticalDiscount + stepS * error * verticalI)
     else state.verticalIntegral = 0.0

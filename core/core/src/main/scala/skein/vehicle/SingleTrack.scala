@@ -66,7 +66,7 @@ final case class SingleTrack(
     val steered    = state.steeredRad + (wanted - state.steeredRad).max(-most).min(most)
     val (cos, sin) = (StrictMath.cos(steered), StrictMath.sin(steered))
 
-    // A tyre that hardly rolls would swing undamped for long.
+    // A tyre that hardly rolls would oscillate for a long time.
     val rollsMps  = math.abs(state.frontMps).max(SingleTrack.DampedMps)
     val left      = StrictMath.exp(-rollsMps * dtS / relaxationM)
     val frontWay  = ((state.rightMps + frontM * state.yawRadPerS) * cos - state.frontMps * sin) / rollsMps
@@ -74,7 +74,7 @@ final case class SingleTrack(
     val frontSlip = (state.frontSlipRad + frontWay) * left - frontWay
     val rearSlip  = (state.rearSlipRad + rearWay) * left - rearWay
 
-    // Forces over the mass; the axles bear the weight as their distances say.
+    // Forces divided by the mass. The load of each axle follows from its distance to the centre of mass.
     val held      = friction * Gravity / wheelbaseM
     val frontMps2 = held * rearM * (stiffnessPerRad * frontSlip).max(-1.0).min(1.0)
     val rearMps2  = held * frontM * (stiffnessPerRad * rearSlip).max(-1.0).min(1.0)

@@ -15,7 +15,7 @@ final class TunedFlightController(gains: ControllerGains, val cascade: CascadeGa
   import CascadeLoop.*
 
   private val pids: Array[Pid] = Array(
-    // AirSim hands its rate controllers no other gain than the proportional one.
+    // AirSim passes only the proportional gain to its rate controllers.
     Pid(cascade.rate.first.p),
     Pid(cascade.rate.second.p),
     Pid(cascade.rate.third.p),

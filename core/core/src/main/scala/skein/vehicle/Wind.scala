@@ -51,7 +51,7 @@ final class WindAlong(wind: Wind, seed: Long):
     val steady = wind.steadyAt(heightM)
     if wind.gustsMps == 0 then steady
     else
-      // In still air a hovering vehicle would keep its gust for ever.
+      // Otherwise a vehicle that hovers in still air would keep its gust forever.
       val flownM   = (velocityNed - steady).norm.max(WindAlong.LeastAirspeedMps) * dtS
       val h        = (heightM / FootM).max(10).min(1000)
       val growth   = 0.177 + 0.000823 * h

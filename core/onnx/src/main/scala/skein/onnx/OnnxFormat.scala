@@ -63,7 +63,7 @@ object OnnxFormat:
         case (5, in)  => constants += tensor(in.readByteArray())
         case (11, in) => inputs += port(in.readByteArray())
         case (12, in) => outputs += port(in.readByteArray())
-      // Before IR version 4 constants were inputs, too.
+      // Before IR version 4, constants were also inputs.
       OnnxGraph(
         nodes.result(),
         constants.toMap,

@@ -126,7 +126,7 @@ final class LoopOpponentAgents extends LaneAgents implements TeamMember {
       observation.see(what, opponents.seen(), from, seen(), from);
     }
     if (policy.needsAges()) age(1 - self, readAt, observation.opponentAge);
-    // What the opponent sends after the offer was made is not known in it.
+    // The offer does not contain commands that the opponent sends after it.
     if (!together) opponents.knownAt(vectors, offers.joinedAt, opponents.sent, opponents.sentBefore, known);
     policy.decide(observation, decided, 0, together ? opponents.sent : known, 0, decidedNow, 0);
   }

@@ -14,7 +14,8 @@ import skein.simd.LaneRandom;
 abstract class SampledBlock extends CandidateBlock {
   private static final float LEAST_EXPONENT = -80f, MOST_EXPONENT = 20f;
 
-  // The sum of the four bytes of a hash: nearly normal, with mean 510; this is one over its standard deviation.
+  // The sum of a hash's four bytes is nearly normal, with mean 510; this is the reciprocal of its standard
+  // deviation.
   private static final float NORMAL_SCALE = Draws.Scale();
   private static final int BYTES = 0x00ff00ff;
   private static final int LOWER = 0xffff;

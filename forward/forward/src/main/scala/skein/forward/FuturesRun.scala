@@ -14,8 +14,8 @@ private[skein] final class FuturesRun(timing: LoopTiming.Futures, protected val 
     */
   private val before = Array.ofDim[Int](world.count * world.ring)
 
-  // Whose task of the current step begins next (the number of vehicles: all have), and the step that waits
-  // behind it.
+  // The vehicle whose task of the current step begins next (their number if all have begun), and the step
+  // that waits after it.
   private var next, current = 0
   private var waiting       = FuturesRun.Nothing
   private var underWay      = 0

@@ -85,7 +85,7 @@ private[skein] object ImageTiming:
   /** Number of images whose results may still be used. */
   val Ring = 64
 
-  // What is drawn for each image: whether what is in view is found, the errors, how long recognition takes.
+  // The random numbers of an image: for detection in view, the two errors, and the duration of recognition.
   val Found         = 0
   val Bearing       = 1
   val Range         = 2

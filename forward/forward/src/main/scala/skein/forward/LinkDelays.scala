@@ -80,7 +80,7 @@ final case class AlternatingDelays(
     def next(): Unit =
       isBusy = !isBusy
       number += 1
-      // Exponential stretches have no memory: the first, cut anywhere, lasts as long as any.
+      // Exponential durations have no memory: the remainder of the first is distributed like a whole one.
       untilS -= StrictMath.log1p(-uniform(worldKey, number)) * (if isBusy then busyLastsS else quietLastsS)
 
   def delayNs(worldKey: Int, line: Int, step: Int, number: Int, sentAtNs: Long): Long =

@@ -98,7 +98,7 @@ object LossyDelays:
   ): TabledDelays =
     val loss   = impairments.collectFirst { case loss: Impairment.Loss if loss.share > 0 => loss }
     val outage = impairments.collectFirst { case outage: Impairment.Outage => outage }
-    // Of the chain's states, a share 1 − p − r is kept from packet to packet.
+    // From packet to packet, the chain keeps its state with the share 1 − p − r.
     val keeps  = loss.fold(0.0)(one => 1 - 1 / one.burst / (1 - one.share))
     val bursts = loss.filter(_ => keeps > 1e-6).map: one =>
       val rate = -StrictMath.log(keeps) * packetsPerS

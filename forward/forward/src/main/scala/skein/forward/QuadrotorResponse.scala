@@ -26,7 +26,7 @@ private[skein] final class QuadrotorVehicle(quadrotor: Rotorcraft, hoveredNs: Lo
   private var setpoint: Setpoint = Setpoint.Disarmed
   private var renewedAt          = 0L
 
-  // Since it was put to its start, ns.
+  // Since the vehicle was placed at its start, ns.
   private var now, steppedTo = 0L
 
   def start(x: Double, y: Double, z: Double): Unit =

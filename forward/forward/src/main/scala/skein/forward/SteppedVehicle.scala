@@ -12,7 +12,7 @@ private[skein] abstract class SteppedVehicle extends Vehicle:
 
   protected def sinceStepS: Double
 
-  // Its state then, from where it started: m, m/s, m/s², rad/s.
+  // The state at the end of the last step, relative to the start: m, m/s, m/s², rad/s.
   protected def stepX: Double
   protected def stepY: Double
   protected def stepZ: Double

@@ -29,7 +29,7 @@ trait Vehicle:
 
   def vy: Double
 
-  // The same as the vehicle tells it when it is asked.
+  // Position and velocity as readings report them.
   def seenX: Double  = x
   def seenY: Double  = y
   def seenZ: Double  = z

@@ -93,7 +93,7 @@ object HorizonErrors:
       .filter(i => i > from && math.abs(flown.samples(i).atS - goal) <= SampleEveryS)
       .map: index =>
         val sample = flown.samples(index)
-        // The tenth of a microsecond includes the nearest sample whatever the rounding.
+        // The tenth of a microsecond includes the nearest sample despite rounding.
         flown.predict(flight, state, from, sample.atS - flown.samples(from).atS + 1e-7)(_ => ())
         val predicted = flight.reading
         (

@@ -40,7 +40,7 @@ final case class TimeHistory(
   def predict[S](flight: PlantFlight[S], state: S, from: Int, horizonS: Double)(each: Int => Unit): Unit =
     val deadTimeS = flight.plant.deadTimeS
     val start     = samples(from)
-    // The first command that does not act yet.
+    // The first command that is not in effect yet.
     var next     = firstAfter(start.atS - deadTimeS)
     val (ux, uy) = if next == 0 then (0.0, 0.0) else (arrivals(next - 1).vx, arrivals(next - 1).vy)
     flight.start(start.atS, state, ux, uy)

@@ -88,7 +88,7 @@ private final class PlantDynamics(lanes: PlantLanes) extends LaneDynamics:
 
   private[lanes] def flights(agent: RolloutAgent, loop: LoopLanes): LaneVehicles =
     (lanes.plant, loop.timing) match
-      // Where hardly a reading is of a period before, the way of a lag alone is the faster one.
+      // If hardly any reading is from an earlier period, LagVehicles is faster.
       case (lag: ReducedModel, stream: LoopTiming.Stream)
           if lag.isLag && !loop.sees && stream.periodS >= PlantDynamics.LeastPeriodS &&
             LagVehicles.canFly(lag, loop.longestS) =>

@@ -30,7 +30,7 @@ private[lanes] object LaneThreads:
     def handle(worker: W): Unit =
       var going = true
       while going do
-        // Every batch that was handed out is flown.
+        // Every batch that was taken is completed.
         val number = if failure.get == null && !isCancelled() then next.getAndIncrement() else batches.count
         if number >= batches.count then going = false
         else

@@ -41,7 +41,7 @@ private[lanes] object LoopSupport:
         for
           _ <- asksAtOnce(predictive.asking)
           _ <- LanePredictor.of(predictive.predictor)
-        // It is due in the middle between two questions.
+        // Decisions are due half-way between two requests.
         yield Vector(predictive.periodS / 2)
       case _: LoopTiming.Paused => Left("worlds that stand still while it is decided meet no delays")
     val refused =

@@ -62,7 +62,7 @@ final class CmaEs(dimension: Int, population: Int, seed: Long):
     val length = math.sqrt(sizePath.map(p => p * p).sum)
     val size   = state.size * StrictMath.exp((sizePathRate / damping * (length / normalLength - 1)).min(1))
 
-    // h_σ: the covariance's path stands still while the step size grows fast.
+    // h_σ: stops the covariance's path while the step size increases fast.
     val settled = math.sqrt(1 - StrictMath.pow(1 - sizePathRate, 2.0 * (state.generation + 1)))
     val moves   = if length / settled < (1.4 + 2.0 / (n + 1)) * normalLength then 1.0 else 0.0
     val path    =

@@ -61,7 +61,7 @@ enum DistanceTerm(val key: String, val unit: String) extends Term:
     case CaptureTime(radiusM) => Judged(Separation, OfMoment.FirstWithin(radiusM), 0))
 
   def value(computed: Float, durationS: Double): Double = this match
-    // The time of a score is known as a Float alone: a capture exactly then counts.
+    // The time of a score is a Float, and a capture exactly at the limit counts.
     case Capture(_, withinS) => if computed <= withinS.toFloat then 1.0 else 0.0
     case CaptureTime(_)      => computed.toDouble.min(durationS)
     case _                   => computed

@@ -54,7 +54,7 @@ final class JointPlanner:
   def improved(problem: PlanProblem, plan: JointPlan, search: Int): JointPlan =
     val self = plan.turn
     val part = problem.parts(self)
-    // What it cost before was by the others' plans of then; it is among the candidates.
+    // Its cost was computed against the others' former plans; the plan itself is among the candidates.
     val before = plan.plans(self).copy(cost = Float.PositiveInfinity)
     val stream = part.stream * PlanProblem.MostSearches + search
     val better =

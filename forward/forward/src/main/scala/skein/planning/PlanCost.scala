@@ -77,7 +77,8 @@ final case class PlanCost(
     s"expected no softness, or one above 0 m and no capture, came $softness m and a capture worth $capture"
   )
 
-  // Formulas: of doubles in ManoeuvreRollout, of a block's candidates in PlanKernel. They add to the costs so far.
+  // Formulas: ManoeuvreRollout evaluates them in doubles, PlanKernel for a block's candidates. Each adds to
+  // the costs so far.
 
   /** The command of a step, with the cost of its effort added.
     *

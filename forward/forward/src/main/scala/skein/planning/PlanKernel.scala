@@ -21,7 +21,7 @@ private[planning] final class PlanKernel(steps: Int) extends SampledBlock(steps)
   private var opponents   = Vector.empty[OpponentLanes]
   private val cos, sin    = Array.ofDim[Float]((steps + 1) * Size) // headed before each step
   private val north, east = Array.ofDim[Float](Size)
-  // Of these the present row and the next one.
+  // The present row and the next row of these.
   private val heading, effort, sum, nearest = Array.ofDim[Float](2 * Size)
   private val lastRow                       = steps % 2 * Size
   private var cost, nextCost                = Array.ofDim[Float](Size)

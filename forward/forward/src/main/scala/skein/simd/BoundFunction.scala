@@ -73,7 +73,8 @@ private[skein] final class LaneCall(bound: BoundFunction, parameters: Array[Floa
     * which [[next]] advances it.
     */
   def input(number: Int, array: Array[Float], offset: Int, stride: Int = 0): Unit =
-    // Nearly always the same one: to store a reference costs the collector's bookkeeping.
+    // Nearly always the array is unchanged, and storing a reference costs the garbage collector's
+    // bookkeeping.
     if arrays(number) ne array then arrays(number) = array
     offsets(number) = offset
     if stride != strides(number) || stride > 0 then

@@ -18,7 +18,7 @@ private[skein] abstract class ExpressionCompiler:
   protected final val slots   = mutable.HashMap.empty[Node, Int]
   private val sinesAndCosines = mutable.HashMap.empty[Node, (Int, Int)]
 
-  // What a machine has.
+  // The operations of a machine.
 
   protected def input(number: Int): Int
   protected def parameter(number: Int): Int
@@ -35,7 +35,7 @@ private[skein] abstract class ExpressionCompiler:
   protected def fma(a: Int, b: Int, c: Int): Int
   protected def choose(otherwise: Int, where: Int, condition: Int): Int
 
-  // What is no number compares as false.
+  // A comparison with NaN is false.
   protected def isLess(a: Int, b: Int): Int
   protected def isAtMost(a: Int, b: Int): Int
   protected def isEqual(a: Int, b: Int): Int
@@ -134,8 +134,7 @@ private[skein] abstract class ExpressionCompiler:
         else fma(neg(times), of(y), x)
       case Op.Always => throw Untraceable("a condition that always holds")
 
-  // Polynomials of Cephes' sinf.c, atanf.c and expf.c; LaneMath has that of the last for passes written by
-  // hand.
+  // Polynomials of Cephes' sinf.c, atanf.c and expf.c; LaneMath has the last one for passes written by hand.
 
   private def sinCos(of: Node): (Int, Int) = sinesAndCosines.getOrElseUpdate(
     of, {
@@ -197,7 +196,7 @@ private[skein] abstract class ExpressionCompiler:
       5.0000001201e-1f
     )
     val fraction = bitsOf(fma(tail, mul(rest, rest), add(rest, constant(1f))))
-    // The bits of what is no number differ between machines, and with a sum they may become one.
+    // The bits of a NaN differ between machines, and could become a number by the sum.
     choose(x, ofBits(addBits(fraction, shiftLeft(bitsOf(rounded), 23))), isEqual(x, x))
 
   private def tanh(x: Int): Int =
@@ -264,7 +263,7 @@ private[skein] abstract class ExpressionCompiler:
 
   /** Whether a node is never NaN if its inputs are not NaN and no intermediate value overflows. */
   private def isNumber(node: Node): Boolean =
-    // Expressions may be deeper than a stack of calls.
+    // Expressions may be deeper than the call stack.
     val asked = mutable.Stack(node)
     while asked.nonEmpty do
       val unknown = asked.top.args.filterNot(numbers.contains)

@@ -153,7 +153,7 @@ private final class PassCompiler(
     next - 1
 
   def emit(): Unit =
-    // Everything before the loop is found by writing the loop once for nothing.
+    // A first, unused generation of the loop finds everything that must precede it.
     val rehearsal = ClassFile.of(
       ClassFile.StackMapsOption.DROP_STACK_MAPS,
       ClassFile.DeadCodeOption.KEEP_DEAD_CODE,
@@ -199,7 +199,7 @@ private final class PassCompiler(
     for (node, place) <- pass.loads do slots(node) = loaded(3, laidBy(place))
     for node <- pass.computes if !node.op.isLeaf do computed(node): Unit
     for (node, place) <- pass.stores do store(of(node), 3, laidBy(place))
-    // All is read before anything is written: see LaneFunction.isOnePass.
+    // All inputs are read before any output is written: see LaneFunction.isOnePass.
     val written = pass.outputs.map((node, output) => (of(node), inputs + output))
     for (vector, number) <- written do storeTo(vector, number)
 
@@ -305,7 +305,7 @@ private final class PassCompiler(
   protected def parameter(number: Int): Int =
     code.getstatic(math, "SPECIES", species).aload(2)
     if parameters == 0 then
-      // The same in all worlds. Fetched where it is used: registers are few.
+      // Equal in all worlds. Loaded at each use, because registers are few.
       code.loadConstant(number).faload()
       code.invokestatic(float, "broadcast", MethodTypeDesc.of(float, species, ConstantDescs.CD_float))
     else

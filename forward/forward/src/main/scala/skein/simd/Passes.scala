@@ -19,7 +19,7 @@ private final case class Pass(
 
 /** Splits a long expression into passes that the JIT compiler handles well. */
 private object Passes:
-  // Chosen by measuring (`PolicyBenchmark`): with more of either, constants are fetched from memory in every
+  // Chosen by measurement (`PolicyBenchmark`): above either limit, constants are loaded from memory in every
   // round.
 
   /** Maximum number of vector operations in one pass. */
@@ -28,13 +28,13 @@ private object Passes:
   /** Maximum number of constants in one pass, of 32 registers. */
   private val MostConstants = 20
 
-  // The same where inputs and outputs are rows of few arrays, whose addresses leave registers: a step with
-  // drag and two lags in one pass takes 210 ns, in two 250 to 300; the quadrotor's 400 operations fly 119 M
-  // steps a second in four passes, and 95 M in eight of 60.
+  // The limits if inputs and outputs are rows of few arrays, whose addresses need few registers: a step with
+  // drag and two lags takes 210 ns in one pass and 250 to 300 in two; the quadrotor's 400 operations reach
+  // 119 M steps a second in four passes, and 95 M in eight of 60.
   private val MostOfRows          = 140
   private val MostConstantsOfRows = 30
 
-  // In what laying a number by costs: a pass, and to fetch a number.
+  // Costs of a pass and of loading a number, relative to storing one.
   private val PassCost  = 8.0
   private val FetchCost = 0.5
 
@@ -56,7 +56,7 @@ private object Passes:
       ofPass(pass).flatMap(argsOf).distinct.filter(arg =>
         !arg.op.isLeaf && passOf(arg) < pass
       )
-    // Conditions are computed again where another pass needs them: a mask is not laid by.
+    // A pass that needs another pass's condition computes it again, because masks cannot be stored.
     val again   = needs.map(conditionsOf)
     val numbers = needs
       .zip(again)

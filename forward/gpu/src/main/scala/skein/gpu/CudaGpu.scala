@@ -90,7 +90,7 @@ private final class CudaGpu private (cuda: Cuda, context: MemorySegment, val nam
     cleaner.register(
       holder,
       () =>
-        // After a fault the driver refuses this as well, and holds nothing.
+        // After a fault the driver refuses this too; then nothing is left to free.
         try within(_ => cuda.call(by, what))
         catch case _: GpuFailure => ()
     )
@@ -110,7 +110,7 @@ object CudaGpu:
   private val MostName         = 256
   private val cleaner          = Cleaner.create()
 
-  // CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MAJOR and _MINOR; those that PTX is written for (Turing).
+  // CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MAJOR and _MINOR, and the least ones that the PTX needs (Turing).
   private val Capability      = (75, 76)
   private val LeastCapability = (7, 5)
 

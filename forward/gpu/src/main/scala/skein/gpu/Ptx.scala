@@ -47,7 +47,7 @@ final class Ptx(name: String, parameters: Seq[(String, Ptx.Kind)], localBytes: I
   def conditions(how: String, a: Int, b: Int): Int = result()(r => s"$how.pred %p$r, %p$a, %p$b")
   def not(a: Int): Int                             = result()(r => s"not.pred %p$r, %p$a")
 
-  // Whole numbers and bits.
+  // Integers and bits.
 
   def whole(value: Int, into: Int = fresh()): Int     = result(into)(r => s"mov.b32 %r$r, $value")
   def wholes(how: String, a: Int, b: Int): Int        = result()(r => s"$how %r$r, %r$a, %r$b")
@@ -92,7 +92,7 @@ final class Ptx(name: String, parameters: Seq[(String, Ptx.Kind)], localBytes: I
   def store(value: Int, base: Int, word: Int = 0): Unit =
     this(s"st.global.f32 [%rd$base+${4 * word}], %f$value")
 
-  // This thread's own memory, from a place on that is told in bytes.
+  // The thread's own memory, at offsets in bytes.
 
   def own(bytes: Int): Int =
     val wide = result()(r => s"cvt.u64.u32 %rd$r, %r$bytes")

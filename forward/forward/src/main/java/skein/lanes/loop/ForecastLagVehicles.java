@@ -56,7 +56,7 @@ final class ForecastLagVehicles implements ForecastVehicles {
     for (int k = 0; k < vectors.count; k++) {
       int i = vectors.first[k];
       FloatVector end = FloatVector.fromArray(SPECIES, endS, i);
-      // The powers are written out: by LaneMath.powerOf2 the loop makes 0.83 of the steps a second.
+      // The powers are written out: with LaneMath.powerOf2 the loop has 0.83 times the speed.
       FloatVector exponent = end.mul(halvings).max(least);
       FloatVector rounded = exponent.add(round);
       FloatVector rest = exponent.sub(rounded.sub(round)), square = rest.mul(rest);
@@ -75,7 +75,7 @@ final class ForecastLagVehicles implements ForecastVehicles {
           vx = seenVx.mul(left),
           vy = seenVy.mul(left);
       FloatVector moved = end.sub(carried).mul(speed), reached = gone.mul(speed);
-      // The direction flown at the reading: that of the last turn until then.
+      // The direction at the reading is that of the last turn before it.
       FloatVector firstX = zero.mul(end), firstY = zero.mul(end), x = zero.mul(end), y = zero.mul(end);
       int turns = way.turnsOf[i / LANES];
       for (int turn = way.heldFrom[i / LANES]; turn < turns; turn++) {

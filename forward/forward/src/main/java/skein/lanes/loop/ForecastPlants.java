@@ -146,7 +146,8 @@ final class ForecastPlants implements ForecastVehicles {
       int i = vectors.first[k];
       FloatVector flown = FloatVector.fromArray(SPECIES, flownS, i),
           until = FloatVector.fromArray(SPECIES, untilS, i);
-      // Of those that turn it later some arrive now, in their order. With no dead time they turn it at once.
+      // Commands of later turns may arrive now, in their order. Without a dead time they take effect
+      // immediately.
       int turns = way.deadS > 0 ? way.turnsOf[i / LANES] : 0;
       for (int later = Math.max(turn + 1, way.held); later < turns; later++) {
         FloatVector told = FloatVector.fromArray(SPECIES, turnS, later * WORLDS + i).sub(way.deadS);
@@ -157,7 +158,7 @@ final class ForecastPlants implements ForecastVehicles {
       FloatVector left = until.sub(flown);
       VectorMask<Float> on = left.compare(GT, 0f);
       any |= on.anyTrue();
-      // A plant is never stepped by no time; what comes of this step is not taken.
+      // A plant's step must not be 0 s; the result of this step is not used.
       FloatVector.broadcast(SPECIES, stepS).blend(left.min(stepS), on).intoArray(forS, i);
       left.intoArray(goes, i);
     }
@@ -172,7 +173,7 @@ final class ForecastPlants implements ForecastVehicles {
         FloatVector.fromArray(SPECIES, to, number).intoArray(from, number, on);
       FloatVector flown = FloatVector.fromArray(SPECIES, flownS, i),
           until = FloatVector.fromArray(SPECIES, stopS, i);
-      // To the end itself: a rest that rounding leaves would be a step of its own.
+      // Exactly to the end: a remainder left by rounding would be a further step.
       FloatVector then = flown.add(FloatVector.fromArray(SPECIES, forS, i));
       flown.blend(until.blend(then, until.sub(then).compare(GT, 1e-6f)), on).intoArray(flownS, i);
     }

@@ -60,12 +60,12 @@ final class ForecastTrack {
   /** 1 in worlds whose newest reading became known in this period, else 0. */
   final int[] fresh = new int[WORLDS];
 
-  // The row of the oldest command held, which was in effect at the reading; the direction of the one before.
+  // The row of the oldest stored command, which was in effect at the reading; and the direction before it.
   private final int[] head = new int[WORLDS];
   private final Directions before = new Directions(WORLDS), prior = new Directions(WORLDS);
 
-  // By row modulo slots: when the command was sent, NONE without one, and when it was known to have arrived;
-  // from the row's begin.
+  // By row modulo slots: time of the command, NONE without one, and time at which its arrival was known; from
+  // the row's start.
   private int slots = 8, oldest;
   private int[] sentAt = new int[slots * WORLDS], answeredAt = new int[slots * WORLDS];
   private Directions sent = new Directions(slots * WORLDS);
@@ -280,12 +280,13 @@ final class ForecastTrack {
                 .and(at.compare(LE, until))
                 .and(flies);
         if (stands.anyTrue()) {
-          // What has turned the vehicle by then replaces the last turn; others follow it.
+          // The last turn that took effect by then replaces the stored one; later turns follow it.
           VectorMask<Float> follows = stands.and(at.compare(GT, span));
           if (follows.anyTrue()) {
             int oldestAt = since * WORLDS + i;
             FloatVector oldestS = FloatVector.fromArray(SPECIES, turnS, oldestAt);
-            // Worlds make room by what no longer counts: else all that follow in one would take room in all.
+            // Drop turns that no world needs: otherwise those that follow in one world would take places in
+            // all.
             boolean isNeeded =
                 oldestAt >= last
                     || FloatVector.fromArray(SPECIES, turnS, oldestAt + WORLDS)
@@ -359,7 +360,7 @@ final class ForecastTrack {
    * @param isFirst whether it is the first track since readings were added
    */
   void lay(int row, LaneVectors vectors, int[] known, int[] when, MeanDelays delays, boolean isFirst) {
-    // But for what is taken for lost meanwhile, the ways to all moments are one.
+    // Except for commands presumed lost meanwhile, the tracks to all moments have equal turns.
     if (isFirst || mayLose) lay(row, vectors, known, when, delays.toS, delays.fromS);
     aim(row, vectors, known, when, delays.toS);
   }
@@ -448,7 +449,7 @@ final class ForecastTrack {
         VectorMask<Float> count = present.cast(SPECIES).andNot(wait.compare(GT, patience).and(unanswered));
         VectorMask<Float> late = present.andNot(later).cast(SPECIES).and(acts.compare(GT, zero));
         if (late.anyTrue()) {
-          // It acts later than was thought at the reading. The place before it has no turn of its own.
+          // The command acts later than estimated at the reading. The place before it has no turn of its own.
           at.blend(dead, late).intoArray(turnS, place - WORLDS);
           x.blend(FloatVector.fromArray(SPECIES, before.cos, i), late).intoArray(turnX, place - WORLDS);
           y.blend(FloatVector.fromArray(SPECIES, before.sin, i), late).intoArray(turnY, place - WORLDS);

@@ -32,7 +32,7 @@ final class FuturesOffers extends LaneOffers {
   /** Number of periods whose tasks are stored; a power of two. */
   private final int ring;
 
-  // Tasks by agent and slot, from their own step's begin: when they begin, and when they end with an offer.
+  // Of tasks, by agent and slot, from the start of their own step: begin, and end with an offer.
   private final int[][][] beginAt, end;
 
   /** The n latest ends of all earlier tasks, the latest first, in grains from the start of the last drawn
@@ -52,11 +52,11 @@ final class FuturesOffers extends LaneOffers {
   /** The oldest period with offers that may be pending, and the next period to draw. */
   private int oldest, next;
 
-  // By agent: the next offer, the one behind it, and of the next its step and when its task began.
+  // By agent: the next offer and the one after it; and the step and the begin of the next one's task.
   private final int[][] soonest, second, stepOf, beginOf;
 
-  // Where random numbers are: of a step drawn, or of the steps of the beat's offers; and when the tasks of
-  // these go on to the next vehicle.
+  // Places of the random numbers, of a drawn step or of this round's offers; and the times at which the
+  // offers' tasks read the next vehicle.
   private final int[] places = new int[WORLDS], goesOn = new int[WORLDS];
 
   private final int[] beatPlaces = new int[WORLDS];
@@ -72,10 +72,10 @@ final class FuturesOffers extends LaneOffers {
         taskS = vehicles * Math.min(timing.asking().timeoutS(), 2 * maxDelayS);
     periodGrains = LaneViews.grains(periodS);
     timeoutGrains = LaneViews.grains(timing.asking().timeoutS());
-    // A decision waits for the answer to the command before at most.
+    // A decision waits at most for the answer to the previous command.
     double waitsS = 2 * maxDelayS + timing.steering().handoverS() + timing.steering().minIntervalS();
     ahead = 1 + rowsAhead + (int) Math.ceil(waitsS / periodS);
-    // A task may wait for one that waits for another.
+    // A task may wait for one that waits for another one.
     ring = Integer.highestOneBit(2 * (ahead + (int) Math.ceil(3 * taskS / periodS) + 4) - 1);
     most = vehicles * timing.asking().window();
     drawn = new int[2 * vehicles][WORLDS];
@@ -125,8 +125,8 @@ final class FuturesOffers extends LaneOffers {
       IntVector before = IntVector.fromArray(INTS, began, i);
       IntVector begin = IntVector.fromArray(INTS, lastOf, i).max(agent == 0 ? zero : before.max(zero));
       if (agent == 0) {
-        // A step whose predecessor waits still is missed, also where a time-out ends its wait at that moment:
-        // time-outs come last. The other tasks follow the first.
+        // A step is missed if its predecessor still waits, even if a time-out ends that wait at this moment,
+        // because time-outs are last. The other tasks follow the first.
         VectorMask<Integer> goes = before.compare(LT, zero);
         before.blend(begin, goes).intoArray(began, i);
         zero.blend(1, goes.not()).intoArray(missed, i);

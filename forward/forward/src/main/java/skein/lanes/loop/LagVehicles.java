@@ -44,7 +44,7 @@ public final class LagVehicles extends LaneVehicles {
   private final FirstOrderLag lag;
   private final float lagS, speedMps, periodGain, periodDecay;
 
-  // Of each world at the row's begin the velocity asked for, and what the velocity lacks of it.
+  // By world, at the row's start: the commanded velocity, and the commanded less the actual velocity.
   private static final int WANTED_X = OWN,
       WANTED_Y = OWN + WORLDS,
       LACK_X = OWN + 2 * WORLDS,
@@ -72,16 +72,16 @@ public final class LagVehicles extends LaneVehicles {
   private static final int AT = 0, GROWTH = WORLDS, CHANGE_X = 2 * WORLDS, CHANGE_Y = 3 * WORLDS;
   private static final int SLOT = 4 * WORLDS;
 
-  // Commands by the beat in which they were decided, modulo slots: the oldest that an early reading
-  // may be without, the first that some world has yet to feel, the next; and of each the row, and the
-  // times between which it acts.
+  // Commands by the round of their decision, modulo slots: the oldest that may act after an early reading,
+  // the first that does not act yet in every world, and the next; with the row of each and the range of times
+  // at which it takes effect.
   private int slots;
   private int oldest, first, next;
   private int[] rowOf;
   private float[] soonest, latest;
 
-  // Those that act before the readings: where they are, how old they are, how old they were when
-  // the vehicles were flown last, and what remains of an error after their age.
+  // Of the commands that act before the readings: places, ages, ages at the last simulation, and the shares
+  // of an error that remain after their age.
   private int near;
   private int[] nearFrom;
   private float[] nearAge, nearYounger, nearAged;
@@ -164,7 +164,7 @@ public final class LagVehicles extends LaneVehicles {
       nowX.intoArray(state, SENT_X + i);
       nowY.intoArray(state, SENT_Y + i);
     }
-    // A little wider than floats are exact.
+    // Widened slightly, because of the rounding of floats.
     soonest[number] = soonestOf.reduceLanes(VectorOperators.MIN) * LaneViews.GRAIN_S * 0.999f;
     latest[number] = latestOf.reduceLanes(VectorOperators.MAX) * LaneViews.GRAIN_S * 1.001f;
   }
@@ -199,7 +199,7 @@ public final class LagVehicles extends LaneVehicles {
   void read(
       int row, LaneVectors vectors, int[] joined, int[] at, int[] fresh, boolean withVelocity) {
     if (fresh != null) remember();
-    // Those that are flown on must be so everywhere; where they are already, the others stay.
+    // A simulation must be of all worlds; without one, only the vectors with readings are needed.
     LaneVectors read = this.row < row ? ALL : vectors;
     flyTo(row, read, at);
     if (withVelocity) readVelocities(read);
@@ -284,7 +284,7 @@ public final class LagVehicles extends LaneVehicles {
       FloatVector died = lagDecay.sub(lag);
       FloatVector seenX = lackX.fma(died, wantedX.fma(end, x)),
           seenY = lackY.fma(died, wantedY.fma(end, y));
-      // Of commands that begin to act, an earlier reading shows an effect that lookBack takes back.
+      // At an early reading, commands that take effect after it are included; lookBack removes them.
       FloatVector horizon = end.max(zero);
       for (int k = 0; k < near; k++) {
         int from = nearFrom[k] + i;

@@ -51,7 +51,7 @@ public abstract class LaneAgents {
    */
   public final boolean together;
 
-  // When it may be commanded again, and when the last command reaches it.
+  // Time from which the vehicle may be commanded again, and arrival of the last command.
   private final int[] ready = new int[WORLDS], reaches = new int[WORLDS];
 
   /** Times at which earlier commands are answered, the latest first. There are as many as the limit of
@@ -72,7 +72,8 @@ public abstract class LaneAgents {
    */
   private final int[] goesFirst = new int[WORLDS];
 
-  // When it sends, or NONE, when the command acts, and when it is known to have arrived: the first never is.
+  // Time of sending, or NONE; time at which the command takes effect; and time at which its arrival is known,
+  // NONE for the first command.
   private final int[] sends = new int[WORLDS], acts = new int[WORLDS], answers = new int[WORLDS];
 
   /** The forecast that predicts the readings; null if decisions use the readings themselves. */
@@ -90,8 +91,8 @@ public abstract class LaneAgents {
 
   private final int[] drawn = new int[2 * LANES];
 
-  // Over links whose tables change: places of random numbers, how long commands and their answers are under
-  // way, and when commands arrive.
+  // For links whose tables change or that lose packets: places of random numbers, delays of commands and of
+  // their answers, and arrivals of commands.
   private final int[] drawnAt = new int[WORLDS],
       there = new int[WORLDS],
       back = new int[WORLDS],
@@ -225,7 +226,7 @@ public abstract class LaneAgents {
       IntVector sending = none.blend(when, goes), deciding = decidesFirst ? joined : sending;
       sending.intoArray(sends, i);
       deciding.intoArray(decides, i);
-      // In two parts, of which neither depends on the period in which it is looked at.
+      // In two parts, neither of which depends on the present period.
       IntVector passed = deciding.add(begin).sub(IntVector.fromArray(INTS, decidedAt, i));
       IntVector many =
           IntVector.fromArray(INTS, decidedLong, i).add(passed.lanewise(ASHR, LONG));
@@ -322,9 +323,9 @@ public abstract class LaneAgents {
       // Commands to one vehicle keep their order.
       IntVector arrives = when.add(there).max(reachedBefore.sub(begin));
       none.blend(arrives.add(dead), goes).intoArray(acts, i);
-      // The command before is answered when this one has replaced it; the very first replaces none.
+      // A command is answered when its successor has replaced it; the first command replaces none.
       IntVector again = when.add(interval), answer = arrives.add(back);
-      // So do their answers.
+      // Answers keep their order too.
       if (manyUnderWay)
         answer = answer.max(IntVector.fromArray(INTS, answered[0], i).sub(begin));
       VectorMask<Integer> replaces = before.compare(LT, never);

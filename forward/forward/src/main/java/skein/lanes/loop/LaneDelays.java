@@ -243,7 +243,7 @@ final class LaneDelays {
       VectorMask<Integer> mayLose =
           IntVector.fromArray(INTS, bits, i).and(LOW_BITS).compare(LT, IntVector.fromArray(INTS, lossThreshold, i));
       if (losesByTime) {
-        // The sum of two times without their low bits is the time, or one less.
+        // The sum of two times without their low bits is that of the sum, or one less.
         IntVector at = IntVector.fromArray(INTS, sentAt, i).lanewise(ASHR, COARSE).add(coarse);
         mayLose =
             mayLose
@@ -257,7 +257,7 @@ final class LaneDelays {
 
   private void lose(int world, int line, long begin, int[] sentAt, int[] values) {
     LossyDelays losses = lossy[world];
-    // Where nothing is sent, there is no time.
+    // Without a message there is no time.
     if (losses == null || sentAt[world] == Integer.MAX_VALUE) return;
     LossTimes times = lossTimes[world];
     int grain = DelayTable.GrainNs();

@@ -38,9 +38,7 @@ public abstract class LaneFlights extends LaneVehicles {
   private int[] begins, rowOf;
   float[] pieces;
 
-  /** Number of slots filled so far; slot {@code filled
-   *   - 1}, modulo their number, is the newest.
-   */
+  /** Number of slots filled so far; the newest slot is the one before it, modulo their number. */
   private int filled;
 
   /** Times at which vehicles are to be read; the pieces of these times, and the time since each piece's
@@ -50,7 +48,7 @@ public abstract class LaneFlights extends LaneVehicles {
 
   final float[] chosen, sinceS = new float[WORLDS];
 
-  // Pieces that end by themselves: where, and when others follow.
+  // Vectors with a piece that ends without a command; the worlds, and the begins of the next pieces.
   private final LaneVectors over = new LaneVectors();
   private final int[] ends = new int[WORLDS], next = new int[WORLDS];
 
@@ -119,7 +117,7 @@ public abstract class LaneFlights extends LaneVehicles {
   @Override
   final void flyToRow(int row, boolean isLookedAt) {
     Arrays.fill(until, row * periodGrains);
-    // No piece lasts longer than times are told apart by.
+    // Times are compared only within a range, so pieces must not become longer.
     goOn(row, ALL);
     if (!isLookedAt) return;
     choose(ALL);

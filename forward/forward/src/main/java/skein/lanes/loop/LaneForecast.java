@@ -15,7 +15,7 @@ public final class LaneForecast {
   private final MeanDelays delays = new MeanDelays();
   private final ForecastTrack[] tracks;
 
-  // By vehicle: by what it is carried forward, and what is read of it.
+  // By vehicle: its predictor, and the vehicles that its readings come from.
   private final ForecastVehicles[] vehicles;
   private final LaneVehicles[] read;
 

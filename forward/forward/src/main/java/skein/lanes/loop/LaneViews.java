@@ -76,8 +76,8 @@ public final class LaneViews {
 
   final LaneDelays delays = new LaneDelays();
 
-  // By row modulo ROWS: when the questions reach the vehicles, and when the first answer and all
-  // are back; the same of the next row's answers.
+  // By row modulo ROWS: times at which the requests reach the vehicles, of the first and the last answer, and
+  // of the next row's last answer.
   private final int[][][] reached;
   private final int[][] first = new int[ROWS][WORLDS],
       last = new int[ROWS][WORLDS],
@@ -89,7 +89,7 @@ public final class LaneViews {
   /** Bit mask of the lanes that {@link #ask} found irregular, for each vector. */
   private final long[] irregularLanes = new long[WORLDS / LANES];
 
-  // Worlds whose views come one by one: from which row to which; these worlds.
+  // Worlds whose views are computed one by one: their rows, from and up to; and their numbers.
   private final int[] irregularFrom = new int[WORLDS], irregularUpTo = new int[WORLDS];
   private final int[] irregular = new int[WORLDS];
   private int irregularCount;
@@ -97,8 +97,8 @@ public final class LaneViews {
   /** Whether a world's source has a view that has not been inserted yet. */
   private final boolean[] hasNext = new boolean[WORLDS];
 
-  // The beat's views: when each is joined, when the world's next one is; what its readings were
-  // asked as, in places from the row's; when they were taken.
+  // The round's views: the time of each and of the world's next; the places of its readings' requests, from
+  // those of the row; and the times of the readings.
   int[] joinedAt, nextAt;
   final int[][] place;
   int[][] sampledAt;
@@ -264,7 +264,7 @@ public final class LaneViews {
 
   private void makeIrregular(int world, int step) {
     if (hasNext[world]) {
-      // It was thought to be regular again behind the view that comes next.
+      // The world was expected to be regular again after the next view.
       stayIrregular(world);
     } else {
       irregular[irregularCount++] = world;
@@ -353,7 +353,7 @@ public final class LaneViews {
           nextAt[world] = fromTick(source.joinedAt());
           if (source.row() == row) {
             more = true;
-            // The next row was looked after already.
+            // The next row was already checked.
             stayIrregular(world);
           }
         }

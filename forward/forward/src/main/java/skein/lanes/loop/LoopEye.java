@@ -40,15 +40,16 @@ public class LoopEye extends CameraTrackerLanes {
 
   private int row;
 
-  // Of a go, by world: how many images are taken; in turn, which and when, with what errors, and whether the
-  // opponent is found in view.
+  // The images taken in one pass, by world: their number; and for each the image, its time, its errors, and
+  // whether an opponent in view is detected.
   private final int[] takes = new int[WORLDS];
   private final int[][] taken = new int[MOST][WORLDS];
   public final long[][] takenNs = new long[MOST][WORLDS];
   private final float[][] bearings = new float[MOST][WORLDS], ranges = new float[MOST][WORLDS];
   public final boolean[][] isFound = new boolean[MOST][WORLDS];
 
-  // And how many become known; in turn, which; which is newer and entered before, or -1.
+  // The images that become known in one pass, by world: their number; and for each the image, and the newer
+  // image that was added before it, or -1.
   private final int[] knows = new int[WORLDS];
   private final int[][] known = new int[MOST][WORLDS], newer = new int[MOST][WORLDS];
 
@@ -57,7 +58,7 @@ public class LoopEye extends CameraTrackerLanes {
 
   private final LaneVectors some = new LaneVectors();
 
-  // Images that are taken together: when, where both vehicles are, what is shown.
+  // Images that are taken together: their times, the positions of both vehicles, and the results.
   private final int[] at = new int[WORLDS];
   public final float[] ourX = new float[WORLDS],
       ourY = new float[WORLDS],
@@ -65,8 +66,8 @@ public class LoopEye extends CameraTrackerLanes {
       theirY = new float[WORLDS],
       shown = new float[IMAGE * WORLDS];
 
-  // Images that become known together: 1 where one does, and where it is older than what entered before; that
-  // newer one; the belief that they enter, after the one and after both.
+  // Images that become known together: 1 in worlds with one, and 1 where a newer image was added before it;
+  // that newer image; and the estimate before them, after the first and after both.
   private final int[] enters = new int[WORLDS], isOlder = new int[WORLDS];
   private final float[] newerShown = new float[IMAGE * WORLDS], newerS = new float[WORLDS];
   private final float[] from = new float[BELIEF * WORLDS],

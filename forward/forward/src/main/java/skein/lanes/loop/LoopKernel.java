@@ -84,7 +84,7 @@ public final class LoopKernel {
         offers.beat++;
         vectors.take(offers.joinedAt, LaneOffers.NONE);
         for (LaneAgents each : agents) read(row, each);
-        // Reading them has flown the vehicles to the row's begin, if that is their way.
+        // Some kinds of vehicles are simulated to the row's start by the readings.
         if (!isScored) score(row);
         isScored = true;
         for (LaneAgents each : turns) if (offers.isFor(each.self)) each.decide(agents, offers, vectors, readAt);

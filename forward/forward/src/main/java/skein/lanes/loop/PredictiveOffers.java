@@ -41,15 +41,15 @@ final class PredictiveOffers extends LaneOffers {
   /** Whether a request may have to wait, on at least one link. */
   private boolean mayWait;
 
-  // By vehicle: places of the next question's random numbers, when the last one began, and the latest ends
-  // of all, the latest first. Twice the time from the row's begin, and 1 more for what is behind the
-  // question that is due in the same moment: a time-out, and what was not known when that was scheduled, a
-  // period before.
+  // By vehicle: places of the next request's random numbers, begin of the last request, and the latest ends
+  // of all requests, the latest first. Each is twice the time from the row's start, plus 1 for events that
+  // come after a request due at that moment: time-outs, and events that were not known when it was scheduled,
+  // one period before.
   private final int[][] places, began;
   private final int[][][] latest;
 
-  // By vehicle and row modulo ring: when a question is asked, read and answered, from its row's begin; NONE
-  // in the place of the answer where none will come, or it has been taken.
+  // By vehicle and row modulo ring: times of request, reading and answer, from the start of the row. The
+  // answer is NONE if there is none, or if it was taken.
   private final int[][][] asked, read, answered;
 
   private final int[] there = new int[WORLDS], back = new int[WORLDS];
@@ -59,7 +59,8 @@ final class PredictiveOffers extends LaneOffers {
 
   private int row;
 
-  // The answers taken: which, by row and vehicle; and of which vehicle, asked, made and received when.
+  // The taken answers: their code, from row and vehicle; the vehicle; and the times of request, reading and
+  // answer.
   private final int[] found = new int[WORLDS],
       whose = new int[WORLDS],
       askedAt = new int[WORLDS],
@@ -186,7 +187,7 @@ final class PredictiveOffers extends LaneOffers {
       IntVector asks = IntVector.fromArray(INTS, asked, i);
       IntVector to = IntVector.fromArray(INTS, there, i), back = IntVector.fromArray(INTS, this.back, i);
       IntVector roundTrip = to.add(back), lasts = roundTrip.min(timeout);
-      // An answer is known when the request has reached the vehicle.
+      // An answer's time is known from the moment the request reaches the vehicle.
       VectorMask<Integer> isBehind = back.compare(LT, period).or(roundTrip.compare(GT, timeout));
       IntVector ends = asks.add(lasts).lanewise(LSHL, 1).add(1, isBehind);
       IntVector more = past.blend(ends, goes);
@@ -224,7 +225,7 @@ final class PredictiveOffers extends LaneOffers {
           IntVector answer = IntVector.fromArray(INTS, answers, i);
           answer = answer.blend(none, taken.compare(EQ, code));
           answer.intoArray(answers, i);
-          // No overflow: what is added is not positive.
+          // No overflow, because the shift is not positive.
           answer = answer.add(shift);
           IntVector first = IntVector.fromArray(INTS, receivedAt, i);
           VectorMask<Integer> sooner = answer.compare(LT, first);

@@ -28,10 +28,10 @@ final class SequentialOffers extends LaneOffers {
 
   private final int periodGrains, timeoutGrains;
 
-  // The next round: when it begins, and the places of its random numbers.
+  // The next round: its begin, and the places of its random numbers.
   private final int[] tick = new int[WORLDS], tickPlace = new int[WORLDS];
 
-  // The next two rounds that succeed, by world: when they end, when the vehicles are read, places.
+  // The next two successful rounds of each world: their ends, the times of the readings, and the places.
   private final int[] end = new int[WORLDS], laterEnd = new int[WORLDS];
   private final int[][] read, laterRead;
   private final int[] places = new int[WORLDS], laterPlaces = new int[WORLDS];
@@ -158,7 +158,7 @@ final class SequentialOffers extends LaneOffers {
       for (int v = 0; v < vehicles; v++) {
         IntVector there = IntVector.fromArray(INTS, drawn[2 * v], i),
             back = IntVector.fromArray(INTS, drawn[2 * v + 1], i).add(there);
-        // Once a question has failed, its round is over; what it read is written over by a later one.
+        // A failed request ends its round; a later round overwrites its readings.
         IntVector.fromArray(INTS, laterRead[v], i).blend(over.add(there), found).intoArray(laterRead[v], i);
         over = over.add(back.min(timeout), found);
         found = found.andNot(back.compare(GT, timeout));

@@ -11,7 +11,7 @@ final class TableCourse {
 
   private TableStretch stretch;
 
-  // Of each stretch: where its table begins, and until when it holds, since the flight's begin, in grains.
+  // Of each stretch: the offset of its table, and its end, since the flight's start, in grains.
   private int[] tables = new int[4];
 
   private long[] ends = new long[4];

@@ -18,7 +18,7 @@ private[skein] final class LaneQuadrotors private[lanes] (lanes: QuadrotorLanes)
   private val steps   = Array(lanes.step(one, other, goal), lanes.step(other, one, goal))
   private var isOther = false
 
-  // Nearly always all hover at one place: that, and the state's numbers there.
+  // The last position to hover at, and the state there: nearly always it is that of all vehicles.
   private var heldNed                 = Vector3.Zero
   private var holding: Vector[Double] = lanes.numbersOf(lanes.quadrotor.hovering(heldNed))
 

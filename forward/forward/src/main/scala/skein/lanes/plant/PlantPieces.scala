@@ -28,7 +28,7 @@ private[lanes] final class PlantPieces(
   private val expressions =
     val (since, stepS) = (trace.input(Since), trace.param(0))
     val north          = trace.input(North)
-    // A plant is never stepped by no time; what comes of this step is not taken.
+    // A plant's step must not be 0 s; the result of this step is not used.
     val flies = trace.and(trace.lt(trace.const(0), since), trace.equal(north, north))
     PlantExpressions(
       trace,

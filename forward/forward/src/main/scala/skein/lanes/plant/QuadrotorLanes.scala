@@ -58,7 +58,7 @@ private[lanes] object QuadrotorLanes:
   private def compiled(of: Airborne): Either[Untraceable, FixedFormula] =
     for formula <- Formula.of(of, "step", known = known)
     yield
-      // A step's outputs are the next one's inputs.
+      // The outputs of a step are the inputs of the next.
       require(formula.inputs.map(_.stripPrefix(State)).startsWith(formula.outputs.map(_._1)), formula.inputs)
       FixedFormula(formula, of, rows = formula.outputs.size)
 

@@ -158,7 +158,7 @@ private[lanes] object ScoreLanes:
     of(by.toVector.map(Judged(Separation, _, _)), 2).fold(throw _, identity)
 
   private def formulaOf(quantity: Quantity, vehicles: Int): Either[Untraceable, Formula] =
-    // Who writes a quantity may call its argument as they like.
+    // A user's quantity may have any name for its argument.
     val argument = quantity.getClass.getMethod("of", classOf[Positions]).getParameters.head.getName
     Formula.of(
       quantity,

@@ -22,7 +22,7 @@ private[lanes] final class ImageOrder:
   def known(image: Int): Unit =
     last = newest
     isOlder = whenNs(image) < whenNs(newest)
-    // Two are on the way at most, and whichever is overtaken twice is dropped.
+    // At most two images are being transmitted, and one that is overtaken twice is dropped.
     require(whenNs(image) >= whenNs(runnerUp), s"image $image is older than two others")
     if isOlder then runnerUp = image
     else

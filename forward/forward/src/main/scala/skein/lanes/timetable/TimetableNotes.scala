@@ -20,7 +20,7 @@ private[lanes] final class TimetableNotes(
   /** For each vehicle, the readings that were added to the forecast. */
   private val entered = Array.fill(vehicles)(mutable.ArrayBuffer.empty[Entered])
 
-  // What was predicted last: of which forecast, for a decision when, in which view.
+  // The last prediction: its forecast, the time of its decision, and its view.
   private var predictedOf: Forecast = null
   private var predictedAtNs         = 0L
   private var predicted             = 0

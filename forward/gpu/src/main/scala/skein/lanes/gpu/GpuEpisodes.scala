@@ -47,7 +47,7 @@ private[lanes] final class GpuEpisodes(
       timetable: Int => Timetable,
       known: Map[Any, Timetable]
   ): Option[Vector[Held]] =
-    // Whoever is used now is forgotten last.
+    // An access makes an episode the most recently used.
     val missing = names.indices.filter(i => held.get(names(i)) == null).distinctBy(names)
     val made    = missing.map(i => known.getOrElse(names(i), null)).toArray
     val ready   = GpuEpisodes.inParallel(missing.length, 1, threads, isCancelled): i =>

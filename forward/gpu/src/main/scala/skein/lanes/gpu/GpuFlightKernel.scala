@@ -125,7 +125,7 @@ private[lanes] abstract class GpuFlightKernel(
     private val labels                  = GpuTimetable.Labels(layout.vehicles)
     private val kept                    = Variables(code, scores.initial)
 
-    // How often each stage was computed, for numbers that need their share.
+    // Number of evaluations of each stage, for judged numbers that need the weight of a value.
     private val counted = Variables(code, scores.judged.map(_ => 0f))
 
     def module: String =
@@ -148,7 +148,7 @@ private[lanes] abstract class GpuFlightKernel(
       val nextLabel = code.fresh()
       code.place(loop)
       code.goIf(code.compareWhole("le", left, 0), stored)
-      // Behind the last operation are the views.
+      // The views follow the last operation.
       val following = code.sum(record, bytes)
       code.loadWhole(following, 0, nextLabel): Unit
       val now     = GpuRecord(code, record, views)
@@ -158,7 +158,7 @@ private[lanes] abstract class GpuFlightKernel(
       for self <- 0 until layout.vehicles do
         val vehicle = flying.vehicles(self)
         part(targets(labels.look(self, withVelocity = false)))(look(vehicle, now, withVelocity = false))
-        // Predictions start from velocities, whoever looks at them.
+        // Predictions start from velocities, even if no policy reads them.
         part(targets(labels.look(self, withVelocity = true))):
           look(vehicle, now, withVelocity || flying.predictions.nonEmpty)
         part(targets(labels.act(self))):

@@ -46,7 +46,7 @@ private[lanes] final class GpuTimetable(timetable: Timetable, layout: GpuLayout)
     val most = timetable.propagations.iterator.map(GpuPrediction.mostNumbers).maxOption.getOrElse(0)
     (Fields + timetable.numbers.max(most) + 3) / 4 * 4
 
-  // Of the operation that is written, and of all so far.
+  // Offset of the present operation, all words so far, and their number of operations.
   private var at      = 0
   private var packed  = Array.ofDim[Int](stride * timetable.size)
   private var records = 0
@@ -73,7 +73,7 @@ private[lanes] final class GpuTimetable(timetable: Timetable, layout: GpuLayout)
     while i < timetable.size do
       val kind = timetable.operations(i * Fields)
       val view = timetable.operations(i * Fields + 2)
-      // What several vehicles compute of a view is computed once.
+      // Values that several vehicles compute from a view are computed once.
       if layout.shows && kind == OperationKind.Decide && view != shown then
         shown = view
         record(labels.show)
