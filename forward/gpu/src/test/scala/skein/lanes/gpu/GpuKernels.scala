@@ -17,7 +17,7 @@ import skein.vehicle.{Quadrotor, ReducedModel}
   def duels(name: String, model: VelocityResponse, pursuer: HeadingPolicy) =
     val vehicle = GpuVehicle.of(model).fold(sys.error, identity)
     val duel    = Engagement.of(Duel.paper).flownBy(Role.Pursuer, pursuer)
-    val two     = OpponentLanes.of(duel, _ => false, inSpace = false).get.fold(sys.error, identity)
+    val two     = OpponentLanes.of(duel, _ => false, inSpace = false, isPredicted = false).get.fold(sys.error, identity)
     val scores  = ScoreLanes.ofDistance(Reduction.Mean -> 50.1)
     val form    = TeamForm(two, scores, Vector(None), 60, Vector(-20, -20))(null)
     val kernel  = GpuOpponentKernel(InterpretedGpu(), duel.agents, vehicle, None, form, two, layout)
