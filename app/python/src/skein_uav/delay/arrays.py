@@ -41,6 +41,13 @@ def put(array: Any, slot: slice, value: Any) -> Any:
     return array
 
 
+def copied(array: Any) -> Any:
+    """Arrays of JAX cannot be changed, and are not."""
+    if type(array) is np.ndarray:
+        return array.copy("K")
+    return array.clone() if hasattr(array, "is_cuda") else array
+
+
 def changed(array: Any, mask: Any, value: Any) -> Any:
     """A copy with another array's values in some environments: by their numbers with NumPy, else where flags say so."""
     if type(array) is not np.ndarray:

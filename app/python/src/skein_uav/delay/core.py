@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arrays import Tree, beside, cast, changed, each, followed, leaf, namespace, on, repeated
+from .arrays import Tree, beside, cast, changed, copied, each, followed, leaf, namespace, on, repeated
 from .history import History
 from .profiles import Trace, delays
 from .schedule import MOST_ROWS, Schedule, spawned
@@ -296,7 +296,7 @@ class Delay:
             ages.take(newest, 0, age_s, "clip")
             return Seen(observation, age_s, self._told)
         age_s = ages.take(newest) if self._xp is np else ages[newest]
-        return Seen(observation, age_s, self._told)
+        return Seen(observation, age_s, each(copied, self._told) if self._pending else None)
 
     def _table(self) -> Any:
         """Ages by places, at the last row."""

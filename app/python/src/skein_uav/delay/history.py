@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from .arrays import Tree, cast, changed, each, leaf, namespace, put
+from .arrays import Tree, cast, changed, copied, each, leaf, namespace, put
 
 
 class History:
@@ -79,7 +79,7 @@ class History:
         if number:
             old = self._slot(number - self._kept, min(number + 1, self._length - self._kept))
             new = slice(0, old.stop - old.start)
-            self._hold(each(lambda rows: put(rows, new, _copied(rows[old])), self._rows))
+            self._hold(each(lambda rows: put(rows, new, copied(rows[old])), self._rows))  # they overlap
 
     def _slot(self, first: int, end: int) -> slice:
         return slice((first + self._kept) * self._count, (end + self._kept) * self._count)
@@ -88,11 +88,6 @@ class History:
 def _repeated(xp: Any, one: Any, number: int) -> Any:
     rows = xp.concatenate([one] * number)
     return np.ascontiguousarray(rows) if xp is np else rows  # as ``take`` wants it, whatever the environment has
-
-
-def _copied(rows: Any) -> Any:
-    """Of PyTorch, which copies to overlapping places wrongly."""
-    return rows.clone() if hasattr(rows, "is_cuda") else rows
 
 
 def _taken(rows: Any, places: Any) -> Any:

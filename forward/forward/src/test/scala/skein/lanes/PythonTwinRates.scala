@@ -9,7 +9,8 @@ import skein.scenario.*
 import skein.simd.WorldRandom
 
 /** Compares the rates of scenarios written in Python with their Scala twins, by the processor's time of
-  * alternating rounds: `forward/Test/runMain skein.lanes.PythonTwinRates FOLDER [NAME]`, the folder of their files.
+  * alternating rounds: `forward/Test/runMain skein.lanes.PythonTwinRates FOLDER [NAME]`, the folder of their
+  * files.
   */
 object PythonTwinRates:
   private val lag    = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
