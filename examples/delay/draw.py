@@ -39,7 +39,8 @@ def main(folder, picture):
                 label = what.replace("-", ", ").replace("_", " ")
                 panel.plot(*zip(*tenths(told[what])), color=f"C{place}", label=f"{label} ({len(told[what])})")
         panel.set(title=name, xlabel="steps", ylabel="return")
-    panels[0][-1].legend(title="told (seeds)", fontsize="small")
+        panel.locator_params(axis="x", nbins=5)
+    panels[0][0].legend(title="told (seeds)", fontsize="small")
     figure.tight_layout()
     figure.savefig(picture)
 
