@@ -37,7 +37,8 @@ def seconds(env, actions, steps):
 
 
 def main(rounds, only):
-    print(f"load {os.getloadavg()[0]:.1f}, {os.cpu_count()} processors, NumPy {np.__version__}, Gymnasium {gym.__version__}")
+    versions = f"NumPy {np.__version__}, Gymnasium {gym.__version__}"
+    print(f"load {os.getloadavg()[0]:.1f}, {os.cpu_count()} processors, {versions}")
     for name, mode, step_s, counts in CASES:
         for count in counts if only in f"{name} {mode}" else ():
             def made():

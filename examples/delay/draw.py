@@ -1,5 +1,6 @@
-"""Draws what learn.py wrote: python examples/delay/draw.py [FOLDER] [PICTURE]. Lines are means over seeds, each of a tenth of
-the steps."""
+"""Draws what learn.py wrote: python examples/delay/draw.py [FOLDER] [PICTURE].
+
+Lines are means over seeds, each point of a tenth of the steps."""
 
 import csv
 import re
