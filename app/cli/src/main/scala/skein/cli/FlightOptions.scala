@@ -93,6 +93,11 @@ final case class FlightOptions(
     )
     knows: Option[String],
     @arg(doc =
+      "how `predictive` predicts vehicles whose commands it does not know: turn (their last turn goes on), " +
+        "straight, or belief (samples of turns, weighted by what is seen)"
+    )
+    strangers: Option[String],
+    @arg(doc =
       "gives each vehicle a controller of its own, with a link of its own, that knows of the others what it reads"
     )
     decentralised: Flag,

@@ -29,6 +29,7 @@ import skein.vehicle.{QuadrotorModel, VehicleModel}
   *   the vehicle ([[skein.port.PlanBuffer]]). Such commands are answered when they arrive, so `movesInFlight`
   *   does not limit them, [[skein.port.Moves.MostInFlight]] does
   * @param knows what the controller of a vehicle knows of the others; `plan` knows all
+  * @param strangers how `predictive` predicts those whose commands it does not know
   */
 final case class LoopSettings(
     period: Span = Span.ofMillis(100),
@@ -46,7 +47,8 @@ final case class LoopSettings(
     seed: Long = 1,
     deadline: Option[Deadline] = None,
     planInPacket: Boolean = false,
-    knows: Knowledge = Knowledge.All
+    knows: Knowledge = Knowledge.All,
+    strangers: Strangers = Strangers.Turn
 ):
   require(period > Span.Zero, "the period must be positive")
   require(window > 0, "the window must be at least 1")

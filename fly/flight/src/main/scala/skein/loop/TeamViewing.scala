@@ -44,7 +44,7 @@ private final class TeamViewing(
       nothingSeen.copy(
         forecast = Some(Forecast(vehicles.map(settings.model).toVector)),
         strangers = Option.when(settings.knows == Knowledge.Positions)(
-          Forecast(vehicles.map(vehicle => Knowledge.stranger(settings.model(vehicle))).toVector)
+          Forecast(vehicles.map(vehicle => settings.strangers.model(settings.model(vehicle))).toVector)
         )
       )
     )

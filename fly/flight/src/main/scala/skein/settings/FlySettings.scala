@@ -26,6 +26,7 @@ import skein.vehicle.VehicleKind
   *   deliver several simultaneously: see [[skein.flow.Steer]]
   * @param planInPacket whether `predictive` sends plans to a buffer beside the vehicle: see [[LoopSettings]]
   * @param knows what the controller of a vehicle knows of the others, in all loops
+  * @param strangers how `predictive` predicts vehicles whose commands it does not know
   * @param decentralised whether each vehicle has a controller of its own, with a link of its own; then
   *   controllers know of the others what they read. `paused`, the truth, has one, which knows positions too,
   *   and no link
@@ -55,6 +56,7 @@ final case class FlySettings(
     movesInFlight: Int = Moves.InFlight,
     planInPacket: Boolean = false,
     knows: Knowledge = Knowledge.All,
+    strangers: Strangers = Strangers.Turn,
     decentralised: Boolean = false,
     only: Option[String] = None,
     between: Option[VehicleLink] = None,
@@ -126,6 +128,7 @@ final case class FlySettings(
         planning = planning.keeping(scenario),
         movesInFlight = movesInFlight,
         knows = if decentralised then Knowledge.Positions else knows,
+        strangers = strangers,
         deadline = deadline.map(Deadline(_, fallback))
       )
     if scenario.isAsPublished then timely.asPublished else timely
@@ -287,6 +290,10 @@ object FlySettings:
       Moves.mistake(settings.movesInFlight).map("moves-in-flight: " + _),
       packetMistake(settings).map("plan-in-packet: " + _),
       knowsMistake(settings).map("knows: " + _),
+      Option.when(settings.strangers != Strangers.Turn && settings.loopSettings.knows == Knowledge.All)(
+        "strangers: expected knows positions with it, or decentralised, since otherwise all commands are known, " +
+          s"came ${settings.strangers.label} without"
+      ),
       apartMistake(settings, isGiven = optionAt("knows", config).isDefined).map("decentralised: " + _),
       onlyMistake(settings).map("only: " + _),
       betweenMistake(settings).map("between: " + _),
@@ -454,6 +461,7 @@ object FlySettings:
   private given ConfigReader[NamedScene] = parsed("scene", NamedScene.read)
   private given ConfigReader[Wire]       = parsed("wire", Wire.parse)
   private given ConfigReader[Knowledge]  = parsed("knowledge", Knowledge.parse)
+  private given ConfigReader[Strangers]  = parsed("strangers", Strangers.parse)
 
   private given ConfigReader[SimulatedBody] = parsed("plant", SimulatedBody.parse)
 

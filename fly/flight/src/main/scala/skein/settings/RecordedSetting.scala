@@ -2,7 +2,7 @@ package skein.settings
 
 import scala.compiletime.{constValueTuple, summonAll}
 import scala.deriving.Mirror
-import skein.loop.{AnyLoop, Fallback, Knowledge, PlanSettings}
+import skein.loop.{AnyLoop, Fallback, Knowledge, PlanSettings, Strangers}
 import skein.record.ParameterRow
 import skein.scenario.{Scenario, Scenarios}
 import skein.signal.LatencyProfile
@@ -64,6 +64,8 @@ private[settings] object RecordedSetting:
 
   given RecordedSetting[Wire]      = labelled(Wire.values, _.label, usual = Wire.AirSim)
   given RecordedSetting[Knowledge] = labelled(Knowledge.values, _.label, usual = Knowledge.All)
+
+  given RecordedSetting[Strangers] = labelled(Strangers.values, _.label, usual = Strangers.Turn)
 
   given RecordedSetting[SolverChoice] =
     Text[SolverChoice]("where a solver is", _.text)(SolverChoice.parse(_).toOption)

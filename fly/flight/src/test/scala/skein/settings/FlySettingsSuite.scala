@@ -113,6 +113,17 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
       "2: skein.fly.knows: expected all with a solver, which is told every command, came positions"
     )
 
+  test("how others are predicted is refused where their commands are known"):
+    assertTold(
+      "strangers = belief",
+      "2: skein.fly.strangers: expected knows positions with it, or decentralised, since otherwise all commands " +
+        "are known, came belief without"
+    )
+    assertTold(
+      "knows = positions, strangers = none",
+      "2: skein.fly.strangers: expected turn or straight or belief, came 'none'"
+    )
+
   test("decentralised is refused where one controller decides for all, or is told of the others"):
     def refused(text: String)(why: String) = assertTold(text, s"2: skein.fly.decentralised: expected $why")
     refused("decentralised = true, loops = [stream, plan]"):

@@ -1,6 +1,6 @@
 package skein.settings
 
-import skein.loop.{Fallback, Knowledge, LoopKind, PlanSettings}
+import skein.loop.{Fallback, Knowledge, LoopKind, PlanSettings, Strangers}
 import skein.policy.Role
 import skein.record.{ParameterRow, Recording, RecordingHeader, Samples}
 import skein.scenario.{PaperDuel, Scenarios}
@@ -21,6 +21,7 @@ class RecordedPlanSuite extends munit.FunSuite:
     movesInFlight = 6,
     planInPacket = true,
     knows = Knowledge.Positions,
+    strangers = Strangers.Belief,
     decentralised = true,
     only = Some("Pursuer"),
     between = Some(right(VehicleLink.parse("range:60m,loss:10%/4,vpn"))),
@@ -52,6 +53,7 @@ class RecordedPlanSuite extends munit.FunSuite:
         "movesInFlight"  -> "6",
         "planInPacket"   -> "true",
         "knows"          -> "positions",
+        "strangers"      -> "belief",
         "decentralised"  -> "true",
         "only"           -> "Pursuer",
         "between"        -> "range:60m,loss:10%/4,vpn",
