@@ -32,6 +32,9 @@ private[lanes] final class TeamViews(val lanes: TeamLanes):
     */
   def show(beat: Int): Unit = if isNew(beat) then call.call.apply()
 
+  /** Makes the next view new, whatever it is: some world's readings changed. */
+  def forget(): Unit = last = TeamViews.Nothing
+
   private def isNew(view: Int) =
     val isAsked = lanes.shared.outputs > 0 && view != last
     last = view
@@ -60,10 +63,10 @@ private[lanes] final class TeamDecisions(self: Int, team: TeamViews, altitudesDo
   private var asksCos, asksSin, asksTime = Never
 
   // What is remembered, by number, then by world: at first, before, and after the decision.
-  private val memories          = lanes.memories(self)
-  private val initial           = Array.ofDim[Float](memories * WORLDS)
-  private var memory, newMemory = Array.ofDim[Float](memories * WORLDS)
-  private val asksMemory        = Array.fill(memories)(Never)
+  private val remembered        = lanes.memories(self)
+  private val initial           = Array.ofDim[Float](remembered * WORLDS)
+  private var memory, newMemory = Array.ofDim[Float](remembered * WORLDS)
+  private val asksMemory        = Array.fill(remembered)(Never)
 
   /** By vehicle: age of its reading, s; filled only where it is needed. */
   val agesS: Array[Array[Float]] = Array.ofDim(lanes.count)
@@ -109,7 +112,7 @@ private[lanes] final class TeamDecisions(self: Int, team: TeamViews, altitudesDo
     startDown(world) = numbers.downM
     val count = numbers.parameters
     for number <- 0 until count do parameters(number * WORLDS + world) = numbers.policy(number)
-    for number <- 0 until memories do initial(number * WORLDS + world) = numbers.policy(count + number)
+    for number <- 0 until remembered do initial(number * WORLDS + world) = numbers.policy(count + number)
 
   /** Resets to the start of an episode, of which the first worlds count. */
   def start(worlds: Int): Unit =
@@ -119,8 +122,20 @@ private[lanes] final class TeamDecisions(self: Int, team: TeamViews, altitudesDo
     System.arraycopy(startSin, 0, sin, 0, WORLDS)
     System.arraycopy(initial, 0, memory, 0, initial.length)
 
+  /** Restarts one world, which was commanded in a direction before. */
+  def restart(world: Int, cosOf: Float, sinOf: Float): Unit =
+    team.forget()
+    cos(world) = cosOf
+    sin(world) = sinOf
+    for at <- world until memory.length by WORLDS do memory(at) = initial(at)
+
   /** Cosine and sine of the last decided heading, by world. */
   def direction: (Array[Float], Array[Float]) = (cos, sin)
+
+  def speedMps(world: Int): Float = cruise(world)
+
+  /** The memory before the decision, by number, then by world, and after it. */
+  def memories: (Array[Float], Array[Float]) = (memory, newMemory)
 
   /** Whether it needs another vehicle's commanded heading. */
   def asksHeading(vehicle: Int): Boolean = known(vehicle) != null
@@ -142,7 +157,7 @@ private[lanes] final class TeamDecisions(self: Int, team: TeamViews, altitudesDo
       call.call.output(4, into.third, at)
       call.call.output(5, into.holds, at)
     var number = 0
-    while number < memories do
+    while number < remembered do
       if asksMemory(number) >= 0 then call.call.input(asksMemory(number), memory, number * WORLDS)
       call.call.output(lanes.decided + number, newMemory, number * WORLDS)
       number += 1
@@ -158,7 +173,7 @@ private[lanes] final class TeamDecisions(self: Int, team: TeamViews, altitudesDo
     val (oldCos, oldSin) = (cos, sin)
     cos = newCos; sin = newSin
     newCos = oldCos; newSin = oldSin
-    if memories > 0 then
+    if remembered > 0 then
       val before = memory
       memory = newMemory
       newMemory = before
@@ -187,6 +202,16 @@ private[lanes] trait TeamMember:
   /** The effort by world, where it was asked for. */
   def effortRad: Array[Float] = Array.emptyFloatArray
 
+  /** Restarts one world: its vehicle is at its start at rest, and all commands before were along a heading. */
+  def restart(world: Int, headingRad: Float): Unit =
+    throw UnsupportedOperationException("a world that restarts alone needs a timetable")
+
+  /** The policies' memory before the decision, by number, then by world. */
+  def memory: Array[Float] = Array.emptyFloatArray
+
+  /** The memory after the decision, or after what is observed only. */
+  def nextMemory: Array[Float] = Array.emptyFloatArray
+
 /** A vehicle with equal delays in all worlds.
   *
   * @param altitudesDownM of all vehicles
@@ -206,6 +231,9 @@ private[lanes] class TeamAgents(
   private val asksMore             = team.lanes.asksMore(self)
   private var timetable: Timetable = null
 
+  /** Where what is not decided is written. */
+  private lazy val undecided = Directions(WORLDS, vehicles.inSpace)
+
   /** The headings of decisions, by their places; null if they are not needed. */
   private var told: Directions = null
 
@@ -224,6 +252,18 @@ private[lanes] class TeamAgents(
       told.reserve(timetable.headings * WORLDS)
       // The timetable keeps the first heading at place 0.
       note(0)
+
+  override def restart(world: Int, headingRad: Float): Unit =
+    val (cos, sin) = (StrictMath.cos(headingRad).toFloat, StrictMath.sin(headingRad).toFloat)
+    vehicles.restart(world)
+    decisions.restart(world, cos, sin)
+    if told != null then told.point(world, WORLDS, cos, sin)
+    val mps = decisions.speedMps(world)
+    headings.point(world, WORLDS, mps * cos, mps * sin)
+    if vehicles.inSpace then headings.level(world, WORLDS, vehicles.startZ(world))
+
+  override def memory: Array[Float]     = decisions.memories._1
+  override def nextMemory: Array[Float] = decisions.memories._2
 
   private def note(at: Int): Unit =
     val (cos, sin) = decisions.direction
@@ -245,13 +285,34 @@ private[lanes] class TeamAgents(
       times: Array[Float],
       number: Int
   ): Unit =
-    team.show(all, views, view)
-    decisions.call.look(all, views, view)
-    Arrays.fill(elapsedS, times(number))
-    if asksMore then learn(all, known / WORLDS)
-    decisions.decide(elapsedS, headings, after)
+    choose(all, views, view, known, times(number), headings, after)
     decisions.commit()
     if told != null then note(after)
+
+  override def observe(
+      all: Array[TimetableAgents],
+      views: Array[Int],
+      view: Int,
+      known: Int,
+      before: Int,
+      times: Array[Float],
+      number: Int
+  ): Unit = choose(all, views, view, known, times(number), undecided, 0)
+
+  private def choose(
+      all: Array[TimetableAgents],
+      views: Array[Int],
+      view: Int,
+      known: Int,
+      sinceS: Float,
+      into: Directions,
+      at: Int
+  ): Unit =
+    team.show(all, views, view)
+    decisions.call.look(all, views, view)
+    Arrays.fill(elapsedS, sinceS)
+    if asksMore then learn(all, known / WORLDS)
+    decisions.decide(elapsedS, into, at)
 
   /** Copies further numbers of a decision from the timetable. */
   private def learn(all: Array[TimetableAgents], decision: Int): Unit =

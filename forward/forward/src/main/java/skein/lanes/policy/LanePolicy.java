@@ -24,7 +24,9 @@ public class LanePolicy {
   public final int[] offsets;
 
   /** The memory of each world's policy, by number, then by world: initially, now, and after the decision. */
-  private final float[] initial, memory, newMemory;
+  private final float[] initial;
+
+  public final float[] memory, newMemory;
 
   /** Change of each world's decided heading from the one before, by the shorter way, rad; 0 without efforts.
    */
@@ -166,11 +168,6 @@ public class LanePolicy {
   public void restart(int world, float headingRad) {
     heading[world] = headingRad;
     for (int i = world; i < memory.length; i += WORLDS) memory[i] = initial[i];
-  }
-
-  /** Sets the single parameter of one world's external policy. */
-  public void tell(int world, float number) {
-    parameters[place(0, world)] = number;
   }
 
   /** Makes all worlds' decisions commands.

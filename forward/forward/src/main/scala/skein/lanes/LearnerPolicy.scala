@@ -1,0 +1,46 @@
+package skein.lanes
+
+import skein.policy.{HeadingPolicy, PlanarObservation}
+
+/** Turns as it is told from outside. Its memory is the number that it is told before each decision, and then
+  * what it observed at the last one: so a learner's vehicle decides and observes by the code of any policy.
+  */
+enum LearnerPolicy extends HeadingPolicy:
+  /** Is told a rate to the right, rad/s. */
+  case ByRate
+
+  /** Is told an angle to the right, rad. */
+  case ByAngle
+
+  type Memory = LearnerPolicy.Memory
+
+  def start: Memory = LearnerPolicy.start
+
+  def decide(seen: PlanarObservation, memory: Memory): (Double, Memory) =
+    val turnRad = this match
+      case ByRate  => memory.told * seen.elapsedS
+      case ByAngle => memory.told
+    (seen.ownHeadingRad + turnRad, LearnerPolicy.memory(memory.told, seen.fromOwnHeading))
+
+object LearnerPolicy:
+  /** Count of numbers in an observation, see [[PlanarObservation.fromOwnHeading]]. */
+  final val Fields = 9
+
+  /** The number that it is told, and the nine of [[PlanarObservation.fromOwnHeading]]. */
+  final case class Memory(
+      told: Double,
+      aheadM: Double,
+      rightM: Double,
+      aheadMps: Double,
+      rightMps: Double,
+      cos: Double,
+      sin: Double,
+      elapsedS: Double,
+      ownAgeS: Double,
+      opponentAgeS: Double
+  )
+
+  private val start = Memory(0, 0, 0, 0, 0, 1, 0, 0, 0, 0)
+
+  private def memory(told: Double, seen: Array[Double]) =
+    Memory(told, seen(0), seen(1), seen(2), seen(3), seen(4), seen(5), seen(6), seen(7), seen(8))
