@@ -19,9 +19,6 @@ final class OpponentAgents extends TimetableAgents implements TeamMember {
   private final int self;
   private final LaneObservation observation;
 
-  /** Where what is not decided is written; null until it observes from outside. */
-  private Directions undecided;
-
   /** The camera that is its only knowledge of the opponent, or null. */
   private final TimetableEye eye;
 
@@ -90,34 +87,17 @@ final class OpponentAgents extends TimetableAgents implements TeamMember {
       int after,
       float[] times,
       int number) {
-    choose(all, views, view, known, before, headings, after, times, number);
+    see(all, views, view, times, number);
+    Directions theirs = eye == null ? all[1 - self].headings : eye.heading();
+    policy.decide(observation, headings, before, theirs, eye == null ? known : 0, headings, after);
     policy.commit(effort);
   }
 
   @Override
   public void observe(
       TimetableAgents[] all, int[] views, int view, int known, int before, float[] times, int number) {
-    if (undecided == null) undecided = new Directions(WORLDS);
-    choose(all, views, view, known, before, undecided, 0, times, number);
-  }
-
-  private void choose(
-      TimetableAgents[] all,
-      int[] views,
-      int view,
-      int known,
-      int before,
-      Directions into,
-      int after,
-      float[] times,
-      int number) {
-    if (eye == null) {
-      see(all, views, view, times, number);
-      policy.decide(observation, headings, before, all[1 - self].headings, known, into, after);
-    } else {
-      believe(views[view + self] * WORLDS, times, number);
-      policy.decide(observation, headings, before, eye.heading(), 0, into, after);
-    }
+    see(all, views, view, times, number);
+    policy.observe(observation, headings, before, all[1 - self].headings, known);
   }
 
   @Override
@@ -132,6 +112,10 @@ final class OpponentAgents extends TimetableAgents implements TeamMember {
 
   /** Fills the observation of a decision. */
   private void see(TimetableAgents[] all, int[] views, int view, float[] times, int number) {
+    if (eye != null) {
+      believe(views[view + self] * WORLDS, times, number);
+      return;
+    }
     TimetableVehicles ours = vehicles, theirs = all[1 - self].vehicles;
     int ownSeen = views[view + self] * WORLDS,
         opponentSeen = views[view + 1 - self] * WORLDS;

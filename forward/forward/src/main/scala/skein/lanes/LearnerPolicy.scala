@@ -4,22 +4,16 @@ import skein.policy.{HeadingPolicy, PlanarObservation}
 
 /** Turns as it is told from outside. Its memory is the number that it is told before each decision, and then
   * what it observed at the last one: so a learner's vehicle decides and observes by the code of any policy.
+  *
+  * @param byRate whether it is told a rate to the right, rad/s, and not an angle, rad
   */
-enum LearnerPolicy extends HeadingPolicy:
-  /** Is told a rate to the right, rad/s. */
-  case ByRate
-
-  /** Is told an angle to the right, rad. */
-  case ByAngle
-
+final case class LearnerPolicy(byRate: Boolean) extends HeadingPolicy:
   type Memory = LearnerPolicy.Memory
 
   def start: Memory = LearnerPolicy.start
 
   def decide(seen: PlanarObservation, memory: Memory): (Double, Memory) =
-    val turnRad = this match
-      case ByRate  => memory.told * seen.elapsedS
-      case ByAngle => memory.told
+    val turnRad = if byRate then memory.told * seen.elapsedS else memory.told
     (seen.ownHeadingRad + turnRad, LearnerPolicy.memory(memory.told, seen.fromOwnHeading))
 
 object LearnerPolicy:

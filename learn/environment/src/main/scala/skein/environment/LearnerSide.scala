@@ -54,7 +54,7 @@ private[environment] final case class LearnerSide(
   def team(learning: Vector[Int], beside: Option[HeadingPolicy]): TeamCandidate =
     val agents = engagement.agents.zipWithIndex.map: (agent, place) =>
       if learning.contains(place) then
-        agent.copy(policy = if mostTurn(place)._1 then LearnerPolicy.ByRate else LearnerPolicy.ByAngle)
+        agent.copy(policy = LearnerPolicy(mostTurn(place)._1))
       else if roleOf(place) == roleOf(learning.head) then
         beside.fold(agent)(policy => agent.copy(policy = policy))
       else agent
@@ -152,7 +152,7 @@ private[environment] object LearnerSide:
   private def climbing(engagement: Engagement, turns: Vector[Vector[Int]]): Option[String] =
     val learning = turns.flatten
     val level    = engagement.agents.zipWithIndex.map: (agent, place) =>
-      if turns.size == 1 && learning.contains(place) then agent.copy(policy = LearnerPolicy.ByRate) else agent
+      if turns.size == 1 && learning.contains(place) then agent.copy(policy = LearnerPolicy(byRate = true)) else agent
     engagement.copy(agents = level).climbs
 
   private def objectivesOf(settings: EnvironmentSettings, scenario: Scenario): Either[String, Vector[Objective]] =

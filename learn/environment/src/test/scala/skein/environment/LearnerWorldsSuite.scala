@@ -56,7 +56,7 @@ class LearnerWorldsSuite extends munit.FunSuite:
       assertEquals(seen.map(_.size), truth.map(_.size))
       assert(seen.forall(_.sizeIs > 25), seen.map(_.size))
       for (ours, theirs) <- seen.zip(truth); (one, other) <- ours.zip(theirs); (x, y) <- one.zip(other) do
-        assertEqualsDouble(x, y, toleranceM)
+        assertEqualsDouble(x, y, toleranceM, s"decision ${ours.indexOf(one)} of ${ours.size}: $one, scalar $other")
       for (one, other) <- sums.zip(scalars) do assertEqualsDouble(one, other, toleranceM * 60)
 
   test("a world that restarts alone is where it was put, with what its vehicles were commanded before"):
