@@ -102,7 +102,8 @@ final class LearnerTeams private[lanes] (
     kernel.observe(operationOf(learner))
     System.arraycopy(members(learners(learner)).nextMemory, WORLDS, into, 0, LearnerPolicy.Fields * WORLDS)
 
-  def tell(learner: Int, world: Int, number: Float): Unit = members(learners(learner)).memory(world) = number
+  def tell(learner: Int, numbers: Array[Float]): Unit =
+    System.arraycopy(numbers, 0, members(learners(learner)).memory, 0, worlds)
 
   def decide(): Unit =
     while next < dueUntil do
@@ -111,7 +112,7 @@ final class LearnerTeams private[lanes] (
 
   def scoredAtS: Float = scores.scoredAtS
 
-  def soFar(number: Int, world: Int): Float = scores.soFar(number, world)
+  def soFar(number: Int, into: Array[Float]): Unit = scores.soFar(number, into)
 
   def forgetScores(): Unit =
     var i = 0

@@ -31,8 +31,8 @@ trait LearnerWorlds extends AutoCloseable:
     */
   def observe(learner: Int, into: Array[Float]): Unit
 
-  /** Sets the number by which a learner that is due turns, see [[LearnerPolicy]]. */
-  def tell(learner: Int, world: Int, number: Float): Unit
+  /** Sets the numbers by which a learner that is due turns, by world; see [[LearnerPolicy]]. */
+  def tell(learner: Int, numbers: Array[Float]): Unit
 
   /** Makes the due decisions. */
   def decide(): Unit
@@ -40,8 +40,8 @@ trait LearnerWorlds extends AutoCloseable:
   /** Time of the last score, since the run's start, s. */
   def scoredAtS: Float
 
-  /** A judged number since [[forgetScores]]: the newest or least value, or the sum of all. */
-  def soFar(number: Int, world: Int): Float
+  /** Writes a judged number by world, since [[forgetScores]]: the newest or least value, or the sum of all. */
+  def soFar(number: Int, into: Array[Float]): Unit
 
   /** Forgets all scores but the newest values. */
   def forgetScores(): Unit

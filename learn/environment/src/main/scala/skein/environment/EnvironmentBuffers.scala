@@ -44,6 +44,48 @@ final class EnvironmentBuffers(block: ByteBuffer, val agents: Int, val count: In
   def action(agent: Int, number: Int): Float              = actions.get(agent * count + number)
   def reward(agent: Int, number: Int, value: Float): Unit = rewards.put(agent * count + number, value): Unit
 
+  /** Writes a part of a row: environments from `first` on, `stride` apart. */
+  private[environment] def write(
+      to: FloatBuffer,
+      row: Int,
+      first: Int,
+      stride: Int,
+      from: Array[Float],
+      at: Int,
+      some: Int
+  ): Unit =
+    val place = row * count + first
+    if stride == 1 then to.put(place, from, at, some): Unit
+    else
+      var i = 0
+      while i < some do
+        to.put(place + i * stride, from(at + i)): Unit
+        i += 1
+
+  /** Writes whether a learner decides now, in environments from `first` on, `stride` apart. */
+  private[environment] def due(agent: Int, first: Int, stride: Int, some: Int, value: Boolean): Unit =
+    var i = 0
+    while i < some do
+      dues.put(agent * count + first + i * stride, byte(value)): Unit
+      i += 1
+
+  /** Reads a part of a row: environments from `first` on, `stride` apart. */
+  private[environment] def read(
+      from: FloatBuffer,
+      row: Int,
+      first: Int,
+      stride: Int,
+      into: Array[Float],
+      some: Int
+  ): Unit =
+    val place = row * count + first
+    if stride == 1 then from.get(place, into, 0, some): Unit
+    else
+      var i = 0
+      while i < some do
+        into(i) = from.get(place + i * stride)
+        i += 1
+
   /** Writes a learner's and its environment's state at the begin of an episode, except its observation. */
   def begun(agent: Int, number: Int, distanceM: Float): Unit =
     distance(agent, number, distanceM)
@@ -57,7 +99,6 @@ final class EnvironmentBuffers(block: ByteBuffer, val agents: Int, val count: In
   def time(number: Int, seconds: Float): Unit            = times.put(number, seconds): Unit
   def terminated(number: Int, value: Boolean): Unit      = terminations.put(number, byte(value)): Unit
   def truncated(number: Int, value: Boolean): Unit       = truncations.put(number, byte(value)): Unit
-  def due(agent: Int, number: Int, value: Boolean): Unit = dues.put(agent * count + number, byte(value)): Unit
   private def byte(value: Boolean): Byte                 = if value then 1 else 0
 
 object EnvironmentBuffers:

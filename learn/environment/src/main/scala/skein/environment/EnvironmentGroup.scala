@@ -33,6 +33,7 @@ private final class EnvironmentGroup(
   private val agents     = vehicles.length
   private val turns      = vehicles.map(side.mostTurn(_)._2)
   private val gains      = vehicles.map(CaptureReward * side.captureSign(_))
+  private val apart      = side.apart(learning).size
   private val weights    = vehicles.indices.map(side.weights(learning, _)).toArray
   private val starts     = Starts(side)
   private val seeds      = Array.ofDim[Long](count)
@@ -42,7 +43,13 @@ private final class EnvironmentGroup(
   /** When each world's episode began, since the run's start, s. */
   private val beganS = Array.ofDim[Float](count)
   private val seen   = Array.ofDim[Float](Fields * Most)
+
+  // Of the present step, by world.
+  private val actions   = Array.ofDim[Float](agents, Most)
+  private val row, cost = Array.ofDim[Float](Most)
+  private val isCapture = Array.ofDim[Boolean](count)
   private val startM = Array.ofDim[Float](agents * count)
+  private val wasDue = Array.ofDim[Boolean](agents)
   private var runs   = 0L
   private var isOver = true
 
@@ -83,15 +90,17 @@ private final class EnvironmentGroup(
       seeds(world) = seed
       episodes(world) = 0
 
-  /** An environment whose action is not finite, or −1. */
+  /** Reads the actions; returns an environment whose action is not finite, or −1. */
   def misfit(): Int =
-    var world = 0
-    while world < count do
-      var agent = 0
-      while agent < agents do
-        if !(Math.abs(into.action(agent, numberOf(world))) <= Float.MaxValue) then return numberOf(world)
-        agent += 1
-      world += 1
+    var agent = 0
+    while agent < agents do
+      val read = actions(agent)
+      into.read(into.actions, agent, first, stride, read, count)
+      var world = 0
+      while world < count do
+        if !(Math.abs(read(world)) <= Float.MaxValue) then return numberOf(world)
+        world += 1
+      agent += 1
     -1
 
   /** An environment that has ended and was not reset, or −1. */
@@ -99,17 +108,13 @@ private final class EnvironmentGroup(
     val world = if autoreset == Autoreset.Disabled then isDone.indexOf(true) else -1
     if world < 0 then -1 else numberOf(world)
 
+  /** Makes the decisions whose actions were read. */
   def step(): Unit =
     if isOver then nextRun()
     else
       var agent = 0
       while agent < agents do
-        if worlds.isDue(agent) then
-          var world = 0
-          while world < count do
-            val share = math.max(-1f, math.min(1f, into.action(agent, numberOf(world))))
-            worlds.tell(agent, world, share * turns(agent))
-            world += 1
+        if worlds.isDue(agent) then tell(agent)
         agent += 1
       worlds.decide()
       // Scores before the first decision count for the first step.
@@ -119,26 +124,67 @@ private final class EnvironmentGroup(
       val isLast = worlds.scoredAtS + Tolerance >= settings.episodeS
       isOver = !goesOn || isLast
       isEarly = !goesOn && !isLast
+      agent = 0
+      while agent < agents do
+        reward(agent)
+        agent += 1
       judge()
 
-  /** Computes rewards, and which episodes have ended. */
-  private def judge(): Unit =
-    var world = 0
-    var again = false
+  private def tell(agent: Int): Unit =
+    val numbers = actions(agent)
+    var world   = 0
     while world < count do
-      val number    = numberOf(world)
-      val wasDone   = isDone(world)
-      val isCapture = judge(world, number)
-      into.time(number, worlds.scoredAtS - beganS(world))
-      if wasDone then
+      numbers(world) = math.max(-1f, math.min(1f, numbers(world))) * turns(agent)
+      world += 1
+    worlds.tell(agent, numbers)
+
+  /** Writes a learner's rewards and distances, and notes captures. */
+  private def reward(agent: Int): Unit =
+    val distance = 2 * agent.min(apart - 1)
+    worlds.soFar(distance, row)
+    // Nothing may have been scored yet.
+    if !row(0).isNaN then into.write(into.distances, agent, first, stride, row, 0, count)
+    java.util.Arrays.fill(cost, 0f)
+    var term  = 0
+    var world = 0
+    while term < weights(agent).length do
+      val weight = weights(agent)(term)
+      if weight != 0 then
+        worlds.soFar(2 * apart + term, row)
+        world = 0
+        while world < count do
+          cost(world) -= weight * row(world) / EnvironmentSettings.RewardM
+          world += 1
+      term += 1
+    if agent == 0 then java.util.Arrays.fill(isCapture, false)
+    if settings.captureRadiusM > 0 then
+      val radiusM = settings.captureRadiusM.toFloat
+      worlds.soFar(distance + 1, row)
+      world = 0
+      while world < count do
+        if row(world) <= radiusM then
+          isCapture(world) = true
+          cost(world) += gains(agent)
+        world += 1
+    into.write(into.rewards, agent, first, stride, cost, 0, count)
+
+  /** Judges which episodes have ended. */
+  private def judge(): Unit =
+    val scoredAtS = worlds.scoredAtS
+    var world     = 0
+    var again     = false
+    while world < count do
+      val number = numberOf(world)
+      into.time(number, scoredAtS - beganS(world))
+      if isDone(world) then
         // Its action was ignored; it shows its next episode's first observation.
         isDone(world) = false
         begin(world)
         clear(world)
       else
-        into.terminated(number, isCapture || isEarly)
-        into.truncated(number, isOver && !isCapture && !isEarly)
-        isDone(world) = isCapture || isOver
+        into.terminated(number, isCapture(world) || isEarly)
+        into.truncated(number, isOver && !isCapture(world) && !isEarly)
+        isDone(world) = isCapture(world) || isOver
       again |= isDone(world)
       world += 1
     autoreset match
@@ -150,24 +196,6 @@ private final class EnvironmentGroup(
         isOver = true
         show(into.observations)
       case _ => show(into.observations)
-
-  /** Writes the rewards and distances of one world's learners; returns whether one captured, or was. */
-  private def judge(world: Int, number: Int): Boolean =
-    var isCapture = false
-    var agent     = 0
-    while agent < agents do
-      val distanceM = worlds.soFar(2 * agent, world)
-      if !distanceM.isNaN then into.distance(agent, number, distanceM)
-      val isNear = settings.captureRadiusM > 0 && worlds.soFar(2 * agent + 1, world) <= settings.captureRadiusM
-      var cost   = 0f
-      var term   = 0
-      while term < weights(agent).length do
-        if weights(agent)(term) != 0 then cost += weights(agent)(term) * worlds.soFar(2 * agents + term, world)
-        term += 1
-      into.reward(agent, number, (if isNear then gains(agent) else 0) - cost / EnvironmentSettings.RewardM)
-      isCapture |= isNear
-      agent += 1
-    isCapture
 
   /** Starts new episodes under `SameStep`: distance and time remain those of the ended episode. */
   private def restartDone(): Unit =
@@ -216,21 +244,14 @@ private final class EnvironmentGroup(
     var agent = 0
     while agent < agents do
       val isDue = worlds.isDue(agent)
-      var world = 0
-      while world < count do
-        into.due(agent, numberOf(world), isDue)
-        world += 1
+      if isDue != wasDue(agent) then
+        wasDue(agent) = isDue
+        into.due(agent, first, stride, count, isDue)
       if isDue then
         worlds.observe(agent, seen)
         var field = 0
         while field < Fields do
-          val at = (agent * Fields + field) * into.count + first
-          if stride == 1 then to.put(at, seen, field * Most, count): Unit
-          else
-            world = 0
-            while world < count do
-              to.put(at + world * stride, seen(field * Most + world)): Unit
-              world += 1
+          into.write(to, agent * Fields + field, first, stride, seen, field * Most, count)
           field += 1
       agent += 1
 

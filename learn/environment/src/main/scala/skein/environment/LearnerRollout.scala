@@ -50,14 +50,14 @@ private final class LearnerRollout(side: LearnerSide, team: TeamCandidate, learn
     for field <- 0 until LearnerPolicy.Fields do
       into(field * LearnerWorlds.Most) = observed(learner)(field).toFloat
 
-  def tell(learner: Int, world: Int, number: Float): Unit = told(learner) = number
+  def tell(learner: Int, numbers: Array[Float]): Unit = told(learner) = numbers(0)
 
   /** [[flyOn]] does. */
   def decide(): Unit = ()
 
   def scoredAtS: Float = lastScoredAtS.toFloat
 
-  def soFar(number: Int, world: Int): Float = values(number).toFloat
+  def soFar(number: Int, into: Array[Float]): Unit = into(0) = values(number).toFloat
 
   def forgetScores(): Unit =
     for number <- values.indices do

@@ -46,19 +46,18 @@ private[environment] final case class LearnerSide(
     val (rate, angle) = settings.mostTurn(roleOf(vehicle))
     if rate > 0 then (true, rate.toFloat) else (false, angle.toFloat)
 
-  /** An environment's vehicles with its learners. Judged are, for each learner, the newest and the least
-    * distance to its nearest opponent, and then what costs.
+  /** An environment's vehicles with its learners. Judged are, for each learner that is [[apart]], the newest and
+    * the least distance to its nearest opponent, and then what costs.
     *
     * @param beside policy of the other vehicles of a learner's role; without one, their own
     */
   def team(learning: Vector[Int], beside: Option[HeadingPolicy]): TeamCandidate =
     val agents = engagement.agents.zipWithIndex.map: (agent, place) =>
-      if learning.contains(place) then
-        agent.copy(policy = LearnerPolicy(mostTurn(place)._1))
+      if learning.contains(place) then agent.copy(policy = LearnerPolicy(mostTurn(place)._1))
       else if roleOf(place) == roleOf(learning.head) then
         beside.fold(agent)(policy => agent.copy(policy = policy))
       else agent
-    val distances = learning.map(learner => Nearest(learner, rivals(learner).toArray))
+    val distances = apart(learning).map(learner => Nearest(learner, rivals(learner).toArray))
     val costs     = objectives match
       case None      => distances
       case Some(all) => all.head.measures.map(_._2.reduced.get.quantity)
@@ -67,6 +66,12 @@ private[environment] final case class LearnerSide(
       distances.flatMap(each => Vector(Judged(each, OfMoment.Newest, 0), Judged(each, Reduction.Least, 0))) ++
         costs.map(Judged(_, Reduction.Mean, 0))
     )
+
+  /** The learners whose distances to their opponents may differ: of two that play against one another the
+    * first.
+    */
+  def apart(learning: Vector[Int]): Vector[Int] =
+    if engagement.agents.size == 2 then learning.take(1) else learning
 
   /** The weights of what costs a learner.
     *
@@ -77,8 +82,9 @@ private[environment] final case class LearnerSide(
       val by = all(learning(place))
       by.measures.map((weight, _) => (by.direction.sign * weight).toFloat).toArray
     case None =>
-      val sign = Objective.naturally(roleOf(learning(place))).sign.toFloat
-      learning.indices.map(each => if each == place then sign else 0f).toArray
+      val sign  = Objective.naturally(roleOf(learning(place))).sign.toFloat
+      val those = apart(learning)
+      those.indices.map(each => if each == place.min(those.size - 1) then sign else 0f).toArray
 
   /** Why SIMD does not fly the environments. */
   private val refusal: Option[String] = turns.iterator.flatMap(each => maker.refusal(team(each, None))).nextOption()

@@ -26,11 +26,11 @@ class LearnerWorldsSuite extends munit.FunSuite:
         worlds.observe(learner, seen)
         observed(learner) += Vector.tabulate(LearnerPolicy.Fields)(field => seen(field * LearnerWorlds.Most))
         decisions(learner) += 1
-        worlds.tell(learner, 0, math.sin(decisions(learner) * 0.2 + learner).toFloat)
+        worlds.tell(learner, Array.fill(LearnerWorlds.Most)(math.sin(decisions(learner) * 0.2 + learner).toFloat))
       worlds.decide()
       goesOn = worlds.flyOn()
     worlds.close()
-    (observed.map(_.result()).toVector, judged.map(worlds.soFar(_, 0)).toVector)
+    (observed.map(_.result()).toVector, judged.map(number => { worlds.soFar(number, seen); seen(0) }).toVector)
 
   for
     (settings, toleranceM) <- Seq(
@@ -76,7 +76,7 @@ class LearnerWorldsSuite extends munit.FunSuite:
     assert(worlds.flyOn())
     val first = look(2)
     for _ <- 0 until 20 do
-      for learner <- learning.indices; world <- 0 until 4 do worlds.tell(learner, world, 0.3f * world)
+      for learner <- learning.indices do worlds.tell(learner, Array.tabulate(LearnerWorlds.Most)(0.3f * _))
       worlds.decide()
       assert(worlds.flyOn())
     val before = look(1)
