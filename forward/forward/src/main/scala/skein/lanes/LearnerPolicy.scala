@@ -2,10 +2,10 @@ package skein.lanes
 
 import skein.policy.{HeadingPolicy, PlanarObservation}
 
-/** Turns as it is told from outside. Its memory is the number that it is told before each decision, and then
-  * what it observed at the last one: so a learner's vehicle decides and observes by the code of any policy.
+/** Turns as its memory says, which a caller sets before each decision. Its next memory holds what it observed:
+  * so a learner's vehicle decides and observes by the code of any policy.
   *
-  * @param byRate whether it is told a rate to the right, rad/s, and not an angle, rad
+  * @param byRate whether it turns by a rate, rad/s, and not by an angle, rad
   */
 final case class LearnerPolicy(byRate: Boolean) extends HeadingPolicy:
   type Memory = LearnerPolicy.Memory
@@ -13,16 +13,16 @@ final case class LearnerPolicy(byRate: Boolean) extends HeadingPolicy:
   def start: Memory = LearnerPolicy.start
 
   def decide(seen: PlanarObservation, memory: Memory): (Double, Memory) =
-    val turnRad = if byRate then memory.told * seen.elapsedS else memory.told
-    (seen.ownHeadingRad + turnRad, LearnerPolicy.memory(memory.told, seen.fromOwnHeading))
+    val turnRad = if byRate then memory.turn * seen.elapsedS else memory.turn
+    (seen.ownHeadingRad + turnRad, LearnerPolicy.memory(memory.turn, seen.fromOwnHeading))
 
 object LearnerPolicy:
   /** Count of numbers in an observation, see [[PlanarObservation.fromOwnHeading]]. */
   final val Fields = 9
 
-  /** The number that it is told, and the nine of [[PlanarObservation.fromOwnHeading]]. */
+  /** The turn to make, to the right, and the numbers of [[PlanarObservation.fromOwnHeading]]. */
   final case class Memory(
-      told: Double,
+      turn: Double,
       aheadM: Double,
       rightM: Double,
       aheadMps: Double,

@@ -65,7 +65,7 @@ final class LearnerTeams private[lanes] (
       kernel.perform(next)
       next += 1
     dueUntil = next
-    // Several decide at once where nothing happens between, and none knows what another is about to.
+    // Several decide together where nothing happens between, and none knows what another is about to.
     while dueUntil < timetable.size && learnsAt(dueUntil) && !knowsPending(dueUntil) do dueUntil += 1
     next < timetable.size
 
@@ -102,7 +102,7 @@ final class LearnerTeams private[lanes] (
     kernel.observe(operationOf(learner))
     System.arraycopy(members(learners(learner)).nextMemory, WORLDS, into, 0, LearnerPolicy.Fields * WORLDS)
 
-  def tell(learner: Int, numbers: Array[Float]): Unit =
+  def turn(learner: Int, numbers: Array[Float]): Unit =
     System.arraycopy(numbers, 0, members(learners(learner)).memory, 0, worlds)
 
   def decide(): Unit =

@@ -31,8 +31,8 @@ trait LearnerWorlds extends AutoCloseable:
     */
   def observe(learner: Int, into: Array[Float]): Unit
 
-  /** Sets the numbers by which a learner that is due turns, by world; see [[LearnerPolicy]]. */
-  def tell(learner: Int, numbers: Array[Float]): Unit
+  /** Sets how much a learner that is due turns, by world; see [[LearnerPolicy]]. */
+  def turn(learner: Int, numbers: Array[Float]): Unit
 
   /** Makes the due decisions. */
   def decide(): Unit

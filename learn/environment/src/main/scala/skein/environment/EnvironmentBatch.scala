@@ -3,7 +3,7 @@ package skein.environment
 import java.nio.ByteBuffer
 import java.util.stream.IntStream
 import scala.util.Try
-import skein.lanes.Engine
+import skein.lanes.{Engine, LearnerWorlds}
 import skein.policy.HeadingPolicy
 import skein.scenario.Scenarios
 import skein.settings.PolicyFile
@@ -19,7 +19,7 @@ import skein.units.Expect
   * without a capture sum to minus its mean distance, as `./skein search` has it, times the number of periods,
   * divided by 10 m. Another quantity may be rewarded instead of the distance.
   *
-  * Environments fly by SIMD, up to [[skein.lanes.LearnerWorlds.Most]] together, or one by one by the scalar reference;
+  * Environments fly by SIMD, up to [[LearnerWorlds.Most]] together, or one by one by the scalar reference;
   * [[engine]] says by which, and why.
   *
   * One call at a time. A step by SIMD allocates nothing, except where many groups share the processors.
@@ -34,34 +34,29 @@ final class EnvironmentBatch private (
     block: ByteBuffer
 ) extends AutoCloseable:
   private val buffers = EnvironmentBuffers(block, side.learners, count)
+  private var flownBy = side.engine(None)
   private var groups  = groupsOf(None)
   private var isReset = false
 
   /** What flies the environments. */
-  def engine: Engine = side.engine
+  def engine: Engine = flownBy
 
   private def groupsOf(beside: Option[HeadingPolicy]): Array[EnvironmentGroup] =
+    val most = if engine.fliesByLanes then LearnerWorlds.Most else 1
     for
       (learning, turn) <- side.turns.toArray.zipWithIndex
-      numbers          <- (turn until count by side.turns.size).grouped(side.mostTogether)
+      numbers          <- (turn until count by side.turns.size).grouped(most)
     yield
-      val worlds = side.worlds(learning, beside, numbers.size)
-      EnvironmentGroup(
-        side,
-        learning,
-        worlds,
-        autoreset,
-        numbers.head,
-        side.turns.size,
-        numbers.size,
-        buffers
-      )
+      val worlds = side.worlds(engine, learning, beside, numbers.size)
+      val stride = side.turns.size
+      EnvironmentGroup(side, learning, worlds, autoreset, numbers.head, stride, numbers.size, buffers)
 
   /** Sets the policy of the other vehicles of a learner's role, where they learn in turns; all environments
     * must be reset then.
     */
   def fly(policy: HeadingPolicy): Unit = if side.turns.size > 1 then
     close()
+    flownBy = side.engine(Some(policy))
     groups = groupsOf(Some(policy))
     isReset = false
 
@@ -112,10 +107,16 @@ object EnvironmentBatch:
   /** Groups from which on several threads are used. */
   private val Together = 4
 
-  /** What flies such environments; Left states what was expected and what was given. */
-  def engine(settings: EnvironmentSettings, opponent: Option[PolicyFile] = None)(using
-      Scenarios
-  ): Either[String, Engine] = LearnerSide.of(settings, opponent).map(_.engine)
+  /** What flies such environments; Left states what was expected and what was given.
+    *
+    * @param beside see [[EnvironmentBatch.fly]]
+    */
+  def engine(
+      settings: EnvironmentSettings,
+      opponent: Option[PolicyFile] = None,
+      beside: Option[HeadingPolicy] = None
+  )(using Scenarios): Either[String, Engine] =
+    LearnerSide.of(settings, opponent).map(side => side.engine(beside.filter(_ => side.turns.size > 1)))
 
   /** The names of an environment's learners, in the order of [[EnvironmentBuffers]]: the first one's, where
     * they take turns.

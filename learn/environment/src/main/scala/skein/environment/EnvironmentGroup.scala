@@ -31,7 +31,7 @@ private final class EnvironmentGroup(
   private val settings   = side.settings
   private val vehicles   = learning.toArray
   private val agents     = vehicles.length
-  private val turns      = vehicles.map(side.mostTurn(_)._2)
+  private val mostTurns  = vehicles.map(side.mostTurn(_)._2)
   private val gains      = vehicles.map(CaptureReward * side.captureSign(_))
   private val apart      = side.apart(learning).size
   private val weights    = vehicles.indices.map(side.weights(learning, _)).toArray
@@ -114,7 +114,7 @@ private final class EnvironmentGroup(
     else
       var agent = 0
       while agent < agents do
-        if worlds.isDue(agent) then tell(agent)
+        if worlds.isDue(agent) then turn(agent)
         agent += 1
       worlds.decide()
       // Scores before the first decision count for the first step.
@@ -130,13 +130,13 @@ private final class EnvironmentGroup(
         agent += 1
       judge()
 
-  private def tell(agent: Int): Unit =
+  private def turn(agent: Int): Unit =
     val numbers = actions(agent)
     var world   = 0
     while world < count do
-      numbers(world) = math.max(-1f, math.min(1f, numbers(world))) * turns(agent)
+      numbers(world) = math.max(-1f, math.min(1f, numbers(world))) * mostTurns(agent)
       world += 1
-    worlds.tell(agent, numbers)
+    worlds.turn(agent, numbers)
 
   /** Writes a learner's rewards and distances, and notes captures. */
   private def reward(agent: Int): Unit =

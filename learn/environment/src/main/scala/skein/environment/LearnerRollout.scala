@@ -22,7 +22,7 @@ private final class LearnerRollout(side: LearnerSide, team: TeamCandidate, learn
   private var isAnew              = false
   private var due                 = Nobody
   private var untilS              = 0f
-  private val told                = Array.ofDim[Float](learners.size)
+  private val turns               = Array.ofDim[Float](learners.size)
   private val observed            = Array.ofDim[Double](learners.size, LearnerPolicy.Fields)
   private var (northM, eastM)     = (Array.empty[Double], Array.empty[Double])
   private val downM               = Array.ofDim[Double](agents.length)
@@ -50,7 +50,7 @@ private final class LearnerRollout(side: LearnerSide, team: TeamCandidate, learn
     for field <- 0 until LearnerPolicy.Fields do
       into(field * LearnerWorlds.Most) = observed(learner)(field).toFloat
 
-  def tell(learner: Int, numbers: Array[Float]): Unit = told(learner) = numbers(0)
+  def turn(learner: Int, numbers: Array[Float]): Unit = turns(learner) = numbers(0)
 
   /** [[flyOn]] does. */
   def decide(): Unit = ()
@@ -95,7 +95,7 @@ private final class LearnerRollout(side: LearnerSide, team: TeamCandidate, learn
       due = learner
       ask()
       if isAnew then throw Anew
-      now.ownHeadingRad + told(learner) * (if byRate then now.elapsedS else 1.0)
+      now.ownHeadingRad + turns(learner) * (if byRate then now.elapsedS else 1.0)
 
   private object scores extends LoopObserver:
     override def scored(timeS: Double, vehicle: Int, x: Double, y: Double, z: Double): Unit =

@@ -86,28 +86,27 @@ private[environment] final case class LearnerSide(
       val those = apart(learning)
       those.indices.map(each => if each == place.min(those.size - 1) then sign else 0f).toArray
 
-  /** Why SIMD does not fly the environments. */
-  private val refusal: Option[String] = turns.iterator.flatMap(each => maker.refusal(team(each, None))).nextOption()
+  /** What flies the environments.
+    *
+    * @param beside see [[team]]
+    */
+  def engine(beside: Option[HeadingPolicy]): Engine =
+    turns.iterator.flatMap(each => maker.refusal(team(each, beside))).nextOption() match
+      case None      => Engine(Engine.Kind.Lanes, s"SIMD, ${LaneMath.LANES} environments at a time")
+      case Some(why) => Engine.scalar(why)
 
-  val engine: Engine = refusal match
-    case None      => Engine(Engine.Kind.Lanes, s"SIMD, ${LaneMath.LANES} environments at a time")
-    case Some(why) => Engine.scalar(why)
-
-  /** Most environments that fly together. */
-  def mostTogether: Int = if engine.fliesByLanes then LearnerWorlds.Most else 1
-
-  def worlds(learning: Vector[Int], beside: Option[HeadingPolicy], count: Int): LearnerWorlds =
+  /** Worlds that an engine flies together. */
+  def worlds(by: Engine, learning: Vector[Int], beside: Option[HeadingPolicy], count: Int): LearnerWorlds =
     val flown = team(learning, beside)
-    if engine.fliesByLanes then
-      maker.of(flown, learning, count).fold(why => throw IllegalArgumentException(why), identity)
+    if by.fliesByLanes then maker.of(flown, learning, count).fold(sys.error, identity)
     else LearnerRollout(this, flown, learning)
 
 private[environment] object LearnerSide:
 
-  /** @param told policy of the vehicles of another role; without one, as the settings name it
+  /** @param against policy of the vehicles of another role; without one, as the settings name it
     * @return Left states what was expected and what was given
     */
-  def of(settings: EnvironmentSettings, told: Option[PolicyFile] = None)(using
+  def of(settings: EnvironmentSettings, against: Option[PolicyFile] = None)(using
       scenarios: Scenarios
   ): Either[String, LearnerSide] =
     for
@@ -120,9 +119,9 @@ private[environment] object LearnerSide:
       agents = scenario.agents
       turns <- settings.turns(agents)
       _     <- refusal(scenario, turns.flatten).map(why =>
-        s"scenario: expected one of vehicles that are told of one another, came ${scenario.name}, $why"
+        s"scenario: expected one of vehicles that know where others are, came ${scenario.name}, $why"
       ).toLeft(())
-      opponent <- told.fold(settings.opponentOf(agents(turns.head.head).role))(file => Right(Some(file)))
+      opponent <- against.fold(settings.opponentOf(agents(turns.head.head).role))(file => Right(Some(file)))
       isFree = (place: Int) => !turns.flatten.contains(place)
       _ <- Expect.that(opponent.forall(file => agents.indices.exists(place => isFree(place) && agents(place).role == file.role))):
         s"opponent: expected none where no ${opponent.get.role} flies without a learner, came '${settings.opponent}'"

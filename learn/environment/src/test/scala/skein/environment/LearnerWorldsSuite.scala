@@ -26,7 +26,7 @@ class LearnerWorldsSuite extends munit.FunSuite:
         worlds.observe(learner, seen)
         observed(learner) += Vector.tabulate(LearnerPolicy.Fields)(field => seen(field * LearnerWorlds.Most))
         decisions(learner) += 1
-        worlds.tell(learner, Array.fill(LearnerWorlds.Most)(math.sin(decisions(learner) * 0.2 + learner).toFloat))
+        worlds.turn(learner, Array.fill(LearnerWorlds.Most)(math.sin(decisions(learner) * 0.2 + learner).toFloat))
       worlds.decide()
       goesOn = worlds.flyOn()
     worlds.close()
@@ -49,9 +49,10 @@ class LearnerWorldsSuite extends munit.FunSuite:
   do
     test(s"${settings.learners} of ${settings.scenario} under ${settings.loop}: SIMD equals the scalar engine"):
       val side = LearnerSide.of(settings).fold(fail(_), identity)
-      assert(side.engine.fliesByLanes, side.engine.text)
+      val engine = side.engine(None)
+      assert(engine.fliesByLanes, engine.text)
       val learning         = side.turns.last
-      val (seen, sums)     = flown(side, learning, side.worlds(learning, None, 3))
+      val (seen, sums)     = flown(side, learning, side.worlds(engine, learning, None, 3))
       val (truth, scalars) = flown(side, learning, LearnerRollout(side, side.team(learning, None), learning))
       assertEquals(seen.map(_.size), truth.map(_.size))
       assert(seen.forall(_.sizeIs > 25), seen.map(_.size))
@@ -63,7 +64,7 @@ class LearnerWorldsSuite extends munit.FunSuite:
     val settings = all.copy(scenario = "surround", learners = "all", loop = "paused", link = "none", plant = "tilt")
     val side     = LearnerSide.of(settings).fold(fail(_), identity)
     val learning = side.turns.head
-    val worlds   = side.worlds(learning, None, 4)
+    val worlds   = side.worlds(side.engine(None), learning, None, 4)
     val seen     = Array.ofDim[Float](LearnerPolicy.Fields * LearnerWorlds.Most)
     def begin(world: Int): Unit =
       for vehicle <- side.names.indices do worlds.restart(world, vehicle, 10f * vehicle, 3, 0.5f)
@@ -76,7 +77,7 @@ class LearnerWorldsSuite extends munit.FunSuite:
     assert(worlds.flyOn())
     val first = look(2)
     for _ <- 0 until 20 do
-      for learner <- learning.indices do worlds.tell(learner, Array.tabulate(LearnerWorlds.Most)(0.3f * _))
+      for learner <- learning.indices do worlds.turn(learner, Array.tabulate(LearnerWorlds.Most)(0.3f * _))
       worlds.decide()
       assert(worlds.flyOn())
     val before = look(1)
