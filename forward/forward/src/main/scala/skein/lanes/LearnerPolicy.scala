@@ -2,8 +2,8 @@ package skein.lanes
 
 import skein.policy.{HeadingPolicy, PlanarObservation}
 
-/** Turns as its memory says, which a caller sets before each decision. Its next memory holds what it observed:
-  * so a learner's vehicle decides and observes by the code of any policy.
+/** Turns as its memory says, which a caller sets before each decision. Its next memory holds what it
+  * observed: so a learner's vehicle decides and observes by the code of any policy.
   *
   * @param byRate whether it turns by a rate, rad/s, and not by an angle, rad
   */

@@ -27,7 +27,8 @@ final class LearnerTeams private[lanes] (
   private val members = LaneTeams.inEpisode(form, team.engagement.agents)
   private val scores  = Scoreboard(form.scores, form.altitudesDownM)
   private val kernel  = TimetableKernel(members.map(identity[TimetableAgents]), this)
-  private val passing = team.quantities.indices.filter(team.quantities(_).reduction != OfMoment.Newest).toArray
+  private val passing =
+    team.quantities.indices.filter(team.quantities(_).reduction != OfMoment.Newest).toArray
   private val isOfTwo = form.policies.isInstanceOf[OpponentLanes]
   private val learns  = Array.tabulate(form.count)(learners.contains(_))
 
@@ -128,8 +129,8 @@ final class LearnerTeams private[lanes] (
 object LearnerTeams:
   private val ToleranceS = 1e-4f
 
-  /** Number of flights over the link from which delays are drawn; each is computed once, and takes some 200 kB
-    * for a minute of two vehicles.
+  /** Number of flights over the link from which delays are drawn; each is computed once, and takes some 200
+    * kB for a minute of two vehicles.
     */
   private val Flights = 128
 

@@ -16,8 +16,8 @@ trait LearnerWorlds extends AutoCloseable:
     */
   def start(draw: Long, untilS: Float): Unit
 
-  /** Restarts a vehicle in one world: it rests at its start, in all readings, also those on their way, and was
-    * commanded along its heading before. Requests and commands on their way stay: the loop runs already.
+  /** Restarts a vehicle in one world: it rests at its start, in all readings, also those on their way, and
+    * was commanded along its heading before. Requests and commands on their way stay: the loop runs already.
     */
   def restart(world: Int, vehicle: Int, northM: Float, eastM: Float, headingRad: Float): Unit
 
@@ -40,7 +40,8 @@ trait LearnerWorlds extends AutoCloseable:
   /** Time of the last score, since the run's start, s. */
   def scoredAtS: Float
 
-  /** Writes a judged number by world, since [[forgetScores]]: the newest or least value, or the sum of all. */
+  /** Writes a judged number by world, since [[forgetScores]]: the newest or least value, or the sum of all.
+    */
   def soFar(number: Int, into: Array[Float]): Unit
 
   /** Forgets all scores but the newest values. */

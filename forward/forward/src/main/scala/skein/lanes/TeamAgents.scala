@@ -14,7 +14,8 @@ private[lanes] trait TeamMember:
   /** The effort by world, where it was asked for. */
   def effortRad: Array[Float] = Array.emptyFloatArray
 
-  /** Restarts one world: its vehicle is at its start at rest, and all commands before were along a heading. */
+  /** Restarts one world: its vehicle is at its start at rest, and all commands before were along a heading.
+    */
   def restart(world: Int, headingRad: Float): Unit =
     throw UnsupportedOperationException("a world that restarts alone needs a timetable")
 

@@ -10,7 +10,11 @@ import skein.units.Expect
   *
   * @param isReference whether nothing shall fly by SIMD
   */
-private[lanes] final class TeamForms(timing: LoopTiming, model: VelocityResponse, isReference: Boolean = false):
+private[lanes] final class TeamForms(
+    timing: LoopTiming,
+    model: VelocityResponse,
+    isReference: Boolean = false
+):
   private val inSpace = model.isInstanceOf[SpatialResponse]
 
   private val dynamics: Either[String, LaneDynamics] =

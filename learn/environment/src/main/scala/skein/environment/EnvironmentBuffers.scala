@@ -96,10 +96,10 @@ final class EnvironmentBuffers(block: ByteBuffer, val agents: Int, val count: In
 
   def distance(agent: Int, number: Int, metres: Float): Unit =
     distances.put(agent * count + number, metres): Unit
-  def time(number: Int, seconds: Float): Unit            = times.put(number, seconds): Unit
-  def terminated(number: Int, value: Boolean): Unit      = terminations.put(number, byte(value)): Unit
-  def truncated(number: Int, value: Boolean): Unit       = truncations.put(number, byte(value)): Unit
-  private def byte(value: Boolean): Byte                 = if value then 1 else 0
+  def time(number: Int, seconds: Float): Unit       = times.put(number, seconds): Unit
+  def terminated(number: Int, value: Boolean): Unit = terminations.put(number, byte(value)): Unit
+  def truncated(number: Int, value: Boolean): Unit  = truncations.put(number, byte(value)): Unit
+  private def byte(value: Boolean): Byte            = if value then 1 else 0
 
 object EnvironmentBuffers:
   def bytes(agents: Int, count: Int): Int =

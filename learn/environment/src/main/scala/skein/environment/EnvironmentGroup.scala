@@ -28,17 +28,17 @@ private final class EnvironmentGroup(
   import LearnerPolicy.Fields
   import LearnerWorlds.Most
 
-  private val settings   = side.settings
-  private val vehicles   = learning.toArray
-  private val agents     = vehicles.length
-  private val mostTurns  = vehicles.map(side.mostTurn(_)._2)
-  private val gains      = vehicles.map(CaptureReward * side.captureSign(_))
-  private val apart      = side.apart(learning).size
-  private val weights    = vehicles.indices.map(side.weights(learning, _)).toArray
-  private val starts     = Starts(side)
-  private val seeds      = Array.ofDim[Long](count)
-  private val episodes   = Array.ofDim[Long](count)
-  private val isDone     = Array.ofDim[Boolean](count)
+  private val settings  = side.settings
+  private val vehicles  = learning.toArray
+  private val agents    = vehicles.length
+  private val mostTurns = vehicles.map(side.mostTurn(_)._2)
+  private val gains     = vehicles.map(CaptureReward * side.captureSign(_))
+  private val apart     = side.apart(learning).size
+  private val weights   = vehicles.indices.map(side.weights(learning, _)).toArray
+  private val starts    = Starts(side)
+  private val seeds     = Array.ofDim[Long](count)
+  private val episodes  = Array.ofDim[Long](count)
+  private val isDone    = Array.ofDim[Boolean](count)
 
   /** When each world's episode began, since the run's start, s. */
   private val beganS = Array.ofDim[Float](count)
@@ -48,10 +48,10 @@ private final class EnvironmentGroup(
   private val actions   = Array.ofDim[Float](agents, Most)
   private val row, cost = Array.ofDim[Float](Most)
   private val isCapture = Array.ofDim[Boolean](count)
-  private val startM = Array.ofDim[Float](agents * count)
-  private val wasDue = Array.ofDim[Boolean](agents)
-  private var runs   = 0L
-  private var isOver = true
+  private val startM    = Array.ofDim[Float](agents * count)
+  private val wasDue    = Array.ofDim[Boolean](agents)
+  private var runs      = 0L
+  private var isOver    = true
 
   /** Whether the run ended before its time. */
   private var isEarly = false

@@ -55,8 +55,8 @@ object EnvironmentServer:
     thread.start()
 
   private def serve(client: SocketChannel): Unit =
-    val in  = DataInputStream(Channels.newInputStream(client))
-    val out = DataOutputStream(Channels.newOutputStream(client))
+    val in    = DataInputStream(Channels.newInputStream(client))
+    val out   = DataOutputStream(Channels.newOutputStream(client))
     var words = wordsOf(text(in))
     while !words.contains("file") do
       EnvironmentSettings

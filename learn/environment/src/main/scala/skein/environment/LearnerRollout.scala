@@ -8,26 +8,26 @@ import skein.policy.{Action, HeadingPolicy, PlanarObservation}
 import skein.scenario.{Positions, Quantity, Reduction}
 import skein.units.OwnFailure
 
-/** One world by the scalar reference, [[Rollout]], whose learners' policies wait for the caller's decision: so
-  * learning works in every scenario, loop and link of forward simulation.
+/** One world by the scalar reference, [[Rollout]], whose learners' policies wait for the caller's decision:
+  * so learning works in every scenario, loop and link of forward simulation.
   */
 private final class LearnerRollout(side: LearnerSide, team: TeamCandidate, learners: Vector[Int])
     extends LearnerWorlds:
   import LearnerRollout.*
 
-  private val flying              = Resumed(fly)
-  private var ask: () => Unit     = () => ()
-  private val agents              = team.engagement.agents.toArray
-  private var key                 = 0
-  private var isAnew              = false
-  private var due                 = Nobody
-  private var untilS              = 0f
-  private val turns               = Array.ofDim[Float](learners.size)
-  private val observed            = Array.ofDim[Double](learners.size, LearnerPolicy.Fields)
-  private var (northM, eastM)     = (Array.empty[Double], Array.empty[Double])
-  private val downM               = Array.ofDim[Double](agents.length)
-  private val values              = Array.ofDim[Double](team.quantities.size)
-  private var lastScoredAtS       = 0.0
+  private val flying          = Resumed(fly)
+  private var ask: () => Unit = () => ()
+  private val agents          = team.engagement.agents.toArray
+  private var key             = 0
+  private var isAnew          = false
+  private var due             = Nobody
+  private var untilS          = 0f
+  private val turns           = Array.ofDim[Float](learners.size)
+  private val observed        = Array.ofDim[Double](learners.size, LearnerPolicy.Fields)
+  private var (northM, eastM) = (Array.empty[Double], Array.empty[Double])
+  private val downM           = Array.ofDim[Double](agents.length)
+  private val values          = Array.ofDim[Double](team.quantities.size)
+  private var lastScoredAtS   = 0.0
 
   def restartAlone: Boolean = false
 

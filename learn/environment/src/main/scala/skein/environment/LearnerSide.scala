@@ -46,8 +46,8 @@ private[environment] final case class LearnerSide(
     val (rate, angle) = settings.mostTurn(roleOf(vehicle))
     if rate > 0 then (true, rate.toFloat) else (false, angle.toFloat)
 
-  /** An environment's vehicles with its learners. Judged are, for each learner that is [[apart]], the newest and
-    * the least distance to its nearest opponent, and then what costs.
+  /** An environment's vehicles with its learners. Judged are, for each learner that is [[apart]], the newest
+    * and the least distance to its nearest opponent, and then what costs.
     *
     * @param beside policy of the other vehicles of a learner's role; without one, their own
     */
@@ -123,7 +123,9 @@ private[environment] object LearnerSide:
       ).toLeft(())
       opponent <- against.fold(settings.opponentOf(agents(turns.head.head).role))(file => Right(Some(file)))
       isFree = (place: Int) => !turns.flatten.contains(place)
-      _ <- Expect.that(opponent.forall(file => agents.indices.exists(place => isFree(place) && agents(place).role == file.role))):
+      _ <- Expect.that(opponent.forall(file =>
+        agents.indices.exists(place => isFree(place) && agents(place).role == file.role)
+      )):
         s"opponent: expected none where no ${opponent.get.role} flies without a learner, came '${settings.opponent}'"
       flown <- Try(Engagement.ofScenario(scenario, settings.episodeS + EnvironmentSettings.SpareS)).toEither
         .left.map("scenario: " + _.getMessage)
@@ -133,10 +135,12 @@ private[environment] object LearnerSide:
           altitudeDownM = if settings.altitudeM != 0 then -settings.altitudeM else agent.altitudeDownM,
           policy = by.fold(agent.policy)(_.policy)
         ))
-      objectives <- if settings.objective.isEmpty then Right(None) else objectivesOf(settings, scenario).map(Some(_))
+      objectives <-
+        if settings.objective.isEmpty then Right(None) else objectivesOf(settings, scenario).map(Some(_))
       altitudeM = -engagement.agents(turns.head.head).altitudeDownM
       climbs    = climbing(engagement, turns)
-      resolved <- settings.flown(altitudeM, climbs.fold(levelAt(altitudeM))(_ => VehicleChoice.Tilt), agents.size)
+      resolved <-
+        settings.flown(altitudeM, climbs.fold(levelAt(altitudeM))(_ => VehicleChoice.Tilt), agents.size)
       (timing, delays, vehicle) = resolved
       _ <- Expect.that(climbs.isEmpty || vehicle.response.isSpatial):
         s"plant: expected ${VehicleChoice.Tilt} or ${VehicleChoice.Spatial}, came ${vehicle.name}: ${climbs.get}"
@@ -151,31 +155,38 @@ private[environment] object LearnerSide:
       vehicle.response
     )
 
-  private def levelAt(altitudeM: Double) = if altitudeM == ReducedModel.IdentifiedAtM then "reduced" else "drag"
+  private def levelAt(altitudeM: Double) =
+    if altitudeM == ReducedModel.IdentifiedAtM then "reduced" else "drag"
 
   /** Why some vehicle without a learner may leave its altitude. */
   private def climbing(engagement: Engagement, turns: Vector[Vector[Int]]): Option[String] =
     val learning = turns.flatten
     val level    = engagement.agents.zipWithIndex.map: (agent, place) =>
-      if turns.size == 1 && learning.contains(place) then agent.copy(policy = LearnerPolicy(byRate = true)) else agent
+      if turns.size == 1 && learning.contains(place) then agent.copy(policy = LearnerPolicy(byRate = true))
+      else agent
     engagement.copy(agents = level).climbs
 
-  private def objectivesOf(settings: EnvironmentSettings, scenario: Scenario): Either[String, Vector[Objective]] =
+  private def objectivesOf(
+      settings: EnvironmentSettings,
+      scenario: Scenario
+  ): Either[String, Vector[Objective]] =
     for
       all <- Expect
         .each(scenario.agents.map(_.role)): role =>
           Objective.ofQuantities(settings.objective, scenario, Objective.naturally(role))
         .left
         .map("objective: " + _)
-      _ <- all.head.measures.map(_._2).find(measure => !isSummed(measure.reduced.get.reduction)).map: measure =>
-        "objective: expected means over time, which can be rewarded " +
-          s"as they come, came ${ScenarioTerm.keyOf(measure)}"
+      _ <- all.head.measures.map(_._2).find(measure => !isSummed(measure.reduced.get.reduction)).map:
+        measure =>
+          "objective: expected means over time, which can be rewarded " +
+            s"as they come, came ${ScenarioTerm.keyOf(measure)}"
       .toLeft(())
     yield all
 
   private def isSummed(reduction: Reduction) = reduction == Reduction.Mean || reduction == Reduction.Rms
 
   private def refusal(scenario: Scenario, learners: Vector[Int]): Option[String] =
-    if learners.exists(scenario.agents(_).kind != VehicleKind.Multirotor) then Some("in which a car would learn")
+    if learners.exists(scenario.agents(_).kind != VehicleKind.Multirotor) then
+      Some("in which a car would learn")
     else if scenario.eyes.nonEmpty || scenario.equipment.nonEmpty then Some("which sees by cameras or lidars")
     else Option.when(scenario.agents.sizeIs < 2)("of one vehicle")

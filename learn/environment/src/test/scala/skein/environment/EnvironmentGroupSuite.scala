@@ -132,7 +132,8 @@ class EnvironmentGroupSuite extends munit.FunSuite:
     given Scenarios                            = Scenarios(ScenarioKind(Own()))
     def told(policy: String, quantity: String) =
       val block = ByteBuffer.allocateDirect(EnvironmentBuffers.bytes(1, 1))
-      val batch = EnvironmentBatch.of(own(policy, quantity), 1, Autoreset.NextStep, block).fold(fail(_), identity)
+      val batch =
+        EnvironmentBatch.of(own(policy, quantity), 1, Autoreset.NextStep, block).fold(fail(_), identity)
       try
         intercept[OwnFailure]:
           batch.reset(Array(1L))
@@ -153,7 +154,9 @@ class EnvironmentGroupSuite extends munit.FunSuite:
     assert(clue(refused(surround.copy(scenario = "surrond"))).contains("the nearest is 'surround'"))
     assert(clue(refused(surround.copy(set = Map("x" -> "1")))).startsWith("set: no setting 'x'"))
     assert(clue(refused(surround.copy(objective = "nearest"))).contains("is told of recorded flights alone"))
-    assert(clue(refused(surround.copy(opponent = "paper-pursuer"))).startsWith("opponent: family paper-pursuer is"))
+    assert(clue(refused(surround.copy(opponent =
+      "paper-pursuer"
+    ))).startsWith("opponent: family paper-pursuer is"))
     assert(clue(refused(EnvironmentSettings(scenario = "formation"))).startsWith(
       "learners: expected one of leader, follower, all of a role (leaders), all, or vehicles of Leader,"
     ))
@@ -161,7 +164,10 @@ class EnvironmentGroupSuite extends munit.FunSuite:
       refused(EnvironmentSettings(learners = learners, scenario = scenario))
     assert(clue(learning("all", "convoy")).contains("in which a car would learn"))
     assert(clue(learning("all", "forest")).contains("which sees by cameras or lidars"))
-    assert(clue(learning("Evader,Evader", "surround")).startsWith("learners: expected one of evader, pursuer"))
+    assert(clue(learning(
+      "Evader,Evader",
+      "surround"
+    )).startsWith("learners: expected one of evader, pursuer"))
 
   test("learners are one of a role in turns, all of a role, all, or those of some names"):
     def named(learners: String) =
@@ -181,10 +187,12 @@ final case class Own(policy: String = "", quantity: String = "") extends Scenari
 
 object Own:
   // No formula.
-  def answer(how: String): Double = if Thread.currentThread.getName.isBlank && how == "" then 0 else how match
-    case "throws" => throw IllegalStateException("no such luck")
-    case "NaN"    => Double.NaN
-    case _        => 1
+  def answer(how: String): Double = if Thread.currentThread.getName.isBlank && how == "" then 0
+  else
+    how match
+      case "throws" => throw IllegalStateException("no such luck")
+      case "NaN"    => Double.NaN
+      case _        => 1
 
 final case class Away(how: String) extends Policy:
   type Memory = Unit
@@ -197,5 +205,5 @@ final case class Off(how: String) extends Quantity:
 
 /** Ends after 2 s. */
 final case class Short() extends Scenario:
-  def agents: Vector[Agent]                     = Surround(vehicles = 3).agents
+  def agents: Vector[Agent]                  = Surround(vehicles = 3).agents
   override def isOver(known: Known): Boolean = known.elapsed.toSeconds >= 2

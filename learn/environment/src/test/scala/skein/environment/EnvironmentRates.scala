@@ -7,8 +7,8 @@ import scala.util.hashing.MurmurHash3
 import skein.lanes.Tower
 import skein.scenario.{ScenarioKind, Scenarios}
 
-/** How fast are environments, and what do they come to? Steps a second of processor time, with a digest of all
-  * rewards and ends of 300 steps as a witness. Run: `environment/Test/runMain
+/** How fast are environments, and what do they come to? Steps a second of processor time, with a digest of
+  * all rewards and ends of 300 steps as a witness. Run: `environment/Test/runMain
   * skein.environment.environmentRates 4096 2000 duel tower`; the words behind the numbers choose rows.
   */
 @main def environmentRates(count: Int, steps: Int, rows: String*): Unit =

@@ -26,29 +26,37 @@ class LearnerWorldsSuite extends munit.FunSuite:
         worlds.observe(learner, seen)
         observed(learner) += Vector.tabulate(LearnerPolicy.Fields)(field => seen(field * LearnerWorlds.Most))
         decisions(learner) += 1
-        worlds.turn(learner, Array.fill(LearnerWorlds.Most)(math.sin(decisions(learner) * 0.2 + learner).toFloat))
+        worlds.turn(
+          learner,
+          Array.fill(LearnerWorlds.Most)(math.sin(decisions(learner) * 0.2 + learner).toFloat)
+        )
       worlds.decide()
       goesOn = worlds.flyOn()
     worlds.close()
-    (observed.map(_.result()).toVector, judged.map(number => { worlds.soFar(number, seen); seen(0) }).toVector)
+    (
+      observed.map(_.result()).toVector,
+      judged.map(number => { worlds.soFar(number, seen); seen(0) }).toVector
+    )
 
   for
     (settings, toleranceM) <- Seq(
-      all                                                               -> 2e-3,
-      all.copy(learners = "both", loop = "sequential")                  -> 2e-3,
-      all.copy(scenario = "surround", learners = "pursuers")            -> 2e-3,
-      all.copy(scenario = "surround", learners = "all", loop = "paused") -> 2e-3,
-      all.copy(scenario = "surround", learners = "evader", loop = "predictive", link = "direct") -> 2e-3,
-      all.copy(scenario = "surround", learners = "Pursuer2", plant = "quadrotor", altitudeM = 20) -> 2e-2,
+      all                                                                                             -> 2e-3,
+      all.copy(learners = "both", loop = "sequential")                                                -> 2e-3,
+      all.copy(scenario = "surround", learners = "pursuers")                                          -> 2e-3,
+      all.copy(scenario = "surround", learners = "all", loop = "paused")                              -> 2e-3,
+      all.copy(scenario = "surround", learners = "evader", loop = "predictive", link = "direct")      -> 2e-3,
+      all.copy(scenario = "surround", learners = "Pursuer2", plant = "quadrotor", altitudeM = 20)     -> 2e-2,
       all.copy(scenario = "surround", learners = "Pursuer1,Evader", objective = "off-ring + 0.1*gap") -> 2e-2,
-      all.copy(scenario = "formation", learners = "follower")           -> 2e-3,
-      all.copy(scenario = "crossing", learners = "all")                 -> 2e-3,
-      all.copy(scenario = "tower", learners = "keeper", objective = "kept") -> 2e-2,
-      all.copy(scenario = "tower", learners = "inspectors", objective = "kept", plant = "tilt") -> 2e-2
+      all.copy(scenario = "formation", learners = "follower")                                         -> 2e-3,
+      all.copy(scenario = "crossing", learners = "all")                                               -> 2e-3,
+      all.copy(scenario = "tower", learners = "keeper", objective = "kept")                           -> 2e-2,
+      all.copy(scenario = "tower", learners = "inspectors", objective = "kept", plant = "tilt")       -> 2e-2
     )
   do
-    test(s"${settings.learners} of ${settings.scenario} under ${settings.loop}: SIMD equals the scalar engine"):
-      val side = LearnerSide.of(settings).fold(fail(_), identity)
+    test(
+      s"${settings.learners} of ${settings.scenario} under ${settings.loop}: SIMD equals the scalar engine"
+    ):
+      val side   = LearnerSide.of(settings).fold(fail(_), identity)
       val engine = side.engine(None)
       assert(engine.fliesByLanes, engine.text)
       val learning         = side.turns.last
@@ -57,15 +65,21 @@ class LearnerWorldsSuite extends munit.FunSuite:
       assertEquals(seen.map(_.size), truth.map(_.size))
       assert(seen.forall(_.sizeIs > 25), seen.map(_.size))
       for (ours, theirs) <- seen.zip(truth); (one, other) <- ours.zip(theirs); (x, y) <- one.zip(other) do
-        assertEqualsDouble(x, y, toleranceM, s"decision ${ours.indexOf(one)} of ${ours.size}: $one, scalar $other")
+        assertEqualsDouble(
+          x,
+          y,
+          toleranceM,
+          s"decision ${ours.indexOf(one)} of ${ours.size}: $one, scalar $other"
+        )
       for (one, other) <- sums.zip(scalars) do assertEqualsDouble(one, other, toleranceM * 60)
 
   test("a world that restarts alone is where it was put, with what its vehicles were commanded before"):
-    val settings = all.copy(scenario = "surround", learners = "all", loop = "paused", link = "none", plant = "tilt")
-    val side     = LearnerSide.of(settings).fold(fail(_), identity)
-    val learning = side.turns.head
-    val worlds   = side.worlds(side.engine(None), learning, None, 4)
-    val seen     = Array.ofDim[Float](LearnerPolicy.Fields * LearnerWorlds.Most)
+    val settings =
+      all.copy(scenario = "surround", learners = "all", loop = "paused", link = "none", plant = "tilt")
+    val side                    = LearnerSide.of(settings).fold(fail(_), identity)
+    val learning                = side.turns.head
+    val worlds                  = side.worlds(side.engine(None), learning, None, 4)
+    val seen                    = Array.ofDim[Float](LearnerPolicy.Fields * LearnerWorlds.Most)
     def begin(world: Int): Unit =
       for vehicle <- side.names.indices do worlds.restart(world, vehicle, 10f * vehicle, 3, 0.5f)
     def look(world: Int) = Vector.tabulate(learning.size): learner =>

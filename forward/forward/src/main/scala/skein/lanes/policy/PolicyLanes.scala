@@ -90,7 +90,9 @@ private[skein] final class PolicyLanes private (formula: Formula):
     * seen from outside.
     */
   val remembered: Int =
-    needed.iterator.filter(node => node.op == Op.Input && node.index >= In.Memory).map(_.index - In.Memory + 1)
+    needed.iterator.filter(node => node.op == Op.Input && node.index >= In.Memory).map(
+      _.index - In.Memory + 1
+    )
       .maxOption.getOrElse(0)
 
   private def deciding(withEffort: Boolean) =

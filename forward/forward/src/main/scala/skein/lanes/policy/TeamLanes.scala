@@ -129,7 +129,8 @@ private[lanes] final class TeamLanes private (
   private def own(outputs: Vector[Node]): BoundFunction =
     BoundFunction.of(common.without(trace, outputs, number => trace.input(sharedInput(number))))
 
-  /** By vehicle: the function for its own part of the decision, without the memory that is not [[remembered]].
+  /** By vehicle: the function for its own part of the decision, without the memory that is not
+    * [[remembered]].
     */
   val functions: Vector[BoundFunction] = Vector.tabulate(count)(self => own(deciding(self)))
 
@@ -150,7 +151,9 @@ private[lanes] final class TeamLanes private (
     (decides.inputs ++ observes.inputs).toVector.filter(reading(_).isEmpty).map(source)
 
   val needsVelocity: Boolean =
-    (shared +: (functions ++ sights)).exists(_.inputs.exists(reading(_).exists((_, field) => field == 2 || field == 3)))
+    (shared +: (functions ++ sights)).exists(_.inputs.exists(reading(_).exists((_, field) =>
+      field == 2 || field == 3
+    )))
 
   /** By vehicle: whether it needs ages of readings, commands of others, or the time until its command takes
     * effect.
