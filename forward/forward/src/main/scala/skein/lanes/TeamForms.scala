@@ -15,7 +15,8 @@ private[lanes] final class TeamForms(
     model: VelocityResponse,
     isReference: Boolean = false
 ):
-  private val inSpace = model.isInstanceOf[SpatialResponse]
+  private val inSpace     = model.isInstanceOf[SpatialResponse]
+  private val isPredicted = timing.isInstanceOf[LoopTiming.Predictive]
 
   private val dynamics: Either[String, LaneDynamics] =
     for
@@ -37,7 +38,8 @@ private[lanes] final class TeamForms(
       _        <- Expect.that(!engagement.hasCars)("it has cars")
       _        <- LaneDynamics.isHighEnough(model, engagement.agents)
       policies <- Option
-        .when(candidate.areAtOnePace)(OpponentLanes.of(engagement, efforts.flatten.contains, inSpace))
+        .when(candidate.areAtOnePace):
+          OpponentLanes.of(engagement, efforts.flatten.contains, inSpace, isPredicted)
         .flatten
         .getOrElse(teamOf(engagement, efforts.flatten))
       scores <- ScoreLanes
@@ -52,15 +54,14 @@ private[lanes] final class TeamForms(
 
   private def teamOf(engagement: Engagement, efforts: Vector[Int]): Either[String, TeamPolicies] =
     for
-      _ <- Expect.that(efforts.isEmpty):
-        "efforts are summed by lanes of two that play against one another by headings"
-      _ <- Expect.that(engagement.agents.forall(_.eye.isEmpty)):
-        "who sees by a sensor flies by lanes against one other, both by headings"
-      isPredicted = timing.isInstanceOf[LoopTiming.Predictive]
       team <- TeamLanes
         .of(engagement.agents.map(_.policy), engagement.assignment, isPredicted, inSpace)
         .left
         .map(refused => s"a policy is no formula: ${refused.getMessage}")
+      _ <- Expect.that(efforts.isEmpty):
+        "efforts are summed by lanes of two that play against one another by headings"
+      _ <- Expect.that(engagement.agents.forall(_.eye.isEmpty)):
+        "who sees by a sensor flies by lanes against one other, both by headings"
       _ <- team.leaves(engagement.agents).filterNot(_ => inSpace).toLeft(())
       _ <- Expect.that(!team.looksUp || !model.regardsYaw):
         "a policy asks how high vehicles are, and the quadrotor's height is not told side by side"

@@ -4,7 +4,7 @@ import java.nio.ByteBuffer
 import java.util.stream.IntStream
 import scala.util.Try
 import skein.lanes.{Engine, LearnerWorlds}
-import skein.policy.HeadingPolicy
+import skein.policy.Policy
 import skein.scenario.Scenarios
 import skein.settings.PolicyFile
 import skein.units.Expect
@@ -41,7 +41,7 @@ final class EnvironmentBatch private (
   /** What flies the environments. */
   def engine: Engine = flownBy
 
-  private def groupsOf(beside: Option[HeadingPolicy]): Array[EnvironmentGroup] =
+  private def groupsOf(beside: Option[Policy]): Array[EnvironmentGroup] =
     val most = if engine.fliesByLanes then LearnerWorlds.Most else 1
     for
       (learning, turn) <- side.turns.toArray.zipWithIndex
@@ -54,7 +54,7 @@ final class EnvironmentBatch private (
   /** Sets the policy of the other vehicles of a learner's role, where they learn in turns; all environments
     * must be reset then.
     */
-  def fly(policy: HeadingPolicy): Unit = if side.turns.size > 1 then
+  def fly(policy: Policy): Unit = if side.turns.size > 1 then
     close()
     flownBy = side.engine(Some(policy))
     groups = groupsOf(Some(policy))
@@ -114,7 +114,7 @@ object EnvironmentBatch:
   def engine(
       settings: EnvironmentSettings,
       opponent: Option[PolicyFile] = None,
-      beside: Option[HeadingPolicy] = None
+      beside: Option[Policy] = None
   )(using Scenarios): Either[String, Engine] =
     LearnerSide.of(settings, opponent).map(side => side.engine(beside.filter(_ => side.turns.size > 1)))
 

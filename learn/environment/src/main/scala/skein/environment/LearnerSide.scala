@@ -5,7 +5,7 @@ import skein.forward.{Delays, Engagement, LoopTiming, VelocityResponse}
 import skein.lanes.{Engine, LearnerPolicy, LearnerTeams, LearnerWorlds, TeamCandidate}
 import skein.lanes.score.{Judged, OfMoment}
 import skein.optimise.{Objective, ScenarioTerm}
-import skein.policy.{HeadingPolicy, Role}
+import skein.policy.{Policy, Role}
 import skein.scenario.{Reduction, Scenario, Scenarios}
 import skein.settings.{PolicyFile, ScenarioSettings, VehicleChoice}
 import skein.simd.LaneMath
@@ -51,7 +51,7 @@ private[environment] final case class LearnerSide(
     *
     * @param beside policy of the other vehicles of a learner's role; without one, their own
     */
-  def team(learning: Vector[Int], beside: Option[HeadingPolicy]): TeamCandidate =
+  def team(learning: Vector[Int], beside: Option[Policy]): TeamCandidate =
     val agents = engagement.agents.zipWithIndex.map: (agent, place) =>
       if learning.contains(place) then agent.copy(policy = LearnerPolicy(mostTurn(place)._1))
       else if roleOf(place) == roleOf(learning.head) then
@@ -90,13 +90,13 @@ private[environment] final case class LearnerSide(
     *
     * @param beside see [[team]]
     */
-  def engine(beside: Option[HeadingPolicy]): Engine =
+  def engine(beside: Option[Policy]): Engine =
     turns.iterator.flatMap(each => maker.refusal(team(each, beside))).nextOption() match
       case None      => Engine(Engine.Kind.Lanes, s"SIMD, ${LaneMath.LANES} environments at a time")
       case Some(why) => Engine.scalar(why)
 
   /** Worlds that an engine flies together. */
-  def worlds(by: Engine, learning: Vector[Int], beside: Option[HeadingPolicy], count: Int): LearnerWorlds =
+  def worlds(by: Engine, learning: Vector[Int], beside: Option[Policy], count: Int): LearnerWorlds =
     val flown = team(learning, beside)
     if by.fliesByLanes then maker.of(flown, learning, count).fold(sys.error, identity)
     else LearnerRollout(this, flown, learning)
