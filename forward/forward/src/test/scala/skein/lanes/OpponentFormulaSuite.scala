@@ -13,7 +13,8 @@ class OpponentFormulaSuite extends munit.FunSuite:
   private val lag   = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
   private val short = Duel.paper.copy(durationS = 5)
 
-  private def refusal(policy: Policy) = PolicyLanes.of(policy).fold(_.getMessage, _ => fail("it was compiled"))
+  private def refusal(policy: Policy) =
+    PolicyLanes.of(policy).fold(_.getMessage, _ => fail("it was compiled"))
 
   test("a chase, and a weaver with a memory, do"):
     for policy <- Seq(AnyPolicySimulation.Chase, AnyPolicySimulation.Weaving(0.3), Turning(1)) do
@@ -44,7 +45,10 @@ class OpponentFormulaSuite extends munit.FunSuite:
           def evader(world: Int): Policy      = PaperEvader()
         val out = PairBatch(short, timing, lag, threads = 1).fly(worlds)
         PairNumber.values.toVector.map(out(_).toVector)
-      assertEquals(flown(world => Turning(0.8 + 0.01 * world)), flown(world => PaperPursuer(0.8 + 0.01 * world)))
+      assertEquals(
+        flown(world => Turning(0.8 + 0.01 * world)),
+        flown(world => PaperPursuer(0.8 + 0.01 * world))
+      )
 
 object OpponentFormulaSuite:
   /** Turns to the side on which its opponent is, which it finds by vectors. */
