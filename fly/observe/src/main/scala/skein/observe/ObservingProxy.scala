@@ -30,6 +30,9 @@ final class ObservingProxy[A] private (
   /** Present progress; may be called repeatedly while it observes. */
   def progress: Progress = looking.progress
 
+  /** Commands since the last call, by vehicle. */
+  def takeNew(): Vector[NewCommands] = looking.takeNew()
+
   /** The observations so far; later messages are analysed after it. */
   def observed: A = looking.observed
 
@@ -112,6 +115,8 @@ object ObservingProxy:
     private val missed  = AtomicLong()
 
     def progress: Progress = synchronized(analysis.progress)
+
+    def takeNew(): Vector[NewCommands] = synchronized(analysis.takeNew())
 
     def observed: A = synchronized:
       analysis.passedOver(missed.getAndSet(0))
