@@ -9,7 +9,7 @@ import skein.airsim.{SensorKind, SettingsSection, VehicleSettings, WorldSettings
 import skein.link.{Address, TcpTransport}
 import skein.ros.message.{Image as ImageMessage, *}
 import skein.rpc.{RpcClient, RpcError}
-import skein.units.{Clock as OwnClock, Expect, Instant, Radians}
+import skein.units.{Clock as OwnClock, Expect, Instant, Radians, Span}
 
 /** Cameras and lidars of a simulator's vehicles as topics: `/NAME/CAMERA/image_raw` with
   * `/NAME/CAMERA/camera_info`, both also below `depth` and `segmentation`, all of one instant; and
@@ -19,7 +19,7 @@ import skein.units.{Clock as OwnClock, Expect, Instant, Radians}
   */
 final class SimulatedSensors private (sensors: Vector[SimulatedSensors.Sensor], end: () => Unit)
     extends AutoCloseable:
-  private var looks = 0L
+  private var nextAt = Instant.Epoch
 
   /** Images and scans that were left out, because the last one of the sensor had not come. */
   def skipped: Long = sensors.map(_.skipped.get).sum
@@ -27,16 +27,15 @@ final class SimulatedSensors private (sensors: Vector[SimulatedSensors.Sensor], 
   /** The first failure of each sensor, with its topic. */
   def notes: Vector[String] = sensors.flatMap(_.failure)
 
-  /** To be called for each of the simulator's instants, which are 20 ms apart. */
-  def look(): Unit =
-    if looks % SimulatedSensors.Every == 0 then sensors.foreach(_.look())
-    looks += 1
+  /** To be called for each of the simulator's instants. */
+  def look(at: Instant): Unit = if at >= nextAt then
+    nextAt = at + SimulatedSensors.Every
+    sensors.foreach(_.look())
 
   def close(): Unit = end()
 
 object SimulatedSensors:
-  /** Instants from one image to the next: 100 ms. */
-  private val Every = 5
+  private val Every = Span.ofMillis(100)
 
   private val Usual = "front_center"
 

@@ -10,7 +10,7 @@ import skein.airsim.WorldSettings
 import skein.link.{Address, TcpTransport}
 import skein.scene.{Placement, Scene, SceneObject, Shape}
 import skein.simulator.{SimulatorServer, SimulatorSettings}
-import skein.units.{Clock, Vector3}
+import skein.units.{Clock, Span, Vector3}
 
 /** A simulator behind ROS 2 in a process of its own, whose environment has the libraries. */
 private[ros] final class ServedProcess private (process: Process, val log: () => String):
@@ -42,9 +42,10 @@ private[ros] object ServedProcess:
   /** Starts it, and waits until it serves.
     *
     * @param port of AirSim's wire
+    * @param stepMs after which the clock waits for commands; 0: never
     */
-  def start(variables: Map[String, String], speed: Double, port: Int): ServedProcess =
-    start(program(variables, "serveOnRos", speed.toString, port.toString))
+  def start(variables: Map[String, String], speed: Double, port: Int, stepMs: Int = 0): ServedProcess =
+    start(program(variables, "serveOnRos", speed.toString, port.toString, stepMs.toString))
 
   /** Starts a program that prints `serving`, and ends when its input does. */
   def start(program: ProcessBuilder): ServedProcess =
@@ -72,7 +73,7 @@ private[ros] object ServedProcess:
 
 /** Serves three vehicles to ROS 2 until its input ends; the first has a camera and two lidars before a wall.
   */
-@main def serveOnRos(speed: Double, port: Int): Unit =
+@main def serveOnRos(speed: Double, port: Int, stepMs: Int): Unit =
   given system: ActorSystem = ActorSystem("ros")
   val world = WorldSettings.parse(ServedProcess.settings).fold(why => sys.error(why.message), identity)
   val wall  =
@@ -89,7 +90,8 @@ private[ros] object ServedProcess:
     case Right((node, topics)) =>
       val settings =
         SimulatorSettings(world, Address("127.0.0.1", port), speed = speed, scene = Scene(Vector(wall)))
-      val started = SimulatorServer.start(settings, TcpTransport(), Clock.system, Some(topics))
+      val step    = Option.when(stepMs > 0)(Span.ofMillis(stepMs))
+      val started = SimulatorServer.start(settings, TcpTransport(), Clock.system, Some(topics), step)
       val server  = Await.result(started, 20.seconds)
       topics.fly(server).left.foreach(println)
       topics.show(world, server.address).left.foreach(println)
