@@ -30,7 +30,9 @@ private[ros] object ServedProcess:
   val settings: String = """{ "SettingsVersion": 1.2, "SimMode": "Multirotor", "Vehicles": {
     "a": { "VehicleType": "SimpleFlight", "X": 3, "Y": -2,
       "Cameras": { "front": { "Z": -1, "CaptureSettings": [
-        { "ImageType": 0, "Width": 64, "Height": 48, "FOV_Degrees": 90 } ] } },
+        { "ImageType": 0, "Width": 64, "Height": 48, "FOV_Degrees": 90 },
+        { "ImageType": 1, "Width": 64, "Height": 48, "FOV_Degrees": 90 },
+        { "ImageType": 5, "Width": 64, "Height": 48, "FOV_Degrees": 90 } ] } },
       "Sensors": {
         "spin": { "SensorType": 6, "Enabled": true, "Z": -1, "PointsPerSecond": 20000, "Range": 60,
           "VerticalFOVLower": -1, "VerticalFOVUpper": 1, "DataFrame": "SensorLocalFrame" },
