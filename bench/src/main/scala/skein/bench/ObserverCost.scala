@@ -23,7 +23,7 @@ import skein.units.Decimals.fixed
   * bytes received, and the number that the observer counted.
   */
 object ObserverCost:
-  private given system: ActorSystem = ActorSystem("observer-cost")
+  private given system: ActorSystem = ActorSystem("observer-cost", ObservingProxy.Settings)
 
   def main(arguments: Array[String]): Unit =
     try

@@ -193,7 +193,7 @@ object ObserveCommand
       options: ObserveOptions
   )(findings: A => Vector[String]): Either[String, (A, Either[String, Unit])] =
     import wire.*
-    given system: ActorSystem   = ActorSystem("skein")
+    given system: ActorSystem   = ActorSystem("skein", ObservingProxy.Settings)
     val reader                  = Executors.newSingleThreadExecutor(Thread.ofPlatform().daemon().factory())
     val shown                   = Shown(options.json.value)
     def warn(reason: Throwable) = Console.err.println(s"skein observe: ${reason.getMessage}")
