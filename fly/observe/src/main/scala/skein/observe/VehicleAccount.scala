@@ -62,7 +62,6 @@ private[observe] final class VehicleAccount(val name: String):
   )
 
 private[observe] object VehicleAccount:
-  /** The ages behind some commands. */
   private final class Ages:
     val own, others, bound, skew = Samples()
     var commands                 = 0L
