@@ -91,7 +91,9 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
             (state.value.positionNed.x, state.receivedAt.toNanos)
           )
 
-  folder.test("in a browser a flight is shown, paused and resumed, and its recording is played and sought"):
+  folder.test(
+    "in a browser, a flight is shown, paused and continued, and its recording is played and sought"
+  ):
     out =>
       val _      = (needed(JavaScriptTools.packages), needed(JavaScriptTools.browser))
       val flying = Flying.start(out, Flown*)

@@ -7,8 +7,8 @@ import skein.port.VehiclePort
 import skein.signal.ClockAlignment
 import skein.vehicle.Guidance
 
-/** Vehicles that neither AirSim's protocol nor MAVLink reaches, as another part of the program connects to
-  * them.
+/** Vehicles that are reached neither by AirSim's protocol nor by MAVLink: another part of the program
+  * connects to them.
   */
 trait VehicleSource:
   /** Where the vehicles are, as a word for a person. */

@@ -15,7 +15,7 @@ import skein.lanes.timetable.Timetable;
 import skein.lanes.timetable.TimetableAgents;
 import skein.lanes.timetable.TimetableKernel;
 import skein.lanes.timetable.TimetableScores;
-import skein.policy.HeadingPolicy;
+import skein.policy.Policy;
 
 /** Simulates duels in {@link #WORLDS} worlds side by side, by one timetable, and stops whenever an external
  * learner must decide: the duels of {@link TeamBatch}, for learners. The evader is vehicle 0. Allocates
@@ -54,7 +54,7 @@ public final class LearnerDuels implements TimetableScores {
    * @param isOutside whether the evader, and whether the pursuer, decides externally
    */
   public LearnerDuels(
-      Duel duel, LaneDynamics model, HeadingPolicy evader, HeadingPolicy pursuer, boolean[] isOutside) {
+      Duel duel, LaneDynamics model, Policy evader, Policy pursuer, boolean[] isOutside) {
     this.isOutside = isOutside.clone();
     policies = new LanePolicy[] {LanePolicy.of(evader, false), LanePolicy.of(pursuer, false)};
     for (int world = 0; world < WORLDS; world++) {
@@ -71,7 +71,7 @@ public final class LearnerDuels implements TimetableScores {
   }
 
   /** Why a policy cannot be simulated here, for a person; empty if it can. */
-  public static Optional<String> refusal(HeadingPolicy policy) {
+  public static Optional<String> refusal(Policy policy) {
     return PolicyLanes.of(policy).fold(
         refused -> Optional.of("expected a policy that is a formula: " + refused.getMessage()),
         form -> Optional.empty());

@@ -16,8 +16,8 @@ import skein.units.Expect
   *
   * Candidates whose policies and quantities are formulas run on SIMD: worlds that share episodes by
   * [[TimetableKernel]], all of an episode by one [[skein.lanes.timetable.Timetable]], which is computed once;
-  * others by [[skein.lanes.loop.LoopKernel]]. Two that play against one another by
-  * [[skein.policy.HeadingPolicy]] decide by [[OpponentLanes]], others by [[TeamLanes]]. Quadrotors and MuJoCo
+  * others by [[skein.lanes.loop.LoopKernel]]. Two that play against one another by headings
+  * decide by [[OpponentLanes]], others by [[TeamLanes]]. Quadrotors and MuJoCo
   * bodies of other teams are stepped side by side under the scalar loops ([[SteppedRollouts]]). All else runs
   * on the scalar reference ([[skein.forward.Rollout]]), which the engine's text states. `docs/engines.md` has
   * the table. The engine of a world depends on its candidate, its link and `shareEpisodes` alone, so results
@@ -36,7 +36,8 @@ final class TeamBatch(
 ):
   require(threads > 0, s"threads must be positive, got $threads")
 
-  private val inSpace    = model.isInstanceOf[SpatialResponse]
+  private val inSpace     = model.isInstanceOf[SpatialResponse]
+  private val isPredicted = timing.isInstanceOf[LoopTiming.Predictive]
   private val episodes   = Episodes(timing)
   private val timetables = Timetables()
   private val workers    = Vector.fill(threads)(Worker())
@@ -129,7 +130,8 @@ final class TeamBatch(
       _        <- Expect.that(!engagement.hasCars)("it has cars")
       _        <- LaneDynamics.isHighEnough(model, engagement.agents)
       policies <- Option
-        .when(candidate.areAtOnePace)(OpponentLanes.of(engagement, efforts.flatten.contains, inSpace))
+        .when(candidate.areAtOnePace):
+          OpponentLanes.of(engagement, efforts.flatten.contains, inSpace, isPredicted)
         .flatten
         .getOrElse(teamOf(engagement, efforts.flatten))
       scores <- ScoreLanes
@@ -144,15 +146,14 @@ final class TeamBatch(
 
   private def teamOf(engagement: Engagement, efforts: Vector[Int]): Either[String, TeamPolicies] =
     for
-      _ <- Expect.that(efforts.isEmpty):
-        "efforts are summed by lanes of two that play against one another by headings"
-      _ <- Expect.that(engagement.agents.forall(_.eye.isEmpty)):
-        "who sees by a sensor flies by lanes against one other, both by headings"
-      isPredicted = timing.isInstanceOf[LoopTiming.Predictive]
       team <- TeamLanes
         .of(engagement.agents.map(_.policy), engagement.assignment, isPredicted, inSpace)
         .left
         .map(refused => s"a policy is no formula: ${refused.getMessage}")
+      _ <- Expect.that(efforts.isEmpty):
+        "efforts are summed by lanes of two that play against one another by headings"
+      _ <- Expect.that(engagement.agents.forall(_.eye.isEmpty)):
+        "who sees by a sensor flies by lanes against one other, both by headings"
       _ <- team.leaves(engagement.agents).filterNot(_ => inSpace).toLeft(())
       _ <- Expect.that(!team.looksUp || !model.regardsYaw):
         "a policy asks how high vehicles are, and the quadrotor's height is not told side by side"

@@ -13,7 +13,7 @@ trait TeamWorlds extends Worlds:
   * @param judged the numbers to compute; equal in count and form for every candidate, except for numbers in
   *   the quantities
   * @param areAtOnePace whether candidates beside it have its vehicles' speeds and first headings: then two
-  *   that play against one another by [[skein.policy.HeadingPolicy]] fly fastest
+  *   that play against one another by headings fly fastest
   */
 final class TeamCandidate(
     val engagement: Engagement,

@@ -2,7 +2,7 @@ package skein.forward
 
 import skein.fusion.{Exposure, SensorModel}
 import skein.lanes.{PairBatch, PairWorlds}
-import skein.policy.{PaperEvader, PaperPursuer, HeadingPolicy}
+import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.signal.{LatencyDistribution, SplitMix64}
 import skein.simd.WorldRandom
 import skein.units.*
@@ -111,8 +111,8 @@ class SensedDuelSuite extends munit.FunSuite:
         def size: Int                          = 40
         def key(world: Int): Int               = WorldRandom.key(world, 0, 0)
         def link(world: Int): Delays           = DelayTable.vpn
-        def pursuer(world: Int): HeadingPolicy = SensedDuelSuite.this.pursuer
-        def evader(world: Int): HeadingPolicy  = SensedDuelSuite.this.evader
+        def pursuer(world: Int): Policy = SensedDuelSuite.this.pursuer
+        def evader(world: Int): Policy  = SensedDuelSuite.this.evader
       val outcomes = batch.fly(worlds)
       val rollout  = Rollout(beside, timing, DelayTable.vpn, PlantResponse(ReducedModel.AirSimLag))
       for world <- 0 until worlds.size by 7 do

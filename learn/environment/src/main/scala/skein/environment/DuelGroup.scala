@@ -2,7 +2,7 @@ package skein.environment
 
 import java.nio.FloatBuffer
 import skein.lanes.LearnerDuels
-import skein.policy.{HeadingPolicy, Role}
+import skein.policy.{Policy, Role}
 import skein.signal.SplitMix64
 
 /** Up to [[LearnerDuels.WORLDS]] environments that run side by side over one link: delays and losses of
@@ -193,5 +193,5 @@ private final class DuelGroup(
       agent += 1
 
 private object DuelGroup:
-  private def turning(rateRadPerS: Double): HeadingPolicy =
+  private def turning(rateRadPerS: Double): Policy =
     if rateRadPerS > 0 then SteeredPolicy(0) else Turned(0)

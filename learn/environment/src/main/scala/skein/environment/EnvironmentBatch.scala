@@ -5,7 +5,7 @@ import java.util.stream.IntStream
 import scala.util.Try
 import skein.lanes.Engine
 import skein.lanes.LearnerDuels.WORLDS
-import skein.policy.HeadingPolicy
+import skein.policy.Policy
 import skein.scenario.{ScenarioText, Scenarios}
 import skein.settings.PolicyFile
 import skein.simd.LaneMath
@@ -56,7 +56,7 @@ final class EnvironmentBatch private (
   /** Sets, in other scenarios than the duel, the policy of the learner's role for vehicles without a learner,
     * from their next episodes on.
     */
-  def fly(policy: HeadingPolicy): Unit = groups.foreach:
+  def fly(policy: Policy): Unit = groups.foreach:
     case team: ScenarioGroup => team.fly(policy)
     case _                   => ()
 

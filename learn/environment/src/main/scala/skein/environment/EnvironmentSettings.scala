@@ -5,7 +5,7 @@ import scala.jdk.OptionConverters.*
 import skein.forward.{Delays, Duel, LinkDelays, LoopTiming}
 import skein.lanes.{LearnerDuels, LaneDynamics}
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
-import skein.policy.{PaperEvader, PaperPursuer, HeadingPolicy, Role}
+import skein.policy.{PaperEvader, PaperPursuer, Policy, Role}
 import skein.port.Moves
 import skein.scenario.{PaperDuel, Scenarios}
 import skein.settings.{FlySettings, OutsidePolicy, PolicyFile, TextFile, VehicleChoice}
@@ -148,8 +148,8 @@ object EnvironmentSettings:
   private[environment] final case class Resolved(
       settings: EnvironmentSettings,
       learners: Vector[Role],
-      evader: HeadingPolicy,
-      pursuer: HeadingPolicy,
+      evader: Policy,
+      pursuer: Policy,
       duel: Duel,
       timing: LoopTiming,
       link: Delays,

@@ -2,7 +2,7 @@ package skein.environment
 
 import scala.util.control.ControlThrowable
 import skein.forward.{LoopObserver, Rollout}
-import skein.policy.{Action, PlanarObservation, HeadingPolicy}
+import skein.policy.{Action, PlanarObservation, HeadingPolicy, Policy}
 import skein.signal.SplitMix64
 import skein.simd.WorldRandom
 import skein.units.OwnFailure
@@ -17,7 +17,7 @@ private final class LearnerRollout(side: ScenarioSide, learner: Int) extends Aut
   import LearnerRollout.*
 
   private val flying                 = Resumed(fly)
-  private var next                   = Option.empty[(Long, Option[HeadingPolicy])]
+  private var next                   = Option.empty[(Long, Option[Policy])]
   private var ask: () => Unit        = () => ()
   private var isBegun                = false
   private val (rateRadPerS, turnRad) = side.settings.mostTurn(side.role)
@@ -42,7 +42,7 @@ private final class LearnerRollout(side: ScenarioSide, learner: Int) extends Aut
     *
     * @param beside the policy of the others of its role; without one, their own
     */
-  def begin(seed: Long, beside: Option[HeadingPolicy]): Unit = next = Some((seed, beside))
+  def begin(seed: Long, beside: Option[Policy]): Unit = next = Some((seed, beside))
 
   /** Continues the simulation. Nothing may be read until [[await]] has returned. */
   def goOn(): Unit = flying.goOn()

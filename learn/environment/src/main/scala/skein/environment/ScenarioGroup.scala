@@ -2,7 +2,7 @@ package skein.environment
 
 import java.nio.FloatBuffer
 import skein.lanes.LearnerDuels.FIELDS
-import skein.policy.{HeadingPolicy, Role}
+import skein.policy.{Policy, Role}
 import skein.signal.SplitMix64
 
 /** Environments of a scenario, each with its own time and link. In environment number n the learner is member
@@ -22,10 +22,10 @@ private final class ScenarioGroup(
   private val seeds    = Array.ofDim[Long](count)
   private val episodes = Array.ofDim[Long](count)
   private val isDone   = Array.ofDim[Boolean](count)
-  private var beside   = Option.empty[HeadingPolicy]
+  private var beside   = Option.empty[Policy]
 
   /** What the learner's like fly from their next episodes on. */
-  def fly(policy: HeadingPolicy): Unit = beside = Some(policy)
+  def fly(policy: Policy): Unit = beside = Some(policy)
 
   def reset(newSeeds: Array[Long]): Unit = reset(newSeeds, Array.fill(count)(true))
 

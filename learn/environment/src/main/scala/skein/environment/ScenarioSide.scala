@@ -3,7 +3,7 @@ package skein.environment
 import scala.util.Try
 import skein.forward.{Delays, Engagement, LoopTiming, Rollout, VelocityResponse}
 import skein.optimise.{Objective, ScenarioTerm}
-import skein.policy.{Agent, Fleet, HeadingPolicy, PaperPursuer, Policy, Role}
+import skein.policy.{Agent, Fleet, PaperPursuer, Policy, Role}
 import skein.scenario.{Positions, Quantity, Reduction, Scenario, Scenarios}
 import skein.settings.ScenarioSettings
 import skein.signal.SplitMix64
@@ -40,7 +40,7 @@ private[environment] final case class ScenarioSide(
     * @param beside policy of the others of its role; without one, their own
     * @param seed of the initial positions
     */
-  def engagement(learner: Int, policy: HeadingPolicy, beside: Option[HeadingPolicy], seed: Long): Engagement =
+  def engagement(learner: Int, policy: Policy, beside: Option[Policy], seed: Long): Engagement =
     val random = SplitMix64(seed)
     val flown  = agents.zipWithIndex.map: (agent, place) =>
       val (least, most)    = settings.startWithinM

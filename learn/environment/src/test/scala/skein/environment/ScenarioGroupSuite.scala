@@ -95,7 +95,7 @@ class ScenarioGroupSuite extends munit.FunSuite:
     assertEquals(flown(7), first)
     assert(first.exists(_.exists(_._3)), "no episode ended")
 
-  test("an episode that ends shows the next one's first observation with the next step, or with the same"):
+  test("the next episode's first observation follows an episode's last step, or is returned with it"):
     for mode <- Seq(Autoreset.NextStep, Autoreset.SameStep) do
       val learner = Learner(surround.copy(episodeS = 2), 1, mode)
       learner.batch.reset(Array(1L))
@@ -115,7 +115,7 @@ class ScenarioGroupSuite extends munit.FunSuite:
       assert(ends > 2, s"$mode: $ends episodes")
       learner.batch.close()
 
-  test("the others of the learner's role use their own policies, or a given one"):
+  test("the other vehicles of the learner's role use their own policies, or a given one"):
     def paid(policy: Option[PurePursuit]) =
       val learner = Learner(surround, 1)
       policy.foreach(learner.batch.fly)
@@ -187,7 +187,7 @@ class ScenarioGroupSuite extends munit.FunSuite:
     for (scenario, why) <- Seq("convoy" -> "which has cars", "forest" -> "which sees by cameras or lidars") do
       assert(clue(refused(surround.copy(scenario = scenario, set = Map.empty))).contains(why))
 
-/** An evader's policy and a pursuer's quantity with values that settings choose. */
+/** A scenario with an evader's policy and a pursuer's quantity that settings choose. */
 final case class Own(policy: String = "", quantity: String = "") extends Scenario:
   def agents: Vector[Agent] = Vector(
     Agent("Evader", Role.Evader, MetresPerSecond(4), Vector3(30, 0, -5), Radians(0), Away(policy)),

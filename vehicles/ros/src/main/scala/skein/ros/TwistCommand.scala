@@ -7,14 +7,12 @@ import skein.signal.Kinematics
 import skein.units.{Quaternion, Span, Vector3}
 import skein.vehicle.{GoTo, Guidance, Setpoint}
 
-/** A vehicle behind ROS topics in Skein's terms: what its odometry says, and which `cmd_vel` performs an
-  * action.
-  */
+/** Converts odometry to motion in Skein's terms, and actions to the `cmd_vel` that performs them. */
 object TwistCommand:
   /** Time after which a command is sent again. */
   val Every: Span = Span.ofMillis(50)
 
-  /** Odometry as a motion in NED. Left states which numbers are no motion. */
+  /** Converts odometry to a motion in NED. Left states which numbers are no motion. */
   def kinematics(odometry: Odometry): Either[String, Kinematics] =
     val (at, q) = (odometry.pose.pose.position, odometry.pose.pose.orientation)
     val twist   = odometry.twist.twist

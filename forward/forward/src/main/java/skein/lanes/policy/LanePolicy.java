@@ -5,7 +5,7 @@ import static skein.simd.LaneMath.SPECIES;
 
 import java.util.Arrays;
 import jdk.incubator.vector.FloatVector;
-import skein.policy.HeadingPolicy;
+import skein.policy.Policy;
 import skein.simd.LaneFunction;
 
 /** Policies of one form in many worlds, each with its own parameters, compiled from the policy itself ({@link
@@ -62,22 +62,22 @@ public class LanePolicy {
   }
 
   /** Makes lanes for policies of this policy's form, which must be a formula. */
-  public static LanePolicy of(HeadingPolicy policy) {
+  public static LanePolicy of(Policy policy) {
     return of(policy, true);
   }
 
-  public static LanePolicy of(HeadingPolicy policy, boolean withEffort) {
+  public static LanePolicy of(Policy policy, boolean withEffort) {
     return new LanePolicy(PolicyLanes.get(policy), withEffort);
   }
 
   /** Sets a world's policy parameters; the policy must be of this form. */
-  public void take(int world, HeadingPolicy policy) {
+  public void take(int world, Policy policy) {
     if (!form.fits(policy)) throw new IllegalArgumentException(policy + " is of another form");
     put(world, policy);
   }
 
   /** Sets a world's parameters of a policy that is known to be of this form. */
-  public void put(int world, HeadingPolicy policy) {
+  public void put(int world, Policy policy) {
     double[] values = form.parametersOf(policy);
     for (int i = 0; i < values.length; i++) parameters[place(i, world)] = (float) values[i];
     double[] remembered = form.initialOf(policy);
