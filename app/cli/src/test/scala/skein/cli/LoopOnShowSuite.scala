@@ -35,7 +35,7 @@ class LoopOnShowSuite extends munit.FunSuite:
     assertEquals(shown.json(), None)
 
   test("findings are sought again after twenty times as long as the last ones took"):
-    val shown                     = show(findingTakes = Span.ofSeconds(1))
+    val shown                    = show(findingTakes = Span.ofSeconds(1))
     def after(seconds: Int): Int =
       now = now + Span.ofSeconds(seconds)
       commands = Vector(NewCommands("a", Some(20), None, None))

@@ -135,7 +135,7 @@ final class FlightAssembler(
       yield
         val loopSettings =
           settings.loopSettings(plan).copy(guidance = elsewhere.fold(ActionGuidance.of)(_.guidance))
-        val planners     =
+        val planners =
           if plan.loop != LoopKind.Plan || solver.isDefined then PlanWorkers.none
           else
             opened.closing(workers(settings.planning)): threads =>

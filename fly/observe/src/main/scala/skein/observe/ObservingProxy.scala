@@ -153,9 +153,9 @@ object ObservingProxy:
         try if failure.isEmpty then look(piece)
         catch case NonFatal(defect) => failure = Some(defect)
         piece match
-          case Piece.End(looked)             => looked(failure)
+          case Piece.End(looked)           => looked(failure)
           case Piece.Bytes(_, _, bytes, _) => waiting.addAndGet(-bytes.size): Unit
-          case _                             => ()
+          case _                           => ()
         left = count.decrementAndGet() > 0
 
     private def look(piece: Piece): Unit = piece match

@@ -116,9 +116,10 @@ final class RosVehicle private[ros] (
   /** The present time, on the clock of the headers. */
   private def stamp: Instant = clock.now() - fastest.fold(Span.Zero)(_.offset)
 
-  private val ticking: Cancellable = 
-    system.scheduler.scheduleWithFixedDelay(TwistCommand.Every.toDuration, TwistCommand.Every.toDuration)(() =>
-      tick()
+  private val ticking: Cancellable =
+    system.scheduler.scheduleWithFixedDelay(TwistCommand.Every.toDuration, TwistCommand.Every.toDuration)(
+      () =>
+        tick()
     )
 
   /** Lets the vehicle hover, and ends every unanswered call. */

@@ -13,9 +13,9 @@ import skein.units.{Clock as OwnClock, Expect, Instant, Radians, Span}
 
 /** Cameras and lidars of a simulator's vehicles as topics: `/NAME/CAMERA/image_raw` with
   * `/NAME/CAMERA/camera_info`, both also below `depth` and `segmentation`, all of one instant; and
-  * `/NAME/LIDAR/points`; each camera and lidar with its frame in `/tf`. They are requested
-  * every 100 ms of simulated time, by AirSim's wire, while something subscribes. If the last image or scan of
-  * a sensor has not come by then, one is left out, and counted.
+  * `/NAME/LIDAR/points`; each camera and lidar with its frame in `/tf`. They are requested every 100 ms of
+  * simulated time, by AirSim's wire, while something subscribes. If the last image or scan of a sensor has
+  * not come by then, one is left out, and counted.
   */
 final class SimulatedSensors private (sensors: Vector[SimulatedSensors.Sensor], end: () => Unit)
     extends AutoCloseable:

@@ -38,7 +38,9 @@ class RosLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
     conclusive:
       def flown() =
         var said = ""
-        serving(speed = 10, stepMs = 100) { said = run("repeat.py", Seq("200") ++ ServedProcess.Names*) }: Unit
+        serving(speed = 10, stepMs = 100) {
+          said = run("repeat.py", Seq("200") ++ ServedProcess.Names*)
+        }: Unit
         said.linesIterator.find(_.startsWith("PASSED"))
       assertEquals(flown(), flown())
 

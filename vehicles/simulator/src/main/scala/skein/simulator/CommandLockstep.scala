@@ -42,7 +42,8 @@ private[simulator] final class CommandLockstep(step: Span, physics: Span, now: (
       isSettled = false
     goOn()
 
-  private def goOn(): Unit = if !isWaiting then next = next.map(due => if due <= now() then due + step else due)
+  private def goOn(): Unit =
+    if !isWaiting then next = next.map(due => if due <= now() then due + step else due)
 
   /** The first stop: physics has made a whole number of steps then. */
   private def first: Instant =
