@@ -100,6 +100,11 @@ final case class FlightOptions(
       "with --decentralised and fly --simulator: flies this vehicle alone, beside processes that fly the others"
     )
     only: Option[String],
+    @arg(doc =
+      "with --decentralised: controllers read their own vehicles alone, and send one another what they read over " +
+        "a link of this profile, such as range:60m,loss:10%/4,constant:40ms"
+    )
+    between: Option[String],
     @arg(doc = "deadline of each decision, for example 20ms; without it, the loop waits for policies")
     deadline: Option[String],
     @arg(doc =

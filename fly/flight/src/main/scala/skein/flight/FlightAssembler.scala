@@ -17,7 +17,8 @@ import skein.policy.{ActionGuidance, Fleet}
 import skein.port.{CommandPlan, VehicleError, VehiclePort}
 import skein.record.*
 import skein.settings.{ChosenPolicy, FlightPlan, FlySettings, PolicyFile, RecordedPlan, Wire}
-import skein.signal.LatencyProfile
+import skein.scene.Moment
+import skein.signal.{LatencyProfile, SplitMix64}
 import skein.solver.{Briefing, SolverClient}
 import skein.simulator.{MavlinkSettings, SimulatorServer, SimulatorSettings}
 import skein.units.*
@@ -145,6 +146,13 @@ final class FlightAssembler(
         val flown        = plan.policy.fold(plan.fleet(settings))(learning(plan, _, opened, monitor))
         val hold         = Hold()
 
+        val network = settings.between.filter(_ => reached.apart.nonEmpty).map: link =>
+          val inScene = Moment(settings.world.scene, Vector.empty)
+          val seed    = SplitMix64.seedOf(plan.seed, FlySettings.MostControllers)
+          opened.closing(
+            VehicleNetwork(fleet.agents.map(_.name), link, seed, inScene.sees(_, _), clock, monitor)
+          )(_.close())
+
         def team(vehicles: Vector[VehiclePort], only: Option[Int]) = Team(
           flown,
           vehicles,
@@ -155,7 +163,8 @@ final class FlightAssembler(
           solver,
           reached.clocks,
           only,
-          hold
+          hold,
+          only.flatMap(self => network.map(_.of(self)))
         )
         val teams =
           if reached.apart.isEmpty then Vector(team(reached.vehicles, None))

@@ -11,12 +11,16 @@ import skein.record.EventKind
 import skein.signal.ClockAlignment
 import skein.units.*
 
-/** Folds loop events into team views and emits decision requests. */
+/** Folds loop events into team views and emits decision requests.
+  *
+  * @param byMessages whether all but the own vehicle are known by messages
+  */
 private final class TeamViewing(
     fleet: Fleet,
     own: Vector[Int],
     settings: LoopSettings,
     clocks: Option[ClockAlignment],
+    byMessages: Boolean,
     hold: Hold,
     sensing: TeamSensing,
     parts: TeamParts,
@@ -46,7 +50,13 @@ private final class TeamViewing(
     )
 
   private def nothingSeen =
-    TeamView.empty(fleet.agents.size).copy(alignment = clocks, knows = settings.knows)
+    TeamView
+      .empty(fleet.agents.size)
+      .copy(
+        alignment = clocks,
+        knows = settings.knows,
+        byMessages = if byMessages then vehicles.toSet -- own else Set.empty
+      )
 
   private def viewFrom(start: TeamView): Flow[LoopEvent, DecisionRequest, NotUsed] =
     val meter = parts.meter("view")

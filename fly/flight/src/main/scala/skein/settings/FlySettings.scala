@@ -30,6 +30,8 @@ import skein.vehicle.VehicleKind
   *   controllers know of the others what they read. `paused`, the truth, has one, which knows positions too,
   *   and no link
   * @param only the vehicle that this process flies, in a running simulator, where others fly the rest
+  * @param between with `decentralised`, the link over which controllers send one another what they read of
+  *   their own vehicles; then they do not read the others
   * @param plant the built-in simulator's kind of multirotor
   * @param wire protocol of the vehicles
   * @param solver a remote solver for additional flights, beside those that decide in this process; a decision
@@ -55,6 +57,7 @@ final case class FlySettings(
     knows: Knowledge = Knowledge.All,
     decentralised: Boolean = false,
     only: Option[String] = None,
+    between: Option[VehicleLink] = None,
     plant: SimulatedBody = SimulatedBody.AirSim,
     wire: Wire = Wire.AirSim,
     solver: Option[SolverChoice] = None,
@@ -286,6 +289,7 @@ object FlySettings:
       knowsMistake(settings).map("knows: " + _),
       apartMistake(settings, isGiven = optionAt("knows", config).isDefined).map("decentralised: " + _),
       onlyMistake(settings).map("only: " + _),
+      betweenMistake(settings).map("between: " + _),
       Option.when(settings.solver.isDefined && !settings.loops.exists(decidedElsewhere))(
         "solver: expected with a loop whose decisions can be made elsewhere, came with paused alone"
       ),
@@ -391,6 +395,13 @@ object FlySettings:
         Option.when(settings.loops.contains(LoopKind.Paused)):
           "expected loops other than paused, which stops the time of all vehicles"
 
+  private def betweenMistake(settings: FlySettings): Option[String] =
+    settings.between.flatMap: link =>
+      if !settings.decentralised then Some(s"expected decentralised with it, came '${link.text}' without")
+      else
+        settings.only.map: name =>
+          s"expected all controllers in this process, which carries their messages, came only $name"
+
   private def isRightAltitude(altitudeM: Double) = altitudeM > 0 && altitudeM <= MostAltitudeM
 
   /** Whether a policy can replace one in this fleet: its opponent is the nearest of another role. */
@@ -445,6 +456,8 @@ object FlySettings:
   private given ConfigReader[Knowledge]  = parsed("knowledge", Knowledge.parse)
 
   private given ConfigReader[SimulatedBody] = parsed("plant", SimulatedBody.parse)
+
+  private given ConfigReader[VehicleLink] = parsed("link between vehicles", VehicleLink.parse)
 
   private given ConfigReader[SolverChoice] = parsed("solver", SolverChoice.parse(_))
   private given ConfigReader[ImageSource]  = parsed("images", ImageSource.parse)

@@ -68,6 +68,9 @@ private[settings] object RecordedSetting:
   given RecordedSetting[SolverChoice] =
     Text[SolverChoice]("where a solver is", _.text)(SolverChoice.parse(_).toOption)
 
+  given RecordedSetting[VehicleLink] =
+    Text[VehicleLink]("a link between vehicles", _.text)(VehicleLink.parse(_).toOption)
+
   given RecordedSetting[Fallback] =
     Text[Fallback]("hold, repeat, hover or a policy", _.label)(Fallback.parse(_).toOption)
 

@@ -129,6 +129,13 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
       "one of Evader, Pursuer, came 'Hare'"
     refusedOnly("decentralised = true, only = Evader"):
       "loops other than paused, which stops the time of all vehicles"
+    def refusedBetween(text: String)(why: String) = assertTold(text, s"2: skein.fly.between: expected $why")
+    refusedBetween("between = vpn, loops = [stream]")("decentralised with it, came 'vpn' without")
+    refusedBetween("decentralised = true, loops = [stream], only = Pursuer, between = vpn"):
+      "all controllers in this process, which carries their messages, came only Pursuer"
+    refusedBetween("between = \"range:far,vpn\"")("a range such as 60m, came 'far'")
+    refusedBetween("between = \"rate:1mbit,vpn\""):
+      "no rate, since messages have no size, came 'rate:1mbit,vpn'"
     val read = this.read("skein.fly.decentralised = true").fold(fail(_), identity)
     assertEquals(read.loopSettings.knows, Knowledge.Positions)
     assertEquals(
