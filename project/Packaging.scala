@@ -18,6 +18,7 @@ object Packaging {
     "java.security.sasl",
     "java.sql",
     "jdk.incubator.vector",
+    "jdk.jfr", // Pekko's remote nodes
     "jdk.management",
     "jdk.net",
     "jdk.unsupported",

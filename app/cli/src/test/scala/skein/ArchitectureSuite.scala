@@ -2,7 +2,7 @@ package skein
 
 import java.nio.file.{Files, Path}
 
-/** Holds the sources to ARCHITECTURE.md: modules, packages, and that imports point downwards. */
+/** Compares the sources with ARCHITECTURE.md: modules, packages, and that imports point downwards. */
 class ArchitectureSuite extends munit.FunSuite:
   private val root =
     Iterator.iterate(Path.of("").toAbsolutePath)(_.getParent).find(at =>
@@ -25,7 +25,7 @@ class ArchitectureSuite extends munit.FunSuite:
 
   private val floor: Map[String, Int] = rooms.map(_._2).zipWithIndex.toMap.withDefaultValue(-1)
 
-  test("every package stands in the page's table, in its module, and every row has sources"):
+  test("every package is in the page's table, under its module, and every row has sources"):
     val there = house.sources.map(source => (source.module, source.room)).toSet
     assertEquals(there -- rooms, Set.empty)
     assertEquals(rooms.toSet -- there, Set.empty)
@@ -39,13 +39,13 @@ class ArchitectureSuite extends munit.FunSuite:
         found.group(1) -> (modules.toSet, found.group(2))
       .toMap
 
-  test("every module stands in the folder of its room"):
+  test("every module is in the folder of its room"):
     val there = house.sources.map(source => (house.room(root, source), source.module)).toSet
     val told  = for (room, (modules, _)) <- tables.toSet; module <- modules yield (room, module)
     assertEquals(there -- told, Set.empty)
     assertEquals(told -- there, Set.empty)
 
-  test("a room imports only the rooms that its line names"):
+  test("a room imports only the rooms in its line of the page"):
     val found =
       for
         (source, used) <- house.uses.toVector
@@ -70,7 +70,7 @@ class ArchitectureSuite extends munit.FunSuite:
         .mkString("\n")
     assert(circles.isEmpty, circles.mkString("\n\n"))
 
-  test("the core and forward simulation know no streams, no files, no sockets and no clock of their own"):
+  test("the core and forward simulation import no streams, files, sockets or clocks"):
     val forbidden =
       Vector(
         "org.apache.pekko",
@@ -90,7 +90,7 @@ class ArchitectureSuite extends munit.FunSuite:
       yield s"$source says $word"
     assertEquals(found, Vector.empty)
 
-  test("the loops know no simulator, no wire and no AirSim"):
+  test("the loops import no simulator, no wire protocol and no AirSim"):
     val found =
       for
         source <- house.sources if source.room.startsWith("skein.loop")

@@ -4,7 +4,7 @@ import java.nio.file.{Files, Path}
 import scala.jdk.CollectionConverters.*
 import skein.docs.Documentation
 
-/** Every public definition of the top level says what it is. A companion object may leave that to its class.
+/** Every public definition of the top level has a docstring. A companion object needs none beside its class.
   */
 class DocstringSuite extends munit.FunSuite:
   private val definition =
@@ -43,7 +43,7 @@ class DocstringSuite extends munit.FunSuite:
       yield s"${Documentation.root.relativize(path)}:$one"
     assertEquals(missing.sorted, Vector.empty)
 
-  test("one that is missing is found, annotated or not; a companion and what is private need none"):
+  test("a missing docstring is found, with annotations or not; companions and private definitions need none"):
     val source =
       """/** Has one. */
         |final class Told
@@ -72,8 +72,8 @@ class DocstringSuite extends munit.FunSuite:
 
   private val Short = 40
 
-  /** Words with several meanings here, and how often docstrings may still say them. Rewrite a docstring
-    * rather than raise a number; lower it when there are fewer.
+  /** Words with several meanings here, and the limit of their number in docstrings. Rewrite a docstring
+    * rather than raise a limit; lower it when there are fewer.
     */
   private val mostOf = Vector(
     "the same" -> 13,
@@ -91,7 +91,7 @@ class DocstringSuite extends munit.FunSuite:
   private val mostShort = 249
 
   test(
-    "docstrings that are too short to say more than a name, and words with several meanings, grow no more"
+    "neither short docstrings nor words with several meanings become more frequent"
   ):
     val all   = sources.flatMap(path => texts(Files.readString(path)))
     val short = all.count(_.length <= Short)
@@ -100,7 +100,7 @@ class DocstringSuite extends munit.FunSuite:
     assert(short <= mostShort, s"$short docstrings of at most $Short characters, expected $mostShort at most")
     assertEquals(grown, Vector.empty, "word, how often docstrings say it, how often they may")
 
-  test("a docstring's text is found over several lines, and a word only as a whole"):
+  test("a docstring's text is found over several lines, and only whole words are counted"):
     val found = texts("/** Told\n  * at once. */\nval x = 1 /* told */\n/** Untold. */")
     assertEquals(found, Vector("Told at once.", "Untold."))
     assertEquals((count("told", found), count("at once", found)), (1, 1))

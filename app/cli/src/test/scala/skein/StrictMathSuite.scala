@@ -30,7 +30,7 @@ class StrictMathSuite extends munit.FunSuite:
     ) ++
       Set("cbrt", "sinh", "cosh", "tanh")
 
-  test("no class that decides a flight calls a function whose last bit depends on the platform"):
+  test("no class that affects a flight calls a function whose last bit depends on the platform"):
     val modules = Seq(
       classOf[units.Vector3],
       classOf[forward.Rollout.type],

@@ -5,7 +5,7 @@ import skein.gpu.{CudaGpu, Gpu}
 import skein.lanes.*
 import skein.lanes.gpu.{GpuAccelerator, GpuQuadrotors}
 import skein.lanes.plant.LaneQuadrotors
-import skein.policy.{HeadingPolicy, NeuralPolicy, NeuralShape, PaperPursuer}
+import skein.policy.{NeuralPolicy, NeuralShape, PaperPursuer, Policy}
 import skein.simd.WorldRandom
 import skein.units.Vector3
 import skein.vehicle.{Quadrotor, ReducedModel}
@@ -27,15 +27,15 @@ object GpuRates:
     println(s"${gpu.name}; ${Runtime.getRuntime.availableProcessors} processors")
     println("| work | GPU, M/s | its kernels alone, M/s | processors, M/s | times | witness | differ |")
     println("|---|---|---|---|---|---|---|")
-    def paper(i: Int): HeadingPolicy  = PaperPursuer(0.8 + 0.4 * (i % 1024) / 1024)
-    def neural(i: Int): HeadingPolicy = NeuralPolicy(network, weights.map(_ * (0.5 + (i % 1024) / 1024.0)))
-    val drag                          = PlantResponse(ReducedModel.AirSim)
+    def paper(i: Int): Policy  = PaperPursuer(0.8 + 0.4 * (i % 1024) / 1024)
+    def neural(i: Int): Policy = NeuralPolicy(network, weights.map(_ * (0.5 + (i % 1024) / 1024.0)))
+    val drag                   = PlantResponse(ReducedModel.AirSim)
     def duels(
         name: String,
         timing: LoopTiming,
         model: VelocityResponse,
         share: Int,
-        pursuer: Int => HeadingPolicy
+        pursuer: Int => Policy
     ) =
       val count = candidates / share
       flown(name, timing, model, 2, Vector.tabulate(count)(i => Works.team(pursuer(i))))

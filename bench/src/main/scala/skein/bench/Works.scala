@@ -4,7 +4,7 @@ import skein.forward.{DelayTable, Engagement, LoopTiming, PlantResponse, Rollout
 import skein.lanes.{TeamBatch, TeamCandidate, TeamWorlds}
 import skein.lanes.plant.LaneQuadrotors
 import skein.optimise.DistanceTerm
-import skein.policy.{HeadingPolicy, NeuralPolicy, NeuralShape, PaperPursuer, Role}
+import skein.policy.{NeuralPolicy, NeuralShape, PaperPursuer, Policy, Role}
 import skein.scenario.PaperDuel
 import skein.simd.WorldRandom
 import skein.units.Vector3
@@ -92,7 +92,7 @@ object Works:
   val duel: Engagement = Engagement.of(PaperDuel().fleet)
 
   /** The paper's duel with another pursuer, judged as a search for the distance judges it. */
-  def team(pursuer: HeadingPolicy): TeamCandidate =
+  def team(pursuer: Policy): TeamCandidate =
     TeamCandidate(duel.flownBy(Role.Pursuer, pursuer), DistanceTerm.Last10s.judged(60, 0.1).toVector)
 
   /** Pursuers of different turn rates, `perEpisode` of them in each episode. */

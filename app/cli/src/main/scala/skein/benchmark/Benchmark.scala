@@ -5,12 +5,12 @@ import skein.scenario.Scenarios
 import skein.settings.FlySettings
 import skein.units.Expect
 
-/** Flies a [[BenchmarkSet]] in virtual time, on all cores: equal sets and seeds give equal bits on every
+/** Runs a [[BenchmarkSet]] in virtual time, on all cores: equal sets and seeds give equal bits on every
   * machine.
   */
 final class Benchmark(set: BenchmarkSet, seeds: Int)(using Scenarios):
 
-  /** A cell for each task and world, in which the truth flies once. */
+  /** A cell for each task and world, in which the truth is simulated once. */
   private val truthCells = set.cells.distinctBy(_.ofTruth)
 
   private val (refused, planned) =
@@ -19,20 +19,20 @@ final class Benchmark(set: BenchmarkSet, seeds: Int)(using Scenarios):
         .settings(entry, Benchmark.Seed)
         .fold(why => Left((cell.task, entry, why)), settings => Right((cell, entry, settings)))
 
-  /** What does not fly, and why: a policy in tasks without its role, for example. */
+  /** The combinations that cannot run, and why: for example a policy in a task without its role. */
   val notFlown: Vector[String] =
     refused.map((task, entry, why) => s"${entry.name} does not fly ${task.name}: $why").distinct
 
-  /** Why a policy of one's own flies in no task and by no loop, if one does not. */
+  /** Why a user's own policy runs in no task and by no loop, if there is such a policy. */
   val mistake: Option[String] = refused.collectFirst:
     case (_, entry, why) if entry.policy.isDefined && !planned.exists(_._2.policy == entry.policy) => why
 
-  /** How many flights [[fly]] flies, those of the truth included. */
+  /** Number of flights that [[fly]] simulates, including those of the truth. */
   val flights: Int = seeds * (planned.size + truthCells.size)
 
-  /** Flies all.
+  /** Simulates all flights.
     *
-    * @param onLanded called after each group of flights with their number
+    * @param onLanded called after each group of flights with its size
     * @return Left states a mistake in the set
     */
   def fly(onLanded: Int => Unit = _ => ()): Either[String, Vector[BenchmarkRow]] =

@@ -3,8 +3,8 @@ package skein.benchmark
 import skein.plot.*
 import skein.units.Decimals.signed
 
-/** How far each entry is off the truth: a panel for each world, with a row for each entry and a column for
-  * each task and link.
+/** The deviation of each entry from the truth: a panel for each world, with a row for each entry and a column
+  * for each task and link.
   */
 object BenchmarkFigure:
   private val cellWidth  = 44.0
@@ -13,7 +13,7 @@ object BenchmarkFigure:
   private val gap        = 8.0
   private val linksSize  = 96.0
 
-  /** Deviations from here on have one colour, %. */
+  /** Deviations from this one on have one colour, %. */
   private val MostOff = 50.0
   private val colours = ColourScale.aroundZero(0, MostOff)
   private val broken  = Stroke(Colour(0x111111), 1.6)
@@ -70,7 +70,7 @@ object BenchmarkFigure:
         rows.map(_.cell.world.name).distinct.map(panel) :+ legend*
     )
 
-  /** The marks of one row of the table; their top left corner is the origin. */
+  /** The marks of one table row, with their top left corner at the origin. */
   private def cell(row: BenchmarkRow): Vector[Mark] =
     val (right, bottom) = (cellWidth - 2, cellHeight - 2)
     val middle          = Point(right / 2, bottom - 5)

@@ -40,7 +40,7 @@ final case class BenchmarkRow(
 
   val truth: Option[Double] = mean(truths.flatMap(_.headline))
 
-  /** By how much each flight's measure deviates from the truth's mean, as a share of it. */
+  /** Deviation of each flight's measure from the truth's mean, as a share of that mean. */
   val off: Vector[Double] =
     truth.filter(_ != 0).toVector.flatMap(truth => flights.flatMap(_.headline).map(_ / truth - 1))
 
@@ -51,7 +51,7 @@ final case class BenchmarkRow(
   val halfOff: Option[Double] =
     Option.when(off.sizeIs > 1)(RunningStats.of(off.size)(off).studentHalfWidth95)
 
-  /** Violations of a flight, beyond those of the truth. */
+  /** Mean number of violations per flight, less that of the truth's flights. */
   val violations: Double =
     def each(of: Vector[BenchmarkFlight]) = mean(of.map(_.violations.toDouble)).getOrElse(0.0)
     each(flights) - each(truths)

@@ -4,10 +4,10 @@ import com.typesafe.config.{ConfigFactory, ConfigUtil}
 import skein.scenario.{ScenarioText, Scenarios}
 import skein.settings.FlySettings
 
-/** What a benchmark flies: every entry in every task, over every link, in every world.
+/** The flights of a benchmark: every entry in every task, over every link, in every world.
   *
   * @param tasks scenarios with their settings, as HOCON of `skein.fly`
-  * @param worlds how vehicle and air differ from the model: `plant` of `skein.fly`
+  * @param worlds deviations of vehicle and air from the model: `plant` of `skein.fly`
   */
 final case class BenchmarkSet(
     tasks: Vector[BenchmarkSet.Named],
@@ -20,7 +20,7 @@ final case class BenchmarkSet(
     for task <- tasks; world <- worlds; link <- links yield BenchmarkSet.Cell(task, world, link)
 
 object BenchmarkSet:
-  /** Changes whenever a figure may change: results of different versions are not compared. */
+  /** To be raised when any figure may change: results of different versions are not compared. */
   val Version = 3
 
   /** A name in the table, and the text of its settings. */
@@ -29,15 +29,15 @@ object BenchmarkSet:
   object Named:
     /** A scenario as a task.
       *
-      * @param name of its kind, or the text of its file
+      * @param name of the scenario's kind, or the text of its file
       */
     def of(name: String): Named =
       Named(ScenarioText.called(name), s"scenario = ${ConfigUtil.quoteString(name)}")
 
-  /** A loop, and the model by which it predicts.
+  /** A loop, with the model by which it predicts.
     *
     * @param isInPacket whether each command carries the actions foreseen after it
-    * @param policy that flies in place of the scenario's, as `--policy` of `./skein fly` names it
+    * @param policy that replaces the scenario's, in the text form of `--policy` of `./skein fly`
     */
   final case class Entry(
       name: String,
@@ -53,7 +53,7 @@ object BenchmarkSet:
   val Truth: Entry = Entry("truth", "paused")
 
   final case class Cell(task: Named, world: Named, link: String):
-    /** What the truth's flights depend on: they meet no link. */
+    /** The part of a cell on which the truth's flights depend: they use no link. */
     def ofTruth: (Named, Named) = (task, world)
 
     /** The settings of an entry's flights.
@@ -71,7 +71,7 @@ object BenchmarkSet:
           ConfigFactory.parseString(text).withFallback(ConfigFactory.load()).resolve.withOnlyPath("skein.fly")
         )
         .left
-        // The text's lines say nothing to a user.
+        // Line numbers of this text mean nothing to a user.
         .map(_.replaceFirst("""^String: \d+: skein\.fly\.[\w.-]+: """, ""))
 
   /** The set of `./skein benchmark`, of [[Version]]. */

@@ -95,8 +95,8 @@ object BudgetFigure:
         ) ++ panel.xAxis ++ panel.yAxis
     )
 
-  /** A scale for the deviations of most cells: a few outliers must not make the others pale, nor must cells
-    * with a flight that never reached a measure.
+  /** A scale for the deviations of most cells: neither a few outliers nor cells with a flight that never
+    * reached a measure make the others pale.
     */
   private[budget] def scaleOf(maps: Vector[BudgetMap]): ColourScale =
     val offs =

@@ -11,8 +11,8 @@ import upickle.default.{ReadWriter, macroRW, write}
 /** A map of one loop at one period, with its labels.
   *
   * @param policy or scenario
-  * @param engine what flew it
-  * @param marks named links with what was flown over them as they were measured
+  * @param engine that simulated it
+  * @param marks named links, with the results over their measured round trips
   */
 final case class BudgetMap(
     loop: String,
@@ -57,7 +57,6 @@ final case class BudgetMap(
     f"${mark.name}%-8s mean ${ms(mark.roundTrip.mean.toMillis)} ms, jitter ${ms(mark.roundTrip.jitter.toMillis)} ms: " +
       came + where
 
-  /** Whether a mark lies within the map's axes. */
   def isOnMap(mark: BudgetMark): Boolean =
     mark.roundTrip.mean.toMillis <= budget.meansMs.last && mark.roundTrip.jitter.toMillis <= budget.jittersMs.last
 

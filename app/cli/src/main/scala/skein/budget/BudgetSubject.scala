@@ -7,7 +7,7 @@ import skein.search.{Conditions, Effort}
 import skein.signal.LatencyDistribution
 import skein.simd.WorldRandom
 
-/** The subject of a budget: simulated over links, it yields a number.
+/** The subject of a budget: its simulation over links yields a number.
   *
   * @param loop by its name
   * @param vehicles the vehicle model, in a line
@@ -23,12 +23,12 @@ trait BudgetSubject(
     val formula: String,
     val unit: String
 ):
-  /** The number in a world that waits for the controller; Left states why there is none. */
+  /** The number in a world that stands still while the controller decides; Left states why there is none. */
   def truth: Either[String, Double]
 
   def engine(links: Vector[LatencyDistribution]): Engine
 
-  /** Episodes of a cell that are simulated within seconds. */
+  /** Number of episodes of a cell that are simulated within seconds. */
   def cellEpisodes(links: Vector[LatencyDistribution]): Int
 
   /** Number of rows of a map that one call simulates. */
@@ -56,11 +56,11 @@ final case class BudgetCells(
 object BudgetSubject:
   val Stopped = "stopped before the map was whole"
 
-/** A team in forward simulation, with numbers of its episodes.
+/** A team in forward simulation, whose episodes yield numbers.
   *
-  * @param team what flies
-  * @param atRest what flies in a world that waits for the controller
-  * @param effort of an engine
+  * @param team simulated over links
+  * @param atRest simulated in a world that stands still while the controller decides
+  * @param effort default number of episodes, by engine
   */
 final class TeamSubject(
     named: Conditions,

@@ -6,7 +6,7 @@ import skein.optimise.{LatencyBudget, RunningStats}
 import skein.signal.LatencyDistribution
 
 /** Simulates a subject over links of many latencies and jitters, and once without a link in a world that
-  * waits.
+  * stands still while the controller decides.
   *
   * @param asked episodes of each cell, if the user chose
   */
@@ -20,7 +20,6 @@ final class BudgetSweep(subject: BudgetSubject, axes: BudgetAxes, tolerance: Tol
   /** Episodes of each cell: the user's number, or as many as are simulated within seconds. */
   lazy val episodes: Int = asked.getOrElse(subject.cellEpisodes(known))
 
-  /** What flies the cells. */
   def engine: Engine = subject.engine(known)
 
   /** The subject's statistics over a link with these round trips. */

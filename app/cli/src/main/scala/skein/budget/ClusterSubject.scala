@@ -10,7 +10,8 @@ import skein.signal.LatencyDistribution
 import skein.units.Expect
 import upickle.default.ReadWriter
 
-/** A subject simulated by other processes, in blocks of some cells each, with the bits of a local run.
+/** A subject simulated by other processes, in blocks of some cells each, with the bits of a run in this
+  * process.
   *
   * @param number of this subject among those of the question
   * @param blockEpisodes approximate episodes in a block; without it, as many as take seconds at most
@@ -33,7 +34,7 @@ final class ClusterSubject(
 
   export here.{cellEpisodes, engine, truth}
 
-  /** A whole map in one call: there are always enough workers. */
+  /** A whole map in one call: the workers share its blocks. */
   override def rowsTogether: Int = Int.MaxValue
 
   def tallies(cells: BudgetCells): Either[String, Vector[RunningStats]] =

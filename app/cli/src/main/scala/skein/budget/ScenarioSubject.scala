@@ -10,7 +10,7 @@ import skein.scenario.{Scenario, Scenarios, Tracks}
 import skein.search.{Conditions, Effort, WholeFlights}
 import skein.signal.{LatencyDistribution, LatencyProfile}
 
-/** A budget's question about a scenario: a sum of its measures, under a loop. */
+/** A budget's question about a scenario: the sum of its measures, under a loop. */
 final case class ScenarioQuestion(
     scenario: Scenario,
     objective: Objective,
@@ -72,10 +72,10 @@ object ScenarioQuestion:
         .map("--objective: " + _)
     yield ScenarioQuestion(scenario, asked, conditions, seed, threads)
 
-/** A scenario with any measures: each is taken of a whole flight.
+/** A scenario with any measures, which are evaluated on whole flights.
   *
-  * @param over runs an episode by its number, over a link given by its round trips, or in a world that waits;
-  *   on the calling thread
+  * @param over runs the episode of a number on the calling thread: over a link, given by its round trips;
+  *   without one, in a world that stands still while the controller decides
   */
 final class FlownSubject private (
     question: ScenarioQuestion,
@@ -120,7 +120,7 @@ object FlownSubject:
 
   /** Simulates flights forward, world by world.
     *
-    * @param why nothing faster flies them
+    * @param why no faster engine can be used
     */
   def forward(question: ScenarioQuestion, flown: Conditions.Resolved, why: String): FlownSubject =
     def fly(timing: LoopTiming, link: Delays) = WholeFlights.forward(

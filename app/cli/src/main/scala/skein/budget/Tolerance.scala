@@ -25,7 +25,7 @@ enum Tolerance:
     case Share(_)             => Right(truth.abs)
     case Within(_)            => Right(1)
 
-  /** The factor that scales deviations for display, and their unit then. */
+  /** The factor that scales deviations for display, with the unit that they then have. */
   def shown(unit: String): (Double, String) = this match
     case Share(_)  => (100, "%")
     case Within(_) => (1, unit)

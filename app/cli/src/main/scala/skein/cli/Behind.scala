@@ -2,11 +2,11 @@ package skein.cli
 
 import mainargs.TokensReader
 
-/** Another program's command: the words behind `--`, whatever they look like. */
+/** Another program's command: the words behind `--`, in any form. */
 private[cli] final case class Behind(words: Vector[String])
 
 private[cli] object Behind:
-  /** Before a word it keeps the parser from reading that as an option of ours. No argument contains it. */
+  /** Prefix that keeps the parser from reading a word as an option of ours. No argument contains it. */
   private val Mark = "\u0000"
 
   def marked(word: String): String = Mark + word

@@ -81,7 +81,7 @@ final class BenchmarkCommand(using Scenarios)
       _ <- Expect.that(lost.isEmpty)(lost.mkString("\n"))
     yield ()
 
-  /** Those with the names, or all without one. */
+  /** The entries with the given names, or all entries if no name is given. */
   private def chosen[A](option: String, names: Seq[String], all: Vector[A])(
       name: A => String
   ): Either[String, Vector[A]] =

@@ -147,7 +147,7 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
       forward.seed.getOrElse(1)
     )
 
-  /** Where the subject is simulated: in this process, or by the workers that the options choose. */
+  /** Chooses where the subject is simulated: in this process, or by the workers of the options. */
   private def elsewhere(
       cluster: Option[ClusterOptions.Checked],
       options: BudgetOptions,

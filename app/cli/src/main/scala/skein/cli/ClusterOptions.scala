@@ -54,7 +54,7 @@ object ClusterOptions:
 
   private val MostWorkers = 256
 
-  /** Any free port, reachable only from this machine. */
+  /** Any free port, which only this machine can reach. */
   val Loopback: Endpoint = Endpoint("127.0.0.1", 0)
 
   def endpoint(option: String, text: String): Either[String, Endpoint] =

@@ -24,11 +24,11 @@ trait Command(val name: String, val summary: String):
 
   /** Reads the words after the command's name without running it, for tests.
     *
-    * @return or what is wrong with them
+    * @return Left states what is wrong with them
     */
   private[cli] def checked(arguments: Seq[String]): Either[String, Unit]
 
-  /** What `--help` prints. */
+  /** The text that `--help` prints. */
   def help: String
 
   private[cli] def options: Seq[CommandOption]
@@ -89,7 +89,7 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
   private[cli] final def checked(words: Seq[String]): Either[String, Unit] =
     scenarioRead(words).flatMap(parsed).flatMap(check)
 
-  /** Replaces the name of a scenario's file by its text. */
+  /** Replaces the path of a scenario's file by the file's text. */
   private def scenarioRead(words: Seq[String]): Either[String, Seq[String]] =
     if !names.contains(Command.Scenario) then Right(words)
     else
@@ -101,13 +101,13 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
           case other                              => Right(other)
         .map(_.flatten ++ behind)
 
-  /** Makes the settings that options state, without a file, a socket or a flight.
+  /** Makes the settings of the options, without a file, a socket or a flight.
     *
-    * @return or what is wrong with them
+    * @return Left states what is wrong with them
     */
   protected def check(@unused options: A): Either[String, Unit] = Right(())
 
-  /** What stands behind `--` is another program's. */
+  /** Parses the words before `--`; those behind it are another program's. */
   private def parsed(words: Seq[String]): Either[String, A] =
     val (arguments, behind) = words.span(_ != "--")
     val mistake = arguments.filterNot(ScenarioText.isText).flatMap(Complaint.ofWord).headOption.orElse(

@@ -7,15 +7,15 @@ import skein.report.TextTable
   */
 private[cli] object Complaint:
 
-  /** Characters of a word, and of a line, that are shown. */
+  /** Limits of the characters of a word, and of a line, that are shown. */
   val MostOfAWord = 200
   val MostOfALine = 1000
 
-  /** Lines that are shown: a setting in a wrong place makes a mistake of each below it. */
+  /** Limit of the lines that are shown: every setting in a misplaced section is a mistake. */
   val MostLines = 12
 
   /** @param reason a line for each mistake
-    * @return as many lines, printable and cut; from [[MostLines]] on the last one counts the others
+    * @return the lines, printable and cut; beyond [[MostLines]], a last line counts the others
     */
   def text(reason: String): String =
     val lines = TextTable.printable(reason).linesIterator.map(line => cut(words(line), MostOfALine)).toVector

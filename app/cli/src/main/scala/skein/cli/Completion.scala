@@ -4,7 +4,8 @@ package skein.cli
 private[cli] object Completion:
   val Shells: Seq[String] = Seq("bash", "zsh")
 
-  /** A script for bash: completes the program's commands, the options of each, known values, and else files.
+  /** A script for bash that completes the program's commands, each one's options, known values, and otherwise
+    * file names.
     */
   def bash(program: String, commands: Seq[Command]): String =
     val values =

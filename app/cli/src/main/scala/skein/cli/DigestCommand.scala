@@ -11,7 +11,7 @@ final case class DigestOptions(
     files: Leftover[String]
 )
 
-/** `./skein digest`: the SHA-256 of what recordings contain. */
+/** `./skein digest`: prints the SHA-256 of recordings' content. */
 object DigestCommand
     extends OptionsCommand[DigestOptions](
       "digest",

@@ -19,13 +19,15 @@ private[cli] object Edge:
     */
   def isInterrupted: Boolean = interrupted
 
-  /** Runs `body`; if the process is terminated from outside meanwhile, prints that, and the progress so far.
+  /** Runs `body`; if the process is terminated from outside meanwhile, prints a line about it, with the
+    * progress so far.
     */
   def tellingIfCut[A](progress: => String)(body: => A): A = hooked(body):
     val how = if exitedAt.isEmpty then "ended from outside; " else ""
     Console.err.println(s"skein: $how$progress")
 
-  /** Runs `body`; if user code ends the process meanwhile, prints that, since nothing else would. */
+  /** Runs `body`; if user code ends the process meanwhile, prints a line about it, since nothing else would.
+    */
   def tellingExit[A](body: => A): A = hooked(body):
     exitedAt.foreach(at => Console.err.println(s"skein: ended by System.exit in $at"))
 
@@ -35,8 +37,8 @@ private[cli] object Edge:
     try body
     finally removeHook(hook)
 
-  /** Where `System.exit` was called, if it was: then the process was not terminated from outside. The JVM
-    * logs the call, also from virtual threads, which thread dumps omit.
+  /** The line of code that called `System.exit`, if any did: then the process was not terminated from
+    * outside. The JVM logs the call, also from virtual threads, which thread dumps omit.
     */
   private def exitedAt: Option[String] = exited.flatMap(OwnFailure.line(_))
 
@@ -59,8 +61,8 @@ private[cli] object Edge:
   /** Stops whatever [[untilInterrupted]] runs now, as Ctrl-C would; the process continues. */
   def interrupt(): Unit = stops.asScala.foreach(_())
 
-  /** Runs `body`; on Ctrl-C calls `stop` first and lets `body` end by itself, for at most `graceMillis`.
-    * Where user code ends the process, waits only briefly: `body` may wait for that code, and so for ever.
+  /** Runs `body`; on Ctrl-C calls `stop` first and lets `body` end by itself, for at most `graceMillis`. If
+    * user code ends the process, waits only briefly: `body` may wait for that code, and so for ever.
     */
   def untilInterrupted[A](stop: () => Unit, graceMillis: Long = 15_000)(body: => A): A =
     val main = Thread.currentThread()

@@ -154,23 +154,23 @@ final case class FlightOptions(
       _ <- Expect.that(loop.isEmpty || !asPaper.value):
         s"--as-paper flies the paper's loops: expected no --loop beside it, came ${loop.mkString(", ")}"
       file <- config.fold(Right(ConfigFactory.empty))(FlightOptions.read)
-      told = FlightOptions.hovering(flags.withFallback(file))
+      chosen = if mavlink.value || only.isDefined then unpaused else this
+      told   = FlightOptions.hovering(chosen.flags.withFallback(file))
       merged <- FlightOptions.scenarioRead(told.withFallback(ConfigFactory.load()).resolve())
       _      <- ConfigMistakes.ofShape(merged, "skein.fly").toLeft(())
       own    <- ofScenario(merged)
     yield own.withFallback(merged).withOnlyPath("skein.fly")
 
-  private def chosenLoops: Seq[String] =
-    if loop.nonEmpty then loop
-    else if mavlink.value then
-      (if asPaper.value then FlightOptions.paperLoops else FlightOptions.loopsOverMavlink)
-        .filterNot(_ == LoopKind.Paused.label)
-    else if asPaper.value then FlightOptions.paperLoops
-    else Nil
+  /** These options, with loops that do not stop the vehicles' time where none was chosen. */
+  private[cli] def unpaused: FlightOptions =
+    if loop.nonEmpty then this
+    else
+      val loops = FlightOptions.paperLoops ++ Option.when(!asPaper.value)(LoopKind.Predictive.label)
+      copy(loop = loops.filterNot(_ == LoopKind.Paused.label), asPaper = Flag())
 
   /** Each option whose field is a setting of `skein.fly`. */
   private def flags: Config =
-    val told = copy(loop = chosenLoops)
+    val told = if loop.isEmpty && asPaper.value then copy(loop = FlightOptions.paperLoops) else this
     val set  =
       for
         (field, option) <- told.productElementNames.zip(told.productIterator).toSeq
@@ -254,8 +254,6 @@ object FlightOptions:
 
   private val paperLoops =
     Seq(LoopKind.Paused, LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream).map(_.label)
-
-  private val loopsOverMavlink = paperLoops :+ LoopKind.Predictive.label
 
   private val slow =
     "plan: this JVM runs without jdk.incubator.vector, so " +

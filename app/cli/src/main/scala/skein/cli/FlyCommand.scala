@@ -68,12 +68,16 @@ final class FlyCommand(using Scenarios)
   override protected def defaults: Map[String, String]   = FlightOptions.defaults
   override protected def known: Map[String, Seq[String]] = FlightOptions.known
 
+  /** Nodes of others stop for nobody's loop. */
+  private def flights(options: FlyOptions) =
+    if options.ros.value then options.flights.unpaused else options.flights
+
   override protected def check(options: FlyOptions): Either[String, Unit] =
-    options.flights.settings.map(_ => ())
+    flights(options).settings.map(_ => ())
 
   protected def execute(options: FlyOptions): Either[String, Unit] =
     for
-      settings <- options.flights.settings
+      settings <- flights(options).settings
       learning <- options.learning.chosen(settings)
       plans = learning.fold(settings.plans)(settings.plansWith)
       isTcp = options.simulator.exists(_.startsWith(FlyCommand.Tcp))
@@ -220,8 +224,8 @@ final class FlyCommand(using Scenarios)
         )
         VirtualFlights.fly(settings, due, out)((_, _) => ()).map(flown ++ _)
 
-  /** @param keep a flight's summary under its name: as long as its records are in memory, and while others
-    *   still fly
+  /** @param keep called with each flight's name and summary, while its records are in memory and others still
+    *   run
     */
   private def flyVirtual(
       settings: FlySettings,
@@ -236,7 +240,7 @@ final class FlyCommand(using Scenarios)
         Console.err.println(s"$id has ended; SHA-256 of its recording: ${recorder.digest}")
         keep(id, Try(FlightSummary.of(recorder.recording)))
 
-  /** Names the recordings' folder if the command is ended after the flights. */
+  /** Prints the recordings' folder if the command is terminated after the flights. */
   private def kept[A](out: Path)(body: => A): A =
     Edge.tellingIfCut(s"the flights are recorded; ${FlyCommand.shows(out)}")(body)
 
@@ -290,7 +294,7 @@ private[cli] object FlyCommand:
   /** Loops that this process has already warmed up: its next command can skip them. */
   @volatile private var warm = Set.empty[AnyLoop]
 
-  /** Checks before any warm-up whether the simulator answers and has the scenario's vehicles. A MAVLink
+  /** Checks before any warm-up that the simulator answers and has the scenario's vehicles. A MAVLink
     * simulator is checked when its vehicles move to their starts, which needs their clocks.
     */
   def vehiclesThere(settings: FlySettings, simulator: Option[Address]): Either[String, Unit] =
@@ -302,8 +306,8 @@ private[cli] object FlyCommand:
         finally
           val _ = Edge.await(system.terminate())
 
-  /** A line for a user who ended the command: how many virtual flights were recorded; each is recorded when
-    * it ends.
+  /** A line for a user who ended the command, with the number of recorded virtual flights: each is recorded
+    * when it ends.
     */
   def recorded(ended: Int, of: Int, out: Path): String =
     val flights = Decimals.counted(of, "flight")

@@ -42,7 +42,7 @@ final class IdentifyCommand(using scenarios: Scenarios)
       ParserForClass[IdentifyOptions]
     ):
 
-  /** Most panels of a figure; with more it is left out. */
+  /** Limit of a figure's panels; a figure with more is omitted. */
   private val MostPanels = 16
 
   protected def execute(options: IdentifyOptions): Either[String, Unit] =
@@ -152,7 +152,7 @@ final class IdentifyCommand(using scenarios: Scenarios)
       try OwnFailure.told("its plant")(found)
       catch case failed: OwnFailure => Left(failed.getMessage)
 
-  /** Fits the model of the flights' sensor, if they had one and saw enough. */
+  /** Fits the model of the flights' sensor, if they had one with enough detections. */
   private def sensorOf(recordings: Vector[Recording]): Option[SensorFit] =
     val seeing = recordings.flatMap(RecordedSeeing.of)
     Option.when(seeing.nonEmpty)(SensorFit.of(seeing)).flatMap: fit =>
@@ -181,14 +181,14 @@ final class IdentifyCommand(using scenarios: Scenarios)
     val all = flights.map(-_.downM)
     Option.when(all.max - all.min < 0.5)(all.sum / all.size)
 
-  /** States how to use the model file, with this program if it alone knows the structure. */
+  /** A line on how to use the model file: with this program, if only it knows the structure. */
   private def flyBy(use: Structure, file: Path, flights: Vector[TimeHistory]): String =
     val named = Typed.path(file)
     if Structure.ours.contains(use) then
       s"use it: ./skein fly --loop predictive --predictor $named${elsewhere(flights)}"
     else s"use it, with this program: fly --loop predictive --predictor $named, search --plant $named"
 
-  /** States the altitude that a flight by the model needs, if the vehicles did not fly at the duel's. */
+  /** A line on the altitude of flights by this model, if the vehicles did not fly at the duel's. */
   private def elsewhere(flights: Vector[TimeHistory]): String =
     altitude(flights).filter(_ != PaperDuel.AltitudeM).fold("")(metres =>
       s" --altitude ${(metres * 10).round / 10.0}"

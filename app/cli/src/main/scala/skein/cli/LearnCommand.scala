@@ -140,7 +140,10 @@ final class LearnCommand(program: String)(using Scenarios)
          |loop ${question.conditions.loopText} every ${question.conditions.periodMs.significant(
           4
         )} ms over ${question.link}; ${setup.conditions.vehicle.description}
-         |${question.environments} environments, ${steps(setup)}; engine: ${setup.engine}""".stripMargin
+         |${question.environments} environments, ${steps(setup)}; engine: ${setup.engine.fold(
+          identity,
+          _.text
+        )}""".stripMargin
     )
     @volatile var stopped = false
     Edge.untilInterrupted(() => stopped = true):
@@ -213,7 +216,7 @@ final class LearnCommand(program: String)(using Scenarios)
       )
     yield shown.say(s"written: ${(file ++ pictures).mkString(", ")}")
 
-  /** Runs the policy in virtual time, against the scenario's own policy of the other side. */
+  /** Runs the policy in virtual time, against the scenario's own policy of the other role. */
   private def virtual(
       setup: LearnSetup,
       measure: Measuring,
@@ -260,7 +263,7 @@ final class LearnCommand(program: String)(using Scenarios)
         finally line.end()
 
 object LearnCommand:
-  /** Most fresh episodes that evaluate the best policy of a stopped run. */
+  /** Limit of the fresh episodes that evaluate the best policy of a stopped run. */
   private val FreshIfStopped = 100
 
   /** The question of the options.
@@ -315,7 +318,7 @@ object LearnCommand:
       set
     )
 
-  /** Conditions of a scenario's team, at the altitude that it flies at. */
+  /** Conditions of a scenario's team, at its altitude. */
   private def ofTeam(
       scenario: String,
       set: Map[String, String],
@@ -340,7 +343,8 @@ object LearnCommand:
 
   /** Evaluates learned policies.
     *
-    * @param distances results of a number of virtual flights with a policy: [[LearnGame.came]]
+    * @param distances simulates a number of virtual flights with a policy, and returns their results
+    *   ([[LearnGame.came]])
     * @param isElsewhere whether workers compute
     */
   private final case class Measuring(

@@ -50,13 +50,13 @@ private[cli] object LearnWork:
       case Block.Flight(number, numbers) => landed(setup, number, numbers).map(BlockBytes.of(_))
     answered.fold(wrong => throw IllegalArgumentException(wrong), identity)
 
-  /** An executor for blocks of episodes on a shared cluster. */
+  /** An executor that evaluates episodes on a shared cluster. */
   def episodes(run: BlockExecutor): BlockExecutor = new BlockExecutor:
     def cancel(): Unit                                                           = run.cancel()
     def compute(works: Vector[ArraySeq[Byte]], onAnswer: ArraySeq[Byte] => Unit) =
       run.compute(works.map(work => BlockBytes.of(Block.Episodes(work))), onAnswer)
 
-  /** Flights of the scenario in which a policy replaces its own, as the commands run them.
+  /** The flights of the scenario with a policy in place of its own, as the commands run them.
     *
     * @return settings, and a plan for each flight; Left states why there are none
     */

@@ -148,7 +148,7 @@ object LinkCommand
     catch case error: TransportError => Left(error.getMessage)
     finally Edge.await(system.terminate()): Unit
 
-  /** Time within which it ends, whatever crosses the link. */
+  /** Time within which the command ends, even if bytes are still on the link. */
   private val GraceMillis = 2_000L
 
   private def described(profile: LinkProfile): String =

@@ -19,7 +19,7 @@ final case class LinkFitOptions(
     out: String = "link"
 )
 
-/** `./skein link-fit`: the profile of a link that was measured. */
+/** `./skein link-fit`: fits a link's profile to measured round trips. */
 object LinkFitCommand
     extends OptionsCommand[LinkFitOptions](
       "link-fit",

@@ -69,7 +69,7 @@ final case class MarginOptions(
     command: Behind
 )
 
-/** `./skein margin`: the delay margin of any program that flies by AirSim's interface. */
+/** `./skein margin`: measures the delay margin of any program that flies vehicles by AirSim's interface. */
 final class MarginCommand(using scenarios: Scenarios)
     extends OptionsCommand[MarginOptions](
       "margin",

@@ -34,10 +34,12 @@ private object Misuse:
           options.minByOption(Nearest.distance(option, _)).filter(Nearest.distance(option, _) <= MostWrong)
         s"$word: no such option or argument${near.fold("")(one => s"; the nearest is $one")}"
 
-  /** Most differing letters of a word that is suggested as a correction. */
+  /** Limit of the differing letters of a word for which a correction is suggested. */
   private val MostWrong = 2
 
-  /** Renamed options: `--model` was both the predictor of flights and the plant of forward simulation. */
+  /** New names of renamed options: `--model` was both the predictor of flights and the plant of forward
+    * simulation.
+    */
   private val renamed = Map("--model" -> Seq("--predictor", "--plant"))
 
   private def expected(option: ArgSig, words: Seq[String]): String =

@@ -46,8 +46,7 @@ object NewCommand
   private def className(name: String)   = name.split('-').map(_.capitalize).mkString
   private def packageName(name: String) = name.replace("-", "")
 
-  /** Why a project of this name would not compile: its sources already use the name of its package or class.
-    */
+  /** Why a project of this name would not compile: its sources already use its package's or class's name. */
   private def taken(name: String): Option[String] =
     val sources = Seq("Scenario.scala.txt", "Suite.scala.txt").map(resource).mkString("\n")
     // Ignores members of other names, and string literals.

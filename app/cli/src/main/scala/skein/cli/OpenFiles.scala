@@ -7,8 +7,8 @@ import skein.units.Expect
 /** Checks the limit of open files and connections: a low limit looks like a simulator that does not answer.
   */
 private[cli] object OpenFiles:
-  /** Files that the program, each flight and each further controller of a flight need. Measured: about 60
-    * before it flies; 26 for a flight in real time with simulator and link; 450 for one with twenty
+  /** Files that the program, each flight, and each further controller of a flight need. Measured: about 60
+    * before the flights; 26 for a flight in real time with simulator and link; 450 for one with twenty
     * controllers.
     */
   private val OfTheProgram = 96
@@ -16,7 +16,7 @@ private[cli] object OpenFiles:
   private val OfAFurther   = 24
 
   /** @param controllers of each flight
-    * @param most files that this process may open, where that is known
+    * @param most limit of the files that this process may open, if it is known
     */
   def enoughFor(flights: Int, controllers: Int = 1, most: Option[Long] = limit): Either[String, Unit] =
     val needed = OfTheProgram + (OfAFlight + OfAFurther * (controllers - 1)) * flights

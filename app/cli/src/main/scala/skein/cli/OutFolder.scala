@@ -37,7 +37,7 @@ private[cli] object OutFolder:
     * fail at its end.
     *
     * @param option that names the folder, for example `--out`
-    * @return Left states why not, in a line
+    * @return Left states in a line why it cannot be written
     */
   def made(option: String, text: String): Either[String, Path] =
     if text.isEmpty then Left(s"$option: expected a folder, came ''")
@@ -60,7 +60,7 @@ private[cli] object OutFolder:
   def dated(parent: String): String =
     s"$parent/${LocalDateTime.now().format(DateTimeFormatter.ofPattern("yyyy-MM-dd-HHmmss"))}"
 
-  /** The folder of a file; of the root, itself. */
+  /** The folder of a file; the root, for the root itself. */
   def of(file: Path): String =
     val whole = file.toAbsolutePath
     Option(whole.getParent).getOrElse(whole).toString
@@ -89,7 +89,7 @@ private[cli] object OutFolder:
 
   def text(name: String, text: String): (String, Array[Byte]) = (name, text.getBytes(UTF_8))
 
-  /** Writes `NAME.svg` and, if this machine can render it, `NAME.png`; else states why not.
+  /** Writes `NAME.svg` and, if this machine can render it, `NAME.png`; else states why there is no PNG.
     *
     * @param scale pixels for a unit of the drawing
     */

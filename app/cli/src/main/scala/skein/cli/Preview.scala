@@ -10,8 +10,8 @@ import skein.settings.{FlightPlan, FlySettings, OutsidePolicy}
 import skein.units.*
 import skein.units.Decimals.fixed
 
-/** The first results of live flights: their virtual twins, simulated before them while little time is lost,
-  * and not a second time afterwards.
+/** First results of live flights: simulates their virtual twins before them, as long as this takes little
+  * time. These twins are not simulated again afterwards.
   */
 private[cli] object Preview:
 
@@ -20,25 +20,25 @@ private[cli] object Preview:
 
   type Flown = Map[FlightPlan, VirtualFlightResult]
 
-  /** Whether one flight ends within [[AtMost]] if it is as fast as those of the warm-up were on average.
+  /** Whether a flight would end within [[AtMost]] at the mean speed of the warm-up's flights.
     *
     * @param flights of the warm-up
-    * @param took all of them together
+    * @param took time for all of them
     */
   def fits(flights: Int, took: Span, duration: Span): Boolean =
     val warmed = duration.min(WarmUp.Flown).toSeconds * flights
     flights > 0 && took.toSeconds * duration.toSeconds <= AtMost.toSeconds * warmed
 
-  /** Whether a flight's twin can come before its live flight: not if another process decides, for which
-    * virtual time stands still.
+  /** Whether a flight's twin can be simulated before the live flight: not if another process decides, during
+    * whose decisions virtual time stands still.
     */
   def isPossible(plan: FlightPlan): Boolean =
     plan.solver.isEmpty && !plan.policy.exists(policy => OutsidePolicy.decides(policy.file))
 
-  /** Flies twins on all cores, in their order, and prints a line for each as it ends. Blocks.
+  /** Simulates twins on all cores, in their order, and prints a line for each as it ends. Blocks.
     *
     * @param say prints a line
-    * @return the completed flights; failed ones are simulated again, and reported then
+    * @return the completed flights; failed ones are simulated again later, and reported then
     */
   def fly(settings: FlySettings, twins: Vector[FlightPlan], clock: Clock)(say: String => Unit)(using
       Scenarios
@@ -57,7 +57,8 @@ private[cli] object Preview:
       Verdict.sentences(Report.of(ended.map(_._2.recorder.recording)).deviations).foreach(say)
     ended.toMap
 
-  /** The scenario's first measure of a flight; none where its code fails, which the report explains. */
+  /** A line with the first measure of a flight; None if the scenario's code fails, which the report explains.
+    */
   private def line(scenario: Scenario, plan: FlightPlan, flown: VirtualFlightResult): Option[String] =
     for
       tracks   <- Tracks.of(RecordedTracks.of(flown.recorder.recording))

@@ -5,8 +5,8 @@ import scala.util.Try
 import skein.link.Address
 
 private[cli] object Reachable:
-  /** Where this machine reaches what listens at an address, by number: on loopback what listens on all of the
-    * machine's addresses. None if the host is not known.
+  /** The numeric address by which this machine reaches a server that listens at `listening`: 127.0.0.1 if it
+    * listens on all interfaces. None if the host is not known.
     */
   def from(listening: Address): Option[Address] =
     Try(InetAddress.getByName(listening.host)).toOption.map: host =>

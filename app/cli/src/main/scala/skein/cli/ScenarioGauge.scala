@@ -10,9 +10,9 @@ import skein.view.Gauge
 
 /** Computes a scenario's plots and limits from a flight's readings while it runs. For one thread.
   *
-  * Series and limits are functions of the whole flight so far, so a computation takes longer as the flight
-  * goes; the next one starts after twenty times that long. Beyond `most` readings every second one is
-  * dropped.
+  * Series and limits are functions of the whole flight so far, so each computation takes longer than the one
+  * before; between two of them is a pause of twenty times the last one's duration. Beyond `most` readings,
+  * every second one is dropped.
   *
   * @param vehicles in the scenario's order
   * @param most readings that are kept
@@ -81,7 +81,7 @@ private[cli] final class ScenarioGauge(
       "limits" -> ujson.Arr.from(scenario.limits.map(limit(_, tracks)))
     )
 
-  /** Points after those already sent, a tenth of a second apart; NaN is left out. */
+  /** The points after those already sent, a tenth of a second apart; NaN is omitted. */
   private def points(curve: Curve): ujson.Arr =
     val fresh = curve.points.drop(
       1 + curve.points.lastIndexWhere(_._1 <= toldS)
@@ -111,13 +111,13 @@ private[cli] object ScenarioGauge:
   /** Pause after a computation, as a multiple of its duration. */
   private val Rest = 20
 
-  /** Instants of the tracks from one point to the next. */
+  /** Number of the tracks' instants from one point to the next. */
   private val PointEvery = 5
 
-  /** Most points in one message: half a minute, the length of the page's plots. */
+  /** Limit of the points in one message: half a minute, the length of the page's plots. */
   private val MostPoints = 300
 
-  /** Most readings kept: 20 vehicles at 20 Hz for five minutes. */
+  /** Limit of the readings kept: 20 vehicles at 20 Hz for five minutes. */
   private val MostReadings = 120_000
 
   private val number = """{"type":"number"}"""

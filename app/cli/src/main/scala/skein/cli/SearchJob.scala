@@ -16,7 +16,7 @@ private[cli] final class SearchJob(
 ):
   import SearchJob.*
 
-  /** Records candidates that use another engine than the expected one. */
+  /** Notes the engine of each candidate, to report those that did not use the expected one. */
   private val candidates = NotedEvaluator(runner(Judge.Candidates), ready.engine(_, Judge.Candidates))
 
   def run(from: SearchState): Either[String, Unit] =
@@ -159,5 +159,5 @@ private[cli] final class SearchJob(
 private[cli] object SearchJob:
   private val MostAxes = 4
 
-  /** How long a user who stopped a search waits for its result. */
+  /** Limit of the time for which a user who stopped a search waits for its result. */
   private val PatienceNanos = 2_000_000_000L

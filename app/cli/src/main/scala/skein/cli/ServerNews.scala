@@ -6,7 +6,7 @@ import skein.simulator.PeerStats
 /** Describes refused requests of clients to the person who runs a simulator. */
 private[cli] object ServerNews:
 
-  /** One line, or None while nothing was refused. Equal lines mean that nothing has happened between them. */
+  /** One line, or None if no request was refused. Equal lines mean that nothing has happened between them. */
   def line(
       stats: ServerStats,
       limits: ServerLimits,

@@ -82,7 +82,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
     if !Edge.isInterrupted then
       sys.exit(if status == 0 then written(System.out, FileOutputStream(FileDescriptor.out)) else status)
 
-  /** Flushes the outputs; a reader that closed its pipe early is no failure. */
+  /** Flushes the outputs; a reader that has closed its pipe early is no failure. */
   private[skein] final def written(out: PrintStream, again: OutputStream): Int =
     val why = Option.when(out.checkError()):
       try
@@ -128,7 +128,7 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
             )
             2
 
-  /** Reports an unexpected exception, after all that other threads still print.
+  /** Reports an unexpected exception, after all other threads have printed their lines.
     *
     * @return an exit status of its own
     */

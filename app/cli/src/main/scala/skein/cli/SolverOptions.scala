@@ -28,8 +28,8 @@ private[cli] object SolverOptions:
       )
     case _ => Right(())
 
-  /** Connects to every kind of solver that a flight can name in real time. Computing the build's name takes a
-    * while, and only this needs it.
+  /** Connects to any kind of solver of a flight in real time. Only this needs the build's name, which takes a
+    * while to compute.
     */
   def reached(settings: FlySettings, secured: SolverSecurity.Checked)(using ActorSystem): Solvers =
     if settings.solver.isEmpty then Solvers.none else reachedBy(BuildId.current, secured)

@@ -35,7 +35,7 @@ private[cli] object SpreadQuestion:
       case None =>
         probe(settings).map(SpreadQuestion(config.root.render(ConfigRenderOptions.concise), _))
 
-  /** Digests of short flights, since a file may differ on another machine. A recording begins with policies,
+  /** Digests of short flights, which differ if another machine's files do. A recording begins with policies,
     * models and scenes; links affect only vehicles.
     */
   private def probe(settings: FlySettings): Either[String, Vector[String]] =
@@ -64,13 +64,14 @@ private[cli] object SpreadQuestion:
   final case class Ready(settings: FlySettings)(using Scenarios):
     private val plans = settings.plans
 
-    /** Every plan with `seeds` seeds, in the plans' order. */
+    /** The flights of each plan with `seeds` seeds, in the plans' order. */
     def flights(seeds: Int): Vector[FlightPlan] =
       for plan <- plans; number <- Vector.range(0, seeds) yield plan.copy(seed = settings.seed + number)
 
-    /** Has flights run by other processes. Those whose summary exceeds a message are run here, and reported.
+    /** Has flights run by other processes. A flight whose summary does not fit into a message is run here,
+      * and reported.
       *
-      * @param onLanded called with each, in any order
+      * @param onLanded called once for each flight, in any order
       */
     def elsewhere(by: BlockExecutor, seeds: Int, tell: String => Unit)(onLanded: => Unit)(
         onWait: => Unit
@@ -120,5 +121,5 @@ private[cli] object SpreadQuestion:
 
   private val MostReason = 16 << 10
 
-  /** Greatest encoded answer that fits into a message. */
+  /** Limit of an encoded answer, in bytes, so that it fits into a message. */
   private val MostBytes = 600 << 10

@@ -54,12 +54,12 @@ private[cli] object TortureQuestion:
     def fly(seeds: Iterator[Long], threads: Int)(onVerdict: FaultVerdict => Unit): Unit =
       Torture.all(seeds, duration, threads, scenario, scene)(onVerdict)
 
-    /** The blocks for other processes, of at most `atMost` seeds each. */
+    /** The blocks of seeds for other processes, with at most `atMost` seeds each. */
     def blocks(first: Long, seeds: Int, atMost: Int): Vector[ArraySeq[Byte]] =
       Vector.range(0, seeds, atMost).map: from =>
         BlockBytes.of((first + from, atMost.min(seeds - from)))
 
-    /** The broken rules of each seed in a block, encoded. */
+    /** Runs a block's flights and encodes the broken rules of each seed. */
     def answer(block: ArraySeq[Byte]): ArraySeq[Byte] =
       val (first, count) = told[(Long, Int)](block, "a block of torture")
       val broken         =
@@ -84,5 +84,5 @@ private[cli] object TortureQuestion:
 
   private val MostLines, MostOfLine = 200
 
-  /** Most seeds that one block may contain. */
+  /** Limit of the seeds in one block. */
   val MostSeeds = 8

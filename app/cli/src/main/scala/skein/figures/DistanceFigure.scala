@@ -89,7 +89,7 @@ object DistanceFigure:
           val text = if isMeanSeen then s"to ${published.most.brief} m" else s"mean ${published.mean.brief} m"
           Vector(
             Mark.Path(head, Some(Stroke(FlightTheme.published, 1.2))),
-            // Upright, as what stands beside it has a column of its own.
+            // Upright, so that labels of neighbouring columns do not overlap.
             Mark.Text(top.moved(11, 2), text, Theme.smallSize, anchor = Anchor.End, upwards = true)
           )
       (Mark.line(low, top, Stroke(FlightTheme.published, 1.2)) +: goesOn) ++ diamond

@@ -83,8 +83,8 @@ object LatencyFigure:
     )
     Drawing(378, 268, titles ++ panel.axes ++ bars ++ lines ++ marks)
 
-  /** Round trips many times as long as the others, such as during a pause of the process, lie beyond the axis
-    * and are only counted.
+  /** End of the axis, ms. Round trips many times as long as the others, such as during a pause of the
+    * process, lie beyond it and are only counted.
     */
   private def axisEndMs(samples: Distribution, profile: Option[LatencyDistribution]): Double =
     val longest = samples.most.min(1.25 * samples.p99)

@@ -5,7 +5,7 @@ import skein.observe.ObservedVehicle
 import skein.plot.*
 
 /** The paper's four observations of an outside program: for each vehicle a bar for the mean, and a line up to
-  * the 99th percentile, all on one scale. Ages count from when physics was sampled.
+  * the 99th percentile, all on one scale. Ages begin when physics was sampled.
   */
 object ObservedFigure:
   private val colour   = Colour(0x0072b2)
@@ -16,7 +16,7 @@ object ObservedFigure:
 
   def apply(observed: Vector[ObservedVehicle]): Option[Drawing] =
     val vehicles = observed.filter(_.commands > 0).take(Most)
-    // A quantity of others, of a single vehicle, has no panel.
+    // For a single vehicle, quantities of others have no value, and so no panel.
     val panels = quantities.filter((_, of) => vehicles.exists(of(_).isDefined))
     val most   = panels.flatMap((_, of) => vehicles.flatMap(of)).map(_.p99).maxOption.getOrElse(1.0)
     Option.when(panels.nonEmpty):

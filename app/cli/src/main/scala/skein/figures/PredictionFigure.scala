@@ -4,8 +4,8 @@ import skein.measure.{Distribution, PredictionErrors, PredictionGroup}
 import skein.plot.*
 
 /** Prediction error by prediction time, a panel per loop and link: medians and 95 % quantiles, each with
-  * dashes of its own; of the deciding vehicle itself in colour, of others in grey. A line ends where too
-  * little was measured; fewer than three adjacent points are drawn as discs, hollow for a 95 % quantile.
+  * dashes of its own; of the deciding vehicle itself in colour, of others in grey. A line ends where there
+  * are too few measurements; fewer than three adjacent points are drawn as discs, hollow for a 95 % quantile.
   */
 object PredictionFigure:
   val name = "prediction"
@@ -18,7 +18,7 @@ object PredictionFigure:
       legend(drawn, kinds.filter(kind => drawn.exists(kind.of(_).byAge.nonEmpty)).reverse)
     ))
 
-  /** Whose predictions: the deciding vehicle's, or the others'. */
+  /** A kind of predictions: the deciding vehicle's own, or those of the others. */
   private final case class Kind(
       name: String,
       colour: Colour,
@@ -73,7 +73,7 @@ object PredictionFigure:
     val title = panel.title(s"${group.name}, ${FlightTheme.link(group.link)}")
     Drawing(366, 262, (title +: panel.axes) ++ lines)
 
-  /** Fewest points of a curve; fewer are drawn as discs. */
+  /** Least number of points of a curve; fewer are drawn as discs. */
   private val FewestOfCurve = 3
 
   private def marks(
@@ -96,6 +96,6 @@ object PredictionFigure:
     if isCurve then Legend.line(label, share.stroke(kind))
     else Legend.Item(label, 8, at => Vector(sign(at.moved(4, 0), share.stroke(kind), share.isHollow)))
 
-  /** A legend row for each kind, so that it is no wider than a panel. */
+  /** The legend, with a row for each kind, so that it is no wider than a panel. */
   private def legend(groups: Vector[PredictionGroup], kinds: Vector[Kind]): Drawing =
     Drawing.stacked(kinds.map(kind => Legend(52, shares.map(item(groups, kind, _))*))*)

@@ -197,7 +197,8 @@ object ScenarioFigure:
     val plot = Drawing(plotWidth + 76, plotHeight + 84, panel.axes ++ held ++ lines)
     Legend.titled(panel, FlightTheme.link(link), plot, items*)
 
-  /** The greatest value of a curve; of one that begins far above all later values, somewhat more than these.
+  /** The greatest value of a curve; for a curve that begins far above all later values, somewhat more than
+    * these.
     */
   private def highestShown(curve: Vector[(Double, Double)]): Double =
     val highest = curve.map(_._2).max
@@ -248,7 +249,7 @@ object ScenarioFigure:
 
   private val MostInLegend = 12
 
-  /** Most vehicles that a legend lists by name. */
+  /** Limit of the vehicles that a legend lists by name. */
   private val MostNamed = 8
 
   /** How much wider the first vehicle's line is than the last one's. */

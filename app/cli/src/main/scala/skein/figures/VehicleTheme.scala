@@ -5,7 +5,7 @@ import skein.scenario.Scenario
 
 /** Line styles of a scenario's vehicles: one for each [[Scenario.shade]] of each role, all different. */
 object VehicleTheme:
-  /** Okabe and Ito's colours, as for the loops, and two of Tol's: here by a vehicle's role. */
+  /** Colours by vehicle's role: Okabe and Ito's, as for the loops, and two of Tol's. */
   private val colours   = Vector(0x0072b2, 0xd55e00, 0x009e73, 0xaa4499, 0xe69f00, 0x56b4e9).map(Colour(_))
   private val lead      = Colour(0x404040)
   private val lightness = Vector(1.0, 0.65, 0.4)

@@ -6,7 +6,7 @@ import skein.optimise.{LatencyBudget, RunningStats}
 import skein.signal.LatencyProfile
 import skein.units.Decimals.{fixed, significant}
 
-/** The runs over one link, and what they come to together. */
+/** The runs over one link, with their statistics. */
 final case class MarginPoint(link: LatencyProfile, runs: Vector[MarginRun]):
   def meanMs: Double = link.meanRoundTrip.toMillis
 
@@ -18,7 +18,9 @@ final case class MarginPoint(link: LatencyProfile, runs: Vector[MarginRun]):
 
   def violations: Int = runs.filter(_.value.isRight).map(_.violations).sum
 
-  /** Whether it says anything: unlike runs that the machine spoiled, a program that fails does. */
+  /** Whether the point counts for the curve: it has a value, or the program failed. Runs spoiled by a busy
+    * machine do not count.
+    */
   def counts: Boolean = stats.count > 0 || without.exists:
     case MarginRun.NoResult.OfProgram(_) => true
     case MarginRun.NoResult.Starved(_)   => false
@@ -40,14 +42,17 @@ final case class MarginCurve private (
   def deviation(point: MarginPoint): Double =
     if point.stats.count == 0 then Double.NaN else (point.stats.mean - reference.stats.mean) / per
 
-  /** Half width of its 95 % interval, by the spread of the runs at both. */
+  /** Half width of the deviation's 95 % interval, from the spread of the runs at the point and at the
+    * reference.
+    */
   def halfWidth(point: MarginPoint): Double =
     math.hypot(point.stats.studentHalfWidth95, reference.stats.studentHalfWidth95) / per
 
-  /** The mean round trip, ms, up to which the result stays within the tolerance, by straight lines. */
+  /** The mean round trip, ms, up to which the result stays within the tolerance, interpolated linearly. */
   def margin: Bound = holds((off, _) => off)
 
-  /** The margin's 95 % interval: where the result may have left the tolerance first, and where it must have.
+  /** The margin's 95 % interval: from the first mean round trip at which the result may have left the
+    * tolerance, to the first at which it must have.
     */
   def interval: (from: Bound, to: Bound) =
     (from = holds((off, half) => off + half), to = holds((off, half) => (off - half).max(0)))

@@ -4,11 +4,11 @@ import skein.signal.LatencyProfile
 import skein.units.Decimals.significant
 import skein.units.{Expect, Span}
 
-/** The text form of constant round trips at even distances: `50ms..200ms/4`. */
+/** The text form of evenly spaced constant round trips: `50ms..200ms/4`. */
 object MarginDelays:
   private val form = "FROM..TO/COUNT, for example 50ms..200ms/4"
 
-  /** @return Left states the form that was expected, and the text */
+  /** @return Left states the expected form and the given text */
   def read(text: String): Either[String, Vector[LatencyProfile]] =
     def wrong = s"expected $form, came '$text'"
     text match

@@ -9,13 +9,13 @@ import skein.units.Vector3
   * @param unit may be empty
   */
 enum MarginJudge(val name: String, val unit: String):
-  /** The number that is the program's last line. */
+  /** The number in the last line that the program prints. */
   case Printed extends MarginJudge("the printed number", "")
 
   /** Contacts of all vehicles with objects of the scene. */
   case Contacts extends MarginJudge("contacts", "")
 
-  /** A measure of where the vehicles truly were. */
+  /** A measure of the vehicles' true positions. */
   case Flown(measure: Measure) extends MarginJudge(measure.name, measure.unit)
 
 object MarginJudge:

@@ -19,18 +19,18 @@ final case class MarginRun(
 )
 
 object MarginRun:
-  /** Why a run counts for nothing: the program's fault, or the machine's. */
+  /** Why a run does not count: the program's fault, or the machine's. */
   enum NoResult(val why: String):
-    /** The program did not do what could be judged. */
+    /** The program did nothing that could be judged. */
     case OfProgram(reason: String) extends NoResult(reason)
 
     case Starved(reason: String) extends NoResult(reason)
 
-  /** How a run went, seen from outside.
+  /** The course of a run, observed from outside.
     *
     * @param exit the program's exit status, if it ended by itself
     * @param commands to vehicles
-    * @param silentFor time since anything had passed, at the end
+    * @param silentFor time from the last message to the end
     * @param lastLine of its standard output, not blank; `lastError`: of its standard error
     * @param contacts while it was judged
     * @param tracks of the judged part; absent if that is too short
@@ -49,7 +49,7 @@ object MarginRun:
       starved: Option[String]
   )
 
-  /** The value of a run; its program's failure precedes the machine's. */
+  /** The value of a run; a failure of the program takes precedence over one of the machine. */
   def judged(by: MarginJudge, ended: Ended): Either[NoResult, Double] =
     died(ended)
       .orElse(hung(by, ended))

@@ -4,10 +4,11 @@ import java.util.concurrent.{Callable, Executors}
 import skein.signal.{LatencyProfile, SplitMix64}
 import skein.units.Decimals.brief
 
-/** All runs of a margin, in turns over the links, so that a change of the machine's load meets all alike.
+/** All runs of a margin, in turns over the links, so that a change of the machine's load affects all links
+  * alike.
   *
-  * @param atOnce most runs side by side
-  * @param isStopped whether no more runs are to begin
+  * @param atOnce limit of the runs side by side
+  * @param isStopped whether no further run begins
   * @param onEnded receives a line for each run that has ended
   */
 final class MarginRuns(
@@ -21,7 +22,7 @@ final class MarginRuns(
 ):
   import MarginRuns.*
 
-  /** Blocks until all have ended.
+  /** Executes all runs. Blocks.
     *
     * @param links the first one is the reference: if the program fails in its first run there, no other
     *   follows
@@ -54,7 +55,7 @@ final class MarginRuns(
       Done(which, ended.run, ended.printed)
 
   private def flown(links: Vector[LatencyProfile], done: Vector[Done]) =
-    // A run that was cut short says nothing.
+    // A run that was cut short is not counted.
     val whole = if isStopped() then done.filter(_.run.value.isRight) else done
     Flown(
       links.zipWithIndex.map((link, index) =>
@@ -65,7 +66,7 @@ final class MarginRuns(
 
 object MarginRuns:
   /** @param points in the order of the links
-    * @param printed what each program printed: link, number of the run, text
+    * @param printed each program's output: link, number of the run, text
     */
   final case class Flown(points: Vector[MarginPoint], printed: Vector[(String, Int, String)])
 

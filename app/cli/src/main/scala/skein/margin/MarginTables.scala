@@ -73,7 +73,7 @@ object MarginTables:
       Section("Runs without a result", "", Some(TextTable(Vector("<link", "runs", "<why"), rows)))
     )
 
-  /** What a margin rests on, and what it cannot know; a paragraph each. */
+  /** The basis of a margin and its limits, a paragraph each. */
   def remarks(curve: MarginCurve, atOnce: Int): Vector[String] =
     val all     = (curve.reference +: curve.points).flatMap(_.runs)
     val starved = all.count(_.value match

@@ -16,7 +16,7 @@ import skein.signal.LatencyProfile
 import skein.simulator.{SimulatorServer, SimulatorSettings}
 import skein.units.*
 
-/** Runs a program against a simulator of its own, by the clock.
+/** Runs a program against a simulator of its own, in real time.
   *
   * @param command `{port}` in its words stands for the simulator's port
   * @param scenario whose vehicles hover at their starts when the program begins
@@ -36,10 +36,10 @@ final class MarginTrial(
   import MarginTrial.*
   private given ExecutionContext = ExecutionContext.parasitic
 
-  /** Blocks until the run has ended.
+  /** Executes a run. Blocks.
     *
-    * @param isStopped whether it is to end early; its result counts for nothing then
-    * @return the run, and what the program printed; Left states why no program can be run
+    * @param isStopped whether the run must end early; its result is not counted then
+    * @return the run, and what the program printed; Left states why the program cannot be run
     */
   def run(
       link: LatencyProfile,
@@ -52,8 +52,8 @@ final class MarginTrial(
         run <- flown(server, observer(EmulatedLink(LinkProfile.symmetric(link), seed, clock)), isStopped)
       yield run
 
-  /** Calls the simulator through an observer for a while, so that their code is compiled before a run counts;
-    * then their threads precede others, where the system allows it. Blocks.
+  /** Calls the simulator through an observer for a while, so that their code is compiled before a run counts,
+    * and then gives the control threads precedence, where the system allows it. Blocks.
     */
   def warmUp(): Unit =
     simulated(SimulatorSettings(address = AnyPort)): (_, transport, observer) =>
@@ -112,7 +112,7 @@ final class MarginTrial(
     try awaited(Preparation(client, clock).place(scenario.fleet)).map(_ => ())
     finally awaited(client.close()): Unit
 
-  /** Watches one run: where the vehicles truly are, and how busy the machine is. */
+  /** Watches one run: the vehicles' true positions, and the load of the machine. */
   private final class Watch(
       server: SimulatorServer,
       proxy: ObservingProxy[Observed],
@@ -197,7 +197,7 @@ object MarginTrial:
 
   private val Warming = Span.ofSeconds(3)
 
-  /** Time from one look at the vehicles to the next: the step of [[skein.scenario.Tracks]]. */
+  /** Interval between two readings of the vehicles: the step of [[skein.scenario.Tracks]]. */
   private val Every = Span.ofMillis(20)
 
   private def awaited[A](future: Future[A]): A = Await.result(future, Duration.Inf)

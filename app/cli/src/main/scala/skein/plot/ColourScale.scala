@@ -4,7 +4,7 @@ import skein.units.Decimals.significant
 
 /** Colours for values between two ends; values beyond an end have its colour.
   *
-  * @param beyond which ends also stand for values beyond them; the bar marks these
+  * @param beyond the ends whose colour also stands for values beyond them; the bar marks these
   */
 final case class ColourScale(
     from: Double,
@@ -58,8 +58,8 @@ object ColourScale:
     Vector(0x440154, 0x472d7b, 0x3b528b, 0x2c728e, 0x21918c, 0x28ae80, 0x5ec962, 0xaddc30, 0xfde725)
   )
 
-  /** White at zero, blue below and red above (ColorBrewer's RdBu, reversed), symmetric around zero; one side
-    * only, where all values are on one side.
+  /** White at zero, blue below and red above (ColorBrewer's RdBu, reversed), symmetric around zero; only one
+    * side if all values have one sign.
     *
     * @param least at most 0
     * @param most at least 0

@@ -7,7 +7,7 @@ final case class Drawing(width: Double, height: Double, shapes: Vector[Mark])
 
 object Drawing:
 
-  /** Drawings side by side and line by line; every cell is as large as the largest drawing. */
+  /** Arranges drawings in rows of `columns`; every cell is as large as the largest drawing. */
   def grid(cells: Seq[Drawing], columns: Int): Drawing =
     require(cells.nonEmpty && columns > 0, "a grid needs a cell and a column")
     val width  = cells.map(_.width).max

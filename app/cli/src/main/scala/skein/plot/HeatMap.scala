@@ -32,7 +32,7 @@ final case class HeatMap(xs: Vector[Double], ys: Vector[Double], values: Vector[
     else if index == values.size then values.last + (values.last - values(values.size - 2)) / 2
     else (values(index - 1) + values(index)) / 2
 
-  /** The contour of a level: straight pieces between points of the grid (marching squares); none beside a
+  /** The contour of a level: straight pieces between points of the grid (marching squares); no piece beside a
     * missing value.
     */
   def contour(level: Double): Vector[((Double, Double), (Double, Double))] =

@@ -6,7 +6,7 @@ import skein.units.Decimals.fixed
 final case class PlotAxis(label: String, from: Double, to: Double, ticks: Vector[Double]):
   require(from < to, s"axis '$label' runs from $from to $to")
 
-  /** A value's position: 0 at the axis' begin, 1 at its end. */
+  /** A value's position on the axis: 0 at its begin, 1 at its end. */
   def share(value: Double): Double = (value - from) / (to - from)
 
   /** A tick's label, with as many decimals as the ticks' distance needs. */
@@ -18,7 +18,7 @@ final case class PlotAxis(label: String, from: Double, to: Double, ticks: Vector
 
 object PlotAxis:
 
-  /** An axis that ends at ticks and contains all values. */
+  /** An axis whose ends are ticks, and that contains all values. */
   def around(label: String, least: Double, most: Double, ticks: Int = 5): PlotAxis =
     val upper = if most > least then most else least + 1
     val step  = niceStep((upper - least) / ticks)
@@ -26,7 +26,6 @@ object PlotAxis:
     val to    = math.ceil(upper / step - 1e-9) * step
     PlotAxis(label, from, to, ticksBetween(from, to, step))
 
-  /** An axis with exactly these ends. */
   def exactly(label: String, from: Double, to: Double, ticks: Int = 5): PlotAxis =
     PlotAxis(label, from, to, ticksBetween(from, to, niceStep((to - from) / ticks)))
 
@@ -35,7 +34,7 @@ object PlotAxis:
     val middle = (values.min + values.max) / 2
     exactly(label, middle - length / 2, middle + length / 2)
 
-  /** The smallest of 1, 2, 5 × 10^n^ that is not below `atLeast`. */
+  /** The smallest number of the form 1, 2 or 5 × 10^n^ that is not below `atLeast`. */
   private def niceStep(atLeast: Double): Double =
     val power = math.pow(10, math.floor(math.log10(atLeast)))
     Seq(1, 2, 5, 10).map(_ * power).find(_ >= atLeast * (1 - 1e-9)).getOrElse(10 * power)

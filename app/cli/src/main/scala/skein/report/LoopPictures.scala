@@ -9,13 +9,13 @@ import skein.measure.FlightSet
 import skein.policy.Fleet
 import skein.scenario.Scenarios
 
-/** Graphs of the loops of a set of flights, each for its number of vehicles. */
+/** Graphs of the loops of a set of flights, each drawn for its number of vehicles. */
 object LoopPictures:
 
   /** @param isInPacket whether its commands carry plans */
   final case class Loop(kind: AnyLoop, fleet: Fleet, isInPacket: Boolean = false)
 
-  /** Most vehicles of a picture that is readable. */
+  /** Limit of the vehicles of a readable picture. */
   private val MostVehicles = 8
 
   /** Pictures of the loops; blocks, since it starts each loop for a moment. */

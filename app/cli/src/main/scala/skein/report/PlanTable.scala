@@ -3,7 +3,7 @@ package skein.report
 import skein.measure.{DistanceCurve, FlightSet}
 import skein.units.Decimals.{brief, fixed}
 
-/** How plans were made, and their results, as a table. */
+/** The effort of planning and the plans' results, as a table. */
 object PlanTable:
 
   /** Distance below which an evader is captured, m. */

@@ -16,7 +16,7 @@ import skein.units.Expect
 /** Turns recordings into tables and pictures; needs only the recordings. */
 object Report:
 
-  /** Summarises recordings, each flight once. Tries all, and names every unreadable one. Blocks. */
+  /** Summarises recordings, each flight once. Tries all, and lists every unreadable one. Blocks. */
   def read(files: Seq[Path])(using Scenarios): Either[Seq[RecordError], FlightSet] =
     readOnce(files).map(_.flights)
 
@@ -126,6 +126,5 @@ object Report:
 
   private val DuckDb = ".duckdb"
 
-  /** Maps items on all cores, keeping their order. */
   private def onAllCores[A, B](items: Seq[A])(f: A => B): Vector[B] =
     InParallel.map(items, Runtime.getRuntime.availableProcessors)(f)

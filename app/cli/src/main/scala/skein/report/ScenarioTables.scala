@@ -76,8 +76,8 @@ object ScenarioTables:
 
   private val MostListed = 5
 
-  /** A row per loop and link: of each measure mean ± standard deviation, least … most over the flights, and
-    * how many have no value and why; of counts the total and the flights that have any.
+  /** A row per loop and link. For each measure: mean ± standard deviation, least … most over the flights, and
+    * how many flights have no value, and why. For counts: the total, and the number of flights with any.
     */
   def spread(flown: ScenarioFlights): TextTable =
     val groups = flown.flights.groupBy(flight => (flight.summary.name, flight.summary.flight.link))

@@ -47,7 +47,7 @@ object SummaryTables:
     if flight.starved.isDefined then "starved" else share.fold("")(share => s"${(share * 100).signed(1)} %")
 
   /** Ages and times since moves in ms as `mean/p50/p99`, each beside the paper's mean, and the mean true
-    * ages; by the role that the decision was for. Without one of the paper's flights there is no comparison.
+    * ages; by the role of the deciding vehicle. Without one of the paper's flights there is no comparison.
     */
   def observations(set: FlightSet): TextTable =
     val paper = Option.when(set.flights.exists(_.published.nonEmpty))("paper").toVector
@@ -78,7 +78,7 @@ object SummaryTables:
     case TimingObservation.SinceOwnMove      => "own move"
     case TimingObservation.SinceOpponentMove => "opp.'s move"
 
-  /** Counts of work and of problems; of the rarer kinds of events those that occurred. */
+  /** Counts of work and of problems; of the rarer kinds of events, only those that occurred. */
   def counts(set: FlightSet): TextTable =
     val always = Set(EventKind.Dropped, EventKind.Skipped, EventKind.TimedOut)
     val kinds  =
@@ -91,8 +91,8 @@ object SummaryTables:
           kinds.map(summary.count(_).toString)
     )
 
-  /** Image recognition: number of images, how long recognition took, age at the decision, and the error of
-    * the estimate at the exposure.
+  /** Image recognition: number of images, duration of recognition, age at the decision, and the error of the
+    * estimate at the exposure.
     */
   def seen(flights: Seq[FlightSummary]): TextTable =
     def spread(values: Option[Distribution], digits: Int) =
@@ -193,8 +193,7 @@ object SummaryTables:
     yield s"${summary.flight.id} was paused for ${span.toSeconds.fixed(1)} s: its vehicles hovered and " +
       "nothing was decided; its times and distances include this, so it is not compared with other flights"
 
-  /** A line for each flight whose moves waited for answers: there, predicting loops gain by sending more of
-    * them.
+  /** A line for each flight whose moves waited for answers: predicting loops gain from sending more of them.
     */
   private def waiting(set: FlightSet): Vector[String] =
     for
@@ -210,7 +209,7 @@ object SummaryTables:
 
   private val Predicting = Set(LoopKind.Predictive.label, LoopKind.Plan.label)
 
-  /** Mean interval between moves, in periods, from which a remark is made: some moves are always late. */
+  /** Mean interval between moves, in periods, from which a remark is made: a few moves are always late. */
   private val WaitingFrom = 1.25
 
   val twinsNote: String =

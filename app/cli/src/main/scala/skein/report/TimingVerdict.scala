@@ -103,7 +103,7 @@ object TimingVerdict:
         s"${apartM.fixed(1)} m between vehicles, before a command answers to what was read"
     )
 
-  /** The median distance between the two vehicles that are nearest by it. */
+  /** The median distance between the two vehicles with the least median distance, m. */
   private def separationM(flight: FlightSummary): Option[Double] =
     val near  = flight.tracks.take(MostCompared)
     val apart =
@@ -115,7 +115,7 @@ object TimingVerdict:
       yield metres.median
     apart.minOption
 
-  /** Most vehicles of a large team that are compared. */
+  /** Limit of the vehicles of a large team that are compared. */
   private val MostCompared = 8
 
   private def percent(share: Double) = s"${(100 * share).fixed(1)} %"

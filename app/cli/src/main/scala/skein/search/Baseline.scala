@@ -13,7 +13,6 @@ final case class Baseline(word: String, name: String, parameters: Vector[(String
   def candidate: Vector[Double] = parameters.map(_._2)
 
 object Baseline:
-  /** The paper's policy of a role, as a baseline. */
   def of(paper: PolicyFile): Baseline =
     Baseline(
       "paper",

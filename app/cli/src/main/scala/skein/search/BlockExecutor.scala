@@ -8,7 +8,7 @@ import scala.concurrent.{Await, Future}
 /** Computes blocks of work in other processes. */
 trait BlockExecutor:
   /** @param onAnswer called with each answer as it arrives, in any order, on any thread
-    * @return the answers in the order of the works; None if it was cancelled; Left states why there are none
+    * @return the answers in the order of the blocks; None if it was cancelled; Left states why there are none
     */
   def compute(
       works: Vector[ArraySeq[Byte]],
@@ -16,7 +16,7 @@ trait BlockExecutor:
   ): Future[Either[String, Option[Vector[ArraySeq[Byte]]]]]
   def cancel(): Unit
 
-  /** Has works computed; blocks the calling thread.
+  /** Has blocks computed. Blocks the calling thread.
     *
     * @param isCancelled checked several times a second; true ends the computation
     * @param onAnswer called with each answer as it arrives, in any order, on the calling thread

@@ -12,7 +12,7 @@ import skein.optimise.{Evaluator, RunningStats}
 final class ClusterEvaluator(elsewhere: BlockExecutor, judge: Judge, atMost: Int, onWait: Long => Unit)
     extends Evaluator:
 
-  /** A whole round in one call: there are always enough workers. */
+  /** A whole round in one call: the workers share its blocks. */
   override def sideBySide: Int = 1 << 30
 
   def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[RunningStats] =

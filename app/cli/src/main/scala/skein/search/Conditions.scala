@@ -15,7 +15,7 @@ import upickle.implicits.key
   *
   * @param plant see [[VehicleChoice.parse]]
   * @param eye a file of [[SensorFile]]: the pursuer observes the evader only through this sensor
-  * @param movesInFlight most unanswered moves of one vehicle
+  * @param movesInFlight limit of one vehicle's unanswered moves
   */
 final case class Conditions(
     loop: String,
@@ -78,8 +78,8 @@ object Conditions:
     /** Whether the pursuer observes the evader only through a sensor. */
     def sees: Boolean = duel.pursuer.eye.isDefined
 
-    /** The ground truth with these vehicles and this period: a world that waits, and a pursuer that knows the
-      * evader's state.
+    /** The ground truth with these vehicles and this period: a world that stands still while the controller
+      * decides, and a pursuer that knows the evader's state.
       */
     def paused: Resolved =
       copy(
@@ -87,7 +87,7 @@ object Conditions:
         duel = duel.copy(pursuer = duel.pursuer.copy(eye = None))
       )
 
-  /** The loop's timing as `./skein fly` runs it; where it predicts, by the best model of the vehicles. */
+  /** The loop's timing in `./skein fly`. A loop that predicts uses the best model of the vehicles. */
   private def timing(
       loop: LoopKind,
       period: Span,

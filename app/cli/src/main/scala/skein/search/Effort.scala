@@ -3,7 +3,7 @@ package skein.search
 import skein.lanes.Engine
 import skein.settings.VehicleChoice
 
-/** Default numbers of episodes: fewer where one costs more.
+/** Default numbers of episodes: fewer where an episode costs more.
   *
   * @param freshEpisodes for evaluating a search's winner
   * @param landscapeEpisodes for each point of the objective's landscape
@@ -22,7 +22,7 @@ final case class Effort(
   def within(fresh: Int): Effort = copy(landscapeEpisodes = landscapeEpisodes.min(fresh))
 
 object Effort:
-  /** Episodes that one core flies in about half a second. */
+  /** Number of episodes that one core simulates in about half a second. */
   def blockEpisodes(isFast: Boolean, vehicle: VehicleChoice): Int =
     (isFast, vehicle.fliesInSteps) match
       case (true, false)  => 32768
@@ -37,10 +37,10 @@ object Effort:
 
   /** The effort of duels.
     *
-    * @param together of candidates that share their episodes
-    * @param alone of worlds with delays of their own
-    * @param sees whether somebody knows of the other by a sensor: what follows from images costs several
-    *   times what all else does, and more with images of a world's own
+    * @param together engine of candidates that share their episodes
+    * @param alone engine of worlds with delays of their own
+    * @param sees whether a vehicle observes the other by a sensor: an episode with images costs several times
+    *   one without, and more if each world has its own images
     */
   def of(together: Engine, alone: Engine, vehicle: VehicleChoice, sees: Boolean): Effort =
     def level(engine: Engine, isDear: Boolean) = (engine.isFast, isDear) match
@@ -56,7 +56,7 @@ object Effort:
   /** Fresh episodes of a team: few enough for the scalar engine to simulate in seconds. */
   val TeamsFresh = 256
 
-  /** The effort of flights in virtual time, which run at some a second. */
+  /** The effort of flights in virtual time, of which a few are simulated a second. */
   val OfFlights: Effort = Effort(16, 1, 5, 2, onCurve = 9)
 
   def ofTeam(engine: Engine): Effort =
@@ -64,5 +64,5 @@ object Effort:
 
   private val ScalarTeams = Effort(TeamsFresh, 2, 7, 10)
 
-  /** Of a team whose measures are of whole flights, by the scalar engine. */
+  /** The effort of a team with measures of whole flights, on the scalar engine. */
   val OfScalarFlights: Effort = ScalarTeams.copy(cellEpisodes = 4)

@@ -21,8 +21,8 @@ final case class Landscape(
     cells: Vector[Vector[RunningStats]]
 ):
 
-  /** The median of the cells' standard errors: a bound on how much means differ by chance alone; less where
-    * their episodes share random numbers.
+  /** The median of the cells' standard errors: a bound on how much means differ by chance alone. If episodes
+    * share random numbers, they differ less.
     */
   def standardError: Double =
     Distribution.of(cells.flatten.map(tally => tally.sd / math.sqrt(tally.count)).filter(_.isFinite))

@@ -5,9 +5,9 @@ import skein.plot.*
 import skein.units.Decimals.significant
 
 /** A landscape as a picture: a curve with the spread of the episodes for one parameter, else a map; the found
-  * candidate and the defaults are marked. The axis, or the scale of colours, fits the better nine tenths
-  * where the rest would take most of it. A map's legend states the standard error of a cell, since pure noise
-  * shows all the colours, too.
+  * candidate and the defaults are marked. The axis, or the scale of colours, ends after the better nine
+  * tenths of the values if the rest would take most of it. A map's legend states the standard error of a
+  * cell, since pure noise shows all colours, too.
   */
 object LandscapeFigure:
   private val width  = 560.0
@@ -78,11 +78,13 @@ object LandscapeFigure:
       )
     )
 
-  /** Broad and pale below the thin line of the default, so that both are visible where they coincide. */
+  /** The line of the found candidate: broad and pale below the default's thin line, so that both are visible
+    * where they coincide.
+    */
   private val foundLine   = Stroke(found.tinted(0.6), 5)
   private val defaultLine = Stroke(plain, 1.4, Vector(5, 3))
 
-  /** Ends of an axis that contain the means and most standard deviations. */
+  /** Ends of an axis that contain the means and most of the standard deviations. */
   private[search] def ends(near: Vector[(mean: Double, sd: Double)]): (Double, Double) =
     if near.isEmpty then (0.0, 1.0)
     else

@@ -6,14 +6,14 @@ import skein.plot.ColourScale
 
 /** Chooses the range of colours for a map of an objective. */
 object LandscapeScale:
-  /** The fraction of cells, the better ones, that are always distinguishable. */
+  /** The share of cells, the best ones, that are always distinguishable. */
   private val Told = 0.9
 
-  /** The greatest fraction of the scale that the other cells may take before it is cut. */
+  /** The greatest share of the scale that the other cells may take before it is cut. */
   private val MostOfRest = 0.25
 
-  /** A scale from the least to the greatest mean; where the worst tenth of the cells would take more than a
-    * quarter of it, the scale ends before them, so that cells near the best do not all have one colour.
+  /** A scale from the least to the greatest mean. If the worst tenth of the cells would take more than a
+    * quarter of it, the scale ends before them, so that cells near the best differ in colour.
     */
   def of(means: Vector[Double], direction: Direction): ColourScale =
     Distribution.of(means.filter(_.isFinite).map(direction.sign * _)) match

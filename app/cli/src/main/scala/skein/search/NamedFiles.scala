@@ -7,7 +7,7 @@ import skein.units.Expect
 
 /** Digests of the files that a question names, to detect later changes. */
 object NamedFiles:
-  /** SHA-256 of those names that are files, with or without a prefix such as `file:` or `mujoco:`. */
+  /** SHA-256 of the names that are files, with or without a prefix such as `file:` or `mujoco:`. */
   def digests(names: Seq[String]): Map[String, String] =
     (for
       name <- names

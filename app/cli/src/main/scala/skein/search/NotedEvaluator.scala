@@ -3,8 +3,8 @@ package skein.search
 import skein.lanes.Engine
 import skein.optimise.{Evaluator, RunningStats}
 
-/** Delegates to another evaluator, and records which engine evaluates each candidate: their policies may be
-  * of several forms. One call at a time.
+/** Delegates to another evaluator, and records the engine of each candidate: their policies may be of several
+  * forms. One call at a time.
   *
   * @param engine of a candidate
   */
@@ -24,11 +24,14 @@ final class NotedEvaluator(by: Evaluator, engine: Vector[Double] => Engine) exte
     note(of, episodes)
     by.talliesUnless(isCancelled)(of, episodes)
 
-  /** Records the engines; of a candidate's several rounds, only the one with the first episode counts. */
+  /** Records the engines. If a candidate is evaluated in several rounds, only the one with the first episode
+    * counts.
+    */
   private def note(of: Vector[Vector[Double]], episodes: Range): Unit =
     if episodes.start == 0 then of.foreach(each => candidates(engine(each)) += 1)
 
-  /** How many candidates were flown by something else than this, in a line for the user. */
+  /** A line for the user with the number of candidates that another engine than the expected one evaluated.
+    */
   def others(expected: Engine): Option[String] =
     val others = candidates.toVector.filter(_._1 != expected)
     Option.when(others.nonEmpty):

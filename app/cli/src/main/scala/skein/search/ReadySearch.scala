@@ -15,10 +15,10 @@ trait PosedSearch:
   /** @return Left states what was expected, what was given, and in which option */
   def setup(using Scenarios): Either[String, ReadySearch]
 
-  /** The names in the question, some of which may be those of files. */
+  /** The words of the question that may be names of files. */
   final def named: Seq[String] = Seq(link, conditions.plant) ++ conditions.eye
 
-/** What a search varies, and what flies with it. */
+/** The varied parameters of a search, and the scenario that they change. */
 trait Searched:
   def space: SearchSpace
 
@@ -37,9 +37,9 @@ trait Searched:
 
   def scenario(candidate: Vector[Double]): Scenario
 
-  /** What flies by forward simulation, with its own objective.
+  /** The vehicles of forward simulation, with their objective.
     *
-    * @param candidate of the baseline where that is judged
+    * @param candidate the baseline's if `judge` is the baseline
     * @param by the objective of a candidate with default parameters
     */
   def team(candidate: Vector[Double], judge: Judge, by: Objective): (Engagement, Objective)
@@ -50,12 +50,12 @@ trait Searched:
   /** Whether an engine is so fast that the scalar reference checks it. */
   def isFast(engine: Engine): Boolean
 
-  /** @param together of candidates
-    * @param alone of the winner
+  /** @param together engine of the candidates
+    * @param alone engine of the winner
     */
   def effort(together: Engine, alone: Engine, by: Conditions.Resolved): Effort
 
-  /** The result as a file that `./skein fly` accepts: its name and its text. */
+  /** Name and text of a file with the result that `./skein fly` accepts. */
   def file(found: Found, of: ReadySearch): (String, String)
 
 /** A search whose question is resolved: processes that resolve equal questions evaluate with identical bits.
@@ -103,7 +103,7 @@ final case class ReadySearch(
     val (flown, own) = searched.team(candidate, judge, objective)
     TeamCandidate(flown, own.judged(durationS, periodMs * 1e-3), searched.isAtOnePace)
 
-  /** A candidate's statistics by the scalar reference; None where that is the engine anyhow, or forward
+  /** A candidate's statistics by the scalar reference; None if that is the engine already, or forward
     * simulation cannot be used.
     */
   def reference(candidate: Vector[Double], episodes: Range): Option[RunningStats] = flownBy match
@@ -112,20 +112,20 @@ final case class ReadySearch(
       Some(scalar.tallies(Vector(candidate), episodes).head)
     case _ => None
 
-  /** What flies a candidate, or the baseline, where it is judged. */
+  /** The engine that evaluates a candidate, or the baseline, for `judge`. */
   def engine(candidate: Vector[Double], judge: Judge): Engine = flownBy match
     case TeamEngine.Reduced(_, delays) => asked.engine(team(candidate, judge), share(judge), Seq(delays))
     case TeamEngine.Whole(flights)     => flights.engine
 
-  /** A batch that is only queried for the engine of a candidate; for measures of quantities. */
+  /** A batch that is only queried for a candidate's engine; for measures of quantities. */
   private lazy val asked: TeamBatch = flownBy match
     case TeamEngine.Reduced(conditions, _) => conditions.batch(1, accelerator)
     case _: TeamEngine.Whole => throw IllegalStateException("whole flights are flown by no batch")
 
   private def share(judge: Judge) = judge == Judge.Candidates && sharing
 
-  /** Whether candidates share episodes: an episode's timetable costs as much as it saves some hundred
-    * candidates, so few fly faster each with delays of its own.
+  /** Whether candidates share episodes. Making an episode's timetable takes as long as it saves for some
+    * hundred candidates, so a few candidates are faster with delays of their own.
     */
   private lazy val sharing: Boolean = flownBy match
     case TeamEngine.Reduced(_, delays) =>
@@ -144,12 +144,14 @@ final case class ReadySearch(
 
   private def flown(judge: Judge) = engine(space.defaults, judge)
 
-  /** How many episodes are flown in a second, for people; where that is few, by flying one. */
+  /** Number of episodes per second, for people, measured by simulating whole flights; None with other
+    * engines.
+    */
   def rate(threads: Int): Option[String] = flownBy match
     case _: TeamEngine.Reduced     => None
     case TeamEngine.Whole(flights) => Some(flights.rate(scenario(space.defaults), objective, threads))
 
-  /** Whether it uses forward simulation, and not flights in virtual time. */
+  /** Whether it uses forward simulation, rather than flights in virtual time. */
   def fliesForward: Boolean = !isVirtual
 
   def effort: Effort = flownBy match
@@ -179,5 +181,5 @@ final case class ReadySearch(
 object ReadySearch:
   private val ShareFrom = 256
 
-  /** Fewest candidates in the play-off when flights are slow. */
+  /** Least number of candidates in the play-off when flights are slow. */
   private val LeastPlayOff = 2

@@ -53,13 +53,13 @@ object SearchBlock:
   /** Bytes of one candidate's encoded statistics. */
   private val OfTally = 20
 
-  /** Most bytes of a block's question, and of its answer. */
+  /** Limit of the bytes of a block's question, and of its answer. */
   private val MostBytes = 512 << 10
 
   /** Candidates in a block with SIMD: this many, or twice. */
   private val Lanes = 16
 
-  /** Most episodes that one block may contain. */
+  /** Limit of the episodes in one block. */
   val MostEpisodes: Int = MostBytes / 8
 
   /** Divides a call into blocks of at most `atMost` episodes, over all their candidates; into at least

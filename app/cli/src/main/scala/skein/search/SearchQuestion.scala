@@ -97,7 +97,7 @@ object SearchQuestion:
 
 /** A family's policies for one role, against an opponent.
   *
-  * @param duel that they fly in
+  * @param duel in which they are evaluated
   */
 private final class SearchedFamily(
     question: SearchQuestion,
@@ -126,7 +126,7 @@ private final class SearchedFamily(
 
   private def policy(candidate: Vector[Double]) = PolicyFile(role, family, candidate)
 
-  /** The found policy as a policy file: its name and its text. */
+  /** Name and text of a policy file with the found policy. */
   def file(found: Found, of: ReadySearch): (String, String) =
     val remarks =
       SearchResult.objective(of.text, of.unit, found.fresh, baseline.name, found.baseline) +

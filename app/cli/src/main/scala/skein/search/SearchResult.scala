@@ -62,7 +62,7 @@ object SearchResult:
   /** Number of the winner's fresh episodes, from the first, that are compared with the scalar reference. */
   val Checked = 8
 
-  /** A warning if the scalar reference differs on equal episodes. Single flights differ where rounding
+  /** A warning if the scalar reference differs on equal episodes. Single episodes differ where rounding
     * decides at a threshold; means over several hardly do.
     */
   def disagreement(flown: RunningStats, reference: RunningStats, unit: String): Option[String] =
@@ -128,7 +128,7 @@ object SearchResult:
       .root
       .render(ConfigRenderOptions.defaults.setOriginComments(false).setJson(false))
 
-  /** The first remarks of a policy file: its policy's result, and the paper's. */
+  /** The first remarks of a policy file: the result of its policy, and that of the paper's. */
   def objective(
       text: String,
       unit: String,

@@ -74,8 +74,8 @@ final case class TeamQuestion(
     yield ReadySearch(this, SearchedScenario(this, kind, space), by, engine, method, Some(fresh), seed)
 
   /** Chooses the engine: SIMD, where forward simulation supports the policies and the measures; world by
-    * world, where the scenario says when it is over, or measures are of whole flights; else flights in
-    * virtual time.
+    * world, where the scenario itself decides when it is over, or measures are of whole flights; else flights
+    * in virtual time.
     *
     * @param all the scenario with the plain settings, first, and with the bounds of the searched ones
     */
@@ -135,7 +135,7 @@ object TeamQuestion:
             s"nearest is '${Nearest.to(varied.key, numbers.keys.toSeq)}'"
         )
 
-/** Settings of a scenario within their bounds, each candidate as it flies. */
+/** A scenario's settings within their bounds; each candidate is one scenario. */
 private final class SearchedScenario(question: TeamQuestion, kind: ScenarioKind[?], val space: SearchSpace)
     extends Searched:
   import question.conditions.durationS
@@ -176,7 +176,7 @@ private final class SearchedScenario(question: TeamQuestion, kind: ScenarioKind[
 
   def effort(together: Engine, alone: Engine, by: Conditions.Resolved): Effort = Effort.ofTeam(together)
 
-  /** The result as a configuration that `./skein fly --config` accepts: its name and its text. */
+  /** Name and text of a configuration with the result, for `./skein fly --config`. */
   def file(found: Found, of: ReadySearch): (String, String) =
     def interval(tally: RunningStats) = SearchResult.interval(tally, of.unit)
     val settings                      = TeamQuestion.settings(question.set, space, found.best).toVector.sorted

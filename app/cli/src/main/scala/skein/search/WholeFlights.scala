@@ -12,11 +12,11 @@ import skein.simd.WorldRandom
 import skein.units.*
 import skein.vehicle.VehicleKind
 
-/** Episodes of a scenario that are simulated whole, one by one, for any policies and measures.
+/** Simulates whole episodes of a scenario, one by one, for any policies and measures.
   *
-  * @param vehicles what flies, for people
-  * @param model the same in a word
-  * @param fly an episode by its number; on the calling thread
+  * @param vehicles the vehicle model, for people
+  * @param model the vehicle model in one word
+  * @param fly simulates an episode by its number, on the calling thread
   */
 final class WholeFlights private (
     val vehicles: String,
@@ -37,7 +37,7 @@ final class WholeFlights private (
       WholeFlights.sum(terms, _).getOrElse(objective.direction.sign * WholeFlights.Never)
     )
 
-  /** How many episodes it flies in a second, for people. Flies twice to know. */
+  /** Number of episodes per second, for people. Simulates two to measure it. */
   def rate(scenario: Scenario, objective: Objective, threads: Int): String =
     def flown = value(scenario, objective, 0)
     val _     = flown
@@ -51,7 +51,7 @@ final class WholeFlights private (
 
 object WholeFlights:
   /** The value of an episode that never reaches one of its measures, in the objective's unit: worse, and
-    * further off the truth, than all that do.
+    * further from the truth, than that of any episode that does.
     */
   val Never = 1e6
 
@@ -60,7 +60,7 @@ object WholeFlights:
     val values = terms.flatMap((weight, measure) => measure.of(flown).map(weight * _))
     Option.when(values.size == terms.size)(values.sum)
 
-  /** Most flights in virtual time that a search may take: a day of them, at one a second. */
+  /** Limit of the flights in virtual time in one search: a day of them, at one a second. */
   val MostVirtual = 100_000
 
   /** A scenario for forward simulation.
@@ -71,7 +71,7 @@ object WholeFlights:
     try Right(Engagement.ofScenario(scenario, durationS))
     catch case refused: IllegalArgumentException => Left(Expect.refused(refused))
 
-  /** Why models of level flight do not fly a scenario; `tilt` and `quadrotor` do then. */
+  /** Why models of level flight do not support a scenario; `tilt` and `quadrotor` do then. */
   def climbs(flown: Engagement): Option[String] =
     flown.climbs.orElse:
       val altitudes = flown.agents.filter(_.kind != VehicleKind.Car).map(_.altitudeDownM)
@@ -126,7 +126,7 @@ object WholeFlights:
 
   /** Episodes by forward simulation, world by world.
     *
-    * @param why nothing faster flies them
+    * @param why no faster engine can be used
     */
   def scalar(flown: Conditions.Resolved, link: Delays, seed: Long, why: String): WholeFlights =
     WholeFlights(
@@ -149,7 +149,7 @@ object WholeFlights:
 
   /** The plant for a scenario.
     *
-    * @param climbs why models of level flight do not fly it
+    * @param climbs why models of level flight do not support it
     * @param plant a user's, or the default
     */
   def plant(
@@ -165,7 +165,7 @@ object WholeFlights:
       case Some(reason) if isTold => Left(s"--plant: expected $Tilt or $Spatial, came $plant: $reason")
       case Some(_)                => Right(if flown.isTraced then Tilt else Spatial)
 
-  /** @param why nothing faster flies them
+  /** @param why no faster engine can be used
     */
   def inVirtualTime(why: String): Engine = Engine(Engine.Kind.Flights, s"flights in virtual time: $why")
 

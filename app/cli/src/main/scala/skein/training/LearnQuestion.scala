@@ -17,8 +17,8 @@ import upickle.default.ReadWriter
   *
   * @param conditions of learning and evaluation
   * @param opponent a policy as [[PolicyFile.text]] writes it, of the other role; in the duel
-  * @param objective by which the policy is evaluated from time to time; the reward of learning is a small, or
-  *   a great, distance
+  * @param objective by which the policy is evaluated from time to time; the reward of learning is a small
+  *   distance, or a great one
   * @param steps of all environments together
   * @param environments that run side by side
   * @param lessonS duration of a learning episode, s
@@ -163,9 +163,9 @@ final case class LearnSetup(
     val (own, learned) = (evaluator(_ => team), evaluator(from => team.flownBy(role, family.policy(from))))
     judge => if judge == Judge.Baseline then own else learned
 
-  /** What flies while it learns. */
-  def engine: Engine =
-    if isOfTeam then EnvironmentBatch.engineOf(question.scenario) else EnvironmentBatch.EngineOfGame
+  /** The engine of the episodes while it learns; Left states what was expected and what was given. */
+  def engine(using Scenarios): Either[String, Engine] =
+    EnvironmentBatch.engine(environment, game.opponent, Some(family.defaultPolicy))
 
   /** @return Left states what was expected and what was given */
   def task(using Scenarios): Either[String, SideTask] =
@@ -178,7 +178,7 @@ final case class LearnSetup(
       link = question.link,
       periodMs = question.conditions.periodMs,
       plant = question.conditions.plant,
-      altitudeM = question.conditions.altitudeM,
+      altitudeM = if isOfTeam then 0 else question.conditions.altitudeM,
       episodeS = question.lessonS,
       startWithinM = (question.startLeastM, question.startMostM),
       turnRateRadPerS = question.turnRateRadPerS,
@@ -195,7 +195,8 @@ final case class LearnSetup(
   /** The objective with its unit, for the axis of a picture. */
   def measure: String = game.objective.title
 
-  /** Whether learning used the scenario's own policies for all others, as its flights do. */
+  /** Whether the scenario's own policies steered all other vehicles during learning, as they do in flights.
+    */
   def isFlownAsTaught: Boolean = game.opponent.forall(other => other == PolicyFile.paperOf(other.role))
 
   def policy(weights: Vector[Double]): PolicyFile =

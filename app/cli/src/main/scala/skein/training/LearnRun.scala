@@ -9,7 +9,7 @@ import skein.optimise.{Direction, Evaluator, RunningStats}
 import skein.scenario.Scenarios
 import skein.units.OwnFailure
 
-/** How learning ended.
+/** The end of learning.
   *
   * @param failure why it ended early, unless it was stopped
   */

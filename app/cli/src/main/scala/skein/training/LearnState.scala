@@ -27,7 +27,7 @@ final case class LearnState(
     best: Option[LearnBest] = None
 ) derives ReadWriter
 
-/** @param steps of all environments before it
+/** @param steps of all environments before the evaluation
   * @param mean of the objective over the evaluation's episodes
   */
 final case class LearnScore(steps: Long, mean: Double, sd: Double) derives ReadWriter

@@ -25,7 +25,7 @@ class BenchmarkSimulation extends munit.FunSuite, Unhurried:
     )
   )
 
-  test("each entry flies each cell once for each seed, beside the truth of the same world"):
+  test("each entry is simulated in each cell once per seed, and compared with the truth of the cell's world"):
     val benchmark = Benchmark(few, seeds = 2)
     var landed    = 0
     val rows      = benchmark.fly(more => landed += more).fold(fail(_), identity)
@@ -52,7 +52,7 @@ class BenchmarkSimulation extends munit.FunSuite, Unhurried:
     for cell <- BenchmarkSet.Published.cells; entry <- BenchmarkSet.Published.entries do
       assertEquals(cell.settings(entry, 1).map(_.plans.size), Right(1))
 
-  test("a policy flies beside the scenario's, in the tasks that have its role alone"):
+  test("a user's policy is compared with the scenario's only in tasks with its role"):
     val file = Files.writeString(
       Files.createTempDirectory("benchmark").resolve("mine.policy"),
       PolicyFile
@@ -89,7 +89,7 @@ class BenchmarkSimulation extends munit.FunSuite, Unhurried:
       seeds = 2
     ).mistake).exists(_.contains("expected with a scenario of a pursuer")))
 
-  test("an interval is that of the mean over seeds, and a truth of 0 gives no share"):
+  test("the interval is that of the mean over seeds, and a truth of 0 gives no deviation"):
     def flights(values: Double*) =
       values.toVector.map(value => BenchmarkFlight(Some(value), violations = 2, None, Vector.empty))
     val cell = few.cells.head

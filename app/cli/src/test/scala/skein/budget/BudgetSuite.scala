@@ -44,10 +44,10 @@ class BudgetSuite extends munit.FunSuite, Optimised:
     assert(off.last > 0.1, off)
     assertEquals(budget.cells.map(_.map(_.isDefined)).map(_.head), Vector(true, false, false))
 
-  test("the map does not depend on the threads"):
+  test("the map does not depend on the number of threads"):
     assertEquals(map(sweep("stream", 5, threads = 1)), map(sweep("stream", 5, threads = 3)))
 
-  test("a loop without a kernel has a map too, and progress counts its episodes"):
+  test("a loop without a SIMD kernel has a map, too, and progress counts its episodes"):
     var done   = 0L
     val flying = sweep("sequential", 2, durationS = 12)
     assert(flying.map(count => done = count, () => false).isRight)
@@ -109,7 +109,7 @@ class BudgetSuite extends munit.FunSuite, Optimised:
     val texts = BudgetFigure(Vector(map)).shapes.collect { case text: Mark.Text => text.content }
     assert(texts.exists(_.contains("jitter")) && texts.exists(_.contains("mean")), texts)
 
-  test("a marked link outside of the map is reported, since it is not drawn"):
+  test("a marked link outside the map is reported, since it is not drawn"):
     def texts(link: LatencyDistribution) =
       val map =
         shown(Vector(8, 8.2, 8.6)).copy(marks = Vector(BudgetMark("one", link, RunningStats(2, 8, 0))))
@@ -124,7 +124,7 @@ class BudgetSuite extends munit.FunSuite, Optimised:
     val (outside, isDrawnToo) = texts(LatencyDistribution.Vpn)
     assert(clue(outside).endsWith("; not drawn: the map ends before it, at 100 and 20 ms") && !isDrawnToo)
 
-  test("a map's legend names what is drawn, and its colours are those of the side that the values are on"):
+  test("a map's legend lists the drawn items, and its colours suit the signs of the values"):
     def labels(truth: Vector[Double]) = BudgetFigure.legend(Vector(shown(truth))).map(_.label)
     assert(!labels(Vector(8, 8, 8)).exists(_.contains("off the truth")), labels(Vector(8, 8, 8)))
     assert(labels(Vector(8, 8.2, 9)).exists(_.contains("off the truth")), labels(Vector(8, 8.2, 9)))

@@ -40,7 +40,7 @@ class ClusterSubjectSimulation extends munit.FunSuite, Optimised:
 
   private def tallies(of: BudgetSubject) = of.tallies(BudgetCells(links, 4))
 
-  test("cells computed by workers, one by one and in any order, have the bits of a local run"):
+  test("cells computed by workers, one by one and in any order, equal those of a local run to the bit"):
     val solver    = ClusterSubject.solvers.of(question).fold(fail(_), identity)()
     val elsewhere = new BlockExecutor:
       def cancel(): Unit                                                           = ()
@@ -50,7 +50,7 @@ class ClusterSubjectSimulation extends munit.FunSuite, Optimised:
     for (one, number) <- here.zipWithIndex do
       assertEquals(tallies(ClusterSubject(one, number, elsewhere, () => 1, Some(4))), tallies(one), one.label)
 
-  test("a worker with another result for the question's probe refuses it"):
+  test("a worker whose result differs from the question's probe refuses the question"):
     val other = String(question.toArray, "UTF-8").replaceAll("\"seed\":\"?3\"?", "\"seed\":4")
     val told  = ClusterSubject.solvers.of(ArraySeq.unsafeWrapArray(other.getBytes("UTF-8")))
     assert(clue(told).left.exists(_.startsWith("one episode does not come to the same")))

@@ -50,7 +50,7 @@ class ScenarioSubjectSimulation extends munit.FunSuite, Optimised:
     assertEqualsDouble(at(crossing, 0), truth, 0.1)
     assert(at(crossing, 400) > truth + 0.1, s"$truth")
 
-  test("a policy in three dimensions flies in space, whatever it is measured by"):
+  test("a policy in three dimensions is simulated in space, for any measure"):
     val drifting = subject(Drift(), conditions = Conditions("stream", "drag", 100, 10))
     assert(drifting.engine(Vector.empty).text.startsWith("scalar: furthest is of whole flights"))
     val truth = drifting.truth.fold(fail(_), identity)

@@ -15,7 +15,7 @@ class ArgumentsSuite extends munit.FunSuite:
     )
     assertEquals(Arguments.told(ParserForClass[LearnOptions].constructOrThrow(Nil)), Set.empty)
 
-  test("when a folder is continued, other given options are named"):
+  test("when a folder is continued, other given options are listed"):
     val may = Arguments.told(options.cluster) + "--json"
     assertEquals(
       Arguments.resumed(options, may, "--threads"),

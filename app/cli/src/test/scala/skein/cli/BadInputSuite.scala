@@ -46,7 +46,7 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     ))
     assert(Files.notExists(path.resolve("out")))
 
-  folder.test("of a flight whose policy throws at once, that alone is told"): path =>
+  folder.test("if a policy throws at its first decision, only that is reported"): path =>
     object Lost extends Policy:
       type Memory = Unit
       def start: Unit                                             = ()
@@ -64,7 +64,7 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     )
     assert(!ran.said.contains("nothing was decided"))
 
-  test("a folder of certificates without a name is refused, and so are more flights than can be kept"):
+  test("a certificates' folder without a name, and more flights than can be kept, are refused"):
     assertRefused(ClusterCommand, Seq("certificates", ""), "certificates: expected a folder, came ''")
     assertRefused(
       SpreadCommand("skein.cli.Main"),
@@ -155,7 +155,7 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       "--mavlink: expected loops other than paused"
     )
 
-  test("options of observe that a bag has no use for are refused with it"):
+  test("options of observe that have no effect with --bag are refused"):
     assertRefused(
       ObserveCommand,
       Seq("--bag", "walk.mcap", "--link", "vpn", "--seed", "2"),
@@ -167,7 +167,7 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       "skein observe: --bag: the bag is measured, and no program; came --ros, a program too"
     )
 
-  test("options of observe that a graph of ROS 2 has no use for are refused with it"):
+  test("options of observe that have no effect with --ros are refused"):
     assertRefused(
       ObserveCommand,
       Seq("--ros", "--link", "vpn", "--listen", "127.0.0.1:0"),
@@ -290,18 +290,18 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       assertEquals(ran.said.linesIterator.size, 1)
       assert(Files.notExists(out), name)
 
-  folder.test("a policy of a number that is too large is refused"): path =>
+  folder.test("a policy with a number that is too large is refused"): path =>
     val file = Files.writeString(
       path.resolve("policy.conf"),
       "family = lead-pursuit\nparameters { turnRateRadPerS = 1e999, lead = 1, speedRatio = 0.5 }"
     )
     assertRefused(FlyCommand(), Seq("--policy", file.toString), "expected a finite number, came 'Infinity'")
 
-  test("a simulator of endless speed is refused"):
+  test("a simulator of infinite speed is refused"):
     for speed <- Seq("Infinity", "NaN", "0", "1e9") do
       assertRefused(ServeCommand, Seq("--speed", speed), "--speed: expected more than 0 and up to 1000, came")
 
-  folder.test("a recording that cannot be read, or would not be made, is reported in a line"): path =>
+  folder.test("a recording that cannot be read or written is reported in a line"): path =>
     val unreadable = Path.of("/proc/self/mem")
     if Files.isRegularFile(unreadable) then
       assertRefused(ReportCommand(), Seq(unreadable.toString), s"cannot open recording $unreadable")
@@ -312,7 +312,7 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
         "expected a path without ';', '?' or '\\'"
       )
 
-  folder.test("no password is shown of what --record does not know"): path =>
+  folder.test("a password in an unknown --record is not printed"): path =>
     for one <- Seq("Postgres://me:secret@db/flights", "postgres:me:secret@db", "mysql://db?password=secret")
     do
       val ran = Ran.of(FlyCommand().run(Seq("--record", one, "--out", path.resolve("flights").toString)))

@@ -37,7 +37,7 @@ class BrowserAttackLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, 
 
   private val free = Address("127.0.0.1", 0)
 
-  /** Calls of MessagePack-RPC whose effect would be noticed. */
+  /** Calls of MessagePack-RPC with an observable effect. */
   private val calls: Array[Byte] =
     def text(said: String) = (0xa0 | said.length).toByte +: said.getBytes("US-ASCII")
     Array[Byte](0x94.toByte, 0, 1) ++ text("enableApiControl") ++ Array[Byte](
@@ -46,7 +46,9 @@ class BrowserAttackLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, 
     ) ++ text("") ++
       Array[Byte](0x94.toByte, 0, 2) ++ text("simPause") ++ Array[Byte](0x91.toByte, 0xc3.toByte)
 
-  folder.test("a page of another site reads nothing from any port, and none of its data are obeyed"): out =>
+  folder.test(
+    "a page of another site can read nothing from any port, and its requests have no effect"
+  ): out =>
     val (packages, browser) = (needed(JavaScriptTools.packages), needed(JavaScriptTools.browser))
     val transport           = TcpTransport()
     def simulator(mavlink: Option[MavlinkSettings], hil: Option[HilSettings]) =

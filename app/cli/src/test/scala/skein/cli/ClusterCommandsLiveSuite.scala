@@ -55,8 +55,7 @@ class ClusterCommandsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy
     isSo
 
   test(
-    "a search whose coordinator is killed leaves no worker behind; it goes on, and finds " +
-      "what one process finds, to the bit, though a worker is killed at its work"
+    "a search that continues after its coordinator and a worker were killed equals one process' to the bit"
   ):
     val out     = folder("resumed")
     val command =
@@ -95,7 +94,7 @@ class ClusterCommandsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy
       "a worker outlived its search"
     )
 
-  test("workers with vectors of 8 and of 16 lanes find together what one process finds, to the bit"):
+  test("workers with vectors of 8 and of 16 lanes find the result of one process, to the bit"):
     val at      = s"127.0.0.1:${Using.resource(ServerSocket(0))(_.getLocalPort)}"
     val out     = folder("lanes")
     val workers = Seq(32, 64).map: bytes =>

@@ -9,7 +9,7 @@ class CompletionSuite extends munit.FunSuite:
     val ran = Ran.of(Main.run(words))
     (ran.status, ran.said)
 
-  /** What bash offers for a line whose last word is being typed. */
+  /** Bash's suggestions for a line whose last word is being typed. */
   private def offered(line: String*): Set[String] =
     val script  = printed("completion", "bash")._2
     val words   = line.map(word => s"'$word'").mkString(" ")
@@ -26,14 +26,14 @@ class CompletionSuite extends munit.FunSuite:
     assertEquals(offered("./skein", "re"), Set("report", "replay"))
     assertEquals(offered("./skein", ""), Main.commands.map(_.name).toSet + "--help" + "--version")
 
-  test("bash completes every option of every command, as its own help tells them"):
+  test("bash completes every option of every command in its help"):
     for command <- Main.commands do
       val flags = offered("skein", command.name, "--")
       assertEquals(flags, command.options.map(_.flag).toSet + "--help", command.name)
       for flag <- flags if flag != "--help" do
         assert(command.help.contains(s"$flag"), s"${command.name} $flag")
 
-  test("bash completes the values that are known, and files where any may stand"):
+  test("bash completes known values, and file names where any value is valid"):
     assertEquals(offered("skein", "fly", "--clock", ""), Set("real", "virtual"))
     assertEquals(offered("skein", "fly", "--loop", "p"), Set("paused", "predictive", "plan"))
     assertEquals(offered("skein", "report", "build.s"), offered("skein", "fly", "--out", "build.s"))

@@ -19,18 +19,18 @@ import skein.simulator.{SimulatorServer, SimulatorSettings}
 import skein.testing.{Lengthy, Optimised}
 import skein.units.Clock
 
-/** Flights by the clock. */
+/** Documented flights in real time. */
 class DocumentedFlightsLiveSuite
     extends DocumentedCommands(DocumentedCommands.of(DocumentedCommands.Kind.Flight)),
       Lengthy
 
-/** What takes several processes. */
+/** Documented commands that need several processes. */
 class DocumentedClustersLiveSuite
     extends DocumentedCommands(DocumentedCommands.of(DocumentedCommands.Kind.Cluster)),
       Lengthy,
       Optimised
 
-/** Forward simulation, by vectors. */
+/** Documented searches and forward simulation, with SIMD. */
 class DocumentedSearchesLiveSuite
     extends DocumentedCommands(DocumentedCommands.of(DocumentedCommands.Kind.Search)),
       Lengthy,
@@ -43,15 +43,15 @@ class DocumentedCommandsLiveSuite
 /** One command of each kind and engine, before every commit. */
 class DocumentedSampleLiveSuite extends DocumentedCommands(DocumentedCommands.sample), Optimised
 
-/** Runs commands that README, guides, results and examples show, as they are written there, for a shorter
-  * time; [[DocumentedCommands.leftOut]] says which are not run, and why. Real sockets on loopback.
+/** Runs the commands of README, guides, results and examples as written there, for a shorter time;
+  * [[DocumentedCommands.leftOut]] states which are not run, and why. Real sockets on loopback.
   */
 abstract class DocumentedCommands(commands: Seq[String]) extends munit.FunSuite:
   import DocumentedCommands.files
   private given system: ActorSystem = ActorSystem("documented-commands")
   private lazy val folder           = Files.createTempDirectory("documented")
 
-  /** A simulator with the vehicles of the guide, which are those of the experiment. */
+  /** A simulator with the vehicles of the guide and the experiment. */
   private lazy val server =
     val page  = Files.readString(Documentation.root.resolve("docs/guides/airsim.md"))
     val text  = "(?s)```json\n(.*?)```".r.findFirstMatchIn(page).get.group(1)
@@ -99,9 +99,9 @@ abstract class DocumentedCommands(commands: Seq[String]) extends munit.FunSuite:
     ("--steps 1000 --environments 16 --lesson 5s --episodes 2 --fresh 4 --flights 1 --duration 12s " +
       "--updates-per-step 0.02").split(' ').toSeq
 
-  /** What makes a command short, and where its results go.
+  /** The command with options that make it short and set the folder of its results.
     *
-    * @param live how long flights by the clock last
+    * @param live duration of flights in real time
     */
   private def shortened(words: Seq[String], out: Path, live: String = "2s"): Seq[String] =
     val more = words.head match
@@ -142,7 +142,7 @@ abstract class DocumentedCommands(commands: Seq[String]) extends munit.FunSuite:
       )
       .map(words)
 
-  /** Reduces the number of flights, where a command states one. */
+  /** Reduces the number of flights, if a command states one. */
   private def few(words: Seq[String]): Seq[String] = words.indexOf("--seeds") match
     case -1 if words.head == "spread"           => words ++ Seq("--seeds", "2")
     case at if at > 0 && words.head == "spread" => words.updated(at + 1, "2")
@@ -189,7 +189,7 @@ abstract class DocumentedCommands(commands: Seq[String]) extends munit.FunSuite:
       Thread.sleep(20)
     (Await.result(ended, 1.second), said.toString)
 
-  /** Runs such a command in a process of its own, and stops it as Ctrl-C would. */
+  /** Runs such a command in a separate process, and stops it as Ctrl-C would. */
   private def runAProcessUntilItListens(words: Seq[String]): (Int, String) =
     val jvm     = ProcessHandle.current.info.command.get
     val agents  = java.lang.management.ManagementFactory.getRuntimeMXBean.getInputArguments.asScala
@@ -311,7 +311,7 @@ object DocumentedCommands:
 
   private lazy val readme: Vector[String] = shown(Documentation.root.resolve("README.md"))
 
-  /** As they are written. */
+  /** The commands in their documented form, except those that are not run. */
   lazy val documented: Vector[String] =
     val pages = Seq("docs/guides", "docs/results", "examples").flatMap(under =>
       files(Documentation.root.resolve(under))
@@ -326,13 +326,13 @@ object DocumentedCommands:
     .map(inVirtualTime(_, readme))
     .filter(command => kindOf(command) == kind && !runElsewhere.contains(command) && !isOfReaders(command))
 
-  /** A command that runs a program of the reader's, for minutes and by the clock; [[MarginCommandLiveSuite]]
-    * runs others.
+  /** A command that runs a reader's own program for minutes, in real time; [[MarginCommandLiveSuite]] runs
+    * others.
     */
   private def isOfReaders(command: String) = command.startsWith("margin ")
 
-  /** The first of those that differ in nothing that chooses an engine; flights by the clock but one, and
-    * processes, are for the nightly run.
+  /** One command of each kind and engine. Commands in several processes, and flights in real time except one,
+    * are left to the nightly run.
     */
   def sample: Vector[String] =
     val quick   = of(Kind.Search) ++ of(Kind.Other)
@@ -354,8 +354,8 @@ object DocumentedCommands:
     found => Option(found.group(1)).getOrElse(found.group(2))
   )
 
-  /** The guides' flights by the clock, where the clock is not what they are about: those of the README are
-    * flown live.
+  /** Adds `--clock virtual` to flights of the guides that do not depend on real time. Flights of the README
+    * stay live.
     */
   private def inVirtualTime(command: String, readme: Seq[String]): String =
     val isLive =

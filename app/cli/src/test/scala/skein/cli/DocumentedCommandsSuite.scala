@@ -15,7 +15,7 @@ class DocumentedCommandsSuite extends munit.FunSuite, TemporaryFolders:
 
   private val ofFiles = Set("--eye", "--learn", "--settings")
 
-  /** Stands for files that commands before wrote, and that a search of the reader's own found. */
+  /** Replaces files of earlier commands, and those found by a search of the reader's own. */
   private def withoutFiles(words: List[String]): List[String] = words match
     case option :: _ :: rest if ofFiles(option)                    => withoutFiles(rest)
     case "--policy" :: file :: rest if files.exists(file.contains) =>

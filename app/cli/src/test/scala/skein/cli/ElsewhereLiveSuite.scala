@@ -17,8 +17,7 @@ class ElsewhereLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
     ran.said
 
   test(
-    "two processes run flights with faults, each once; the command repeated runs none and starts no " +
-      "worker"
+    "two processes run each flight with faults once, and the repeated command runs none and starts no worker"
   ):
     val out = temporaryFolder()
     for found <- Seq("2 blocks counted, 0 more", "0 blocks counted, 2 more") do
@@ -44,7 +43,7 @@ class ElsewhereLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
           "--duration 12s --updates-per-step 0.02 --threads 1")
     )
   do
-    test(s"$name: two processes write what this one writes, to the bit, and every block counts once"):
+    test(s"$name: two processes write the result of a single one, to the bit, and every block counts once"):
       val (here, there) = (temporaryFolder(), temporaryFolder())
       ran(words, here): Unit
       val said    = ran(s"$words --workers 2", there)

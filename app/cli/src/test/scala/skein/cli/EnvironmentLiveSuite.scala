@@ -64,8 +64,7 @@ class EnvironmentLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
     assert(clue(OpenFiles.enoughFor(1, most = Some(64))).left.exists(_.contains("ulimit -n 126")))
 
   test(
-    "characters that a terminal cannot show are replaced, whole ones even if their bytes arrive " +
-      "separately"
+    "characters that a terminal cannot show are replaced, even if their bytes arrive separately"
   ):
     val shown = java.io.ByteArrayOutputStream()
     val plain = Terminal.Plain(shown, US_ASCII)

@@ -2,7 +2,7 @@ package skein.cli
 
 import skein.scenario.Scenarios
 
-/** `./skein fly --ros`, as far as it goes without ROS 2. */
+/** `./skein fly --ros`, up to the point that needs ROS 2. */
 class FlyRosSuite extends munit.FunSuite:
   private given Scenarios = Scenarios.ours
 
@@ -14,9 +14,13 @@ class FlyRosSuite extends munit.FunSuite:
     assertEquals(ran.err.linesIterator.size, 1, ran.err)
     ran.err
 
-  test("without ROS 2 a line says what is missing, before any warm-up"):
+  test("without ROS 2, a line states what is missing, before any warm-up"):
     assume(!Seq("AMENT_PREFIX_PATH", "LD_LIBRARY_PATH").exists(sys.env.contains), "ROS 2 may be here")
     assert(said(possible*).contains("--ros: ROS 2 was not found: expected librcl.so in lib of a folder of"))
+
+  test("where no loop is chosen, all fly that do not stop time"):
+    assume(!Seq("AMENT_PREFIX_PATH", "LD_LIBRARY_PATH").exists(sys.env.contains), "ROS 2 may be here")
+    assert(clue(said("--ros", "--link", "none")).contains("ROS 2 was not found"))
 
   for (what, words, expected) <- Seq(
       (

@@ -58,7 +58,7 @@ class KafkaTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
       assertEquals(Await.result(flying.landed, 60.seconds).outcome, FlightOutcome.Completed)
       flight.recorder
 
-  test("with certificates of one set a flight is decided by a solver behind a broker"):
+  test("with certificates of one set, a solver behind a broker decides a flight"):
     val topics = KafkaTopics(broker.address, "trusted")(own)
     val serves = solver(topics)(_ => ())
     Await.result(serves.start(), 60.seconds)
@@ -80,7 +80,7 @@ class KafkaTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
     for shown <- Seq(silent, stranger) do
       assert(clue(refused(broker.address, shown)).startsWith(notTrusted(broker.address)))
 
-  test("a broker under a name that its certificate does not contain receives no data"):
+  test("a broker at a host that its certificate does not contain receives no data"):
     val other = Address("localhost", broker.address.port)
     assert(clue(refused(other, own)).startsWith(notTrusted(other)))
 

@@ -11,7 +11,7 @@ class LauncherLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders:
   private val checkout =
     Iterator.iterate(File("").getAbsoluteFile)(_.getParentFile).find(File(_, "sbtw").exists).get
 
-  /** Where a build puts the program. */
+  /** The path at which a build puts the program. */
   private val program = "app/cli/target/package/skein-1.0-any"
 
   private val copy = FunFixture[Path](
@@ -54,7 +54,7 @@ class LauncherLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders:
     val said    = String(process.getInputStream.readAllBytes())
     (process.waitFor(), said)
 
-  copy.test("it is started through links to links, relative ones too"): folder =>
+  copy.test("the launcher starts through chains of symbolic links, also relative ones"): folder =>
     val links = Files.createDirectories(folder.resolve("links"))
     Files.createSymbolicLink(links.resolve("one"), Path.of("../skein"))
     Files.createSymbolicLink(links.resolve("two"), links.resolve("one"))
@@ -62,7 +62,7 @@ class LauncherLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders:
     assertEquals(status, 0, said)
     assert(clue(said).contains(s"$folder/$program/bin/skein: fly --seed 1"))
 
-  copy.test("an incomplete program is built again, and a complete one is not"): folder =>
+  copy.test("the launcher builds an incomplete program again, and not a complete one"): folder =>
     script(
       folder.resolve("sbtw"),
       s"""mkdir -p $program/bin $program/lib $program/runtime/bin
@@ -81,22 +81,21 @@ class LauncherLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders:
       assert(started(), taken)
       assert(!started(), taken)
 
-  copy.test("the program is built with its runtime and its cache, and of a new version after an old one"):
-    folder =>
-      assertEquals(run(folder, Map.empty, "./skein", "fly")._1, 0)
-      assertEquals(Files.readString(folder.resolve("target/build.log")), "sbt cli/program\n")
-      script(
-        folder.resolve("sbtw"),
-        s"""rm -r $program
+  copy.test("the program is built with its runtime and cache, and built again for a new version"): folder =>
+    assertEquals(run(folder, Map.empty, "./skein", "fly")._1, 0)
+    assertEquals(Files.readString(folder.resolve("target/build.log")), "sbt cli/program\n")
+    script(
+      folder.resolve("sbtw"),
+      s"""rm -r $program
          |mkdir -p ${program}er/bin
          |printf '#!/usr/bin/env bash\necho newer\n' >${program}er/bin/skein
          |chmod +x ${program}er/bin/skein""".stripMargin
-      )
-      Files.delete(folder.resolve(program).resolve("bin/skein"))
-      assert(clue(run(folder, Map.empty, "./skein", "fly")._2).endsWith("newer\n"))
-      assertEquals(run(folder, Map.empty, "./skein", "fly"), (0, "newer\n"))
+    )
+    Files.delete(folder.resolve(program).resolve("bin/skein"))
+    assert(clue(run(folder, Map.empty, "./skein", "fly")._2).endsWith("newer\n"))
+    assertEquals(run(folder, Map.empty, "./skein", "fly"), (0, "newer\n"))
 
-  copy.test("it is started without HOME"): folder =>
+  copy.test("the launcher starts without HOME"): folder =>
     val (status, said) = run(folder, Map("HOME" -> ""), "./skein", "--help")
     assertEquals(status, 0, said)
 

@@ -9,7 +9,7 @@ import scala.concurrent.{Await, Future, blocking}
 
 /** Starts programs through their launchers. */
 object Launchers:
-  private val checkout: Path =
+  val checkout: Path =
     Iterator.iterate(File("").getAbsoluteFile)(_.getParentFile).find(File(_, "sbtw").exists).get.toPath
 
   /** The staged launcher, made by `./sbtw cli/stage`; it may not exist. */

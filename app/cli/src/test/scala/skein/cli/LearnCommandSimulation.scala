@@ -38,14 +38,13 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
       assert(Files.size(folder.resolve("learning-curve.svg")) > 1000)
 
   test(
-    "pursuers of a team learn one policy, which flights and " +
-      "forward simulation fly in the place of all of theirs"
+    "a team's pursuers learn one policy, which replaces each one's in flights and forward simulation"
   ):
     val folder = temporaryFolder().resolve("learned")
     val words  = "--scenario surround --set vehicles=4 --objective off-ring --json".split(' ').toSeq
     val (status, out, err) = run(words ++ Seq("--out", folder.toString) ++ short)
     assertEquals(status, 0, err)
-    assert(err.contains("engine: scalar: environments of surround"), err)
+    assert(err.contains("engine: SIMD, "), err)
     val rows = ujson.read(out)("tables")(0)("rows").arr
     assertEquals(rows.map(_(0).str).toSeq, Seq("learned:8", "surround's own", "learned:8"))
     assertEquals(rows.map(_(5).str).toSeq, Seq("m", "m", "m"))
@@ -92,7 +91,7 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     assertEquals(refused, 1, why)
     assert(why.contains("--learn-noise: expected 0.0 to 1, came 2.0"), why)
 
-  test("learning that is stopped and continued has the same result, to the bit"):
+  test("learning that is stopped and continued has the result of an uninterrupted run, to the bit"):
     val question = LearnCommand
       .question(LearnOptionsOf(short))
       .fold(fail(_), identity)
@@ -116,7 +115,7 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     assertEquals(file.question, question)
     assertEquals(learn(folder, file.state, setup.rounds), whole)
 
-  test("a user who stops learning is shown how to continue, and the best policy is measured soon"):
+  test("a user who stops learning is shown how to continue, and soon the best policy's result"):
     val question = LearnCommand
       .question(LearnOptionsOf(short.updated(short.indexOf("--fresh") + 1, "150")))
       .fold(fail(_), identity)
@@ -143,7 +142,7 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     assert(goOn >= 0 && row > goOn, out)
     assert(lines(row).contains(" 100  m"), out)
 
-  test("learning does not continue with a link whose file has changed"):
+  test("learning does not continue over a link whose file has changed"):
     val folder   = temporaryFolder()
     val link     = Files.writeString(folder.resolve("link.txt"), "20\n30\n")
     val question =
@@ -157,7 +156,7 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     assertEquals(status, 1, err)
     assert(clue(err).contains(s"--resume: $link no longer holds what it held when learning began"))
 
-  test("an exception of user code during learning is reported, and the best policy until then is kept"):
+  test("an exception of user code during learning is reported, and the best policy so far is kept"):
     object Own extends SkeinApp(ScenarioKind(LearnedUntilItFails()))
     val folder = temporaryFolder().resolve("learned")
     val words  = "learn --scenario learned-until-it-fails --objective off".split(' ').toSeq ++ short
@@ -186,10 +185,7 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     refused("expected settings of the scenario, came --altitude", "--scenario", "surround", "--altitude", "9")
     def team(scenario: String, objective: String) = Seq("--scenario", scenario, "--objective", objective)
     refused("expected one of off-ring, gap, came 'ring'", team("surround", "ring")*)
-    refused(
-      "scenario: expected one with a pursuer and vehicles of another role",
-      team("formation", "slot-rms")*
-    )
+    refused("learners: expected one of leader, follower", team("formation", "slot-rms")*)
     refused("no measure of a quantity", team("blind-pursuit", "distance")*)
     refused("--side: expected pursuer or evader", "--side", "both")
     refused("--network: expected", "--network", "0x3")
@@ -206,10 +202,9 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
       "--set: expected 'vehicles' once, came 4 and 6",
       team("surround", "off-ring") ++ "--set vehicles=4 --set vehicles=6".split(' ')*
     )
-    refused("plant: the lanes know no ground", "--plant", "quadrotor", "--altitude", "3")
     refused("--batch: expected at most", "--algorithm", "ppo", "--batch", "60000")
 
-  folder.test("on a full disk the learner's previous numbers are kept, and no part of new ones"): path =>
+  folder.test("on a full disk the learner's previous numbers are kept unchanged"): path =>
     final class Numbers(isFull: Boolean) extends Learner:
       def actor: Network                                                     = ???
       def begin(round: Long): Unit                                           = ()

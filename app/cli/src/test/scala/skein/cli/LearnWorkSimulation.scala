@@ -37,7 +37,7 @@ class LearnWorkSimulation extends munit.FunSuite, Lengthy, Optimised:
       def compute(works: Vector[ArraySeq[Byte]], onAnswer: ArraySeq[Byte] => Unit) =
         Future.successful(Right(Some(works.reverse.map(solver.solve).reverse)))
 
-  test("episodes evaluated by workers have the bits of a local run"):
+  test("episodes evaluated by workers equal those of a local run to the bit"):
     for judge <- Seq(Judge.Winner, Judge.Baseline) do
       val elsewhere  = ClusterEvaluator(LearnWork.episodes(worker), judge, atMost = 16, _ => ())
       val candidates = Vector(if judge == Judge.Baseline then setup.baseline.candidate else policy.parameters)
@@ -49,7 +49,7 @@ class LearnWorkSimulation extends munit.FunSuite, Lengthy, Optimised:
     assertEquals(LearnWork.distances(worker, policy, 2)(()).map(_.flatten), Right(here))
     assertEquals(here.size, 2)
 
-  test("learning continues while a worker evaluates the policy, with the bits of a local run"):
+  test("learning continues while a worker evaluates the policy, with a local run's result to the bit"):
     val words =
       "--steps 2000 --environments 16 --lesson 5s --network 4 " +
         "--episodes 4 --duration 12s --updates-per-step 0.02"
@@ -69,7 +69,7 @@ class LearnWorkSimulation extends munit.FunSuite, Lengthy, Optimised:
     assertEquals(beside, learned(here, isElsewhere = false)(_ => ()))
     assert(beside.exists(_.state.scores.sizeIs >= 3), beside.toString)
 
-  test("a worker with another result for the question's probe refuses it"):
+  test("a worker whose result differs from the question's probe refuses the question"):
     val other = String(LearnWork.question(setup).toArray, UTF_8).replaceAll("\"seed\":\"?3\"?", "\"seed\":4")
     val told  = LearnWork.solvers.of(ArraySeq.unsafeWrapArray(other.getBytes(UTF_8)))
     assert(clue(told).left.exists(_.startsWith("the baseline comes to")))

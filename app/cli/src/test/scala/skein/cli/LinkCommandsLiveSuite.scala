@@ -37,7 +37,7 @@ class LinkCommandsLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders:
     assert(Files.readString(directory.resolve("latency.svg")).contains("</svg>"))
     assert(Files.size(directory.resolve("latency.png")) > 1000)
 
-  folder.test("without an emulated link the picture names the network that was measured"): directory =>
+  folder.test("without an emulated link, the picture's title is the measured network"): directory =>
     val (status, _, told) = run(
       LatencyCommand,
       Seq("--simulator", s"${server.address}", "--samples", "5", "--period", "20ms", "--out", s"$directory")*
@@ -46,7 +46,7 @@ class LinkCommandsLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders:
     val picture = Files.readString(directory.resolve("latency.svg"))
     assert(picture.contains(s"to ${server.address}") && !picture.contains("no link added"))
 
-  folder.test("a flight names the vehicles that the simulator lacks before anything warms up"): directory =>
+  folder.test("a flight reports vehicles that the simulator lacks before any warm-up"): directory =>
     val scenario          = Seq("--scenario", "formation", "--loop", "stream", "--link", "none")
     val (status, _, told) = run(
       FlyCommand(using Scenarios.ours),
@@ -61,7 +61,7 @@ class LinkCommandsLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders:
     assertEquals(status, 1)
     assert(told.contains("127.0.0.1:1"), told)
 
-  test("mistakes in options name the option and what was expected"):
+  test("a mistake in an option is reported with the option and what was expected"):
     assertEquals(
       run(LatencyCommand, "--period", "soon")._3.trim,
       "skein latency: --period: expected a duration with unit, such as 100ms, came 'soon'"

@@ -5,7 +5,7 @@ import skein.loop.{LoopEvent, OwnLoop, SnapshotGraph}
 import skein.scenario.Scenarios
 import skein.testing.{TemporaryFolders, Unhurried}
 
-/** A program with a loop of its own, as a user writes it: the vehicles take turns to decide. */
+/** A program with a user's own loop, in which the vehicles take turns to decide. */
 object TakingTurns extends SkeinApp(Scenarios.ours.kinds*):
   override def loops: Seq[OwnLoop] = Seq(
     OwnLoop(
@@ -29,7 +29,7 @@ class ListedLoopSimulation extends munit.FunSuite, Unhurried, TemporaryFolders:
     s"fly --clock virtual --loop paused --loop turns --link vpn --duration 12s --out $out"
   )
 
-  folder.test("a program's own loop is flown by its name, reported with its graph, and replayed"): folder =>
+  folder.test("a program's own loop is run by its name, reported with its graph, and replayed"): folder =>
     val flown = fly(folder)
     assertEquals(flown.status, 0, flown.said)
     assert(flown.out.linesIterator.exists(_.matches("turns +vpn +11.9 .*%.*")), flown.said)
@@ -44,20 +44,19 @@ class ListedLoopSimulation extends munit.FunSuite, Unhurried, TemporaryFolders:
     assertEquals(elsewhere.status, 0, elsewhere.said)
     assert(!elsewhere.said.contains("flown again"), elsewhere.said)
 
-  folder.test("an own loop can be spread and completed, and a program without it lists the loops it has"):
-    folder =>
-      val spread =
-        run(TakingTurns, s"spread --loop turns --link vpn --seeds 2 --duration 12s --out $folder/spread")
-      assertEquals(spread.status, 0, spread.said)
-      for name <- Seq("fly", "spread") do
-        val loop = TakingTurns.commands.find(_.name == name).get.options.find(_.flag == "--loop").get
-        assert(clue(loop.values).contains("turns"))
-      val unknown = run(Main, "fly --loop turns")
-      assertEquals(unknown.status, 1)
-      assert(
-        unknown.said.contains("expected one of paused, sequential, futures, stream, predictive, plan"),
-        unknown.said
-      )
+  folder.test("an own loop can be spread and completed, and a program without it lists its loops"): folder =>
+    val spread =
+      run(TakingTurns, s"spread --loop turns --link vpn --seeds 2 --duration 12s --out $folder/spread")
+    assertEquals(spread.status, 0, spread.said)
+    for name <- Seq("fly", "spread") do
+      val loop = TakingTurns.commands.find(_.name == name).get.options.find(_.flag == "--loop").get
+      assert(clue(loop.values).contains("turns"))
+    val unknown = run(Main, "fly --loop turns")
+    assertEquals(unknown.status, 1)
+    assert(
+      unknown.said.contains("expected one of paused, sequential, futures, stream, predictive, plan"),
+      unknown.said
+    )
 
   test("two loops with one name are refused"):
     val known = TakingTurns.scenarios

@@ -5,8 +5,8 @@ import skein.report.DuelReport
 import skein.scenario.Scenarios
 import skein.testing.{Lengthy, TemporaryFolders, Waiting}
 
-/** Programs are processes of this machine's shell. A JVM of its own, for the command gives its threads the
-  * lead.
+/** Programs are processes of this machine's shell. Runs in a separate JVM, since the command gives its
+  * threads precedence.
   */
 class MarginCommandLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
   private given Scenarios = DuelReport.scenarios
@@ -16,7 +16,7 @@ class MarginCommandLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, 
 
   private val once = Seq("--link", "constant:20ms", "--repeats", "1")
 
-  folder.test("a program that connects and prints a number is judged by it, over each link"): out =>
+  folder.test("a program that connects and prints a number is judged by that number, over each link"): out =>
     val program = "exec 3<>/dev/tcp/127.0.0.1/$SKEIN_PORT; echo hello; echo $(({port} - SKEIN_PORT + 7))"
     val ran     = run(out, once ++ Seq("--judge", "printed", "--", "bash", "-c", program)*)
     // A busy machine may spoil a run, and says so.

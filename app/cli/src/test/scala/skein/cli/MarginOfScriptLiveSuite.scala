@@ -6,8 +6,8 @@ import skein.report.DuelReport
 import skein.scenario.Scenarios
 import skein.testing.{Conclusive, Lengthy, PythonEnvironment, TemporaryFolders, Waiting}
 
-/** A script with AirSim's own Python client, flown by the clock, beside the simulation of the same policies
-  * in the loop that it copies.
+/** A script with AirSim's own Python client, run in real time, and the simulation of its policies in the loop
+  * that it copies.
   */
 class MarginOfScriptLiveSuite extends munit.FunSuite, Conclusive, TemporaryFolders, Lengthy, Waiting:
   private given Scenarios = DuelReport.scenarios

@@ -10,11 +10,11 @@ class MarginOptionsSuite extends munit.FunSuite:
 
   private def mistake(words: String*) = MarginCommand().checked(words).left.toOption
 
-  test("what stands behind -- is the program's, options included"):
+  test("words behind -- are the program's, including options"):
     assertEquals(mistake("--scenario", "duel", "--", "sh", "-c", "--judge", "--nothing"), None)
     assertEquals(ObserveCommand.checked(Seq("--", "sh", "-c", "exit 3")), Right(()))
 
-  test("a mistake is a line that names the option"):
+  test("a mistake is one line with the option's name"):
     for
       (words, line) <- Seq(
         Seq("--scenario", "duel") -> "expected a program behind --, for example -- python my.py {port}",

@@ -13,8 +13,8 @@ import skein.settings.*
 import skein.signal.SplitMix64
 import skein.view.RecordedShow
 
-/** Files that users name, each changed in a few places. A reader must accept it, or report in a line for each
-  * value what is wrong and where.
+/** Files that users name, each changed in a few places. A reader must accept such a file, or report each
+  * wrong value in a line with its place.
   */
 enum MutatedFiles(val suffix: String, base: => Array[Byte]):
   case Configuration extends MutatedFiles(".conf", MutatedFiles.configuration.getBytes(UTF_8))
@@ -33,7 +33,7 @@ enum MutatedFiles(val suffix: String, base: => Array[Byte]):
 
   /** Reads one mutant.
     *
-    * @return what its reader did wrong, if anything; whether the file was accepted; and the processor time
+    * @return the reader's mistake, if any; whether the file was accepted; and the processor time
     */
   def attempt(seed: Long, folder: Path)(using
       Scenarios

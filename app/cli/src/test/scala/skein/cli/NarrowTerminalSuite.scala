@@ -2,7 +2,7 @@ package skein.cli
 
 class NarrowTerminalSuite extends munit.FunSuite:
 
-  test("a progress line leaves the last column of a terminal free, and marks that it was cut"):
+  test("a progress line leaves a terminal's last column free, and shows whether it was cut"):
     val line = " 42 %  3 min left   best 8.31 m with pure-pursuit"
     for columns <- 1 to 80 do
       val shown = ProgressLine.cut(line, Some(columns))
@@ -12,7 +12,7 @@ class NarrowTerminalSuite extends munit.FunSuite:
     assertEquals(ProgressLine.cut(line, None), line)
 
   for columns <- Seq(60, 80, 100) do
-    test(s"no help wraps on $columns columns"):
+    test(s"no help text wraps on $columns columns"):
       for case command: OptionsCommand[?] <- Main.commands do
         val widest = command.help(columns).linesIterator.maxBy(_.length)
         assert(widest.length <= columns, s"${command.name}: ${widest.length} columns: '$widest'")

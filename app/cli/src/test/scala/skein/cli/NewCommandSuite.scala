@@ -14,7 +14,7 @@ class NewCommandSuite extends munit.FunSuite, TemporaryFolders:
     val ran = Ran.of(NewCommand.run(words))
     (ran.status, ran.said)
 
-  folder.test("a project is written completely, with its name, and no placeholder is left"): folder =>
+  folder.test("a project is written completely, with its name, and without placeholders"): folder =>
     val project = folder.resolve("somewhere")
     assertEquals(run("ridge-watch", "--out", project.toString)._1, 0)
     val files =
@@ -27,14 +27,14 @@ class NewCommandSuite extends munit.FunSuite, TemporaryFolders:
     assert(Files.isExecutable(project.resolve("skein")))
     assert(Files.readString(project.resolve("build.sbt")).contains("ridge-watch"))
 
-  folder.test("the printed commands can be typed into a shell, whatever the folder is called"): folder =>
+  folder.test("the printed commands can be typed into a shell, whatever the folder's name"): folder =>
     for (name, typed) <- Seq("ridge" -> s"$folder/ridge", "my 'own' ü" -> s"'$folder/my '\\''own'\\'' ü'") do
       val (status, told) = run("ridge-watch", "--out", s"$folder/$name")
       assertEquals(status, 0, told)
       assert(clue(told).contains(s"fly it: cd $typed && ./skein"))
 
   folder.test(
-    "a project is built again after a change, after a move, and for other libraries, and only then"
+    "a project is built again only after a change, after a move, and for other libraries"
   ): folder =>
     val (first, moved) = (folder.resolve("ridge"), folder.resolve("moved here"))
     assertEquals(run("ridge-watch", "--out", first.toString)._1, 0)
@@ -74,7 +74,7 @@ class NewCommandSuite extends munit.FunSuite, TemporaryFolders:
     age(agent)
     assertEquals(builds(moved), 4)
 
-  folder.test("a folder may be named through one that does not exist yet"): folder =>
+  folder.test("a folder's path may lead through a folder that does not exist yet"): folder =>
     val (status, told) = run("ridge-watch", "--out", s"$folder/missing/../x")
     assertEquals(status, 0, told)
     assert(Files.exists(folder.resolve("x/build.sbt")))
@@ -84,7 +84,7 @@ class NewCommandSuite extends munit.FunSuite, TemporaryFolders:
     assertNotEquals(status, 0)
     assert(told.contains("expected a folder that is not there yet"), told)
 
-  folder.test("a folder that cannot be created is reported, and no part of it is left"): folder =>
+  folder.test("a folder that cannot be created is reported, and no part of it remains"): folder =>
     val file           = Files.createFile(folder.resolve("file"))
     val (status, told) = run("ridge-watch", "--out", s"$file/in/it")
     assertEquals(
@@ -98,7 +98,7 @@ class NewCommandSuite extends munit.FunSuite, TemporaryFolders:
     assert(clue(why).startsWith("skein new: "))
     assertEquals(folder.toFile.list.toSeq, Seq("file"))
 
-  test("a name that would not compile is refused, and one that would is proposed"):
+  test("a name that would not compile is refused, and a valid one is proposed"):
     for name <- Seq("object", "scenario", "agent", "scala", "skein", "vector3", "corners", "main", "type") do
       val (status, told) = run(name)
       assertNotEquals(status, 0, name)

@@ -3,9 +3,9 @@ package skein.cli
 import java.nio.file.Files
 import skein.testing.TemporaryFolders
 
-/** `./skein observe --ros`, as far as it goes without ROS 2. `ObservedGraphLiveSuite` has the rest. */
+/** `./skein observe --ros`, up to the point that needs ROS 2; `ObservedGraphLiveSuite` tests the rest. */
 class ObserveRosSuite extends munit.FunSuite, TemporaryFolders:
-  test("without ROS 2 a line says what is missing, and no program is started"):
+  test("without ROS 2, a line states what is missing, and no program is started"):
     assume(!Seq("AMENT_PREFIX_PATH", "LD_LIBRARY_PATH").exists(sys.env.contains), "ROS 2 may be here")
     val mark = temporaryFolder().resolve("started")
     val ran  = Ran.of(ObserveCommand.run(Seq("--ros", "--", "touch", mark.toString)))

@@ -7,20 +7,20 @@ class OptionsAgreeSuite extends munit.FunSuite:
 
   private def having(flag: String): Seq[(Command, CommandOption)] = options.filter(_._2.flag == flag)
 
-  test("an option takes a value in every command that has it, or in none, and says what it does"):
+  test("an option takes a value either in every command or in none, and has a description"):
     for (flag, same) <- options.groupBy(_._2.flag) do
       assertEquals(same.map(_._2.takesValue).distinct.size, 1, flag)
       for (command, option) <- same do
         assert(option.summary.length > 5, s"${command.name} $flag")
         assert(command.help.contains(flag), s"${command.name} $flag")
 
-  test("--out names a folder, and no command writes results elsewhere"):
+  test("--out is a folder in every command, and no other option has its purpose"):
     assert(having("--out").sizeIs > 6)
     for (command, option) <- having("--out") do
       assert(option.summary.startsWith("folder "), s"${command.name}: ${option.summary}")
     assertEquals(options.map(_._2.flag).filter(Set("--output", "--folder", "--dir", "-o")), Seq.empty)
 
-  test("the model that flies is --plant, the one that predicts is --predictor, and nothing is --model"):
+  test("--plant is the simulated model, --predictor the predicting one, and --model does not exist"):
     assertEquals(having("--model"), Seq.empty)
     for (command, option) <- having("--plant") do
       assert(option.summary.startsWith("model that flies"), command.name)
@@ -34,7 +34,7 @@ class OptionsAgreeSuite extends munit.FunSuite:
     for (command, option) <- having("--loop") do
       assertEquals(option.values, OptionValues.known("loop"), command.name)
 
-  test("every command prints tables as JSON too, but for those that print none"):
+  test("every command with tables prints them as JSON, too"):
     val plain =
       Set(
         "serve",

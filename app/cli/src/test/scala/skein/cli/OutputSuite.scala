@@ -13,7 +13,7 @@ class OutputSuite extends munit.FunSuite, TemporaryFolders:
     val told = ByteArrayOutputStream()
     (Console.withErr(told)(Main.written(lost, broken(why))), told.toString)
 
-  test("output that could not be written is no success, except into a pipe that its reader closed"):
+  test("output that could not be written is an error, except into a pipe that its reader closed"):
     assertEquals(Main.written(PrintStream(ByteArrayOutputStream()), broken("unused")), 0)
     assertEquals(
       status("No space left on device"),

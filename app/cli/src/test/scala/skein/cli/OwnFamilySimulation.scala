@@ -16,7 +16,7 @@ final case class Doubting(turnRateRadPerS: Double, doubtS: Double) extends Headi
     val most   = turnRateRadPerS * seen.elapsedS * doubtS / (doubtS + seen.opponentAgeS)
     (seen.ownHeadingRad + wanted.max(-most).min(most), memory)
 
-/** A program with a family of policies of its own, as a user writes it. */
+/** A program with a user's own family of policies. */
 object Doubters extends SkeinApp(Scenarios.ours.kinds*):
   override def policyFamilies: Seq[PolicyFamily] = Seq(family("doubting"))
 
@@ -39,7 +39,9 @@ class OwnFamilySimulation extends munit.FunSuite, TemporaryFolders, Lengthy, Opt
     assertEquals(status, 0, said)
     said
 
-  folder.test("a user's own family is searched with SIMD, run, replayed and swept, by its name"): folder =>
+  folder.test(
+    "a user's own family can be searched with SIMD, flown, replayed and swept by its name"
+  ): folder =>
     val found = done(
       "search --family doubting --candidates 16 --episodes 2 --fresh " +
         s"16 --duration 12s --link vpn --out $folder/found"

@@ -34,8 +34,7 @@ class OwnPlantSimulation extends munit.FunSuite, TemporaryFolders, Lengthy, Opti
     Files.list(folder).filter(_.toString.endsWith("vpn.duckdb")).findFirst.get
 
   folder.test(
-    "a user's own plant is fitted to flights, simulated in searches, predicts in flight, and is " +
-      "replayed"
+    "a user's own plant is fitted to flights, simulated in searches, predicts in flight, and replays"
   ): folder =>
     val flight = "fly --clock virtual --link vpn --duration"
     done(s"$flight 40s --loop stream --out $folder/flown"): Unit

@@ -20,7 +20,7 @@ class PolicyCommandSuite extends munit.FunSuite, TemporaryFolders:
       .writeString(folder.resolve("policy.conf"), PolicyFile(family.roles.head, family, values).hocon(""))
       .toString
 
-  test("a network converted to ONNX and back has equal bits"):
+  test("a network converted to ONNX and back is identical to the bit"):
     val folder         = temporaryFolder()
     val file           = written(folder, "learned:4x3")
     val onnx           = folder.resolve("policy.onnx").toString

@@ -25,7 +25,7 @@ class PreviewSimulation extends munit.FunSuite:
   )
   private val twins = settings.plans.flatMap(_.twins(1))
 
-  test("results come first where a whole flight takes little time, as the warm-up's flights show"):
+  test("previews are simulated only if the warm-up's flights show that a whole flight is short"):
     val minute = Span.ofSeconds(60)
     assert(Preview.fits(20, Span.ofSeconds(3), minute))
     assert(Preview.fits(7, Span.ofSeconds(3), minute))
@@ -34,7 +34,7 @@ class PreviewSimulation extends munit.FunSuite:
     assert(!Preview.fits(0, Span.Zero, minute))
     assert(Preview.fits(20, Span.ofSeconds(3), Span.ofSeconds(2)))
 
-  test("the twins flown first are those of the report, with a line for each and what they come to"):
+  test("previewed twins equal those of the report, with a line for each and its result"):
     val said  = ConcurrentLinkedQueue[String]()
     val flown = Preview.fly(settings, twins, at(0))(line => said.add(line): Unit)
     assertEquals(flown.keySet, twins.toSet)
@@ -45,7 +45,7 @@ class PreviewSimulation extends munit.FunSuite:
     assert(lines.exists(_.matches("in virtual time, stream over vpn: last 10 s [0-9.]+ m")), lines)
     assertEquals(lines.size, 2, lines)
 
-  test("nothing is flown first when the time is over"):
+  test("no preview begins after the time for them is over"):
     var looks        = 0
     val clock: Clock = () =>
       looks += 1

@@ -79,7 +79,7 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
     assert(clue(ran.err).contains("would both be recorded as") && ran.err.linesIterator.size == 1)
     assert(!Files.exists(both))
 
-  recordings.test("a flight that is named twice, or copied, counts once in a report, which says so"):
+  recordings.test("a flight that is listed twice, or copied, counts once in a report, which states that"):
     folder =>
       val file   = folder.resolve("stream-vpn.duckdb")
       val copied = Files.copy(file, folder.resolve("copied.duckdb"))
@@ -94,7 +94,7 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
         text.linesIterator.filter(_.startsWith("stream ")).distinct.size
       )
 
-  recordings.test("report --json gives the tables alone on standard output"): folder =>
+  recordings.test("report --json prints only the tables on standard output"): folder =>
     val files = Seq("paused-none", "stream-vpn").map(name => folder.resolve(s"$name.duckdb").toString)
     val (status, text, err) =
       run(ReportCommand(), files :+ "--json" :+ "--out" :+ folder.resolve("report").toString*)
@@ -123,7 +123,7 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
       Using.resource(Files.walk(path))(_.sorted(java.util.Comparator.reverseOrder()).forEach(Files.delete(_)))
   )
 
-  flown.test("identify finds the quadrotor's model from a flight over the VPN, and writes what fly reads"):
+  flown.test("identify finds the quadrotor's model in a flight over the VPN, and writes a file for fly"):
     folder =>
       // A program's own structures are all fitted, too, and one that cannot be is named.
       def own(label: String, parameters: Int)(plant: Vector[Double] => ReducedModel) =
@@ -160,7 +160,7 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
       assertEquals(read.map(_.predictor), Right(PredictionModel.Fitted(model, file.altitudeM)))
       assertEquals(file.altitudeM, Some(20.0))
 
-  recordings.test("a model that cannot be read, or flights that cannot be fitted to, are named"): folder =>
+  recordings.test("an unreadable model, and flights that cannot be fitted, are reported"): folder =>
     val broken =
       Files.writeString(folder.resolve("broken.conf"), "skein.model { use = drag, drag { gain.value = 1 } }")
     val (status, _, err) =
@@ -171,7 +171,7 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
     assertEquals(unfit, 1)
     assert(reason.contains("expected"), reason)
 
-  recordings.test("a flight that is named twice, or copied, is fitted only once"): folder =>
+  recordings.test("a flight that is listed twice, or copied, is fitted only once"): folder =>
     val flight               = folder.resolve("stream-vpn.duckdb")
     val copy                 = Files.copy(flight, folder.resolve("copy.duckdb"))
     val (status, _, mistake) = run(IdentifyCommand(), flight.toString, copy.toString)
@@ -182,7 +182,7 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
     assertEquals(run(ReportCommand(), folder.resolve("stream-vpn.duckdb").toString)._1, 0)
     assert(Files.exists(folder.resolve("figures/distance.svg")))
 
-  recordings.test("report names a file that is no recording, and writes nothing"): folder =>
+  recordings.test("report lists a file that is no recording, and writes nothing"): folder =>
     val text             = Files.writeString(folder.resolve("notes.txt"), "nothing")
     val (status, _, err) = run(ReportCommand(), folder.resolve("stream-vpn.duckdb").toString, text.toString)
     assertEquals(status, 1)
@@ -222,7 +222,7 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
     assertEquals(text.takeWhile(_ != ' '), digest.takeWhile(_ != ' '))
     assertEquals(run(ImportCommand, mcap, "--recording", again)._1, 1)
 
-  recordings.test("every path of the layout for Foxglove is in the files that export writes"): folder =>
+  recordings.test("every path in the layout for Foxglove is in the exported files"): folder =>
     val mcap = folder.resolve("flight.mcap")
     assertEquals(
       run(ExportCommand, folder.resolve("stream-vpn.duckdb").toString, "--mcap", mcap.toString)._1,

@@ -5,7 +5,7 @@ import scala.jdk.CollectionConverters.*
 import skein.docs.Documentation
 import skein.testing.{TemporaryFolders, Unhurried}
 
-/** Commands take a scenario's file as they take a scenario of the program, and a recording holds it. */
+/** Commands accept a scenario's file like a scenario of the program, and a recording contains its text. */
 class ScenarioFileSimulation extends munit.FunSuite, TemporaryFolders, Unhurried:
   private val ring = Documentation.root.resolve("examples/scenario-in-python/ring.scenario")
 
@@ -16,7 +16,7 @@ class ScenarioFileSimulation extends munit.FunSuite, TemporaryFolders, Unhurried
     assertEquals(done.status, 0, s"${words.mkString(" ")}: ${done.said}")
     done.said
 
-  folder.test("its flights are reported and replayed from the recording alone"): path =>
+  folder.test("flights of a scenario's file are reported and replayed from the recording alone"): path =>
     val file = Files.copy(ring, path.resolve("ring.scenario"))
     val told = well(
       ("fly --clock virtual --loop predictive --link vpn --duration 6s --set ring-m=6 --scenario " +
@@ -41,7 +41,7 @@ class ScenarioFileSimulation extends munit.FunSuite, TemporaryFolders, Unhurried
     assertEquals(digest(again), digest(told))
     assert(digest(told).isDefined, told)
 
-  folder.test("a configuration names it, and a search writes one that holds it"): path =>
+  folder.test("a configuration can name a scenario's file, and a search writes one with its text"): path =>
     val config = Files.writeString(
       path.resolve("ring.conf"),
       s"""skein.fly { scenario = "$ring", ring { ring-m = 7 }, duration = 4s }"""
@@ -58,7 +58,7 @@ class ScenarioFileSimulation extends munit.FunSuite, TemporaryFolders, Unhurried
         s"--out $path/found").split(' ')*
     )
 
-  folder.test("budget, torture and scenarios take it"): path =>
+  folder.test("budget, torture and scenarios accept a scenario's file"): path =>
     well(
       (s"budget --scenario $ring --objective off-ring --duration 12s --episodes 16 --means 2 --jitters 2 " +
         s"--out $path/budget").split(' ')*
@@ -67,7 +67,7 @@ class ScenarioFileSimulation extends munit.FunSuite, TemporaryFolders, Unhurried
     val listed = well("scenarios", ring.toString)
     assert(listed.contains("ring: 6 vehicles, 60 s") && listed.contains("radius of the ring, m"), listed)
 
-  folder.test("a mistake in it is one line, with its place"): path =>
+  folder.test("a mistake in a scenario's file is one line, with its place"): path =>
     val wrong = Files.writeString(path.resolve("wrong.scenario"), "skein-scenario 1\nname wrong\n0 add 1 2\n")
     for words <- Seq("fly", "spread", "search", "budget", "torture", "learn") do
       val told = ran(words, "--scenario", wrong.toString)

@@ -28,7 +28,7 @@ class ScenarioGaugeSuite extends munit.FunSuite:
   private def fly(gauge: ScenarioGauge, steps: Range): Unit =
     for step <- steps; vehicle <- Seq("A", "B") do gauge.see(reading(step, vehicle))
 
-  test("a scenario's series arrive point by point, each once, with their bound"):
+  test("a scenario's series are sent point by point, each once, with their bound"):
     val told = gauge(Climbing)
     fly(told, 0 to 10)
     val first = ujson.read(told.json().get)("series")(0)
@@ -40,7 +40,7 @@ class ScenarioGaugeSuite extends munit.FunSuite:
     val later = ujson.read(told.json().get)("series")(0)("points").arr.map(_(0).num)
     assert(later.head > points.last._1 && later.last > 1.9, later)
 
-  test("a broken limit is reported with its worst value and the vehicles that broke it, and stays so"):
+  test("a broken limit is reported with its worst value and its vehicles, until the flight's end"):
     val told     = gauge(Capped(1.5))
     def limits() = ujson.read(told.json().get)("limits").arr
     fly(told, 0 to 10)
@@ -50,7 +50,7 @@ class ScenarioGaugeSuite extends munit.FunSuite:
     assertEquals((ceiling("text").str, ceiling("altitudeM").num), ("altitude of at most 1.5 m", 1.5))
     assertEquals((ceiling("stretches").num.toInt, ceiling("worst").str), (2, "2.0 m"))
 
-  test("of many readings every second one is dropped, and before all vehicles are seen nothing is sent"):
+  test("beyond the limit every second reading is dropped, and before all vehicles were read nothing is sent"):
     val told = gauge(Climbing, most = 100)
     told.see(reading(0, "A"))
     assertEquals(told.json(), None)

@@ -20,7 +20,7 @@ class SearchCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimise
     assert(found(6).str.startsWith("SIMD, ") && paper(6).str.startsWith("SIMD, "), found.toString)
     assert(ran.err.contains("policy.conf"))
 
-  test("--gpu is refused with other processes, and where there is no GPU, before anything is written"):
+  test("--gpu is refused with other processes, and without a GPU, before any output is written"):
     val folder                                 = temporaryFolder().resolve("found")
     def refused(words: String*): (Int, String) =
       val ran = Ran.of(Main.run(Seq("search", "--gpu", "--out", folder.toString) ++ words))
@@ -32,7 +32,7 @@ class SearchCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimise
       val (status, told) = refused()
       assert(status != 0 && told.contains(s"--gpu: $why"), told)
 
-  test("without an objective, the possible measures of the scenario are listed"):
+  test("without an objective, the scenario's measures are listed"):
     val ran = Ran.of(Main.run(Seq("search", "--scenario", "crossing", "--vary", "lane-m=4..8")))
     assertEquals(ran.status, 1)
     assertEquals(

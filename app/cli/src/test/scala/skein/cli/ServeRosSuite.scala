@@ -3,7 +3,7 @@ package skein.cli
 import java.nio.file.Files
 import skein.testing.TemporaryFolders
 
-/** `./skein serve --ros`, as far as it goes without ROS 2. `RosLiveSuite` has the rest. */
+/** `./skein serve --ros`, up to the point that needs ROS 2; `RosLiveSuite` tests the rest. */
 class ServeRosSuite extends munit.FunSuite, TemporaryFolders:
   private def said(words: String*): String =
     val ran = Ran.of(ServeCommand.run(words))
@@ -15,7 +15,7 @@ class ServeRosSuite extends munit.FunSuite, TemporaryFolders:
     val text = s"""{ "SettingsVersion": 1.2, "Vehicles": { "$name": { "VehicleType": "$kind" } } }"""
     Files.writeString(temporaryFolder().resolve("settings.json"), text).toString
 
-  test("without ROS 2 a line says what is missing, and what to do"):
+  test("without ROS 2, a line states what is missing, and what to do"):
     assume(!Seq("AMENT_PREFIX_PATH", "LD_LIBRARY_PATH").exists(sys.env.contains), "ROS 2 may be here")
     val line = said("--ros", "--listen", "127.0.0.1:0")
     assert(
@@ -23,12 +23,12 @@ class ServeRosSuite extends munit.FunSuite, TemporaryFolders:
       line
     )
 
-  test("vehicles that another protocol flies are refused"):
+  test("vehicles that another protocol commands are refused"):
     for other <- Seq(Seq("--mavlink"), Seq("--hil", "px4")) do
       val line = said("--ros" +: other*)
       assert(line.contains("--ros: not together with --mavlink or --hil"), line)
 
-  test("a name that cannot stand in a topic's is refused before ROS 2 is looked for"):
+  test("a name that is invalid in a topic is refused before ROS 2 is searched for"):
     val line = said("--ros", "--settings", settings("Drone 1"))
     assert(line.contains("expected vehicles' names of letters, digits and single _"), line)
     assert(line.contains("came 'Drone 1'"), line)

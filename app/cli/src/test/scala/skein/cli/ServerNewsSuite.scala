@@ -6,7 +6,7 @@ import skein.simulator.PeerStats
 class ServerNewsSuite extends munit.FunSuite:
   private val calm = ServerStats(3, 3, 0, 0, 0, 0, 0, 0, 100, 0, 100, 0, 0, 0, 0, 500, 3 << 20)
 
-  test("while no client is refused anything, nothing is printed"):
+  test("while no client's request is refused, nothing is printed"):
     assertEquals(ServerNews.line(calm, ServerLimits()), None)
 
   test("losses of MAVLink peers are printed, too"):
@@ -22,7 +22,7 @@ class ServerNewsSuite extends munit.FunSuite:
       )
     )
 
-  test("each kind of refusal is counted and named, with the memory that was held"):
+  test("each kind of refusal is counted and described, with the held memory"):
     val limits = ServerLimits(connections = 4, heldBytesPerConnection = 1 << 20, heldBytesInCommon = 2 << 20)
     assertEquals(
       ServerNews.line(calm.copy(turnedAway = 2, tooSlow = 1, dropped = 7), limits),
@@ -33,7 +33,7 @@ class ServerNewsSuite extends munit.FunSuite:
       )
     )
 
-  test("lost lockstep, foreign connections and moves that hold all workers are printed"):
+  test("lost lockstep, foreign connections and moves that occupy all workers are printed"):
     assertEquals(
       ServerNews.line(calm, ServerLimits(), PeerStats(unanswered = 1, foreign = 2), "px4", hasHeldUp = true),
       Some(

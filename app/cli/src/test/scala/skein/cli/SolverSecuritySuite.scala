@@ -23,7 +23,7 @@ class SolverSecuritySuite extends munit.FunSuite, TemporaryFolders:
       assert(clue(refused(at)).startsWith("--tls: expected"))
     assert(clue(refused("kafka://192.0.2.1:9092/skein")).startsWith("--tls: expected"))
 
-  test("options of another kind of solver are refused, and missing files are named"):
+  test("options of another kind of solver are refused, and missing files are listed"):
     assert(clue(refused(
       "tcp://127.0.0.1:1",
       kafka = Some("f")

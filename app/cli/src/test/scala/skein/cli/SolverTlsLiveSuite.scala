@@ -63,7 +63,7 @@ class SolverTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
 
   private def failure(exchange: Future[String]): Throwable = Await.result(exchange.failed, 30.seconds)
 
-  test("with certificates of one set both sides receive each other's messages"):
+  test("with certificates of one set, both sides receive each other's messages"):
     echoing(own): (server, _) =>
       assertEquals(Await.result(exchanged(server.address, Some(own)), 30.seconds), "geese")
 
@@ -80,7 +80,7 @@ class SolverTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       finally socket.close()
       assertEquals(heard.get, 0)
 
-  test("a server with the certificate of another host, or of another set, receives no data"):
+  test("a server with a certificate of another host, or of another set, receives no data"):
     for shown <- Seq(elsewhere, stranger) do
       echoing(shown): (server, heard) =>
         val why = failure(exchanged(server.address, Some(own)))
@@ -131,7 +131,7 @@ class SolverTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       assert(clue(why).contains(s"the solver at $at does not speak TLS; expected ./skein decide with --tls"))
     finally Await.result(server.close(), 20.seconds): Unit
 
-  test("a flight with certificates checks whether an unknown solver has them, too"):
+  test("a flight with certificates checks whether an unknown solver has any, too"):
     // A link whose far side is down.
     val closing = transport(None).listen(loopback).to(Sink.foreach(
       _.flow.join(Flow.fromSinkAndSource(Sink.cancelled, Source.empty)).run(): Unit
@@ -145,7 +145,7 @@ class SolverTlsLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       assert(clue(why).endsWith("; has ./skein decide there --tls, too?"))
     finally Await.result(server.close(), 20.seconds): Unit
 
-  test("a flight is decided by a solver over TLS"):
+  test("a solver decides a flight over TLS"):
     served(own): at =>
       val flight = SolvedFlight(SolverChoice.Tcp(at), TcpLink(transport(Some(own)), at))
       assertEquals(Await.result(flight.flown(), 60.seconds), FlightOutcome.Completed)

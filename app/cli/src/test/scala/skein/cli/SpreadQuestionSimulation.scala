@@ -54,7 +54,7 @@ class SpreadQuestionSimulation extends munit.FunSuite, Unhurried:
       "a team" -> "--scenario surround --loop paused --loop stream --link vpn --duration 8s"
     )
   do
-    test(s"$name run by workers have the results of a local run, every number to the bit"):
+    test(s"$name run by workers have the results of a local run, to the bit"):
       val asked = ready(words)
       val here  = if words == duels then duelsHere else SpreadFlights.fly(asked.settings, asked.flights(2))
       var count = 0
@@ -68,7 +68,7 @@ class SpreadQuestionSimulation extends munit.FunSuite, Unhurried:
         assertEquals(a.distance, b.distance)
         assertEquals(a.result.map(_.measured.map(_.value)), b.result.map(_.measured.map(_.value)))
 
-  test("a flight too large for a message is run here and reported; truncated answers are refused"):
+  test("a flight too large for a message is run in this process and reported; truncated answers are refused"):
     val asked = ready(duels)
     var told  = Vector.empty[String]
     val large = worker(duels)(_ => BlockBytes.of(SpreadQuestion.FlightAnswer.TooLarge))

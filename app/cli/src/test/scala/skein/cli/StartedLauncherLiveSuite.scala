@@ -24,7 +24,7 @@ class StartedLauncherLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurri
     val version = said("--version")
     assert(version.matches("Skein \\d+\\.\\d+\\.\\d+\\S*, Java \\d+\\S*\\s*"), version)
 
-  test("what stands behind -- is started as it stands there, options and dashes included"):
+  test("words behind -- are executed unchanged, options and dashes included"):
     val program = Seq("sh", "-c", "echo \"$@\"", "sh", "-J1", "--", "-v")
     assert(said(Seq("observe", "--listen", "127.0.0.1:0", "--") ++ program*).contains("\n-J1 -- -v\n"))
 

@@ -6,7 +6,7 @@ class ViewOptionsSuite extends munit.FunSuite:
   private def told(view: Boolean, port: Option[Int] = None, origins: String*) =
     ViewOptions(Flag(view), port, origins).mistake
 
-  test("a port and sites without a view are refused, not ignored"):
+  test("a port and sites without --view are refused, not ignored"):
     assertEquals(told(view = false), None)
     assertEquals(told(view = false, Some(9000)), Some("--view-port: expected with --view"))
     assertEquals(
@@ -14,7 +14,7 @@ class ViewOptionsSuite extends munit.FunSuite:
       Some("--view-origin: expected with --view")
     )
 
-  test("an invalid port, and a site in another form than browsers', are refused"):
+  test("an invalid port, and a site in another form than a browser's, are refused"):
     for port <- Seq(0, 65535) do
       assertEquals(told(view = true, Some(port), "https://app.foxglove.dev", "http://localhost:8080"), None)
     for port <- Seq(-1, 65536) do

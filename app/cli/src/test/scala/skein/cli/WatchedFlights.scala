@@ -11,9 +11,9 @@ import skein.record.{FlightTopics, RecordingReader}
 import skein.report.DuelReport
 import skein.scenario.Scenarios
 
-/** The delay of a flight's requests, from its recording.
+/** The delays of a flight's requests after their ticks, from its recording.
   *
-  * @param p99Ms after the tick that each belongs to
+  * @param p99Ms 99th percentile
   */
 final case class Lateness(questions: Int, p50Ms: Double, p99Ms: Double, mostMs: Double)
 

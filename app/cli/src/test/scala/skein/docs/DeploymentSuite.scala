@@ -41,14 +41,14 @@ class DeploymentSuite extends munit.FunSuite:
       if process.waitFor(60, TimeUnit.SECONDS) then Right((process.exitValue, text)) else Left("it hangs")
     catch case absent: IOException => Left(absent.getMessage)
 
-  test("every manifest is in the kustomization, and has a kind, a version and a name"):
+  test("every manifest is in the kustomization, with a kind, a version and a name"):
     val listed  = below(in("kustomization.yaml").head, "/resources")
     val present = Files.list(manifests).toList.asScala.map(_.getFileName.toString).toSet
     assertEquals(listed, present - "kustomization.yaml")
     for document <- all; key <- Seq("/kind", "/apiVersion", "/metadata/name") do
       assert(document.contains(key), s"$key of $document")
 
-  test("services select existing pods, at the ports and by the names that the commands use"):
+  test("services select existing pods, with the ports and names in the commands"):
     val space       = in("kustomization.yaml").head("/namespace")
     val Vector(job) = of("Job")
     val Vector(set) = of("StatefulSet")
@@ -67,7 +67,7 @@ class DeploymentSuite extends munit.FunSuite:
       s"${job("/spec/template/spec/hostname")}.${job("/spec/template/spec/subdomain")}.$space.svc.cluster.local"
     assert(below(set, "/spec/template").exists(_.contains(s"--join=$coordinator:")))
 
-  test("volumes that are mounted are there, and the guide makes the secrets and names the hosts"):
+  test("mounted volumes exist, and the guide creates the secrets and names the hosts"):
     val guide = Files.readString(root.resolve("docs/guides/cluster.md"))
     for pods <- of("Job") ++ of("StatefulSet") do
       def names(of: String) =
@@ -92,7 +92,7 @@ class DeploymentSuite extends munit.FunSuite:
       said("docker", "compose", "-f", "cluster/deploy/compose.yaml", "config"): @unchecked
     assertEquals(status, 0, text)
 
-  test("an image is built without history and without what was built here"):
+  test("an image is built without the history and local build outputs"):
     val left = Files.readAllLines(root.resolve(".dockerignore")).asScala
     for name <- Seq(".git", "**/target") do assert(left.contains(name), name)
 

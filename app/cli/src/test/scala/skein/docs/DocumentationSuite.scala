@@ -9,7 +9,7 @@ import skein.cli.OurScenarios
 class DocumentationSuite extends munit.FunSuite:
   private val root = Documentation.root
 
-  test("every link between pages leads to a file, and to a heading where it names one"):
+  test("every link between pages leads to an existing file, and to an existing heading"):
     val broken =
       for
         page   <- pages
@@ -24,7 +24,7 @@ class DocumentationSuite extends munit.FunSuite:
       assert(Files.exists(path), s"$name is missing: ${Documentation.hint}")
       assertNoDiff(Files.readString(path), written(), s"$name is not up to date: ${Documentation.hint}")
 
-  test("code that a page quotes from a source file is in that file"):
+  test("code on a page is an excerpt of its source file"):
     val shown =
       for
         page  <- pages
@@ -36,7 +36,7 @@ class DocumentationSuite extends munit.FunSuite:
       if isWhole then assertNoDiff(code, source, s"$page shows another $file")
       else assertEquals(strayed(code, source), None, s"$page shows lines that $file does not have there")
 
-  test("a line that was changed or moved is found"):
+  test("a changed or moved line is found"):
     val source = "def a =\n  b\n  c\n  d\n"
     assertEquals(strayed("b\n…\nd", source), None)
     assertEquals(strayed("b\nd", source), Some("b\nd"))
@@ -48,7 +48,7 @@ class DocumentationSuite extends munit.FunSuite:
       val text = Files.readString(root.resolve(page))
       assertEquals(names.filterNot(text.contains), Vector.empty, page)
 
-  test("every example has a README with a picture, and stands in their list"):
+  test("every example has a README with a picture, and is in the list of examples"):
     val list    = Files.readString(root.resolve("examples/README.md"))
     val folders = Files.list(root.resolve("examples")).iterator.asScala.filter(Files.isDirectory(_)).toVector
     assert(folders.sizeIs > 5, folders)

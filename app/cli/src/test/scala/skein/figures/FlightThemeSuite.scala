@@ -10,7 +10,7 @@ import skein.scenario.Scenarios
 class FlightThemeSuite extends munit.FunSuite:
   private given Scenarios = DuelReport.scenarios
 
-  test("every loop has a colour of its own, and one that is not known has another"):
+  test("each loop has its own colour, and unknown loops have another one"):
     val colours =
       LoopKind.values.toVector.map(loop => FlightTheme.of(loop.label)) :+ FlightTheme.of("a loop to come")
     assertEquals(colours.distinct.size, LoopKind.values.length + 1)
@@ -25,7 +25,7 @@ class FlightThemeSuite extends munit.FunSuite:
       case Mark.Path(_, Some(stroke), _, _) => stroke.dash
     assertEquals(shown, all.map(flight => curves(flight.name).dash))
 
-  test("flights stand in the order of the loops, whatever order they came in"):
+  test("flights are in the order of the loops, whatever their order before"):
     val flights = LoopKind.values.reverse.toVector.filter(_ != LoopKind.Paused).map: loop =>
       FlightSummary.of(SyntheticFlight(loop.label, "vpn", seed = 1, seconds = 12))
     assertEquals(FlightSet(flights).flights.map(_.flight.loop), flights.reverse.map(_.flight.loop))

@@ -36,7 +36,7 @@ class ScenarioFigureSuite extends munit.FunSuite:
   private def strokes(drawing: Drawing) =
     drawing.shapes.collect { case Mark.Path(points, Some(stroke), None, false) if points.size > 20 => stroke }
 
-  test("vehicles that fly the same way are told apart: by name in the legend, and the first line is wider"):
+  test("coinciding vehicles are distinguished by name in the legend, and by a wider first line"):
     val figure = ScenarioFigure.trajectories(flown(100))
     val names  = Capped(100).agents.map(_.name)
     assert(names.forall(texts(figure).contains), texts(figure))
@@ -44,7 +44,7 @@ class ScenarioFigureSuite extends munit.FunSuite:
     assertEquals(lines.map(_.colour.rgb).distinct.size, 2)
     assert(lines(0).width > lines(1).width + 1, lines)
 
-  test("a ceiling that was broken is drawn with its place in the legend, one that is far away is not"):
+  test("a broken ceiling is drawn and in the legend, and a distant one is not"):
     def isRed(mark: Mark) = mark match
       case Mark.Disc(_, 5, Some(stroke), None) => stroke.colour.rgb == 0xcc0000
       case _                                   => false
@@ -57,7 +57,7 @@ class ScenarioFigureSuite extends munit.FunSuite:
     assert(!texts(kept).exists(_.contains("at most")), texts(kept))
     assertEquals((kept.shapes.count(isRed), ScenarioFigure.hasAltitudes(flown(100))), (0, false))
 
-  test("a geofence is cut to the panel, and named if any of it is visible"):
+  test("a geofence is cut to the panel, and in the legend if any part is visible"):
     assert(texts(ScenarioFigure.trajectories(flown(100))).contains("geofence"))
 
 object ScenarioFigureSuite:

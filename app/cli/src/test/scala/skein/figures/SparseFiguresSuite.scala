@@ -17,7 +17,7 @@ class SparseFiguresSuite extends munit.FunSuite:
     val flights = Report.of(Seq(SyntheticFlight("stream", "vpn", seed = 2, seconds)))
     texts(DistanceFigure(flights).get).filter(_.startsWith("last 10 s"))
 
-  test("the legend has the last 10 s where they are drawn, and the paper's where there is any"):
+  test("the legend lists the last 10 s if they are drawn, and the paper's if there are any"):
     assertEquals(headings(8), Vector.empty)
     assertEquals(headings(12), Vector("last 10 s: ours ●"))
     assertEquals(headings(60), Vector("last 10 s: ours ●, paper ◆"))
@@ -35,7 +35,7 @@ class SparseFiguresSuite extends munit.FunSuite:
     val upright = figure.shapes.collect { case text: Mark.Text if text.upwards => text.content }
     assertEquals(upright.filterNot(_.startsWith("mean ")).toSet, Set("distance, m", "sequential"))
 
-  test("what the arrows of neighbouring columns say does not overlap"):
+  test("the labels of neighbouring columns' arrows do not overlap"):
     val loops   = Seq("sequential", "futures", "stream")
     val flights = Report.of(loops.map(SyntheticFlight(_, "vpn", seed = 2, 60)))
     val arrows  = DistanceFigure(flights).get.shapes.collect:
@@ -44,7 +44,7 @@ class SparseFiguresSuite extends munit.FunSuite:
     val columns = arrows.map(_.at.x).sorted
     assert(columns.zip(columns.tail).forall((one, next) => next - one > arrows.head.size), columns)
 
-  test("a legend names what is drawn: of a link without a profile, the measured round trips alone"):
+  test("a legend lists only drawn items: for a link without a profile, the measured round trips"):
     val trips                = Distribution.of(Vector.tabulate(100)(index => 130 + index * 0.1)).get
     def legend(link: String) =
       texts(LatencyFigure(Seq(LatencyFigure.Measured("to 10.0.0.7:41451", link, trips))).get)

@@ -12,7 +12,7 @@ class VehicleThemeSuite extends munit.FunSuite:
       roles.toVector.zip(Formation(vehicles = roles.size).agents).map: (role, agent) =>
         agent.copy(role = Role(role))
 
-  test("of several vehicles alone in their roles, only the first is grey"):
+  test("of several vehicles that are alone in their roles, only the first is grey"):
     val two = strokes(OfRoles("Leader", "Wing"))
     assertEquals(two.head.colour, Colour(0x404040))
     assertEquals(two(1).colour, Colour(0x0072b2))
@@ -26,7 +26,7 @@ class VehicleThemeSuite extends munit.FunSuite:
       assertEquals(strokes(scenario).distinct.size, scenario.agents.size, scenario.name)
     assert(VehicleTheme.Most >= 100, VehicleTheme.Most)
 
-  test("vehicles of one shade look alike: those of a crossing's stream"):
+  test("vehicles of one shade look alike, such as those of a crossing's stream"):
     val lines = strokes(Crossing(vehicles = 12, streams = 4))
     assertEquals(lines.distinct, lines.take(4))
     assertEquals(lines(5), lines(1))

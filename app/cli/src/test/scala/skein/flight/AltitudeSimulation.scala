@@ -67,7 +67,7 @@ class AltitudeSimulation extends munit.FunSuite, Unhurried, TemporaryFolders:
         val told = Conditions("stream", model, 100, 60, altitudeM = 5).resolved.left.getOrElse("")
         assert(told.startsWith("--plant") && told.contains("came one of 20 m"), told)
 
-  test("forward simulation accepts an altitude, and reports which of its models is valid only at 20 m"):
+  test("forward simulation accepts an altitude, and reports which model is valid only at 20 m"):
     val told = Conditions("stream", "reduced", 100, 60, altitudeM = 5).resolved.left.getOrElse("")
     assert(told.contains("at 5.0 m altitude: reduced holds at 20.0 m"), told)
     for model <- Seq("drag", "quadrotor", "ideal") do

@@ -42,11 +42,11 @@ class BlindPursuitSimulation extends munit.FunSuite, Lengthy, Optimised:
   private def twentySeconds(loop: LoopKind) = fly(settings(loop, 20)).recorder.recording
   private lazy val predictive               = twentySeconds(LoopKind.Predictive)
 
-  test("predictive: flights repeat to the byte"):
+  test("predictive: repeated flights are identical to the byte"):
     val digests = Seq.fill(2)(fly(settings(LoopKind.Predictive, 4)).recorder.digest)
     assertEquals(digests.distinct.size, 1)
 
-  test("predictive: the evader is detected, estimated correctly, and a replay makes all decisions again"):
+  test("predictive: the evader is detected and estimated correctly, and a replay repeats all decisions"):
     val recording = predictive
     assertEquals(Replay(settings(LoopKind.Predictive, 20).fleet, recording).firstDifference, None)
     val seen = FlightSummary.of(recording).seeing.headOption.getOrElse(fail("nothing was seen"))
@@ -82,13 +82,13 @@ class BlindPursuitSimulation extends munit.FunSuite, Lengthy, Optimised:
       val came     = FlightSummary.of(recording).headline.getOrElse(fail("no distance"))
       assertEqualsDouble(clue(foreseen), came, 0.07 * came)
 
-  test("through faults of the link, the messages and the simulator, control keeps its rules"):
+  test("with faults of the link, the messages and the simulator, control keeps its rules"):
     for seed <- Seq(3L, 5L) do
       val verdict = Torture.of(seed, Span.ofSeconds(8), Some(BlindPursuit()))
       assertEquals(verdict.violations, Vector.empty, verdict.faultPlan.toString)
 
   for loop <- Seq(LoopKind.Sequential, LoopKind.Paused) do
-    test(s"${loop.label}: the pursuer approaches the evader with only its camera"):
+    test(s"${loop.label}: the pursuer approaches the evader by its camera alone"):
       val summary = FlightSummary.of(fly(settings(loop, 8)).recorder.recording)
       assert(summary.seeing.exists(_.detections.sizeIs > 20), s"${summary.seeing.map(_.detections.size)}")
       val closest = summary.result.flatMap(_.measured(1).value)

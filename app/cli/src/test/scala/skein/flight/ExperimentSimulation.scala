@@ -77,13 +77,13 @@ class ExperimentSimulation extends munit.FunSuite, Unhurried:
       ).lastTenSeconds.get.mean / truth.lastTenSeconds.get.mean
     within(ratio, 0.96, 1.04)
 
-  test("as published, sequential oscillates: the pursuer's turn depends on how seldom it decides"):
+  test("as published, sequential oscillates, since the pursuer's turn grows with the time between decisions"):
     val curve    = distance(LoopKind.Sequential, LatencyProfile.vpn, asPublished = true)
     val settling = curve.points.collect { case (seconds, metres) if seconds > 10 => metres }
     within(settling.min, 0, 8)
     within(settling.max, 35, 60)
 
-  test("twenty vehicles over the busy VPN decide ten times a second each, and nothing is lost or refused"):
+  test("twenty vehicles over the busy VPN decide ten times a second each, without a lost or refused call"):
     val recording = fly(LoopKind.Stream, LatencyProfile.vpn, pairs = 10, seconds = 20)
     val decisions = recording.decisions.groupBy(_.vehicle).view.mapValues(_.size).toMap
     assertEquals(decisions.size, 20)

@@ -37,7 +37,7 @@ class FilmedFlightSimulation extends munit.FunSuite, Optimised:
     flown.recorder
 
   folder.test(
-    "images of a policy's camera and of others are recorded, identical when flown again, and exported"
+    "images of a policy's camera and of others are recorded, exported, and identical in a repeated flight"
   ): folder =>
     val flown = fly(
       BlindPursuit(),
@@ -74,7 +74,7 @@ class FilmedFlightSimulation extends munit.FunSuite, Optimised:
     val replayed = Replayed.of(file).fold(fail(_), identity)
     assert(replayed.isSame, s"$replayed")
 
-  test("a lidar's clouds are recorded in its frame, each once"):
+  test("each of a lidar's clouds is recorded once, in its frame"):
     val clouds = fly(Forest(), LoopKind.Stream, 1, ImageSource.Seen).records.collect:
       case cloud: Cloud => cloud
     assert(clouds.sizeIs > 5, s"${clouds.size}")

@@ -7,7 +7,7 @@ import skein.units.*
 
 class FlightMonitorSuite extends munit.FunSuite:
 
-  test("progress shows the distance of two vehicles, and for a team only the age"):
+  test("progress shows the distance of two vehicles, and only the age for a team"):
     val flown   = SyntheticFlight("stream", "none", seed = 1, seconds = 12)
     val monitor = FlightMonitor(MemoryRecorder(flown.heading))
     val last    = flown.decisions.last
@@ -27,6 +27,6 @@ class FlightMonitorSuite extends munit.FunSuite:
     decided(last, seesOthers = true)
     assert(clue(text).matches(" *[0-9]+ ms old"))
 
-  test("for a flight that has ended while others run, progress shows that, and no growing age"):
+  test("progress shows that a flight has ended while others run, without a growing age"):
     val seen = Some(LastSeen(Some(Metres(8.4)), Span.ofSeconds(7)))
     assertEquals(FlightProgress("paused-none", Span.ofSeconds(10), seen, hasEnded = true).text, "ended")

@@ -25,7 +25,7 @@ class PolicyFlightSimulation extends munit.FunSuite, Unhurried:
     policies = List(policy, policy)
   )
 
-  test("a policy flies beside the paper's with equal delays; recording, replay and report name it"):
+  test("a policy's flights have the delays of the paper's, and recording, replay and report name the policy"):
     assertEquals(
       settings.plans.map(plan => (plan.id, plan.seed)),
       Vector("", "-lead-pursuit", "-lead-pursuit-2").flatMap(name =>

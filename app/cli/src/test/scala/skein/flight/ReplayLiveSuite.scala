@@ -9,7 +9,7 @@ import skein.testing.Unhurried
 class ReplayLiveSuite extends munit.FunSuite, Unhurried:
   private given Scenarios = DuelReport.scenarios
 
-  test("decisions of live loops are repeated from their recordings, also of futures on several threads"):
+  test("live loops replay to equal decisions, also futures on several threads"):
     val loops    = List(LoopKind.Futures, LoopKind.Sequential, LoopKind.Stream, LoopKind.Predictive)
     val settings = TwinFlights.settings(loops, seconds = 6).copy(scenario = PaperDuel(pairs = 2))
     TwinFlights.inFolder: folder =>

@@ -51,7 +51,7 @@ class TeamSimulation extends munit.FunSuite, TemporaryFolders, Lengthy, Optimise
     assert(value(result, "slot rms m") < 1.5, result.measured)
 
   test(
-    "twenty cross over the VPN: each is commanded ten times a second at most and nothing is refused or lost"
+    "twenty vehicles cross over the VPN with at most ten commands a second each, none lost or refused"
   ):
     val recording = fly(settings(Crossing(), LoopKind.Predictive, LatencyProfile.vpn, 12))
     val result    = resultOf(recording)
@@ -71,7 +71,7 @@ class TeamSimulation extends munit.FunSuite, TemporaryFolders, Lengthy, Optimise
     // Since their policy avoids collisions, none of them arrives before 13 s.
     assert(value(result, "arrived") >= 15, result.measured)
 
-  test("a team that searches its plans for long surrounds the evader as closely as by its rule"):
+  test("a team that searches its plans for a long time surrounds the evader as closely as by its rule"):
     def offRing(loop: LoopKind) =
       val flown = settings(Surround(), loop, LatencyProfile.vpn, 20)
       value(resultOf(fly(flown.copy(planning = flown.planning.copy(slices = 20)))), "off ring m")
@@ -90,7 +90,7 @@ class TeamSimulation extends munit.FunSuite, TemporaryFolders, Lengthy, Optimise
       Crossing(vehicles = 6) -> LoopKind.Plan
     )
   do
-    test(s"${scenario.name} by ${loop.label} has equal decisions when decided again, and when flown again"):
+    test(s"${scenario.name} by ${loop.label} has equal decisions in a replay and in a repeated flight"):
       val chosen   = settings(scenario, loop, LatencyProfile.vpn, 2)
       val plan     = chosen.plans.head
       val recorder = VirtualFlights.fly(chosen, plan).fold(fail(_), identity).recorder
@@ -106,7 +106,7 @@ class TeamSimulation extends munit.FunSuite, TemporaryFolders, Lengthy, Optimise
         Files.deleteIfExists(file): Unit
         Files.delete(folder)
 
-  test("a replay notices a changed position of another vehicle of the team"):
+  test("a replay finds a changed position of another vehicle of the team"):
     val flown     = settings(Surround(), LoopKind.Predictive, LatencyProfile.direct, 2)
     val recording = fly(flown)
     val forged    = recording.sightings.map(sighting =>

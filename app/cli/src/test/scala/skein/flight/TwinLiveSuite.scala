@@ -11,7 +11,7 @@ import skein.testing.{Lengthy, Timing}
   * exceeds the twins'. It shifts the distribution of ages by about 6 % of its height, and widens the orbit by
   * 0.6 %. On a quiet machine the allowance is 2 % of the distance and 0.2 between the distributions. Where
   * data is older by more than [[mostExcessMs]], hardly any two distributions would be too far apart: such a
-  * flight is inconclusive. [[checkTwins]] holds full flights to 2 % without allowance.
+  * flight is inconclusive. [[checkTwins]] requires 2 % of full flights, without allowance.
   */
 class TwinLiveSuite extends munit.FunSuite, Lengthy, Timing:
 

@@ -22,22 +22,22 @@ class MarginCurveSuite extends munit.FunSuite:
   private val reference = point(0, 100, 100, 100)
 
   test(
-    "the margin lies on the straight line between the links around the tolerance, in whatever order they came"
+    "the margin is interpolated between the links around the tolerance, in any order of the links"
   ):
     val flown = curve(reference, point(100, 110, 110), point(50, 102, 102)).toOption.get
     // From 2 % at 50 ms to 10 % at 100 ms.
     assertEquals(flown.margin, Bound.At(50 + 50 * 3.0 / 8))
     assertEquals(flown.interval, (from = Bound.At(68.75), to = Bound.At(68.75)))
 
-  test("a result that gets smaller leaves the tolerance, too"):
+  test("a result that decreases leaves the tolerance, too"):
     assertEquals(curve(reference, point(100, 90, 90)).toOption.get.margin, Bound.At(50))
 
-  test("a result that stays within the tolerance holds as far as it was flown"):
+  test("if a result stays within the tolerance, the margin is beyond the longest measured round trip"):
     val flown = curve(reference, point(100, 101, 101)).toOption.get
     assertEquals(flown.margin, Bound.Beyond(100))
     assert(flown.sentence.contains("as far as it was flown, to a mean round trip of 100 ms"), flown.sentence)
 
-  test("runs that scatter make the interval wide, and two runs say less than four of the same spread"):
+  test("scattered runs make the interval wide, and two runs make it wider than four of equal spread"):
     def width(values: Double*) =
       curve(point(0, 99, 101, 99, 101), point(100, values*)).toOption.get.interval match
         case (from = Bound.At(from), to = Bound.At(to)) => to - from
@@ -46,24 +46,24 @@ class MarginCurveSuite extends munit.FunSuite:
     assert(width(108, 112, 108, 112) > 5)
     assert(width(108, 112) > width(108, 112, 108, 112))
 
-  test("a single run of each link has a margin and no interval"):
+  test("with a single run of each link, the margin has no interval"):
     val flown = curve(point(0, 100), point(100, 110)).toOption.get
     assertEquals(flown.margin, Bound.At(50))
     assertEquals(flown.interval, (from = Bound.At(0), to = Bound.Beyond(100)))
     assert(MarginTables.remarks(flown, 1).exists(_.contains("--repeats")))
 
-  test("a link over which the program fails ends the margin at the link before it"):
+  test("a link over which the program fails ends the margin at the previous link"):
     val dies = failing(80, NoResult.OfProgram("it ended with exit status 1"))
     assertEquals(curve(reference, point(40, 101, 101), dies).toOption.get.margin, Bound.At(40))
 
-  test("a link whose runs the machine spoiled says nothing"):
+  test("a link whose runs were spoiled by the machine is ignored"):
     val busy  = failing(80, NoResult.Starved("too busy"))
     val flown = curve(reference, point(40, 101, 101), busy, point(120, 101, 101)).toOption.get
     assertEquals(flown.margin, Bound.Beyond(120))
     val remark = MarginTables.remarks(flown, 1).find(_.contains("too busy"))
     assert(remark.exists(_.contains("2 of 9 runs")), remark)
 
-  test("without a result of the reference one line says why there is no curve"):
+  test("without a result of the reference, one line states why there is no curve"):
     val spoilt = MarginPoint(LatencyProfile.none, Vector(run(Left(NoResult.Starved("too busy")))))
     assertEquals(
       curve(spoilt, point(50, 1)).left.toOption,
@@ -73,7 +73,7 @@ class MarginCurveSuite extends munit.FunSuite:
     assert(zero.exists(_.contains("--within")), zero)
 
   test(
-    "tables have a row for each link, the failures with their reasons, and figures are drawn of what there is"
+    "tables have a row for each link and the failures with reasons, and figures show what was measured"
   ):
     val dies     = failing(80, NoResult.OfProgram("it hung"))
     val flown    = curve(reference, point(40, 101, 103), dies).toOption.get

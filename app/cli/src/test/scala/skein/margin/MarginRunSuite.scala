@@ -30,12 +30,12 @@ class MarginRunSuite extends munit.FunSuite:
 
   private def why(by: MarginJudge, ended: Ended) = MarginRun.judged(by, ended).left.toOption.map(_.why)
 
-  test("a program that still flies at the end is judged by where its vehicles were"):
+  test("a program that still runs at the end is judged by its vehicles' positions"):
     assertEquals(MarginRun.judged(flown, fine), Right(30.0))
     assertEquals(MarginRun.judged(flown, fine.copy(exit = Some(0))), Right(30.0))
     assertEquals(MarginRun.judged(MarginJudge.Contacts, fine), Right(2.0))
 
-  test("a program that dies has no result, and its own last words are told"):
+  test("a program that dies has no result, and the reason includes its last error line"):
     val died = fine.copy(exit = Some(1), lastError = Some("ValueError: no"))
     assertEquals(why(flown, died), Some("it ended with exit status 1 after 20.0 s: ValueError: no"))
 
@@ -44,19 +44,19 @@ class MarginRunSuite extends munit.FunSuite:
     assert(why(MarginJudge.Printed, fine.copy(connections = 0)).exists(_.startsWith("it never connected")))
     assertEquals(why(flown, fine.copy(commands = 0)), Some("it connected, and commanded nothing"))
 
-  test("a program that says nothing for half of its time has hung; one that waits for a move has not"):
+  test("a program that sends nothing for half of its time has hung; one that waits for a move has not"):
     assert(why(flown, fine.copy(silentFor = Span.ofSeconds(11))).exists(_.startsWith("it hung")))
     assertEquals(why(flown, fine.copy(silentFor = Span.ofSeconds(9))), None)
 
   test("a flight too short for the measure has no result"):
     assertEquals(why(flown, fine.copy(tracks = None)), Some("it has no value of 'last 10 s' after 20.0 s"))
 
-  test("a starved machine spoils a run; a program that dies meanwhile has died"):
+  test("a busy machine spoils a run, but a program that dies meanwhile counts as failed"):
     val starved = fine.copy(starved = Some("the machine was too busy"))
     assertEquals(MarginRun.judged(flown, starved), Left(NoResult.Starved("the machine was too busy")))
     assert(why(flown, starved.copy(exit = Some(2))).exists(_.contains("exit status 2")))
 
-  test("a printed number is the last line, of a program that has ended"):
+  test("a printed number must be the last line of a program that has ended"):
     def printed(line: String) = fine.copy(exit = Some(0), lastLine = Some(line), commands = 0)
     assertEquals(MarginRun.judged(MarginJudge.Printed, printed("4.25")), Right(4.25))
     assertEquals(
@@ -66,7 +66,7 @@ class MarginRunSuite extends munit.FunSuite:
     assert(why(MarginJudge.Printed, printed("NaN")).exists(_.contains("came 'NaN'")))
     assert(why(MarginJudge.Printed, fine.copy(lastLine = Some("4"))).exists(_.contains("still ran")))
 
-  test("judges are read by the scenario's measures and the built-in ones"):
+  test("a judge is one of the scenario's measures, or built in"):
     def read(text: String, vehicles: Int = 2) = MarginJudge.read(Some(text), Some(PaperDuel()), vehicles)
     assertEquals(read("last-10-s").map(_.name), Right("last 10 s"))
     assertEquals(read("separation").map(MarginRun.judged(_, fine)), Right(Right(30.0)))
@@ -77,7 +77,7 @@ class MarginRunSuite extends munit.FunSuite:
     assert(read("separation", vehicles = 1).left.exists(_.contains("two vehicles or more")))
     assert(MarginJudge.read(None, None, 1).left.exists(_.contains("came nothing")))
 
-  test("delays are read as even steps"):
+  test("delays are read as evenly spaced steps"):
     assertEquals(
       MarginDelays.read("50ms..0.2s/4").map(_.map(_.name)),
       Right(Vector("constant:50ms", "constant:100ms", "constant:150ms", "constant:200ms"))

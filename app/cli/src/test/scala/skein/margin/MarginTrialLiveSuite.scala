@@ -17,7 +17,7 @@ class MarginTrialLiveSuite extends munit.FunSuite, Waiting:
   private val duel     = PaperDuel()
   private val vehicles = duel.agents.map(Vehicles.settings)
 
-  /** The run of a script, and what it printed. */
+  /** The run of a script, and its output. */
   private def run(script: String, seconds: Double, judge: MarginJudge = MarginJudge.Contacts) =
     MarginTrial(
       Seq("bash", "-c", script),
@@ -37,7 +37,7 @@ class MarginTrialLiveSuite extends munit.FunSuite, Waiting:
   /** [0, 1, "hover", [""]] */
   private val hover = """printf '\x94\x00\x01\xa5hover\x91\xa0' >&3; head -c 5 <&3 >&2"""
 
-  test("a program gets the port in its arguments and in its environment, and what it prints is kept"):
+  test("a program receives the port in its arguments and its environment, and its output is kept"):
     val ended = run("echo $(({port} - SKEIN_PORT))", 60)
     assertEquals(ended.printed.trim, "0")
     assert(why(ended.run).exists(_.startsWith("it never connected")), ended.run)
@@ -45,17 +45,17 @@ class MarginTrialLiveSuite extends munit.FunSuite, Waiting:
   test("a program that connects, commands nothing and does not end is stopped when its time is over"):
     assertEquals(why(run(s"$connect; sleep 1000", 2).run), Some("it connected, and commanded nothing"))
 
-  test("a program that commands is judged, from its first command on"):
+  test("a program is judged from its first command on"):
     val ended = run(s"$connect; $hover", 60).run
     // A busy machine spoils a run, and says so.
     assume(ended.value.left.forall(!_.why.contains("too busy")), "inconclusive")
     assertEquals(ended.value, Right(0.0))
 
-  test("a program that dies is told with its last words, even if it had commanded"):
+  test("a program that dies is reported with its last line, even after commands"):
     val told = why(run(s"$connect; $hover; echo 'no battery' >&2; exit 3", 60).run).getOrElse("")
     assert(told.startsWith("it ended with exit status 3 after ") && told.endsWith("no battery"), told)
 
-  test("a program that is not there is told in a line"):
+  test("a missing program is reported in a line"):
     val trial = MarginTrial(
       Seq("no-such-program"),
       WorldSettings.Default,

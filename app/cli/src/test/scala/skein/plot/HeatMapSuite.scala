@@ -3,7 +3,7 @@ package skein.plot
 class HeatMapSuite extends munit.FunSuite:
   private val places = Vector.tabulate(21)(i => -1 + 0.1 * i)
 
-  test("the contour of a distance is a circle"):
+  test("the contour of the distance from a point is a circle"):
     val cone   = HeatMap(places, places, places.map(y => places.map(x => Some(math.hypot(x, y)))))
     val pieces = cone.contour(0.55)
     for ((x, y), _) <- pieces do assertEqualsDouble(math.hypot(x, y), 0.55, 0.01)
@@ -17,13 +17,13 @@ class HeatMapSuite extends munit.FunSuite:
     val panel = Panel(PlotAxis.exactly("x", -1, 1), PlotAxis.exactly("y", -1, 1), 0, 0, 100, 100)
     assertEquals(holed.cells(panel, ColourScale.viridis(-1, 0)).size, 10 * 21)
 
-  test("a scale's ends have its first and last colours, and values beyond them too"):
+  test("a scale's first and last colours are those of its ends and of values beyond them"):
     val scale = ColourScale.aroundZero(-2, 2)
     assertEquals(scale.of(-9), Colour(0x2166ac))
     assertEquals(scale.of(0), Colour(0xffffff))
     assertEquals(scale.of(2), Colour(0xb2182b))
 
-  test("where all values are on one side of zero, that side has the whole palette"):
+  test("if all values have one sign, that side has the whole palette"):
     val (above, below) = (ColourScale.aroundZero(0, 3), ColourScale.aroundZero(-3, 0.1))
     assertEquals((above.from, above.to, below.from, below.to), (0.0, 3.0, -3.0, 0.0))
     assertEquals((above.of(0), below.of(0)), (Colour(0xffffff), Colour(0xffffff)))

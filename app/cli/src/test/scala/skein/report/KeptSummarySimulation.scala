@@ -13,7 +13,7 @@ import skein.units.Span
 class KeptSummarySimulation extends munit.FunSuite, TemporaryFolders, Unhurried:
   private given Scenarios = DuelReport.scenarios
 
-  test("the tables of flights are the same from their records in memory and from their recordings"):
+  test("tables from a flight's records in memory equal those from its recording"):
     val folder   = temporaryFolder()
     val settings = FlySettings(
       List(LoopKind.Stream, LoopKind.Predictive),

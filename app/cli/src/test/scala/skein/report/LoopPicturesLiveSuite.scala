@@ -12,11 +12,11 @@ import skein.testing.Unhurried
   */
 class LoopPicturesLiveSuite extends munit.FunSuite, Unhurried:
 
-  test("the documentation's graphs are drawn from the loops as they run"):
+  test("the documentation's graphs are drawn from running loops"):
     for (file, text) <- LoopPicturesLiveSuite.drawn do
       assertEquals(Files.readString(file), text, s"$file: draw it anew")
 
-  test("parts are placed after those that lead to them, except for feedback edges"):
+  test("parts are placed after their predecessors, except for feedback edges"):
     val turns = LoopPicturesLiveSuite.graphs.map: (kind, graph) =>
       val spots = GraphLayout.of(graph)
       assertEquals(spots.keySet, graph.stages.toSet)
@@ -25,7 +25,7 @@ class LoopPicturesLiveSuite extends munit.FunSuite, Unhurried:
     assert(turns.exists(_._2 == Set("feed back")), turns.toString)
     assertEquals(turns.filterNot(turned => turned._2 == Set("feed back")), Vector.empty)
 
-  test("with plans in packets the graph has a stage that foresees"):
+  test("with plans in packets, the graph has a stage that foresees"):
     val loops = Seq(false, true).map(LoopPictures.Loop(LoopKind.Predictive, LoopPicturesLiveSuite.fleet, _))
     val drawn = LoopPictures.graphs(loops).map((loop, graph) =>
       loop.isInPacket -> graph.stages.exists(_.startsWith("foresee"))

@@ -37,7 +37,7 @@ class NoResultSuite extends munit.FunSuite:
     assert(ReportSections.text(set).contains("has no result: "))
     assertEquals(set.deviations, Vector.empty)
 
-  test("with a clock that runs backwards, stops, leaps or drifts a flight has no figures, and states why"):
+  test("a flight whose clock runs backwards, stops, leaps or drifts has no figures, and states why"):
     for
       (clock, why) <- Seq[(Double => Double, String)](
         (s => if s < 6 then s else 12 - s, "the simulator's clock "),
@@ -63,7 +63,7 @@ class NoResultSuite extends munit.FunSuite:
     do
       assertEmpty(Report.of(Seq(shown(paused)(clock), stream)), "paused, no result: clock broken", why)
 
-  test("a removed vehicle leaves no figures either, in any scenario's table"):
+  test("a removed vehicle leaves no figures in any scenario's table, either"):
     val why = "the simulator at host:1 no longer gives Evader to this flight"
     assertEmpty(
       Report.of(Seq(paused, noted(stream, EventKind.VehicleTaken, why))),
@@ -95,7 +95,7 @@ class NoResultSuite extends munit.FunSuite:
     assert(SummaryTables.remarks(set).exists(_.contains(s"is not compared with other flights: $why")))
     assert(TimingVerdict.sentence(set).exists(_.contains("stream, starved over vpn is not judged")))
 
-  test("one sentence states whether the timing is bad, by the truth if there is a paused flight"):
+  test("one sentence states whether the timing is bad, compared with the truth if there is a paused flight"):
     val deviation = Report.of(Seq(paused, stream)).deviations.head.share.mean.abs
     val said      = TimingVerdict.sentence(Report.of(Seq(paused, stream)))
     val word      = if deviation > 0.05 then "bad" else "good"
@@ -105,7 +105,9 @@ class NoResultSuite extends munit.FunSuite:
     )
     assertEquals(TimingVerdict.sentence(Report.of(Seq(paused))), None)
 
-  test("without a paused flight, timing is judged by the distance flown until a command answers a reading"):
+  test(
+    "without a paused flight, timing is judged by the distance flown from a reading to its command's arrival"
+  ):
     val none = SyntheticFlight("stream", "none", seed = 3, seconds = 12)
     val said = TimingVerdict.sentence(Report.of(Seq(stream, none))).getOrElse(fail("nothing was said"))
     assert(said.contains("timing is probably bad for stream over vpn (a vehicle flies on for "), said)
@@ -114,14 +116,14 @@ class NoResultSuite extends munit.FunSuite:
     assertEquals(said.count(_ == '\n'), 0)
     assert(ReportSections.text(Report.of(Seq(stream, none))).endsWith(said))
 
-  test("loops that have one verdict over several links are named once"):
+  test("loops with one verdict over several links are listed once"):
     val all =
       for loop <- Seq("futures", "stream"); link <- Seq("vpn", "direct")
       yield SyntheticFlight(loop, link, seed = 10, seconds = 12)
     val said = TimingVerdict.sentence(Report.of(all)).getOrElse(fail("nothing was said"))
     assert(said.contains(" for futures and stream over direct and vpn (at worst "), said)
 
-  test("loops of one verdict are named together, by link, with the worst of them"):
+  test("loops with one verdict are listed together, by link, with the worst of them"):
     val all =
       for
         (loop, index) <- Seq("sequential", "futures", "stream").zipWithIndex

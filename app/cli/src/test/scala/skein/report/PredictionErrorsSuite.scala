@@ -14,7 +14,7 @@ import skein.units.*
 class PredictionErrorsSuite extends munit.FunSuite, Unhurried:
   private given Scenarios = DuelReport.scenarios
 
-  test("errors are sorted by age into bins around multiples of 20 ms, of which small ones are left out"):
+  test("errors are grouped by age around multiples of 20 ms, and small groups are left out"):
     val samples = Vector.tabulate(40)(index => (91.0 + index % 18, index / 1000.0)) ++
       Vector.fill(PredictionErrors.Fewest - 1)((50.0, 9.0))
     val errors = PredictionErrors(made = 90, samples)
@@ -26,7 +26,7 @@ class PredictionErrorsSuite extends munit.FunSuite, Unhurried:
     assertEquals(errors.samples.count(_._1 == 50.0), PredictionErrors.Fewest - 1)
     assertEquals(errors.around(60), None)
 
-  test("the table has no 95 % quantile of few predictions either"):
+  test("the table has no 95 % quantile of a small group, either"):
     def p95(count: Int) =
       val errors = PredictionErrors(count, Vector.fill(count)((100.0, 0.012)))
       PredictionTable.of(Vector(PredictionGroup("stream", "vpn", errors, PredictionErrors(0, Vector.empty))))
@@ -37,14 +37,14 @@ class PredictionErrorsSuite extends munit.FunSuite, Unhurried:
     val samples = agesMs.toVector.flatMap(age => Vector.fill(PredictionErrors.Fewest)((age.toDouble, 0.01)))
     PredictionErrors(samples.size, samples)
 
-  test("ages between which nothing was measured are not joined"):
+  test("points are not joined across ages without measurements"):
     assertEquals(
       measured(40, 60, 140, 160, 180, 240).stretches.map(_.map(_._1)),
       Vector(Vector(40, 60), Vector(140, 160, 180), Vector(240))
     )
     assertEquals(measured().stretches, Vector.empty)
 
-  test("curves break where nothing was measured, and the legend names what is drawn alone"):
+  test("curves break at ages without measurements, and the legend lists only drawn items"):
     def texts(of: PredictionGroup) =
       PredictionFigure(Vector(of)).get.shapes.collect { case text: Mark.Text => text.content }
     def curves(of: PredictionGroup) = PredictionFigure(Vector(of)).get.shapes.count:
@@ -60,7 +60,7 @@ class PredictionErrorsSuite extends munit.FunSuite, Unhurried:
     )
     assert(texts(both).contains("others, median"), texts(both))
 
-  test("two ages are no curve, neither in the picture nor in its legend"):
+  test("two ages are no curve, in the picture and in its legend"):
     val shapes =
       PredictionFigure(Vector(PredictionGroup("predictive", "vpn", measured(20, 40), measured()))).get.shapes
     // Two discs each of the median and of the 95 % quantile, and one each in the legend.
@@ -85,7 +85,7 @@ class PredictionErrorsSuite extends munit.FunSuite, Unhurried:
       .inParallel(settings, settings.plans)(flown => FlightSummary.of(flown.recorder.recording))
       .map(_.fold(missing => fail(missing.message), identity))
 
-  test("of a flight, every prediction is counted: verified with its error, or unverified"):
+  test("every prediction of a flight is counted: verified with its error, or unverified"):
     val group = PredictionGroup.of(flights) match
       case Vector(group) => group
       case others        => fail(s"expected predictions of one loop, came ${others.size}")
@@ -98,7 +98,7 @@ class PredictionErrorsSuite extends munit.FunSuite, Unhurried:
       assert(errors.errors.get.quantile(0.95) < 0.1, errors.errors.get.quantile(0.95).toString)
     assert(ReportFigures.spread(flights).all.map(_.name).contains("prediction"))
 
-  test("predictions of which none could be verified are counted, not hidden"):
+  test("predictions are counted even if none was verified"):
     val groups = PredictionGroup.of(fly(List(LoopKind.Predictive), Span.ofMillis(400)))
     for errors <- groups.flatMap(group => Seq(group.own, group.others)) do
       assert(errors.made >= 50 && errors.unverified == errors.made, s"${errors.made} ${errors.unverified}")
@@ -114,7 +114,7 @@ class PredictionErrorsSuite extends munit.FunSuite, Unhurried:
     assertEqualsDouble(deviations.head.share.mean, metres("stream") / metres("paused") - 1, 1e-12)
     assertEquals(Deviation.of(flights.filterNot(_.flight.loop == "paused")), Vector.empty)
 
-  test("the sections are in the text, on the report's page and on that of a spread"):
+  test("the sections are in the text, on the report's page and on a spread's page"):
     val set  = FlightSet(flights)
     val text = ReportSections.text(set)
     assert(text.contains("Deviation from the paused truth") && text.contains("p95 at 100 ms, mm"), text)

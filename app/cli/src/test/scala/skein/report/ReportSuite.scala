@@ -52,7 +52,7 @@ class ReportSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     val ticks = texts.filter(_.toDoubleOption.isDefined).groupMapReduce(identity)(_ => 1)(_ + _)
     assert(ticks.nonEmpty && ticks.values.forall(_ % set.flights.size == 0), ticks)
 
-  folder.test("the printed next command can be typed, whatever the folder is called"): folder =>
+  folder.test("the printed next command can be typed, whatever the folder's name"): folder =>
     val (one, two) = (folder.resolve("it's a.duckdb"), folder.resolve("b.duckdb"))
     for (file, seed) <- Seq(one -> 1, two -> 2) do
       val flight = SyntheticFlight("stream", "direct", seed, seconds = 12)
@@ -67,7 +67,7 @@ class ReportSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     assertEquals(Typed.recordings(Path.of("a/b")), "a/b/*.duckdb")
     assertEquals(Typed.recordings(Path.of("-a/b")), "./-a/b/*.duckdb")
 
-  folder.test("a file that is named twice is one flight"): folder =>
+  folder.test("a file that is listed twice is one flight"): folder =>
     val flight = SyntheticFlight("stream", "direct", seed = 1, seconds = 12)
     val file   = folder.resolve("flight.duckdb")
     assert(MemoryRecorder(flight.heading).writeTo(file).isRight)
@@ -113,7 +113,7 @@ class ReportSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     assert(!page.contains("<b onload"), "the simulator's name was not escaped")
     assert(!page.contains("<i>"), "the link's name was not escaped")
 
-  test("a flight without a single record still gives a page and a table"):
+  test("a flight without any record still gives a page and a table"):
     val empty = SyntheticFlight("stream", "direct", seed = 1, seconds = 12).heading
     val set   = Report.of(Seq(Recording(empty)))
     assert(HtmlReport.render(set, ReportSections.of(set, ReportFigures.of(set))).contains("Skein"))
@@ -136,7 +136,7 @@ class ReportSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
         |lon� name     2""".stripMargin
     )
 
-  folder.test("every file that cannot be read is named"): folder =>
+  folder.test("every unreadable file is listed"): folder =>
     val good = folder.resolve("good.duckdb")
     assert(MemoryRecorder(SyntheticFlight("stream", "direct", 1, 12).heading).writeTo(good).isRight)
     val missing = folder.resolve("missing.duckdb")

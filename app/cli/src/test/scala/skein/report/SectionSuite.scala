@@ -12,7 +12,7 @@ class SectionSuite extends munit.FunSuite:
     Vector(Vector("stream", "12", "8.50", "+2.0", "1 … 2"), Vector("paused", "", "", "-0.5", ""))
   )
 
-  test("data: numbers are numbers, what is empty is null, names are text"):
+  test("data: numbers are numbers, empty cells are null, names are text"):
     val read = ujson.read(Section.json(Seq(Section("One", "note", Some(table)), Section("a picture"))))
     assertEquals(
       read,

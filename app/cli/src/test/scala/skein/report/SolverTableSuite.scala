@@ -26,8 +26,7 @@ class SolverTableSuite extends munit.FunSuite:
     )
 
   test(
-    "a flight with a remote solver is compared with the loop that decides itself, with the hop's " +
-      "increase"
+    "a flight with a remote solver is compared with the loop that decides locally, with the increase"
   ):
     val set   = FlightSet(summaries("link:constant:20ms"))
     val table = SolverTable.of(set)

@@ -48,7 +48,7 @@ class SummarySuite extends munit.FunSuite:
   private def curveOf(records: Record*): DistanceCurve =
     FlightSummary.of(Recording(heading, records)).distance.getOrElse(fail("expected a distance"))
 
-  test("quantiles lie on straight lines between samples"):
+  test("quantiles are interpolated linearly between samples"):
     val distribution = Distribution.of(Seq(40.0, 10, 30, 20)).get
     assertEqualsDouble(distribution.median, 25, 1e-12)
     assertEqualsDouble(distribution.quantile(0), 10, 0)
@@ -57,7 +57,7 @@ class SummarySuite extends munit.FunSuite:
     assertEqualsDouble(distribution.mean, 25, 1e-12)
     assertEqualsDouble(distribution.sd, math.sqrt(125), 1e-12)
 
-  test("distance is taken at equal simulator times, between samples of different instants"):
+  test("distances are taken at equal simulator times, interpolated between samples"):
     // The pursuer goes north at 2 m/s, the evader at 1 m/s from 10 m on, 3 m to the east; sampled in turns.
     val curve = curveOf(
       (for tick <- 0 to 20 yield seen("Red", tick * 0.5, tick * 1.0, 0)) ++
@@ -75,7 +75,7 @@ class SummarySuite extends munit.FunSuite:
     assertEqualsDouble(curve.closest._1, 12, 1e-9)
     assertEqualsDouble(curve.closest._2, 4, 1e-9)
 
-  test("the last 10 s are the curve's own last ten, and equal weight is given to equal time"):
+  test("the last 10 s are the curve's own, weighted evenly in time"):
     // 5 m apart for 10 s, then 8 m, then 9 m over the last 2.5 s.
     val apart = Seq(0.0 -> 5.0, 9.99 -> 5.0, 10.0 -> 8.0, 17.49 -> 8.0, 17.5 -> 9.0, 20.0 -> 9.0)
     val curve = curveOf(
@@ -100,7 +100,7 @@ class SummarySuite extends munit.FunSuite:
   test("a flight in which one vehicle was never read has no distance"):
     assertEquals(FlightSummary.of(Recording(heading, Seq(seen("Red", 0, 0, 0)))).distance, None)
 
-  test("observations are sorted by the role that was decided for"):
+  test("observations are grouped by the deciding vehicle's role"):
     val recording = SyntheticFlight("stream", "direct", seed = 1, seconds = 12)
     val summary   = FlightSummary.of(recording)
     assertEquals(summary.roles.map(_.role), Vector("evader", "pursuer"))
@@ -149,14 +149,13 @@ class SummarySuite extends munit.FunSuite:
     assertEquals(against(SyntheticFlight("paused", "none", seed = 3, seconds = 15)), None)
     assertEquals(against(flight(paused)(_.copy(period = Span.ofMillis(400)))), None)
 
-  test("a published flight is beside ours of the same loop and link, a paused one beside any"):
+  test("a published flight is beside ours of its loop and link, and the paused one beside any"):
     assertEquals(Published.flight(LoopKind.Stream, "vpn").flatMap(_.distance).map(_.mean), Some(8.5))
     assertEquals(Published.flight(LoopKind.Paused, "none").flatMap(_.distance).map(_.mean), Some(8.53))
     assertEquals(Published.flight(LoopKind.Stream, "none"), None)
 
   test(
-    "a flight shorter than ten seconds has no last ten; the paper's figures are beside flights of a " +
-      "minute"
+    "a flight shorter than 10 s has no last 10 s; the paper's figures are beside flights of a minute"
   ):
     def rows(seconds: Int) =
       SummaryTables.distances(Report.of(Seq(SyntheticFlight("stream", "direct", 1, seconds))))
@@ -184,7 +183,7 @@ class SummarySuite extends munit.FunSuite:
     assertEquals(row(header.indexOf("paper m")), "")
     assertEquals(cut.deviations, Vector.empty)
 
-  test("a camera that found nothing is in the table"):
+  test("a camera without a detection is in the table"):
     val duel  = SyntheticFlight("stream", "direct", 1, 12)
     val named = duel.heading.flight.copy(scenario = "blind-pursuit")
     val blind = duel.copy(heading = duel.heading.copy(flight = named))

@@ -1,7 +1,7 @@
 package skein.report
 
 import scala.util.Random
-import skein.policy.{Agent, Fleet}
+import skein.policy.{Agent, Fleet, HeadingPolicy}
 import skein.record.*
 import skein.scenario.PaperDuel
 import skein.signal.{Kinematics, LatencyProfile, Stamped}
@@ -100,7 +100,7 @@ object SyntheticFlight:
     val elapsed = lastSent(agent).fold(Span.Zero)(decided.since)
     val self    = scenario.agents(agent)
     val heading =
-      self.duelPolicy.heading(
+      self.policy.asInstanceOf[HeadingPolicy].heading(
         away.x,
         away.y,
         closing.x,

@@ -31,7 +31,7 @@ class TablesSuite extends munit.FunSuite:
     val values = table.rows.find(_.head == loop).getOrElse(fail(s"no row of $loop"))
     table.header.map(_.stripPrefix("<")).zip(values).toMap
 
-  test("the spread of a loop over its flights is beside the truth of the same policies"):
+  test("a loop's spread over its flights is beside the truth of equal policies"):
     val table = SpreadTable.of(set.flights)
     assertEquals(
       table.rows.map(_.take(3)),
@@ -49,7 +49,7 @@ class TablesSuite extends munit.FunSuite:
     assertEquals(row(table, "paused")("vs paused"), "")
     assertEquals(row(table, "paused")("sd"), "")
 
-  test("the truth is of the flight's own clock if there is one, else of any, and never of other settings"):
+  test("the truth has the flight's own clock if possible, else another, and never other settings"):
     val Vector(truth, flight)                            = set.flights.take(2): @unchecked
     def by(one: FlightSummary, clock: String)            = one.copy(flight = one.flight.copy(clock = clock))
     def truths(of: FlightSummary, among: FlightSummary*) = Truth.among(among).of(of)
@@ -62,14 +62,14 @@ class TablesSuite extends munit.FunSuite:
     val off = Truth.among(Vector(virtual)).deviation(flight)
     assertEquals(off, flight.headline.map(_ / truth.headline.get - 1))
 
-  test("without a paused flight the truth is left out, and captures are counted"):
+  test("without a paused flight the truth's column is empty, and captures are counted"):
     val stream = row(SpreadTable.of(set.flights.tail), "stream")
     assertEquals(stream("vs paused"), "")
     val closest = set.flights.tail.map(_.distance.get.closest._2)
     assertEquals(stream("captured"), closest.count(_ < 1.5).toString)
     assertEquals(stream("closest m"), (closest.sum / 3).fixed(2))
 
-  test("a deviation of several flights has a spread, one of a single flight has none"):
+  test("the deviation of several flights has a spread, and that of a single flight has none"):
     def deviation(shares: Double*) =
       Deviation("stream", "stream", "vpn", "real", Distribution.of(shares).get)
     val table = DeviationTable.of(Vector(deviation(0.1, 0.3), deviation(-0.05)))
@@ -81,7 +81,7 @@ class TablesSuite extends munit.FunSuite:
       )
     )
 
-  test("events are counted by flight; a rare kind of event has a column where any flight has it"):
+  test("events are counted by flight, and a rare kind has a column if any flight has one"):
     val refused = Event(streams.head.flight.startedAt, EventKind.Refused, None, "no")
     val one     = streams.head.copy(events = streams.head.events :+ refused)
     val table   = SummaryTables.counts(Report.of(Seq(paused, one)))
@@ -124,7 +124,7 @@ class TablesSuite extends munit.FunSuite:
 
   private val steady = duel("paused", 1)(_ => 4.02)
 
-  test("distances: the flight, the closest approach with its time, the last 10 s, and the truth"):
+  test("distances: duration, closest approach with its time, the last 10 s, and the truth"):
     val table = SummaryTables.distances(Report.of(Seq(steady, duel("stream", 2)(pass(0)))))
     assertEquals(
       table.rows,
@@ -136,14 +136,14 @@ class TablesSuite extends munit.FunSuite:
       )
     )
 
-  test("the spread of passes: of the mean, within a flight, of the closest, and how many were captures"):
+  test("spread: of the mean, within a flight, of the closest approach, and the number of captures"):
     val flights = Report.of(Seq(steady, duel("stream", 2)(pass(0)), duel("stream", 3)(pass(1)))).flights
     assertEquals(
       SpreadTable.of(flights).rows.last,
       Vector("stream", "direct", "2", "2.51", "0.50", "2.01", "3.01", "0.58", "1.51", "1", "-37.6 %")
     )
 
-  test("plans: candidates and their time, missed and broken plans, and when the evader was captured"):
+  test("plans: candidates, their time, missed and broken plans, and the time of the capture"):
     def planned(candidates: Long, slices: Vector[Long], tookMs: Double, breaches: Long) =
       Planned("Pursuer", 1, candidates, slices, Some(1), Span.ofMillis(tookMs), breaches)
     val plans = Vector(
@@ -165,7 +165,7 @@ class TablesSuite extends munit.FunSuite:
     assertEquals(table.header.size, table.rows.head.size)
     assert(PlanTable.note(Report.of(Seq(catches))).contains("Captured: when"))
 
-  test("a distance of just 1.5 m is no capture"):
+  test("a distance of exactly 1.5 m is no capture"):
     val plan = Planned("Pursuer", 1, 10, Vector(1), None, Span.ofMillis(50), 0)
     val row  = PlanTable.of(Report.of(Seq(duel("plan", 2)(_ => 1.5).copy(planned = Vector(plan))))).rows.head
     assertEquals(row.takeRight(2), Vector("never", "0.0 %"))
@@ -206,7 +206,7 @@ class TablesSuite extends munit.FunSuite:
       )
     )
 
-  test("observations are beside the paper's of the same role, and true ages are means in ms"):
+  test("observations are beside the paper's for their role, and true ages are means in ms"):
     val recording = SyntheticFlight("stream", "direct", seed = 1)
     val table     = SummaryTables.observations(Report.of(Seq(recording)))
     val paper     = table.header.indices.filter(table.header(_) == "paper")
@@ -220,7 +220,7 @@ class TablesSuite extends munit.FunSuite:
       assertEquals(row.takeRight(2), Vector(mean(ages.map(_.own)), mean(ages.map(_.opponent))))
     assertEquals(TimingObservation.values.size, paper.size)
 
-  test("without opponents their columns are left out"):
+  test("without opponents, the columns about them are left out"):
     val duel = SyntheticFlight("stream", "direct", seed = 1, seconds = 12)
     val set  = Report.of(Seq(duel.copy(heading =
       duel.heading.copy(flight = duel.heading.flight.copy(scenario = "surround"))
@@ -234,7 +234,7 @@ class TablesSuite extends munit.FunSuite:
     val titles = ObservationFigure(set).get.shapes.collect { case text: Mark.Text => text.content }
     assert(titles.contains("Own location age") && !titles.exists(_.contains("pponent")), titles)
 
-  test("without a flight of the paper's observations have no comparison"):
+  test("without a flight of the paper, observations have no comparison"):
     val slope = SyntheticFlight("stream", "direct", seed = 1, seconds = 12)
     val other = slope.copy(heading =
       slope.heading.copy(flight = slope.heading.flight.copy(scenario = "chase"))
@@ -243,7 +243,7 @@ class TablesSuite extends munit.FunSuite:
     assert(!table.header.contains("paper"), table.header)
     assert(table.rows.nonEmpty && table.rows.forall(_.size == table.header.size))
 
-  test("the page states the flights' parameters in their units, and when it began"):
+  test("the page states the flights' parameters in their units, and the time of their begin"):
     val page =
       HtmlReport.render(Report.of(Seq(SyntheticFlight("stream", "direct", seed = 7, seconds = 12))), Nil)
     val row = page.drop(page.indexOf("Run parameters")).split("<tr>").last.replaceAll("<[^>]*>", "|")
@@ -255,7 +255,7 @@ class TablesSuite extends munit.FunSuite:
     assert(page.contains("Skein: 1 flight, scenario duel"), page.take(400))
     assert(page.contains("one decision per vehicle every 100 ms; simulator synthetic; virtual clock"))
 
-  test("a set names its scenario only if all flights have the same"):
+  test("a set names its scenario only if all flights have that one"):
     val team  = SyntheticFlight("stream", "vpn", seed = 1, seconds = 12)
     val other = team.copy(heading = team.heading.copy(flight = team.heading.flight.copy(scenario = "own")))
     assert(HtmlReport.render(Report.of(Seq(team, other)), Nil).contains("<h1>Skein: 2 flights</h1>"))

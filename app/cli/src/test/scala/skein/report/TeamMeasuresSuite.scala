@@ -52,7 +52,7 @@ class TeamMeasuresSuite extends munit.FunSuite:
       _.measure.title == name
     ).flatMap(_.value).getOrElse(fail(s"no $name among ${result.measured}"))
 
-  test("a ring that closes: its radius, the even gap, and from when on the evader is between its pursuers"):
+  test("surround: the ring's radius, the even gap, and when the evader is between its pursuers"):
     val scenario = Surround(vehicles = 5)
     // Until 4 s all stand within 160°, then at right angles.
     val result = resultOf(flown(scenario, 20): (vehicle, second) =>
@@ -84,7 +84,7 @@ class TeamMeasuresSuite extends munit.FunSuite:
     ))
     assertEquals(result.measured.find(_.measure.title == "surrounded after s").flatMap(_.value), None)
 
-  test("slots are kept on the circuit, except for a follower that is 0.3 m off its own from 15 s on"):
+  test("formation: slots are kept on the circuit, except by a follower that is 0.3 m off from 15 s on"):
     val scenario = Formation(vehicles = 3, spacingM = 4)
     val circuit  = scenario.circuit
     val slots    = scenario.slots
@@ -103,7 +103,7 @@ class TeamMeasuresSuite extends munit.FunSuite:
     assertEqualsDouble(value(result, "slot rms m"), 0.15, 0.005)
     assert(value(result, "at s") >= 14.9)
 
-  test("a crossing: the closest pair and when, every stretch below the minimum once, arrivals"):
+  test("crossing: the closest pair with its time, each stretch below the minimum once, and arrivals"):
     val scenario = Crossing(vehicles = 3, streams = 2, minimumM = 2)
     val goals    = scenario.goals
     // The first passes the waiting second at 1 m at 5 s; the third is at its goal from 8 s on.
@@ -192,7 +192,7 @@ class TeamMeasuresSuite extends munit.FunSuite:
     assertEquals(streams(column(spread, "to goal s")), "8.00 ± 0.00, 8.00 … 8.00, 1 never")
     assertEquals(spread.rows.map(_.size).distinct, Vector(spread.header.size))
 
-  test("for a flight shorter than the measured window the tables state that, and for missing events 'never'"):
+  test("tables state that a flight is shorter than the measured window, and 'never' for missing events"):
     val scenario = Surround(vehicles = 3)
     // Both pursuers stand on one side of the evader.
     val beside = (vehicle: Int, _: Double) => (10.0 * vehicle, 0.0)
@@ -206,7 +206,7 @@ class TeamMeasuresSuite extends munit.FunSuite:
     assertEquals(column(spread, "ring m"), Vector("15.00, 1 too short"))
     assertEquals(column(spread, "surrounded after s"), Vector("2 never"))
 
-  test("broken limits are listed with their vehicles and times; of a flight's many, the first five"):
+  test("broken limits are listed with vehicles and times, at most the first five of a flight"):
     val scenario            = Crossing(vehicles = 3, streams = 2, minimumM = 2)
     val names               = scenario.agents.map(_.name)
     def beside(m: Double)   = (0.0, 200 + m)

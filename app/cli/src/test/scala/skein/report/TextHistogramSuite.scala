@@ -4,7 +4,7 @@ import skein.measure.Distribution
 
 class TextHistogramSuite extends munit.FunSuite:
 
-  test("every sample is in its bin, the largest in the last"):
+  test("every sample is in its bin, and the largest in the last one"):
     val samples = Distribution.of(Vector(0.0, 0.5, 1, 1, 1.5, 8)).get
     assertEquals(
       TextHistogram(samples, "ms"),

@@ -16,7 +16,7 @@ class TwinSuite extends munit.FunSuite:
     val flight    = recording.heading.flight.copy(clock = "real")
     recording.copy(heading = recording.heading.copy(flight = flight))
 
-  test("a live flight is paired with the virtual ones of its loop and link, and with no others"):
+  test("a live flight is paired only with the virtual ones of its loop and link"):
     val set = Report.of(
       Seq(
         live("stream", "direct", 1),
@@ -37,14 +37,14 @@ class TwinSuite extends munit.FunSuite:
       Vector(("sequential", "direct"), ("stream", "direct"), ("stream", "vpn"))
     )
 
-  test("a flight and its exact copy in virtual time are 0 apart in everything"):
+  test("a flight and its exact copy in virtual time differ by 0 in every quantity"):
     val twin = Report.of(Seq(live("stream", "direct", 1), virtual("stream", "direct", 1))).twins.head
     assertEquals(twin.compared.size, 4)
     assertEquals(twin.compared.map(_.distance), Vector.fill(4)(0.0))
     assertEquals(twin.difference, Some(0.0))
     assertEquals(twin.unlike, Vector.empty)
 
-  test("older data on another link has that difference, and distances differ relative to the twin's"):
+  test("older data over another link show as that difference, and distances differ relative to the twin's"):
     val other = live("stream", "vpn", 1)
     val vpn   = other.copy(heading =
       other.heading.copy(flight = other.flight.copy(link = "direct", duration = Span.ofSeconds(13)))
@@ -56,7 +56,7 @@ class TwinSuite extends munit.FunSuite:
     assertEqualsDouble(twin.difference.get, l / v - 1, 1e-12)
     assertEquals(twin.unlike, Vector("duration 13 s live, 12 s virtual"))
 
-  test("the section is in the text and on the page if there is a pair, and only then"):
+  test("the section is in the text and on the page only if there is a pair"):
     val paired = Report.of(Seq(live("stream", "direct", 1), virtual("stream", "direct", 2)))
     val page   = HtmlReport.render(paired, ReportSections.of(paired, ReportFigures.of(paired)))
     assert(page.contains("Live against virtual") && page.contains("KS 0."), "no section")

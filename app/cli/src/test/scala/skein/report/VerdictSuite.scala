@@ -7,7 +7,7 @@ class VerdictSuite extends munit.FunSuite:
   private def deviation(loop: String, link: String, share: Double, clock: String = "real") =
     Deviation(loop, loop, link, clock, Distribution.of(Seq(share)).get)
 
-  test("each link's loops are named from the farthest off the truth to the nearest, the worst link last"):
+  test("each link's loops are listed from the largest deviation to the smallest, and the worst link last"):
     val said = Verdict.sentences(Seq(
       deviation("stream", "vpn", 0.298),
       deviation("predictive", "vpn", -0.0104),
@@ -23,7 +23,7 @@ class VerdictSuite extends munit.FunSuite:
     )
 
   test(
-    "the worst link is the one with the loop that is farthest off, and live flights come after virtual ones"
+    "the worst link is that of the loop with the largest deviation, and live flights follow virtual ones"
   ):
     val said = Verdict.sentences(Seq(
       deviation("stream", "far", 0.3),

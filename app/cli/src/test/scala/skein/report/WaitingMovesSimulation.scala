@@ -10,7 +10,7 @@ import skein.units.Span
 class WaitingMovesSimulation extends munit.FunSuite:
   private given Scenarios = Scenarios.ours
 
-  test("moves that wait for answers over a long round trip are reported, with the setting that sends more"):
+  test("moves that wait for answers over a long round trip are reported, with the setting that allows more"):
     def remarks(moves: Int, roundTripMs: Int) =
       val link = LatencyProfile.parse(
         s"constant:${roundTripMs}ms",

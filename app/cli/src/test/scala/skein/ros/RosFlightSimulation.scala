@@ -101,6 +101,7 @@ class RosFlightSimulation extends munit.FunSuite, Optimised:
             )
           object source extends VehicleSource:
             val where                       = "ROS 2"
+            override val guidance           = TwistCommand.guidance(_)
             def open(names: Vector[String]) =
               assertEquals(names, agents.map(_.name))
               Future
@@ -144,6 +145,18 @@ class RosFlightSimulation extends munit.FunSuite, Optimised:
         distance(recording)
       println(f"${loop.label}: $topics%.3f m by topics, $direct%.3f m without")
       assertEqualsDouble(topics / direct, 1, most)
+
+  for (link, mostMm) <- Seq(LatencyProfile.none -> 5.0, LatencyProfile.vpn -> 50.0) do
+    test(s"predictive foresees what commands of cmd_vel do, over ${link.name}"):
+      val (_, recording) =
+        flown(settings(LoopKind.Predictive, 40).copy(links = List(link))).fold(fail(_), identity)
+      val errors      = recording.predictions.drop(40).map(_.error.value * 1e3).sorted
+      def at(p: Int)  = errors(errors.size * p / 100)
+      val (half, p95) = (at(50), at(95))
+      println(
+        f"${link.name}: $half%.1f mm off at the median, $p95%.1f mm at 95 %%, ${distance(recording)}%.3f m"
+      )
+      assert(p95 < mostMm, p95)
 
   for loop <- LoopKind.values if loop != LoopKind.Paused do
     test(s"${loop.label} flies by topics"):

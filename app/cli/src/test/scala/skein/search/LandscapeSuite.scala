@@ -18,7 +18,7 @@ class LandscapeSuite extends munit.FunSuite, Optimised:
     candidates.map: c =>
       RunningStats.of(episodes.size)(_ => 10 * c(1) * c(1) + 0.01 * c(2) + c(3))
 
-  test("of many parameters the two most sensitive ones are drawn, the others at the best"):
+  test("of many parameters the two most sensitive ones are drawn, with the others at the best values"):
     val best = Vector(0.5, 0.0, 1.0, 2.0)
     val land = Landscape.of(space, best, evaluator, 0 until 3, () => false, onMap = 5).get
     assertEquals(Landscape.of(space, best, evaluator, 0 until 3, () => true), None)
@@ -58,7 +58,7 @@ class LandscapeSuite extends munit.FunSuite, Optimised:
     val best  = Vector(0.5, 1.23456, 1.5, 1.75, 0.25, 0.125).take(dimension)
     Landscape(space, best, 0, Some(1), Vector(0, 2), Vector(0, 2), Vector.fill(2, 2)(RunningStats(3, 1, 0)))
 
-  test("parameters that are not drawn are listed with their values, or counted if many"):
+  test("parameters that are not drawn are listed with their values, or counted if there are many"):
     assertEquals(LandscapeFigure.fixed(at(2)), None)
     assertEquals(LandscapeFigure.fixed(at(3)), Some("at the best: capture radius = 1.5 m"))
     assertEquals(LandscapeFigure.fixed(at(4)), Some("at the best: capture radius = 1.5 m, gain = 1.75"))
@@ -101,7 +101,7 @@ class LandscapeSuite extends munit.FunSuite, Optimised:
       Vector(means.map(mean => RunningStats(16, mean, 0.16)))
     )
 
-  test("a few values that are far off do not flatten a curve, which is cut where it leaves the axis"):
+  test("a few distant values do not flatten a curve, which is cut where it leaves the axis"):
     val flat   = Vector.tabulate(30)(at => 10.7 + at * 0.01) ++ Vector(40.0, 80.0)
     val figure = LandscapeFigure(alongOne(flat, 3), "title", "distance, m", Direction.Minimise)
     val ticks  = figure.shapes.collect { case text: Mark.Text => text.content }.flatMap(_.toDoubleOption)
@@ -109,7 +109,7 @@ class LandscapeSuite extends munit.FunSuite, Optimised:
     val places = figure.shapes.collect { case Mark.Path(points, _, _, _) => points }.flatten
     assert(places.forall(at => at.y >= 0 && at.y <= figure.height), places)
 
-  test("where the found value is the default, both lines are visible"):
+  test("if the found value is the default, both lines are visible"):
     val figure = LandscapeFigure(alongOne(Vector(3.0, 1, 2), 1), "title", "distance, m", Direction.Minimise)
     val lines  = figure.shapes.collect:
       case Mark.Path(Vector(from, to), Some(stroke), _, _) if from.x == to.x && from.y != to.y => stroke
@@ -144,7 +144,7 @@ class LandscapeSuite extends munit.FunSuite, Optimised:
       )
     )
 
-  test("a map's colours end before outliers on the worse side, and the bar marks that"):
+  test("a map's colours end before outliers on the worse side, and the bar marks that end"):
     val even                                               = Vector.tabulate(101)(_ / 10.0)
     val outliers                                           = even.init :+ 1000.0
     def scale(means: Vector[Double], direction: Direction) =

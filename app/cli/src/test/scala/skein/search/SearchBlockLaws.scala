@@ -30,7 +30,7 @@ class SearchBlockLaws extends munit.ScalaCheckSuite, Optimised:
       atMost
     )
 
-  property("for any division of a call, the combined answers are the undivided call's, to the bit"):
+  property("for any division of a call, the combined answers equal the undivided call's, to the bit"):
     Prop.forAll(calls): (judge, candidates, episodes, atMost) =>
       val blocks  = SearchBlock.cut(judge, candidates, episodes, atMost)
       val answers = blocks.map(block => SearchBlock.read(block.bytes).fold(fail(_), _.answer(_ => Rough)))
@@ -39,12 +39,12 @@ class SearchBlockLaws extends munit.ScalaCheckSuite, Optimised:
         Right(Rough.tallies(candidates, episodes))
       )
 
-  property("no block exceeds its bound, unless one candidate on one episode does"):
+  property("only a block of one candidate and one episode may exceed the bound"):
     Prop.forAll(calls): (judge, candidates, episodes, atMost) =>
       for block <- SearchBlock.cut(judge, candidates, episodes, atMost) do
         assert(block.candidates.size * block.episodes.size <= atMost)
 
-  property("a block is read as it was written"):
+  property("a block is read back as it was written"):
     Prop.forAll(calls): (judge, candidates, episodes, atMost) =>
       for block <- SearchBlock.cut(judge, candidates, episodes, atMost) do
         assertEquals(SearchBlock.read(block.bytes), Right(block))

@@ -41,7 +41,7 @@ class SearchEnginesSuite extends munit.FunSuite, TemporaryFolders, Optimised:
     for other <- Seq(reference.copy(mean = 3 * reference.mean), reference.copy(mean = Double.NaN)) do
       assert(SearchResult.disagreement(flown, other, "m").exists(_.contains("the scalar engine comes to")))
 
-  test("where both use SIMD, each states its kernel"):
+  test("if candidates and winner use SIMD, each has its kernel in the description"):
     for
       loop <- Seq("sequential", "futures", "stream", "predictive")
       link <- Seq("vpn", "vpn-mixed")
@@ -50,7 +50,7 @@ class SearchEnginesSuite extends munit.FunSuite, TemporaryFolders, Optimised:
       val told = engines(loop, link, eye)
       assert(told.matches("SIMD, .*; fresh episodes: SIMD, .*"), s"$loop, $link, $eye: $told")
 
-  test("few candidates have delays of their own, whose SIMD kernel is faster than shared ones for so few"):
+  test("a few candidates have their own delays, whose SIMD kernel is faster for so few than a shared one"):
     assert(setup("stream", "vpn", None, candidates = 255).engines.matches("SIMD, [0-9]+ worlds at a time"))
     val paused = setup("paused", "vpn", Some(eyeFile()), candidates = 8).engines
     assert(paused.contains(" candidates of an episode at a time"), paused)

@@ -31,7 +31,7 @@ class SearchFileSuite extends munit.FunSuite, TemporaryFolders, Optimised:
   private def setup(method: String) = question(method).setup.fold(mistake => fail(mistake), identity)
 
   for method <- SearchQuestion.Methods.split(", ").toSeq do
-    test(s"$method, written down and read back after every step, ends as an unbroken search"):
+    test(s"$method: a search stored and read back after every step ends as an uninterrupted one"):
       val ready                       = setup(method)
       val evaluator                   = ready.judges(2)(Judge.Candidates)
       def through(state: SearchState) =
@@ -46,7 +46,7 @@ class SearchFileSuite extends munit.FunSuite, TemporaryFolders, Optimised:
         ready.search.step(read.state, evaluator, 17)
       assertEquals(broken, unbroken)
 
-  test("files that a question names are recognised by their content"):
+  test("a change of a file that a question names is detected by its content"):
     val folder = temporaryFolder()
     val file   = Files.writeString(folder.resolve("link.txt"), "20\n30\n")
     val before = NamedFiles.digests(Seq(s"file:$file", "reduced", "vpn"))
@@ -129,7 +129,7 @@ class SearchFileSuite extends munit.FunSuite, TemporaryFolders, Optimised:
     val read    = HoconFile.parse(written, "scenario.conf").flatMap(ScenarioSettings.read)
     assertEquals(read, Right(ready.scenario(ready.space.defaults)))
 
-  test("a run leaves its last state in the folder, and nothing half-written"):
+  test("a run leaves its last state in the folder, and no partial file"):
     val folder = temporaryFolder()
     val ready  = setup("cma-es")
     var steps  = 0
@@ -147,8 +147,7 @@ class SearchFileSuite extends munit.FunSuite, TemporaryFolders, Optimised:
     Files.delete(folder)
 
   test(
-    "a run that is stopped within a step keeps the state before it, and continues from there to the " +
-      "same end"
+    "a run stopped within a step keeps the previous state, and continues to an uninterrupted run's end"
   ):
     val folder = temporaryFolder()
     val ready  = setup("cma-es")
@@ -193,14 +192,14 @@ class SearchFileSuite extends munit.FunSuite, TemporaryFolders, Optimised:
       assert(mistake.contains(part), mistake)
       assert(mistake.length < 200, mistake)
 
-  test("the predictive loop and a link that alternates are right"):
+  test("the predictive loop and an alternating link are accepted"):
     val asked = question("cma-es").copy(
       link = "vpn-mixed",
       conditions = Conditions("predictive", "reduced", 100, 12)
     )
     assert(asked.setup.isRight, asked.setup)
 
-  test("moves in flight belong to the loop, and are printed where they are not the default two"):
+  test("moves in flight are a setting of the loop, and are printed unless they are the default two"):
     def asked(moves: Int) =
       question("cma-es").copy(conditions =
         Conditions("predictive", "reduced", 100, 12, movesInFlight = moves)
@@ -248,7 +247,7 @@ class SearchFileSuite extends munit.FunSuite, TemporaryFolders, Optimised:
       )
     )
   do
-    test(s"a wrong $name is refused by the option's name"):
+    test(s"a wrong $name is refused with the option's name"):
       val mistake = wrong.setup.left.getOrElse("accepted")
       for part <- parts do assert(mistake.contains(part), mistake)
 

@@ -5,7 +5,7 @@ import skein.policy.{Axis, SearchSpace}
 class SearchLimitsSuite extends munit.FunSuite:
   private val space = SearchSpace(Vector(Axis("turnRateRadPerS", 0.2, 3.0), Axis("gainPerS", 0.5, 8.0)))
 
-  test("a candidate at limits of its axes is reported with the axes and their limits"):
+  test("a candidate at limits of its axes is reported with these axes and limits"):
     assertEquals(
       SearchResult.atLimits(space, Vector(2.996, 0.5)),
       Some(

@@ -29,7 +29,7 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
   private def ended(search: Search, evaluator: Evaluator): SearchState =
     Iterator.iterate(search.start)(search.step(_, evaluator, Int.MaxValue)).find(_.isDone).get
 
-  test("the best settings of a scenario are found with SIMD, and the written file can be flown"):
+  test("the best settings of a scenario are found with SIMD, and fly accepts the written file"):
     val ready = setup()
     assert(ready.engines.startsWith("SIMD"), ready.engines)
     val judges = ready.judges(2)
@@ -40,7 +40,7 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
     val flown = ScenarioSettings.read(written).fold(fail(_), identity)
     assertEquals(flown, ready.scenario(found.best))
 
-  test("a candidate's value equals its measures of the same flight by the scalar engine"):
+  test("a candidate's value equals its measures of that flight by the scalar engine"):
     val ready    = setup()
     val lanes    = ready.judges(1)(Judge.Candidates).tallies(Vector(Vector(8.0, 8.0)), 0 until 3).head
     val surround = ready.scenario(Vector(8.0, 8.0))
@@ -55,7 +55,7 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
     )
     assertEqualsDouble(lanes.mean, means(0) + 0.05 * means(1), 2e-3)
 
-  test("a measure of whole flights is searched world by world, and the engine line states it"):
+  test("a measure of whole flights is searched world by world, and the engine's line states that"):
     val ready = setup(question.copy(objective = "surrounded-after", candidates = 4, episodes = 1))
     assert(ready.engines.matches("scalar: surrounded-after is of whole flights.*"), ready.engines)
     assert(ready.rate(1).exists(_.matches("about [0-9,]+ a second")), ready.rate(1))
@@ -84,7 +84,7 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
     // The window's first and last instants differ by up to half a period, in which a vehicle flies 0.4 m.
     assertEqualsDouble(mean(reduced.copy(flownBy = whole)), mean(reduced), 0.1)
 
-  test("settings that change the altitude fly in space, and models of level flight are refused"):
+  test("settings that change the altitude are simulated in space, and models of level flight are refused"):
     val high  = question.copy(vary = Vector(Varied("altitude-m", 10, 20)), objective = "off-ring")
     val ready = setup(high)
     assertEquals(ready.model, "tilt")
@@ -101,7 +101,7 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
     val reference            = ready.reference(Vector(17.0), 0 until 2).get
     assertEqualsDouble(values(Judge.Winner)(1).mean, reference.mean, 0.02)
 
-  test("a search over settings is stored, read back and continued to the same end"):
+  test("a search over settings is stored, read back and continued to an equal end"):
     val ready     = setup(question.copy(method = "cma-es"))
     val evaluator = ready.judges(2)(Judge.Candidates)
     val broken    = Iterator

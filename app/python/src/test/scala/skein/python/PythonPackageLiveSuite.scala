@@ -7,8 +7,8 @@ import scala.sys.process.{Process, ProcessLogger}
 import scala.util.Using
 import skein.testing.{Lengthy, TemporaryFolders}
 
-/** The wheel as a user installs it: in a fresh environment, it trains. Skipped where there is no Python, or
-  * where its packages cannot be fetched. The package's own tests take longer, and run where Python has their
+/** The wheel, installed as by a user into a fresh environment, in which it trains. Skipped without Python, or
+  * if its packages cannot be fetched. The package's own tests take longer, and run where Python has their
   * dependencies.
   */
 class PythonPackageLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
@@ -59,13 +59,13 @@ class PythonPackageLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
       .toVector
     assert(distances.last < distances.head - 2, distances.mkString(", "))
 
-  test("the package passes its own tests, where python3 has what they need"):
+  test("the package passes its own tests, if python3 has the required packages"):
     assumeTestable()
     val passed = ran("python3", "-m", "pytest", "-q", ".", "--ignore=tests/test_notebooks.py")
     assert(passed.isRight, passed.left.getOrElse(""))
 
   for name <- Seq("measure-my-loop", "write-and-search", "train-under-delay", "delay-anywhere") do
-    test(s"the notebook $name runs from top to bottom, where python3 has what it needs"):
+    test(s"the notebook $name runs from top to bottom, if python3 has the required packages"):
       assumeTestable()
       val passed = ran("python3", "-m", "pytest", "-q", "-rs", "-k", name, "tests/test_notebooks.py")
       assert(passed.isRight, passed.left.getOrElse(""))

@@ -45,11 +45,11 @@ final case class Coordinator private (
 
   def offered(blocks: Iterable[Block]): Coordinator = copy(waiting = waiting.followedBy(blocks))
 
-  /** Handles a worker's request for a block. A worker holds one block for each of its cores and, while there
-    * are more than enough, as many that wait at the worker.
+  /** Handles a worker's request for a block. A worker holds one block for each of its cores, and as many
+    * again, which wait there, while more blocks wait than there are cores.
     *
-    * @param holding numbers of the blocks that it has; a block assigned or named more than [[OnItsWay]] ago
-    *   and missing here was lost
+    * @param holding numbers of the blocks that it has; a block missing here is lost if it was assigned or
+    *   last listed more than [[OnItsWay]] ago
     * @param nowNanos on any monotonic clock
     * @return the assigned block, if there is one
     */
@@ -178,10 +178,10 @@ final case class Coordinator private (
         else here.copy(leases = here.leases.updated(number, left), seldom = here.seldom + left.place)
 
 object Coordinator:
-  /** Blocks for each core: one being computed, and one that waits at the worker. */
+  /** Limit of a worker's blocks for each core: one being computed, and one that waits at the worker. */
   val MostHeld = 2
 
-  /** Time for which an assigned block, or the answer to one that its worker named, may still be in transit:
+  /** Time for which an assigned block, or the answer to one that its worker listed, may still be in transit:
     * twice a worker's longest interval between two requests.
     */
   val OnItsWay: Long = 4_000_000_000L

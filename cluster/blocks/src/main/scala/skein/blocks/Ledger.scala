@@ -9,8 +9,9 @@ import scala.collection.immutable.ArraySeq
 import scala.collection.mutable
 import scala.util.Using
 
-/** The answers that count, on disk: each block's first one, once. A restarted coordinator reads it and
-  * requests nothing twice. If the process dies, a record is either complete or cut off at the next start.
+/** The accepted answers on disk: the first one of each block. A restarted coordinator reads the ledger and
+  * requests no answered block again. If the process dies, a record is either complete, or removed at the next
+  * start.
   *
   * A damaged record is skipped, and its block computed again.
   *
@@ -33,10 +34,7 @@ final class Ledger private (
   def answer(key: BlockKey): Option[ArraySeq[Byte]] =
     index.get(key).map((at, length) => ArraySeq.unsafeWrapArray(Ledger.read(channel, at, length)))
 
-  /** Writes an answer.
-    *
-    * @return whether it is the block's first and was written
-    */
+  /** Writes an answer, unless its block has one already; returns whether the answer was written. */
   def accept(key: BlockKey, answer: ArraySeq[Byte]): Boolean =
     !index.contains(key) && {
       val record = Ledger.record(key, answer)
@@ -68,7 +66,7 @@ object Ledger:
   /** Opens a question's ledger, or creates it.
     *
     * @param question 32 bytes that identify it
-    * @return Left states why not: another question's ledger, or a file that cannot be written
+    * @return Left states what prevents it: another question's ledger, or a file that cannot be written
     */
   def open(file: Path, question: ArraySeq[Byte]): Either[String, Ledger] =
     import StandardOpenOption.*
@@ -100,7 +98,7 @@ object Ledger:
   /** A ledger's content, read from the file alone.
     *
     * @param blocks records with different keys
-    * @param repeats records whose key occurred before; more than none is an error
+    * @param repeats records whose key occurred before; any such record is an error
     * @param broken bytes that belong to no complete record
     */
   final case class Audit(blocks: Int, repeats: Int, broken: Long)

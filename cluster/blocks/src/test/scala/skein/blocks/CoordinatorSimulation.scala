@@ -105,7 +105,7 @@ final class CoordinatorSimulation(
       cut(now + exponential(30))
       at(now + exponential(3600 / cutsAnHour))(isolated(cutsAnHour))
 
-    /** Cuts it off: nothing reaches it, and nothing leaves it. */
+    /** Cuts the worker off: no message reaches or leaves it. */
     def cut(until: Long): Unit =
       cuts += 1
       cutUntil = cutUntil.max(until)
@@ -173,8 +173,8 @@ final class CoordinatorSimulation(
     all += worker
     worker.live(deathsAnHour, cutsAnHour)
 
-  /** The coordinator dies and restarts: it loses everything except the ledger, and of that all or part of
-    * what was not on the disk yet.
+  /** The coordinator dies and restarts: it loses everything except the ledger, and of the ledger's unsaved
+    * end all or a part.
     */
   private def restart(): Unit =
     restarts += 1
@@ -199,7 +199,7 @@ final class CoordinatorSimulation(
     *
     * @param deathsAnHour fraction of the workers that die in an hour; each is noticed after 10 s, and another
     *   starts
-    * @param cutsAnHour how often a worker is cut off, for 30 s on average
+    * @param cutsAnHour number of times that a worker is cut off in an hour, for 30 s on average
     * @param splits at these seconds a fifth of all workers is cut off simultaneously, for two minutes
     * @param restarts of the coordinator, at these seconds
     * @param saving whether the ledger is flushed to the disk once a second

@@ -14,14 +14,14 @@ class CoordinatorSuite extends munit.FunSuite, TemporaryFolders:
     val (next, block) = state.asked(worker, holding, nowNanos)
     (next, block.map(_.number))
 
-  test("blocks go out in their order, two to a worker"):
+  test("blocks are assigned in their order, two to a worker"):
     val (a, first)  = take(two.offered(blocks(3)), "anna")
     val (b, second) = take(a, "anna", holding = Set(0))
     val (c, third)  = take(b, "anna", holding = Set(0, 1))
     val (_, other)  = take(c, "ben")
     assertEquals((first, second, third, other), (Some(0L), Some(1L), None, Some(2L)))
 
-  test("the last blocks go to a second worker, the oldest first, and the first answer counts"):
+  test("the last blocks are assigned to a second worker, too, the oldest first, and the first answer counts"):
     val (a, _)      = take(two.offered(blocks(2)), "anna", nowNanos = 5)
     val (b, _)      = take(a, "anna", nowNanos = 7, holding = Set(0))
     val (c, again)  = take(b, "ben", nowNanos = 8)
@@ -32,14 +32,14 @@ class CoordinatorSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(e.counts, Coordinator.Counts(accepted = 1, repeated = 1, doubled = 1, lost = 0, overdue = 0))
     assertEquals((e.workers("ben").accepted, e.workers("anna").repeated), (1L, 1L))
 
-  test("cores are those of the workers that are here, each as it last joined"):
+  test("the counted cores are those of present workers, each as it last joined"):
     assertEquals((Coordinator().cores, two.cores), (0, 4))
     assertEquals(two.joined("anna", 7).cores, 9)
     assertEquals(two.lost("ben").cores, 2)
     assertEquals(two.lost("ben").joined("ben", 3).cores, 5)
     assertEquals(two.lost("ben").lost("ben").cores, 2)
 
-  test("what waits is counted, whether it had a worker or not"):
+  test("waiting blocks are counted, whether they had a worker or not"):
     def waits(state: Coordinator) = (state.waiting.size, state.waiting.isEmpty, state.waiting.nonEmpty)
     assertEquals(waits(two), (0, true, false))
     val (held, _) = take(two.offered(blocks(1)), "anna")
@@ -56,7 +56,7 @@ class CoordinatorSuite extends munit.FunSuite, TemporaryFolders:
       take(b, "anna", holding = Set(0, 1))._2
     assertEquals((third(waiting = 3), third(waiting = 4)), (None, Some(2L)))
 
-  test("a worker that is not known counts its answer, and has no cores until it joins"):
+  test("an unknown worker's answer counts, but its cores do not until it joins"):
     val (held, _)       = take(two.offered(blocks(2)), "anna")
     val (first, one)    = held.answered("carl", 0, 10)
     val (again, second) = first.answered("dora", 0, 20)
@@ -128,7 +128,9 @@ class CoordinatorSuite extends munit.FunSuite, TemporaryFolders:
         (60.0, 120.0, "some die, others are cut off")
       )
   do
-    folder.test(s"every block counts once, and the answer is one process's to the bit: $name"): folder =>
+    folder.test(
+      s"every block counts once, and the answer equals a single process's to the bit: $name"
+    ): folder =>
       var restarts = 0
       for seed <- 1L to 12L do
         val flown = CoordinatorSimulation(seed, workers = 5, blocks = 60, folder)
@@ -139,8 +141,7 @@ class CoordinatorSuite extends munit.FunSuite, TemporaryFolders:
       assert(clue(restarts) > 10)
 
   folder.test(
-    "a thousand workers of heavy-tailed speeds, some of which die and many of which are cut off " +
-      "simultaneously"
+    "a thousand workers of heavy-tailed speeds finish, although many die or are cut off together"
   ): folder =>
     val flown = CoordinatorSimulation(1, workers = 1000, blocks = 8_000, folder)
     flown.fly(deathsAnHour = 5, cutsAnHour = 5, restarts = Seq(30), splits = Seq(15, 45))()

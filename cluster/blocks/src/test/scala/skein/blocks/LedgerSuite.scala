@@ -33,7 +33,7 @@ class LedgerSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(Ledger.audit(path), Ledger.Audit(3, 0, 0))
 
   file.test(
-    "truncated anywhere, it keeps the complete records before the cut and continues from there"
+    "a ledger that is truncated anywhere keeps the complete records before the cut, and continues there"
   ): path =>
     written(path, 3)
     val whole = Files.readAllBytes(path)
@@ -46,7 +46,7 @@ class LedgerSuite extends munit.FunSuite, TemporaryFolders:
       ledger.close()
       assertEquals(Ledger.audit(path).broken, 0L)
 
-  file.test("a record that was cut off is not complete, even if zeros are all that it lacks"): path =>
+  file.test("a truncated record is not complete, even if it lacks only zeros"): path =>
     val zeros  = ArraySeq.fill[Byte](20)(0)
     val ledger = open(path)
     assert(ledger.accept(key(0), answer(0)) && ledger.accept(key(1), zeros))
@@ -59,7 +59,7 @@ class LedgerSuite extends munit.FunSuite, TemporaryFolders:
       assertEquals(again.broken, if length == whole.length then 0L else 24L + length - (whole.length - 20))
       again.close()
 
-  file.test("a block is known by all 128 bits of its key, the first of its work's SHA-256"): path =>
+  file.test("a block is identified by all 128 bits of its key, the first of its work's SHA-256"): path =>
     assertEquals(BlockKey.of(ArraySeq.empty), BlockKey(0xe3b0c44298fc1c14L, 0x9afbf4c8996fb924L))
     val keys   = for high <- Seq(1L, 2L); low <- Seq(1L, 2L) yield BlockKey(high, low)
     val ledger = open(path)
@@ -69,7 +69,7 @@ class LedgerSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(keys.map(again.answer), keys.indices.map(number => Some(answer(number))))
     again.close()
 
-  file.test("a record that is there twice is found by an audit, and counts once"): path =>
+  file.test("an audit finds a record that occurs twice, and it counts once"): path =>
     written(path, 2)
     val bytes = Files.readAllBytes(path)
     Files.write(path, bytes ++ bytes.drop(48)): Unit
@@ -121,7 +121,7 @@ class LedgerSuite extends munit.FunSuite, TemporaryFolders:
     open(path).close()
     assert(!Files.exists(path))
 
-  file.test("another question's ledger, and a file that is no ledger, are refused by name"): path =>
+  file.test("another question's ledger, and a file that is no ledger, are refused for that reason"): path =>
     written(path, 1)
     val other = Ledger.open(path, ArraySeq.from(Array.fill[Byte](32)(8)))
     assert(other.left.exists(_.contains("another question")), other)

@@ -23,13 +23,12 @@ object Certificates:
   def folderOf(host: String): String = host.replace("*", "_")
 
   /** @param hosts names or addresses, as in `--listen` and `--join`
-    * @return Left names the one that is neither
+    * @return Left states which of them is neither
     */
   def checked(hosts: Seq[String]): Either[String, Unit] =
     hosts.find(!isHost(_)).toLeft(()).left.map(host => s"expected a host's name or address, came '$host'")
 
-  /** Makes the certificates. Refused where a host is invalid, or already has a certificate; then nothing is
-    * made.
+  /** Makes the certificates. If a host is invalid or already has a certificate, it makes none.
     *
     * @param hosts names or addresses, as in `--listen` and `--join`
     * @return each host's folder; Left states what went wrong
@@ -122,7 +121,8 @@ object Certificates:
   private val Key =
     Seq("-keyalg", "EC", "-groupname", "secp256r1", "-sigalg", "SHA256withECDSA", "-validity", Days.toString)
 
-  /** JVM options for a short run, which ends before optimising pays: saves a third of the processor's time.
+  /** JVM options for a run that is too short for optimisation to pay: they save a third of the processor
+    * time.
     */
   private val Brief = Seq("-J-XX:TieredStopAtLevel=1", "-J-XX:+UseSerialGC")
 

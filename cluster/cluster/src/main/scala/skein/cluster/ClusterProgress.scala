@@ -7,7 +7,7 @@ import skein.blocks.Coordinator
   * @param done blocks of the current call that have their answers
   * @param of all blocks of that call
   * @param resumed blocks, of all calls, whose answers were already in the ledger
-  * @param died how often a worker was lost
+  * @param died number of times that a worker was lost
   */
 final case class ClusterProgress(
     coordinator: Coordinator = Coordinator(),

@@ -17,11 +17,11 @@ import skein.blocks.{AnswerKind, Block, BlockKey, Coordinator, Ledger}
   */
 private[cluster] final case class Job(run: Long, build: String, question: ArraySeq[Byte])
 
-/** The actor around [[Coordinator]], which decides: receives workers' messages, stores answers, reports
-  * progress. One call at a time.
+/** The actor around a [[Coordinator]], which makes the decisions. The actor receives workers' messages,
+  * stores answers and reports progress. One call at a time.
   *
   * @param onProgress called after every change
-  * @param down removes a process from the cluster that has ended or is unreachable: until then no other
+  * @param down removes a process that has ended or is unreachable from the cluster: until then no other
   *   process becomes a member. A process that was still alive joins again
   */
 private[cluster] final class CoordinatorBehavior private (
@@ -42,7 +42,8 @@ private[cluster] final class CoordinatorBehavior private (
   private var unsaved = false
   private var isDone  = false
 
-  /** Where to answer each worker, including those that only have the question. */
+  /** The actors to which messages for each worker go; also of workers that have only received the question.
+    */
   private var addresses = Map.empty[String, ActorRef[ToWorker]]
 
   /** Workers with free cores to which no block could be given. */
@@ -184,7 +185,7 @@ private[cluster] final class CoordinatorBehavior private (
     call.foreach(_.promise.trySuccess(outcome))
     call = None
 
-  /** Reports a change; its receiver finds it in the published progress. */
+  /** Reports a change after publishing the progress, so that the receiver sees the change there. */
   private def announce(change: WorkerEvent): Unit =
     publish()
     tell(change)
@@ -212,7 +213,7 @@ private[cluster] object CoordinatorBehavior:
   case object Cancel                             extends Local
   final case class Unreachable(address: Address) extends Local
 
-  /** It has left the cluster; another process may have its address. */
+  /** The process at this address has left the cluster; another one may use the address. */
   final case class Removed(address: Address) extends Local
 
   final case class Ended(worker: String) extends Local
@@ -223,7 +224,7 @@ private[cluster] object CoordinatorBehavior:
 
   type Command = ToCoordinator | Local
 
-  /** Most changes that are reported only once; bounds the memory for them. */
+  /** Limit of the changes that are remembered, so that each is reported only once. */
   private val MostTold = 1000
 
   /** Age from which a block goes to a second worker, when nothing else waits. */

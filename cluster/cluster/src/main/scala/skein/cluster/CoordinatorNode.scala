@@ -35,7 +35,7 @@ final class CoordinatorNode private (
 
   def progress: ClusterProgress = latest.get
 
-  /** Has works computed by all workers that are members, or join; those with answers in the ledger are not
+  /** Lets all workers that are or become members compute the works. Works with answers in the ledger are not
     * computed again. One call at a time.
     *
     * @param onAnswer called with each answer when it arrives or is found in the ledger, in any order, on a
@@ -72,7 +72,7 @@ final class CoordinatorNode private (
 object CoordinatorNode:
   private[cluster] val Name = "coordinator"
 
-  /** Bound on closing: Pekko's remoting waits without a limit for its peers' streams to end
+  /** Time limit of closing: Pekko's remoting waits without a limit for its peers' streams to end
     * (apache/pekko#3247).
     */
   private val MostClosing = 20.seconds

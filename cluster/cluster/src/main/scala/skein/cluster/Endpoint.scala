@@ -10,5 +10,5 @@ final case class Endpoint(host: String, port: Int):
 
   private[cluster] def uriHost: String = Address(host, port).uriHost
 
-  /** Whether it is reachable only from this machine. */
+  /** Whether the endpoint is reachable only from this machine. */
   def isLoopback: Boolean = Try(InetAddress.getByName(host).isLoopbackAddress).getOrElse(false)

@@ -3,10 +3,11 @@ package skein.cluster
 import java.nio.ByteBuffer
 
 /** Checks the frame lengths of a Pekko connection: four letters, a stream's number, and frames after their
-  * lengths in four bytes each, little-endian. Pekko 1.2.1 checks no length: it reads endlessly on one below
-  * zero or close to 2³¹, and waits for all of one that is too long. Mutable; one for each connection.
+  * lengths in four bytes each, little-endian. Pekko 1.2.1 checks no length: it reads endlessly if a length is
+  * below zero or close to 2³¹, and waits for the whole of a frame that is too long. Mutable; one for each
+  * connection.
   *
-  * @param most bytes of a frame
+  * @param most limit of a frame's bytes
   */
 private[cluster] final class FrameCheck(most: Int):
   private var skips  = FrameCheck.Header

@@ -6,7 +6,7 @@ import skein.bytes.Codec
 
 /** Encodes messages with [[Codec]]. Every size that a peer states is checked against its bound before use.
   *
-  * @param nameOf an actor's address as text, and back
+  * @param nameOf writes an actor's address as text, which `actorOf` reads
   */
 private[cluster] final class MessageCodec(
     nameOf: ActorRef[ToWorker] => String,

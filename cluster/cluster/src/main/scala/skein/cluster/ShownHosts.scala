@@ -7,8 +7,8 @@ import javax.naming.ldap.LdapName
 import scala.jdk.CollectionConverters.*
 import scala.util.Try
 
-/** The hosts in a certificate, by which the JDK's TLS verifies them (RFC 6125, 6.4): an address only by its
-  * addresses, a name by its names, or by the subject's name without any.
+/** The hosts in a certificate, against which the JDK's TLS verifies a host (RFC 6125, 6.4): an address
+  * against the certificate's addresses; a name against its names or, if it has none, the subject's name.
   */
 private[cluster] object ShownHosts:
   // RFC 5280, 4.2.1.6, GeneralName.

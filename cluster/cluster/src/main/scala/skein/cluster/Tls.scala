@@ -41,7 +41,7 @@ final case class Tls(keyStore: Path, trustStore: Path, password: String):
             Option(failed.getMessage).getOrElse("a file is damaged or cut off")
         )
 
-  /** Whether the node's own certificate names this host, since the other nodes verify it.
+  /** Checks that the node's own certificate is valid for this host, as the other nodes will.
     *
     * @return Left lists the names in it, or states what is wrong with the files
     */
@@ -60,8 +60,8 @@ final case class Tls(keyStore: Path, trustStore: Path, password: String):
           s"${keyStore.getParent} shows ${own.flatMap(ShownHosts.of).mkString(", ")}"
       )
 
-  /** Why there is no trusted connection to that endpoint, if certificates are the reason. Takes at most two
-    * seconds for each direction.
+  /** The reason why no trusted connection to that endpoint can be made; None if certificates are not the
+    * reason. Takes at most two seconds for each direction.
     */
   private[cluster] def refusal(at: Endpoint): Option[String] =
     context.toOption.flatMap: made =>

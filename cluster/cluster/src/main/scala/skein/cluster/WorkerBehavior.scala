@@ -9,8 +9,8 @@ import scala.util.control.NonFatal
 import skein.units.Decimals.fixed
 
 /** Requests blocks from the coordinator, has them computed by a pool of threads, and answers. It requests the
-  * question before it is a member, and blocks once it is: the loss of a process that is no member would go
-  * unnoticed.
+  * question before it is a member of the cluster, but blocks only as a member: the loss of any other process
+  * would go unnoticed.
   *
   * @param pool with as many threads as cores
   * @param tell called with progress, in lines for a person

@@ -44,7 +44,7 @@ final class WorkerNode(
   @volatile private var stopped = false
   @volatile private var ending  = Promise[End]()
 
-  /** When it was last a member, or began to connect. */
+  /** Time at which the worker was last a member, or began to connect. */
   @volatile private var contactAt = 0L
 
   def stop(): Unit =
@@ -85,7 +85,7 @@ final class WorkerNode(
       catch case NonFatal(failed) => Left(s"cannot listen at $listen: ${failed.getMessage}")
       finally pool.shutdownNow(): Unit
 
-  /** Why the coordinator does not let it join, if certificates are the reason. */
+  /** The reason why the coordinator refuses this worker; None if certificates are not the reason. */
   private def refusal: Option[String] = tls match
     case Some(own) => own.refusal(coordinator)
     case None      =>

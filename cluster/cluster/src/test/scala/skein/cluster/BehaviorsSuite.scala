@@ -63,7 +63,7 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
     worker ! WorkerBehavior.Member
     assertEquals(Iterator.continually(run(heard.next())).dropWhile(_ == 0).next(), 7L)
 
-  test("a worker computes each given block once, answers with its number, and has a bound for what it holds"):
+  test("a worker computes each given block once, answers with its number, and limits the blocks it holds"):
     val heard  = Heard[ToCoordinator]()
     val begun  = LinkedBlockingQueue[Byte]()
     val goOn   = LinkedBlockingQueue[Unit]()
@@ -132,7 +132,7 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
     untilReport(): Unit
     assertEquals((untilReport(), untilReport()), (10, 10))
 
-  test("a worker regards only its coordinator's end as its loss"):
+  test("a worker notices the loss of its own coordinator, and of no other member"):
     val config = NodeConfig.of(Endpoint("127.0.0.1", 0), None).fold(fail(_), identity)
     val node   = ActorSystem("member", config)
     try
@@ -147,10 +147,7 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
   private def newLedger(): Ledger =
     Ledger.open(temporaryFolder().resolve(Ledger.Name), ArraySeq.fill(32)(7)).fold(fail(_), identity)
 
-  test(
-    "ended and unreachable members are removed; when all is done all other workers are dismissed: " +
-      "working, preparing and late ones"
-  ):
+  test("ended and unreachable members are removed, and all other workers are dismissed when all is done"):
     val ledger      = newLedger()
     val down        = LinkedBlockingQueue[Address]()
     val coordinator =
@@ -212,7 +209,7 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals((latest.get.done, latest.get.of, latest.get.resumed), (0, 0, 0L))
     ledger.close()
 
-  test("a worker that found nothing to do gets a block when there is one, without another request"):
+  test("a worker that found nothing to do gets a later block without another request"):
     val ledger      = newLedger()
     val coordinator = system.spawnAnonymous(
       CoordinatorBehavior(Job(7, "one", question), ledger, _ => (), _ => (), _ => ())
@@ -231,7 +228,7 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(wanted.asScala.toVector, Vector("wanted"))
     ledger.close()
 
-  test("nothing is done before a coordinator's first message"):
+  test("a coordinator does nothing before its first message"):
     assertEquals(ClusterProgress(), ClusterProgress(Coordinator(), done = 0, of = 0, resumed = 0, died = 0))
 
   for gone <- Seq(

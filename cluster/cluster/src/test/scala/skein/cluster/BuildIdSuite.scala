@@ -25,14 +25,14 @@ class BuildIdSuite extends munit.FunSuite, TemporaryFolders:
         out.write(text.getBytes)
     jar
 
-  test("equal classes are one build, in a folder, in a jar, or in several of them in any order"):
+  test("equal classes have one build id, in a folder, in a jar, or in several of them in any order"):
     val build = BuildId.of(Vector(inFolder(classes)))
     assert(build.matches("[0-9a-f]{16}"), build)
     assertEquals(BuildId.of(Vector(inJar(classes))), build)
     assertEquals(BuildId.of(Vector(inFolder(classes.drop(1)), inJar(classes.take(2)))), build)
     assertEquals(BuildId.of(Vector(inFolder(classes), Path.of("no", "such", "folder"))), build)
 
-  test("another class, one more, or one in another place is another build; other files are not"):
+  test("a changed, additional or moved class changes the build id, and other files do not"):
     val build = BuildId.of(Vector(inFolder(classes)))
     for
       files <- Seq(

@@ -113,7 +113,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       coordinator.node.close(): Unit
       for end <- ended do assertEquals(Await.result(end, 30.seconds), Right(()))
 
-  test("workers join where an IPv6 address is listened at"):
+  test("workers join a coordinator that listens at an IPv6 address"):
     val address = Try(ServerSocket(0, 1, InetAddress.ofLiteral("::1"))).map(_.close())
     assume(address.isSuccess, "this machine has no IPv6")
     Using.resource(Coordinating(temporaryFolder(), host = "::1")): coordinator =>
@@ -141,7 +141,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       assertEquals(Await.result(end, 15.seconds), Right(()))
       assert(clue(told.asScala.last).contains("the work is done"))
 
-  test("a worker of another build is refused with both builds named, and so is one without an answer"):
+  test("a worker of another build is refused with both builds named, and so is one that cannot answer"):
     coordinating: coordinator =>
       val (_, other, _) = worker(coordinator.node.address, "anna", Reversing(), build = "two")
       val refusal       = Await.result(other, 30.seconds).swap.getOrElse(fail("was taken"))
@@ -174,10 +174,10 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     anna.stop()
     ben.stop()
 
-  test("a stranger's garbage at the port harms nothing: members continue, and others join"):
+  test("a stranger's garbage at the port does no harm: members continue, and others join"):
     coordinating(assertUnharmed(_, None)(garbage))
 
-  test("a stranger's garbage harms nothing where certificates are required either"):
+  test("a stranger's garbage does no harm where certificates are required, either"):
     val own = Some(tls(lab.head))
     coordinating(own)(assertUnharmed(_, own)(garbage))
 
@@ -242,7 +242,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     val joined = WorkerNode(Endpoint("192.0.2.1", 1), loopback, None, 1, Reversing(), 1.second)(_ => ()).run()
     assert(clue(joined.swap.getOrElse("joined")).contains("certificates"))
 
-  test("with certificates of one set nodes join; without, of another set, or of another host, they do not"):
+  test("nodes join with certificates of one set, but not without, with another set's or another host's"):
     val Vector(own, elsewhere, _) = lab.map(tls): @unchecked
     val strangers                 = tls(Await.result(makingOthers, 60.seconds).head)
     coordinating(Some(own)): coordinator =>
@@ -273,7 +273,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       val told            = Await.result(outcome, 90.seconds)
       assert(clue(told).left.exists(_.contains(s"to $to, which does not answer as TLS does")))
 
-  test("a node only listens at a host that its certificate names"):
+  test("a node listens only at a host that its certificate names"):
     val Vector(own, elsewhere, sixth) = lab.map(tls): @unchecked
     assertEquals(own.shows("127.0.0.1"), Right(()))
     for host <- Seq("::1", "0:0:0:0:0:0:0:1") do assertEquals(sixth.shows(host), Right(()))

@@ -29,7 +29,7 @@ class FrameCheckSuite extends munit.FunSuite:
       assertEquals(refused(connection(length)), Some(length))
       assertEquals(refused(connection(3, most, length)), Some(length))
 
-  test("bytes not checked yet stay in the buffer"):
+  test("the check does not consume the buffer's bytes"):
     val bytes = ByteBuffer.wrap(connection(4))
     assertEquals(FrameCheck(most).refused(bytes), None)
     assertEquals(bytes.position(), 0)

@@ -9,12 +9,12 @@ import java.util.Random
 /** A stranger's data, by seed: noise, other protocols, Pekko's own wire and TLS's with false lengths. */
 private[cluster] object Garbage:
 
-  /** Data of the kind that the number selects, in turns. */
+  /** Data of the kind that the number selects: the kinds take turns. */
   def of(number: Int): Array[Byte] =
     val random = Random(number)
     kinds(number % kinds.size)(random)
 
-  /** Sends each over a connection of its own, and closes it in one of three ways. */
+  /** Sends each number's data over a connection of its own, and closes it in one of three ways. */
   def send(port: Int, numbers: Range)(kind: Int => Array[Byte]): Unit =
     for number <- numbers do
       val socket = Socket("127.0.0.1", port)

@@ -43,13 +43,13 @@ class MessageCodecLaws extends munit.ScalaCheckSuite:
   property("a message is read as it was written"):
     Prop.forAll(messages)(message => assertEquals(codec.message(codec.bytes(message)), Right(message)))
 
-  property("a truncated message, or one with trailing bytes, is refused in a line"):
+  property("a truncated message, or one with trailing bytes, is refused with one line"):
     Prop.forAll(messages, Gen.choose(0.0, 1.0)): (message, share) =>
       val whole = codec.bytes(message)
       assert(codec.message(whole.take((share * whole.length).toInt.min(whole.length - 1))).isLeft)
       assert(codec.message(whole :+ 0).isLeft)
 
-  property("for any bytes nothing is thrown, and no stated size is trusted"):
+  property("no bytes make the codec throw, or trust a stated size"):
     Prop.forAll(Gen.listOf(Arbitrary.arbitrary[Byte]), Gen.choose(0, 9)): (bytes, kind) =>
       codec.message((kind.toByte :: bytes).toArray): Unit
 

@@ -40,7 +40,7 @@ class PlainEngineSuite extends munit.FunSuite:
     val full = ByteBuffer.allocate(0)
     assertEquals(told(greeted().unwrap(connection(3), full)), (Status.BUFFER_OVERFLOW, ready, 0, 0))
 
-  test("a frame of an invalid length is an error, once, and closes the receiving direction alone"):
+  test("a frame of an invalid length is an error, once, and closes only the receiving direction"):
     for length <- Seq(-1, 101) do
       val engine = greeted()
       val into   = ByteBuffer.allocate(20)
@@ -59,7 +59,7 @@ class PlainEngineSuite extends munit.FunSuite:
     assert(engine.isInboundDone && engine.isOutboundDone)
     assertEquals(told(engine.unwrap(connection(3), ByteBuffer.allocate(20))), (Status.CLOSED, ready, 0, 0))
 
-  test("it is a client's once that is set"):
+  test("the engine is a client's once that is set"):
     val engine = PlainEngine(100)
     assert(!engine.getUseClientMode)
     engine.setUseClientMode(true)

@@ -5,9 +5,10 @@ import skein.vehicle.Guidance
 
 /** One command sent to a vehicle.
   *
-  * @param answeredAt when the controller learned that it had arrived, on the controller's clock
-  * @param actsAt on the simulator's clock, where a buffer beside the vehicle lets it act at a fixed moment
-  *   ([[skein.port.PlanBuffer]]), however late it arrives; else it acts when it arrives
+  * @param answeredAt time at which the controller learned that the command had arrived, on the controller's
+  *   clock
+  * @param actsAt time at which a buffer beside the vehicle lets the command act ([[skein.port.PlanBuffer]]),
+  *   on the simulator's clock; without a buffer the command acts when it arrives
   */
 final case class Commanded(
     sequence: Long,

@@ -4,10 +4,10 @@ import scala.annotation.tailrec
 import skein.units.*
 import skein.vehicle.{Guidance, VehicleModel}
 
-/** A vehicle's predicted state, which can be carried on under further commands.
+/** A vehicle's predicted state, from which further commands can be simulated.
   *
-  * @param at on the simulator's clock
-  * @param newestAt the valid time of the newest reading behind it
+  * @param at time of the state, on the simulator's clock
+  * @param newestAt valid time of the newest reading on which the prediction is based
   */
 final class Course[S] private[forecast] (
     model: VehicleModel[S],
@@ -17,7 +17,7 @@ final class Course[S] private[forecast] (
 ):
   def estimate: Estimate = Estimate(model.kinematics(state), at, newestAt, model.numbers(state))
 
-  /** The course after a stretch of flight under one command. */
+  /** The course after this time under one command. */
   def flown(guidance: Guidance, span: Span): Course[S] =
     Course(model, Course.guided(model, state, guidance, span), at + span, newestAt)
 

@@ -5,9 +5,9 @@ import skein.units.*
 
 /** The estimated state of a vehicle.
   *
-  * @param predictedFor the simulator's time for which the estimate holds
-  * @param readAt the simulator's time of the reading from which it was predicted
-  * @param state of its plant, as numbers, where kinematics do not describe the whole state
+  * @param predictedFor the time of the estimate, on the simulator's clock
+  * @param readAt the time of the reading on which it is based, on the simulator's clock
+  * @param state numbers of the plant's state, if kinematics describe only a part of it
   */
 final case class Estimate(
     kinematics: Kinematics,
@@ -16,5 +16,4 @@ final case class Estimate(
     state: Vector[Double] = Vector.empty
 ):
 
-  /** Time from the reading to the predicted moment. */
   def age: Span = predictedFor.since(readAt)

@@ -7,7 +7,7 @@ import skein.vehicle.VehicleModel
 /** Estimates the states of vehicles at any moment, from their readings and from the commands sent to them.
   * Immutable and pure: it accepts events in any order.
   *
-  * @param models one per vehicle: the vehicle's own where its commands are known, else
+  * @param models one per vehicle: a model of the vehicle if its commands are known, else
   *   [[skein.vehicle.ConstantVelocity]] or [[skein.vehicle.ConstantTurn]]
   * @param delays absent before the first reading
   */
@@ -17,8 +17,7 @@ final case class Forecast private (
     alignment: Option[ClockAlignment],
     delays: Option[OneWayDelays]
 ):
-  // The vehicles of a team ask the same forecast for the same moment: what one was told is kept for the
-  // others.
+  // The vehicles of a team request equal forecasts for equal moments, so the last result is cached.
   @volatile private var told: Option[(Instant, Vector[Estimate])] = None
 
   def withEvent(event: ForecastEvent): Forecast = event match
@@ -29,9 +28,9 @@ final case class Forecast private (
       updated(vehicle)(_.replaced(sequence, answeredAt))
     case ForecastEvent.Failed(vehicle, sequence) => updated(vehicle)(_.failed(sequence))
 
-  /** Where the vehicles will be when a command sent now takes effect, given the commands on their way; absent
-    * until every vehicle was read. Where a vehicle's newest reading is later than that moment, its estimate
-    * is that reading.
+  /** The states of the vehicles when a command that is sent now takes effect, given the commands under way.
+    * None until every vehicle was read. If a vehicle's newest reading is later than that, its estimate is the
+    * reading.
     *
     * @param now on the controller's clock
     */
@@ -45,35 +44,37 @@ final case class Forecast private (
           told = Some((now, estimates))
           estimates
 
-  /** The legs of each vehicle's flight from its newest reading until a command sent now takes effect; absent
-    * until every vehicle was read. They end at the state of [[whenActing]].
+  /** The legs of each vehicle's flight from its newest reading until a command that is sent now takes effect,
+    * which lead to the states of [[whenActing]]. None until every vehicle was read.
     */
   def legsWhenActing(now: Instant): Option[Vector[Vector[Leg]]] =
     for delays <- delays if tracks.forall(_.isDefined)
     yield tracks.flatten.map(_.legsTo(delays.expectedArrival(now), delays, now))
 
-  /** The vehicles at the moments of estimates of this forecast, to be carried on from there.
+  /** The vehicles at the times of these estimates, from which further commands can be simulated.
     *
-    * @param estimates of [[whenActing]], by vehicle
-    * @param now as there
+    * @param estimates result of [[whenActing]], by vehicle
+    * @param now the time passed to [[whenActing]]
     */
   def courses(estimates: Vector[Estimate], now: Instant): Vector[Course[?]] =
     tracks.zip(estimates).flatMap: (track, estimate) =>
       for track <- track; delays <- delays yield track.courseAt(estimate.predictedFor, delays, now)
 
-  /** This forecast with one vehicle as another forecast predicts it. Both must have had equal readings. */
+  /** This forecast with one vehicle's prediction from another forecast. Both must have received equal
+    * readings.
+    */
   def withVehicleOf(other: Forecast, vehicle: Int): Forecast = copy(
     models = models.updated(vehicle, other.models(vehicle)),
     tracks = tracks.updated(vehicle, other.tracks(vehicle))
   )
 
   private def seen(vehicle: Int, reading: Stamped[Kinematics]): Forecast =
-    // What a simulator told before it started again says nothing of what will be.
+    // Readings from before a restart of the simulator are useless for predictions.
     if alignment.exists(_.isOfFormerRun(reading)) then this else seenOfPresent(vehicle, reading)
 
   private def seenOfPresent(vehicle: Int, reading: Stamped[Kinematics]): Forecast =
     val aligned = alignment.fold(ClockAlignment.of(reading))(_.updated(reading))
-    // While the simulator's clock stood still, delays to it meant nothing.
+    // While the simulator's clock stood still, delays measured against it were meaningless.
     val goesOn  = alignment.exists(before => before.restarts == aligned.restarts && !before.standsStill)
     val current = delays.filter(_ => goesOn).fold(OneWayDelays.of(reading))(_.updated(reading))
     val track   = tracks(vehicle).fold(firstSeen(vehicle, reading)): track =>
@@ -97,7 +98,7 @@ object Forecast:
   def apply(models: Vector[VehicleModel[?]]): Forecast =
     new Forecast(models, models.map(_ => None), None, None)
 
-/** An event that a forecast takes in. Vehicles are counted from 0. */
+/** An event that changes a forecast. Vehicles are counted from 0. */
 enum ForecastEvent:
   def vehicle: Int
 
@@ -107,12 +108,12 @@ enum ForecastEvent:
 
   /** A plan was sent to the buffer beside the vehicle.
     *
-    * @param commands its actions, each with the moment at which it acts
+    * @param commands its actions, each with the time at which it acts
     */
   case Planned(vehicle: Int, commands: Vector[Commanded])
 
-  /** The vehicle reported that a command was replaced, as AirSim does when the next one arrives; this
-    * acknowledges the next one.
+  /** The vehicle reported that a command was replaced, which acknowledges its successor; AirSim does so when
+    * the successor arrives.
     */
   case Replaced(vehicle: Int, sequence: Long, answeredAt: Instant)
 

@@ -2,8 +2,8 @@ package skein.forecast
 
 import skein.units.Span
 
-/** A stretch of a vehicle's predicted flight under one command.
+/** A part of a vehicle's predicted flight under one command.
   *
-  * @param command absent before the first: the vehicle holds its position
+  * @param command None before the first command; the vehicle then holds its position
   */
 final case class Leg(command: Option[Commanded], span: Span)

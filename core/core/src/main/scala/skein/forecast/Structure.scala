@@ -3,13 +3,13 @@ package skein.forecast
 import skein.policy.{Axis, SearchSpace}
 import skein.vehicle.{ObservedPlant, ReducedModel}
 
-/** Plants of one form that differ in named parameters: `skein identify` fits them to flights, and a model
-  * file names them.
+/** Plants of one form that differ in named parameters. `skein identify` fits the parameters to flights and
+  * writes them to a model file.
   *
   * @param label as on the command line and in model files, for example `drag`
-  * @param space the free parameters: names with their units, bounds, and as defaults the guesses from which a
-  *   fit begins; a fit that ends at a bound says so
-  * @param make a plant of one value per axis; a pure function
+  * @param space the free parameters: names with units, bounds, and as defaults the values from which a fit
+  *   starts
+  * @param make creates the plant from one value per axis; a pure function
   */
 final class Structure(val label: String, val space: SearchSpace, make: Vector[Double] => ObservedPlant[?]):
   for name <- label +: names do
@@ -36,11 +36,11 @@ final class Structure(val label: String, val space: SearchSpace, make: Vector[Do
 
   override def toString: String = label
 
-/** The structures that vary parameters of a [[skein.vehicle.ReducedModel]]. A parameter that is not free has
-  * the value at which its effect is absent. The bounds are wider than those of any multirotor.
+/** Structures with the parameters of a [[skein.vehicle.ReducedModel]]. A parameter that is not free has the
+  * value at which it has no effect. The bounds are wider than the range of any multirotor.
   */
 object Structure:
-  /** Keys of a model file besides structures and their parameters. */
+  /** Keys of a model file other than structures and their parameters. */
   private val keys       = Set("use", "version", "horizon", "altitude-m", "recordings", "vehicles")
   private val keysOfEach =
     Set("predictions", "velocity-rms-mps", "position-rms-m", "against-quadrotor", "against-readings")
@@ -54,13 +54,13 @@ object Structure:
   private def reduced(label: String, more: Axis*)(make: Vector[Double] => ReducedModel): Structure =
     Structure(label, SearchSpace(Vector(gain, lag, deadTime) ++ more), make)
 
-  /** A first-order lag with gain and dead time: the model that the SIMD kernels simulate. */
+  /** A first-order lag with gain and dead time, which is the model that the SIMD kernels simulate. */
   val Lag: Structure = reduced("lag")(v => ReducedModel.lag(v(0), v(1), v(2)))
 
-  /** [[Lag]], with another lag for the velocity across the command. */
+  /** [[Lag]] with a separate lag for the velocity across the command. */
   val Turn: Structure = reduced("turn", turnLag)(v => ReducedModel(v(0), v(1), v(2), v(3), 0))
 
-  /** [[Lag]] with quadratic drag; one lag in all directions. */
+  /** [[Lag]] with quadratic drag, and one lag in all directions. */
   val Drag: Structure = reduced("drag", drag)(v => ReducedModel(v(0), v(1), v(2), v(1), v(3)))
 
   val DragAndTurn: Structure =

@@ -4,15 +4,14 @@ import skein.signal.{Kinematics, OneWayDelays, Stamped}
 import skein.units.*
 import skein.vehicle.{Setpoint, VehicleModel}
 
-/** The forecast of one vehicle: its newest readings and the commands that act on it or are on their way.
-  * Instants are the controller's, except where they come from the simulator: `validAt` and everything named
-  * after it.
+/** The forecast of one vehicle: its newest readings, and the commands that are in effect or under way.
+  * Instants are on the controller's clock; `validAt` and everything named after it are on the simulator's.
   *
-  * @param state the model's, at the newest reading
+  * @param state the model's state at the newest reading
   * @param readings the newest readings, the newest last
-  * @param resting in effect before the first of all commands
-  * @param before in effect before the first of `commands`; absent: `resting`
-  * @param commands in the order of their sending: the one in effect at the newest reading, and all later ones
+  * @param resting setpoint in effect before the first command
+  * @param before the command in effect before the first of `commands`; None for `resting`
+  * @param commands in the order of sending: the one in effect at the newest reading, and all later ones
   */
 final case class VehicleForecast[S] private (
     model: VehicleModel[S],
@@ -25,7 +24,7 @@ final case class VehicleForecast[S] private (
   def newest: Stamped[Kinematics] = readings.last
 
   /** Adds a reading: the model predicts the state at its time under the commands in effect, and the reading
-    * corrects it. A reading that is not newer than the newest changes nothing.
+    * corrects it. A reading that is not newer than all before changes nothing.
     */
   def seen(reading: Stamped[Kinematics], delays: OneWayDelays): VehicleForecast[S] =
     if reading.validAt <= newest.validAt then this
@@ -48,17 +47,17 @@ final case class VehicleForecast[S] private (
   def sent(command: Commanded): VehicleForecast[S] =
     copy(commands = (commands :+ command).takeRight(VehicleForecast.CommandLimit))
 
-  /** Adds the actions of a plan, which replace those of earlier plans from its first moment on, as in
-    * [[skein.port.PlanBuffer]]. They are taken to arrive in time: where they do not, an earlier plan's
-    * actions act, which are nearly equal.
+  /** Adds the actions of a plan. They replace the actions of earlier plans from the plan's first time on, as
+    * in [[skein.port.PlanBuffer]]. The plan is assumed to arrive in time; if it does not, the actions of an
+    * earlier plan act, which are nearly equal.
     */
   def planned(plan: Vector[Commanded]): VehicleForecast[S] =
     val from = plan.headOption.flatMap(_.actsAt)
     val kept = commands.filterNot(_.actsAt.exists(acts => from.exists(acts >= _)))
     copy(commands = (kept ++ plan).takeRight(VehicleForecast.CommandLimit))
 
-  /** The vehicle reported that a command was replaced, so its successor has arrived. Changes nothing if the
-    * successor took effect before all commands held here.
+  /** Processes a report that a command was replaced, and thus that its successor has arrived. Changes nothing
+    * if the successor took effect before all commands that are stored here.
     */
   def replaced(sequence: Long, answeredAt: Instant): VehicleForecast[S] =
     val successor = commands.indexWhere(_.sequence > sequence)
@@ -66,8 +65,8 @@ final case class VehicleForecast[S] private (
     else
       copy(commands = commands.updated(successor, commands(successor).copy(answeredAt = Some(answeredAt))))
 
-  /** A call failed. Its command is taken for lost, unless it is known to have arrived or is already in
-    * effect.
+  /** Processes a failed call. Its command is presumed lost, unless it is known to have arrived or is already
+    * in effect.
     */
   def failed(sequence: Long): VehicleForecast[S] =
     copy(commands =
@@ -76,17 +75,17 @@ final case class VehicleForecast[S] private (
       )
     )
 
-  /** The estimate at an instant on the simulator's clock; not before the newest reading. */
+  /** The estimate at a time on the simulator's clock, or at the newest reading if that is later. */
   def estimateAt(validAt: Instant, delays: OneWayDelays, now: Instant): Estimate =
     courseAt(validAt, delays, now).estimate
 
-  /** The vehicle at the instant of [[estimateAt]], to be carried on from there. */
+  /** The vehicle at the time of [[estimateAt]], from which further commands can be simulated. */
   def courseAt(validAt: Instant, delays: OneWayDelays, now: Instant): Course[S] =
     val at = validAt.max(newest.validAt)
     Course(model, advancedTo(at, delays, now), at, newest.validAt)
 
-  /** The vehicle's position at an instant on the simulator's clock, by cubic interpolation between the two
-    * readings around it; absent without two such readings within [[VehicleForecast.MaxGap]].
+  /** The vehicle's position at a time on the simulator's clock, by cubic interpolation between the readings
+    * before and after it. None without two such readings within [[VehicleForecast.MaxGap]] of each other.
     */
   def positionNedAt(validAt: Instant): Option[Vector3] =
     readings
@@ -97,8 +96,8 @@ final case class VehicleForecast[S] private (
       )
       .map(VehicleForecast.between(_, _, validAt))
 
-  /** The legs of the predicted flight from the newest reading until an instant on the simulator's clock; ends
-    * at the reading if that is not earlier than the instant.
+  /** The legs of the predicted flight from the newest reading until a time on the simulator's clock. If that
+    * time is not later than the reading, the last leg has no duration.
     */
   def legsTo(validAt: Instant, delays: OneWayDelays, now: Instant): Vector[Leg] =
     val until  = validAt.max(newest.validAt)
@@ -117,8 +116,8 @@ final case class VehicleForecast[S] private (
     legsTo(validAt, delays, now).foldLeft(state): (flown, leg) =>
       Course.guided(model, flown, leg.command.fold(resting)(_.guidance), leg.span)
 
-  /** Commands with the times at which they take effect, on the simulator's clock. On an ordered connection
-    * none takes effect before one sent earlier. Those of plans have moments of their own.
+  /** Commands with the times at which they take effect, on the simulator's clock. None takes effect before an
+    * earlier one, because the connection keeps their order. Commands of plans have times of their own.
     */
   private def effects(delays: OneWayDelays, now: Instant): Iterator[(Commanded, Instant)] =
     var latest = Option.empty[Instant]
@@ -132,8 +131,9 @@ final case class VehicleForecast[S] private (
         latest = Some(acts)
         (command, acts)
 
-  /** Whether a command is taken for lost because its acknowledgement is overdue. The oldest held one never
-    * is: one command is always in effect. Nor are those of plans: where one is lost, others stand in.
+  /** Whether a command is presumed lost because its acknowledgement is overdue. This excludes the oldest
+    * stored command, because one command is always in effect, and commands of plans, because others replace a
+    * lost one.
     */
   private def isPresumedLost(command: Commanded, delays: OneWayDelays, now: Instant): Boolean =
     command.answeredAt.isEmpty && command.actsAt.isEmpty && command != commands.head &&
@@ -147,21 +147,23 @@ final case class VehicleForecast[S] private (
       .fold(0)((command, _) => commands.indexOf(command))
 
 object VehicleForecast:
-  /** Number of readings kept, to compare predictions with. */
+  /** Number of stored readings, with which predictions are compared. */
   val ReadingLimit = 8
 
-  /** Number of commands kept, and so the most that can be on their way. */
+  /** Number of stored commands, and thus the limit of commands under way. */
   val CommandLimit = 64
 
-  /** Added to two round trips before a command is taken for lost. */
+  /** Time beyond two round trips after which a command is presumed lost. */
   val Grace: Span = Span.ofMillis(500)
 
-  /** Longest gap between two readings across which a position is interpolated: the cubic's error grows with
-    * its fourth power, to about 5 mm here.
+  /** Longest gap between two readings over which a position is interpolated. The cubic's error grows with the
+    * fourth power of the gap, and is about 5 mm at this one.
     */
   val MaxGap: Span = Span.ofMillis(300)
 
-  /** The forecast of a vehicle after its first reading; until it is commanded it holds its position. */
+  /** The forecast of a vehicle after its first reading; the vehicle is assumed to hold its position until its
+    * first command.
+    */
   def apply[S](model: VehicleModel[S], first: Stamped[Kinematics]): VehicleForecast[S] =
     new VehicleForecast(
       model,
@@ -172,7 +174,6 @@ object VehicleForecast:
       Vector.empty
     )
 
-  /** Cubic Hermite interpolation of positions and velocities. */
   private def between(before: Stamped[Kinematics], after: Stamped[Kinematics], validAt: Instant): Vector3 =
     val length = after.validAt.since(before.validAt).toSeconds
     val u      = validAt.since(before.validAt).toSeconds / length

@@ -3,18 +3,19 @@ package skein.formula
 import scala.collection.mutable
 import skein.formula.Op.*
 
-/** Rewrites an expression for SIMD, where an arc tangent costs as much as twenty products: equal but for
-  * rounding, and cheaper.
+/** Rewrites an expression for SIMD, where an arc tangent costs as much as twenty products. The result is
+  * cheaper, and equal except for rounding.
   *
   *   - The sine and cosine of an angle made of arc tangents, quarter turns and angles of known direction
   *     become products of directions; such an angle wrapped to one turn needs a single arc tangent.
-  *   - What both branches of a condition have in common is computed once.
-  *   - What depends on parameters alone becomes a parameter ([[derived]]): it is computed once, in double.
+  *   - A part that both branches of a condition contain is computed once.
+  *   - A part that depends on parameters alone becomes a parameter ([[derived]]), which is computed once, in
+  *     double precision.
   *
   * @param source trace of the old expression
   * @param target trace of the new expression
   * @param leaf node that replaces an input
-  * @param direction of an input that is an angle: cosine and sine
+  * @param direction cosine and sine of an input that is an angle, if known
   * @param parameter node of a parameter of the new expression, by its number
   */
 final class Angles(
@@ -33,14 +34,16 @@ final class Angles(
   /** The new expression's parameters as nodes of the old one, in their order. */
   def derived: Vector[Node] = parameters.keys.toVector
 
-  /** A direction: the vector (x, y), whatever its length. */
+  /** A direction, as a vector (x, y) of any length. */
   private final case class Direction(x: Node, y: Node, isUnit: Boolean)
 
   def convert(node: Node): Node =
     land(node)
     inner(node)
 
-  /** Moves what both branches of a condition have in common out of it, and combines constant factors. */
+  /** Moves parts that both branches of a condition contain out of the condition, and combines constant
+    * factors.
+    */
   def factored(node: Node): Node =
     for each <- Trace.landings(node) do plained(each): Unit
     plained(node)
@@ -87,7 +90,7 @@ final class Angles(
         case Cos   => cosSinOf(node.args(0))._1
         case Add   => plus(inner(node.args(0)), inner(node.args(1)))
         case Mul   => times(inner(node.args(0)), inner(node.args(1)))
-        // A side is asked for, not an angle.
+        // Only the side is needed, not the angle.
         case Signum if angleOf(node.args(0)).isDefined => target.unary(Signum, angleOf(node.args(0)).get.y)
         case Lt if sizeOf(node.args(1)).isDefined && isFixed(node.args(0)) =>
           target.lt(sizeOf(node.args(1)).get.x, cosine(node.args(0)))
@@ -108,21 +111,21 @@ final class Angles(
         case Where => choose(inner(node.args(0)), inner(node.args(1)), inner(node.args(2)))
         case _     => target.again(node, node.args.map(inner))
 
-  /** Whether a number is the sign of another one, with a chosen value where that is 0. */
+  /** Whether a node is the sign of a number, except that it has another value where the number is 0. */
   private def isSideOrElse(node: Node) =
     val Vector(condition, _, sign) = node.args
     sign.op == Signum && condition.op == Eq && condition.args(0) == sign.args(0) && condition.args(1).is(0)
 
-  /** Direction of an angle that is known to be within half a turn to either side. */
+  /** Direction of an angle that is known to be at most half a turn; None for other nodes. */
   private def angleOf(node: Node): Option[Direction] = node.op match
     case Remainder if isTurn(node.args(1)) => directionOf(node.args(0))
     case _                                 => None
 
-  /** Direction of the absolute value of such an angle, if that direction has length 1. */
+  /** Direction of the angle in an absolute value, if its vector has length 1; None for other nodes. */
   private def sizeOf(node: Node): Option[Direction] =
     if node.op == Abs then angleOf(node.args(0)).filter(_.isUnit) else None
 
-  /** Cosine of a parameter that an angle's absolute value is compared with. */
+  /** Cosine of a parameter with which an angle's absolute value is compared. */
   private def cosine(angle: Node): Node =
     val within = source.binary(Max, source.const(0), source.binary(Min, source.const(math.Pi), angle))
     inner(source.unary(Cos, within))
@@ -139,7 +142,7 @@ final class Angles(
 
   private def choose(condition: Node, a: Node, b: Node): Node = choose(target, condition, a, b)
 
-  /** Chooses one of two numbers; what they have in common is not computed twice. */
+  /** Chooses one of two numbers by a condition; their common parts are computed once. */
   private def choose(in: Trace, condition: Node, a: Node, b: Node): Node =
     def of(x: Node, y: Node): Node = choose(in, condition, x, y)
     if a == b then a
@@ -158,7 +161,7 @@ final class Angles(
 
   private def sum(in: Trace, of: Vector[Node]): Node = of.reduceOption(in.add).getOrElse(in.const(0))
 
-  /** Adds two numbers whose zeros may have either sign. */
+  /** Adds two numbers; the sign of a zero result is arbitrary. */
   private def plus(a: Node, b: Node): Node = if a.is(0) then b else if b.is(0) then a else target.add(a, b)
 
   private def times(a: Node, b: Node): Node =
@@ -172,7 +175,7 @@ final class Angles(
       def clean(value: Double) = target.const(if math.abs(value) < 1e-15 then 0 else value)
       Some(Direction(clean(StrictMath.cos(node.value)), clean(StrictMath.sin(node.value)), isUnit = true))
     case Neg => directionOf(node.args(0)).map(way => way.copy(y = target.neg(way.y)))
-    // By one of two known angles: turned both ways, for quarter turns cost nothing.
+    // One of two known angles is added: both sums are computed, since quarter turns cost nothing.
     case Add if isChoiceOfQuarters(node.args(1)) => either(node.args(0), node.args(1))
     case Add if isChoiceOfQuarters(node.args(0)) => either(node.args(1), node.args(0))
     case Add                                     => both(node).map(turned(_, _))
@@ -240,7 +243,7 @@ final class Angles(
     val one = target.const(1)
     target.unary(Sqrt, target.binary(Max, target.const(0), target.sub(one, target.mul(part, part))))
 
-  /** The direction scaled to length 1; of length 0, the direction of angle 0. */
+  /** Cosine and sine of a direction; those of angle 0 if its length is 0. */
   private def unit(way: Direction): (Node, Node) =
     if way.isUnit then (way.x, way.y)
     else

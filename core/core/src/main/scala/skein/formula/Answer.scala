@@ -3,14 +3,14 @@ package skein.formula
 import java.lang.constant.ClassDesc
 import skein.formula.Value.*
 
-/** The result of a traced method, read like the object that it represents. Throws [[Untraceable]], with the
-  * source line of the result, for what cannot be read.
+/** The result of a traced method, with access to the fields of the object that it represents. Parts that
+  * cannot be read throw [[Untraceable]], with the source line of the result.
   */
 final class Answer private[formula] (value: Value, lifter: Lifter):
 
-  /** The result of a method without arguments.
+  /** Calls a method without arguments on the result.
     *
-    * @param answers descriptor of its type, as class files have it
+    * @param answers descriptor of the method's return type, as in class files
     */
   def get(method: String, answers: String = "Ljava/lang/Object;"): Answer =
     Answer(lifter.get(value, method, answers), lifter)
@@ -20,9 +20,10 @@ final class Answer private[formula] (value: Value, lifter: Lifter):
   /** Whether the result is this object for all inputs. */
   def isOne(of: AnyRef): Boolean = lifter.isKnown(value, of)
 
-  /** The result by its class; where conditions choose between several classes, combined over them.
+  /** Handles the result by its class. If conditions choose between several classes, the values are combined
+    * over them.
     *
-    * @param of the value for one class, given what is read there
+    * @param of the value for one class, from its name and the result as that class
     * @param or combines the values of two branches
     */
   def fold[A](of: (String, Answer) => A)(or: (Node, A, A) => A): A = lifter.settled(value) match
@@ -30,7 +31,9 @@ final class Answer private[formula] (value: Value, lifter: Lifter):
       or(condition, Answer(yes, lifter).fold(of)(or), Answer(no, lifter).fold(of)(or))
     case one => of(Answer.className(one, lifter), Answer(one, lifter))
 
-  /** The numbers of the result if it has the form of an example, in the order of [[Example.numbers]]. */
+  /** The numbers of the result, in the order of [[Example.numbers]]; the result must have the form of the
+    * example.
+    */
   def numbersOf(example: Example): Vector[Node] =
     val ways           = example.shape.leaves.iterator.map(_.path).toSet
     val found          = Vector.newBuilder[Node]
@@ -63,7 +66,8 @@ final class Answer private[formula] (value: Value, lifter: Lifter):
                   Path(Some(at), PathStep.Of(field))
                 )
             else if as.getClass.getName.startsWith("scala.Tuple") then
-              // A tuple of numbers has a class of its own, and another one where a condition has chosen them.
+              // A tuple of numbers has a specialised class, and the generic one after a choice by a
+              // condition.
               val parts = as.asInstanceOf[Product]
               for i <- 0 until parts.productArity do
                 val part = Answer(value, lifter).get(s"_${i + 1}")
@@ -79,7 +83,7 @@ final class Answer private[formula] (value: Value, lifter: Lifter):
   def refuse(reason: String): Nothing = lifter.refuse(reason)
 
 private object Answer:
-  /** A class name for a case without fields, as if it had a class of its own. */
+  /** Name of the value's class; a case without fields counts as a class of its own. */
   private def className(value: Value, lifter: Lifter): String = value match
     case Known(single: scala.reflect.Enum, _) if single.productArity == 0 =>
       s"${single.getClass.getSuperclass.getName}$$${single.productPrefix}"

@@ -4,14 +4,13 @@ import java.lang.classfile.Opcode
 import scala.collection.mutable
 import skein.formula.Value.*
 
-/** Traces arithmetic instructions and the functions of formulas. A whole number or a truth that depends on
-  * the inputs is represented by a double, or by 1 and 0, as far as that is exact; what is not exact is
-  * refused.
+/** Traces arithmetic instructions and mathematical functions. An integer or boolean that depends on the
+  * inputs is represented by a double, or by 1 and 0, as long as that is exact; otherwise it is refused.
   */
 private[formula] final class Arithmetic(trace: Trace, assumed: Assumptions, refuse: String => Nothing):
   import Arithmetic.*
 
-  /** Seconds by the number of nanoseconds that was computed from them. */
+  /** For a number of nanoseconds that was computed from seconds, these seconds. */
   private val secondsOf = mutable.HashMap.empty[Node, Node]
 
   def ofTwo(opcode: Opcode, a: Value, b: Value): Value = opcode match
@@ -37,8 +36,8 @@ private[formula] final class Arithmetic(trace: Trace, assumed: Assumptions, refu
     case _ if opcode.name.startsWith("F") => noFloats()
     case _                                => Whole(wholes(opcode, whole(a), whole(b)))
 
-  /** A number of nanoseconds times the factor to seconds or milliseconds becomes seconds again, without a
-    * detour over nanoseconds.
+  /** A product. Nanoseconds times the factor to seconds or milliseconds are computed from the original
+    * seconds.
     */
   private def product(a: Node, b: Node): Node =
     if a.isConst && secondsOf.contains(b) then product(b, a)
@@ -48,7 +47,7 @@ private[formula] final class Arithmetic(trace: Trace, assumed: Assumptions, refu
         case Some(seconds) if b.is(1e-6) => trace.mul(seconds, trace.const(1e3))
         case _                           => trace.mul(a, b)
 
-  /** Whether one of them is a length of time that depends on the inputs. */
+  /** Whether a value is a duration that depends on the inputs. */
   private def isTime(values: Value*): Boolean = values.exists:
     settled(_) match
       case _: Time           => true
@@ -69,8 +68,8 @@ private[formula] final class Arithmetic(trace: Trace, assumed: Assumptions, refu
     case OneOf(_, yes, no) if isTime(yes, no) => nanosOf(Time(seconds(value)))
     case other                                => trace.const(long(other).toDouble)
 
-  /** Compares two lengths of time like `Long.compare`, and two numbers like `Double.compare` except for NaN
-    * and the signs of zeros: −1, 0 or 1.
+  /** Compares two durations like `Long.compare`, or two numbers like `Double.compare` except for NaN and the
+    * signs of zeros: −1, 0 or 1.
     */
   def order(a: Node, b: Node): Value =
     val others = trace.where(trace.lt(b, a), trace.const(1), trace.const(0))
@@ -140,7 +139,7 @@ private[formula] final class Arithmetic(trace: Trace, assumed: Assumptions, refu
 
   /** The condition of a branch that compares two doubles.
     *
-    * @param ifUnordered see [[Compared]]
+    * @param ifUnordered result of the comparison if a double is NaN, see [[Compared]]
     */
   def ofComparison(opcode: Opcode, a: Node, b: Node, ifUnordered: Int): Node =
     val high = ifUnordered > 0
@@ -160,7 +159,9 @@ private[formula] final class Arithmetic(trace: Trace, assumed: Assumptions, refu
     case "GT" => trace.lt(b, a)
     case "LE" => trace.not(trace.lt(b, a))
 
-  /** A function of the JDK as one operation, unless the JDK composes it of others. */
+  /** Represents a function of the JDK by one operation; None for a function that the JDK computes from
+    * others.
+    */
   def function(owner: String, name: String, desc: String, args: Vector[Value]): Option[Value] =
     val exact          = owner.endsWith("StrictMath")
     def strict(): Unit =
@@ -212,12 +213,14 @@ private[formula] final class Arithmetic(trace: Trace, assumed: Assumptions, refu
     case Unreadable(reason, _) => refuse(reason)
     case _                     => value
 
-  /** The single value under the present assumptions; refuses where several remain. */
+  /** The single value under the present assumptions; refuses if several are possible. */
   def decided(value: Value): Value = settled(value) match
     case _: OneOf => refuse("which of two objects it is depends on what is observed")
     case one      => one
 
-  /** Chooses between a property of two values, or reads that of the only one. */
+  /** Evaluates a property. If a condition chooses between two values, it also chooses between their
+    * properties.
+    */
   def asked(value: Value)(holds: Value => Node): Node = settled(value) match
     case OneOf(condition, yes, no) =>
       val (ofYes, ofNo) = (asked(yes)(holds), asked(no)(holds))
@@ -225,7 +228,9 @@ private[formula] final class Arithmetic(trace: Trace, assumed: Assumptions, refu
       else trace.or(trace.and(condition, ofYes), trace.and(trace.not(condition), ofNo))
     case one => holds(one)
 
-  /** One of two values, by a condition, where both are numbers or both are equal. */
+  /** Chooses between two values by a condition; the result is a [[Value.OneOf]] unless both are numbers or
+    * equal.
+    */
   def either(condition: Node, a: Value, b: Value): Value = (a, b) match
     case _ if a == b                                      => a
     case (Number(x), Number(y))                           => Number(trace.where(condition, x, y))
@@ -268,9 +273,9 @@ private object Arithmetic:
     "IEEEremainder" -> Op.Remainder
   )
 
-  /** Functions that are exact, so that `Math` and `StrictMath` agree on them. */
+  /** Functions whose results are exact, so that `Math` and `StrictMath` agree. */
   private val Exact =
     Set(Op.Sqrt, Op.Abs, Op.Floor, Op.Ceil, Op.Rint, Op.Signum, Op.Min, Op.Max, Op.Remainder)
 
-  /** Functions that the JDK's own code composes of others. */
+  /** Functions that the JDK computes from others, in Java code. */
   private val Composed = Set("toRadians", "toDegrees", "clamp")

@@ -10,7 +10,7 @@ private[formula] final class Assumptions:
     case Op.Not    => apply(condition.args(0)).map(!_)
     case _         => known.get(condition)
 
-  /** Traces a branch on which a condition holds, or does not. */
+  /** Traces a branch under the assumption that a condition holds, or that it does not. */
   def under[A](condition: Node, holds: Boolean)(way: => A): A =
     val before = known
     assume(condition, holds)
@@ -21,12 +21,12 @@ private[formula] final class Assumptions:
     if condition.op == Op.Not then assume(condition.args(0), !holds)
     else if !known.contains(condition) then
       known += condition -> holds
-      // What was known of two conditions may tell the other one now.
+      // What is known of both conditions may determine the other one now.
       for (both, each) <- known if both.op == Op.And || both.op == Op.Or do tellParts(both, each)
 
   private def tellParts(both: Node, holds: Boolean): Unit =
     val Vector(a, b) = both.args
-    // Of `and` that holds, and of `or` that does not, both parts are alike.
+    // If `and` holds, both parts hold; if `or` does not, neither does.
     if (both.op == Op.And) == holds then for part <- both.args do assume(part, holds)
     else
       for (one, other) <- Seq((a, b), (b, a)) if apply(one).contains(!holds) do assume(other, holds)

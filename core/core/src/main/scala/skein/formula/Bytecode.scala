@@ -7,9 +7,9 @@ import scala.collection.mutable
 import scala.jdk.CollectionConverters.*
 import scala.jdk.OptionConverters.*
 
-/** The code of a method, with access by the index of an instruction.
+/** The code of a method, with instructions accessible by index.
   *
-  * @param source the file with its source code
+  * @param source name of the source file
   */
 private[formula] final class MethodCode(
     val owner: String,
@@ -28,15 +28,16 @@ private[formula] final class MethodCode(
   def where(instruction: Int): String =
     s"${owner.replace('/', '.')}.$name ($source:${lines(instruction)})"
 
-  /** For each instruction, the first one that every path from it to the method's end passes; the number of
-    * instructions stands for the end itself. Paths that end by throwing are ignored.
+  /** For each instruction, the first instruction that lies on every path from it to the method's end; the
+    * number of instructions stands for the end itself. Paths that end in an exception are ignored.
     */
   lazy val joins: Array[Int] =
     val end          = instructions.length
     val successors   = Array.tabulate(end)(nextOf)
     val predecessors = Array.fill(end + 1)(mutable.ArrayBuffer.empty[Int])
     for i <- 0 until end; next <- successors(i) do predecessors(next) += i
-    // Backwards from the end, in the order in which a depth-first walk ends; −1 from where none leads there.
+    // Backwards from the end, in the order in which a depth-first walk finishes; −1 if an instruction is not
+    // reached.
     val order = mutable.ArrayBuffer.empty[Int]
     val seen  = mutable.BitSet(end)
     val walk  = mutable.Stack((end, 0))
@@ -78,7 +79,7 @@ private[formula] final class MethodCode(
       at(switch.defaultTarget) +: switch.cases.asScala.map(each => at(each.target)).toSeq
     case _ => Seq(i + 1)
 
-/** Class files as a class loader finds them; each is read once. */
+/** Reads class files through a class loader, each only once. */
 private[formula] final class ClassFiles(loader: ClassLoader):
   private val classes = mutable.HashMap.empty[String, Option[ClassModel]]
   private val methods = mutable.HashMap.empty[(String, String, String), Option[MethodCode]]
@@ -99,15 +100,15 @@ private[formula] final class ClassFiles(loader: ClassLoader):
     }
   )
 
-  /** Finds the method that an object of this class inherits: the class's own, a superclass's, or an
-    * interface's.
+  /** Finds the method that an object of this class has: that of the class, of a superclass, or of an
+    * interface.
     *
-    * @return none where it has no code
+    * @return None if the method has no code
     */
   def method(className: String, name: String, descriptor: String): Option[MethodCode] =
     methods.getOrElseUpdate((className, name, descriptor), inClasses(className, name, descriptor))
 
-  /** All interfaces of a class and its superclasses, and the superclasses. */
+  /** All superclasses of a class, and all interfaces of these and of the class. */
   def ancestors(className: String): Vector[String] =
     classModel(className).toVector.flatMap: model =>
       val above =

@@ -7,8 +7,8 @@ import scala.jdk.CollectionConverters.*
 import skein.formula.Thing.*
 import skein.formula.Value.*
 
-/** Resolves method calls during tracing: traces into methods, applies closures, and evaluates the JDK's and
-  * Scala's operations on numbers, boxes and arrays here.
+/** Resolves method calls during tracing: traces into methods, applies closures, and and itself evaluates the
+  * JDK's and Scala's operations on numbers, boxes and arrays.
   *
   * @param enter traces a method
   * @param either joins two values by a condition
@@ -117,7 +117,7 @@ private[formula] final class Calls(
   private def intrinsic(owner: String, name: String, desc: String, args: Vector[Value]): Option[Value] =
     (owner, name) match
       case ("java/lang/Math" | "java/lang/StrictMath", _) => numbers.function(owner, name, desc, args)
-      // It is thrown, and refused then.
+      // The exception is thrown later, and refused then.
       case (thrown, "<init>") if classOf[Throwable].isAssignableFrom(files.load(thrown)) => Some(Null)
       case ("java/lang/Object", "<init>")                                                => Some(Null)
       case ("java/lang/System", "arraycopy")                                             => copied(args)
@@ -168,7 +168,9 @@ private[formula] final class Calls(
           val answer = invoked("java/lang/Object", "equals", Equals, Opcode.INVOKEVIRTUAL, Vector(one, other))
           trace.not(trace.equal(numbers.whole(answer), trace.const(0)))
 
-  /** A new array with a range of another one's elements, and nothing beyond them. */
+  /** A new array with a range of another array's elements. Elements beyond the other array's end are zero or
+    * null.
+    */
   private def part(array: Value, from: Int, until: Int): Value =
     val length = lengthOf(array)
     def none   = if length == 0 then Null else zeroLike(element(array, 0))
@@ -181,7 +183,7 @@ private[formula] final class Calls(
     case _: Long   => Long(0)
     case _         => Null
 
-  /** Calls a static method of whole numbers that are all known. */
+  /** Calls a static method whose arguments are known integers. */
   private def ofKnown(owner: String, name: String, desc: String, args: Vector[Value]): Value =
     val numbers = args.map:
       case Long(number) => java.lang.Long.valueOf(number)

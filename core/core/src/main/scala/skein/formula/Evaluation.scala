@@ -1,6 +1,6 @@
 package skein.formula
 
-/** Evaluates some nodes of one [[Trace]] repeatedly; their order of evaluation is computed once. */
+/** Evaluates nodes of one [[Trace]] repeatedly. The order of evaluation is computed only once. */
 final class Evaluation(nodes: Vector[Node]):
   private val order   = Trace.needed(nodes).toArray
   private val size    = order.iterator.map(_.id + 1).maxOption.getOrElse(0)
@@ -12,8 +12,8 @@ final class Evaluation(nodes: Vector[Node]):
     answers.map(values(_))
 
 object Evaluation:
-  /** Fills in the values of nodes by number, in an order in which arguments precede their users; conditions
-    * are 1 or 0.
+  /** Writes the values of nodes by number. Arguments must precede their users in the order; conditions have
+    * the values 1 and 0.
     */
   private[formula] def compute(
       order: Array[Node],

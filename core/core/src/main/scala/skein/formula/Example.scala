@@ -3,10 +3,10 @@ package skein.formula
 import java.lang.reflect.Modifier
 import scala.collection.mutable
 
-/** An example of an argument, for tracing. Every double in it is an input, and every long is a length of time
-  * in nanoseconds whose seconds are the input. Everything else in it is a constant.
+/** An example of an argument, for tracing. Every double in it becomes an input. Every long is a duration in
+  * nanoseconds; its seconds become an input. Everything else is a constant.
   *
-  * @param takesWholes whether integers and booleans are inputs too, and longs are refused; those inside
+  * @param takesWholes whether integers and booleans become inputs too, and longs are refused; those inside
   *   Scala's own collections stay constant
   * @param refused fields that must not be read, as `Class.field`, each with the reason
   */
@@ -18,16 +18,17 @@ final class Example(
 ):
   private[formula] val root = Path(None, PathStep.Argument(name))
 
-  /** @throws Untraceable if it holds something that no number can represent */
+  /** @throws Untraceable if the example contains something that cannot be represented by numbers
+    */
   private[formula] lazy val shape: Shape = Shape(this, takesWholes)
 
   /** The example's numbers, in the order of the inputs. */
   def numbers: Vector[Double] = shape.leaves.map(_.number)
 
-  /** Whether another example differs in numbers alone. */
+  /** Whether another example differs from this one in numbers alone. */
   def isLike(other: Example): Boolean = shape.form == other.shape.form
 
-/** The numbers of an [[Example]], and what is constant in all examples like it. */
+/** The numbers of an [[Example]], and the constants that all similar examples share. */
 private[formula] final class Shape(of: Example, takesWholes: Boolean):
   private val found   = Vector.newBuilder[Shape.Leaf]
   private val alike   = Vector.newBuilder[(Path, Any)]
@@ -36,7 +37,7 @@ private[formula] final class Shape(of: Example, takesWholes: Boolean):
 
   val leaves: Vector[Shape.Leaf] = found.result()
 
-  /** By path: the class of the object there, or the constant. */
+  /** For each path, the class of the object there, or the constant. */
   val form: Vector[(Path, Any)] = alike.result()
 
   private def visit(value: AnyRef, at: Path, isLibrary: Boolean, depth: Int): Unit =
@@ -75,7 +76,7 @@ private[formula] final class Shape(of: Example, takesWholes: Boolean):
             visit(Shape.read(field, value), way, Shape.isInternal(field), depth + 1)
 
 private[formula] object Shape:
-  /** A number in an example, with the path to it. */
+  /** A number in an example, and the path to it. */
   final case class Leaf(path: Path, number: Double)
 
   private val MostDepth = 60
@@ -93,7 +94,7 @@ private[formula] object Shape:
     if field.trySetAccessible() then field.get(of)
     else throw Untraceable(s"${field.getDeclaringClass.getName} is not made of numbers")
 
-  /** Whether this field belongs to a library class, such as a collection's size. */
+  /** Whether a field belongs to a library class, like the size of a collection. */
   def isInternal(field: java.lang.reflect.Field): Boolean =
     field.getType.isPrimitive && ClassFiles.isLibrary(ClassFiles.nameOf(field.getDeclaringClass)) &&
       !field.getDeclaringClass.getName.startsWith("scala.Tuple")

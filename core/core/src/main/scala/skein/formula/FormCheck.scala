@@ -2,7 +2,7 @@ package skein.formula
 
 import scala.collection.mutable
 
-/** Checks whether objects are of one form, by the values at some paths inside them. */
+/** Checks whether objects have one form, by the values at certain paths inside them. */
 private final class FormCheck(guards: Vector[Guard]):
   private val walk     = PathWalk(guards.map(_.path))
   private val expected = guards.map(_.expected).toArray
@@ -19,8 +19,8 @@ private final class FormCheck(guards: Vector[Guard]):
     case Guard.Length(count) => value != null && java.lang.reflect.Array.getLength(value) == count
     case number              => value == number
 
-/** Reads numbers inside objects of one form. Reads arrays directly, without an object per number: networks
-  * have hundreds.
+/** Reads numbers at certain paths inside objects of one form. Reads arrays directly, without an object per
+  * number, since networks have hundreds of numbers.
   */
 private final class NumberReader(paths: Vector[Path]):
   private val walk    = PathWalk(paths.map(path => if indexOf(path) < 0 then path else path.before.get))
@@ -44,21 +44,21 @@ private final class NumberReader(paths: Vector[Path]):
 
   private def unboxed(number: AnyRef) = number.asInstanceOf[java.lang.Double].doubleValue
 
-/** Reads the values at some paths inside objects; visits each object on the way once. */
+/** Reads the values at certain paths inside an object; visits each object on the way only once. */
 private final class PathWalk(paths: Vector[Path]):
   private val all                  = mutable.LinkedHashMap.empty[Path, Int]
   private def place(of: Path): Int =
     of.before.foreach(place)
     all.getOrElseUpdate(of, all.size)
 
-  /** For each path, the index of its end in the result of `apply`. */
+  /** For each path, the index of its value in the result of [[apply]]. */
   val places: Array[Int] = paths.map(place).toArray
 
   private val steps  = all.keysIterator.map(_.step).toArray
   private val before = all.keysIterator.map(_.before.fold(-1)(all)).toArray
   for case PathStep.Of(field) <- steps do field.setAccessible(true)
 
-  /** Reads the values at all paths; null behind an object that is not of the form. */
+  /** Reads the values at all paths; null if the object does not have the form. */
   def apply(root: AnyRef): Array[AnyRef] =
     val found = Array.ofDim[AnyRef](steps.length)
     var i     = 0

@@ -5,8 +5,8 @@ import scala.collection.mutable
 import scala.util.control.NonFatal
 import skein.formula.Value.*
 
-/** An ordinary method's computation as data: from [[inputs]] and [[parameters]] to [[outputs]].
-  * `skein.simd.LaneCompiler` compiles it; other compilers may.
+/** The computation of an ordinary method as data, from [[inputs]] and [[parameters]] to [[outputs]].
+  * `skein.simd.LaneCompiler` and other compilers can compile it.
   *
   * @param inputs names of the numbers in the arguments
   * @param outputs nodes of the result, by name; a single number is called `answer`
@@ -20,13 +20,13 @@ final class Formula private (
     isLike: AnyRef => Boolean,
     numbersOf: AnyRef => Array[Double]
 ):
-  /** Whether another object's method is this formula with other parameter values. */
+  /** Whether another object's method differs from this formula only in parameter values. */
   def fits(other: AnyRef): Boolean = isLike(other)
 
   /** The parameters of an object that [[fits]]. */
   def parametersOf(other: AnyRef): Array[Double] = numbersOf(other)
 
-  /** Evaluates the formula on doubles: slow, and bit-identical to the method itself. */
+  /** Evaluates the formula in doubles. Slow; bit-identical to the method. */
   def evaluate(input: Array[Double], parameters: Array[Double]): Array[Double] =
     Evaluation(outputs.map(_._2))(input, parameters)
 
@@ -34,12 +34,12 @@ object Formula:
 
   /** Traces an object's method.
     *
-    * @param method its name
-    * @param sizes of arguments that are arrays, by name
-    * @param arguments types of its arguments, where a class has several methods of the name
-    * @param known constant arguments or fields that are not doubles, by name. A result that contains them
-    *   yields its other fields only
-    * @return Left states why it cannot be traced
+    * @param method name of the method
+    * @param sizes lengths of arguments that are arrays, by name
+    * @param arguments types of its arguments, needed if the class has several methods of that name
+    * @param known constant arguments or fields that are not doubles, by name. If the result contains them,
+    *   only its other fields become outputs
+    * @return Left states why the method cannot be traced
     */
   def of(
       target: AnyRef,
@@ -51,7 +51,7 @@ object Formula:
     case known: KnownFormula => Right(known.formula)
     case _                   => named(target, method, sizes, arguments, known)
 
-  /** A formula of which the graph exists.
+  /** Creates a formula from an existing graph.
     *
     * @param isLike whether an object has this graph
     * @param numbersOf the parameters of such an object
@@ -177,7 +177,7 @@ object Formula:
       def ofFields(className: String, fields: Map[String, Value], name: String): Vector[(String, Node)] =
         fieldsOf(files.load(className)).toVector
           .map(_.getName)
-          // A pair of doubles is of a class of its own, whose inherited fields are empty.
+          // A pair of doubles has a specialised class, whose inherited fields are empty.
           .filter(each => fields.contains(each) && fields(each) != Null)
           .flatMap(each => outputsOf(fields(each), if name == Answer then each else s"$name.$each"))
 
@@ -188,10 +188,10 @@ object Formula:
 
   /** Traces an object's method for arguments like the examples.
     *
-    * @param descriptor of the method, as class files have it
-    * @param loader finds all classes that it uses
+    * @param descriptor of the method, as in class files
+    * @param loader finds all classes that the method uses
     * @param read extracts the outputs from the result
-    * @return the formula with what `read` returned, or why it cannot be traced
+    * @return the formula and the result of `read`, or why the method cannot be traced
     */
   def ofExamples[A](
       target: AnyRef,
@@ -232,7 +232,8 @@ object Formula:
     ).takeWhile(_ != null).flatMap(_.getDeclaredMethods).toVector ++
       of.getMethods
 
-  /** The fields that tracing reads, superclasses' first, in the order of declaration. */
+  /** The fields of a class that tracing reads, in the order of declaration; those of superclasses are first.
+    */
   private def fieldsOf(kind: Class[?]): Seq[java.lang.reflect.Field] =
     Iterator
       .iterate[Class[?]](kind)(_.getSuperclass)
@@ -241,6 +242,6 @@ object Formula:
       .reverse
       .flatMap(_.getDeclaredFields.filterNot(each => Modifier.isStatic(each.getModifiers)))
 
-/** An object whose method is a formula already: its bytecode is not read. */
+/** An object whose method already is a formula, so that its bytecode is not read. */
 private[skein] trait KnownFormula:
   def formula: Formula

@@ -3,11 +3,12 @@ package skein.formula
 import scala.collection.mutable
 import skein.formula.Op.*
 
-/** Equal numbers but for rounding, with fewer operations where a fused multiply-add is one operation.
+/** Rewrites expressions so that they need fewer operations on machines with a fused multiply-add. Results are
+  * equal except for rounding.
   *
-  *   - A product that is subtracted is added with one factor negated, where negating it is free.
-  *   - Division by a value that depends on parameters alone becomes multiplication by its inverse.
-  *   - An angle that is wrapped only beyond half a turn is wrapped always.
+  *   - A product that is subtracted is added with one factor negated, if the negation costs nothing.
+  *   - Division by a value that depends on parameters alone becomes multiplication by its reciprocal.
+  *   - An angle that is wrapped only beyond half a turn is always wrapped.
   */
 private[skein] final class Fused(in: Trace, outputs: Vector[Node]):
   private val order = Trace.needed(outputs)
@@ -43,7 +44,7 @@ private[skein] final class Fused(in: Trace, outputs: Vector[Node]):
       case None if a.op == Mul && fixed(b) => in.add(made(a), in.neg(made(b)))
       case None                            => in.sub(made(a), made(b))
 
-  /** A number negated, if that costs no operation. */
+  /** The negated number, if the negation costs no operation. */
   private def negated(node: Node): Option[Node] =
     if fixed(node) then Some(in.neg(made(node)))
     else if uses(node) > 1 then None
@@ -56,7 +57,7 @@ private[skein] final class Fused(in: Trace, outputs: Vector[Node]):
           negated(a).map(in.mul(_, made(b))).orElse(negated(b).map(in.mul(made(a), _)))
         case _ => None
 
-  /** Whether a condition chooses between an angle within half a turn and the wrapped angle elsewhere. */
+  /** Whether a condition chooses between an angle, within half a turn, and the wrapped angle. */
   private def isWrapped(node: Node): Boolean =
     val Vector(condition, a, b) = node.args
     condition.op == Le && condition.args(0).op == Abs && condition.args(0).args(0) == a &&

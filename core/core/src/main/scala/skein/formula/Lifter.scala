@@ -8,12 +8,12 @@ import scala.jdk.CollectionConverters.*
 import skein.formula.Thing.*
 import skein.formula.Value.*
 
-/** Executes a method's bytecode symbolically, and records what it computes of its inputs in a [[Trace]].
+/** Executes a method's bytecode symbolically, and records its computations on the inputs in a [[Trace]].
   *
-  * Where a condition is unknown, both branches are executed up to where they meet again, and values that
-  * differ there become an [[Op.Where]]. Known values are computed immediately: loops over them are unrolled,
-  * and calls are traced into. Objects and arrays that the method makes exist only here ([[Objects]]). What is
-  * not arithmetic is refused ([[Untraceable]]).
+  * If a condition is unknown, both branches are executed up to the point where they meet; values that differ
+  * there become an [[Op.Where]]. Known values are computed immediately: loops over them are unrolled, and
+  * calls are traced into. Objects and arrays that the method creates exist only during tracing ([[Objects]]).
+  * Everything that is not arithmetic is refused ([[Untraceable]]).
   */
 private[formula] final class Lifter(files: ClassFiles, val trace: Trace):
   import Lifter.*
@@ -25,14 +25,16 @@ private[formula] final class Lifter(files: ClassFiles, val trace: Trace):
   private var steps                = 0
   private var calls: List[Calling] = Nil
 
-  // Where what was called answered last, until the method itself has answered.
+  // Source line of the last call's result, until the method itself has returned.
   private var answeredAt = ""
   private var isDone     = false
   import numbers.*
   export objects.{argument, element, fieldOf, guards, lengthOf, make, parameters, thing}
   export numbers.settled
 
-  /** The method's result for these arguments; the receiver comes first unless the method is static. */
+  /** The method's result for these arguments. Unless the method is static, the receiver is the first
+    * argument.
+    */
   def call(code: MethodCode, args: Vector[Value]): Value =
     if calls.sizeIs > MostDepth then refuse(s"it calls more than $MostDepth methods within one another")
     val locals = Array.fill[Value](code.slots)(Null)
@@ -48,7 +50,7 @@ private[formula] final class Lifter(files: ClassFiles, val trace: Trace):
     isDone |= calls.isEmpty
     answer
 
-  /** The result of an object's method without arguments. */
+  /** Calls a method without arguments on an object. */
   def get(of: Value, name: String, answers: String): Value =
     invocations.invoked(
       "java/lang/Object",
@@ -58,7 +60,6 @@ private[formula] final class Lifter(files: ClassFiles, val trace: Trace):
       Vector(of)
     )
 
-  /** Name of an object's class, if it is known. */
   def classOf(value: Value): Option[String] = objects.classOfThing(value)
 
   def numberOf(value: Value): Node = flat(value) match
@@ -81,8 +82,8 @@ private[formula] final class Lifter(files: ClassFiles, val trace: Trace):
     case Long(number)    => what == java.lang.Long.valueOf(number)
     case _               => false
 
-  /** Refuses with the innermost source line that is not a library's; after the method has returned, with the
-    * line of its return.
+  /** Throws [[Untraceable]] with the innermost source line outside libraries; after the method has returned,
+    * with the line of its return.
     */
   def refuse(reason: String): Nothing =
     val own = calls.find(call => !ClassFiles.isLibrary(call.code.owner))
@@ -129,7 +130,7 @@ private[formula] final class Lifter(files: ClassFiles, val trace: Trace):
             at += 1
     end.get
 
-  /** Executes both branches of a condition up to where they meet. */
+  /** Executes both branches of a condition up to the point where they meet. */
   private def both(frame: Frame, taken: Node, target: Int, at: Int, meet: Int): Option[End] =
     if !frame.calling.open.add(at) then
       refuse("a loop whose end depends on what is observed: give it a fixed number of rounds")

@@ -5,9 +5,9 @@ import scala.collection.mutable
 import skein.formula.Thing.*
 import skein.formula.Value.*
 
-/** Objects and arrays during tracing. Those that the method makes exist only here; those that existed before
-  * are read and never changed. A double read from the method's own object becomes a parameter; anything else
-  * read from it must be equal in another object ([[guards]]) for both to share the trace.
+/** Represents objects and arrays during tracing. Those that the method creates exist only here; earlier ones
+  * are read and never changed. A double that is read from the method's own object becomes a parameter. Every
+  * other value that is read from it must be equal in another object ([[guards]]) for both to share the trace.
   */
 private[formula] final class Objects(
     files: ClassFiles,
@@ -23,17 +23,17 @@ private[formula] final class Objects(
   private val params = mutable.LinkedHashMap.empty[Path, Node]
   private val alike  = mutable.LinkedHashMap.empty[Guard, Unit]
 
-  // Of the arguments' examples: what stands for their numbers, and what is not to be read of them.
+  // Of the arguments' examples: the nodes of their numbers, and the reasons why fields must not be read.
   private val inputs  = mutable.HashMap.empty[Path, Node]
   private val unknown = mutable.HashMap.empty[String, String]
 
-  /** Ids of the changed objects, once per change. */
+  /** Numbers of the objects that were changed, one entry per change. */
   private val changed = mutable.ArrayBuffer.empty[Int]
 
-  /** Paths to the doubles read from the object, in the order of the trace's parameters. */
+  /** Paths to the doubles that were read from the method's object, in the order of the trace's parameters. */
   def parameters: Vector[Path] = params.keys.toVector
 
-  /** What must be equal in another object for it to share the trace. */
+  /** The values that must be equal in another object for it to share the trace. */
   def guards: Vector[Guard] = alike.keys.toVector
 
   def thing(id: Int): Thing = heap(id)
@@ -45,7 +45,7 @@ private[formula] final class Objects(
 
   /** Represents an argument by its example.
     *
-    * @param input makes the input for the number at a path
+    * @param input creates the input for the number at a path
     */
   def argument(of: Example, input: Path => Node): Value =
     for leaf <- of.shape.leaves do inputs(leaf.path) = input(leaf.path)
@@ -56,18 +56,18 @@ private[formula] final class Objects(
     heap += id -> thing
     changed += id
 
-  /** Snapshot of all objects made so far. */
+  /** A snapshot of all objects created so far. */
   def now: Moment = Moment(heap, changed.size)
 
   def backTo(moment: Moment): Unit = heap = moment.things
 
-  /** Joins the objects that two branches have left; the second branch ends now. */
+  /** Joins the objects as two branches have left them. Create it at the end of the second branch. */
   final class Merge(condition: Node, parted: Moment, first: Moment):
     private val (yes, no) = (first.things, heap)
     private val pairs     = mutable.HashMap.empty[(Value, Value), Value]
     heap = yes ++ no
 
-    /** Joins the objects that existed before the branches parted. */
+    /** Joins the objects that existed before the branches separated. */
     def things(): Unit =
       for id <- changed.drop(parted.changes).distinct; a <- yes.get(id); b <- no.get(id) if a != b do
         change(
@@ -103,7 +103,9 @@ private[formula] final class Objects(
           case _ => OneOf(condition, a, b)
       case _ => OneOf(condition, a, b)
 
-    /** The object that was made, or a copy of an existing case class of doubles. */
+    /** An object that the method created, or a copy of an earlier case class of doubles; None for other
+      * objects.
+      */
     private def thingOf(of: Value, in: Map[Int, Thing]): Option[Thing] = of match
       case Made(id)                                                                        => Some(in(id))
       case Known(what, path) if !path.exists(_.isOfArgument) && isOfDoubles(what.getClass) =>
@@ -113,8 +115,8 @@ private[formula] final class Objects(
         Some(Record(ClassFiles.nameOf(what.getClass), fields.toMap))
       case _ => None
 
-    /** Converts a specialised tuple to the generic class where the other branch has that, as when one number
-      * is a constant.
+    /** Converts a specialised tuple to the generic class if the other branch has the generic one, for example
+      * because one of its numbers is a constant.
       */
     private def alikeOf(a: Thing, b: Thing): (Thing, Thing) = (classOf(a), classOf(b)) match
       case (Some(x), Some(y)) if x != y => (unspecialised(a), unspecialised(b))
@@ -196,7 +198,7 @@ private[formula] final class Objects(
     if field.trySetAccessible() then field
     else refuse(s"it uses ${field.getDeclaringClass.getName}, which is not arithmetic")
 
-  /** Represents a value that an object from before tracing holds. */
+  /** Represents a value inside an object that existed before tracing. */
   private def held(value: AnyRef, path: Option[Path], kind: Class[?]): Value =
     def alikeIn(expected: Any): Unit = path.foreach(way => guard(way, expected))
     path.flatMap(inputs.get).fold(heldItself(value, path, kind, alikeIn)): node =>
@@ -209,7 +211,9 @@ private[formula] final class Objects(
         case _ => Whole(node)
       if kind.isPrimitive then number else Boxed(number)
 
-  /** Requires a constant of another object; constants of arguments are already fixed by their example. */
+  /** Requires a constant to be equal in other objects; constants of arguments are already fixed by their
+    * example.
+    */
   private def guard(way: Path, expected: Any): Unit =
     if !way.isOfArgument then alike(Guard(way, expected)) = ()
 
@@ -240,7 +244,7 @@ private[formula] final class Objects(
       case text: String => alikeIn(text); Known(text, None)
       case other        => alikeIn(other.getClass); Known(other, path)
 
-  /** The element at a known index, or chosen among the elements by an unknown one. */
+  /** The element at an index. If the index is unknown, conditions choose among all elements. */
   def elementAt(array: Value, index: Node): Value =
     if index.isConst then element(array, index.value.toInt)
     else if index.op == Op.Where then
@@ -315,7 +319,7 @@ private[formula] final class Objects(
     case other          =>
       classOfThing(other).exists(own => files.load(name).isAssignableFrom(files.load(own)))
 
-  /** Copies array elements like `System.arraycopy` and like Scala's `Array.copy`, which boxes numbers. */
+  /** Copies array elements like `System.arraycopy`, or like Scala's `Array.copy`, which boxes numbers. */
   def copied(args: Vector[Value]): Option[Value] =
     val Vector(fromAt, toAt, count) = Vector(1, 3, 4).map(i => known(args(i), "an index"))
     decided(args(2)) match
@@ -342,7 +346,9 @@ private[formula] object Objects:
     classOf[Product].isAssignableFrom(kind) && kind.getSuperclass == classOf[Object] &&
       doublesOf(kind).forall(each => each.getType == classOf[Double] || isOfDoubles(each.getType))
 
-/** What an object must hold at the end of a path: a class, a number, null, or a [[Guard.Length]]. */
+/** A requirement on an object: the value at the end of a path must be a certain class, a number, null, or a
+  * [[Guard.Length]].
+  */
 private[formula] final case class Guard(path: Path, expected: Any)
 
 private[formula] object Guard:

@@ -1,6 +1,6 @@
 package skein.formula
 
-/** The operation of a [[Trace]]'s node. Conditions are nodes too: those of the last group, and the first
+/** The operation of a [[Trace]]'s node. Some nodes are conditions: those of the last group, and the first
   * argument of [[Op.Where]].
   */
 enum Op:
@@ -9,25 +9,24 @@ enum Op:
   case Neg, Abs, Sqrt, Sin, Cos, Asin, Acos, Atan, Exp, Tanh, Floor, Ceil, Rint, Signum
   case Add, Sub, Mul, Div, Min, Max, Atan2, Hypot, Remainder
 
-  /** The second argument where the first holds, else the third. */
+  /** The second argument if the first one, a condition, holds; else the third. */
   case Where
   // Conditions; a comparison with a NaN does not hold.
   case Lt, Le, Eq, Not, And, Or, Always
 
-  /** Whether the operation takes no arguments. */
   def isLeaf: Boolean = this match
     case Const | Input | Param | Always => true
     case _                              => false
 
   def isCondition: Boolean = ordinal >= Op.Lt.ordinal
 
-  /** Whether it costs far more than an addition. */
+  /** Whether the operation costs far more than an addition. */
   def isDear: Boolean = this match
     case Sin | Cos | Asin | Acos | Atan | Exp | Tanh | Atan2 | Hypot | Remainder | Sqrt | Div => true
     case _                                                                                    => false
 
 object Op:
-  /** A function of one number, bit-identical on every JVM. */
+  /** Evaluates an operation on one number, bit-identically on every JVM. */
   def compute(op: Op, a: Double): Double = op match
     case Neg    => -a
     case Abs    => Math.abs(a)
@@ -45,7 +44,7 @@ object Op:
     case Signum => Math.signum(a)
     case _      => throw IllegalArgumentException(s"$op takes not one number")
 
-  /** A function of two numbers, bit-identical on every JVM. */
+  /** Evaluates an operation on two numbers, bit-identically on every JVM. */
   def compute(op: Op, a: Double, b: Double): Double = op match
     case Add       => a + b
     case Sub       => a - b
@@ -58,7 +57,7 @@ object Op:
     case Remainder => StrictMath.IEEEremainder(a, b)
     case _         => throw IllegalArgumentException(s"$op takes not two numbers")
 
-  /** Whether a comparison of two numbers holds. */
+  /** The truth of a comparison of two numbers, by its operation. */
   def holds(op: Op, a: Double, b: Double): Boolean = op match
     case Lt => a < b
     case Le => a <= b

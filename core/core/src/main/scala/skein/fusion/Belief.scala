@@ -2,15 +2,15 @@ package skein.fusion
 
 import skein.units.*
 
-/** The estimate of a vehicle at a moment: position and velocity in NED, jointly normal. A Kalman filter's
-  * state for constant velocity with white noise as acceleration.
+/** The estimate of a vehicle's position and velocity at a moment, in NED, jointly normal: the state of a
+  * Kalman filter for constant velocity with white noise as acceleration.
   *
   * @param at on the clock of the measurements
   * @param positionNed mean, m
   * @param velocityNed mean, m/s
   * @param position covariance of the position, m²
-  * @param cross of position (rows) and velocity, m²/s
-  * @param velocity of the velocity, m²/s²
+  * @param cross covariance of position (rows) and velocity (columns), m²/s
+  * @param velocity covariance of the velocity, m²/s²
   */
 final case class Belief(
     at: Instant,
@@ -23,14 +23,14 @@ final case class Belief(
 
   /** The estimate predicted for a later moment.
     *
-    * @param acceleration spectral density of the unknown acceleration along each axis, m²/s³. The noise it
-    *   adds over Δt is Δt³/3, Δt²/2 and Δt times it: Bar-Shalom, Li and Kirubarajan, Estimation with
-    *   Applications to Tracking and Navigation (2001), 6.2.2
+    * @param acceleration spectral density of the unknown acceleration along each axis, m²/s³. Over a time Δt
+    *   it adds Δt³/3, Δt²/2 and Δt times its value to the covariances: Bar-Shalom, Li and Kirubarajan,
+    *   Estimation with Applications to Tracking and Navigation (2001), 6.2.2
     */
   def carriedTo(later: Instant, acceleration: Double): Belief =
     carriedBy(later.since(at).toSeconds, acceleration).copy(at = later)
 
-  /** Predicts over a time step; the estimate's own instant stays unchanged. */
+  /** Predicts over a time step, without changing the estimate's own time. */
   private[fusion] def carriedBy(dtS: Double, acceleration: Double): Belief =
     def noise(variance: Double) = Matrix3.diagonal(acceleration * variance)
     Belief(
@@ -42,7 +42,7 @@ final case class Belief(
       velocity + noise(dtS)
     )
 
-  /** The estimate updated by a measurement of its own moment. */
+  /** The estimate updated by a measurement taken at the time of the estimate. */
   def joined(measured: Measurement): Belief =
     val placed = joinedPosition(measured.positionNed, measured.covariance)
     measured.velocity.fold(placed)(velocity => placed.joinedVelocity(velocity.ned, velocity.covariance))
@@ -76,7 +76,7 @@ final case class Belief(
 object Belief:
   /** The estimate after the first measurement.
     *
-    * @param speedMps standard deviation of the velocity along each axis
+    * @param speedMps standard deviation of the velocity along each axis, if it was not measured
     */
   private[fusion] def first(
       at: Instant,

@@ -4,11 +4,11 @@ import skein.units.*
 
 /** Settings of the filter for one vehicle.
   *
-  * @param acceleration process noise: spectral density of the vehicle's acceleration, m²/s³. A vehicle that
-  *   accelerates with a (m/s²) for about τ (s) at a time has about a²τ
-  * @param topSpeed standard deviation of the velocity before it was measured
-  * @param history the greatest age of a measurement relative to the newest one
-  * @param mostMeasurements limit of measurements kept
+  * @param acceleration process noise: spectral density of the vehicle's acceleration, m²/s³. It is about a²τ
+  *   for a vehicle that accelerates with a (m/s²) for about τ (s) at a time
+  * @param topSpeed standard deviation of the velocity before its first measurement
+  * @param history maximum age of a stored measurement, relative to the newest
+  * @param mostMeasurements maximum number of stored measurements
   */
 final case class FusionSettings(
     acceleration: Double = 10,
@@ -21,11 +21,11 @@ final case class FusionSettings(
     s"fusion needs settings above zero: $this"
   )
 
-/** Estimates one vehicle's state from measurements in any order. Each enters at its valid time, and all later
-  * ones are processed again, so the estimate equals that of a filter that received all of them in order.
-  * Measurements of one time are processed in the order of arrival.
+/** Estimates one vehicle's state from measurements in any order. Each is applied at its valid time, and all
+  * later ones are then processed again. So the estimate equals that of a filter that received all
+  * measurements in order. Measurements of equal times are processed in the order of arrival.
   *
-  * Immutable. An update costs one step of the filter for each measurement that is newer.
+  * Immutable. An update costs one step of the filter per newer measurement.
   */
 final class Fusion private (
     settings: FusionSettings,
@@ -34,14 +34,14 @@ final class Fusion private (
 ):
   import Fusion.*
 
-  /** The estimate after the newest measurement; none before the first. */
+  /** The estimate after the newest measurement; None before the first. */
   def belief: Option[Belief] = remembered.lastOption.map(_.after).orElse(before)
 
-  /** The estimate predicted for a moment at or after the newest measurement. */
+  /** The estimate predicted for a time that is not before the newest measurement. */
   def at(later: Instant): Option[Belief] =
     belief.filter(_.at <= later).map(_.carriedTo(later, settings.acceleration))
 
-  /** The filter with one more measurement. None if the measurement is older than all that are kept. */
+  /** The filter with one more measurement; None if the measurement is older than all stored ones. */
   def including(measured: Measurement): Option[Fusion] =
     val isTooOld = before.exists(_.at > measured.validAt) ||
       belief.exists(_.at.since(measured.validAt) > settings.history)

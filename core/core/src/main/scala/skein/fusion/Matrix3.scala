@@ -2,7 +2,7 @@ package skein.fusion
 
 import skein.units.Vector3
 
-/** A 3×3 matrix, row by row; a covariance where it is symmetric and positive. Of positions in m², of
+/** A 3×3 matrix, row by row. A symmetric and positive matrix may be a covariance, of positions in m² or of
   * velocities in m²/s².
   */
 final case class Matrix3(
@@ -52,15 +52,16 @@ final case class Matrix3(
     xx * yy - xy * yx
   ) * (1 / determinant)
 
-  /** The mean of the matrix and its transpose: restores a covariance's symmetry after rounding. */
+  /** The mean of the matrix and its transpose, which restores a covariance's symmetry after rounding. */
   def symmetric: Matrix3 = (this + transposed) * 0.5
 
 object Matrix3:
   val Zero: Matrix3 = diagonal(0)
 
-  /** The covariance with equal variances along all axes, and no correlation. */
+  /** The covariance with equal variances along all axes and no correlation. */
   def diagonal(variance: Double): Matrix3 = Matrix3(variance, 0, 0, 0, variance, 0, 0, 0, variance)
 
-  /** v vᵀ: the covariance of what varies along v alone, with the length of v as standard deviation. */
+  /** v vᵀ: the covariance of a vector that varies only along v, with the length of v as standard deviation.
+    */
   def along(v: Vector3): Matrix3 =
     Matrix3(v.x * v.x, v.x * v.y, v.x * v.z, v.y * v.x, v.y * v.y, v.y * v.z, v.z * v.x, v.z * v.y, v.z * v.z)

@@ -2,14 +2,13 @@ package skein.fusion
 
 import skein.units.*
 
-/** A measured position of a vehicle: a reading of its own, or a detection by another vehicle's camera or
-  * LIDAR.
+/** A measured position of a vehicle: its own reading, or a detection by another vehicle's camera or LIDAR.
   *
-  * @param validAt when physics was sampled or the image exposed; all measurements of one vehicle use one
-  *   clock
+  * @param validAt time at which physics was sampled or the image exposed; on one clock for all measurements
+  *   of a vehicle
   * @param positionNed m
   * @param covariance of the position, NED, m²
-  * @param velocity if it was measured too: NED, m/s, with its covariance, m²/s²
+  * @param velocity velocity with its covariance, if it was measured: NED, m/s, m²/s²
   */
 final case class Measurement(
     validAt: Instant,
@@ -22,12 +21,12 @@ final case class Measurement(
     s"a measurement's covariance is positive: $this"
   )
 
-/** What a camera or a LIDAR measures of a detected object, in the sensor's frame (front, right, down).
+/** A camera's or lidar's measurement of a detected object, in the sensor's frame (front, right, down).
   *
   * @param azimuth to the right of straight ahead
   * @param elevation above straight ahead
   * @param range along the line of sight
-  * @param deviation standard deviations of the three, independent of one another
+  * @param deviation standard deviations of the three, which are independent
   */
 final case class PolarMeasurement(
     azimuth: Radians,
@@ -36,9 +35,10 @@ final case class PolarMeasurement(
     deviation: (azimuth: Radians, elevation: Radians, range: Metres)
 ):
 
-  /** The object's position, given the sensor's pose at the exposure. Linearised about the measured values
-    * ("converted measurement"), which is accurate where range · angle² is small beside the range's own
-    * deviation: Lerro and Bar-Shalom, IEEE Transactions on Aerospace and Electronic Systems 29 (1993), 1015.
+  /** The object's position, from the sensor's pose at the exposure. Linearised about the measured values
+    * ("converted measurement"), which is accurate if range · angle² is small compared with the range's
+    * standard deviation: Lerro and Bar-Shalom, IEEE Transactions on Aerospace and Electronic Systems 29
+    * (1993), 1015.
     *
     * @param positionNed of the sensor, m
     * @param orientation from the sensor's frame to world NED
@@ -80,7 +80,6 @@ object PolarMeasurement:
       deviation
     )
 
-  /** Rotates v from the sensor's frame to world NED. */
   private def turned(v: Vector3, q: Quaternion): Vector3 =
     val (ux, uy, uz) = (
       q.y * v.z - q.z * v.y + q.w * v.x,

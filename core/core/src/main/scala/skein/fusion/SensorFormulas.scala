@@ -4,14 +4,14 @@ import skein.fusion.SensorFormulas.*
 import skein.policy.CameraPursuer
 import skein.units.{Instant, Vector3}
 
-/** The computations of [[SensorModel]], of the filter behind it and of [[skein.policy.CameraPursuer]], on
-  * plain numbers so that compilers can trace them. Times are in seconds since the flight's start.
+/** The computations of [[SensorModel]], of its filter, and of [[skein.policy.CameraPursuer]], on plain
+  * numbers, so that compilers can trace them. Times are in seconds since the flight's start.
   */
 private[skein] final case class SensorFormulas(model: SensorModel):
 
-  /** The detection in an image, for an opponent that is found whenever it is in view.
+  /** The detection in an image, if the opponent is detected whenever it is in view.
     *
-    * @param bearing and `range`: see [[SensorModel.seen]]
+    * @param bearing a standard normal sample, like `range`; see [[SensorModel.seen]]
     */
   def detected(
       axisRad: Double,
@@ -23,7 +23,7 @@ private[skein] final case class SensorFormulas(model: SensorModel):
     val (place, covariance) = model.seen(axisRad, ownNed, opponentNed, bearing, range)
     Detected(if model.isInView(axisRad, ownNed, opponentNed) then 1 else 0, place, covariance)
 
-  /** The estimate after an image, which must not be older than those before. */
+  /** The estimate after an image, which must not have been taken before earlier ones. */
   def joined(before: Believed, image: Detected, validS: Double): Believed =
     val belief =
       Belief(
@@ -56,9 +56,9 @@ private[skein] final case class SensorFormulas(model: SensorModel):
       )
     else before
 
-  /** The inputs of a decision, and the camera's direction from then on.
+  /** The inputs of a decision, and the camera's direction after it.
     *
-    * @param startNed of the opponent
+    * @param startNed start of the opponent
     * @param aheadS time until the command takes effect, if the own position is predicted for that moment;
     *   else −1
     */
@@ -89,13 +89,13 @@ private[skein] final case class SensorFormulas(model: SensorModel):
 private[skein] object SensorFormulas:
   /** A detection in an image.
     *
-    * @param isFound 1 or 0
+    * @param isFound 1 if the opponent was detected, else 0
     */
   final case class Detected(isFound: Double, positionNed: Vector3, covariance: Matrix3)
 
   /** A [[Belief]], if there is one.
     *
-    * @param isKnown 1 or 0, whether it holds an estimate
+    * @param isKnown 1 if there is an estimate, else 0
     */
   final case class Believed(
       isKnown: Double,
@@ -107,8 +107,8 @@ private[skein] object SensorFormulas:
       velocity: Matrix3
   )
 
-  /** Relative position of the opponent, m, its velocity, m/s, and that velocity's heading, rad; the age of
-    * the estimate, s, and the bearing of the opponent, rad.
+  /** The opponent's relative position, m, its velocity, m/s, and its heading, rad; the age of the estimate,
+    * s; and the opponent's bearing, rad.
     */
   final case class DecidedUpon(
       northM: Double,

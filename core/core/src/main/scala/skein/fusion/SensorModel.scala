@@ -3,22 +3,23 @@ package skein.fusion
 import skein.signal.{LatencyDistribution, NormalQuantile}
 import skein.units.*
 
-/** What a vehicle knows if it sees its opponent by a camera alone: whether an image shows the opponent and it
-  * is detected, the measured position, and when it is known. Written as formulas of both positions, which
-  * `skein.identify` fits to flights. Images are taken, sent and recognised as in `skein.flow.Frames` and
-  * `Recognise`; detections enter a [[Fusion]]. The camera points at the opponent's estimated position at the
-  * last decision, as `skein.policy.CameraPursuer` turns it; turning and tilting take no time in this model.
+/** A model of a vehicle that sees its opponent by a camera alone. It determines whether an image shows the
+  * opponent and whether it is detected, the measured position, and the time at which that is known. The model
+  * consists of formulas of both positions, which `skein.identify` fits to flights. Images are taken, sent and
+  * recognised as in `skein.flow.Frames` and `Recognise`; detections enter a [[Fusion]]. The camera points at
+  * the opponent's position as estimated at the last decision, as in `skein.policy.CameraPursuer`; turning and
+  * tilting take no time in this model.
   *
   * @param everyS time between images
-  * @param fovRad horizontal
-  * @param farthestM nothing beyond it is found
-  * @param detection probability that an opponent in view is found
+  * @param fovRad horizontal field of view
+  * @param farthestM range of detection
+  * @param detection probability that an opponent in view is detected
   * @param bearingSdRad standard deviation of the bearing
-  * @param rangeBias mean of the measured over the true range
-  * @param rangeSd standard deviation of the measured range, as a share of it
+  * @param rangeBias mean of the measured range divided by the true range
+  * @param rangeSd standard deviation of the measured range, as a share of the range
   * @param takes duration of recognition
   * @param workers number of images recognised simultaneously
-  * @param deadlineS of each image; a later result is discarded
+  * @param deadlineS deadline for each image's result; a later result is discarded
   */
 final case class SensorModel(
     everyS: Double,
@@ -44,7 +45,7 @@ final case class SensorModel(
   require(workers > 0, s"expected at least one worker, came $workers")
   require(deadlineS > 0, s"expected a positive deadline, came $deadlineS s")
 
-  /** The measurement from an image, if the opponent is found in it. */
+  /** The measurement from an image, if the opponent is detected in it. */
   def measured(at: Instant, image: Exposure): Option[Measurement] =
     import image.{axisRad, opponentNed, ownNed}
     Option.when(image.found < detection && isInView(axisRad, ownNed, opponentNed)):
@@ -60,7 +61,7 @@ final case class SensorModel(
 
   /** The measured position of an opponent in view, NED, with its covariance, m².
     *
-    * @param bearing and `range`: two samples of the standard normal distribution
+    * @param bearing sample of the standard normal distribution, like `range`
     */
   private[fusion] def seen(
       axisRad: Double,
@@ -89,8 +90,8 @@ final case class SensorModel(
 /** An exposed image with its random samples.
   *
   * @param axisRad direction of the camera, from north to the east
-  * @param ownNed own and opponent's position, m
-  * @param found and `bearing`, `range`: three samples, uniform in 0 to 1
+  * @param ownNed own position, m; `opponentNed` likewise
+  * @param found sample that is uniform in [0, 1], like `bearing` and `range`
   */
 final case class Exposure(
     axisRad: Double,
@@ -102,5 +103,5 @@ final case class Exposure(
 )
 
 object SensorModel:
-  /** A sample of the standard normal distribution, from one that is uniform in 0 to 1. */
+  /** Converts a sample that is uniform in [0, 1] to a sample of the standard normal distribution. */
   private[skein] def normal(even: Double): Double = NormalQuantile(even.max(1e-9).min(1 - 1e-9))

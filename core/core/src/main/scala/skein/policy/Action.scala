@@ -2,8 +2,8 @@ package skein.policy
 
 import skein.units.*
 
-/** The action that a vehicle performs. World frame NED, metres, m/s, radians from north towards east. An
-  * action lasts until the next one, or until its duration is over; then the vehicle holds its position.
+/** An action of a vehicle. World frame NED, metres, m/s, radians from north towards east. An action lasts
+  * until the next one, or until its duration ends; then the vehicle holds its position.
   */
 enum Action:
   case Velocity(velocityNed: Vector3, yaw: Yaw = Yaw.Still)
@@ -39,11 +39,11 @@ enum Action:
   case Along(heading: Radians, speed: MetresPerSecond, down: Metres, yaw: Yaw = Yaw.Still)
 
 object Action:
-  /** Least speed of a velocity with a direction, m/s. */
+  /** Smallest speed of a velocity that has a direction, m/s. */
   val LeastMps: Double = 1e-9
 
   extension (action: Action)
-    /** The heading of the action's velocity, else that of its yaw, else the heading before, rad. Other
+    /** The heading of the action's velocity, or else of its yaw, or else the previous heading, rad. Other
       * vehicles receive it as the last commanded heading.
       */
     def headingRad(beforeRad: Double): Double = action match
@@ -61,14 +61,15 @@ object Action:
       case Action.Along(_, along, _, _)         => along.value
       case _                                    => 0)
 
-    /** Flight along a heading as a velocity; returns any other action unchanged. */
+    /** Converts flight along a heading to a velocity; returns any other action unchanged. */
     def byVelocity: Action = action match
       case Action.Along(heading, speed, down, yaw) =>
         val (cos, sin) = (StrictMath.cos(heading.value), StrictMath.sin(heading.value))
         Action.VelocityAt(speed.value * cos, speed.value * sin, down, yaw)
       case other => other
 
-  /** Whether every number in an action, or in a part of one, is finite, and so is its speed; null is not. */
+  /** Whether every number in an action, or in a part of one, is finite, including its speed; false for null.
+    */
   private[skein] def isFinite(part: Any): Boolean = part match
     case null                                           => false
     case number: Double                                 => number.isFinite

@@ -4,7 +4,7 @@ import skein.signal.Kinematics
 import skein.units.*
 import skein.vehicle.{Guidance, PathFollowing, Setpoint}
 
-/** The goals of AirSim's flight controller for an action. */
+/** Converts actions to goals of AirSim's flight controller. */
 object ActionGuidance:
   def of(action: Action): Guidance = action match
     case Action.Velocity(velocity, yaw) =>
@@ -19,10 +19,10 @@ object ActionGuidance:
     case Action.Hover => Setpoint.velocity(0, 0, 0)
     case Action.Land  => Setpoint.velocity(0, 0, LandingMps)
 
-  /** AirSim's speed of descent while landing, m/s. */
+  /** Speed of descent with which AirSim lands, m/s. */
   private val LandingMps = 0.2
 
-  /** Adds the yaw that AirSim commands for a vehicle that moves along `travelNed` (`adjustYaw`). */
+  /** Adds the yaw that AirSim commands to a vehicle that moves along `travelNed` (`adjustYaw`). */
   private[skein] def turned(setpoint: Setpoint, yaw: Yaw, travelNed: Vector3): Setpoint = yaw match
     case Yaw.Towards(heading)                                            => setpoint.withYaw(heading.value)
     case Yaw.Turning(rate)                                               => setpoint.withYawRate(rate)
@@ -30,8 +30,9 @@ object ActionGuidance:
       setpoint.withYaw(StrictMath.atan2(travelNed.y, travelNed.x))
     case Yaw.Still | Yaw.Forward => setpoint
 
-  /** [[Action.Position]] as AirSim executes it: along the straight line from the vehicle's position. AirSim's
-    * line begins where the command arrived; the two differ by the vehicle's deviation since.
+  /** [[Action.Position]] as AirSim executes it: along the straight line from the vehicle's position. In
+    * AirSim, the line begins at the position at the command's arrival; the two differ by the vehicle's
+    * deviation from the line since then.
     */
   private final case class PositionGuidance(positionNed: Vector3, speed: MetresPerSecond, yaw: Yaw)
       extends Guidance:

@@ -1,6 +1,6 @@
 package skein.policy
 
-/** The function that a layer of neurons applies to its sums. */
+/** The function that a layer of neurons applies to its weighted sums. */
 enum Activation:
   case Relu
 
@@ -11,7 +11,7 @@ enum Activation:
   /** Exponential below 0, down to −1; the identity above 0. */
   case Elu
 
-  /** Whether its values are limited to −1 to 1. */
+  /** Whether the function's values lie between −1 and 1. */
   def squashes: Boolean = this == Tanh || this == Clip
 
   def label: String = toString.toLowerCase(java.util.Locale.ROOT)

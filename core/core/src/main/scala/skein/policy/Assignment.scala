@@ -1,10 +1,11 @@
 package skein.policy
 
-/** The opponent of every agent: the nearest of its rivals, the first of equals. One rule for live loops,
-  * virtual time and forward simulation. Agents are numbered by their places in a scenario.
+/** Assigns to every agent an opponent: the nearest of its rivals, and of several equally near the first. Live
+  * loops, virtual time and forward simulation share this rule. Agents are identified by their index in a
+  * scenario.
   *
-  * @param rivals of each agent, at least one, in ascending order; with a single one the agent is assigned for
-  *   good. A single agent is its own opponent
+  * @param rivals at least one for each agent, in ascending order; an agent with a single rival is assigned
+  *   permanently. An agent that flies alone is its own opponent
   */
 final case class Assignment(rivals: Vector[Vector[Int]]):
   for (mine, self) <- rivals.zipWithIndex do
@@ -17,9 +18,9 @@ final case class Assignment(rivals: Vector[Vector[Int]]):
 
   private val byAgent = rivals.map(_.toArray).toArray
 
-  /** The opponent of an agent by the present distances.
+  /** The opponent of an agent at present distances.
     *
-    * @param distanceM of an agent from agent `self`; not evaluated if there is a single rival
+    * @param distanceM distance of an agent from agent `self`, m; not evaluated if there is a single rival
     */
   def opponentOf(self: Int, distanceM: Int => Double): Int =
     val mine    = byAgent(self)

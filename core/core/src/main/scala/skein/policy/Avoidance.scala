@@ -2,21 +2,23 @@ package skein.policy
 
 import skein.policy.Avoidance.*
 
-/** Flies to a goal and keeps clear of all others by optimal reciprocal collision avoidance, ORCA: of the
-  * velocities that keep every pair apart for a time if each of the two does its half, the one nearest to that
-  * wanted (van den Berg, Guy, Lin, Manocha: ''Reciprocal n-Body Collision Avoidance'', Robotics Research,
-  * STAR 70, 2011). Where there is none, the one that violates the worst of the bounds least, as there. Both
-  * are linear programmes of a fixed size ([[HalfPlanes]]), so that the rule is a formula: every other vehicle
-  * is in them, those out of reach with a bound that always holds.
+/** Flies to a goal and keeps clear of all others by optimal reciprocal collision avoidance, ORCA. Of the
+  * velocities that keep every pair apart for a time if each of the two does its half, it chooses the one
+  * nearest to the wanted velocity (van den Berg, Guy, Lin, Manocha: ''Reciprocal n-Body Collision
+  * Avoidance'', Robotics Research, STAR 70, 2011). If there is none, it chooses the velocity whose worst
+  * violation is smallest, as in that paper. Both are linear programmes of a fixed size ([[HalfPlanes]]), so
+  * that the rule is a formula: they contain every other vehicle; a vehicle out of reach has a bound that
+  * always holds.
   *
-  * The rule treats vehicles as discs that reach a commanded velocity immediately; a multirotor lags behind
-  * it, so the discs are wider than the separation to be kept.
+  * The rule treats vehicles as discs that reach a commanded velocity immediately. A multirotor lags behind
+  * its command, so the discs are wider than the required separation.
   *
-  * @param goalNorthM where it wants to be; nearer than `cruiseMps / arrivePerS` it slows down in proportion
-  * @param minimumM the smallest separation allowed
-  * @param marginM added to it: the sum is that of the two discs' radii
+  * @param goalNorthM north coordinate of the goal, m; `goalEastM` likewise. Within `cruiseMps / arrivePerS`
+  *   of it the vehicle slows down in proportion to the distance
+  * @param minimumM smallest separation allowed
+  * @param marginM added to the minimum; the sum is the sum of the two discs' radii
   * @param horizonS time within which no two vehicles may meet
-  * @param mostMps the highest speed that is commanded
+  * @param mostMps limit of the commanded speed
   */
 final case class Avoidance(
     goalNorthM: Double,
@@ -69,15 +71,15 @@ final case class Avoidance(
       else bounds.put(i, 0, 0, HalfPlanes.Always)
     bounds
 
-  /** The half plane of velocities that is this vehicle's half of avoiding another one: half of the smallest
-    * change u of the relative velocity that leaves the cone of velocities which lead to a conflict within the
-    * horizon.
+  /** The half plane of velocities with which this vehicle does its half of avoiding another one. The other
+    * half is left to that vehicle: the plane contains half of the smallest change of the relative velocity
+    * that avoids a conflict within the horizon.
     */
   private def bound(northM: Double, eastM: Double, own: Velocity, its: Velocity): Bound =
     val relative = own - its
     val square   = northM * northM + eastM * eastM
     if square <= apartM * apartM then
-      // Too near already: apart again after a short while, not after the horizon.
+      // Already too near: must be apart again after a short time, not after the horizon.
       fromDisc(own, relative, Velocity(northM, eastM) * (1 / PartingS), apartM / PartingS)
     else
       val centre  = Velocity(northM, eastM) * (1 / horizonS)
@@ -95,12 +97,12 @@ final case class Avoidance(
         val normal = if left then Velocity(-along.east, along.north) else Velocity(along.east, -along.north)
         Bound(own + change * 0.5, normal)
 
-  /** The shortest way out of a disc of relative velocities. */
+  /** The bound that follows from the shortest way out of a disc of relative velocities. */
   private def fromDisc(own: Velocity, relative: Velocity, centre: Velocity, radius: Double): Bound =
     val off    = relative - centre
     val length = math.sqrt(off dot off)
     val back   = math.sqrt(centre dot centre)
-    // In its very middle every way out is as short: then back, away from the other one.
+    // At the centre all ways out are equally long; the one away from the other vehicle is taken.
     val normal =
       if length > 0 then off * (1 / length)
       else if back > 0 then centre * (-1 / back)

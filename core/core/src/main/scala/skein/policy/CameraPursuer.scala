@@ -2,13 +2,13 @@ package skein.policy
 
 import skein.units.*
 
-/** Steers by another policy, and points its camera at the opponent. With a sensor, its only knowledge of the
-  * opponent is the estimate of [[skein.scenario.Eye]]. If the own position is predicted, that estimate is
-  * predicted for an equal moment with constant velocity; otherwise it is used as it was at the exposure.
-  * Before the first detection, the opponent is assumed to be at its start.
+/** Steers by another policy, and points its camera at the opponent. With a sensor, the estimate of
+  * [[skein.scenario.Eye]] is its only knowledge of the opponent. If the own position is predicted, the
+  * estimate is predicted for that moment too, with constant velocity; otherwise it is used as of the
+  * exposure. Before the first detection, the opponent is assumed to be at its start.
   *
-  * @param steers the other policy; it receives the estimate instead of readings
-  * @param sensor absent where readings of the opponent are used
+  * @param steers the other policy; receives the estimate instead of readings
+  * @param sensor None if readings of the opponent are used
   */
 final case class CameraPursuer(steers: HeadingPolicy, sensor: Option[String], opponentStartNed: Vector3)
     extends Policy:
@@ -43,7 +43,6 @@ final case class CameraPursuer(steers: HeadingPolicy, sensor: Option[String], op
       ()
     )
 
-  /** Estimated position and velocity of the opponent. */
   private def opponent(seen: Observation): (Vector3, Vector3) = sensor match
     case None =>
       val told = seen.vehicles(seen.opponent).kinematics
@@ -59,13 +58,14 @@ final case class CameraPursuer(steers: HeadingPolicy, sensor: Option[String], op
           (CameraPursuer.carried(place, moved, ahead), moved)
 
 object CameraPursuer:
-  /** Longest time for which an estimate is predicted, s; an older one is used as predicted for that time. */
+  /** Longest time for which an estimate is predicted, s; an older estimate is predicted for this time only.
+    */
   private val FarthestS = 1.5
 
-  /** The position, m, at which a policy assumes an object with this estimated position and velocity, m/s.
+  /** Position, m, assumed for an object with this estimated position and velocity, m/s.
     *
-    * @param aheadS time from the estimate until the present decision takes effect; absent where the own
-    *   position is not predicted either
+    * @param aheadS time from the estimate until the present decision takes effect; None if the own position
+    *   is not predicted either
     */
   private[skein] def carried(placeNed: Vector3, velocityNed: Vector3, aheadS: Option[Double]): Vector3 =
     placeNed + velocityNed * aheadS.fold(0.0)(carriedS)

@@ -1,25 +1,25 @@
 package skein.policy
 
-/** The pursuer of Isaacs' homicidal chauffeur, who captures whatever the evader does where that is possible
-  * at all: it turns hard towards the evader and dashes, unless the evader would slip by it; then it swerves,
-  * flies straight away until the evader is far enough for a turn towards it.
+/** The pursuer in Isaacs' game of the homicidal chauffeur. Wherever capture is possible at all, it captures
+  * every evader: it turns hard towards the evader and dashes. If the evader would slip by, it swerves
+  * instead: it flies straight away until the evader is far enough for a turn towards it.
   *
-  * Whether the evader would slip by follows from [[HomicidalChauffeur.radiusNeededM]]: it must not exceed a
-  * limit, which is the capture radius for an evader ahead, up to the edge of what it can be run over in, and
-  * falls linearly with the angle to the least radius that captures, for an evader behind. While the pursuer
-  * turns, no evader can raise the radius that is needed, and the limit rises, for the evader comes to the
-  * front: so the pursuer does not waver between the two, and the time between decisions does not undo what a
-  * swerve has won. Without that slack, an evader that keeps to the barrier and slips behind it by the length
-  * of a step makes the pursuer swerve again and again.
+  * The evader would slip by if [[HomicidalChauffeur.radiusNeededM]] exceeds a limit. For an evader ahead,
+  * within the angle in which it can be run over, the limit is the capture radius; beyond, it decreases
+  * linearly with the angle, to the smallest radius that captures for an evader behind. While the pursuer
+  * turns, no evader can raise the radius that is needed, and the limit rises because the evader moves to the
+  * front. So the pursuer does not alternate between the two, and the time between decisions does not undo the
+  * gain of a swerve. Without that slack, an evader that stays on the barrier and crosses it by the length of
+  * a step makes the pursuer swerve again and again.
   *
-  * It captures, but not in the least time, for which see Merz, The Homicidal Chauffeur (Stanford, 1971):
-  * there the swerve turns away. At γ = 0.5 every pursuit in `HomicidalChauffeurSimulation` ends within
-  * distance / (vP − vE) and 19 times turning radius / vP. Source of the game, its barrier and the swerve:
-  * Isaacs, Differential Games (1965).
+  * It captures, but not in the shortest time; for that strategy, in which the swerve turns away, see Merz,
+  * The Homicidal Chauffeur (Stanford, 1971). At γ = 0.5 every pursuit in `HomicidalChauffeurSimulation` ends
+  * within distance / (vP − vE) and 19 times turning radius / vP. Source of the game, its barrier and the
+  * swerve: Isaacs, Differential Games (1965).
   *
   * @param speedRatio γ, the evader's speed over the pursuer's, in 0 to 1
-  * @param captureRadiusM below 1.05 times [[HomicidalChauffeur.thresholdM]] it flies as if it were that
-  * @param turnRateRadPerS the most that it turns; speed over turning radius
+  * @param captureRadiusM values below 1.05 times [[HomicidalChauffeur.thresholdM]] count as that
+  * @param turnRateRadPerS maximum turn rate: speed over turning radius
   */
 final case class ChauffeurPursuer(
     turningRadiusM: Double = 8.0,

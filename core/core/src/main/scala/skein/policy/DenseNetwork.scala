@@ -2,7 +2,7 @@ package skein.policy
 
 /** A network of one output, evaluated by an ordinary loop over arrays, which the SIMD compiler can trace.
   *
-  * @param parameters as [[NeuralShape]] lays them out
+  * @param parameters in the order of [[NeuralShape]]
   */
 private[policy] final class DenseNetwork(shape: NeuralShape, parameters: Vector[Double]):
   require(
@@ -15,7 +15,7 @@ private[policy] final class DenseNetwork(shape: NeuralShape, parameters: Vector[
   private val widest  = shape.widest
   private val squash  = shape.activations.map(_.ordinal).toArray
 
-  /** An array that holds the inputs and every layer's outputs in turn. */
+  /** A new array with room for the inputs, and for the outputs of each layer. */
   def scratch: Array[Double] = Array.ofDim[Double](widest)
 
   /** Evaluates the network.

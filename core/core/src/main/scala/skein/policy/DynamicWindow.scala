@@ -3,18 +3,18 @@ package skein.policy
 import skein.units.*
 import skein.vehicle.FirstOrderLag
 
-/** Flies along a lane past whatever a lidar sees: the dynamic window approach (Fox, Burgard, Thrun: The
-  * Dynamic Window Approach to Collision Avoidance, IEEE Robotics & Automation Magazine 4 (1997), 23).
-  * Candidate headings and speeds are each simulated past the points of the newest scan, by a model whose
-  * velocity follows the command with a lag; the best one along the lane that keeps clear is chosen. Points
-  * are assumed not to move, and earlier scans are forgotten. Without a scan, or with one that is too old, the
-  * vehicle stands still.
+/** Flies along a lane and avoids everything that a lidar detects, by the dynamic window approach (Fox,
+  * Burgard, Thrun: The Dynamic Window Approach to Collision Avoidance, IEEE Robotics & Automation Magazine 4
+  * (1997), 23). Each candidate heading and speed is simulated past the points of the newest scan, by a model
+  * whose velocity follows the command with a lag. The policy chooses the best candidate along the lane that
+  * keeps clear. Points are assumed not to move, and earlier scans are ignored. Without a scan, or if it is
+  * too old, the vehicle stands still.
   *
-  * @param sensor the lidar, whose columns [[skein.scenario.Equipment.Lidar]] describes
-  * @param laneNorthM a place on the lane
-  * @param keepM from the vehicle's body, if there is room
-  * @param bodyM from its middle to its farthest corner
-  * @param lagS of the velocity behind the command
+  * @param sensor name of the lidar; [[skein.scenario.Equipment.Lidar]] describes its columns
+  * @param laneNorthM north coordinate of a point on the lane, m
+  * @param keepM distance to keep from the vehicle's body, if there is room
+  * @param bodyM distance from the vehicle's centre to its farthest corner
+  * @param lagS time constant of the velocity
   */
 final case class DynamicWindow(
     sensor: String,
@@ -42,16 +42,16 @@ final case class DynamicWindow(
         best(seen.own.kinematics.positionNed, seen.own.kinematics.velocityNed, seen.headingRad, scan)
     (seen.along(heading, speed), ())
 
-  // The instants looked at, and how far the velocity has carried until then.
+  // The instants to check, and the time for which the velocity has carried the vehicle until each.
   private val instants       = (1 to (horizonS / StepS).toInt).map(_ * StepS).toArray
   private val carries        = instants.map(FirstOrderLag(lagS).carriesS)
   private val (laneN, laneE) =
     (StrictMath.cos(laneHeading.value), StrictMath.sin(laneHeading.value))
 
-  /** The best candidate's heading, rad, and speed, m/s. */
+  /** Heading, rad, and speed, m/s, of the best candidate. */
   private def best(position: Vector3, velocity: Vector3, lastRad: Double, scan: Sensed): (Double, Double) =
     val points = near(position, scan)
-    // Back to the lane over some way, not straight.
+    // Back to the lane at an angle, not straight across.
     val aside        = -(position.x - laneNorthM) * laneE + (position.y - laneEastM) * laneN
     val aimRad       = laneHeading.value - StrictMath.atan2(aside, AheadM)
     val (aimN, aimE) = (StrictMath.cos(aimRad), StrictMath.sin(aimRad))
@@ -72,8 +72,8 @@ final case class DynamicWindow(
         chosen = (headingRad, speed)
     chosen
 
-  /** Simulates a command: the least distance from the body to a point, m; the number of steps until it
-    * touches one; and the end position.
+  /** Simulates a command. Returns the smallest distance from the body to a point, m; the number of steps
+    * until it touches a point; and the final position.
     */
   private def flown(
       points: Array[Double],
@@ -123,7 +123,7 @@ object DynamicWindow:
   private val Turns  = (-24 to 24).sortBy(_.abs).map(turn => StrictMath.toRadians(5.0 * turn))
   private val Shares = Vector(1.0, 0.65, 0.3)
 
-  // How much each thing counts.
+  // Weights of the terms.
   private val Ahead  = 1.0
   private val Clear  = 2.0
   private val Hit    = 5.0

@@ -1,6 +1,6 @@
 package skein.policy
 
-/** Flees straight away from the nearest other vehicle, the first of equals. */
+/** Flees straight away from the nearest other vehicle, and from the first of several equally near. */
 final case class Flee(speedMps: Double) extends Policy:
 
   type Memory = Unit

@@ -29,12 +29,6 @@ final case class Agent(
     val commanded = chosen.getOrElse(speed).value
     Vector3(commanded * StrictMath.cos(headingRad), commanded * StrictMath.sin(headingRad), 0)
 
-  /** The policy of an agent that plays against one other. */
-  def duelPolicy: HeadingPolicy = policy match
-    case against: HeadingPolicy => against
-    case _                      =>
-      throw IllegalArgumentException(s"vehicle $name does not play against one opponent")
-
 /** The agents of a scenario, as loops and forward simulation need them. The opponent of each is the nearest
   * agent of another role, or, if all roles are equal, the nearest agent; a single agent is its own opponent.
   */

@@ -1,13 +1,13 @@
 package skein.policy
 
-/** Follows a vehicle round a circuit, a distance behind it along the circuit: steers towards the point a
-  * fixed length ahead of its own place ([[LeadOnCircuit]]) at the speed of the vehicle before it, corrected
-  * by a share of the error of the gap. It never turns back: it waits. A policy for vehicles that cannot turn
+/** Follows a vehicle round a circuit, at a distance along the circuit. Steers towards the point a fixed
+  * length ahead of its own place ([[LeadOnCircuit]]). Its speed is that of the vehicle ahead, corrected in
+  * proportion to the error of the gap. It never turns back, but waits. A policy for vehicles that cannot turn
   * on the spot.
   *
-  * @param leader its place in the scenario
-  * @param aheadM about as far as the vehicle drives before it follows a command
-  * @param perS speed per metre that the gap is too wide
+  * @param leader index of the vehicle ahead in the scenario
+  * @param aheadM about the distance that the vehicle drives before it follows a command
+  * @param perS speed per metre of excess gap
   */
 final case class FollowOnCircuit(
     leader: Int,

@@ -1,15 +1,15 @@
 package skein.policy
 
-/** What a planner needs of a [[Policy]] to decide instead of it: the position that its vehicle should reach.
-  * While plans decide, the policy's memory does not change.
+/** Provides a planner with the position that a [[Policy]] wants its vehicle to reach, so that the planner can
+  * decide instead of the policy. While plans decide, the policy's memory does not change.
   */
 trait Goal:
 
-  /** The position, north and east, m, that it would choose for a time ahead if it were alone. */
+  /** The position, north and east, m, where the vehicle should be after `aheadS` if it were alone. */
   def wanted(seen: Observation, aheadS: Double): (Double, Double)
 
-  /** Limit of the commanded speed, m/s; never exceeded by a plan. */
+  /** Limit of the commanded speed, m/s, also in plans. */
   def mostMps: Double
 
-  /** The smallest separation allowed, m; 0: none. */
+  /** The smallest separation allowed, m; 0 for no limit. */
   def minimumM: Double = 0

@@ -2,9 +2,9 @@ package skein.policy
 
 import skein.units.*
 
-/** An [[Action]] whose numbers are given as anything: as nodes of a formula, or as numbers.
+/** An [[Action]] whose numbers have any type, for example nodes of a formula.
   *
-  * @param numbers those of the kind, in its order, and then that of the yaw, if it has one
+  * @param numbers those of the kind, in its order, then that of the yaw, if it has one
   */
 private[skein] final case class GraphAction[A](
     kind: GraphAction.Kind,
@@ -33,9 +33,9 @@ private[skein] final case class GraphAction[A](
       case GraphAction.Kind.Land  => Action.Land
 
 private[skein] object GraphAction:
-  /** The kinds of actions, with how many numbers each has.
+  /** The kinds of actions, each with its count of numbers.
     *
-    * @param word in a scenario's file
+    * @param word the kind's name in a scenario file
     */
   enum Kind(val word: String, val arity: Int, val hasYaw: Boolean):
     // Heading, speed, down.

@@ -2,15 +2,16 @@ package skein.policy
 
 import skein.formula.{Evaluation, Node, Op}
 
-/** A policy's decision as data, for one place in a team.
+/** The decision of a policy as data, for one place in a team.
   *
-  * @param inputs meaning of each input of the nodes; the next one is the time ahead, s, of a goal
+  * @param inputs meaning of each input of the nodes; the next input is the time ahead of a goal, s
   * @param settings names of the nodes' parameters
-  * @param actions the first whose condition holds is performed; the last one has none
-  * @param starts numbers of the memory before the first decision; of settings alone
+  * @param actions with conditions: the first action whose condition holds is performed; the last one has no
+  *   condition
+  * @param starts numbers of the memory before the first decision; they depend on settings alone
   * @param next numbers of the next memory
-  * @param goal the place wanted, north and east, m; empty for a policy without one
-  * @param limits of a goal: most speed, m/s, and least separation, m; of settings alone
+  * @param goal the wanted position, north and east, m; empty for a policy without a goal
+  * @param limits of a goal: maximum speed, m/s, and minimum separation, m; they depend on settings alone
   */
 private[skein] final class PolicyGraph(
     val inputs: Vector[PolicyInput],
@@ -24,12 +25,12 @@ private[skein] final class PolicyGraph(
   require(actions.nonEmpty && actions.last._1.isEmpty, "the last action has no condition")
   require(starts.size == next.size, "each number of the memory has a start and a next value")
 
-  /** Conditions and numbers of the actions, in turn, and the next memory. */
+  /** Condition and numbers of each action, in turn, and then the next memory. */
   val outputs: Vector[Node] = actions.flatMap((when, of) => when ++ of.numbers) ++ next
 
-  /** Puts values into the place of [[outputs]].
+  /** Splits values of [[outputs]].
     *
-    * @return the actions, and the rest: the next memory
+    * @return the actions with their conditions, and the next memory
     */
   def choices[A](values: Vector[A]): (Vector[(Option[A], GraphAction[A])], Vector[A]) =
     actions.foldLeft((Vector.empty[(Option[A], GraphAction[A])], values)):
@@ -47,8 +48,8 @@ private[skein] final class PolicyGraph(
   private[policy] val wanting  = Evaluation(goal)
   private[policy] val starting = Evaluation(starts ++ limits)
 
-/** A policy that is data, such as one traced in Python: [[PolicyGraph]] with the settings' values. It decides
-  * in double precision; forward simulation takes its graph as its formula.
+/** A policy that is data, for example one traced in Python: a [[PolicyGraph]] with values of its settings. It
+  * decides in double precision; forward simulation uses the graph as its formula.
   */
 private[skein] sealed class GraphPolicy(val graph: PolicyGraph, val values: Array[Double]) extends Policy:
   type Memory = Array[Double]

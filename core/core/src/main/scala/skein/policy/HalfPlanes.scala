@@ -2,13 +2,13 @@ package skein.policy
 
 import skein.policy.HalfPlanes.*
 
-/** Half planes of velocities v, m/s: v·normal ≥ least. A normal may have any length. Filled in by [[put]].
+/** Half planes of velocities v, m/s: v·normal ≥ least. A normal may have any length. [[put]] sets them.
   *
-  * Both questions are answered by linear programming, in the plane and in three dimensions, in [[Rounds]]
-  * rounds: each adds the half plane that the present velocity violates most, and finds the best velocity on
-  * its edge, as incremental programming does (de Berg, Cheong, van Kreveld, Overmars: ''Computational
-  * Geometry'', 3rd ed., 2008, chapter 4; van den Berg and others as in [[Avoidance]], section 5). No more
-  * rounds are needed than there are half planes, and hardly ever more than five.
+  * [[nearest]] and [[leastBroken]] are linear programmes, in two and in three dimensions. They take
+  * [[Rounds]] rounds: each adds the half plane that the present velocity violates most, and finds the best
+  * velocity on its edge, as incremental programming does (de Berg, Cheong, van Kreveld, Overmars:
+  * ''Computational Geometry'', 3rd ed., 2008, chapter 4; van den Berg and others as in [[Avoidance]], section
+  * 5). They need no more rounds than there are half planes, and hardly ever more than five.
   */
 private[policy] final class HalfPlanes(val count: Int):
   private val normalNorth = new Array[Double](count)
@@ -20,11 +20,11 @@ private[policy] final class HalfPlanes(val count: Int):
     this.normalEast(number) = normalEast
     this.least(number) = least
 
-  /** By how much a velocity violates a half plane, in units of its normal's length. */
+  /** The amount by which a velocity violates a half plane, times the length of its normal. */
   def broken(number: Int, of: Velocity): Double =
     least(number) - (normalNorth(number) * of.north + normalEast(number) * of.east)
 
-  /** The velocity nearest to the wanted one, within all half planes and the speed limit. */
+  /** The velocity nearest to the wanted one within all half planes and the speed limit. */
   def nearest(wanted: Velocity, mostMps: Double): Nearest =
     val taken   = HalfPlanes(count.min(Rounds))
     var found   = wanted.limited(mostMps)
@@ -37,9 +37,8 @@ private[policy] final class HalfPlanes(val count: Int):
     if count > Rounds then missing = missing.max(takeMostBroken(found, taken, 0) - Slack)
     Nearest(found, missing)
 
-  /** The velocity whose worst violation is least, and among about equal ones the nearest to the wanted one:
-    * the minimum of the worst violation + |v − wanted|² / (2 [[Weight]]). Normals have a length of 1, or of
-    * 0.
+  /** The velocity with the smallest worst violation, and of about equal ones the nearest to the wanted one:
+    * it minimises the worst violation + |v − wanted|² / (2 [[Weight]]). Normals must have length 1 or 0.
     */
   def leastBroken(wanted: Velocity, mostMps: Double): Velocity =
     val taken = HalfPlanes(count.min(Rounds))
@@ -47,7 +46,7 @@ private[policy] final class HalfPlanes(val count: Int):
     var worst = Double.NegativeInfinity
     for round <- 0 until taken.count do
       if takeMostBroken(found, taken, round) > worst + Slack then
-        // In the minimum with it, it is the worst.
+        // In the minimum with this half plane, it is the worst one.
         found = taken.whereWorst(round).inTurn(
           Velocity(
             wanted.north + Weight * taken.normalNorth(round),
@@ -58,9 +57,9 @@ private[policy] final class HalfPlanes(val count: Int):
         worst = taken.broken(round, found)
     found
 
-  /** Moves the half plane that a velocity violates most into those considered.
+  /** Adds the half plane that a velocity violates most to those considered.
     *
-    * @return by how much it is violated
+    * @return the amount of its violation
     */
   private def takeMostBroken(of: Velocity, taken: HalfPlanes, at: Int): Double =
     var most      = broken(0, of)
@@ -83,7 +82,9 @@ private[policy] final class HalfPlanes(val count: Int):
     for i <- 0 until count do if broken(i, found) > 0 then found = onEdge(i, wanted, mostMps).velocity
     found
 
-  /** On the edge of one half plane, the nearest velocity within those before it. */
+  /** The velocity on the edge of one half plane that is nearest to the wanted one within all earlier half
+    * planes.
+    */
   private def onEdge(number: Int, wanted: Velocity, mostMps: Double): Nearest =
     // The edge: foot + t (−east, north), for low ≤ t ≤ high.
     val north     = normalNorth(number)
@@ -98,14 +99,14 @@ private[policy] final class HalfPlanes(val count: Int):
     for k <- 0 until number do
       val rise  = normalEast(k) * north - normalNorth(k) * east
       val lacks = least(k) - (normalNorth(k) * footNorth + normalEast(k) * footEast)
-      // Along an edge beside it, the other half plane holds everywhere or nowhere.
+      // Along a parallel edge, the other half plane holds everywhere or nowhere.
       val from = lacks / (rise + Tiny)
       if rise >= 0 then low = low.max(from) else high = high.min(from)
     val along = ((wanted.east - footEast) * north - (wanted.north - footNorth) * east) / square
     val at    = along.max(low).min(high)
     Nearest(Velocity(footNorth - at * east, footEast + at * north), (low - high).max(-inside))
 
-  /** Half planes of velocities at which none of those before is violated more than this one. */
+  /** The half planes of velocities that violate no earlier half plane more than this one. */
   private def whereWorst(number: Int): HalfPlanes =
     val planes = HalfPlanes(number)
     for k <- 0 until number do
@@ -125,23 +126,23 @@ private[policy] object HalfPlanes:
     */
   final case class Nearest(velocity: Velocity, missing: Double)
 
-  /** Limit of rounds: of a vehicle's neighbours few bound its velocity. */
+  /** Limit of the rounds. Only few of a vehicle's neighbours bound its velocity. */
   val Rounds = 8
 
-  /** Violation of a half plane, m/s, that counts as none: far above rounding of floats, and far below a
-    * vehicle's accuracy.
+  /** Largest violation of a half plane that counts as none, m/s: far above rounding of floats, and far below
+    * a vehicle's accuracy.
     */
   private val Slack = 1e-4
 
-  /** Bound of a half plane that, with a normal of 0, limits nothing. */
+  /** Bound for a half plane with a normal of 0, which then permits every velocity. */
   val Always: Double = -1e6
 
-  /** Weight of a violation over the distance from the wanted velocity, m/s: so large that only edges within
-    * 10⁻³ rad of one another are treated as equal.
+  /** Weight of a violation against the distance from the wanted velocity, m/s. It is so large that only edges
+    * within 10⁻³ rad of one another count as parallel.
     */
   private val Weight = 1e4
 
-  /** So small that adding it changes no number but 0. */
+  /** So small that adding it changes no number except 0. */
   private val Tiny = 1e-30
 
 /** A horizontal velocity, m/s, in the world frame: north and east. */
@@ -151,7 +152,7 @@ private[policy] final case class Velocity(north: Double, east: Double):
   def *(factor: Double): Velocity        = Velocity(north * factor, east * factor)
   infix def dot(other: Velocity): Double = north * other.north + east * other.east
 
-  /** The velocity, shortened to the greatest speed allowed. */
+  /** The velocity, scaled down to the speed limit if it exceeds it. */
   def limited(mostMps: Double): Velocity =
     val speed = math.sqrt(this dot this)
     if speed > mostMps then this * (mostMps / speed) else this

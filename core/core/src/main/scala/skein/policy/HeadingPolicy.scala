@@ -1,10 +1,8 @@
 package skein.policy
 
-/** Chooses a heading for one vehicle from what it knows of its opponent. The vehicle flies at its own speed
-  * and the altitude of its start.
-  *
-  * Duels of such policies fly fastest: by SIMD, if [[decide]] is arithmetic and the memory is a number or a
-  * case class of numbers. See [[HeadingPolicy.Memoryless]] for policies without a memory.
+/** A short way to write a policy of two that play against one another: it chooses a heading from what it
+  * knows of its opponent. The vehicle flies at its own speed and the altitude of its start. See
+  * [[HeadingPolicy.Memoryless]] for policies without a memory.
   */
 trait HeadingPolicy extends Policy:
 
@@ -26,13 +24,6 @@ trait HeadingPolicy extends Policy:
     val seen =
       PlanarObservation(dxM, dyM, dvxMps, dvyMps, ownHeadingRad, opponentHeadingRad, elapsedS, 0, 0)
     decide(seen, start)._1
-
-  /** This policy as an opponent with rough knowledge assumes it, such as a planner that plays against it: its
-    * parameters deviate by random numbers. By default it is known exactly.
-    *
-    * @param draw samples of the standard normal distribution, by index
-    */
-  def guessed(draw: Int => Double): HeadingPolicy = this
 
   final override def isAgainstOne: Boolean = true
 

@@ -1,6 +1,6 @@
 package skein.policy
 
-/** Holds its position: used where a policy does not answer. */
+/** Holds the vehicle's position; used when a policy does not answer. */
 object HoldPosition extends Policy:
   type Memory = Unit
 

@@ -1,9 +1,9 @@
 package skein.policy
 
-/** Keeps a place in the leader's frame. That frame's first axis points along the circuit where the leader is,
-  * the second to the right; it turns as the leader moves along, and the slot's velocity follows from both:
-  * the leader's velocity plus turn rate × offset, so that the outer vehicles of a turn fly faster and the
-  * inner ones slower. The loss of a lagging vehicle in a turn is compensated: lag × turn rate × the slot's
+/** Keeps a place in the leader's frame. The first axis of that frame points along the circuit at the leader's
+  * place, the second to the right; the frame turns as the leader moves along the circuit. The slot's velocity
+  * is the leader's velocity plus turn rate × offset, so that in a turn the outer vehicles fly faster and the
+  * inner ones slower. A lagging vehicle's deviation in a turn is compensated by lag × turn rate × the slot's
   * velocity.
   *
   * @param aheadM distance of the slot ahead of the leader
@@ -30,7 +30,7 @@ final case class KeepSlot(
     val heading                   = circuit.headingRad(place)
     val (cos, sin)                = (StrictMath.cos(heading), StrictMath.sin(heading))
     val (northOffset, eastOffset) = (aheadM * cos - rightM * sin, aheadM * sin + rightM * cos)
-    // How fast the place on the circuit moves when the leader flies beside it.
+    // Speed at which the place on the circuit moves, while the leader flies beside it.
     val (nearNorth, nearEast) = circuit.point(place)
     val toTheRightM  = -(seen.northM(leader) - nearNorth) * sin + (seen.eastM(leader) - nearEast) * cos
     val curvature    = circuit.curvaturePerM(place)
@@ -55,7 +55,7 @@ final case class KeepSlot(
     )
     (action, ())
 
-  /** The slot's future position, if the leader follows the circuit at its present speed. */
+  /** The future position of the slot, if the leader continues along the circuit at its present speed. */
   def wanted(seen: Observation, aheadS: Double): (Double, Double) =
     val here      = circuit.nearest(seen.northM(leader), seen.eastM(leader))
     val direction = circuit.headingRad(here)
@@ -65,14 +65,14 @@ final case class KeepSlot(
     val heading               = circuit.headingRad(place)
     val (cos, sin)            = (StrictMath.cos(heading), StrictMath.sin(heading))
     val (nearNorth, nearEast) = circuit.point(here)
-    // The leader's distance from the circuit is kept, to its right.
+    // The leader's distance to the right of the circuit stays constant.
     val beside = -(seen.northM(leader) - nearNorth) * StrictMath.sin(direction) +
       (seen.eastM(leader) - nearEast) * StrictMath.cos(direction) + rightM
     val (north, east) = circuit.point(place)
     (north + aheadM * cos - beside * sin, east + aheadM * sin + beside * cos)
 
 object KeepSlot:
-  /** Least share of the radius by which speed along the circuit is scaled: near the middle of a turn the
-    * nearest place on the circuit moves ever faster; here not more than four times as fast.
+  /** Lower limit of the share of the radius that scales the speed along the circuit. Near the centre of a
+    * turn the nearest place on the circuit moves ever faster; this limits it to four times the speed.
     */
   private val LeastShare = 0.25

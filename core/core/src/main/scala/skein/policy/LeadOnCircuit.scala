@@ -1,9 +1,10 @@
 package skein.policy
 
-/** Leads round a circuit: flies towards the point a fixed length ahead of its own place on it (pure pursuit;
-  * Coulter, ''Implementation of the Pure Pursuit Path Tracking Algorithm'', CMU-RI-TR-92-01).
+/** Leads a group round a circuit: flies towards the point a fixed length ahead of its own place on the
+  * circuit (pure pursuit; Coulter, ''Implementation of the Pure Pursuit Path Tracking Algorithm'',
+  * CMU-RI-TR-92-01).
   *
-  * @param aheadM about as far as the vehicle flies before it follows a command
+  * @param aheadM about the distance that the vehicle flies before it follows a command
   */
 final case class LeadOnCircuit(circuit: Racetrack, speedMps: Double, aheadM: Double) extends Policy, Goal:
   def mostMps: Double = speedMps

@@ -1,12 +1,12 @@
 package skein.policy
 
-/** A trained policy: a network whose inputs are its observation ([[PlanarObservation.fromOwnHeading]] over
-  * [[LearnedPolicy.scales]]), whose one output, −1 to 1, says how to turn.
+/** A trained policy. The inputs of its network are the observation, [[PlanarObservation.fromOwnHeading]]
+  * divided by [[LearnedPolicy.scales]]; its one output, between −1 and 1, is the turn.
   *
-  * Allocates two arrays as wide as its widest layer at a decision, and one for its observation.
+  * A decision allocates two arrays as wide as the widest layer, and one for the observation.
   *
-  * @param parameters as [[NeuralShape]] lays them out
-  * @param turnRateRadPerS the most that it turns until the next decision
+  * @param parameters in the order of [[NeuralShape]]
+  * @param turnRateRadPerS maximum turn rate until the next decision
   * @param turnRad limit of the turn of one decision, whatever the time since the last
   */
 final case class LearnedPolicy(
@@ -30,7 +30,7 @@ final case class LearnedPolicy(
   def heading(seen: PlanarObservation): Double =
     seen.ownHeadingRad + share(seen) * (turnRateRadPerS * seen.elapsedS + turnRad)
 
-  /** The network's output: share of the largest turn, −1 to 1, positive to the right. */
+  /** The network's output: the share of the largest turn, between −1 and 1, positive to the right. */
   def share(seen: PlanarObservation): Double =
     val what  = seen.fromOwnHeading
     val input = network.scratch
@@ -43,22 +43,22 @@ final case class LearnedPolicy(
 object LearnedPolicy:
   val Inputs = 9
 
-  /** Divisors of a learner's inputs, which bring all to about −1 to 1. */
+  /** Divisors of a learner's inputs, which scale all inputs to about −1 to 1. */
   val scales: Vector[Double] = Vector(20, 20, 10, 10, 1, 1, 0.2, 0.2, 0.2)
 
-  /** The shape that learners train: rectifiers in hidden layers, tanh at the output. */
+  /** The shape of the networks that learners train: rectifiers in hidden layers, tanh at the output. */
   def shape(hidden: Vector[Int]): NeuralShape =
     NeuralShape(hidden, Inputs, Vector.fill(hidden.size)(Activation.Relu) :+ Activation.Tanh)
 
   /** The default limits of a role's turns: rad/s until the next decision, and rad per decision.
     *
-    * @param rateRadPerS of a pursuer
+    * @param rateRadPerS maximum turn rate of a pursuer
     */
   def mostTurn(role: Role, rateRadPerS: Double): Vector[Double] =
     if role == Role.Pursuer then Vector(rateRadPerS, 0.0) else Vector(0.0, math.Pi)
 
-  /** The label of a shape: `64x64` has rectifiers, and tanh at the output. Another activation stands after a
-    * layer's width, and after a colon for the output: `64tanhx64tanh:clip`.
+  /** The label of a shape: `64x64` has rectifiers, and tanh at the output. A different activation follows the
+    * layer's width; that of the output follows a colon: `64tanhx64tanh:clip`.
     */
   def label(shape: NeuralShape): String =
     val hidden = shape.hidden.zip(shape.activations).map: (width, activation) =>
@@ -66,7 +66,7 @@ object LearnedPolicy:
     hidden.mkString("x") + (if shape.activations.last == Activation.Tanh then ""
                             else s":${shape.activations.last.label}")
 
-  /** Reads the text form that [[label]] writes, such as `64x64`. */
+  /** Reads the text form of [[label]], such as `64x64`. */
   def parse(text: String): Either[String, NeuralShape] =
     def layer(text: String) =
       val (width, activation) = text.span(_.isDigit)

@@ -1,13 +1,13 @@
 package skein.policy
 
-/** A small network of neurons with tanh. It sees the opponent in the own frame (the own heading is ahead):
-  * position over [[NeuralPolicy.LengthM]] and relative velocity over [[NeuralPolicy.SpeedMps]], each ahead
-  * and to the right; its one output, in −1 to 1, times the turn rate is how fast it turns.
+/** A small network of neurons with tanh. Its inputs are the opponent's position over [[NeuralPolicy.LengthM]]
+  * and relative velocity over [[NeuralPolicy.SpeedMps]], each ahead and to the right in the frame of the own
+  * heading. Its one output, between −1 and 1, times the maximum turn rate is the turn rate.
   *
-  * Allocates two arrays as wide as its widest layer at a decision; compiled to SIMD it allocates none.
+  * A decision allocates two arrays as wide as the widest layer; compiled to SIMD it allocates nothing.
   *
-  * @param parameters as [[NeuralShape]] lays them out
-  * @param turnRateRadPerS the most that it turns
+  * @param parameters in the order of [[NeuralShape]]
+  * @param turnRateRadPerS maximum turn rate
   */
 final case class NeuralPolicy(shape: NeuralShape, parameters: Vector[Double], turnRateRadPerS: Double = 1.0)
     extends HeadingPolicy.Memoryless:
@@ -29,8 +29,8 @@ final case class NeuralPolicy(shape: NeuralShape, parameters: Vector[Double], tu
     turnRateRadPerS * network.output(input)
 
 object NeuralPolicy:
-  /** Scale of distances, m: the network distinguishes those of about this size best. */
+  /** Scale of distances, m. The network resolves distances of about this size best. */
   val LengthM = 20.0
 
-  /** Scale of velocities, m/s, as [[LengthM]] for distances. */
+  /** Scale of velocities, m/s; see [[LengthM]]. */
   val SpeedMps = 10.0

@@ -1,9 +1,9 @@
 package skein.policy
 
-/** The layers of a network of one output. Parameters are laid out layer by layer, neuron by neuron: a weight
+/** The layers of a network with one output. Parameters are ordered layer by layer, neuron by neuron: a weight
   * per input, then the bias.
   *
-  * @param hidden how many neurons each hidden layer has
+  * @param hidden number of neurons of each hidden layer
   * @param activations of each hidden layer, and of the output
   */
 final case class NeuralShape(hidden: Vector[Int], inputs: Int, activations: Vector[Activation]):
@@ -22,7 +22,7 @@ final case class NeuralShape(hidden: Vector[Int], inputs: Int, activations: Vect
   /** Number of parameters of a network of this shape. */
   def parameters: Int = widths.zip(widths.drop(1)).map((inputs, neurons) => neurons * (inputs + 1)).sum
 
-  /** A name per parameter: `weight-LAYER-NEURON-INPUT` or `bias-LAYER-NEURON`, from 1. */
+  /** A name for each parameter: `weight-LAYER-NEURON-INPUT` or `bias-LAYER-NEURON`, counted from 1. */
   def names: Vector[String] =
     for
       layer  <- (1 until widths.size).toVector
@@ -40,7 +40,7 @@ object NeuralShape:
   def apply(hidden: Vector[Int]): NeuralShape =
     NeuralShape(hidden, Inputs, Vector.fill(hidden.size + 1)(Activation.Tanh))
 
-  /** Reads the hidden layers' widths, such as `8x8`. */
+  /** Reads the widths of the hidden layers, such as `8x8`. */
   def parse(text: String): Either[String, NeuralShape] =
     val widths = text.split("x", -1).toVector.map(_.toIntOption)
     if widths.sizeIs <= MostLayers && widths.forall(_.exists(isWidth)) then Right(NeuralShape(widths.flatten))

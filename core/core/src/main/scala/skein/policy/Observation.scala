@@ -6,18 +6,18 @@ import skein.units.*
 /** The input of a policy's decision.
   *
   * @param self index of the own vehicle in the scenario
-  * @param vehicles the estimate of each, the own included, by index
-  * @param opponent index of the opponent: of several, the nearest at this moment; the own index where there
-  *   is none
-  * @param headings commanded last to each vehicle, as far as known, by index; before the first command, that
-  *   of the start
-  * @param elapsed since the own last decision; zero at the first
-  * @param decisions made for this vehicle before
-  * @param cruise the speed that the scenario gives the vehicle
-  * @param startDown of the vehicle's start, down, negative above the origin
+  * @param vehicles estimates of all vehicles, by index
+  * @param opponent index of the opponent; of several, the nearest at this moment; the own index if there is
+  *   none
+  * @param headings last commanded heading of each vehicle, as far as known, by index; before the first
+  *   command, the heading at the start
+  * @param elapsed time since the own previous decision; zero at the first
+  * @param decisions number of earlier decisions for this vehicle
+  * @param cruise the vehicle's speed according to the scenario
+  * @param startDown altitude of the vehicle's start, down, negative above the origin
   * @param sensed last readings of the own vehicle's sensors, by name: those that the policy requests
-  *   ([[Policy.sensors]]) and that have been received
-  * @param actsIn predicted time until the command acts; zero where nothing is predicted
+  *   ([[Policy.sensors]]) and that have arrived
+  * @param actsIn predicted time until the command takes effect; zero in loops without predictions
   */
 final case class Observation(
     self: Int,
@@ -36,7 +36,7 @@ final case class Observation(
   /** The number of vehicles, the own one included. */
   def count: Int = vehicles.size
 
-  /** A vehicle's position, m; likewise `eastM` and `downM`. */
+  /** A vehicle's position north, m; `eastM` and `downM` likewise. */
   def northM(vehicle: Int): Double = vehicles(vehicle).kinematics.positionNed.x
   def eastM(vehicle: Int): Double  = vehicles(vehicle).kinematics.positionNed.y
   def downM(vehicle: Int): Double  = vehicles(vehicle).kinematics.positionNed.z
@@ -46,12 +46,12 @@ final case class Observation(
 
   def headingRad: Double = headings(self).value
 
-  /** The action that follows a heading at the altitude of the own start. */
+  /** Flight along a heading at the altitude of the own start. */
   def along(headingRad: Double, speedMps: Double): Action =
     Action.Along(Radians(headingRad), MetresPerSecond(speedMps), startDown)
 
-  /** The action with this velocity, limited to a greatest speed, at the altitude of the own start. A velocity
-    * without a direction keeps the heading.
+  /** Flight with this velocity, limited to a maximum speed, at the altitude of the own start. A velocity near
+    * zero keeps the heading.
     */
   def towards(northMps: Double, eastMps: Double, mostMps: Double): Action =
     val speed = StrictMath.hypot(northMps, eastMps)
@@ -61,18 +61,18 @@ final case class Observation(
 /** The estimate of one vehicle's state.
   *
   * @param kinematics world NED, in three dimensions with attitude
-  * @param age of the reading behind it, since physics was sampled, by the estimated clock offset; before
-  *   there is an offset, since the answer was received
-  * @param isPredicted whether it is predicted for the moment at which the command will act, and not a plain
-  *   reading
+  * @param age age of the reading on which the estimate is based: since sampling, by the estimated clock
+  *   offset, or since the answer's arrival as long as there is no such estimate
+  * @param isPredicted whether the estimate is predicted for the time at which the command takes effect;
+  *   otherwise it is a reading
   */
 final case class Seen(kinematics: Kinematics, age: Span, isPredicted: Boolean)
 
 /** The last reading of a sensor.
   *
   * @param columns names with units, such as `altitudeM`
-  * @param values one per column
-  * @param age since it was measured, as [[Seen.age]]
+  * @param values one value per column
+  * @param age age of the reading, like [[Seen.age]]
   */
 final case class Sensed(columns: Vector[String], values: Vector[Double], age: Span):
 

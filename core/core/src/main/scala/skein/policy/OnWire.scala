@@ -3,7 +3,7 @@ package skein.policy
 import skein.units.*
 import skein.vehicle.{Setpoint, YawMode}
 
-/** Actions with the precision of AirSim's wire: numbers are 32-bit floats, and yaws are degrees. */
+/** Rounds actions to the precision of AirSim's wire: numbers are 32-bit floats, and yaws are in degrees. */
 private[skein] object OnWire:
   def of(action: Action): Action = action match
     case Action.Velocity(velocity, yaw)            => Action.Velocity(of(velocity), yaw)
@@ -18,7 +18,7 @@ private[skein] object OnWire:
     case other => other
 
   def of(setpoint: Setpoint): Setpoint =
-    // Angles that hold an attitude go in radians.
+    // Angles of an attitude are sent in radians.
     if setpoint.horizontal == skein.vehicle.HorizontalMode.Angles then setpoint
     else if setpoint.yaw == YawMode.Rate && setpoint.yawGoal == 0 then setpoint
     else setpoint.copy(yawGoal = math.toRadians(math.toDegrees(setpoint.yawGoal).toFloat))

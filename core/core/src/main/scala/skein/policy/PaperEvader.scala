@@ -1,7 +1,7 @@
 package skein.policy
 
-/** The paper's evader: inside one of the pursuer's two turning circles it heads for safety there; near the
-  * pursuer it breaks away at a right angle; far from it, it runs along the line of sight.
+/** The paper's evader: inside one of the pursuer's two turning circles it heads for safety; near the pursuer
+  * it breaks away at a right angle; far from it, it runs along the line of sight.
   *
   * With the evader at (x, y) in the pursuer's frame and the pursuer's commanded heading θp:
   *   - in the right circle, x² + (y − R)² < R²: θp + atan2(y + R, x)

@@ -1,15 +1,15 @@
 package skein.policy
 
-/** The paper's pursuer: turns towards the side on which the evader is, as hard as its turning circle allows.
+/** The paper's pursuer: turns towards the evader's side, as hard as its turning circle allows.
   *
   * In the pursuer's frame (its last commanded heading is ahead), the evader at (x, y) gives the turn sign s =
   * sign(y); straight ahead s = 0, exactly behind s = 1. The new heading is θ + s·ω·elapsed.
   *
   * @param turnRateRadPerS ω. The paper's constants give (10 / 8)·0.08 rad every 100 ms = 1 rad/s; a turning
   *   circle of 8 m at 10 m/s would be 1.25 rad/s.
-  * @param stepRad when set, every decision turns by s·stepRad whatever time has passed, as the published code
-  *   does (0.1 rad). Then the turn rate grows with the decision rate, which confounds the published
-  *   comparison of loops.
+  * @param stepRad when set, every decision turns by s·stepRad independent of the time since the last, as the
+  *   published code does (0.1 rad). Then the turn rate grows with the decision rate, which confounds the
+  *   published comparison of loops.
   */
 final case class PaperPursuer(turnRateRadPerS: Double = 1.0, stepRad: Option[Double] = None)
     extends HeadingPolicy.Memoryless:

@@ -6,9 +6,9 @@ package skein.policy
   * @param dyM opponent's position minus own, east, m
   * @param dvxMps opponent's velocity minus own, north, m/s
   * @param dvyMps opponent's velocity minus own, east, m/s
-  * @param ownHeadingRad heading commanded last to the own vehicle
-  * @param opponentHeadingRad heading commanded last to the opponent, as far as known to this controller
-  * @param elapsedS time since the own last decision; 0 at the first
+  * @param ownHeadingRad last commanded heading of the own vehicle
+  * @param opponentHeadingRad last commanded heading of the opponent, as far as known to this controller
+  * @param elapsedS time since the own previous decision; 0 at the first
   * @param ownAgeS age of the reading of the own vehicle, s
   * @param opponentAgeS age of the reading of the opponent, s
   */
@@ -23,10 +23,10 @@ final case class PlanarObservation(
     ownAgeS: Double,
     opponentAgeS: Double
 ):
-  /** The inputs of learned policies, in the frame whose x-axis is the own heading commanded last: the
-    * opponent's place ahead and to the right, m; its velocity minus the own one, m/s; cosine and sine of its
-    * heading from the own one; the time since the own last decision, the age of the own reading and of the
-    * opponent's, s.
+  /** The inputs of learned policies, in a frame whose x-axis is the own last commanded heading: the
+    * opponent's position ahead and to the right, m; its velocity relative to the own, m/s; cosine and sine of
+    * its heading relative to the own; the time since the own previous decision, and the ages of the own and
+    * of the opponent's reading, s.
     */
   def fromOwnHeading: Array[Double] =
     val cos     = StrictMath.cos(ownHeadingRad)

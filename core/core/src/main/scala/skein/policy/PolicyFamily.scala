@@ -16,7 +16,7 @@ final class PolicyFamily(
     val summary: String,
     val roles: Set[Role],
     val space: SearchSpace,
-    make: Vector[Double] => HeadingPolicy
+    make: Vector[Double] => Policy
 ):
 
   /** The policy with these parameters.
@@ -25,14 +25,14 @@ final class PolicyFamily(
     *   limit a search
     * @throws OwnFailure if the family throws
     */
-  def policy(parameters: Vector[Double]): HeadingPolicy =
+  def policy(parameters: Vector[Double]): Policy =
     require(
       parameters.size == space.dimension,
       s"family $name has ${space.dimension} parameters, got ${parameters.size}"
     )
     OwnFailure.told(s"the family $name")(make(parameters))
 
-  def defaultPolicy: HeadingPolicy = policy(space.defaults)
+  def defaultPolicy: Policy = policy(space.defaults)
 
   override def toString: String = name
 

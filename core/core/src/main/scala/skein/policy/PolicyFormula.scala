@@ -28,14 +28,18 @@ final class PolicyFormula private (
   import PolicyFormula.*
 
   def fits(policy: Policy, assignment: Assignment): Boolean =
-    formula.fits(Deciding(policy, assignment)) && start.isLike(memoryOf(policy))
+    formula.fits(Deciding(policy, assignment)) && (isBegun(policy) || start.isLike(memoryOf(policy)))
 
   /** The numbers of a policy that [[fits]], as the formula's parameters. */
   def parametersOf(policy: Policy): Array[Double] =
     formula.parametersOf(Deciding(policy, assignment))
 
   /** The initial memory of a policy that [[fits]]. */
-  def startOf(policy: Policy): Array[Double] = memoryOf(policy).numbers.toArray
+  def startOf(policy: Policy): Array[Double] =
+    (if isBegun(policy) then start else memoryOf(policy)).numbers.toArray
+
+  /** Whether its memory begins as that of the formula's own policy: candidates of a search are many. */
+  private def isBegun(policy: Policy) = start.value.equals(policy.start)
 
   /** Why the policy leaves the altitude of its vehicle's start, if it does.
     *

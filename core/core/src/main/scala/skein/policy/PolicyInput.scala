@@ -1,6 +1,6 @@
 package skein.policy
 
-/** The meaning of an input of a [[PolicyFormula]]: where it is read. */
+/** The meaning of an input of a [[PolicyFormula]]. */
 enum PolicyInput:
   /** Estimated position of a vehicle, m.
     *
@@ -12,7 +12,7 @@ enum PolicyInput:
 
   case Heading(vehicle: Int)
 
-  /** Age of the reading behind a vehicle's estimate, s. */
+  /** Age of the reading on which a vehicle's estimate is based, s. */
   case Age(vehicle: Int)
 
   case Elapsed

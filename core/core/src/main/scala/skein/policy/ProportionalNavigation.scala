@@ -1,14 +1,15 @@
 package skein.policy
 
 /** Pure proportional navigation: turns N times as fast as the line of sight rotates, so that the line of
-  * sight comes to rest and the course against a target that does not manoeuvre becomes a straight line to the
-  * intercept. While the distance does not shrink, the law would turn away; then it turns towards the target.
+  * sight stops rotating. Against a target that does not manoeuvre, the course then becomes a straight line to
+  * the intercept. While the distance does not decrease, the law would turn away; then the policy turns
+  * towards the target instead.
   *
   * Line of sight rate: (dx·dvy − dy·dvx) / (dx² + dy²), from relative position and velocity. Source: Zarchan,
   * Tactical and Strategic Missile Guidance, chapter 2.
   *
-  * @param gain N; above 2 for a course that ends straight, 3 to 5 in practice
-  * @param turnRateRadPerS the most that it turns
+  * @param gain N; above 2 for a course that becomes straight; 3 to 5 in practice
+  * @param turnRateRadPerS maximum turn rate
   */
 final case class ProportionalNavigation(gain: Double = 3.0, turnRateRadPerS: Double = 1.0)
     extends HeadingPolicy.Memoryless:

@@ -2,8 +2,8 @@ package skein.policy
 
 /** Heads for the opponent's observed position, as fast as the turn rate allows.
   *
-  * @param turnRateRadPerS the most that it turns; a turning circle of radius R at speed v is v / R. The
-  *   paper's pursuer turns 1 rad/s.
+  * @param turnRateRadPerS maximum turn rate: v / R for a turning circle of radius R at speed v. The paper's
+  *   pursuer turns 1 rad/s.
   */
 final case class PurePursuit(turnRateRadPerS: Double = 1.0) extends HeadingPolicy.Memoryless:
   require(turnRateRadPerS > 0, s"the turn rate must be positive, came $turnRateRadPerS rad/s")

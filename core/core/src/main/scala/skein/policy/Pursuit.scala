@@ -3,8 +3,8 @@ package skein.policy
 /** Proportional-derivative control with feed-forward, for a vehicle with a lag that follows a moving point:
   * the point's velocity, plus shares of the errors of position and of velocity.
   *
-  * @param perS commanded speed per metre behind
-  * @param lead commanded speed per speed behind: 1 halves the time constant of a vehicle that follows its
+  * @param perS commanded speed per metre of position error
+  * @param lead commanded speed per velocity error: 1 halves the time constant of a vehicle that follows its
   *   command with a lag
   */
 final case class Pursuit(perS: Double = 0.6, lead: Double = 1.0):

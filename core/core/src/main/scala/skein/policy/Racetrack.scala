@@ -1,8 +1,8 @@
 package skein.policy
 
 /** A closed circuit of two straights joined by two half circles, clockwise from above: from the origin north,
-  * a half turn to the right, back south at twice the radius further east, and a half turn to the right again.
-  * A place on it is given by the length of the path from the origin.
+  * a half turn to the right, south on the line two radii further east, and another half turn to the right. A
+  * place on the circuit is the length of the path from the origin to it.
   */
 final case class Racetrack(straightM: Double, radiusM: Double):
   require(straightM >= 0 && radiusM > 0, s"not a circuit: straights of $straightM m, turns of $radiusM m")
@@ -11,7 +11,7 @@ final case class Racetrack(straightM: Double, radiusM: Double):
 
   val lengthM: Double = 2 * (straightM + turnM)
 
-  /** The place on the circuit nearest to a point, m from the origin, 0 to [[lengthM]]. */
+  /** The place on the circuit nearest to a point, m along the circuit, from 0 up to [[lengthM]]. */
   def nearest(northM: Double, eastM: Double): Double =
     if northM > straightM then straightM + radiusM * StrictMath.atan2(northM - straightM, radiusM - eastM)
     else if northM < 0 then

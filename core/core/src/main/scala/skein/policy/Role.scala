@@ -1,6 +1,6 @@
 package skein.policy
 
-/** The part that a vehicle plays in the scenario, for example `Role("Scout")`. */
+/** The role of a vehicle in a scenario, for example `Role("Scout")`. */
 final case class Role(name: String):
   override def toString: String = name
 
@@ -15,5 +15,5 @@ object Role:
 
   private val ours = Vector(Pursuer, Evader, Leader, Follower, Traveller)
 
-  /** The role of this name; letter case is ignored for Skein's own roles. */
+  /** The role with this name; letter case is ignored for Skein's own roles. */
   def parse(name: String): Role = ours.find(_.name.equalsIgnoreCase(name)).getOrElse(Role(name))

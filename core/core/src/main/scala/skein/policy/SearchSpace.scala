@@ -15,7 +15,7 @@ final case class Axis(name: String, least: Double, most: Double, default: Double
 
   def width: Double = most - least
 
-  /** How far a value is from the nearer limit, over the width. */
+  /** Distance of a value from the nearer bound, divided by the width. */
   def margin(value: Double): Double = (value - least).min(most - value) / width
 
 object Axis:
@@ -40,8 +40,8 @@ final case class SearchSpace(axes: Vector[Axis]):
   def gridSize(perAxis: Int): Long =
     axes.foldLeft(1L)((product, _) => Math.multiplyExact(product, perAxis.toLong))
 
-  /** One of the candidates on an even grid with `perAxis` values on each axis, both bounds included; the last
-    * axis varies fastest.
+  /** A candidate of an even grid with `perAxis` values on each axis, both bounds included. The last axis
+    * varies fastest.
     */
   def gridAt(perAxis: Int, index: Long): Vector[Double] =
     require(perAxis >= 2, s"a grid needs at least 2 values per axis, got $perAxis")
@@ -53,8 +53,8 @@ final case class SearchSpace(axes: Vector[Axis]):
   def grid(perAxis: Int): Vector[Vector[Double]] =
     Vector.tabulate(gridSize(perAxis).toInt)(gridAt(perAxis, _))
 
-  /** One of any number of candidates drawn uniformly from the space; equal seeds and numbers give equal
-    * candidates.
+  /** A candidate drawn uniformly from the space, one of an unlimited sequence. Equal seeds and indices give
+    * equal candidates.
     */
   def randomAt(seed: Long, index: Long): Vector[Double] =
     val source = SplitMix64(SplitMix64.seedOf(seed, index))
@@ -62,8 +62,9 @@ final case class SearchSpace(axes: Vector[Axis]):
 
   def random(count: Int, seed: Long): Vector[Vector[Double]] = Vector.tabulate(count)(randomAt(seed, _))
 
-  /** The candidate whose place between the bounds is `shares`, from 0 to 1 on each axis. Places outside are
-    * mirrored at the bounds, so that every vector stands for a candidate and neighbours for neighbours.
+  /** The candidate at a position relative to the bounds: a share from 0 to 1 of each axis. Shares outside are
+    * mirrored at the bounds, so that every vector represents a candidate, and neighbouring vectors
+    * neighbouring candidates.
     */
   def at(shares: Vector[Double]): Vector[Double] =
     shares.zip(axes).map((share, axis) => axis.least + axis.width * SearchSpace.mirrored(share))

@@ -2,8 +2,8 @@ package skein.policy
 
 /** Keeps a place beside another vehicle, at a fixed offset in the world.
   *
-  * @param leader its place in the scenario
-  * @param northM of the place, from the leader; likewise `eastM`
+  * @param leader index of the other vehicle in the scenario
+  * @param northM offset of the place north of the leader, m; `eastM` likewise
   * @param mostMps limit of the commanded speed
   */
 final case class Shadowing(

@@ -1,13 +1,13 @@
 package skein.policy
 
-/** Several pursuers on a ring around one evader, at evenly spaced bearings.
+/** Keeps several pursuers on a ring around one evader, at evenly spaced bearings.
   *
-  * Slots keep the cyclic order in which the pursuers stand around the evader, so their paths to them do not
-  * cross; the ring is rotated to minimise the sum of squared changes of bearing: with the bearings β in
-  * ascending order, that of rank k of n gets mean(β) + (k − (n − 1)/2)·2π/n. The slots do not depend on where
-  * the circle of bearings is cut open, so every pursuer computes equal slots by itself.
+  * Slots have the pursuers' cyclic order around the evader, so their paths to the slots do not cross. The
+  * ring's rotation minimises the sum of squared changes of bearing: with the bearings β in ascending order,
+  * the pursuer of rank k of n gets mean(β) + (k − (n − 1)/2)·2π/n. The slots do not depend on the bearing at
+  * which the order begins, so every pursuer computes equal slots by itself.
   *
-  * @param evader its place in the scenario; all other vehicles are pursuers
+  * @param evader its index in the scenario; all other vehicles are pursuers
   * @param mostMps limit of the commanded speed
   */
 final case class Surrounding(evader: Int, ringM: Double, mostMps: Double, pursuit: Pursuit = Pursuit())
@@ -36,7 +36,7 @@ final case class Surrounding(evader: Int, ringM: Double, mostMps: Double, pursui
       seen.eastM(evader) + seen.eastMps(evader) * aheadS + ringM * StrictMath.sin(slot)
     )
 
-  /** The own slot's bearing from the evader, from north towards east. */
+  /** Bearing of the own slot from the evader, from north towards east, rad. */
   private[policy] def slotRad(seen: Observation): Double =
     val n      = seen.count - 1
     val own    = bearing(seen, seen.self)

@@ -3,7 +3,7 @@ package skein.policy
 /** Changes of heading within a limit on the turn rate. */
 private[policy] object Turn:
 
-  /** Turns towards a wanted heading by the shorter way, by `mostRad` at most. If the wanted heading is
+  /** Turns towards a wanted heading by the shorter way, by at most `mostRad`. If the wanted heading is
     * exactly opposite, its sign decides the side, so that a mirrored case turns to the mirrored side.
     */
   def towards(ownHeadingRad: Double, wantedRad: Double, mostRad: Double): Double =

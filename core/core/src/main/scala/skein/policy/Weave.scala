@@ -2,13 +2,13 @@ package skein.policy
 
 import skein.units.Vector3
 
-/** Flies arcs to the left and right in turn, each for another time. Its path does not depend on the others,
-  * nor on how old its data is.
+/** Flies arcs to the left and right in turn, of varying durations. The path depends neither on other vehicles
+  * nor on the age of readings.
   *
   * @param turnRadps turn rate of the commanded velocity
-  * @param leastS shortest time of an arc
-  * @param mostS longest
-  * @param course the number of a sequence of times: others make other paths
+  * @param leastS shortest duration of an arc
+  * @param mostS longest duration of an arc
+  * @param course number of a sequence of durations; each number has a different path
   */
 final case class Weave(speedMps: Double, turnRadps: Double, leastS: Double, mostS: Double, course: Double = 0)
     extends Policy:
@@ -20,7 +20,8 @@ final case class Weave(speedMps: Double, turnRadps: Double, leastS: Double, most
     val elapsed = seen.elapsed.toSeconds
     val left    = arc.leftS - elapsed
     val isOver  = left <= 0
-    // The arc ends when its time is over, not at the decision after that: the path is that of any period.
+    // The arc ends when its time is over, not at the next decision, so that the path does not depend on the
+    // period.
     val before  = if isOver then arc.leftS else elapsed
     val number  = if isOver then arc.number + 1 else arc.number
     val remains = if isOver then left + (leastS + (mostS - leastS) * drawn(number)) else left
@@ -28,11 +29,11 @@ final case class Weave(speedMps: Double, turnRadps: Double, leastS: Double, most
       arc.headingRad + turnRadps * (side(arc.number) * before + side(number) * (elapsed - before))
     (Weave.level(seen, heading, speedMps), Weave.Arc(heading, remains, number))
 
-  /** 1 for an arc to the right, those with even numbers, else -1. */
+  /** 1 for an arc to the right, which has an even number; else −1. */
   private def side(number: Double): Double = 1 - 2 * (number - 2 * math.floor(number / 2))
 
-  /** A number from 0 to 1 for an arc: multiples of the golden ratio spread evenly (Weyl's sequence), and are
-    * arithmetic, so that SIMD repeats them.
+  /** A number from 0 to 1 for each arc. Multiples of the golden ratio spread evenly (Weyl's sequence) and
+    * need only arithmetic, which SIMD can repeat.
     */
   private def drawn(number: Double): Double =
     val spread = 0.6180339887498949 * number + 0.7548776662466927 * course
@@ -40,12 +41,12 @@ final case class Weave(speedMps: Double, turnRadps: Double, leastS: Double, most
 
 object Weave:
   /** @param leftS time left in the arc
-    * @param number of the arc, from 1 on; 0 before the first decision
+    * @param number of the arc, from 1; 0 before the first decision
     */
   final case class Arc(headingRad: Double, leftS: Double, number: Double)
 
-  /** A velocity on a heading that climbs or sinks to the altitude of the start, by 1 m/s per metre and 2 m/s
-    * at most. AirSim's vehicle follows it three times faster than a heading at an altitude.
+  /** A velocity along a heading that climbs or sinks to the altitude of the start, at 1 m/s per metre and at
+    * most 2 m/s. AirSim's vehicle follows it three times faster than a heading at an altitude.
     */
   private[policy] def level(seen: Observation, headingRad: Double, speedMps: Double): Action =
     Action.Velocity(Vector3(

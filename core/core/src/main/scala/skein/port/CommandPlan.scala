@@ -3,29 +3,29 @@ package skein.port
 import skein.policy.Action
 import skein.units.*
 
-/** Actions of one vehicle for several moments, sent in one command. Whichever moment it arrives at, the
-  * action of that moment is in it.
+/** Actions of one vehicle for several moments, sent in one command, so that it contains the right action
+  * whenever it arrives.
   *
-  * @param sequence number of the decision: of two plans, the one with the greater number counts
-  * @param actions with the moments from which they act, on the vehicles' clock, in ascending order; at most
-  *   [[CommandPlan.Most]]. The last one acts for [[CommandPlan.Hold]], then the vehicle holds its position.
-  *   Without any, a plan changes nothing: it only asks whether plans are accepted
+  * @param sequence number of the decision; of two plans, that with the greater number is in effect
+  * @param actions with the times from which they act, on the vehicles' clock, ascending; at most
+  *   [[CommandPlan.Most]]. The last action lasts for [[CommandPlan.Hold]]; then the vehicle holds its
+  *   position. A plan without actions changes nothing and only tests whether plans are accepted
   */
 final case class CommandPlan(sequence: Long, actions: Vector[(at: Instant, action: Action)]):
   for wrong <- CommandPlan.mistake(actions.map(_.at)) do
     throw IllegalArgumentException(s"a command's plan: $wrong")
 
 object CommandPlan:
-  /** Most actions of one plan, which fit into one packet of TCP. */
+  /** Maximum number of actions of a plan, which fit into one packet of TCP. */
   final val Most = 16
 
-  /** Time for which a plan's last action acts. */
+  /** Duration of a plan's last action, after which the vehicle holds its position. */
   val Hold: Span = Span.ofSeconds(1)
 
-  /** A plan that only asks whether plans are accepted. */
+  /** A plan without actions, which tests whether plans are accepted. */
   val Question: CommandPlan = CommandPlan(0, Vector.empty)
 
-  /** Why actions of these moments are not a plan's, if they are not. */
+  /** The reason why a plan cannot have actions at these times; None if it can. */
   def mistake(moments: Seq[Instant]): Option[String] =
     if moments.size > Most then Some(s"expected at most $Most actions, came ${moments.size}")
     else if moments.zip(moments.drop(1)).exists((one, next) => one >= next) then

@@ -1,14 +1,14 @@
 package skein.port
 
-/** Why a call to a vehicle failed. Expected, so a value. `message` is one line for a person: what was
-  * expected, what was received, and where.
+/** The reason why a call to a vehicle failed. Failures are expected, so this is a value, not an exception.
+  * `message` is one line for the user: what was expected, what was received, and where.
   */
 enum VehicleError(val message: String):
 
   /** The answer was not received in time. The call may still be carried out. */
   case TimedOut(override val message: String) extends VehicleError(message)
 
-  /** The vehicle rejected the call, and stated why. */
+  /** The vehicle rejected the call and gave a reason. */
   case Refused(override val message: String) extends VehicleError(message)
 
   /** The connection ended before the answer was received.
@@ -31,7 +31,7 @@ enum VehicleError(val message: String):
   /** The vehicle has no such action or sensor; nothing was sent. */
   case Unsupported(override val message: String) extends VehicleError(message)
 
-  /** Whether it is certain that the call is neither carried out nor on its way. */
+  /** Whether it is certain that the call neither had an effect nor will have one. */
   def isCertain: Boolean = this match
     case Lost(_, mayHaveRun)                                          => !mayHaveRun
     case Refused(_) | Overloaded(_) | Unreachable(_) | Unsupported(_) => true

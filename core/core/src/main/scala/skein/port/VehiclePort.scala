@@ -10,44 +10,44 @@ import skein.units.*
   */
 trait VehiclePort:
 
-  /** Position, velocity and attitude, world NED, by the vehicle's own estimate.
+  /** Reads position, velocity and attitude, world NED, as estimated by the vehicle.
     *
-    * @return with its valid time, on the vehicles' clock, and with the times of request and answer, on the
-    *   controller's. All vehicles of a flight share one clock; where they do not, their adapter converts (see
-    *   [[skein.signal.ClockAlignment]])
+    * @return with the valid time on the vehicles' clock, and with the times of request and answer on the
+    *   controller's clock. All vehicles of a flight share one clock; if they do not, their adapter converts
+    *   times (see [[skein.signal.ClockAlignment]])
     */
   def read(): Future[Either[VehicleError, Stamped[Kinematics]]]
 
-  /** Carries out an action until `lasts` has passed or a newer action replaces it. The future completes then:
+  /** Performs an action until `lasts` has passed or a newer action replaces it. Completes at that time: with
     * true if the action ran to its end, false if it was replaced. Actions take effect in the order of the
     * calls.
     */
   def act(action: Action, lasts: Span): Future[Either[VehicleError, Boolean]]
 
-  /** Gives a plan to the buffer beside the vehicle, which carries out the action of each moment: see
-    * [[PlanBuffer]]. Completes when the buffer has received it, with true.
+  /** Sends a plan to the buffer beside the vehicle, which performs each action at its time: see
+    * [[PlanBuffer]]. Completes with true when the buffer has received it.
     *
-    * @return [[VehicleError.Unsupported]] or [[VehicleError.Refused]] where there is no such buffer
+    * @return [[VehicleError.Unsupported]] or [[VehicleError.Refused]] if there is no such buffer
     */
   def follow(plan: CommandPlan): Future[Either[VehicleError, Boolean]] =
     val reason = s"plan ${plan.sequence}: no buffer beside this vehicle holds plans"
     Future.successful(Left(VehicleError.Unsupported(reason)))
 
-  /** Ends every action, and every plan. Completes once the vehicle holds its position. */
+  /** Ends all actions and plans. Completes when the vehicle holds its position. */
   def hover(): Future[Either[VehicleError, Boolean]]
 
   def sensors: Map[String, Sensor] = Map.empty
 
-/** A sensor of a vehicle: its columns, and how to read it. */
+/** A sensor of a vehicle that policies can read. */
 trait Sensor:
 
-  /** Names and units of a reading's numbers, such as `altitudeM`. */
+  /** Names of a reading's numbers, with units, such as `altitudeM`. */
   def columns: Vector[String]
 
   /** Requests the newest reading: one number per column. */
   def read(): Future[Either[VehicleError, Stamped[IArray[Double]]]]
 
-/** A simulator that can be stopped and run in steps: the loop `paused` needs it. */
+/** A simulator that can be stopped and run in steps, as the loop `paused` requires. */
 trait SteppedTime:
   def pause(): Future[Either[VehicleError, Unit]]
 

@@ -3,7 +3,7 @@ package skein.scenario
 import skein.policy.*
 import skein.units.*
 
-/** What Skein's scenarios at a single altitude have in common. */
+/** Shared by Skein's scenarios in which all vehicles fly at one altitude. */
 private object AtOneAltitude:
   val MostVehicles = 100
 

@@ -9,13 +9,13 @@ import skein.vehicle.{ReducedModel, VehicleKind}
   * to their right, one beside them to their left, one behind them. The drones' slots rotate with the road at
   * the leading car.
   *
-  * @param gapM distance from the leading car to the other, along the circuit
+  * @param gapM distance between the two cars, along the circuit
   * @param carMps speed of the leading car
-  * @param mostMps the highest speed that is commanded
+  * @param mostMps limit of the commanded speed
   * @param straightM length of each of the circuit's two straights
-  * @param radiusM radius of the half turns between them
+  * @param radiusM radius of the circuit's half turns
   * @param altitudeM altitude of the drones
-  * @param sightM horizontal distance up to which a drone observes a car
+  * @param sightM horizontal distance within which a drone observes a car
   */
 final case class Convoy(
     gapM: Double = 12,
@@ -32,7 +32,7 @@ final case class Convoy(
 
   def circuit: Racetrack = Racetrack(straightM, radiusM)
 
-  /** The drones' slots: metres ahead of the leading car and to its right. */
+  /** The drones' slots: distance ahead of the leading car, and to its right, m. */
   def places: Vector[(Double, Double)] = Vector((6.0, 7.0), (-gapM / 2, -9.0), (-gapM - 8, 0.0))
 
   def agents: Vector[Agent] =
@@ -82,7 +82,7 @@ final case class Convoy(
       instant => tracks.distanceM(Lead, Rear, instant)
     )
 
-  /** Distance from each car to the nearest drone; of the two cars, that of the farther one. */
+  /** Distance from each car to its nearest drone; the larger of the two. */
   private def unseen =
     Series("from a car to its nearest drone", "m", Some(Bound("in view", sightM)))(tracks =>
       instant =>
@@ -90,13 +90,13 @@ final case class Convoy(
     )
 
 object Convoy:
-  // Places of the vehicles; those of the drones' scores follow the leader's.
+  // Indices of the vehicles. The drones follow the leading car, as the scores of slots require.
   private val Lead   = 0
   private val Drones = 1 to 3
   private val Rear   = 4
 
-  /** Time ahead for which the cars are steered, s: a driver's time for a turn, and a little for the tyres. */
+  /** Time ahead for which the cars are steered, s: about a driver's time for a turn, plus the tyres' lag. */
   private val AheadS = 1.0
 
-  /** Time for the vehicles to get under way, s; not measured. */
+  /** Time in which the vehicles gain speed after the start, s; measures leave it out. */
   private val SettlingS = 10.0

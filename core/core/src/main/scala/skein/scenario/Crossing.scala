@@ -12,12 +12,12 @@ import skein.units.Metres
   * @param spacingM distance between two vehicles of a stream
   * @param entryM distance from the first vehicle of a stream to the middle of the crossing, at the start
   * @param laneM distance by which each stream keeps to the right of the middle
-  * @param cruiseMps speed where no vehicle is in the way
-  * @param mostMps the highest speed that is commanded
-  * @param minimumM the limit: the smallest separation allowed
-  * @param marginM distance that the avoidance rule keeps on top of it, because it does not know that vehicles
-  *   lag behind their commands
-  * @param horizonS time for which the avoidance rule looks ahead
+  * @param cruiseMps speed of a vehicle that need not avoid any other
+  * @param mostMps limit of the commanded speed
+  * @param minimumM smallest separation allowed, a limit of the scenario
+  * @param marginM distance that the avoidance rule adds to it, because the rule ignores that vehicles lag
+  *   behind their commands
+  * @param horizonS time ahead for which the avoidance rule plans, s
   * @param altitudeM altitude of all vehicles
   */
 final case class Crossing(
@@ -86,9 +86,9 @@ final case class Crossing(
       instant                  <- tracks.instants.find(tracks.distanceM(vehicle, north, east, _) < ArrivedM)
     yield tracks.timeS(instant)
 
-  /** The routes by vehicle. Vehicles are assigned to the streams in turn, and those of a stream follow one
-    * behind the other. The first of a stream has the farthest goal, so that all fly equally far and none
-    * waits in another's way.
+  /** The routes by vehicle. Vehicles are assigned to the streams in turn; those of one stream fly one behind
+    * the other. The first of a stream has the farthest goal, so that all fly equally far and none waits on
+    * another's route.
     */
   private def routes: Vector[Route] =
     Vector.tabulate(vehicles): vehicle =>
@@ -105,8 +105,8 @@ final case class Crossing(
     (alongM * cos - laneM * sin, alongM * sin + laneM * cos)
 
 object Crossing:
-  /** Distance from its goal at which a vehicle has arrived, m. */
+  /** Distance from its goal within which a vehicle counts as arrived, m. */
   private val ArrivedM = 3.0
 
-  /** Positions along the heading, from the middle of the crossing, m. */
+  /** A straight route: positions along the heading, from the middle of the crossing, m. */
   private final case class Route(headingRad: Double, startM: Double, goalM: Double)

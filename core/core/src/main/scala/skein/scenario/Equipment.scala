@@ -1,18 +1,18 @@
 package skein.scenario
 
-/** A camera or lidar of a vehicle, in addition to those of every vehicle. The built-in simulator configures
-  * it from here; another simulator needs it in its `settings.json`.
+/** A camera or lidar that a vehicle has in addition to the default ones. The built-in simulator creates it
+  * from this description; other simulators need it in their `settings.json`.
   */
 enum Equipment:
   def vehicle: String
   def name: String
 
-  /** A lidar that turns around the vehicle's down axis. Policies read it as a sensor of this name: its
-    * position `northM`, `eastM`, `downM`; then, clockwise from north, the distance in the plane to the
-    * nearest thing in each of [[Sectors]] equal sectors of the compass, m. Things more than [[BandM]] above
-    * or below do not count; an empty sector has the lidar's range.
+  /** A lidar that turns around the vehicle's down axis. Policies read it as a sensor with this name. Its
+    * columns are its position `northM`, `eastM`, `downM`; then, for each of [[Sectors]] equal sectors of the
+    * compass, clockwise from north, the horizontal distance to the nearest thing, m. Things more than
+    * [[BandM]] above or below are ignored; an empty sector has the lidar's range.
     *
-    * @param verticalFovDeg lower, upper; negative looks down
+    * @param verticalFovDeg lower and upper angle; negative is downwards
     */
   case Lidar(
       vehicle: String,
@@ -26,7 +26,7 @@ enum Equipment:
 
   /** A camera at the front of the vehicle that points forward.
     *
-    * @param fovDeg horizontal
+    * @param fovDeg horizontal field of view
     */
   case Camera(vehicle: String, name: String, width: Int, height: Int, fovDeg: Double)
 

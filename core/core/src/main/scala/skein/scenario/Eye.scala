@@ -5,19 +5,19 @@ import skein.fusion.{FusionSettings, PolarMeasurement}
 import skein.signal.LatencyProfile
 import skein.units.*
 
-/** A camera with a recogniser, as a sensor of a policy: each detection of a target in an image updates an
-  * estimate at the time of exposure. The policy reads the estimate as a sensor.
+/** A camera with a recogniser, as a sensor for a policy. Each detection of a target in an image updates an
+  * estimate at the time of exposure; the policy reads this estimate.
   *
-  * @param vehicle whose camera it is
-  * @param sensor the name under which the vehicle's policy reads the estimate: [[Eye.Columns]], valid at the
+  * @param vehicle name of the vehicle with the camera
+  * @param sensor name under which the vehicle's policy reads the estimate: [[Eye.Columns]], valid at the
   *   newest detection's exposure
-  * @param camera of the vehicle: AirSim's, or one of the scenario's equipment
+  * @param camera name of one of the vehicle's cameras: AirSim's, or the scenario's equipment
   * @param target name of the vehicle to detect, for reports
   * @param every period of the images
-  * @param recogniser makes an instance for each worker
+  * @param recogniser creates an instance for each worker
   * @param takes duration of recognition: exact in virtual time, a minimum in live flights
-  * @param workers number of images searched simultaneously
-  * @param deadline for each image
+  * @param workers number of images that are searched simultaneously
+  * @param deadline time limit for each image's result
   */
 final case class Eye(
     vehicle: String,
@@ -33,10 +33,10 @@ final case class Eye(
 )
 
 object Eye:
-  /** The estimate: the target's position and velocity, world NED, and the largest of the position's standard
-    * deviations along north, east and down. Then the newest detection: its place in the camera's frame, how
-    * long recognition took, and the camera's position and orientation. Last, how many images were searched
-    * until then, and how many of them showed the target.
+  /** The columns. First the estimate: the target's position and velocity, world NED, and the largest standard
+    * deviation of the position along north, east and down. Then the newest detection: its position in the
+    * camera's frame, the duration of recognition, and the camera's position and orientation. Last, the number
+    * of images searched until then, and the number of those with a detection.
     */
   val Columns: Vector[String] = Vector(
     "northM",
@@ -61,8 +61,7 @@ object Eye:
     "found"
   )
 
-/** Detects one kind of object in images. May keep memory of its own; is never called by two threads
-  * simultaneously.
+/** Detects one kind of object in images. It may have state; it is never called by two threads simultaneously.
   */
 trait Recogniser:
 

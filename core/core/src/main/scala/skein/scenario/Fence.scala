@@ -1,16 +1,16 @@
 package skein.scenario
 
-/** The area that vehicles must not leave, seen from above; north and east, m. */
+/** The area that vehicles must not leave, seen from above; coordinates are north and east, m. */
 enum Fence:
   case Circle(northM: Double, eastM: Double, radiusM: Double)
 
   /** A polygon that vehicles must stay in.
     *
-    * @param corners north and east, in turn; at least three
+    * @param corners north and east of each corner, in order around the polygon; at least three
     */
   case Polygon(corners: Vector[(Double, Double)])
 
-  /** Distance of a place outside of the fence, m; inside, the negative distance to the fence. */
+  /** Distance of a position from the fence, m; negative inside. */
   def beyondM(north: Double, east: Double): Double = this match
     case Circle(middleN, middleE, radius) => StrictMath.hypot(north - middleN, east - middleE) - radius
     case Polygon(corners)                 =>
@@ -32,7 +32,7 @@ enum Fence:
         at += 1
       if isInside then -nearest else nearest
 
-  /** The fence relative to another origin. Sides are cut off 1,000 km from there, so that floats hold their
+  /** The fence in coordinates with another origin, limited to 1,000 km so that floats can represent their
     * squares.
     */
   def from(northM: Double, eastM: Double): Fence =

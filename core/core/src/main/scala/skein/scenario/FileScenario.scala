@@ -104,7 +104,9 @@ private[skein] object FileScenario:
     ).asInstanceOf[Mirror.ProductOf[FileScenario]]
     ScenarioKind(FileScenario(file, file.settings.map(_.default).toArray))(using mirror)
 
-  /** One that may end before its duration. Forward simulation asks for it by the class that declares it. */
+  /** A file scenario that may end before its duration. It is a separate class because [[OwnEnd]] looks for
+    * the class that declares `isOver`.
+    */
   private final class Ending(file: ScenarioFile, values: Array[Double], over: Watched)
       extends FileScenario(file, values):
     override def isOver(known: Known): Boolean = over(known, values) != 0

@@ -8,11 +8,11 @@ import skein.units.Decimals.significant
   * lidar alone.
   *
   * @param vehicles number of vehicles
-  * @param apartM distance from one lane to the next
+  * @param apartM distance between neighbouring lanes
   * @param cruiseMps speed along the lane
-  * @param lengthM length of the way, which ends beyond the last tree
+  * @param lengthM length of the lanes, which end beyond the last tree
   * @param altitudeM altitude of all vehicles
-  * @param keepM distance that is kept from everything, where there is room
+  * @param keepM distance to keep from trees and vehicles, if there is room
   */
 final case class Forest(
     vehicles: Int = 5,

@@ -3,17 +3,17 @@ package skein.scenario
 import skein.policy.*
 import skein.units.Decimals.significant
 
-/** A wedge flies a circuit, two straights joined by half turns; the leader first, followers behind it to the
-  * right and left in turn.
+/** A wedge of vehicles flies a circuit of two straights joined by half turns. The leader is first; followers
+  * are behind it, to the right and left in turn.
   *
   * @param vehicles number of vehicles, the leader included
   * @param spacingM distance from one slot to the next, backwards and sideways
   * @param leaderMps speed of the leader
-  * @param mostMps the highest speed that a follower is commanded
+  * @param mostMps limit of the followers' commanded speed
   * @param straightM length of each of the circuit's two straights
-  * @param radiusM radius of the half turns between them
-  * @param lagS time constant with which the policies expect vehicles to follow their commands; AirSim's at
-  *   low altitude take about 1.5 s
+  * @param radiusM radius of the circuit's half turns
+  * @param lagS time constant with which the policies expect vehicles to follow their commands; for AirSim's
+  *   at low altitude about 1.5 s
   * @param altitudeM altitude of all vehicles
   */
 final case class Formation(
@@ -34,7 +34,7 @@ final case class Formation(
 
   def circuit: Racetrack = Racetrack(straightM, radiusM)
 
-  /** The slots in the leader's frame: metres ahead and to the right, by follower. */
+  /** The followers' slots in the leader's frame: distance ahead and to the right, m. */
   def slots: Vector[(Double, Double)] =
     Vector.tabulate(vehicles - 1): follower =>
       val rank = follower / 2 + 1
@@ -71,7 +71,9 @@ final case class Formation(
     val (ahead, right) = slots.unzip
     Series.of("slot error, rms", "m", OffSlots(circuit, IArray.from(ahead), IArray.from(right)))
 
-  /** Distances from each follower to its slot in the frame along the circuit at the leader's place, m. */
+  /** Distance of each follower from its slot, m. The slots are in the frame along the circuit at the leader's
+    * place.
+    */
   private def slotErrorsM(tracks: Tracks, instant: Int): Vector[Double] =
     val (north, east) = (tracks.northM(0)(instant), tracks.eastM(0)(instant))
     val heading       = circuit.headingRad(circuit.nearest(north, east))
@@ -86,5 +88,5 @@ final case class Formation(
         )
 
 object Formation:
-  /** Time for the vehicles to get under way, s; not measured. */
+  /** Time in which the vehicles gain speed after the start, s; measures leave it out. */
   private val SettlingS = 10.0

@@ -2,9 +2,9 @@ package skein.scenario
 
 import skein.formula.{Evaluation, Formula, KnownFormula, Node, Trace}
 
-/** A quantity that is data, such as one traced in Python.
+/** A quantity that is data, for example one traced in Python.
   *
-  * @param places input of each position: those north of all vehicles, then those east, then those down
+  * @param places number of the input for each position: north of all vehicles, then east, then down
   */
 private[scenario] final class QuantityGraph(
     trace: Trace,
@@ -35,7 +35,7 @@ private[scenario] final class QuantityGraph(
     case _                   => Array.emptyDoubleArray
   }
 
-/** A [[QuantityGraph]] with the settings' values. */
+/** A [[QuantityGraph]] with values of its settings. */
 private[skein] final class GraphQuantity private[scenario] (
     private[scenario] val graph: QuantityGraph,
     private[scenario] val values: Array[Double]

@@ -6,9 +6,9 @@ import skein.units.Decimals.significant
 /** A condition of the flight: a quantity of some vehicles must stay at or above a value, or at or below it.
   *
   * @param name of the limit, for example `separation`
-  * @param groups the groups of vehicles to which it applies, by their places, given the number of vehicles
-  * @param kept the part of it that plans observe, if any
-  * @param quantity of a group, by instant
+  * @param groups groups of vehicles to which the limit applies, as indices, from the number of vehicles
+  * @param kept the part of the limit that plans observe, if any
+  * @param quantity value for a group at an instant
   */
 final class Limit private (
     val name: String,
@@ -19,11 +19,11 @@ final class Limit private (
     val kept: Option[Kept],
     quantity: (Tracks, Vector[Int]) => Int => Double
 ):
-  /** The limit in words: for example `separation of at least 5 m`. */
+  /** The limit in words, for example `separation of at least 5 m`. */
   def text: String =
     s"$name of at ${if isLeast then "least" else "most"} ${Limit.brief(value)} $unit".trim
 
-  /** Every stretch of time in which the limit was violated, by group. */
+  /** All stretches of time in which the limit was violated, group by group. */
   def violations(tracks: Tracks): Vector[Violation] =
     groups(tracks.vehicles).flatMap: group =>
       val of = quantity(tracks, group)
@@ -47,22 +47,22 @@ object Limit:
 
   def separation(least: Metres): Limit = apart(least)((tracks, a, b) => tracks.separationM(a, b, _))
 
-  /** Separation between any two vehicles in the horizontal plane. */
+  /** The horizontal separation between any two vehicles must be at least this. */
   def horizontalSeparation(least: Metres): Limit = apart(least)((tracks, a, b) => tracks.distanceM(a, b, _))
 
-  /** Least altitude of every vehicle above the origin, m. */
+  /** Every vehicle must stay at or above this altitude above the origin. */
   def floor(altitude: Metres): Limit =
     single("altitude", "m", altitude.value, true, Some(Kept.Above(altitude.value)))((tracks, vehicle) =>
       tracks.altitudeM(vehicle, _)
     )
 
-  /** Greatest altitude of every vehicle above the origin, m. */
+  /** Every vehicle must stay at or below this altitude above the origin. */
   def ceiling(altitude: Metres): Limit =
     single("altitude", "m", altitude.value, false, Some(Kept.Below(altitude.value)))((tracks, vehicle) =>
       tracks.altitudeM(vehicle, _)
     )
 
-  /** Greatest speed of every vehicle in space, m/s. */
+  /** Every vehicle's speed in space must be at most this. */
   def speed(most: MetresPerSecond): Limit =
     single("speed", "m/s", most.value, false, Some(Kept.NoFaster(most.value)))((tracks, vehicle) =>
       tracks.velocityNed(vehicle, _).norm
@@ -78,9 +78,9 @@ object Limit:
       Some(Kept.Inside(Fence.Circle(north.value, east.value, radius.value)))
     )((tracks, vehicle) => tracks.distanceM(vehicle, north.value, east.value, _))
 
-  /** Every vehicle must stay in a polygon, seen from above; the quantity is its distance outside.
+  /** Every vehicle must stay in a polygon, seen from above; the quantity is the vehicle's distance outside.
     *
-    * @param corners north and east, in turn; at least three
+    * @param corners north and east of each corner, in order around the polygon; at least three
     */
   def geofence(corners: Vector[(Metres, Metres)]): Limit =
     require(corners.sizeIs >= 3, s"a geofence has at least three corners, came ${corners.size}")
@@ -129,9 +129,9 @@ object Limit:
 
 /** A stretch of time in which a limit was violated.
   *
-  * @param vehicles their places
-  * @param fromS since all vehicles were first read
-  * @param worst value of the quantity, in the limit's unit, with its time
+  * @param vehicles indices of the vehicles
+  * @param fromS begin of the violation, since all vehicles were first read, s
+  * @param worst worst value of the quantity, in the limit's unit, with its time
   */
 final case class Violation(
     limit: Limit,
@@ -142,7 +142,7 @@ final case class Violation(
     worstAtS: Double
 )
 
-/** The part of a limit that plans are able to observe. */
+/** A part of a limit that plans observe, not only reports. */
 enum Kept:
   /** Least distance between any two vehicles, in the plane, m. */
   case Apart(leastM: Double)

@@ -3,9 +3,9 @@ package skein.scenario
 /** A number computed from a flight, for example `Measure("out of sight", "s")(tracks => …)`.
   *
   * @param unit may be empty
-  * @param isCount of events: over several flights it is summed
-  * @param over the measured part of the flight; a flight without such a part has no value
-  * @param reduced the quantity that it reduces, if any: searches can optimise only such measures
+  * @param isCount whether it counts events, which are summed over several flights
+  * @param over the part of the flight that is measured; a shorter flight has no value
+  * @param reduced the quantity that is reduced, if any; searches can optimise only such measures
   */
 final class Measure private (
     val name: String,
@@ -15,14 +15,14 @@ final class Measure private (
     val reduced: Option[OverFlight],
     value: Tracks => Option[Double]
 ):
-  /** The value; absent where the flight has none, for example a time of arrival if it never arrived, or where
-    * it is not a finite number.
+  /** The value for a flight. None if the flight has none, for example a time of arrival without an arrival,
+    * or if the value is not finite.
     */
   def of(tracks: Tracks): Option[Double] = value(tracks).filter(_.isFinite)
 
   def title: String = s"$name $unit".trim
 
-  /** The measure restricted to the first vehicles, for reports only: searches do not use it. */
+  /** The measure of the first vehicles alone; for reports, not for searches. */
   private[scenario] def ofFirst(count: Int): Measure =
     new Measure(name, unit, isCount, over, None, tracks => of(tracks.first(count)))
 
@@ -35,7 +35,7 @@ object Measure:
   ): Measure =
     new Measure(name, unit, false, part, None, tracks => part.of(tracks).map(of(tracks, _)))
 
-  /** A count of events, for example of vehicles that arrived. */
+  /** A measure that counts events, for example vehicles that arrived. */
   def count(name: String)(of: Tracks => Int): Measure =
     new Measure(name, "", true, Window.Whole, None, tracks => Some(of(tracks).toDouble))
 
@@ -49,7 +49,7 @@ object Measure:
 /** A quantity over a part of a flight, reduced to one number. */
 final case class OverFlight(quantity: Quantity, reduction: Reduction, over: Window)
 
-/** A quantity over the time of a flight: reports draw it, and measures reduce it.
+/** A quantity over the time of a flight, which reports draw and measures reduce.
   *
   * {{{
   * private val apart = Series("distance", "m")(tracks => instant => tracks.separationM(0, 1, instant))
@@ -57,8 +57,8 @@ final case class OverFlight(quantity: Quantity, reduction: Reduction, over: Wind
   * override def measures = Vector(apart.mean("mean distance"), apart.least("closest"))
   * }}}
   *
-  * @param bound that the quantity is held to, drawn as a line
-  * @param at its value by instant
+  * @param bound value with which the quantity is compared, drawn as a line
+  * @param at value of the quantity at an instant
   */
 final class Series private (
     val name: String,
@@ -81,11 +81,11 @@ final class Series private (
 
   def most(name: String, over: Window = Window.Whole): Measure = reduced(name, over, Reduction.Most)
 
-  /** Time at which it was first least, s. */
+  /** First time at which the quantity has its minimum, s. */
   def leastAt(name: String, over: Window = Window.Whole): Measure =
     Measure.over(name, "s", over)((tracks, instants) => tracks.timeS(instants.minBy(at(tracks))))
 
-  /** Time at which it was first greatest, s. */
+  /** First time at which the quantity has its maximum, s. */
   def mostAt(name: String, over: Window = Window.Whole): Measure =
     Measure.over(name, "s", over)((tracks, instants) => tracks.timeS(instants.maxBy(at(tracks))))
 
@@ -94,7 +94,7 @@ final class Series private (
       val value = at(tracks)
       instants.count(instant => holds(value(instant))) * tracks.stepS
 
-  /** First instant at which a condition held, s; absent where it never did. */
+  /** First time at which a condition holds, s; no value if it never does. */
   def firstWhere(name: String)(holds: Double => Boolean): Measure = Measure(name, "s"): tracks =>
     val value = at(tracks)
     tracks.instants.find(instant => holds(value(instant))).map(tracks.timeS)
@@ -109,22 +109,22 @@ object Series:
   def apply(name: String, unit: String, bound: Option[Bound] = None)(at: Tracks => Int => Double): Series =
     new Series(name, unit, bound, None)(at)
 
-  /** A series of a quantity that searches can optimise, too. */
+  /** A series of a quantity that searches can optimise. */
   def of(name: String, unit: String, quantity: Quantity, bound: Option[Bound] = None): Series =
     new Series(name, unit, bound, Some(quantity))(tracks =>
       instant => Quantity.told(quantity, tracks.positions(instant))
     )
 
-/** A value that a quantity is compared with: a line in its figure.
+/** A value with which a quantity is compared, drawn as a line.
   *
   * @param name in the legend
   */
 final case class Bound(name: String, value: Double)
 
-/** A quantity at equidistant instants: seconds since all vehicles were first read, and its values. */
+/** The values of a quantity at equidistant times, which are seconds since all vehicles were first read. */
 final case class Curve(points: Vector[(Double, Double)]):
 
-  /** The stretches in which its values are finite numbers. */
+  /** The stretches of the curve in which all values are finite. */
   def stretches: Vector[Vector[(Double, Double)]] =
     Vector.unfold(points): left =>
       val (stretch, rest) = left.dropWhile(!_._2.isFinite).span(_._2.isFinite)

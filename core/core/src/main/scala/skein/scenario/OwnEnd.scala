@@ -6,20 +6,21 @@ import scala.jdk.CollectionConverters.*
 import scala.jdk.OptionConverters.*
 import scala.util.Using
 
-/** Whether a scenario may end before its duration. */
+/** Determines whether a scenario may end before its duration. */
 private[skein] object OwnEnd:
   def has(scenario: Scenario): Boolean =
     val declaring = scenario.getClass.getMethod("isOver", classOf[Known]).getDeclaringClass
     declaring != classOf[Scenario] && !forwards(declaring)
 
-  /** Whether the class only inherits the method: the compiler generates one that calls the trait's. */
+  /** Whether a class only inherits the method; the compiler then generates a method that calls the trait's.
+    */
   private def forwards(declaring: Class[?]): Boolean =
     val file = s"/${declaring.getName.replace('.', '/')}.class"
     Using.resource(declaring.getResourceAsStream(file)): stream =>
       val methods = ClassFile.of().parse(stream.readAllBytes()).methods.asScala
       methods.filter(_.methodName.equalsString("isOver")).flatMap(_.code.toScala).forall: code =>
         val instructions = code.elementList.asScala.collect { case each: Instruction => each }
-        // Loads this and the argument, calls, and returns.
+        // The four instructions load `this` and the argument, call the method, and return.
         instructions.size == 4 && instructions.exists:
           case call: InvokeInstruction => call.name.equalsString("isOver$")
           case _                       => false

@@ -3,12 +3,12 @@ package skein.scenario
 import skein.policy.*
 import skein.units.*
 
-/** The paper's duel: a pursuer at 10 m/s behind an evader at 5 m/s, both at rest 21 m apart. Several stand
-  * side by side, 60 m apart, and are measured by the first.
+/** The paper's duel: a pursuer at 10 m/s behind an evader at 5 m/s, both at rest 21 m apart. Several duels
+  * fly side by side, 60 m apart; measures are those of the first.
   *
-  * @param pairs number of duels; the vehicles of several are numbered from 1
-  * @param asPublished the pursuer turns by a fixed angle per decision, as in the published code, and not at a
-  *   fixed rate
+  * @param pairs number of duels; if there are several, their vehicles' names are numbered from 1
+  * @param asPublished whether the pursuer turns by a fixed angle per decision, as in the published code,
+  *   instead of at a fixed rate
   * @param altitudeM altitude of all vehicles
   */
 final case class PaperDuel(
@@ -54,7 +54,9 @@ final case class PaperDuel(
 
   override def note: String = "Horizontal distance between pursuer and evader."
 
-  /** Without the scenario's name as a prefix: recordings of duels are older than those of other scenarios. */
+  /** The setting's name without the scenario's name as a prefix, because recordings of duels are older than
+    * those of other scenarios.
+    */
   override def recordedAs(setting: String): String = setting
 
   override def crowded(vehicles: Int): PaperDuel = copy(pairs = pairs.max(vehicles / 2))

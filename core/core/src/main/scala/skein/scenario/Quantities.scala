@@ -2,7 +2,9 @@ package skein.scenario
 
 import skein.policy.Racetrack
 
-/** Deviation of the pursuers from a ring around the evader, the first vehicle: root of the mean square, m. */
+/** Root mean square deviation of the pursuers from a ring around the evader, m. The evader is the first
+  * vehicle.
+  */
 final case class OffRing(ringM: Double) extends Quantity:
   def of(positions: Positions): Double =
     var sum     = 0.0
@@ -31,8 +33,8 @@ case object WidestGap extends Quantity:
       i += 1
     widest.toDegrees
 
-  /** Sorts by exchanging neighbours: the comparisons do not depend on the numbers, so that SIMD can execute
-    * it.
+  /** Sorts by exchanging neighbours. The sequence of comparisons does not depend on the numbers, so that SIMD
+    * can execute it.
     */
   private def ascend(numbers: Array[Double]): Unit =
     var last = numbers.length - 1
@@ -45,7 +47,7 @@ case object WidestGap extends Quantity:
         i += 1
       last -= 1
 
-/** Separation of the two vehicles nearest to one another, m. */
+/** Smallest horizontal separation between any two vehicles, m. */
 case object Separation extends Quantity:
   def of(positions: Positions): Double =
     var least = Double.PositiveInfinity
@@ -58,11 +60,11 @@ case object Separation extends Quantity:
       one += 1
     least
 
-/** Deviation of the followers from their slots in the frame along the circuit at the leader, the first
-  * vehicle: root of the mean square, m.
+/** Root mean square deviation of the followers from their slots, m. The slots are in the frame along the
+  * circuit at the leader, the first vehicle.
   *
-  * @param aheadM of the leader, by follower
-  * @param rightM to the right of the leader
+  * @param aheadM distance of each follower's slot ahead of the leader
+  * @param rightM distance of each follower's slot to the right of the leader
   */
 final case class OffSlots(circuit: Racetrack, aheadM: IArray[Double], rightM: IArray[Double])
     extends Quantity:

@@ -2,20 +2,20 @@ package skein.scenario
 
 import skein.units.OwnFailure
 
-/** Positions of all vehicles at one moment, by their places in the scenario. World frame NED, m. */
+/** Positions of all vehicles at one moment, by index in the scenario. World frame NED, m. */
 final case class Positions(northM: IArray[Double], eastM: IArray[Double], downM: IArray[Double]):
   def count: Int = northM.length
 
-  /** Distance between two vehicles in the horizontal plane, m. */
+  /** Horizontal distance between two vehicles, m. */
   def distanceM(one: Int, other: Int): Double =
     StrictMath.hypot(northM(one) - northM(other), eastM(one) - eastM(other))
 
-  /** Distance from a vehicle to a place in the horizontal plane, m. */
+  /** Horizontal distance from a vehicle to a position, m. */
   def distanceM(vehicle: Int, north: Double, east: Double): Double =
     StrictMath.hypot(northM(vehicle) - north, eastM(vehicle) - east)
 
-/** A number computed from the positions of all vehicles at one moment. Reports draw and measure it, searches
-  * optimise it. Pure. If its method is plain arithmetic, it is compiled to SIMD, as policies are
+/** A number computed from the positions of all vehicles at one moment. Reports draw it, measures reduce it,
+  * and searches optimise it. Pure. If its method is plain arithmetic, it is compiled to SIMD, as policies are
   * (`docs/guides/formulas.md`).
   */
 trait Quantity:
@@ -31,7 +31,7 @@ object Quantity:
 
   private[skein] def whose(quantity: Quantity): String = OwnFailure.named("quantity", quantity)
 
-/** How a quantity over time becomes one number. */
+/** Reduces a quantity's values over time to one number. */
 enum Reduction:
   case Mean
 

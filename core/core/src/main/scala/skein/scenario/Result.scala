@@ -2,7 +2,7 @@ package skein.scenario
 
 /** The result of a flight.
   *
-  * @param measured flights are compared by the first
+  * @param measured all measures; flights are compared by the first
   * @param violations of all limits, in the order of their times
   */
 final case class Result(
@@ -12,7 +12,7 @@ final case class Result(
     curves: Vector[(Series, Curve)],
     violations: Vector[Violation]
 ):
-  /** A measure's value, by its name; absent where the flight has none. */
+  /** The value of a measure, by its name; None if the flight has none. */
   def value(measure: String): Option[Double] =
     measured
       .find(_.measure.name == measure)
@@ -38,7 +38,7 @@ object Result:
 
 /** A measure with its value for one flight.
   *
-  * @param value absent where the flight has none
-  * @param isTooShort whether the flight lacks the part to which the measure refers, and so has no value
+  * @param value None if the flight has none
+  * @param isTooShort whether the flight has no value because it is shorter than the part that is measured
   */
 final case class Measured(measure: Measure, value: Option[Double], isTooShort: Boolean)

@@ -4,8 +4,8 @@ import java.util.Locale
 import skein.policy.{Agent, Fleet, Seen}
 import skein.units.*
 
-/** A task for a fleet: its vehicles, limits and measures, and when it ends. A case class; its fields are the
-  * task's settings, and their names end in units (`ringM`, `cruiseMps`). See `docs/guides/own-scenario.md`.
+/** A task for a fleet: its vehicles, limits, measures and end. A case class whose fields are the task's
+  * settings; their names end in units (`ringM`, `cruiseMps`). See `docs/guides/own-scenario.md`.
   */
 trait Scenario extends Product:
 
@@ -24,50 +24,49 @@ trait Scenario extends Product:
   /** Duration of a flight, unless a command sets another. */
   def duration: Span = Span.ofSeconds(60)
 
-  /** The built-in simulator's scene, unless a command sets another: `empty`, `forest`, `pursuit` or `street`.
+  /** Scene of the built-in simulator, unless a command sets another: `empty`, `forest`, `pursuit` or
+    * `street`.
     */
   def scene: String = "empty"
 
   def equipment: Vector[Equipment] = Vector.empty
 
-  /** Estimates that policies derive from cameras. */
+  /** The estimates that policies derive from cameras. */
   def eyes: Vector[Eye] = Vector.empty
 
-  /** Whether the flight ends before its duration; evaluated at every decision. A pure function. */
+  /** Whether the flight ends now, before its duration; evaluated at every decision. A pure function. */
   def isOver(known: Known): Boolean = false
 
-  /** Whether it is the paper's game, whose reports include the paper's figures, and whose policies are
+  /** Whether this is the paper's game. Its reports include the paper's figures, and its two policies are
     * searched and trained against each other.
     */
   def isPapersGame: Boolean = false
 
-  /** Whether loops run as the paper's published code does, which confounds its result. */
+  /** Whether loops run as in the paper's published code, which confounds its result. */
   def isAsPublished: Boolean = false
 
-  /** How to read the measures, for the report, in whole sentences. */
+  /** Explanation of the measures for the report, in whole sentences. */
   def note: String = ""
 
-  /** Every setting with an invalid value: `name: expected …, came …`. */
+  /** A message for each setting with an invalid value: `name: expected …, came …`. */
   def mistakes: Seq[String] = Seq.empty
 
-  /** The identifier of its settings in configurations and recordings, one word. */
+  /** The scenario's identifier in configurations and recordings, one word. */
   def name: String = Scenario.worded(productPrefix)
 
-  /** The name, with settings that tables must show after a comma. */
+  /** The name, followed by settings that tables must show, after a comma. */
   def title: String = name
 
-  /** The text that defines it, where that is data and not code, with the parameter of recordings that holds
-    * it.
-    */
+  /** For a scenario that is data and not code, the recording's parameter for its text, and the text. */
   private[skein] def document: Option[(String, String)] = None
 
-  /** Index of a vehicle's colour within its role, in figures. */
+  /** Index of a vehicle's colour among those of its role, in figures. */
   def shade(vehicle: Int): Int = (0 until vehicle).count(agents(_).role == agents(vehicle).role)
 
-  /** This scenario with at least this number of vehicles, where their number is a setting: for rehearsals. */
+  /** This scenario with at least this number of vehicles, if that is a setting; for rehearsals. */
   def crowded(vehicles: Int): Scenario = this
 
-  /** Every setting by name, as [[ScenarioKind.read]] reads it. */
+  /** Every setting with its value, as [[ScenarioKind.read]] reads it. */
   final def settings: Vector[(String, String)] =
     productElementNames.zip(productIterator.map(_.toString)).toVector
 
@@ -75,7 +74,7 @@ trait Scenario extends Product:
 
   final def fleet: Fleet = Fleet(agents)
 
-  /** Whether all vehicles steer in the plane, each at an altitude of its own. */
+  /** Whether all vehicles steer horizontally, each at its own altitude. */
   final def isPlanar: Boolean = agents.forall(_.policy.isPlanar)
 
 object Scenario:
@@ -90,7 +89,7 @@ object Scenario:
   private[skein] def told[A](name: => String)(answer: => A): A =
     OwnFailure.told(s"the scenario $name")(answer)
 
-  /** The mistake of vehicles that no simulator can have or no recording could hold. */
+  /** A message for the first vehicle that no simulator or recording could represent, if any. */
   private[scenario] def mistakeOfAgents(scenario: Scenario): Option[String] =
     val agents = scenario.agents
     val names  = agents.map(_.name)
@@ -110,13 +109,13 @@ object Scenario:
       Some(s"a finite number as the start's heading, came ${agent.startHeading.value}")
     else None
 
-  /** The mistake of a number outside its bounds, if it is outside. */
+  /** A message if a number is outside its bounds. */
   def outside(name: String, value: Int, fewest: Int, most: Int): Option[String] =
     Option.when(value < fewest || value > most)(s"$name: expected $fewest to $most, came $value")
 
-  /** The mistakes of a scenario's measures (`Double`) that are not above 0.
+  /** A message for each `Double` setting of a scenario that is not above 0.
     *
-    * @param mayBeZero names of those that may be 0
+    * @param mayBeZero names of settings that may be 0
     */
   def notPositive(scenario: Scenario, mayBeZero: String*): Seq[String] =
     scenario.productElementNames
@@ -128,7 +127,7 @@ object Scenario:
 
 /** The state of a flight at a decision.
   *
-  * @param elapsed since the flight's first decision
-  * @param vehicles estimate of each, by its place
+  * @param elapsed time since the flight's first decision
+  * @param vehicles estimates of all vehicles, by index
   */
 final case class Known(elapsed: Span, vehicles: Vector[Seen])

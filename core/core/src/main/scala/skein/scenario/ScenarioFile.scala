@@ -3,11 +3,11 @@ package skein.scenario
 import skein.formula.{Evaluation, Node}
 import skein.policy.PolicyGraph
 
-/** A scenario as a file of data, without code: `docs/scenario-file.md` says what each line means. Nodes of
+/** A scenario as a file of data, without code; `docs/scenario-file.md` defines its lines. The nodes of
   * vehicles, limits and windows depend on settings alone.
   *
   * @param text the whole file
-  * @param over condition at which the flight ends, of positions, velocities and ages
+  * @param over condition that ends the flight, which depends on positions, velocities and ages
   */
 private[skein] final class ScenarioFile private[scenario] (
     val text: String,
@@ -37,15 +37,15 @@ private[skein] object ScenarioFile:
   val Version: Int = 1
   val Head: String = "skein-scenario"
 
-  /** The ending by which a command knows that it is not the name of a scenario. */
+  /** File ending by which a command distinguishes a scenario file from the name of a scenario. */
   val Suffix = ".scenario"
 
-  /** The parameter of a recording that holds the file. */
+  /** The parameter of a recording that contains the file. */
   val Recorded = "scenarioFile"
 
-  /** A setting, as `--set` knows it.
+  /** A setting, for the option `--set`.
     *
-    * @param meaning for people
+    * @param meaning one line for users
     */
   final case class Setting(name: String, default: Double, meaning: String)
 
@@ -57,12 +57,13 @@ private[skein] object ScenarioFile:
       policy: PolicyGraph
   )
 
-  /** A limit by the kind's word, with its numbers. */
+  /** A limit of this kind, with the numbers of the kind. */
   private[scenario] final case class Bounded(kind: String, numbers: Vector[Node])
 
   /** A quantity over time.
     *
-    * @param graph of positions alone, which searches can optimise
+    * @param graph the quantity as a function of positions alone, which searches can optimise; None if it
+    *   needs more
     */
   private[scenario] final case class Drawn(
       name: String,
@@ -73,5 +74,5 @@ private[skein] object ScenarioFile:
       measures: Vector[Reduced]
   )
 
-  /** @param window `last` or `after`, and how many seconds */
+  /** @param window `last` or `after`, with the number of seconds */
   private[scenario] final case class Reduced(name: String, reduction: String, window: Option[(String, Node)])

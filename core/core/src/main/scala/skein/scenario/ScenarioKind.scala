@@ -2,7 +2,7 @@ package skein.scenario
 
 import scala.deriving.Mirror
 
-/** A kind of scenario: the names of its settings, their defaults, and how they are read.
+/** A kind of scenario: the names, defaults and parsers of its settings.
   *
   * {{{
   * val patrol = ScenarioKind(Patrol())   // of: case class Patrol(scouts: Int = 2, heightM: Double = 30) extends Scenario
@@ -21,7 +21,7 @@ open class ScenarioKind[A <: Scenario](val standard: A)(using mirror: Mirror.Pro
 
   /** Reads a scenario and evaluates all of its definitions once, so that errors surface before the flight.
     *
-    * @param values settings by name; missing ones have their defaults
+    * @param values settings by name; missing settings have their defaults
     * @throws skein.units.OwnFailure if the scenario's code throws
     * @return Left lists every mistake: what was expected, and what was given
     */
@@ -30,8 +30,8 @@ open class ScenarioKind[A <: Scenario](val standard: A)(using mirror: Mirror.Pro
     made.foreach(scenario => Scenario.told(name)(ask(scenario)))
     made
 
-  /** Reads a scenario without evaluating its definitions: for candidates of a search, after a similar one was
-    * read.
+  /** Reads a scenario without evaluating its definitions; for candidates of a search, after a similar
+    * scenario was read.
     */
   def candidate(values: Map[String, String]): Either[Seq[String], Scenario] =
     val unknown = values.keys.toSeq.sorted.filterNot(settings.contains).map(name =>
@@ -67,8 +67,8 @@ open class ScenarioKind[A <: Scenario](val standard: A)(using mirror: Mirror.Pro
 
   /** Reads the scenario of a recording.
     *
-    * @param parameters of the recording, by name. A setting that it lacks was introduced later, and takes its
-    *   default
+    * @param parameters of the recording, by name. A missing setting was introduced after the recording, and
+    *   has its default
     */
   def ofRecording(parameters: Map[String, String]): Either[Seq[String], Scenario] =
     read(settings.flatMap(setting => parameters.get(standard.recordedAs(setting)).map(setting -> _)).toMap)
@@ -80,7 +80,7 @@ open class ScenarioKind[A <: Scenario](val standard: A)(using mirror: Mirror.Pro
 private final class Reader(val what: String, val read: String => Option[Any])
 
 private object Reader:
-  /** The reader for values of a default's type. */
+  /** The reader for settings with a default of this type. */
   def of(scenario: String, default: Any): Reader = default match
     case _: Int     => Reader("a whole number", _.toIntOption)
     case _: Long    => Reader("a whole number", _.toLongOption)
@@ -92,11 +92,11 @@ private object Reader:
         s"scenario $scenario: a setting is a number, a truth value or a text, came $other"
       )
 
-/** Finds the known word that is nearest to a misspelt one. */
+/** Finds the known word nearest to a misspelt word. */
 object Nearest:
   def to(word: String, known: Seq[String]): String = known.sorted.minBy(distance(word, _))
 
-  /** Number of letters to insert, delete or replace. */
+  /** Number of letters to insert, delete or replace to turn one word into the other. */
   def distance(from: String, to: String): Int =
     val first = Vector.range(0, to.length + 1)
     from.zipWithIndex

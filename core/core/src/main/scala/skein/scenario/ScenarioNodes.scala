@@ -5,8 +5,8 @@ import scala.collection.mutable
 import skein.formula.{Node, Op, Trace}
 import skein.policy.PolicyInput
 
-/** The nodes of a [[ScenarioFile]], as its lines state them: `7 add 3 5`. Their numbers are consecutive, and
-  * arguments have smaller ones.
+/** The nodes of a [[ScenarioFile]], each defined by a line such as `7 add 3 5`. Their numbers are
+  * consecutive, and arguments have smaller numbers.
   */
 private[scenario] final class ScenarioNodes extends ScenarioNumbers:
   import ScenarioMistake.*
@@ -27,7 +27,7 @@ private[scenario] final class ScenarioNodes extends ScenarioNumbers:
 
   /** Adds the node of a line.
     *
-    * @param setting index of a setting, by its name; −1 if there is none
+    * @param setting index of a setting, from its name; −1 if there is no such setting
     */
   def add(number: String, words: ScenarioWords, setting: String => Int): Unit =
     if number != size.toString then wrong(s"expected node $size, the next one, came '${shown(number)}'")
@@ -40,8 +40,8 @@ private[scenario] final class ScenarioNodes extends ScenarioNumbers:
     if depth(node) > MostDepth then
       wrong(s"expected at most $MostDepth operations upon one another, came more")
 
-  /** The length of the longest chain of operations to a node; notes what depends on inputs. A line adds few
-    * nodes, so the recursion is not deep.
+  /** Length of the longest chain of operations that leads to a node. Also records which nodes depend on
+    * inputs. A line adds few nodes, so the recursion is not deep.
     */
   private def depth(node: Node): Int = depths.get(node) match
     case Some(known) => known
@@ -91,7 +91,7 @@ private[scenario] final class ScenarioNodes extends ScenarioNumbers:
     val leaves = inputs.keysIterator.toVector
     Trace.needed(of).filter(_.op == Op.Input).map(node => leaves(node.index)).distinct
 
-  /** Copies nodes into a trace of their own, with inputs in another order. */
+  /** Copies nodes into a new trace, with inputs in another order. */
   def moved(of: Vector[Node], order: Vector[Leaf]): (Trace, Vector[Node]) =
     val leaves = inputs.keysIterator.toVector
     val places = order.zipWithIndex.toMap
@@ -102,7 +102,7 @@ private[scenario] final class ScenarioNodes extends ScenarioNumbers:
     )
 
 private[scenario] object ScenarioNodes:
-  /** The time ahead, s, for which a goal is wanted. */
+  /** An input that only goals have: the time ahead, s. */
   case object Ahead
 
   type Leaf = PolicyInput | Ahead.type

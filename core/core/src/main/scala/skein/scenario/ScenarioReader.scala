@@ -4,7 +4,7 @@ import scala.collection.mutable
 import skein.formula.{Node, Untraceable}
 import skein.policy.{GraphAction, PolicyGraph, PolicyInput}
 
-/** Reads a [[ScenarioFile]], line by line. Everything in it has a limit, and no node depends on itself. */
+/** Reads a [[ScenarioFile]], line by line. All sizes are limited, and no node depends on itself. */
 private[scenario] final class ScenarioReader private (text: String):
   import ScenarioFile.*
   import ScenarioMistake.*
@@ -20,10 +20,10 @@ private[scenario] final class ScenarioReader private (text: String):
   private var duration = Option.empty[Node]
   private var over     = Option.empty[(Int, Node)]
 
-  /** How many nodes all policies have; each vehicle has those that it shares with others for itself. */
+  /** Total number of nodes of all policies; a node that several vehicles use counts for each. */
   private var used = 0
 
-  /** Number of the present line, for messages; 0: of no line. */
+  /** Number of the present line, for messages; 0 if there is none. */
   private var line = 0
 
   private def file(): ScenarioFile =
@@ -228,7 +228,7 @@ private[scenario] object ScenarioReader:
     val actions: mutable.ArrayBuffer[(Option[Node], GraphAction[Node])] = mutable.ArrayBuffer.empty
     val memory: mutable.ArrayBuffer[(Node, Node)]                       = mutable.ArrayBuffer.empty
 
-    /** The place wanted; and most speed and least separation. */
+    /** The wanted position of a goal; and its maximum speed and minimum separation. */
     var goal, limits: Vector[Node] = Vector.empty
 
   private final class SeriesLines(
@@ -249,7 +249,7 @@ private[scenario] object ScenarioReader:
   private val MostSeries   = 100
   private val MostMeasures = 200
 
-  /** Kinds of limits, with how many numbers each has; 0: corners. */
+  /** The kinds of limits, each with its count of numbers; 0 for any number of corners. */
   private val Limits = Vector(
     "separation"            -> 1,
     "horizontal-separation" -> 1,
@@ -281,7 +281,7 @@ private[scenario] object ScenarioReader:
 
   /** Reads a file.
     *
-    * @return Left states the first mistake in one line
+    * @return Left describes the first mistake in one line
     */
   def read(text: String): Either[String, ScenarioFile] =
     val reader = ScenarioReader(text)

@@ -1,24 +1,25 @@
 package skein.scenario
 
-/** Scenarios by the text of their [[ScenarioFile]], which stands for the name of a scenario wherever one is
-  * stated.
+/** Scenarios given by the text of their [[ScenarioFile]], which may replace the name of a scenario
+  * everywhere.
   */
 private[skein] object ScenarioText:
 
-  /** Whether a text is a scenario's file, and not the name of a scenario. */
+  /** Whether a text is a scenario file, and not the name of a scenario. */
   def isText(text: String): Boolean = text.startsWith(ScenarioFile.Head + " ")
 
-  /** What messages call a scenario: the name in its file, or itself where it is a name. */
+  /** The name of a scenario for messages: the name in its file, or the given name. */
   def called(scenario: String): String =
     if isText(scenario) then read(scenario).fold(_ => ScenarioFile.Head, _.name) else scenario
 
-  /** What `--scenario` takes for a scenario, as far as that is known. */
+  /** The argument of `--scenario` for a scenario, as far as it is known. */
   def fileOf(scenario: String): String =
     if isText(scenario) then called(scenario) + ScenarioFile.Suffix else scenario
 
   @volatile private var last = Option.empty[(String, ScenarioKind[FileScenario])]
 
-  /** Reads a file's text. Repeated calls with one text return one object, so that it is compiled once.
+  /** Reads a file's text. Repeated calls with one text return one object, so that the scenario is compiled
+    * once.
     *
     * @return Left states in one line what was expected, what was given, and in which line
     */

@@ -12,7 +12,7 @@ private[scenario] object ScenarioMistake:
 
   private val MostShown = 60
 
-  /** A text of the file for a message: of printable letters, and cut. */
+  /** A part of the file for a message: shortened, and with printable letters only. */
   def shown(text: String): String =
     val cut = if text.length <= MostShown then text else text.take(MostShown) + "…"
     cut.map(letter => if letter.isControl then '?' else letter)
@@ -24,10 +24,10 @@ private[scenario] trait ScenarioNumbers:
   def isCondition(id: Int): Boolean
   def reads(node: Node): Boolean
 
-/** The words of one line of a [[ScenarioFile]]: separated by spaces; `"…"` is one word, in which `\"` and
-  * `\\` stand for the second letter.
+/** The words of one line of a [[ScenarioFile]], separated by spaces. `"…"` is one word, in which `\"` stands
+  * for `"`, and `\\` for `\`.
   *
-  * @param nodes of earlier lines
+  * @param nodes the nodes of earlier lines
   */
 private[scenario] final class ScenarioWords(line: String, nodes: ScenarioNumbers):
   import ScenarioMistake.*
@@ -78,7 +78,7 @@ private[scenario] final class ScenarioWords(line: String, nodes: ScenarioNumbers
     if word.isBlank then wrong(s"expected $what, came an empty text")
     word
 
-  /** A name of small letters, digits and dashes. */
+  /** Reads a name of small letters, digits and dashes. */
   def key(what: String): String =
     val word = text(what)
     if !word.matches("[a-z][a-z0-9]*(-[a-z0-9]+)*") then
@@ -121,7 +121,7 @@ private[scenario] final class ScenarioWords(line: String, nodes: ScenarioNumbers
   def value(): Node     = node(isCondition = false)
   def condition(): Node = node(isCondition = true)
 
-  /** A number that depends on settings alone, and not on what is observed. */
+  /** Reads a number that depends on settings alone, and not on observations. */
   def fixed(): Node =
     val one = value()
     if nodes.reads(one) then

@@ -3,16 +3,16 @@ package skein.scenario
 import skein.forecast.Structure
 import skein.policy.PolicyFamily
 
-/** A user-defined control loop, by its name in settings and recordings. */
+/** A user-defined control loop, with its name in settings and recordings. */
 trait NamedLoop:
   def name: String
 
-/** The kinds of scenarios, families of policies, structures of plants, and loops, that a program knows by
-  * name; required wherever settings or recordings are read.
+/** The kinds of scenarios, families of policies, structures of plants, and loops that a program knows by
+  * name. It is required wherever settings or recordings are read.
   *
   * @param kinds the first is the default
   * @param families of policies, in addition to Skein's
-  * @param ownStructures of plants, in addition to Skein's
+  * @param ownStructures structures of plants, in addition to Skein's
   * @param loops in addition to Skein's
   */
 final case class Scenarios(
@@ -46,26 +46,26 @@ final case class Scenarios(
 
   def names: Vector[String] = kinds.map(_.name)
 
-  /** The policy family of this name; Left states the names expected and the one given. */
+  /** The policy family with this name. Left states the known names and the given one. */
   def family(name: String): Either[String, PolicyFamily] = PolicyFamily.parse(name, families)
 
-  /** The structure of this label; Left states the labels expected and the one given. */
+  /** The structure with this label. Left states the known labels and the given one. */
   def structure(label: String): Either[String, Structure] =
     structures
       .find(_.label == label)
       .toRight(s"expected a structure (${labels.mkString(", ")}), came '$label'")
 
-  /** The default scenario of a program without the paper's game; for that game, commands need its two sides
-    * instead.
+  /** The default scenario of a program that does not include the paper's game; None in a program that does,
+    * whose commands need the two sides of the game instead.
     */
   def firstWithoutGame: Option[String] = Option.when(!kinds.exists(_.standard.isPapersGame))(names.head)
 
-  /** Whether a name with these settings denotes the paper's unmodified game; every program knows it. */
+  /** Whether a name with these settings means the paper's game without changes, which every program knows. */
   def isPapersGame(name: String, set: Map[String, String]): Boolean =
     set.isEmpty && (kinds ++ Scenarios.ours.kinds).find(_.name == name).exists(_.standard.isPapersGame)
 
-  /** The kind of this name, or of a [[ScenarioFile]] with this text; Left states the names expected, the one
-    * given, and the nearest.
+  /** The kind with this name, or that of a [[ScenarioFile]] with this text. Left states the known names, the
+    * given one, and the nearest.
     */
   def kind(name: String): Either[String, ScenarioKind[?]] =
     if ScenarioText.isText(name) then ScenarioText.read(name) else named(name)
@@ -81,9 +81,9 @@ final case class Scenarios(
 
   /** The scenario of a recording.
     *
-    * @param name [[Scenario.name]]
+    * @param name value of [[Scenario.name]]
     * @param parameters of the recording, by name
-    * @return Left states why it is not known here
+    * @return Left states why this program does not know the scenario
     */
   def ofRecording(name: String, parameters: Map[String, String]): Either[String, Scenario] =
     kind(parameters.getOrElse(ScenarioFile.Recorded, name)).left

@@ -3,17 +3,17 @@ package skein.scenario
 import skein.policy.*
 import skein.units.Decimals.significant
 
-/** A follower keeps a place beside a leader that turns left and right without notice. How well it does
-  * depends on how well it knows where both are when its commands act.
+/** A follower keeps a place beside a leader that turns left and right without notice. Its success depends on
+  * its knowledge of both positions at the time its commands act.
   *
   * @param leaderMps speed of the leader
   * @param turnRadps turn rate of the leader, rad/s
   * @param leastS shortest time between two changes of the leader's turn, s
-  * @param mostS longest, s
-  * @param course number of the leader's course: each has other times
+  * @param mostS longest time between two changes, s
+  * @param course number of the leader's course; each number has different times
   * @param besideM distance of the place from the leader, to the east
-  * @param mostMps the highest speed that the follower is commanded
-  * @param altitudeM altitude of both
+  * @param mostMps limit of the follower's commanded speed
+  * @param altitudeM altitude of both vehicles
   */
 final case class Shadow(
     leaderMps: Double = 6,
@@ -52,10 +52,10 @@ final case class Shadow(
   private def offPlace = Series.of("off the place", "m", Beside(besideM))
 
 object Shadow:
-  /** Time for the follower to get under way, s; not measured. */
+  /** Time in which the follower gains speed after the start, s; measures leave it out. */
   private val SettlingS = 5.0
 
-  /** Distance of the second vehicle from the place that many metres east of the first, in the plane, m. */
+  /** Horizontal distance of the second vehicle from the place `eastM` east of the first, m. */
   final case class Beside(eastM: Double) extends Quantity:
     def of(positions: Positions): Double =
       positions.distanceM(1, positions.northM(0), positions.eastM(0) + eastM)

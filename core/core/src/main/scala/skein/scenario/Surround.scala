@@ -61,7 +61,9 @@ object Surround:
   private def distancesM(tracks: Tracks, instant: Int) =
     tracks.vehicles.tail.map(tracks.distanceM(0, _, instant))
 
-  /** Time from which the evader stays between its pursuers, s: no gap reaches 180° any more. */
+  /** Time from which the evader stays between its pursuers, with no gap of 180° or more, s; None if it never
+    * does.
+    */
   private def surroundedFromS(tracks: Tracks): Option[Double] =
     val gaps    = gap.curve(tracks).points
     val outside = gaps.lastIndexWhere(_._2 >= 180)

@@ -4,11 +4,13 @@ import java.util.Locale
 import skein.policy.Role
 import skein.units.*
 
-/** The track of one vehicle by the simulator's clock; ascending, each instant once, at least one.
+/** The track of one vehicle, by the simulator's clock. Instants ascend, each occurs once, and there is at
+  * least one.
   *
-  * @param positionsNed by instant, m, world frame
-  * @param velocitiesNed by instant, m/s
-  * @param isMeasured whether velocities were measured, and are not those of the straight ways
+  * @param positionsNed position at each instant, m, world frame
+  * @param velocitiesNed velocity at each instant, m/s
+  * @param isMeasured whether velocities were measured; otherwise they follow from the straight lines between
+  *   positions
   */
 final case class Track private (
     vehicle: String,
@@ -23,22 +25,24 @@ final case class Track private (
 
   def isA(role: Role): Boolean = Role.parse(this.role) == role
 
-  /** On straight lines between samples. A vehicle that circles at 10 m/s on 8 m, sampled every 100 ms, is
-    * less than 2 cm from them. Between samples with measured velocities more than [[Track.LongGap]] apart, as
-    * around an outage, on the cubic through both positions and velocities (Hermite's): that circle is then
-    * less than 1 m from it over 2 s, and 5.5 m from the straight line. Outside the track's times, its first
-    * or last position.
+  /** The position at a time, m. Between samples it lies on a straight line: a vehicle that circles at 10 m/s
+    * with a radius of 8 m, sampled every 100 ms, is less than 2 cm from it. Between samples with measured
+    * velocities that are more than [[Track.LongGap]] apart, as around an outage, it lies on the cubic through
+    * both positions and velocities (Hermite's): over 2 s, that circle is less than 1 m from the cubic, and
+    * 5.5 m from the straight line. Outside the track's times it is the first or last position.
     */
   def at(time: Instant): Vector3 = sought(time, positionsNed): above =>
     if isMeasured && times(above).since(times(above - 1)) > Track.LongGap then curved(above, time)
     else straight(above, time, positionsNed)
 
-  /** Interpolated velocity, m/s, on straight lines between samples; outside them as [[at]]. */
+  /** The velocity at a time, m/s, interpolated linearly between samples; outside the track's times the first
+    * or last.
+    */
   def velocityAt(time: Instant): Vector3 = sought(time, velocitiesNed)(straight(_, time, velocitiesNed))
 
   /** The value at a time.
     *
-    * @param between given the index of the sample after the time, which is not the first
+    * @param between interpolates, from the index of the sample after the time, which is not the first
     */
   private def sought(time: Instant, values: Vector[Vector3])(between: Int => Vector3): Vector3 =
     val above = times.search(time).insertionPoint
@@ -61,12 +65,14 @@ final case class Track private (
     time.since(times(above - 1)).toSeconds / times(above).since(times(above - 1)).toSeconds
 
 object Track:
-  /** Samples further apart have curves between them: five periods of the usual ten readings a second. */
+  /** Gap between samples above which the track is a curve: five periods of the usual ten readings a second.
+    */
   val LongGap: Span = Span.ofMillis(500)
 
-  /** A track of samples.
+  /** A track from samples.
     *
-    * @param samples instant, position and velocity, in any order; of one instant the first counts
+    * @param samples instant, position and velocity, in any order; if several have one instant, the first is
+    *   used
     */
   def of(vehicle: String, role: String, samples: Vector[(Instant, Vector3, Vector3)]): Track =
     val ordered = samples.distinctBy(_._1).sortBy(_._1)
@@ -79,7 +85,8 @@ object Track:
       isMeasured = true
     )
 
-  /** A track without measured velocities: each velocity is that of the straight way to the next sample. */
+  /** A track without measured velocities: the velocity at a sample is that of the straight line to the next.
+    */
   def ofPositions(vehicle: String, role: String, samples: Vector[(Instant, Vector3)]): Track =
     val ordered = samples.distinctBy(_._1).sortBy(_._1)
     val moved   = ordered.zip(ordered.drop(1)).map { case ((from, start), (to, end)) =>

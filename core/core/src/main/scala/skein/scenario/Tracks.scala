@@ -3,7 +3,7 @@ package skein.scenario
 import skein.units.*
 
 /** Positions of all vehicles of a flight at equidistant instants of the simulator's clock, by vehicle and
-  * instant; vehicles by their places in the scenario. World frame NED, m.
+  * instant. Vehicles are identified by their index in the scenario. World frame NED, m.
   */
 final class Tracks private (
     tracks: Vector[Track],
@@ -27,7 +27,7 @@ final class Tracks private (
   def positionNed(vehicle: Int, instant: Int): Vector3 =
     Vector3(northM(vehicle)(instant), eastM(vehicle)(instant), downM(vehicle)(instant))
 
-  /** The tracks of the first vehicles, over the time for which all of these were read. */
+  /** The tracks of the first vehicles alone, over the time in which all of these were read. */
   def first(count: Int): Tracks = if count == vehicles.size then this else Tracks.of(tracks.take(count)).get
 
   def positions(instant: Int): Positions =
@@ -39,24 +39,24 @@ final class Tracks private (
 
   def altitudeM(vehicle: Int, instant: Int): Double = -downM(vehicle)(instant)
 
-  /** Distance between two vehicles in the horizontal plane, m. */
+  /** Horizontal distance between two vehicles, m. */
   def distanceM(one: Int, other: Int, instant: Int): Double =
     StrictMath.hypot(
       northM(one)(instant) - northM(other)(instant),
       eastM(one)(instant) - eastM(other)(instant)
     )
 
-  /** Distance from a vehicle to a place in the horizontal plane, m. */
+  /** Horizontal distance from a vehicle to a position, m. */
   def distanceM(vehicle: Int, north: Double, east: Double, instant: Int): Double =
     StrictMath.hypot(northM(vehicle)(instant) - north, eastM(vehicle)(instant) - east)
 
   def separationM(one: Int, other: Int, instant: Int): Double =
     (positionNed(one, instant) - positionNed(other, instant)).norm
 
-  /** Deviation from another flight at equal times since the start: root of the mean square over vehicles and
+  /** Root mean square deviation from another flight at equal times since the start, over all vehicles and
     * instants, m.
     *
-    * @param inSpace else in the horizontal plane
+    * @param inSpace whether in three dimensions; otherwise horizontally
     */
   def rmsFrom(other: Tracks, inSpace: Boolean): Double =
     val both    = instants.take(other.instants.size)

@@ -1,18 +1,18 @@
 package skein.scenario
 
-/** The part of a flight to which a measure refers. */
+/** The part of a flight that a measure covers. */
 enum Window:
   case Whole
 
-  /** The last `seconds`; a shorter flight has no such part. */
+  /** The last `seconds` of the flight; a shorter flight has no such part. */
   case Last(seconds: Double)
 
-  /** All after the first `seconds`; of a shorter flight, the whole. */
+  /** The time after the first `seconds`; for a shorter flight, the whole flight. */
   case After(seconds: Double)
 
   def of(tracks: Tracks): Option[Range] = of(tracks.instants, tracks.stepS)
 
-  /** The instants within this part, for instants `stepS` seconds apart that start at 0. */
+  /** Indices of the instants within this part. The instants are `stepS` seconds apart and start at 0. */
   def of(instants: Range, stepS: Double): Option[Range] = this match
     case Whole          => Some(instants)
     case After(seconds) =>

@@ -2,28 +2,28 @@ package skein.signal
 
 import skein.units.*
 
-/** The rate of one direction of a line, with a limited queue before it.
+/** A rate limit for one direction of a line, preceded by a queue of limited size.
   *
   * @param bitsPerSecond of payload; the headers of a network's own layers are not counted
-  * @param queueBytes limit of the first-in, first-out queue; what does not fit waits at its sender
+  * @param queueBytes limit of the first-in, first-out queue; bytes that do not fit wait at the sender
   */
 final case class Bandwidth(bitsPerSecond: Long, queueBytes: Int):
   require(bitsPerSecond > 0 && queueBytes > 0, s"a line has a rate and a queue above zero: $this")
 
-  /** Time that the line takes to send this number of bytes. */
+  /** Time for which the line sends this number of bytes. */
   def timeOf(bytes: Long): Span = Span.ofSeconds(bytes * 8.0 / bitsPerSecond)
 
 object Bandwidth:
-  /** An Ethernet frame: a smaller queue would fit no whole packet. */
+  /** Size of an Ethernet frame, the smallest queue, because a whole packet must fit. */
   private val FrameBytes = 1500
 
   private val LeastQueueBytes = 2 * FrameBytes
 
-  /** Limit of the time to send a full queue; a longer queue would delay everything for good. */
+  /** Limit of the time in which a full queue is sent; a longer queue would delay everything permanently. */
   private val MostQueue = Span.ofSeconds(60)
 
-  /** A line with a queue that it sends in 5 ms, the standing delay that CoDel holds a queue to (RFC 8289,
-    * section 4.3), and of 3,000 bytes at least.
+  /** A line with a queue that is sent in 5 ms, but of at least 3,000 bytes. CoDel limits a queue to this
+    * standing delay (RFC 8289, section 4.3).
     */
   def ofBitsPerSecond(bitsPerSecond: Long): Bandwidth =
     Bandwidth(bitsPerSecond, (bitsPerSecond / 8 / 200).max(LeastQueueBytes).min(Int.MaxValue).toInt)
@@ -32,9 +32,9 @@ object Bandwidth:
     "a rate from 1kbit to 100gbit such as 50mbit, or with a queue such as " +
       s"50mbit/64kB, from ${FrameBytes}B up to 1GB and to what the rate sends in ${MostQueue.toSeconds.toInt} s"
 
-  /** Reads `50mbit` (bit, kbit, mbit, gbit a second, in powers of 1000), or `50mbit/64kB` with a queue in B,
-    * kB, MB or GB, from an Ethernet frame to 1 GB and to a minute of the rate. The error states what was
-    * expected and what was received.
+  /** Reads `50mbit` (bit, kbit, mbit, gbit per second, in powers of 1000), or `50mbit/64kB` with the size of
+    * the queue in B, kB, MB or GB: at least an Ethernet frame, at most 1 GB and a minute of the rate. Left
+    * states what was expected and what was received.
     */
   def parse(text: String): Either[String, Bandwidth] =
     val bandwidth = text match

@@ -7,27 +7,27 @@ import skein.units.Decimals.fixed
   *
   * Physics was sampled at some moment between request and answer, so each reading bounds the offset
   * (controller minus simulator) from both sides: `sentAt − validAt ≤ offset ≤ receivedAt − validAt`. The
-  * bounds of all readings hold simultaneously; they narrow with every short delay in either direction, and
-  * the offset cannot lie outside as long as neither clock stops. Between the bounds it is estimated by
-  * assuming that the lower quartile of the latest delays is equal in both directions. (Their minima vary
-  * more: over the paper's VPN by 7 ms.)
+  * bounds of all readings hold simultaneously: every short delay in either direction narrows them, and as
+  * long as neither clock stops, the offset is within them. Between the bounds it is estimated by assuming
+  * that the lower quartile of the latest delays is equal in both directions. (Their minima vary more: over
+  * the paper's VPN by 7 ms.)
   *
-  * Old bounds are widened by [[ClockAlignment.MaxDrift]] with time, so that clocks of different rates neither
-  * contradict themselves nor hold the estimate back. If readings still contradict each other, the simulator
-  * was paused or restarted: estimation restarts, and the restart is counted. The bounds of the last few runs
-  * are kept. A late answer of a former run contradicts the present bounds and agrees with that run's. It says
-  * nothing about the present clock, and is older than all readings of the present run, whatever its time
-  * stamp.
+  * Old bounds are widened by [[ClockAlignment.MaxDrift]] with time, so that clocks of different rates cause
+  * no contradiction and the estimate follows them. If readings still contradict each other, the simulator was
+  * paused or restarted: estimation restarts, and the restart is counted. The bounds of the last few runs are
+  * stored. A late answer from a former run contradicts the present bounds and is compatible with that run's.
+  * It does not affect the present estimate, and counts as older than all readings of the present run,
+  * whatever its time stamp.
   *
   * @param lower the offset is at least this
   * @param upper the offset is at most this
   * @param latest bounds from single readings
-  * @param validAt the simulator's time of the newest reading
-  * @param receivedAt when the newest reading arrived
+  * @param validAt valid time of the newest reading, on the simulator's clock
+  * @param receivedAt arrival time of the newest reading
   * @param standsStill whether the simulator's clock did not advance between the last two readings
-  * @param restarts how often estimation started afresh
-  * @param since when the first reading of the present run arrived
-  * @param former the runs before, the newest last, as estimated at their ends
+  * @param restarts number of times that estimation restarted
+  * @param since arrival time of the present run's first reading
+  * @param former former runs, the newest last, as estimated at their ends
   */
 final case class ClockAlignment private (
     lower: Span,
@@ -50,16 +50,16 @@ final case class ClockAlignment private (
   /** The controller's time at which the simulator's clock showed `simulatorTime`. */
   def toController(simulatorTime: Instant): Instant = simulatorTime + offset
 
-  /** Age of a reading at `now`, since its sampling, by the controller's clock. Absent where the present
-    * offset does not hold for the reading: it was sampled before the simulator's clock was reset, and would
-    * seem to come from the future.
+  /** Time from a reading's sampling to `now`, by the controller's clock. None if the present offset is not
+    * valid for the reading: it was sampled before the simulator's clock was reset, and would seem to come
+    * from the future.
     */
   def ageOf(reading: Stamped[?], now: Instant): Option[Span] =
     Some(now.since(toController(reading.validAt))).filter(_ >= Span.Zero)
 
-  /** Whether one reading was sampled later than another: because it was requested after the other was
-    * received, or else because it is of a later run of the simulator, or else by the simulator's clock. The
-    * two readings alone do not suffice: after a restart with an earlier clock, a late answer of the former
+  /** Whether one reading was sampled later than another. This is so if it was requested after the other was
+    * received; or else if it is from a later run of the simulator; or else if its time stamp is later. The
+    * two readings alone do not suffice: after a restart with an earlier clock, a late answer from the former
     * run has the later time stamp.
     */
   def isNewer(one: Stamped[?], other: Stamped[?]): Boolean =
@@ -69,10 +69,10 @@ final case class ClockAlignment private (
       val (run, otherRun) = (runOf(one), runOf(other))
       run > otherRun || (run == otherRun && one.validAt > other.validAt)
 
-  /** Whether a reading was sampled by a run of the simulator before the present one. */
+  /** Whether a reading was sampled in a former run of the simulator. */
   def isOfFormerRun(reading: Stamped[?]): Boolean = runOf(reading) < former.size
 
-  /** What a reading contradicts, if estimation restarts because of it ([[updated]]). */
+  /** The contradiction in a reading because of which [[updated]] restarts estimation; None if it does not. */
   def contradiction(reading: Stamped[?]): Option[String] =
     val next = updated(reading)
     Option.when(next.restarts > restarts):
@@ -81,7 +81,7 @@ final case class ClockAlignment private (
         val lost = (next.lower - upper).max(lower - next.upper).toMillis
         s"the offset of the clocks has changed by ${lost.fixed(1)} ms or more"
 
-  /** The estimate after a reading. A reading of a former run changes nothing. */
+  /** The estimate after a reading. A reading from a former run changes nothing. */
   def updated(reading: Stamped[?]): ClockAlignment =
     if isOfFormerRun(reading) then this
     else
@@ -107,8 +107,8 @@ final case class ClockAlignment private (
             if standsStill then former else (former :+ copy(former = Vector.empty)).takeRight(FormerRuns)
         )
 
-  /** Index among the known runs, the present one last. A reading requested after a run had begun belongs to
-    * that run or a later one.
+  /** Index of a reading's run among the known runs, the present one last. A reading that was requested after
+    * a run had begun is from that run or a later one.
     */
   private def runOf(reading: Stamped[?]): Int =
     if reading.sentAt > since || hasTold(reading) then former.size
@@ -117,8 +117,8 @@ final case class ClockAlignment private (
         case -1  => former.size
         case run => run
 
-  /** Whether a reading can be of this run: it was received after the run was first observed, and its bounds
-    * are compatible with the present ones.
+  /** Whether a reading may be from this run: it was received after the run was first observed, and its bounds
+    * are compatible with the run's.
     */
   private def hasTold(reading: Stamped[?]): Boolean =
     val slack = drift(since = receivedAt, until = reading.receivedAt)
@@ -128,13 +128,13 @@ final case class ClockAlignment private (
 
 object ClockAlignment:
 
-  /** Number of earlier runs of the simulator that are kept: more cannot end within the time of one answer. */
+  /** Number of former runs that are stored; more cannot end before a late answer arrives. */
   val FormerRuns = 4
 
-  /** Limit of the drift between the two clocks, seconds a second: about twice that of quartz clocks. */
+  /** Limit of the drift between the two clocks, seconds per second: about twice that of quartz clocks. */
   val MaxDrift = 100e-6
 
-  /** Longest time without an advance of a running simulator's clock: three physics steps of AirSim. */
+  /** Longest time for which a running simulator's clock does not advance: three physics steps of AirSim. */
   val Tick: Span = Span.ofMillis(9)
 
   def of(reading: Stamped[?]): ClockAlignment =
@@ -154,6 +154,6 @@ object ClockAlignment:
   private def boundsOf(reading: Stamped[?]) =
     NewestBounds.Bounds(reading.sentAt.since(reading.validAt), reading.receivedAt.since(reading.validAt))
 
-  /** The most that two clocks drift apart between two instants. */
+  /** The largest possible drift between the two clocks from one instant to another. */
   private def drift(since: Instant, until: Instant): Span =
     Span.ofNanos(math.ceil(until.since(since).max(Span.Zero).toNanos * MaxDrift).toLong)

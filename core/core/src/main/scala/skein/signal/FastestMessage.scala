@@ -2,13 +2,14 @@ package skein.signal
 
 import skein.units.*
 
-/** Relates the clock of message headers to the receiver's where nothing goes there and back: the fastest
-  * message so far counts as sent and received at one instant. Ages are then those beyond the fastest
-  * message's way. Drift of the clocks is allowed for, and a stamp that is later than expected by more than
-  * [[FastestMessage.Restart]], as after a pause of a simulation, or any earlier one, begins anew.
+/** Relates the clock of message headers to the receiver's clock, for messages that go in one direction only.
+  * The fastest message so far is assumed to have been received when it was sent, so ages are times beyond the
+  * fastest transmission. The clocks may drift. The relation starts anew at a stamp that is earlier than
+  * expected by more than [[FastestMessage.Restart]], as after a pause of a simulation, and at every message
+  * that is faster than expected.
   *
-  * @param offset the receiver's clock minus the header's, at most
-  * @param at when the fastest message was received
+  * @param offset upper bound of the receiver's clock minus the header's
+  * @param at arrival time of the fastest message
   */
 final case class FastestMessage(offset: Span, at: Instant):
   import FastestMessage.*
@@ -18,14 +19,14 @@ final case class FastestMessage(offset: Span, at: Instant):
     val drift = Span.ofNanos((receivedAt.since(at).max(Span.Zero).toNanos * ClockAlignment.MaxDrift).toLong)
     if one <= offset + drift || one > offset + Restart then FastestMessage(one, receivedAt) else this
 
-  /** The earliest time, by the receiver's clock, at which the message's stamp can have been taken. */
+  /** The earliest time at which the message's stamp may have been taken, on the receiver's clock. */
   def sentAt(validAt: Instant, receivedAt: Instant): Instant = (validAt + offset - Doubt).min(receivedAt)
 
 object FastestMessage:
-  /** How much faster than the fastest so far a later message may be: it would contradict the clocks'
-    * alignment.
+  /** Time by which a later message may be faster than the fastest so far; a larger difference contradicts the
+    * clocks' alignment.
     */
   val Doubt: Span = Span.ofMillis(5)
 
-  /** No message is delayed for so long; middleware keeps some ten of a topic. */
+  /** Longer than the delay of any message; middleware stores about ten messages of a topic. */
   val Restart: Span = Span.ofSeconds(2)

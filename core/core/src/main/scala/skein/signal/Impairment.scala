@@ -2,24 +2,24 @@ package skein.signal
 
 import skein.units.*
 
-/** How a link loses packets. What a loss means is the transport's matter: TCP sends a packet again and later
-  * bytes wait for it ([[Retransmission]]), a datagram is gone.
+/** A way in which a link loses packets. The effect of a loss depends on the transport: TCP sends the packet
+  * again, and later bytes wait for it ([[Retransmission]]); a datagram is lost for good.
   */
 enum Impairment:
 
-  /** Of each direction a share of all packets is lost, in bursts: the chain of Gilbert, "Capacity of a
-    * burst-noise channel", Bell System Technical Journal 39 (1960), which moves with every packet of the
-    * direction, as `loss gemodel p r` of Linux's netem does. In its bad state every packet is lost, in its
-    * good state none. It leaves the bad state with probability r = 1/burst, and enters it with p = r · share
-    * / (1 − share). Losses are independent if `burst` is 1/(1 − share).
+  /** In each direction a share of all packets is lost, in bursts. The model is the chain of Gilbert,
+    * "Capacity of a burst-noise channel", Bell System Technical Journal 39 (1960), which advances with every
+    * packet of the direction, as `loss gemodel p r` of Linux's netem does. In its bad state every packet is
+    * lost, in its good state none is. It leaves the bad state with probability r = 1/burst, and enters it
+    * with p = r · share / (1 − share). If `burst` is 1/(1 − share), losses are independent.
     *
-    * @param burst mean number of successive packets that are lost together, 1/(1 − share) or more
+    * @param burst mean number of successive packets that are lost, at least 1/(1 − share)
     */
   case Loss(share: Double, burst: Double)
 
-  /** Nothing passes in either direction of any connection for `lasts`, again and again. The time between two
-    * outages is exponentially distributed, so that they begin `every` apart on average. A link begins between
-    * two.
+  /** From time to time, nothing passes in either direction of any connection for `lasts`. The time between
+    * two outages is exponentially distributed, so that outages begin `every` apart on average. A link begins
+    * between two outages.
     */
   case Outage(lasts: Span, every: Span)
 
@@ -27,13 +27,13 @@ object Impairment:
   private val MostShare = 0.9
   private val MostBurst = 10_000.0
 
-  /** A share of packets that are lost independently. */
+  /** Independent losses of a share of all packets. */
   def independent(share: Double): Impairment = Loss(share, 1 / (1 - share))
 
   private val lossForm =
     s"a share from 0% to ${(MostShare * 100).toInt}% such as 5%, or with a mean length of bursts such as 5%/4"
 
-  /** Reads `5%` or `5%/4`; the error states what was expected. */
+  /** Reads `5%` or `5%/4`. Left states what was expected. */
   private[signal] def loss(text: String): Either[String, Impairment] =
     val (share, burst) = text match
       case s"$share/$burst" => (share, Some(burst))
@@ -53,7 +53,7 @@ object Impairment:
             )
     yield loss
 
-  /** Reads `1s/10s`: how long, and how often on average. */
+  /** Reads `1s/10s`: the duration, and the mean time between two begins. */
   private[signal] def outage(text: String, time: String => Option[Span]): Either[String, Impairment] =
     val times = text match
       case s"$lasts/$every" => time(lasts).zip(time(every))

@@ -5,10 +5,8 @@ import skein.units.*
 /** The distribution of round trips, given by its inverse cumulative distribution function. */
 enum LatencyDistribution:
 
-  /** Every round trip takes an equal, constant time. */
   case Constant(roundTrip: Span)
 
-  /** Round trips are uniform between two bounds. */
   case Uniform(least: Span, most: Span)
 
   /** The logarithm is normal with standard deviation `sigma`; half of the round trips are shorter than
@@ -16,12 +14,12 @@ enum LatencyDistribution:
     */
   case LogNormal(median: Span, sigma: Double)
 
-  /** Straight lines between measured quantiles: `roundTripsMs(i)` ms is the quantile at `probabilities(i)`.
-    * Both ascend; the probabilities run from 0 to 1.
+  /** Linear interpolation between measured quantiles: `roundTripsMs(i)` ms is the quantile at
+    * `probabilities(i)`. Both ascend; the probabilities go from 0 to 1.
     */
   case Quantiles(probabilities: Vector[Double], roundTripsMs: Vector[Double])
 
-  /** The quantile of the round trips: a share `p` of them does not exceed it.
+  /** The quantile of the round trips, which a share `p` of them does not exceed.
     *
     * @param p in [0, 1]; a log-normal distribution has no largest value and is cut at 1 − 10^−12^
     */
@@ -49,8 +47,8 @@ enum LatencyDistribution:
 
 object LatencyDistribution:
 
-  /** The distribution of measured round trips in ms, at least one, in any order: the least at 0, the largest
-    * at 1, the others evenly between.
+  /** The distribution of measured round trips in ms, at least one, in any order: the shortest is the quantile
+    * at 0, the longest at 1, and the others are evenly spaced between.
     */
   def ofSamples(roundTripsMs: Seq[Double]): LatencyDistribution =
     require(roundTripsMs.nonEmpty, "a latency distribution needs at least one sample")
@@ -70,7 +68,7 @@ object LatencyDistribution:
   )
 
   /** Round trips of the paper's VPN while it was busy: quantiles of the first 393 of its 935 published
-    * samples (mean 102.8 ms, sd 25.6 ms). The flights over VPN happened in this state.
+    * samples (mean 102.8 ms, sd 25.6 ms). The paper's flights over the VPN were in this state.
     */
   val Vpn: LatencyDistribution = Quantiles(
     published,

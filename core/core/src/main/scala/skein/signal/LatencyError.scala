@@ -1,19 +1,21 @@
 package skein.signal
 
-/** Why a text is not a latency profile. `message` states what was expected, what was received, and where. */
+/** The reason why a text is not a latency profile. `message` states what was expected, what was received, and
+  * where.
+  */
 enum LatencyError(val message: String):
 
   case UnknownProfile(text: String)
       extends LatencyError(s"unknown latency profile \"$text\"; expected ${LatencyError.forms}")
 
-  /** A profile's name is valid and the rest of it is not. */
+  /** The profile's name is valid, but the rest of the text is not. */
   case Malformed(text: String, expected: String, came: String)
       extends LatencyError(s"latency profile \"$text\": expected $expected, got \"$came\"")
 
   case Unreadable(path: String, reason: String)
       extends LatencyError(s"cannot read latency samples: $path: $reason")
 
-  /** A line of the file of samples is no round trip. Lines count from 1. */
+  /** A line of the file of samples is not a round trip. Lines are counted from 1. */
   case BadSample(path: String, line: Int, came: String)
       extends LatencyError(s"$path:$line: expected a round trip in ms, zero or more, got \"$came\"")
 

@@ -2,19 +2,17 @@ package skein.signal
 
 import skein.units.*
 
-/** The delays of one direction of a link, given by the measured distribution of its round trips. One
-  * direction takes half of a sampled round trip. The two directions sample independently, so that a round
-  * trip spreads less than what was measured, by a factor of √2; under [[LatencyProfile.Correlated]] it
-  * spreads as measured.
+/** The delays of one direction of a link, given by the measured distribution of its round trips. A delay is
+  * half of a sampled round trip. The two directions sample independently, so that round trips spread less
+  * than measured, by a factor of √2; under [[LatencyProfile.Correlated]] they spread as measured.
   */
 enum LatencyProfile:
 
   /** Successive round trips are independent and their distribution never changes. */
   case Steady(name: String, roundTrip: LatencyDistribution)
 
-  /** A link that is busy for a while and then quiet for a while; the lengths of these stretches are
-    * exponentially distributed around `busyLasts` and `quietLasts`. Within a stretch successive round trips
-    * are independent.
+  /** A link that alternates between busy and quiet stretches. Their durations are exponentially distributed,
+    * with means `busyLasts` and `quietLasts`. Within a stretch, successive round trips are independent.
     */
   case Alternating(
       name: String,
@@ -24,14 +22,14 @@ enum LatencyProfile:
       quietLasts: Span
   )
 
-  /** Another profile whose delays persist for a while: the share p at which its distribution is read is
-    * redrawn after exponentially distributed times of mean `over`, simultaneously for both directions and all
-    * connections of a link. Every delay is distributed as before, and the correlation of p at two moments is
-    * e^(−t/over): a round trip much shorter than `over` takes as long as one that was measured.
+  /** Another profile whose delays persist for a while: the probability p at which its quantile is read is
+    * redrawn after exponentially distributed times with mean `over`, simultaneously for both directions and
+    * all connections of a link. The distribution of each delay is unchanged, and the correlation of p at two
+    * moments is e^(−t/over). So a round trip much shorter than `over` is distributed like the measured ones.
     */
   case Correlated(name: String, latency: LatencyProfile, over: Span)
 
-  /** Another profile behind a line of limited rate, where bytes wait. */
+  /** Another profile behind a line of limited rate, at which bytes wait. */
   case Limited(name: String, latency: LatencyProfile, rate: Bandwidth)
 
   /** Another profile that also loses packets. */
@@ -40,17 +38,17 @@ enum LatencyProfile:
   /** The text that [[LatencyProfile.parse]] reads back as this profile. */
   def name: String
 
-  /** The rate of the line before it, if it is limited. */
+  /** The rate of the line and its queue, if the rate is limited. */
   def bandwidth: Option[Bandwidth] = this match
     case Limited(_, _, rate) => Some(rate)
     case _                   => within.flatMap(_.bandwidth)
 
-  /** How it loses packets, outermost first; empty if it loses none. */
+  /** The losses of packets, the outermost profile's first; empty if there are none. */
   def impairments: Vector[Impairment] = this match
     case Impaired(_, latency, by) => by +: latency.impairments
     case _                        => within.fold(Vector.empty)(_.impairments)
 
-  /** The delays alone, without rate and losses. */
+  /** The profile of the delays alone, without rate and losses. */
   def delays: LatencyProfile = this match
     case Limited(_, latency, _)                                       => latency.delays
     case Impaired(_, latency, _)                                      => latency.delays
@@ -64,7 +62,7 @@ enum LatencyProfile:
     case Limited(_, latency, _)                    => Some(latency)
     case Impaired(_, latency, _)                   => Some(latency)
 
-  /** Mean round trip, without waiting for a rate or for packets sent again. */
+  /** Mean round trip, without the time that bytes wait for the line or that packets are sent again. */
   def meanRoundTrip: Span = Span.ofMillis(average(_.mean.toMillis))
 
   /** Mean deviation of round trips from their mean, E|t − E t|. */
@@ -86,9 +84,9 @@ object LatencyProfile:
   val direct: LatencyProfile = Steady("direct", LatencyDistribution.Direct)
   val vpn: LatencyProfile    = Steady("vpn", LatencyDistribution.Vpn)
 
-  /** The paper's VPN over a long time: busy in 393 of 935 samples, else like the direct link. It was measured
-    * once, one stretch of each, so only the shares are its own; that a pair of stretches takes 95 s is our
-    * choice.
+  /** The paper's VPN over a long time: busy in 393 of 935 samples, otherwise like the direct link. It was
+    * measured only once, with one stretch of each kind, so only the shares are measured; the 95 s of a pair
+    * of stretches are our choice.
     */
   val vpnMixed: Alternating = new Alternating(
     "vpn-mixed",
@@ -100,13 +98,13 @@ object LatencyProfile:
 
   /** Reads a profile from its text form: `none`, `direct`, `vpn`, `vpn-mixed`, `constant:200ms`,
     * `uniform:10ms..40ms`, `lognormal:36ms,0.3` (median, standard deviation of the logarithm), `file:PATH`
-    * (round trips in ms, one a line; empty lines and lines that start with # are skipped). All times are
-    * round trips; units are `us`, `ms`, `s`. Before any of them may stand, each once and in any order:
-    * `correlated:250ms,`; `rate:50mbit,` or `rate:50mbit/64kB,` ([[Bandwidth.parse]]); `loss:5%,`, or
-    * `loss:5%/4,` in bursts of four packets on average ([[Impairment.Loss]]); `outage:1s/10s,`, for 1 s every
-    * 10 s on average ([[Impairment.Outage]]).
+    * (round trips in ms, one per line; empty lines and lines that start with # are skipped). All times are
+    * round trips; units are `us`, `ms`, `s`. Any of these may be preceded by the following, each once and in
+    * any order: `correlated:250ms,`; `rate:50mbit,` or `rate:50mbit/64kB,` ([[Bandwidth.parse]]); `loss:5%,`,
+    * or `loss:5%/4,` in bursts of four packets on average ([[Impairment.Loss]]); `outage:1s/10s,`, for 1 s
+    * every 10 s on average ([[Impairment.Outage]]).
     *
-    * @param read returns the text of the file at a path, or why it cannot
+    * @param read returns the text of the file at a path, or why that fails
     */
   def parse(text: String, read: String => Either[String, String]): Either[LatencyError, LatencyProfile] =
     LatencyText.parse(text, read)
@@ -196,7 +194,7 @@ private object LatencyText:
 
   private val time = """\s*(\d+(?:\.\d+)?)\s*(us|ms|s)\s*""".r
 
-  /** Reads a time of at most an hour; a longer round trip is a mistake. */
+  /** Reads a time of up to an hour; a longer round trip is assumed to be a mistake. */
   private def span(text: String): Option[Span] = text match
     case time(number, unit) =>
       val ms = unit match

@@ -2,12 +2,11 @@ package skein.signal
 
 import skein.units.*
 
-/** Draws the delays of one direction of one connection. Holds mutable state: one per direction and
-  * connection.
+/** Draws the delays of one direction of one connection. Mutable; one per direction and connection.
   *
-  * @param linkSeed decides when the link is busy, and which delays persist for a while: equal for all
-  *   connections and directions of one link, so that they agree
-  * @param lineSeed decides the delays: different for each
+  * @param linkSeed determines when the link is busy and which delays persist; must be equal for all
+  *   connections and directions of a link, so that they agree
+  * @param lineSeed determines the delays; different for each sampler
   */
 final class LatencySampler(profile: LatencyProfile, linkSeed: Long, lineSeed: Long):
   private val random = SplitMix64(lineSeed)
@@ -28,13 +27,13 @@ final class LatencySampler(profile: LatencyProfile, linkSeed: Long, lineSeed: Lo
     case LatencyProfile.Impaired(_, latency, _) => shareOf(latency)
     case _                                      => _ => random.nextDouble()
 
-  /** The next message's delay: half of a sampled round trip.
+  /** The delay of the next message: half of a sampled round trip.
     *
-    * @param sinceStart time since the link began; never smaller than at the call before
+    * @param sinceStart time since the link's start; must not decrease from call to call
     */
   def oneWay(sinceStart: Span): Span = roundTrip(sinceStart).quantile(share(sinceStart)) / 2
 
-/** A number in [0, 1) that is drawn anew after exponentially distributed times. */
+/** A number in [0, 1) that is redrawn after exponentially distributed times. */
 private final class HeldShare(mean: Span, seed: Long):
   private val random = SplitMix64(seed)
   private var held   = random.nextDouble()

@@ -3,12 +3,12 @@ package skein.signal
 import java.util.Arrays
 import skein.units.*
 
-/** Bounds of the newest readings, at most [[NewestBounds.Memory]], kept sorted: a further reading costs a
-  * copy of each leg. Sorting anew at every reading took a sixteenth of a virtual flight.
+/** Bounds of the newest readings, at most [[NewestBounds.Memory]], in sorted arrays. A further reading costs
+  * a copy of each array. (Sorting anew at every reading took a sixteenth of a virtual flight.)
   *
   * @param bounds the newest last
-  * @param to −lower of each, ns, sorted
-  * @param from upper of each, ns, sorted
+  * @param to negated lower bounds, ns, sorted
+  * @param from upper bounds, ns, sorted
   */
 private final class NewestBounds private (
     bounds: Vector[NewestBounds.Bounds],
@@ -42,12 +42,12 @@ private final class NewestBounds private (
   private def newest = bounds
 
 private object NewestBounds:
-  /** Of the offset of the clocks, controller minus simulator, by one reading. */
+  /** Bounds of the clocks' offset, controller minus simulator, from one reading. */
   final case class Bounds(lower: Span, upper: Span)
 
-  /** Number of readings from which the estimate between the bounds is made: more of them estimate a quartile
-    * better, fewer follow drifting clocks sooner. At 20 a second, clocks that differ by 50 parts in a million
-    * are followed within 0.5 ms.
+  /** Number of readings from which the estimate between the bounds is made. More readings estimate a quartile
+    * better; fewer follow drifting clocks sooner. With 20 readings a second, the error for clocks that differ
+    * by 50 parts per million is below 0.5 ms.
     */
   val Memory = 384
 
@@ -58,7 +58,7 @@ private object NewestBounds:
 
   private def quartile(sorted: Array[Long]) = sorted((sorted.length - 1) / 4)
 
-  /** The index at which a number stands, or at which it would be inserted. */
+  /** The index of a number, or the index at which it would be inserted. */
   private def place(sorted: Array[Long], number: Long): Int =
     val found = Arrays.binarySearch(sorted, number)
     if found < 0 then -found - 1 else found
@@ -70,7 +70,7 @@ private object NewestBounds:
     next(at) = one
     next
 
-  /** The numbers with `one` instead of `gone`, which is among them. */
+  /** The sorted numbers with `one` in place of `gone`, which is among them. */
   private def replaced(sorted: Array[Long], gone: Long, one: Long): Array[Long] =
     if one == gone then sorted
     else

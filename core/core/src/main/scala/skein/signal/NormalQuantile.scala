@@ -2,11 +2,12 @@ package skein.signal
 
 /** The inverse of the standard normal cumulative distribution function, to a relative error of 1.2 · 10^−9^.
   *
-  * Source: P. J. Acklam's rational approximation (2003); held to tabulated values by
-  * `LatencyDistributionSuite`.
+  * Source: P. J. Acklam's rational approximation (2003); `LatencyDistributionSuite` compares it with
+  * tabulated values.
   */
 private[skein] object NormalQuantile:
-  /** A normal variable lies within this number of standard deviations of its mean with 95 % probability. */
+  /** Number of standard deviations from the mean within which a normal variable lies with 95 % probability.
+    */
   val TwoSided95 = 1.959964
 
   private val tail = 0.02425

@@ -2,31 +2,31 @@ package skein.signal
 
 import skein.units.*
 
-/** How long messages take to the simulator and back, as means over the latest readings.
+/** Mean delays of messages to the simulator and back, over the latest readings.
   *
-  * `toSimulator` is a difference between two clocks: it contains the clocks' offset. That is what prediction
-  * needs (a command sent at t acts when the simulator's clock shows t + toSimulator), and it does not depend
-  * on the uncertainty of the offset. [[ClockAlignment]] estimates the offset.
+  * `toSimulator` is a difference between two clocks, and thus contains their offset. That is what predictions
+  * need: a command sent at t acts when the simulator's clock shows t + toSimulator, however uncertain the
+  * offset is. [[ClockAlignment]] estimates the offset.
   *
-  * @param toSimulator mean of simulator's time of sampling minus controller's time of sending
-  * @param fromSimulator mean of controller's time of receipt minus simulator's time of sampling
+  * @param toSimulator mean of the simulator's time of sampling minus the controller's time of sending
+  * @param fromSimulator mean of the controller's time of receipt minus the simulator's time of sampling
   */
 final case class OneWayDelays private (toSimulator: Span, fromSimulator: Span, readings: Int):
 
   def roundTrip: Span = toSimulator + fromSimulator
 
-  /** The simulator's time at which a message takes effect that was sent at this controller's time. */
+  /** The simulator's time at which a message arrives that was sent at this controller's time. */
   def expectedArrival(sentAt: Instant): Instant = sentAt + toSimulator
 
-  /** The arrival time of a message whose answer was received. Its round trip says more than the means do: of
-    * two independent, equally spread delays whose sum is known, each is its own mean plus half of the sum's
-    * deviation.
+  /** The arrival time of a message whose answer was received. Its round trip contains more information than
+    * the means: if the sum of two independent, equally spread delays is known, the expectation of each is its
+    * own mean plus half of the sum's deviation.
     */
   def arrivalGiven(sentAt: Instant, answeredAt: Instant): Instant =
     sentAt + toSimulator + (answeredAt.since(sentAt) - roundTrip) / 2
 
-  /** The means with one more reading: plain means of the first [[OneWayDelays.Memory]] readings, exponential
-    * ones thereafter.
+  /** The means with one more reading: arithmetic means of the first [[OneWayDelays.Memory]] readings,
+    * exponential means after that.
     */
   def updated(reading: Stamped[?]): OneWayDelays =
     val one    = OneWayDelays.of(reading)
@@ -39,8 +39,8 @@ final case class OneWayDelays private (toSimulator: Span, fromSimulator: Span, r
 
 object OneWayDelays:
 
-  /** Approximate number of readings behind the means: 1.6 s at 20 a second, so that a link that turns busy is
-    * noticed soon.
+  /** Approximate number of readings in the means: 1.6 s at 20 readings a second, so that a link that becomes
+    * busy is noticed soon.
     */
   val Memory = 32
 

@@ -3,11 +3,11 @@ package skein.signal
 import scala.collection.mutable.ArrayBuffer
 import skein.units.*
 
-/** Decides which packets of one direction of a link are lost, all of its connections together. Equal seeds
-  * and orders of packets lose equal packets. Any thread.
+/** Decides which packets are lost in one direction of a link, over all of its connections. Equal seeds and
+  * orders of packets lose equal packets. May be called by any thread.
   *
-  * @param linkSeed decides when the link is out: equal for both directions
-  * @param seed decides the other losses
+  * @param linkSeed determines the outages; equal for both directions
+  * @param seed determines the other losses
   */
 final class PacketLoss(profile: LatencyProfile, linkSeed: Long, seed: Long):
   private val outages = profile.impairments.collectFirst:
@@ -19,14 +19,14 @@ final class PacketLoss(profile: LatencyProfile, linkSeed: Long, seed: Long):
 
   /** Whether a packet that is sent now is lost.
     *
-    * @param at since the link's start
+    * @param at time since the link's start
     */
   def loses(at: Span): Boolean = synchronized:
     // A packet of an outage moves the chain, too.
     val inBurst = bursts.exists(_.next())
     outages.exists(_.isOut(at)) || inBurst
 
-  /** How long a packet is sent in vain ([[Retransmission.wait]]). */
+  /** Time from the first try to send a packet until the successful one ([[Retransmission.wait]]). */
   def delay(at: Span, timeout: Span): Span =
     Retransmission.wait(timeout, Int.MaxValue)((_, waited) => loses(at + waited))
 
@@ -41,7 +41,7 @@ private[signal] final class LossBursts(loss: Impairment.Loss, seed: Long):
     isBad = if isBad then random.nextDouble() >= leaves else random.nextDouble() < enters
     lost
 
-/** The times of [[Impairment.Outage]]s. Requests may go back by as many outages as are kept. */
+/** The times of [[Impairment.Outage]]s. A call may go back in time by [[OutageTimes.Kept]] outages. */
 private[signal] final class OutageTimes(outage: Impairment.Outage, seed: Long):
   private val random  = SplitMix64(seed)
   private val between = (outage.every - outage.lasts).toSeconds

@@ -1,11 +1,11 @@
 package skein.signal
 
-/** A small seeded source of random numbers with its own state; a seed's sequence is equal on all machines and
-  * in all versions, on which replays of recordings rely. Not for secrets, and not for several threads.
+/** A small seeded random number generator with its own state. The sequence of a seed is equal on all machines
+  * and in all versions; replays of recordings rely on that. Not for secrets, and not thread-safe.
   *
   * Source: Steele, Lea, Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014, with the
-  * constants of Vigna's public-domain `splitmix64.c`; held to its published first outputs by
-  * `SplitMix64Suite`.
+  * constants of Vigna's public-domain `splitmix64.c`; `SplitMix64Suite` compares it with its published first
+  * outputs.
   */
 final class SplitMix64(seed: Long):
   import SplitMix64.*
@@ -20,7 +20,7 @@ final class SplitMix64(seed: Long):
   /** Uniformly distributed in [0, 1), in steps of 2^−53^. */
   def nextDouble(): Double = (nextLong() >>> 11) * Step
 
-  /** Uniform in 0 until `bound`, which is positive. */
+  /** Uniformly distributed in 0 until `bound`, which must be positive. */
   def nextInt(bound: Int): Int = (nextDouble() * bound).toInt
 
   /** Exponentially distributed with this mean: the time to the next event of a Poisson process. */
@@ -35,5 +35,5 @@ object SplitMix64:
     val z2 = (z1 ^ (z1 >>> 27)) * 0x94d049bb133111ebL
     z2 ^ (z2 >>> 31)
 
-  /** The seed of the `index`-th of many independent sequences that belong to one seed. */
+  /** The seed of sequence number `index` of the many independent sequences that belong to one seed. */
   def seedOf(seed: Long, index: Long): Long = mix(mix(seed + Gamma) ^ mix(index * Gamma + 1))

@@ -3,18 +3,19 @@ package skein.signal
 import skein.units.*
 import skein.units.Decimals.fixed
 
-/** Whether the vehicles' clock runs as the controller's does, judged by readings alone.
+/** Checks from readings alone whether the vehicles' clock runs like the controller's.
   *
   * Physics was sampled between request and answer, so a reading bounds the clocks' offset from both sides
   * (see [[ClockAlignment]]). Between two readings the offset has changed by at least the gap between their
-  * bounds, however late the answers were: no delay of the network and no busy controller can make a clock
-  * look wrong. Each vehicle's readings of the last [[TimeAxis.Window]] are compared with each other, and with
-  * those of the other vehicles, which share the clock.
+  * bounds, however late the answers were. So neither delays of the network nor a busy controller can make a
+  * clock look wrong. The readings of each vehicle within the last [[TimeAxis.Window]] are compared with each
+  * other, and with those of the other vehicles, which share the clock.
   *
-  * A clock that runs back, or whose offset changes by more than [[TimeAxis.Most]] within the window, cannot
-  * serve for distances and ages: that is a [[fault]], permanently. Slower changes are [[wandering]].
+  * A clock that runs back, or whose offset changes by more than [[TimeAxis.Most]] within the window, is
+  * useless for distances and ages: that is a [[fault]], permanently. Slower changes are reported by
+  * [[wandering]].
   *
-  * @param fault what is wrong with the clock, in a line for a person
+  * @param fault what is wrong with the clock, in one line for the user
   */
 final case class TimeAxis private (
     private val seen: Map[String, TimeAxis.Seen],
@@ -36,7 +37,7 @@ final case class TimeAxis private (
       val all = seen.updated(vehicle, own)
       TimeAxis(all, ranBack(one).orElse(leapt(own)).orElse(differs(all)))
 
-  /** Why the clock does not keep pace, though it is not a fault: its offset has changed by more than
+  /** A report that the clock does not keep pace, though it has no fault: its offset has changed by more than
     * [[TimeAxis.Told]] within the window.
     */
   def wandering: Option[String] =
@@ -45,7 +46,7 @@ final case class TimeAxis private (
       val worst = seen.values.maxBy(_.gapNanos)
       Option.when(worst.gapNanos > Told.toNanos)(worst.text)
 
-  /** The samples that are later by the controller's clock and earlier by the vehicles'. */
+  /** A report of two samples whose order is different on the controller's and on the vehicles' clock. */
   private def ranBack(one: Sample): Option[String] =
     val before = seen.values.map(_.newest).filter(other =>
       other.receivedNanos < one.sentNanos && minus(other.validNanos, one.validNanos) > Tick.toNanos
@@ -64,7 +65,7 @@ final case class TimeAxis private (
 
   private def leapt(own: Seen): Option[String] = Option.when(own.gapNanos > Most.toNanos)(own.text)
 
-  /** Why the clocks differ, where every vehicle's clock keeps pace by itself. */
+  /** A report that the vehicles' clocks differ, although each keeps pace by itself. */
   private def differs(all: Map[String, Seen]): Option[String] =
     val (late, early) = (all.values.map(_.latest).maxBy(_.lower), all.values.map(_.earliest).minBy(_.upper))
     val gap           = minus(late.lower, early.upper)
@@ -77,7 +78,7 @@ object TimeAxis:
 
   /** Checks readings in the order of their arrival.
     *
-    * @return what is wrong with their clock
+    * @return a description of the clock's fault, if any
     */
   def fault(readings: Iterator[(String, Stamped[?])]): Option[String] =
     readings.scanLeft(begun)((axis, one) => axis.updated(one._1, one._2)).collectFirst:
@@ -85,9 +86,10 @@ object TimeAxis:
 
   /** Checks a simulator that is stopped and stepped: every step must last about its nominal time.
     *
-    * @param before the newest time of the step before
-    * @param oldest of this step's readings
-    * @param newest of this step's readings
+    * @param before newest time of the previous step
+    * @param oldest oldest time of this step's readings
+    * @param newest newest time of this step's readings
+    * @return a description of the fault, if any
     */
   def steppedFault(before: Option[Instant], oldest: Instant, newest: Instant, period: Span): Option[String] =
     val passed  = minus(newest.toNanos, oldest.toNanos)
@@ -103,16 +105,16 @@ object TimeAxis:
         case took if took > 2 * period.toNanos =>
           s"the simulator's clock advanced by ${seconds(took)} in a step of ${seconds(period.toNanos)}"
 
-  /** Length of the window within which readings are compared, by the controller's clock. */
+  /** Duration of the window within which readings are compared, on the controller's clock. */
   val Window: Span = Span.ofSeconds(10)
 
-  /** Limit of the offset's change within the window: a twentieth of it. A simulator that computes in real
-    * time stays far below; one on a starved machine loses some tenths of a second.
+  /** Limit of the offset's change within the window, a twentieth of the window. A simulator that computes in
+    * real time stays far below; one on an overloaded machine loses some tenths of a second.
     */
   val Most: Span = Span.ofMillis(500)
 
-  /** Change of the offset from which it is reported, and difference from which two vehicles' clocks count as
-    * different: about the age of readings over a slow link.
+  /** Change of the offset from which [[wandering]] reports it, and difference from which two vehicles' clocks
+    * count as different: about the age of readings over a slow link.
     */
   val Told: Span = Span.ofMillis(100)
 
@@ -122,7 +124,7 @@ object TimeAxis:
   private val BucketNanos = 1_000_000_000L
   private val Buckets     = (Window.toNanos / BucketNanos).toInt
 
-  /** A reading's times, ns; the first on the vehicles' clock. */
+  /** The times of a reading, ns; the first is on the vehicles' clock. */
   private final case class Sample(vehicle: String, validNanos: Long, sentNanos: Long, receivedNanos: Long):
     /** Lower bound of the offset, controller minus simulator, ns. */
     val lower: Long = minus(sentNanos, validNanos)
@@ -131,21 +133,21 @@ object TimeAxis:
     def middleNanos: Long = sentNanos + (receivedNanos - sentNanos) / 2
     def bucket: Long      = receivedNanos / BucketNanos
 
-  /** A vehicle's readings in one second with the largest lower bound of the offset and with the smallest
-    * upper one.
+  /** Of a vehicle's readings in one second, the one with the largest lower bound of the offset and the one
+    * with the smallest upper bound.
     */
   private final case class Second(latest: Sample, earliest: Sample)
 
   /** A vehicle's readings in the window.
     *
-    * @param still the first of the newest readings with one time stamp
+    * @param still the first of the newest readings that have equal time stamps
     */
   private final case class Seen(newest: Sample, still: Sample, seconds: Vector[Second]):
     /** Reading with the largest lower bound in the window. */
     val latest: Sample   = seconds.map(_.latest).maxBy(_.lower)
     val earliest: Sample = seconds.map(_.earliest).minBy(_.upper)
 
-    /** Least change of the offset within the window, ns. */
+    /** Smallest change of the offset within the window that explains the readings, ns. */
     def gapNanos: Long = minus(latest.lower, earliest.upper)
 
     def keepsPace: Boolean = gapNanos < Tick.toNanos && seconds.size > 2
@@ -186,7 +188,7 @@ object TimeAxis:
   private def differ(one: Sample, other: Sample, by: String) =
     s"the clocks of ${one.vehicle} and ${other.vehicle} differ by $by or more: vehicles of one flight share one"
 
-  /** The difference, limited to the range of `Long`: time stamps may be anything. */
+  /** The difference, limited to the range of `Long`, since time stamps may have any value. */
   private def minus(one: Long, other: Long): Long =
     val difference = one - other
     if ((one ^ other) & (one ^ difference)) < 0 then if one < 0 then Long.MinValue else Long.MaxValue

@@ -9,7 +9,7 @@ trait Clock:
 
 object Clock:
 
-  /** The machine's monotonic clock, set once to the Unix epoch when this object is created. */
+  /** The machine's monotonic clock, set to the Unix epoch once, when this object is created. */
   val system: Clock = new Clock:
     private val epochNanos =
       val wall = java.time.Instant.now()
@@ -17,5 +17,5 @@ object Clock:
 
     def now(): Instant = Instant.ofNanos(epochNanos + System.nanoTime())
 
-  /** A clock that reads nanoseconds since the Unix epoch from a function, such as virtual time. */
+  /** A clock that reads nanoseconds since the Unix epoch from a function, for example virtual time. */
   def ofNanos(nanos: () => Long): Clock = () => Instant.ofNanos(nanos())

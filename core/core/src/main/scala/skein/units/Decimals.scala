@@ -2,9 +2,9 @@ package skein.units
 
 import java.util.Locale
 
-/** Formats numbers in reports: equal digits and decimal points in every locale. */
+/** Formats numbers for reports, with equal digits and decimal points in every locale. */
 object Decimals:
-  /** From this size on, and below the least, numbers are written as powers of ten. */
+  /** Magnitude from which numbers are written as powers of ten; so are those below [[LeastInFull]]. */
   private[units] val MostInFull = 1e12
   private val LeastInFull       = 1e-9
 
@@ -15,28 +15,30 @@ object Decimals:
   def counted(count: Long, one: String): String = if count == 1 then s"1 $one" else s"$count ${one}s"
 
   extension (number: Double)
-    /** With this number of decimals; very large numbers, of up to 309 digits, as powers of ten. What rounds
-      * to zero has no sign.
+    /** The number with this number of decimals; very large numbers, which have up to 309 digits, as powers of
+      * ten. A result of zero has no sign.
       */
     def fixed(decimals: Int): String =
       if number.abs < MostInFull then withoutSignOfZero(String.format(Locale.ROOT, s"%.${decimals}f", number))
       else significant(4)
 
-    /** `fixed`, padded to this width for columns. */
+    /** `fixed`, padded to this width for columns of a table. */
     def fixed(decimals: Int, width: Int): String =
       val text = fixed(decimals)
       " " * (width - text.length) + text
 
-    /** With this number of decimals, and always with a sign. */
+    /** The number with this number of decimals, and always with a sign unless it is zero. */
     def signed(decimals: Int): String =
       val text = fixed(decimals)
       if number.isNaN || text.startsWith("-") || isZero(text) then text else s"+$text"
 
-    /** Numbers from 10 on without decimals, smaller ones with one, small ones with two. */
+    /** The number without decimals from 10 on, with one decimal from 1 on, otherwise with two. */
     def brief: String =
       number.fixed(if number.abs >= 9.95 || number == 0 then 0 else if number.abs >= 0.95 then 1 else 2)
 
-    /** With at most this number of significant digits; very large and very small numbers as powers of ten. */
+    /** The number with at most this number of significant digits; very large and very small numbers as powers
+      * of ten.
+      */
     def significant(digits: Int): String =
       if number == 0 || !number.isFinite then withoutSignOfZero(number.toString)
       else

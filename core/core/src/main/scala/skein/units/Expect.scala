@@ -1,9 +1,9 @@
 package skein.units
 
-/** Checks of users' input against what is expected of it. */
+/** Checks users' input, and creates the messages about mistakes. */
 private[skein] object Expect:
 
-  /** Nothing if the input is right; Left holds the mistake: what was expected, and what was received. */
+  /** Right if the input is right; Left contains the mistake: what was expected, and what was received. */
   def that[E](isRight: Boolean)(mistake: => E): Either[E, Unit] = Either.cond(isRight, (), mistake)
 
   /** Converts each element in order; stops at the first mistake. */

@@ -1,10 +1,11 @@
 package skein.units
 
-/** Degrees from the equator and from Greenwich, and height above sea level. The Earth is AirSim's: a sphere.
+/** A place on the Earth, which is a sphere as in AirSim: degrees from the equator and from Greenwich, and
+  * height above sea level.
   */
 final case class GeoLocation(latitudeDeg: Double, longitudeDeg: Double, altitude: Metres):
 
-  /** The geographic place of a point given in NED, m, around this one. */
+  /** The geographic location of a point in NED, m, relative to this location. */
   def locate(pointNed: Vector3): GeoLocation =
     val up    = Metres(altitude.value - pointNed.z)
     val north = pointNed.x / GeoLocation.EarthRadiusM
@@ -23,7 +24,7 @@ final case class GeoLocation(latitudeDeg: Double, longitudeDeg: Double, altitude
       )
       GeoLocation(math.toDegrees(there), longitudeDeg + math.toDegrees(around), up)
 
-  /** This place in NED, m, around a nearby one (AirSim's `GeodeticToNedFast`). */
+  /** This location in NED, m, relative to a nearby one (AirSim's `GeodeticToNedFast`). */
   def nedFrom(origin: GeoLocation): Vector3 = Vector3(
     math.toRadians(latitudeDeg - origin.latitudeDeg) * GeoLocation.EarthRadiusM,
     math.toRadians(longitudeDeg - origin.longitudeDeg) * GeoLocation.EarthRadiusM * StrictMath.cos(

@@ -1,6 +1,6 @@
 package skein.units
 
-/** Three components in one frame; the name of the variable ends with the frame: `positionNed` (north, east,
+/** Three components in one frame. The names of variables end with the frame: `positionNed` (north, east,
   * down) in metres, `velocityFrd` (front, right, down) in metres per second.
   */
 final case class Vector3(x: Double, y: Double, z: Double):
@@ -9,7 +9,7 @@ final case class Vector3(x: Double, y: Double, z: Double):
   def *(factor: Double): Vector3 = Vector3(x * factor, y * factor, z * factor)
   def norm: Double               = math.sqrt(x * x + y * y + z * z)
 
-  /** Distance in the horizontal plane, m: the distance of the paper's game. */
+  /** Distance in the horizontal plane, m, as in the paper's game. */
   def horizontalDistance(other: Vector3): Double = StrictMath.hypot(x - other.x, y - other.y)
 
 object Vector3:
@@ -26,7 +26,6 @@ final case class Quaternion(w: Double, x: Double, y: Double, z: Double):
   /** Yaw, rad from north towards east, −π to π. */
   def yawRad: Double = StrictMath.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
 
-  /** Rotates a vector from the body frame to the world. */
   def toWorld(frd: Vector3): Vector3 =
     val (tx, ty, tz) = (
       2 * (y * frd.z - z * frd.y),
@@ -39,10 +38,9 @@ final case class Quaternion(w: Double, x: Double, y: Double, z: Double):
       frd.z + w * tz + x * ty - y * tx
     )
 
-  /** Rotates a vector from the world frame to the body. */
   def toBody(ned: Vector3): Vector3 = Quaternion(w, -x, -y, -z).toWorld(ned)
 
-  /** The rotation composed of `inner` first, then this. */
+  /** The rotation that consists of `inner`, followed by this one. */
   def *(inner: Quaternion): Quaternion = Quaternion(
     w * inner.w - x * inner.x - y * inner.y - z * inner.z,
     w * inner.x + x * inner.w + y * inner.z - z * inner.y,
@@ -50,7 +48,7 @@ final case class Quaternion(w: Double, x: Double, y: Double, z: Double):
     w * inner.z + x * inner.y - y * inner.x + z * inner.w
   )
 
-  /** This quaternion scaled to length 1; of length zero, no rotation. */
+  /** This quaternion scaled to length 1; no rotation if its length is 0. */
   def normalized: Quaternion =
     val length = math.sqrt(w * w + x * x + y * y + z * z)
     if length == 0 then Quaternion.Identity else Quaternion(w / length, x / length, y / length, z / length)

@@ -2,49 +2,49 @@ package skein.units
 
 import scala.util.control.ControlThrowable
 
-/** User code threw an exception, or returned a value that is unusable.
+/** Thrown when user code throws an exception or returns an unusable value.
   *
-  * @param whose for example `the policy of Scout 1`
+  * @param whose origin of the code, for example `the policy of Scout 1`
   */
 final class OwnFailure(whose: String, reason: String, cause: Throwable | Null = null)
     extends RuntimeException(s"$whose $reason", cause):
 
-  /** The message alone: it is for people, also if it was sent by another process. */
+  /** The message alone, without the class name, because it is for users, also if another process has sent it.
+    */
   override def toString: String = getMessage
 
 object OwnFailure:
 
-  /** Evaluates user code; an exception is rethrown with its origin and source line. Exhausted memory, the end
-    * of a thread and a [[ControlThrowable]] pass unchanged.
+  /** Evaluates user code. An exception is rethrown with the code's origin and source line; exhausted memory,
+    * an interrupt and a [[ControlThrowable]] are rethrown unchanged.
     *
-    * @throws OwnFailure if it throws
+    * @throws OwnFailure if the code throws
     */
   def told[A](whose: => String)(answer: => A): A =
-    // Not `NonFatal`: a recursion without end and a class that is missing are mistakes of the user's too.
+    // Not `NonFatal`, because an endless recursion and a missing class are users' mistakes too.
     try answer
     catch
       case asItIs: (OwnFailure | InterruptedException | OutOfMemoryError | ControlThrowable) => throw asItIs
       case mistake: Throwable => throw OwnFailure(whose, s"failed: ${text(mistake)}", mistake)
 
-  /** Names the code by its kind and class: `the policy Chase`. */
+  /** The kind and class of user code as words, for example `the policy Chase`. */
   private[skein] def named(kind: String, own: Any): String = own.getClass.getSimpleName.stripSuffix("$") match
     case ""   => s"a $kind without a name"
     case name => s"the $kind $name"
 
-  /** The mistake, and its source line if known. */
+  /** The exception as text, with its source line if known. */
   private def text(mistake: Throwable): String = mistake match
     case shell: ExceptionInInitializerError if shell.getCause != null => text(shell.getCause)
     case _ => s"$mistake${line(own(mistake.getStackTrace.toVector)).fold("")(" (" + _ + ")")}"
 
-  /** The stack frames in the package of the called user code, rather than those of libraries that it called.
-    */
+  /** The stack frames in the package of the user code, without those of libraries that it calls. */
   private def own(frames: Vector[StackTraceElement]): Vector[StackTraceElement] =
     val (asked, asking) = frames.span(frame => frame.getClassName != getClass.getName)
-    // Without who asked, it was made elsewhere than thrown.
+    // Without a frame of this object, the exception was created elsewhere than thrown.
     val room = asked.findLast(isUsers).filter(_ => asking.nonEmpty).map(_.getClassName)
     room.fold(asked)(name => asked.filter(_.getClassName.startsWith(name.take(name.lastIndexOf('.') + 1))))
 
-  /** The source line within user code, rather than within what it called. */
+  /** The source line in user code, rather than in code that it calls. */
   def line(frames: Iterable[StackTraceElement]): Option[String] =
     frames
       .find(isUsers)

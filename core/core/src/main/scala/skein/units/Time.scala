@@ -1,8 +1,8 @@
 package skein.units
 
 /** A point in time: nanoseconds since the epoch of the clock that was read. Instants of two clocks (the
-  * controller's and the simulator's) must not be subtracted without the offset between them; field names say
-  * whose clock it is.
+  * controller's and the simulator's) must not be subtracted without the offset between them; the names of
+  * fields state the clock.
   */
 opaque type Instant = Long
 
@@ -26,7 +26,7 @@ object Instant:
     inline def max(other: Instant): Instant  = math.max(instant, other)
     inline def min(other: Instant): Instant  = math.min(instant, other)
 
-/** A length of time in nanoseconds; may be negative. */
+/** A duration in nanoseconds; may be negative. */
 opaque type Span = Long
 
 object Span:
@@ -38,7 +38,7 @@ object Span:
 
   inline def ofSeconds(seconds: Double): Span = math.round(seconds * 1e9)
 
-  /** Reads a length of time with its unit, for example `100ms`, `1.5 s`, `2 min`, `1h`; zero or more.
+  /** Reads a duration with its unit, for example `100ms`, `1.5 s`, `2 min`, `1h`; zero or more.
     *
     * @return Left states what was expected and what was received
     */

@@ -3,15 +3,15 @@ package skein.vehicle
 import skein.signal.Kinematics
 import skein.units.*
 
-/** AirSim's quadrotor as a model that learns in flight how vehicle and air differ from it: wind to north and
-  * east, and factors on drag, on the lag of the velocity and on the mass ([[Deviation]]).
+/** AirSim's quadrotor as a model that learns in flight how the vehicle and the air differ from it: wind to
+  * north and east, and factors on the drag, on the lag of the velocity and on the mass ([[Deviation]]).
   *
-  * At each reading, velocity and tilt are compared with those predicted, and an extended Kalman filter over
-  * the five parameters ([[ParameterBelief]]) explains the difference; their effects are found by flying the
-  * model with each of them moved a little. So a prediction costs seven times that of [[QuadrotorModel]].
+  * At each reading, an extended Kalman filter over the five parameters ([[ParameterBelief]]) is updated by
+  * the errors of the predicted velocity and tilt. The effects of the parameters are found by simulating the
+  * model with each of them changed a little. So a prediction costs seven times that of [[QuadrotorModel]].
   *
-  * Guarded: the nominal model flies beside it, and predicts as long as its errors over the last
-  * [[AdaptiveQuadrotor.MemoryS]] were not clearly larger. Bounded: parameters stay within
+  * The learned model predicts only while its errors over the last [[AdaptiveQuadrotor.MemoryS]] are clearly
+  * smaller than those of the nominal model, which is simulated too. Parameters stay within
   * [[AdaptiveQuadrotor.most]].
   */
 object AdaptiveQuadrotor extends VehicleModel[AdaptiveQuadrotor.Learning]:
@@ -19,36 +19,36 @@ object AdaptiveQuadrotor extends VehicleModel[AdaptiveQuadrotor.Learning]:
   /** Time constant of the errors that the guard compares, s. */
   val MemoryS = 2.0
 
-  /** Longest time between two readings from which it learns. */
+  /** Longest time between two readings from which the model learns. */
   val LongestGap: Span = Span.ofSeconds(1)
 
-  /** Share of the nominal model's squared error below which the learned one predicts, and the squared error
-    * up to which the nominal one is taken to be right, m²/s².
+  /** The learned model predicts if its squared error is below this share of the nominal model's, and the
+    * nominal model's squared error is above [[Right]], m²/s².
     */
   private val Better = 0.7
   private val Right  = 1e-6
 
-  /** The parameters: wind to north and to east, m/s, and the logarithms of the factors on drag, lag and mass:
-    * before any reading their standard deviations, by how much they may change in a second, how far they are
-    * moved to find their effects, and their greatest sizes.
+  /** The parameters are the wind to north and to east, m/s, and the logarithms of the factors on drag, lag
+    * and mass. For each: the standard deviation before any reading, the change within a second, the change by
+    * which its effect is found, and the maximum magnitude.
     */
   private val priors = Vector(5.0, 5.0, 0.5, 0.3, 0.2)
   private val drifts = Vector(0.3, 0.3, 0.01, 0.01, 0.01)
   private val moves  = Vector(0.5, 0.5, 0.05, 0.05, 0.05)
 
-  /** Greatest size of each parameter: winds, m/s, and logarithms of factors on drag, lag and mass. */
+  /** Maximum magnitude of each parameter: winds, m/s, and logarithms of factors on drag, lag and mass. */
   val most: Vector[Double] = Vector(20, 20, StrictMath.log(5), StrictMath.log(2.5), StrictMath.log(1.6))
 
-  /** Standard deviations of what a model that is right predicts wrongly in a tenth of a second, by the times
-    * at which commands arrive: of velocities, m/s, and of the sines of tilts.
+  /** Standard deviations of the errors that even a correct model has over a tenth of a second, because of the
+    * varying arrival times of commands: of velocities, m/s, and of the sines of tilts.
     */
   private val Noises = Vector(0.005, 0.005, 0.005, 0.003, 0.003)
 
-  /** The state of a prediction, and what was learned.
+  /** The state of a prediction, and the learned parameters.
     *
-    * @param flights by the models with the parameters learned, then with each of them moved
-    * @param nominalError sum of the squared errors of the nominal model's velocities, fading over
-    *   [[MemoryS]], m²/s²; `learnedError` likewise
+    * @param flights by models with the learned parameters, then with each of them changed
+    * @param nominalError sum of the squared velocity errors of the nominal model, m²/s², with the time
+    *   constant [[MemoryS]]; `learnedError` likewise
     */
   final case class Learning private[vehicle] (
       belief: ParameterBelief,
@@ -58,7 +58,7 @@ object AdaptiveQuadrotor extends VehicleModel[AdaptiveQuadrotor.Learning]:
       nominalError: Double,
       learnedError: Double
   ):
-    /** Whether the learned parameters predict; otherwise the nominal model does. */
+    /** Whether predictions use the learned parameters; otherwise they use the nominal model. */
     def helps: Boolean = nominalError > Right && learnedError < Better * nominalError
 
     def deviation: Deviation = deviationOf(belief.mean)
@@ -93,7 +93,7 @@ object AdaptiveQuadrotor extends VehicleModel[AdaptiveQuadrotor.Learning]:
     val before    = learning.belief.drifted(drifts, sinceSeen.toSeconds, priors)
     val after     = measured.indices.foldLeft(before): (belief, i) =>
       val effects = Vector.tabulate(moves.size)(j => (predicted(j + 1)(i) - predicted.head(i)) / moves(j))
-      // What earlier outputs of this reading have changed already changes what is predicted of this one.
+      // The update by an earlier output of this reading already changes the prediction of this output.
       val explained = (belief.mean.lazyZip(before.mean).map(_ - _)).lazyZip(effects).map(_ * _).sum
       belief.updated(effects, measured(i) - predicted.head(i) - explained, Noises(i))
     val belief                    = after.within(most)

@@ -6,21 +6,21 @@ package skein.vehicle
   * Rotors, in this order: 0 front right (counter-clockwise), 1 rear left (counter-clockwise), 2 front left
   * (clockwise), 3 rear right (clockwise). They lie in one plane on the diagonals.
   *
-  * @param massKg all of it, motors included
-  * @param motorKg one motor, a point mass at its rotor
+  * @param massKg total mass, motors included
+  * @param motorKg mass of one motor, a point at its rotor
   * @param boxFrontM length of the body box along front; `boxRightM` and `boxDownM` likewise
   * @param armM from the centre of mass to a rotor's axis, in the rotor plane
   * @param rotorDownM the rotor plane's down coordinate in the body
   * @param rotorDiameterM GWS 9×5 propeller
-  * @param rotorHeightM height of the cylinder the rotor sweeps, which drags sideways
-  * @param maxThrustN of one rotor at full control and sea-level density: C_T ρ n² D⁴ with C_T 0.109919 at
-  *   6396.667 rpm
-  * @param maxTorqueNm of one rotor likewise: C_P ρ n² D⁵ / 2π with C_P 0.040164
-  * @param rotorTimeConstantS of the first-order lag from control to thrust
-  * @param dragCoefficient 1.3 of a blunt body, a quarter of it for a streamlined frame
-  * @param dragMinSpeed m/s; a face moving slower along its normal does not drag
-  * @param restitution share of the normal speed that a bounce returns
-  * @param friction share of the tangential speed that a bounce takes
+  * @param rotorHeightM height of the cylinder that the rotor sweeps, which has drag sideways
+  * @param maxThrustN thrust of one rotor at full control and sea-level density: C_T ρ n² D⁴ with C_T 0.109919
+  *   at 6396.667 rpm
+  * @param maxTorqueNm torque of one rotor likewise: C_P ρ n² D⁵ / 2π with C_P 0.040164
+  * @param rotorTimeConstantS time constant of the first-order lag from control to thrust
+  * @param dragCoefficient a quarter of a blunt body's 1.3, for a streamlined frame
+  * @param dragMinSpeed m/s; a face that moves more slowly along its normal has no drag
+  * @param restitution share of the normal speed that remains after a bounce
+  * @param friction share of the tangential speed that is lost in a bounce
   */
 final case class Airframe(
     massKg: Double = 1.0,
@@ -42,7 +42,7 @@ final case class Airframe(
 ):
   require(massKg > 4 * motorKg, s"mass $massKg kg must exceed that of four motors, ${4 * motorKg} kg")
 
-  /** Distance of every rotor from the front and from the right axis, m. */
+  /** Distance of every rotor from the front axis and from the right axis, m. */
   val rotorOffsetM: Double = armM * math.sqrt(0.5)
 
   private val boxKg = massKg - 4 * motorKg

@@ -1,18 +1,18 @@
 package skein.vehicle
 
-/** Drives a car after a commanded velocity: steers onto the arc that takes the heading's error away within a
-  * time, and approaches the speed with a time constant, slower while it is turning. At a commanded speed near
-  * zero it brakes. It never drives backwards: what is wanted behind it is reached by turning round.
+/** Drives a car by commanded velocities. It steers onto the arc that removes the heading error within a time,
+  * and approaches the speed with a time constant, more slowly while it turns. At a commanded speed near zero
+  * it brakes. It never drives backwards, but turns round instead.
   *
-  * @param headingS time within which it corrects the heading's error
+  * @param headingS time within which it corrects a heading error
   * @param speedS time constant of the speed
-  * @param leastShare of the commanded speed, while the heading is far off
+  * @param leastShare share of the commanded speed at large heading errors
   */
 final case class CarDriver(headingS: Double = 0.8, speedS: Double = 0.5, leastShare: Double = 0.4):
 
-  /** The driver's controls.
+  /** The driver's controls for a commanded velocity.
     *
-    * @param northMps commanded velocity north; `eastMps` east
+    * @param northMps commanded velocity north; `eastMps` likewise
     */
   def controls(
       car: SingleTrack,
@@ -34,5 +34,5 @@ final case class CarDriver(headingS: Double = 0.8, speedS: Double = 0.5, leastSh
     )
 
 object CarDriver:
-  /** A commanded speed below this means "stand still", m/s. */
+  /** Commanded speed below which a command means "stand still", m/s. */
   private val StandsMps = 1e-3

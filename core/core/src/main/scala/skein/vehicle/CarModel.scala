@@ -4,7 +4,7 @@ import skein.signal.Kinematics
 import skein.units.*
 
 /** Predicts a [[DrivenCar]]. A setpoint that is not a velocity means "stand still". The angle of the front
-  * wheels and the tyres' deflection, which readings lack, are simulated between readings.
+  * wheels and the deflection of the tyres are missing in readings, and are simulated from reading to reading.
   */
 final case class CarModel(driven: DrivenCar = DrivenCar()) extends VehicleModel[CarModel.Driving]:
   import CarModel.*

@@ -4,10 +4,10 @@ package skein.vehicle
   *
   * @param headingRad from north towards east, any number of turns
   * @param frontMps velocity along the heading, negative backwards
-  * @param rightMps across it
+  * @param rightMps velocity across the heading
   * @param yawRadPerS clockwise seen from above
-  * @param frontSlipRad angle by which the front tyres are deflected, positive where they push to the right;
-  *   `rearSlipRad` likewise
+  * @param frontSlipRad deflection angle of the front tyres, positive if they push to the right; `rearSlipRad`
+  *   likewise
   * @param steeredRad angle of the front wheels, positive to the right
   */
 final case class CarState(

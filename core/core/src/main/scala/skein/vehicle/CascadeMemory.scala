@@ -1,6 +1,6 @@
 package skein.vehicle
 
-/** Memory of the controllers of a [[TunedFlightController]]. Mutable, for one vehicle. */
+/** Memory of a [[TunedFlightController]] for one vehicle. Mutable. */
 final private[vehicle] class CascadeMemory:
   import CascadeLoop.*
 
@@ -13,10 +13,9 @@ final private[vehicle] class CascadeMemory:
   private var vertical: VerticalMode | Null     = null
   private var yaw: YawMode | Null               = null
 
-  /** Whether the controller was created in this update. */
   def isNew(loop: Int): Boolean = created(loop)
 
-  /** Starts an update: resets the controllers of the axes whose mode has changed. */
+  /** Starts an update, and resets the controllers of axes whose mode has changed. */
   def begin(setpoint: Setpoint): Unit =
     note(setpoint.horizontal ne horizontal, CascadeMemory.Horizontal)
     note(setpoint.vertical ne vertical, CascadeMemory.Vertical)
@@ -59,7 +58,7 @@ private object CascadeMemory:
   private[vehicle] val Yaw      = Array(YawRate, YawAngle)
 
 private[vehicle] object CascadeLoop:
-  /** Indices of the cascade's controllers, except the vertical velocity's, whose integral is in
+  /** Indices of the cascade's controllers, without that of the vertical velocity, whose integral is in
     * [[QuadrotorState]].
     */
   inline val RollRate      = 0

@@ -4,13 +4,13 @@ import java.util.concurrent.atomic.AtomicLong
 import skein.signal.SplitMix64
 import skein.units.{Expect, Vector3}
 
-/** How the quadrotor that flies, and its air, differ from AirSim's in still air, which models and predictors
+/** Differences of the simulated quadrotor and its air from AirSim's in still air, which models and predictors
   * assume.
   *
   * @param mass factor on the mass
   * @param drag factor on the drag
-  * @param lag factor on the lag of the velocity: divides the gain from velocity to tilt
-  * @param rotors the share of its control that each rotor gives: front right, rear left, front left, rear
+  * @param lag factor on the lag of the velocity; divides the gain from velocity to tilt
+  * @param rotors share of its control that each rotor performs: front right, rear left, front left, rear
   *   right
   */
 final case class Deviation(
@@ -28,7 +28,7 @@ final case class Deviation(
       gains.copy(velocityP = gains.velocityP / lag)
     )
 
-  /** Vehicles that each meet gusts of their own. */
+  /** A kind of vehicle with these deviations, each vehicle with its own gusts. */
   def kind(seed: Long): RotorcraftKind =
     val flies = quadrotor
     val made  = AtomicLong()

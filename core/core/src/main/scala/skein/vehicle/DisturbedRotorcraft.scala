@@ -2,9 +2,9 @@ package skein.vehicle
 
 import skein.units.Vector3
 
-/** A multirotor in the wind that it meets, with rotors weaker than its controller takes them for.
+/** A multirotor in wind, with rotors that are weaker than its controller assumes.
   *
-  * @param rotors the share of its control that each rotor gives, 0 to 1, in [[Airframe]]'s order
+  * @param rotors share of its control that each rotor performs, 0 to 1, in [[Airframe]]'s order
   */
 final class DisturbedRotorcraft(of: Rotorcraft, wind: WindAlong, rotors: Vector[Double]) extends Rotorcraft:
   private val areWhole = rotors.forall(_ == 1)
@@ -13,7 +13,7 @@ final class DisturbedRotorcraft(of: Rotorcraft, wind: WindAlong, rotors: Vector[
 
   def tuned(cascade: CascadeGains): Rotorcraft = DisturbedRotorcraft(of.tuned(cascade), wind, rotors)
 
-  /** Adds the wind that it meets to the environment's. */
+  /** Advances `state` by one step; this vehicle's wind is added to the environment's. */
   def step(state: QuadrotorState, setpoint: Setpoint, environment: Environment): Unit =
     if !areWhole then
       state.control0 *= rotors(0)

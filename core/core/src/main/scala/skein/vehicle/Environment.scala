@@ -2,12 +2,10 @@ package skein.vehicle
 
 import skein.units.Vector3
 
-/** A vehicle's surroundings: air and ground. Constant over the steps it is passed to; pass another one when
-  * the wind changes.
+/** A vehicle's surroundings: air and ground. Constant during a step; pass another one when the wind changes.
   *
-  * @param windNed velocity of the air, m/s; acts through drag alone
-  * @param groundDownM down (z, NED) coordinate of a flat ground, m; a vehicle's origin touches it when its z
-  *   reaches this
+  * @param windNed velocity of the air, m/s; its only effect is drag
+  * @param groundDownM z of the flat ground, NED, m; a vehicle touches it when the vehicle's z reaches this
   * @param originAltitudeM altitude of z = 0 above sea level, m; AirSim's default home lies at 122 m
   */
 final case class Environment(

@@ -3,20 +3,21 @@ package skein.vehicle
 import scala.annotation.unused
 
 /** Gains and limits of AirSim's default flight controller, SimpleFlight (its `Params.hpp`, 1.8). Gains that
-  * are zero there (all derivatives, all integrals but the vertical velocity's) have no field here.
+  * are zero there have no field here: all derivatives, and all integrals except the vertical velocity's.
   *
   * @param rateP torque command per rad/s
   * @param maxRate rad/s
   * @param angleP share of `maxRate` per rad
   * @param maxTilt rad; limit of roll and pitch
   * @param velocityP share of `maxTilt` per m/s
-  * @param verticalP out of −1 … 1 per m/s, −1 being full and +1 no throttle
+  * @param verticalP command per m/s, from −1 for full throttle to +1 for none
   * @param verticalI gain of the integral, per m/s and second
   * @param verticalDiscount factor on the integral term at every update
-  * @param minThrottle least throttle of a velocity controller, so that a falling vehicle can still tilt
+  * @param minThrottle minimum throttle of a velocity controller, so that a falling vehicle can still tilt
   * @param positionP share of `maxVelocity` per m
   * @param maxVelocity m/s
-  * @param minAnglingThrottle below it all rotors get the throttle alone
+  * @param minAnglingThrottle throttle below which all rotors receive the throttle alone, without roll, pitch
+  *   and yaw
   */
 final case class ControllerGains(
     rateP: Double = 0.25,
@@ -34,14 +35,14 @@ final case class ControllerGains(
 )
 
 /** AirSim's default flight controller: a cascade per axis, position → velocity → angle → rate → torque
-  * command, and the mixer that turns the four commands into rotor controls. It sees the true state.
+  * command, and the mixer that turns the four commands into rotor controls. It receives the true state.
   *
   * '''The quirk that shapes every flight.''' In velocity mode roll and pitch rotate the ''whole'' goal triple
   * into the body frame, whatever its third number means. Under [[Setpoint.velocityZ]] that is an altitude, so
-  * a vehicle tilted by α sees sin α · z as if it were wanted speed and tilts less: the response is slow, the
-  * more the higher it flies.
+  * a vehicle tilted by α treats sin α · z as a wanted speed and tilts less. The higher it flies, the slower
+  * it responds.
   *
-  * [[TunedFlightController]] is the same cascade with separate gains for every controller.
+  * [[TunedFlightController]] is this cascade with separate gains for every controller.
   *
   * @param stepS time between updates, s
   */
@@ -49,7 +50,7 @@ open class FlightController(val gains: ControllerGains, stepS: Double):
   import gains.*
   import CascadeLoop.*
 
-  /** Sets the rotor controls of `state` for its next step. */
+  /** Sets the rotor controls in `state` for its next step. */
   def update(state: QuadrotorState, setpoint: Setpoint): Unit =
     if setpoint.horizontal eq HorizontalMode.Rotors then passThrough(state, setpoint)
     else control(state, setpoint)
@@ -66,7 +67,7 @@ open class FlightController(val gains: ControllerGains, stepS: Double):
   private def control(state: QuadrotorState, setpoint: Setpoint): Unit =
     import state.{qw, qx, qy, qz}
 
-    // Rows of the rotation from body to world; transposed they turn world into body.
+    // Rows of the rotation from body to world; their transpose rotates from world to body.
     val r00 = 1 - 2 * (qy * qy + qz * qz)
     val r10 = 2 * (qx * qy + qw * qz)
     val r20 = 2 * (qx * qz - qw * qy)
@@ -117,8 +118,8 @@ open class FlightController(val gains: ControllerGains, stepS: Double):
     state.verticalMode = setpoint.vertical
     mix(state, rollCommand, pitchCommand, yawCommand, throttle)
 
-  /** The integral term of a vehicle that hovers at this throttle, and its lasting velocity error, m/s: the
-    * discount takes from the integral at each update what that error adds.
+  /** The integral term of a vehicle that hovers at this throttle, and its constant velocity error, m/s. In
+    * every update, the discount of the integral equals the contribution of that error.
     */
   private[vehicle] def hoverIntegral(throttle: Double): (Double, Double) =
     val out              = 1 - 2 * throttle
@@ -129,9 +130,9 @@ open class FlightController(val gains: ControllerGains, stepS: Double):
   private def verticalThrottle(state: QuadrotorState, setpoint: Setpoint, error: Double): Double =
     math.max((1 - climb(state, setpoint, error)) / 2, minThrottle)
 
-  /** Output of the vertical velocity's controller for an error, −1 to 1. */
+  /** Output of the vertical velocity's controller for a velocity error, −1 to 1. */
   protected def climb(state: QuadrotorState, setpoint: Setpoint, error: Double): Double =
-    // A controller just created does not integrate: its clock has not advanced yet.
+    // A new controller does not integrate, because its clock has not advanced yet.
     if state.verticalMode eq setpoint.vertical then
       state.verticalIntegral = unit(state.verticalIntegral * verticalDiscount + stepS * error * verticalI)
     else state.verticalIntegral = 0.0
@@ -139,8 +140,8 @@ open class FlightController(val gains: ControllerGains, stepS: Double):
 
   /** Output of one controller of the cascade for its error, −1 to 1.
     *
-    * @param loop index in the companion
-    * @param gain its share of `gains`
+    * @param loop index of the controller, see [[CascadeMemory]]
+    * @param gain proportional gain of the controller according to `gains`
     */
   protected def respond(
       @unused state: QuadrotorState,

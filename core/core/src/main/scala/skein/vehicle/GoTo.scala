@@ -2,8 +2,8 @@ package skein.vehicle
 
 import skein.units.{MetresPerSecond, Vector3}
 
-/** Steers to a position by velocities. A vehicle that follows them with a lag of 0.9 s, as AirSim's does,
-  * does not overshoot: 1.5² = 4 · 0.6 · 0.9, nearly.
+/** Steers to a position by commanding velocities. A vehicle that follows them with a lag of 0.9 s, as
+  * AirSim's does, does not overshoot: 1.5² ≈ 4 · 0.6 · 0.9.
   */
 object GoTo:
   private val PerMetre = 0.6

@@ -2,26 +2,26 @@ package skein.vehicle
 
 import skein.units.{Span, Vector3}
 
-/** AirSim's path following: 50 times a second it steers to a point ahead by a velocity
+/** AirSim's path following: 50 times a second it commands a velocity towards a point ahead on the path
   * (`MultirotorApiBase::moveOnPath`).
   */
 object PathFollowing:
 
   val Period: Span = Span.ofMillis(20)
 
-  /** Closer than this, m, AirSim treats two positions as one. */
+  /** Distance below which AirSim treats two positions as one, m. */
   val DistanceAccuracyM = 0.5
 
   /** Default look-ahead distance, m.
     *
-    * @param isAdaptive whether it grows with the vehicle's distance from the path
+    * @param isAdaptive whether it increases with the vehicle's distance from the path
     */
   def lookaheadM(speedMps: Double, isAdaptive: Boolean): Double =
     (speedMps * Period.toSeconds * (if isAdaptive then 30 else 40)).max(DistanceAccuracyM * 1.5)
 
   /** The velocity to command, NED, m/s.
     *
-    * @param wayNed from the vehicle to the point it aims at, m
+    * @param wayNed vector from the vehicle to the point ahead, m
     */
   def velocityNed(wayNed: Vector3, speedMps: Double): Vector3 =
     val distance = wayNed.norm

@@ -1,17 +1,17 @@
 package skein.vehicle
 
 /** A vehicle's motion and readings: pure methods that are arithmetic on a case class of doubles. The scalar
-  * engine calls them; for searches they are compiled to SIMD unchanged (`skein.forward.PlantResponse`).
+  * engine calls these methods; searches compile them to SIMD (`skein.forward.PlantResponse`).
   *
-  * North and east are counted from where the vehicle starts. It rests there until the first command.
+  * North and east are counted from the vehicle's start, where it rests until the first command.
   *
-  * @tparam S the state: a case class of doubles, or of such
+  * @tparam S the state: a case class of doubles, or of such case classes
   */
 trait Plant[S] extends PlantTiming:
 
   def initial: S
 
-  /** The state a time later.
+  /** The state after `dtS`.
     *
     * @param northMps commanded velocity, constant during the step
     * @param dtS above 0, at most [[stepS]]
@@ -20,23 +20,25 @@ trait Plant[S] extends PlantTiming:
 
   def read(state: S): PlaneReading
 
-/** How finely a plant is simulated, and how long its commands wait. */
+/** The step length of a plant, and the dead time of its commands. */
 trait PlantTiming:
-  /** Longest step, s. Steps begin when a command takes effect, and every `stepS` after that. */
+  /** Maximum step, s. A step begins when a command takes effect, and `stepS` after the begin of the previous
+    * step.
+    */
   def stepS: Double
 
   /** Time from a command's arrival until the vehicle follows it, s. */
   def deadTimeS: Double = 0
 
-/** A plant whose state can be corrected by a reading, so that its flights can be predicted from readings: by
-  * `skein identify` and by the loop `predictive` ([[PlantModel]]). Its motion does not depend on where it is.
+/** A plant whose state can be corrected by readings, so that `skein identify` and the loop `predictive`
+  * ([[PlantModel]]) can predict its flights. Its motion must not depend on its position.
   */
 trait ObservedPlant[S] extends Plant[S]:
 
-  /** The state corrected by a reading; what a reading does not contain (a steering angle, an integrator)
-    * stays.
+  /** The state corrected by a reading. Parts that a reading lacks (a steering angle, an integrator) stay
+    * unchanged.
     *
-    * @param seen north and east from any origin
+    * @param seen the reading; north and east may have any origin
     */
   def corrected(state: S, seen: PlaneReading): S
 

@@ -6,12 +6,12 @@ final class PlantFlight[S](val plant: Plant[S]) extends StepwiseFlight[S](plant,
 
   def reading: PlaneReading = plant.read(state)
 
-  /** Sets its state; the command given here, m/s, is in effect from the start. */
+  /** Sets the state at a time, s, and the command in effect from then on, m/s. */
   def start(atS: Double, state: S, northMps: Double = 0, eastMps: Double = 0): Unit =
     command(northMps, eastMps)
     begin(atS, state)
 
-  /** Sets the command in effect from now on, m/s; the caller accounts for dead time. */
+  /** Sets the command in effect from a time on, m/s; the caller accounts for dead time. */
   def act(atS: Double, northMps: Double, eastMps: Double): Unit =
     advance(atS)
     command(northMps, eastMps)

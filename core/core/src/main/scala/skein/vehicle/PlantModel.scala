@@ -51,7 +51,7 @@ object PlantModel:
     *
     * @param acting the commanded velocity in effect, m/s
     * @param told the last command received, m/s
-    * @param coming commands received and not yet in effect, the oldest first
+    * @param coming received commands that are not in effect yet, the oldest first
     */
   final case class Flying[S] private[vehicle] (
       now: Kinematics,

@@ -1,7 +1,7 @@
 package skein.vehicle
 
-/** Converts states of plants to numbers, for storage and messages: case classes of doubles, or of such, in
-  * their order.
+/** Converts states of plants to numbers and back, for storage and messages. States are case classes of
+  * doubles, or of such case classes; the order is that of their fields.
   */
 object PlantState:
   def numbers(state: Any): Vector[Double] = state match
@@ -9,7 +9,7 @@ object PlantState:
     case several: Product => several.productIterator.flatMap(numbers).toVector
     case _                => Vector.empty
 
-  /** A state of the form of `like`.
+  /** The state with these numbers, of the form of `like`.
     *
     * @throws IllegalArgumentException if the count of numbers differs, or the state rejects its parts
     */

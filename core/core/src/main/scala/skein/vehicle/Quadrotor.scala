@@ -3,11 +3,11 @@ package skein.vehicle
 import skein.units.Vector3
 
 /** A quadrotor with its flight controller, as AirSim 1.8 simulates it by default (`FastPhysicsEngine`,
-  * `RotorActuator`, SimpleFlight). Immutable: all that changes is in a [[QuadrotorState]], so that one
-  * instance serves any number of vehicles and threads.
+  * `RotorActuator`, SimpleFlight). Immutable: everything that changes is in a [[QuadrotorState]], so that any
+  * number of vehicles and threads can share one instance.
   *
   * @param stepS s; AirSim's is 3 ms
-  * @param cascade gains that a client has set, which then stand for those of `gains`
+  * @param cascade gains that a client has set; they replace those of `gains`
   */
 final class Quadrotor(
     val airframe: Airframe = Airframe(),
@@ -25,8 +25,8 @@ final class Quadrotor(
   private val halfStepSquare = halfStep * halfStep
 
   /** Advances `state` by one step: forces, then the next kinematics, then the rotors' lag, then the
-    * controller, which sees the new kinematics and sets the rotors. Deterministic; allocates nothing in the
-    * air; about 0.13 µs. `QuadrotorGolden` holds it to AirSim's own step responses.
+    * controller, which receives the new kinematics and sets the rotors. Deterministic; allocates nothing in
+    * the air; about 0.13 µs. `QuadrotorGolden` compares it with AirSim's own step responses.
     */
   def step(state: QuadrotorState, setpoint: Setpoint, environment: Environment = Environment.Calm): Unit =
     if state.grounded then
@@ -40,8 +40,8 @@ final class Quadrotor(
       control(state, setpoint)
     else stepInAir(state, setpoint, environment)
 
-  /** [[step]] for a vehicle away from ground and obstacles: arithmetic, which is compiled unchanged to SIMD
-    * over many vehicles.
+  /** [[step]] for a vehicle away from ground and obstacles: pure arithmetic, which is compiled to SIMD for
+    * many vehicles.
     */
   private[skein] def stepInAir(state: QuadrotorState, setpoint: Setpoint, environment: Environment): Unit =
     move(state, environment)
@@ -58,13 +58,13 @@ final class Quadrotor(
     (state.thrust0 + state.thrust1 + state.thrust2 + state.thrust3) * maxThrustN *
       densityRatio(state, environment)
 
-  /** This vehicle with other gains. A state that it takes over must [[QuadrotorState.restartController]];
-    * [[hovering]] still uses the original gains.
+  /** This vehicle with other gains. After the change, call [[QuadrotorState.restartController]] on a state of
+    * the old vehicle. [[hovering]] still uses the original gains.
     */
   def tuned(cascade: CascadeGains): Quadrotor = Quadrotor(airframe, gains, stepS, Some(cascade))
 
-  /** A vehicle that has long held `goalNed` at this yaw, level and at rest, its integrator settled: it hangs
-    * [[hoverSagM]] below its goal, and a step under [[Setpoint.hold]] of that goal leaves it there.
+  /** A vehicle that has held `goalNed` for long at this yaw, level and at rest, with its integrator settled.
+    * It is [[hoverSagM]] below its goal, where a step under [[Setpoint.hold]] of that goal leaves it.
     */
   def hovering(
       goalNed: Vector3,
@@ -82,9 +82,7 @@ final class Quadrotor(
     state.thrust0 = control; state.thrust1 = control; state.thrust2 = control; state.thrust3 = control
     state
 
-  /** A vehicle that stands on the ground with its motors off. `positionNed` should lie on the environment's
-    * ground.
-    */
+  /** A vehicle on the ground with its motors off. `positionNed` should lie on the environment's ground. */
   def landed(positionNed: Vector3, yawRad: Double = 0.0): QuadrotorState =
     val state = atRest(positionNed, yawRad)
     state.grounded = true
@@ -95,8 +93,8 @@ final class Quadrotor(
   def hover(state: QuadrotorState, goalNed: Vector3, yawRad: Double, environment: Environment): Unit =
     state.copyFrom(hovering(goalNed, yawRad, environment))
 
-  /** How far below the held altitude a hovering vehicle settles, m: the altitude integrator's discount leaves
-    * it there. 2.0 mm for AirSim's vehicle.
+  /** Distance below its altitude goal at which a hovering vehicle settles, m, caused by the discount of the
+    * altitude integrator; 2.0 mm for AirSim's vehicle.
     */
   def hoverSagM(downM: Double, environment: Environment = Environment.Calm): Double =
     hovering(Vector3(0, 0, downM), 0.0, environment).z - downM
@@ -112,8 +110,8 @@ final class Quadrotor(
     state.qw = StrictMath.cos(yawRad / 2); state.qz = StrictMath.sin(yawRad / 2)
     state
 
-  /** AirSim passes a rotor's output on twice, so a control takes effect two steps after its lag: 6 ms,
-    * visible in the step responses.
+  /** Advances the rotors. AirSim passes a rotor's output on twice, so that a control takes effect two steps
+    * after its lag: 6 ms, which is visible in step responses.
     */
   private def spinRotors(state: QuadrotorState): Unit =
     state.thrust0 = state.lagged0; state.thrust1 = state.lagged1
@@ -123,7 +121,7 @@ final class Quadrotor(
     state.lagged2 = state.control2 + (state.lagged2 - state.control2) * rotorKeep
     state.lagged3 = state.control3 + (state.lagged3 - state.control3) * rotorKeep
 
-  /** Velocity Verlet as AirSim has it: forces at the mean velocity of the step. */
+  /** Moves the vehicle by velocity Verlet in AirSim's form, with forces at the mean velocity of the step. */
   private def move(state: QuadrotorState, environment: Environment): Unit =
     import state.{qw, qx, qy, qz}
     val densityRatio = this.densityRatio(state, environment)
@@ -179,7 +177,7 @@ final class Quadrotor(
     state.wxDot = wxDot; state.wyDot = wyDot; state.wzDot = wzDot
     rotate(state, wx, wy, wz)
 
-  /** Turns the orientation by the rotation (wx, wy, wz)·stepS in the body frame. */
+  /** Rotates the orientation by (wx, wy, wz)·stepS in the body frame. */
   private def rotate(state: QuadrotorState, wx: Double, wy: Double, wz: Double): Unit =
     import state.{qw, qx, qy, qz}
     // Half a step's angle h is far below 1 rad: two terms of cos h and sin h / h err below h⁶/720.
@@ -199,9 +197,9 @@ final class Quadrotor(
   private def drag(factor: Double, speed: Double): Double =
     if math.abs(speed) > dragMinSpeed then -factor * speed * math.abs(speed) else 0.0
 
-  /** AirSim's collision response with flat ground, in place of the step: a vehicle that comes down more than
-    * sideways, and near level, stays; any other bounces. The contact is taken at the centre of mass, so it
-    * turns nothing; in AirSim it is where the engine's shapes meet.
+  /** AirSim's collision response with flat ground, in place of the step. A vehicle that is nearly level and
+    * moves down faster than sideways lands; any other bounces. The contact is at the centre of mass and
+    * causes no rotation; in AirSim it is where the engine's shapes meet.
     */
   private[skein] def touchGround(
       state: QuadrotorState,
@@ -235,10 +233,10 @@ final class Quadrotor(
 object Quadrotor:
   val AirSimStepS = 0.003
 
-  /** How far from 1 the cosine of the tilt may be in a landing: AirSim's `kAxisTolerance`. */
+  /** Maximum deviation of the tilt's cosine from 1 at a landing: AirSim's `kAxisTolerance`. */
   private val LevelTolerance = 0.25
 
-  /** Share of the angular velocity that a bounce leaves: AirSim's rolling friction. */
+  /** Share of the angular velocity that remains after a bounce: AirSim's rolling friction. */
   private val BounceSpin = 0.9
 
   val AirSim: Quadrotor = Quadrotor()

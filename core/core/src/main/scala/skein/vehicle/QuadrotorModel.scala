@@ -3,8 +3,8 @@ package skein.vehicle
 import skein.signal.Kinematics
 import skein.units.*
 
-/** The whole vehicle as a model: rotors and integrators, which readings lack, are simulated between readings.
-  * About 0.13 µs per 3 ms of flight.
+/** Predicts by the complete quadrotor. Rotors and integrators, which readings lack, are simulated from
+  * reading to reading. Costs about 0.13 µs per 3 ms of flight.
   */
 final class QuadrotorModel(quadrotor: Quadrotor, environment: Environment = Environment.Calm)
     extends VehicleModel[QuadrotorModel.Flying]:
@@ -53,7 +53,7 @@ object QuadrotorModel:
 
   /** A state of the vehicle and its controller.
     *
-    * @param owed time since the last whole step of physics
+    * @param owed time since the last step of physics, less than one step
     */
   final class Flying private[vehicle] (
       private[vehicle] val state: QuadrotorState,

@@ -33,21 +33,21 @@ final class QuadrotorState:
   /** Controls of the rotors after their lag, 0 to 1. */
   var lagged0, lagged1, lagged2, lagged3 = 0.0
 
-  /** Thrust over maximal thrust at sea-level density, as it will act in the next step. */
+  /** Thrust in the next step, divided by the maximum thrust at sea-level density. */
   var thrust0, thrust1, thrust2, thrust3 = 0.0
 
-  /** Standing on the ground, until thrust exceeds weight. */
+  /** Whether the vehicle stands on the ground, until thrust exceeds weight. */
   var grounded = false
 
   /** Integral term of the vertical velocity controller, −1 to 1. */
   private[vehicle] var verticalIntegral = 0.0
 
-  /** The vertical mode of the step before, whose change creates the vertical controllers anew; null before
-    * the first. The other axes have no memory, for their integral gains are zero.
+  /** Vertical mode of the previous step; null before the first. A change of mode recreates the vertical
+    * controllers. The other axes have no memory, because their integral gains are zero.
     */
   private[vehicle] var verticalMode: VerticalMode | Null = null
 
-  /** Memory of a [[TunedFlightController]] for all axes; null under the plain one. */
+  /** Memory of a [[TunedFlightController]] for all axes; null under a plain [[FlightController]]. */
   private[vehicle] var cascadeMemory: CascadeMemory | Null = null
 
   /** Resets all controllers at the next step, as when AirSim's gains are set. */
@@ -88,13 +88,13 @@ final class QuadrotorState:
 
   def kinematics: Kinematics = Kinematics(positionNed, velocityNed, orientation, angularVelocityFrd)
 
-  /** Angle between the rotors' thrust and straight up, rad. */
+  /** Angle between the thrust of the rotors and straight up, rad. */
   def tiltRad: Double = StrictMath.acos((1 - 2 * (qx * qx + qy * qy)).max(-1.0).min(1.0))
 
   def yawRad: Double = StrictMath.atan2(2 * (qw * qz + qx * qy), 1 - 2 * (qy * qy + qz * qz))
 
-  /** Places the vehicle elsewhere, at this yaw and level, its motion and controller untouched (as AirSim's
-    * `simSetVehiclePose` does).
+  /** Moves the vehicle to a position, level and with the yaw of `orientation`. Its motion and controller are
+    * unchanged, as in AirSim's `simSetVehiclePose`.
     */
   def place(positionNed: Vector3, orientation: Quaternion): Unit =
     x = positionNed.x; y = positionNed.y; z = positionNed.z

@@ -1,24 +1,24 @@
 package skein.vehicle
 
-/** A few-parameter model of how horizontal velocity v follows a commanded velocity u that stands still
-  * between events:
+/** A model with few parameters for a horizontal velocity v that follows a commanded velocity u, which is
+  * constant between events:
   *
   *   - along u: v' = (gain · |u| − v) / lag − drag · s · v
   *   - across u: v' = −v / turnLag − drag · s · v
   *
-  * A command takes effect `deadTimeS` after its arrival. s is the speed when the present piece of the flight
-  * began: pieces begin when a command takes effect, and every [[ReducedModel.PieceS]] after it. So each piece
-  * is linear and has a closed form, and drag still grows with the square of the speed. Without drag a piece
-  * is exact however long it is.
+  * A command takes effect `deadTimeS` after its arrival. s is the speed at the begin of the present piece of
+  * the flight. A piece begins when a command takes effect, and every [[ReducedModel.PieceS]] after that. So
+  * each piece is linear and has a closed form, while drag still increases with the square of the speed.
+  * Without drag, pieces of any length are exact.
   *
-  * Why this form: AirSim's flight controller tilts in proportion to the velocity's error, so velocity has a
-  * first-order lag (the tilt itself settles within a dead time); the air's drag is quadratic, so a gain fits
-  * one speed only.
+  * The reason for this form: AirSim's flight controller tilts in proportion to the velocity's error, so
+  * velocity has a first-order lag (the tilt itself settles within a dead time); the air's drag is quadratic,
+  * so that a gain alone would fit only one speed.
   *
-  * @param gain reached over commanded speed, drag apart
-  * @param lagS of the velocity along the command, s
-  * @param deadTimeS from a command's arrival until it acts
-  * @param turnLagS of the velocity across the command, s: how fast the old direction dies away
+  * @param gain final speed divided by commanded speed, without drag
+  * @param lagS lag of the velocity along the command, s
+  * @param deadTimeS time from a command's arrival until it takes effect, s
+  * @param turnLagS lag of the velocity across the command, s, with which the old direction decays
   * @param dragPerM deceleration per squared speed, 1/m
   */
 final case class ReducedModel(
@@ -44,7 +44,7 @@ final case class ReducedModel(
 
   def isLag: Boolean = !drags && !turns
 
-  /** The state at a time after the start of a piece. */
+  /** The state `spanS` after the start of a piece. */
   def step(from: PlaneReading, wantedVx: Double, wantedVy: Double, spanS: Double): PlaneReading =
     import from.{eastMps as vy, northMps as vx}
     val drag             = if drags then dragPerM * math.sqrt(vx * vx + vy * vy) else 0
@@ -67,14 +67,16 @@ final case class ReducedModel(
       across(alike, wantedVx, wantedVy, offVx, offVy, crossLeft - left, carryAcrossS - carriesS)
     else alike
 
-  /** Integral of what remains of an error with the slower decay: drag reduces both components equally. */
+  /** The factor by which the faster decaying part of an error is smaller than the slower one. Drag affects
+    * both equally.
+    */
   private def fasterLeft(spanS: Double) = StrictMath.exp(-fasterPerS * spanS)
 
-  /** The part of the velocity's error across the command decays at its own rate. If the command is to stand
-    * still, the whole error decays with the lag along.
+  /** Corrects the part of the velocity error that is across the command and decays at its own rate. If the
+    * command is to stand still, the whole error decays with the lag along.
     *
-    * @param leftMore by how much more of that part remains than of the rest, and for how much longer it
-    *   carries, s
+    * @param leftMore difference between the remaining shares, across less along; `carryMoreS` likewise for
+    *   the times, s, for which the errors carry the vehicle
     */
   private def across(
       alike: PlaneReading,
@@ -97,13 +99,13 @@ final case class ReducedModel(
     )
 
 object ReducedModel:
-  /** Longest piece with a constant value of the drag, s. */
+  /** Duration of a piece with constant drag, s. */
   val PieceS = 0.1
 
-  /** Longest piece of a model without drag, s. */
+  /** Maximum duration of a piece without drag, s. */
   val LongestPieceS = 1.0
 
-  /** A plain first-order lag with dead time, without drag. */
+  /** A first-order lag with dead time and without drag. */
   def lag(gain: Double, lagS: Double, deadTimeS: Double): ReducedModel =
     ReducedModel(gain, lagS, deadTimeS, lagS, 0)
 
@@ -124,10 +126,10 @@ object ReducedModel:
     */
   val AirSim: ReducedModel = ReducedModel(1.02, 2.967, 0.037, 2.967, 0.0067)
 
-  /** [[AirSim]] at another altitude goal. The controller tilts by k · (error of velocity − tilt · |z|) with k =
-    * 0.2 · π/5.5, its gain and limit of the tilt ([[FlightController]]), which accelerates by g · tilt: so
-    * the lag is (1 + k · |z|) / (k · g), 1.40 s at 5 m and 2.93 s at 20 m, where [[AirSim]] was identified
-    * and is kept.
+  /** [[AirSim]] at another altitude goal. The controller tilts by k · (error of velocity − tilt · |z|) with k
+    * = 0.2 · π/5.5, its gain and limit of the tilt ([[FlightController]]), and accelerates by g · tilt. So
+    * the lag is (1 + k · |z|) / (k · g), 1.40 s at 5 m and 2.93 s at 20 m, the altitude at which [[AirSim]]
+    * was identified; there the result is [[AirSim]] itself.
     */
   def airSimAt(altitudeM: Double): ReducedModel =
     if math.abs(altitudeM) == IdentifiedAtM then AirSim
@@ -136,5 +138,5 @@ object ReducedModel:
       val lag = (1 + k * math.abs(altitudeM)) / (k * 9.80665)
       AirSim.copy(lagS = lag, turnLagS = lag)
 
-  /** The altitude of the flights that [[AirSim]] was identified from, m. */
+  /** Altitude of the flights from which [[AirSim]] was identified, m. */
   val IdentifiedAtM = 20.0

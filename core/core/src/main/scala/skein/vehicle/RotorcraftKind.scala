@@ -2,15 +2,15 @@ package skein.vehicle
 
 import skein.units.Span
 
-/** The kind of multirotor that a simulator flies.
+/** The kind of multirotor that a simulator simulates.
   *
-  * @param stepS step length of each, s
-  * @param make makes an instance for one vehicle
+  * @param stepS duration of a step, s
+  * @param make creates an instance for one vehicle
   */
 final class RotorcraftKind(val stepS: Double, val make: () => Rotorcraft)
 
 object RotorcraftKind:
-  /** AirSim's quadrotor, which serves any number of vehicles. */
+  /** AirSim's quadrotor; all vehicles share one instance. */
   val AirSim: RotorcraftKind = of(Quadrotor.AirSim)
 
   /** [[AirSim]] with steps of this length. */

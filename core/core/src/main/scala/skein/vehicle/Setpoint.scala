@@ -5,7 +5,7 @@ import skein.units.{Span, Vector3}
 
 /** The meaning of a setpoint's two horizontal goals, `first` and `second`. */
 enum HorizontalMode:
-  /** The four goals are the controls of the four rotors, 0 to 1; roll and pitch are not controlled. */
+  /** The four goals are the controls of the rotors, 0 to 1; roll and pitch are not controlled. */
   case Rotors
 
   /** Goals are roll rate and pitch rate, rad/s. */
@@ -28,7 +28,7 @@ enum VerticalMode:
   /** The goal is the velocity down, m/s, negative upwards. */
   case Velocity
 
-  /** Position down (z of NED: negative above the origin), m. */
+  /** The goal is the position down (z of NED, negative above the origin), m. */
   case Position
 
 /** The meaning of a setpoint's goal for yaw, `yawGoal`. */
@@ -36,24 +36,24 @@ enum YawMode:
   /** The goal is the yaw rate, rad/s, clockwise from above. */
   case Rate
 
-  /** Yaw, rad from north towards east, reached the shorter way. */
+  /** The goal is the yaw, rad from north towards east, reached by the shorter way. */
   case Angle
 
-/** A command as a function of the vehicle's state: yields goals for the flight controller. A [[Setpoint]] is
-  * one that never changes.
+/** A command that may depend on the vehicle's state: it yields goals for the flight controller. A
+  * [[Setpoint]] is a command that does not.
   */
 trait Guidance:
-  /** The goal at this state.
+  /** The goals at this state of the vehicle.
     *
     * @param now evaluated only if needed
     */
   def setpoint(now: => Kinematics): Setpoint
 
-  /** Time between two goals; absent where one is enough. */
+  /** Time after which new goals are needed; None if the goals never change. */
   def period: Option[Span]
 
-/** The goals of the flight controller: per axis a mode and its goal, as AirSim's SimpleFlight keeps them. The
-  * constructors in the companion bear the names of AirSim's commands.
+/** Goals of the flight controller: a mode and a goal for each axis, as in AirSim's SimpleFlight. The
+  * companion's methods have the names of AirSim's commands.
   *
   * @param first the goal of `horizontal`: roll (rad, rad/s) or north (m, m/s)
   * @param second pitch or east
@@ -72,17 +72,17 @@ final case class Setpoint(
   def setpoint(now: => Kinematics): Setpoint = this
   def period: Option[Span]                   = None
 
-  /** This setpoint with a yaw goal, rad from north. */
+  /** This setpoint with a yaw as goal, rad from north. */
   def withYaw(yawRad: Double): Setpoint = copy(yaw = YawMode.Angle, yawGoal = yawRad)
 
-  /** This setpoint with a yaw rate goal, rad/s. */
+  /** This setpoint with a yaw rate as goal, rad/s. */
   def withYawRate(yawRateRadps: Double): Setpoint = copy(yaw = YawMode.Rate, yawGoal = yawRateRadps)
 
 object Setpoint:
 
   val Disarmed: Setpoint = Setpoint(HorizontalMode.Rates, 0, 0, VerticalMode.Throttle, 0)
 
-  /** Motors idle: AirSim's throttle of an armed vehicle that has no goal yet, two thirds of the one above
+  /** Idling motors: AirSim's throttle of an armed vehicle without goals, two thirds of the throttle above
     * which a vehicle counts as driven.
     */
   val Armed: Setpoint = Setpoint(HorizontalMode.Rates, 0, 0, VerticalMode.Throttle, 0.1 / 1.5)
@@ -91,14 +91,14 @@ object Setpoint:
   def velocity(northMps: Double, eastMps: Double, downMps: Double): Setpoint =
     Setpoint(HorizontalMode.Velocity, northMps, eastMps, VerticalMode.Velocity, downMps)
 
-  /** `moveByVelocityZ`: velocity north and east, m/s, at altitude `downM` (NED). Slower to respond than
-    * [[velocity]], the more the higher it flies; [[FlightController]] says why.
+  /** `moveByVelocityZ`: velocity north and east, m/s, at altitude `downM` (NED). The higher the vehicle
+    * flies, the more slowly it responds than to [[velocity]]; [[FlightController]] explains why.
     */
   def velocityZ(northMps: Double, eastMps: Double, downM: Double): Setpoint =
     Setpoint(HorizontalMode.Velocity, northMps, eastMps, VerticalMode.Position, downM)
 
-  /** Position hold: AirSim's `hover` at the place given, and the goal after a command that was not renewed
-    * expires. The vehicle settles 2 mm below ([[Quadrotor.hoverSagM]]). As in AirSim, the hold weakens as the
+  /** Position hold: AirSim's `hover` at this position; also the goal after a command has expired that was not
+    * renewed. The vehicle settles 2 mm below ([[Quadrotor.hoverSagM]]). As in AirSim, the hold weakens as the
     * yaw turns away from north: each axis takes only its own coordinate's error into the body frame, so at
     * ±90° it brakes but does not return.
     */

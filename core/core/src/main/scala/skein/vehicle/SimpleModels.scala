@@ -14,14 +14,14 @@ object ConstantVelocity extends VehicleModel[Kinematics]:
 
   def kinematics(state: Kinematics): Kinematics = state
 
-/** Predicts constant speed and the turn rate between the last two readings, for vehicles whose commands are
+/** Predicts constant speed, and the turn rate between the last two readings; for vehicles whose commands are
   * unknown.
   */
 object ConstantTurn extends VehicleModel[ConstantTurn.Turning]:
 
   /** State of a turning vehicle.
     *
-    * @param turnRateRadps of the horizontal velocity, from north towards east
+    * @param turnRateRadps turn rate of the horizontal velocity, positive from north towards east
     * @param seen the last reading
     */
   final case class Turning(now: Kinematics, turnRateRadps: Double, seen: Kinematics)

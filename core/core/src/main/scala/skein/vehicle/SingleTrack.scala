@@ -2,35 +2,36 @@ package skein.vehicle
 
 import skein.vehicle.Airframe.Gravity
 
-/** How a car moves: the single-track ("bicycle") model, which merges the two wheels of an axle, with lagging
-  * tyres.
+/** The motion of a car by the single-track ("bicycle") model, which merges the two wheels of an axle, with
+  * tyres that lag.
   *
-  * A tyre pushes sideways in proportion to the angle by which it is deflected, up to what friction holds.
-  * That angle follows the slip angle, the direction in which the tyre is drawn over the ground, while it
-  * rolls: with a first-order lag over its relaxation length σ, σ · α' = −(velocity across the wheel) − |v| ·
-  * α (Pacejka, ''Tyre and Vehicle Dynamics'', 2nd ed., section 1.2 and chapter 7). The two forces turn the
-  * car and move it sideways as in the linear single-track model (Rajamani, ''Vehicle Dynamics and Control'',
-  * 2nd ed., equations 2.31 and 2.32), here with the sines and cosines of the steering angle. Stiffness is in
-  * proportion to an axle's load, F = μ · C_S · F_z · α.
+  * The side force of a tyre is proportional to its deflection angle, up to the limit of friction. While the
+  * tyre rolls, that angle follows the slip angle, the direction of the tyre's motion over the ground, with a
+  * first-order lag over its relaxation length σ, σ · α' = −(velocity across the wheel) − |v| · α (Pacejka,
+  * ''Tyre and Vehicle Dynamics'', 2nd ed., section 1.2 and chapter 7). The two forces turn the car and move
+  * it sideways as in the linear single-track model (Rajamani, ''Vehicle Dynamics and Control'', 2nd ed.,
+  * equations 2.31 and 2.32), here with the sines and cosines of the steering angle. Stiffness is proportional
+  * to an axle's load, F = μ · C_S · F_z · α.
   *
-  * Along its way it is driven by as much as its two driven wheels hold or its engine's power gives, and
-  * slowed by its brakes, as far as all four wheels hold, by rolling, by the air and by the steered wheels.
-  * That a tyre that brakes holds less sideways is left out, and so are springs and the shifting of loads.
+  * Its acceleration is limited by the grip of the two driven wheels and by the engine's power. It is slowed
+  * by the brakes, limited by the grip of all four wheels, by rolling resistance, by the air and by the
+  * steered wheels. Not modelled are the reduced side force of a braking tyre, springs, and changes of the
+  * axles' loads.
   *
   * Defaults are a BMW 320i's, the second vehicle of CommonRoad (Althoff, Koschi, Manzinger, ''CommonRoad:
   * Composable Benchmarks for Motion Planning on Roads'', IV 2017; vehicle models, parameter set 2): 1093.3
   * kg, 1791.6 kg·m², μ 1.0489, C_S 20.89 /rad, steered at 0.4 rad/s; power from 11.5 m/s² up to 7.319 m/s.
-  * Not from there: full lock, 40° as AirSim's car has it (`CarWheelFront`); the relaxation length, 0.5 m,
+  * From other sources: full lock, 40° as in AirSim's car (`CarWheelFront`); the relaxation length, 0.5 m,
   * within the 0.3 to 0.6 m of passenger cars' tyres; the rolling resistance of 0.015 of the weight, and the
   * air's, 0.5 · 1.2 kg/m³ · 0.6 m² / m.
   *
-  * A pure formula: the simulator, predictions and SIMD forward simulation compute it alike.
-  * `SingleTrackSuite` holds it to its sources.
+  * A pure formula, which the simulator, predictions and SIMD forward simulation share. `SingleTrackSuite`
+  * compares it with its sources.
   *
-  * @param rearM from the rear axle to the centre of mass
+  * @param rearM distance from the rear axle to the centre of mass
   * @param gyrationM radius of gyration about the vertical axis: the root of moment of inertia over mass
-  * @param relaxationM the distance over which tyres respond
-  * @param wattPerKg of the engine
+  * @param relaxationM distance over which tyres respond
+  * @param wattPerKg power of the engine divided by the car's mass
   */
 final case class SingleTrack(
     wheelbaseM: Double = 2.5789,
@@ -45,10 +46,10 @@ final case class SingleTrack(
     rolling: Double = 0.015,
     airPerM: Double = 0.00033
 ):
-  /** From the centre of mass to the front axle. */
+  /** Distance from the centre of mass to the front axle. */
   def frontM: Double = wheelbaseM - rearM
 
-  /** Deceleration by the brakes, m/s². */
+  /** Maximum deceleration by the brakes, m/s². */
   def brakeMps2: Double = friction * Gravity
 
   /** Acceleration at full throttle, m/s². */
@@ -65,7 +66,7 @@ final case class SingleTrack(
     val steered    = state.steeredRad + (wanted - state.steeredRad).max(-most).min(most)
     val (cos, sin) = (StrictMath.cos(steered), StrictMath.sin(steered))
 
-    // A tyre that hardly rolls would swing undamped for long.
+    // A tyre that hardly rolls would oscillate for a long time.
     val rollsMps  = math.abs(state.frontMps).max(SingleTrack.DampedMps)
     val left      = StrictMath.exp(-rollsMps * dtS / relaxationM)
     val frontWay  = ((state.rightMps + frontM * state.yawRadPerS) * cos - state.frontMps * sin) / rollsMps
@@ -73,7 +74,7 @@ final case class SingleTrack(
     val frontSlip = (state.frontSlipRad + frontWay) * left - frontWay
     val rearSlip  = (state.rearSlipRad + rearWay) * left - rearWay
 
-    // Forces over the mass; the axles bear the weight as their distances say.
+    // Forces divided by the mass. The load of each axle follows from its distance to the centre of mass.
     val held      = friction * Gravity / wheelbaseM
     val frontMps2 = held * rearM * (stiffnessPerRad * frontSlip).max(-1.0).min(1.0)
     val rearMps2  = held * frontM * (stiffnessPerRad * rearSlip).max(-1.0).min(1.0)
@@ -101,5 +102,5 @@ final case class SingleTrack(
     )
 
 object SingleTrack:
-  /** Below this speed, m/s, tyres respond as at this speed; so slow a car hardly needs lateral forces. */
+  /** Speed below which tyres respond as at this speed, m/s: so slow a car hardly needs side forces. */
   private val DampedMps = 5.0

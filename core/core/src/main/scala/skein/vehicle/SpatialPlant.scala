@@ -1,22 +1,22 @@
 package skein.vehicle
 
-/** A vehicle's motion and readings in space: pure methods that are arithmetic on a case class of doubles,
-  * like a [[Plant]]'s, and compiled to SIMD like them.
+/** A vehicle's motion and readings in space: pure methods that are arithmetic on a case class of doubles, and
+  * compiled to SIMD, like those of a [[Plant]].
   *
-  * North and east are counted from where the vehicle starts, and down from the origin of the world. It rests
-  * until the first command.
+  * North and east are counted from the vehicle's start, and down from the origin of the world. The vehicle
+  * rests until the first command.
   *
-  * @tparam S the state: a case class of doubles, or of such
+  * @tparam S the state: a case class of doubles, or of such case classes
   */
 trait SpatialPlant[S] extends PlantTiming:
 
-  /** The state at rest at an altitude, m down. */
+  /** The state at rest at an altitude, m down from the origin. */
   def initial(downM: Double): S
 
-  /** The state a time later.
+  /** The state after `dtS`.
     *
     * @param northMps commanded velocity, constant during the step
-    * @param third the altitude to hold, m down, where `holds` is 1; the velocity down, m/s, where it is 0
+    * @param third if `holds` is 1, the altitude to hold, m down; if it is 0, the velocity down, m/s
     * @param dtS above 0, at most [[stepS]]
     */
   def step(state: S, northMps: Double, eastMps: Double, third: Double, holds: Double, dtS: Double): S

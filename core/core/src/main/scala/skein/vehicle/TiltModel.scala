@@ -1,21 +1,24 @@
 package skein.vehicle
 
 /** AirSim's quadrotor without its fastest parts: the cascade of [[FlightController]] from velocities to tilt
-  * and throttle, where rotors and rotation rates have no lag; nose to north. In each horizontal axis
+  * and throttle, without the lag of rotors and rotation rates, and with the nose to north. In each horizontal
+  * axis
   *
   *   - the wanted tilt is k · (u − v + tilt · (third − sink rate)), at most `maxTilt`, with k = velocityP ·
-  *     maxTilt: the quirk by which the third goal counts as wanted speed once the vehicle tilts;
-  *   - the tilt follows it by `angleP` · `maxRate`, at most at `maxRate`;
+  *     maxTilt: a quirk of AirSim's controller by which the third goal counts as wanted speed once the
+  *     vehicle tilts;
+  *   - the tilt follows the wanted tilt at the rate `angleP` · `maxRate` times the difference, at most at
+  *     `maxRate`;
   *   - v' = g · throttle / hover · sin(tilt) − drag · |v| · v.
   *
-  * The throttle follows the vertical controller, with its integral and its limits. Tilts are small enough for
-  * the first terms of sine and cosine. Off the whole quadrotor by at most 1 % of the path, climbing, sinking
-  * and turning (`TiltModelSuite`).
+  * The throttle follows the vertical controller, with its integral and its limits. Tilts are assumed small
+  * enough for the first terms of sine and cosine. The error against the complete quadrotor is at most 1 % of
+  * the path while climbing, sinking and turning (`TiltModelSuite`).
   *
   * @param hover throttle at which thrust balances weight
   * @param sideDragPerM deceleration per squared horizontal speed, 1/m
   * @param downDragPerM deceleration per squared speed through the rotors' discs, 1/m
-  * @param deadTimeS stands for the lag of rotors and rates
+  * @param deadTimeS replaces the lag of rotors and rotation rates
   */
 final case class TiltModel(
     hover: Double,
@@ -76,9 +79,9 @@ final case class TiltModel(
       holds
     )
 
-  /** The tilt along an axis after a time, rad.
+  /** The tilt along an axis after `dtS`, rad.
     *
-    * @param errorMps wanted over present velocity along the axis
+    * @param errorMps wanted less present velocity along the axis
     */
   private def tilted(tilt: Double, errorMps: Double, sinkMps: Double, dtS: Double): Double =
     val wanted = clip(tiltPerMps * (errorMps + tilt * sinkMps), gains.maxTilt)
@@ -90,8 +93,8 @@ final case class TiltModel(
 
 /** The state of a [[TiltModel]].
   *
-  * @param tiltNorth rad, positive where it accelerates the vehicle to north
-  * @param integral of the vertical velocity's controller
+  * @param tiltNorth rad, positive if it accelerates the vehicle to north
+  * @param integral integral term of the vertical velocity's controller
   * @param held 1 if the last command held an altitude, else 0
   */
 final case class TiltState(
@@ -111,7 +114,7 @@ object TiltModel:
   private val Gravity  = Airframe.Gravity
   private val ControlS = 0.003
 
-  /** A quadrotor at low altitude, by the throttle, the drag and the gains that it has. */
+  /** The model of a quadrotor at low altitude, from its throttle at hover, its drag and its gains. */
   def of(quadrotor: Quadrotor): TiltModel =
     import quadrotor.airframe
     val kgPerM3 = Atmosphere.SeaLevelDensity
@@ -123,7 +126,7 @@ object TiltModel:
       quadrotor.gains
     )
 
-  /** Dead time, s; fitted to steps of climb and of speed (`TiltModelSuite`). */
+  /** Dead time, s, fitted to steps of the climb rate and of the speed (`TiltModelSuite`). */
   private val RotorsS = 0.03
 
   val AirSim: TiltModel = of(Quadrotor.AirSim)

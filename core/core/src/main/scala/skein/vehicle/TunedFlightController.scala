@@ -1,20 +1,21 @@
 package skein.vehicle
 
-/** [[FlightController]] with separate gains, integrals and derivatives for every controller, as AirSim's is
-  * once a client has set gains. With [[CascadeGains.Default]] it flies as the plain one does, to the last
-  * bit.
+/** A [[FlightController]] with separate gains, integrals and derivatives for every controller, like AirSim's
+  * after a client has set gains. With [[CascadeGains.Default]] its results equal those of the plain one, to
+  * the bit.
   *
   * A controller (`PidController`, `StdPidIntegrator`): out = clip(P·e + I-term + D·de/dt, −1, 1); I-term ←
-  * clip(I-term · discount + dt·e·I, −1, 1), where only the vertical velocity's is discounted. When the mode
-  * of an axis changes, its controllers start anew: the first update neither integrates nor derives, and the
-  * second derives from an error of zero, which is a kick if D is not zero. So it is in AirSim.
+  * clip(I-term · discount + dt·e·I, −1, 1), where only the vertical velocity's I-term is discounted. When the
+  * mode of an axis changes, its controllers start anew: the first update has neither integral nor derivative,
+  * and the second computes the derivative from a previous error of zero, which causes a kick if D is not
+  * zero. So does AirSim's.
   */
 final class TunedFlightController(gains: ControllerGains, val cascade: CascadeGains, stepS: Double)
     extends FlightController(gains, stepS):
   import CascadeLoop.*
 
   private val pids: Array[Pid] = Array(
-    // AirSim hands its rate controllers no other gain than the proportional one.
+    // AirSim passes only the proportional gain to its rate controllers.
     Pid(cascade.rate.first.p),
     Pid(cascade.rate.second.p),
     Pid(cascade.rate.third.p),

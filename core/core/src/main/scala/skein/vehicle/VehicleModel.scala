@@ -3,13 +3,13 @@ package skein.vehicle
 import skein.signal.Kinematics
 import skein.units.*
 
-/** Predicts the state of one vehicle from its readings. Pure: a state is a value, even if the model beneath
-  * is mutable.
+/** Predicts the state of one vehicle from its readings. Pure: a state is a value, even if the model's
+  * implementation is mutable.
   *
-  * A state may hold more than a reading (rotors, integrators); [[corrected]] keeps that and replaces the
-  * rest.
+  * A state may contain more than a reading, for example rotors and integrators; [[corrected]] keeps these and
+  * replaces the rest.
   *
-  * @tparam S the state, immutable to its holder
+  * @tparam S the state, immutable to its user
   */
 trait VehicleModel[S]:
 
@@ -24,7 +24,6 @@ trait VehicleModel[S]:
 
   def kinematics(state: S): Kinematics
 
-  /** The state of the vehicle's plant as numbers ([[PlantState]]), if readings do not contain the whole
-    * state.
+  /** The state of the vehicle's plant as numbers ([[PlantState]]), if readings lack a part of it; else empty.
     */
   def numbers: S => Vector[Double] = _ => Vector.empty

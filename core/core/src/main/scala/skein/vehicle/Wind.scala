@@ -3,12 +3,13 @@ package skein.vehicle
 import skein.signal.{NormalQuantile, SplitMix64}
 import skein.units.Vector3
 
-/** The wind of a place: a steady part, gusts, and how the steady part grows with height.
+/** The wind at a place: a steady part, which may increase with height, and gusts.
   *
   * @param steadyNed velocity of the air, m/s; with shear, at a height of 20 ft
-  * @param gustsMps the wind speed at 20 ft that the gusts belong to, m/s: 7.7 light, 15.4 moderate, 23.2
-  *   severe turbulence (15, 30 and 45 kn)
-  * @param roughnessM of the ground, m: the steady part then grows as ln(height / roughness); 0: no shear
+  * @param gustsMps wind speed at 20 ft that determines the gusts, m/s: 7.7 light, 15.4 moderate, 23.2 severe
+  *   turbulence (15, 30 and 45 kn)
+  * @param roughnessM roughness length of the ground, m; the steady part is then proportional to ln(height /
+  *   roughness). 0 disables shear
   */
 final case class Wind(steadyNed: Vector3 = Vector3.Zero, gustsMps: Double = 0, roughnessM: Double = 0):
 
@@ -21,19 +22,19 @@ final case class Wind(steadyNed: Vector3 = Vector3.Zero, gustsMps: Double = 0, r
 object Wind:
   val None: Wind = Wind()
 
-  /** 20 ft, where the wind is measured that turbulence is classed by. */
+  /** 20 ft, the height of the wind speed by which turbulence is classified. */
   val ReferenceM: Double = 20 * FootM
 
   private[vehicle] inline val FootM = 0.3048
 
-/** The wind that one vehicle meets along its way. Holds the gusts' state; equal seeds and flights give equal
-  * bits.
+/** The wind that one vehicle meets along its path. Mutable: contains the gusts' state. Equal seeds and
+  * flights give equal bits.
   *
   * Gusts have the intensities and scale lengths of the Dryden model at low altitude (MIL-F-8785C, section
   * 3.7.3, with h in feet, from 10 to 1000): σ,,w,, = 0.1 W20, L,,w,, = h; σ,,u,, = σ,,v,, = σ,,w,, / (0.177 +
   * 0.000823 h)^0.4^, L,,u,, = L,,v,, = h / (0.177 + 0.000823 h)^1.2^. Along each axis they are a first-order
-  * Markov process over the distance through the air: Dryden's along the flight, while across it the model's
-  * second-order spectrum is replaced by the first-order one of equal variance and length.
+  * Markov process over the distance through the air. Along the flight this is Dryden's model; across it, the
+  * model's second-order spectrum is replaced by the first-order one of equal variance and length.
   */
 final class WindAlong(wind: Wind, seed: Long):
   import Wind.FootM
@@ -42,7 +43,7 @@ final class WindAlong(wind: Wind, seed: Long):
   private var north, east = 0.0
   private var down        = 0.0
 
-  /** The velocity of the air, NED, m/s, after `dtS` of flight at a velocity.
+  /** The velocity of the air, NED, m/s, after a further `dtS` of flight at this velocity.
     *
     * @param heightM above the ground
     */
@@ -50,7 +51,7 @@ final class WindAlong(wind: Wind, seed: Long):
     val steady = wind.steadyAt(heightM)
     if wind.gustsMps == 0 then steady
     else
-      // In still air a hovering vehicle would keep its gust for ever.
+      // Otherwise a vehicle that hovers in still air would keep its gust forever.
       val flownM   = (velocityNed - steady).norm.max(WindAlong.LeastAirspeedMps) * dtS
       val h        = (heightM / FootM).max(10).min(1000)
       val growth   = 0.177 + 0.000823 * h

@@ -10,7 +10,10 @@ class StructureSuite extends munit.FunSuite:
 
   private def refused(make: => Any): String = intercept[IllegalArgumentException](make).getMessage
 
-  test("a guess outside its bounds, bounds the wrong way round, and names that no file can hold are refused"):
+  test(
+    "a structure refuses defaults outside their bounds, reversed bounds, and names that a model file " +
+      "cannot contain"
+  ):
     assert(refused(Axis(
       "lag-s",
       0.1,
@@ -27,11 +30,11 @@ class StructureSuite extends munit.FunSuite:
     assert(refused(structure("slow one", Axis("lag-s", 0.1, 2, 1))).contains("came 'slow one'"))
     assert(refused(structure("slow", Axis("lag.s", 0.1, 2, 1))).contains("structure slow: expected letters"))
 
-  test("a structure makes a plant of as many values as it has parameters"):
+  test("a structure creates a plant only from one value per parameter"):
     assertEquals(Structure.Drag.plant(Vector(1, 2, 0.1, 0.01)), ReducedModel(1, 2, 0.1, 2, 0.01))
     assert(refused(Structure.Drag.plant(Vector(1, 2))).contains("structure drag: expected 4 values, came 2"))
 
-  test("a program knows its own structures beside Skein's, each by a label of its own"):
+  test("a program's own structures are found beside Skein's, and labels must differ"):
     def program(label: String) =
       Scenarios(Scenarios.ours.kinds, ownStructures = Vector(structure(label, Axis("lag-s", 0.1, 2, 1))))
     assertEquals(program("slow").structure("slow").map(_.label), Right("slow"))

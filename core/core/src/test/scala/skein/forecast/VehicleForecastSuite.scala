@@ -6,7 +6,7 @@ import skein.vehicle.*
 
 class VehicleForecastSuite extends munit.FunSuite:
 
-  /** The simulator's clock minus the controller's. */
+  /** Offset of the simulator's clock from the controller's. */
   private val skew   = Span.ofSeconds(1000)
   private val oneWay = Span.ofMillis(50)
 
@@ -16,13 +16,14 @@ class VehicleForecastSuite extends munit.FunSuite:
   private def at(x: Double, vx: Double = 0) =
     Kinematics(Vector3(x, 0, -20), Vector3(vx, 0, 0), Quaternion.Identity, Vector3.Zero)
 
-  /** Sampled at a time in ms, over a link of 50 ms each way. */
+  /** A reading that was sampled at this time, ms, over a link with a delay of 50 ms each way. */
   private def reading(sampledMs: Double, state: Kinematics) =
     Stamped(state, simulator(sampledMs), controller(sampledMs) - oneWay, controller(sampledMs) + oneWay)
 
   private val delays = OneWayDelays.of(reading(0, at(0)))
 
-  /** A vehicle that follows commands within a microsecond, so that its position shows the command in effect.
+  /** Predicts a vehicle that follows commands within a microsecond, so that its position shows the command in
+    * effect.
     */
   private val obedient = PlantModel(ReducedModel.lag(gain = 1, lagS = 1e-6, deadTimeS = 0))
 
@@ -35,19 +36,17 @@ class VehicleForecastSuite extends munit.FunSuite:
   private val commanded =
     VehicleForecast(obedient, reading(0, at(0))).sent(command(0, 10, 0)).sent(command(1, 20, 100))
 
-  test("each command acts when it is expected to arrive, whatever the clocks show"):
+  test("each command takes effect at its expected arrival, whatever the offset of the clocks"):
     assertEqualsDouble(northAt(commanded, 50, 60), 0, 1e-4)
     assertEqualsDouble(northAt(commanded, 150, 160), 1, 1e-4)
     assertEqualsDouble(northAt(commanded, 200, 210), 2, 1e-4)
 
-  test(
-    "an acknowledgement shows the arrival of the next command: half of the excess of its round trip"
-  ):
+  test("an acknowledgement shifts the command's arrival by half of the excess of its round trip"):
     val late = commanded.replaced(sequence = 0, answeredAt = controller(100 + 140))
     assertEqualsDouble(northAt(late, 170, 250), 1.2, 1e-4)
     assertEqualsDouble(northAt(late, 200, 250), 1.8, 1e-4)
 
-  test("an acknowledgement of a command in effect before all that are held changes nothing"):
+  test("an acknowledgement of a command older than all stored ones changes nothing"):
     val several = commanded.sent(command(2, 30, 110)).sent(command(3, 40, 300))
     val seen    = several.seen(reading(200, at(0)), delays)
     assertEquals(seen.commands.map(_.sequence), Vector(2L, 3L))
@@ -62,13 +61,13 @@ class VehicleForecastSuite extends munit.FunSuite:
     north.zipWithIndex.toVector.map: (speed, number) =>
       command(sequence, speed, fromMs - 60).copy(actsAt = Some(simulator(fromMs + 100 * number)))
 
-  test("the actions of a plan act at their moments, however late it is answered"):
+  test("the actions of a plan act at their own times, however late the plan is answered"):
     val track = VehicleForecast(obedient, reading(0, at(0))).planned(plan(0, 100, 10, 20, 30))
     assertEqualsDouble(northAt(track, 100, 110), 0, 1e-4)
     assertEqualsDouble(northAt(track, 250, 3000), 2, 1e-4)
     assertEqualsDouble(northAt(track, 400, 3000), 6, 1e-4)
 
-  test("a newer plan replaces an older one from its first moment on, and a failed call changes nothing"):
+  test("a newer plan replaces an older one from its first time on, and a failed call changes nothing"):
     val track = VehicleForecast(obedient, reading(0, at(0)))
       .planned(plan(0, 100, 10, 20, 30))
       .planned(plan(1, 250, 0, 40))
@@ -77,7 +76,7 @@ class VehicleForecastSuite extends munit.FunSuite:
     assertEqualsDouble(northAt(track, 400, 260), 4, 1e-4)
     assertEquals(track.failed(1).commands, track.commands)
 
-  test("a course flies on from an estimate as the model does"):
+  test("a course continues from an estimate as the model does"):
     val track  = VehicleForecast(obedient, reading(0, at(0))).planned(plan(0, 100, 10))
     val course = track.courseAt(simulator(200), delays, controller(210))
     val flown  = course.flown(Setpoint.velocityZ(-5, 0, -20), Span.ofMillis(100))
@@ -86,7 +85,7 @@ class VehicleForecastSuite extends munit.FunSuite:
     assertEqualsDouble(flown.estimate.kinematics.positionNed.x, 0.5, 1e-4)
     assertEquals(flown.estimate.readAt, simulator(0))
 
-  test("no command acts before one that was sent earlier"):
+  test("no command takes effect before an earlier one"):
     val crossed = commanded
       .sent(command(2, -10, 130))
       .replaced(sequence = 0, answeredAt = controller(100 + 300))
@@ -94,23 +93,26 @@ class VehicleForecastSuite extends munit.FunSuite:
     assertEqualsDouble(northAt(crossed, 350, 400), 1, 0.02)
 
   test(
-    "a command without receipt is presumed lost after two round " +
-      "trips and grace, and acts again when one comes"
+    "a command without acknowledgement is presumed lost after two round trips and the grace time, until " +
+      "one arrives"
   ):
     val overdueMs = 100 + 2 * 100 + VehicleForecast.Grace.toMillis + 1
     assertEqualsDouble(northAt(commanded, 300, overdueMs), 2.5, 1e-4)
     assertEqualsDouble(northAt(commanded.replaced(0, controller(200)), 300, overdueMs), 4, 1e-4)
 
-  test("a failed call's command does not act, unless its receipt has come"):
+  test("the command of a failed call does not act unless it was acknowledged"):
     assertEqualsDouble(northAt(commanded.failed(1), 300, 310), 2.5, 1e-4)
     assertEqualsDouble(northAt(commanded.replaced(0, controller(200)).failed(1), 300, 310), 4, 1e-4)
 
-  test("a reading that is older than the newest, or equal to it, changes nothing"):
+  test("a reading that is not newer than the newest changes nothing"):
     val seen = commanded.seen(reading(100, at(0.5, 10)), delays)
     assert(seen.seen(reading(50, at(7)), delays) eq seen)
     assert(seen.seen(reading(100, at(7)), delays) eq seen)
 
-  test("of a simulator that starts again with an earlier clock, vehicles are where its first reading says"):
+  test(
+    "after a restart of the simulator with an earlier clock, a vehicle is at the position of the first " +
+      "new reading"
+  ):
     def seen(validMs: Double, sentMs: Double, receivedMs: Double, northM: Double) =
       val told = Stamped(at(northM), simulator(validMs), controller(sentMs), controller(receivedMs))
       ForecastEvent.Seen(0, told)
@@ -124,7 +126,7 @@ class VehicleForecastSuite extends munit.FunSuite:
     assertEquals(north(again), Some(70.0))
     assertEquals(north(again.withEvent(seen(20090, 190, 305, 5))), Some(70.0), "late, of the first run")
 
-  test("skipped readings do no harm, and commands that have acted are forgotten but for the one in effect"):
+  test("a forecast works with missing readings, and forgets past commands except the one in effect"):
     val sparse =
       (2 to 30).foldLeft(commanded)((track, n) => track.sent(command(n, 10.0 * (n % 3), 100.0 * n)))
     val seen = sparse.seen(reading(2500, at(77, 0)), delays)
@@ -132,15 +134,13 @@ class VehicleForecastSuite extends munit.FunSuite:
     assertEqualsDouble(northAt(seen, 2550, 2560), 77, 1e-4)
     assertEqualsDouble(northAt(seen, 2650, 2660), 78, 1e-4)
 
-  test("what is remembered is bounded"):
+  test("the numbers of stored commands and readings are limited"):
     val busy = (2 to 1000).foldLeft(commanded)((track, n) => track.sent(command(n, 1, n)))
     assertEquals(busy.commands.size, VehicleForecast.CommandLimit)
     val readings = (1 to 100).foldLeft(commanded)((track, n) => track.seen(reading(100.0 * n, at(n)), delays))
     assertEquals(readings.readings.size, VehicleForecast.ReadingLimit)
 
-  test(
-    "a position between two readings is that of the cubic through them, within 5 mm; over a gap there is none"
-  ):
+  test("a position between two readings is interpolated within 5 mm, and is absent in a gap"):
     def circling(ms: Double) =
       val angle = ms / 1000
       Kinematics(
@@ -160,8 +160,8 @@ class VehicleForecastSuite extends munit.FunSuite:
     assertEquals(track.positionNedAt(simulator(1100)), None)
 
   test(
-    "a quadrotor is estimated within 5 mm when its command acts, " +
-      "from readings 50 ms old and commands in flight"
+    "a quadrotor's state when its command acts is estimated within 5 mm, from readings 50 ms old and " +
+      "commands under way"
   ):
     val quadrotor = Quadrotor.AirSim
     val model     = QuadrotorModel.AirSim

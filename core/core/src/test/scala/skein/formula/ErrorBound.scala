@@ -2,18 +2,19 @@ package skein.formula
 
 import skein.formula.Op.*
 
-/** Bounds the difference between an expression computed in floats, with the polynomials of `skein.simd`, and
-  * in doubles: running error analysis, first rounding by rounding, with each function's own error on top.
+/** Bounds the difference between an expression's value in floats, computed with the polynomials of
+  * `skein.simd`, and its value in doubles. A running error analysis: it adds each rounding, and each
+  * function's own error.
   *
-  * @param value in doubles; a condition is 1 or 0
-  * @param error the bound; of a condition, 1 where floats may decide otherwise
+  * @param values values in doubles; a condition is 1 or 0
+  * @param errors the bounds; for a condition 1 if floats may decide differently
   */
 final class ErrorBound private (values: Array[Double], errors: Array[Double], margins: Array[Double]):
   def value(of: Node): Double = values(of.id)
   def error(of: Node): Double = errors(of.id)
 
-  /** Discontinuities that these nodes depend on and that floats may decide otherwise: comparisons, and jumps
-    * of angles, signs and whole numbers; each with its distance from the threshold.
+  /** The discontinuities on which these nodes depend and at which floats may decide differently: comparisons,
+    * and jumps of angles, signs and integers. Each has its distance from the threshold.
     */
   def undecided(of: Seq[Node]): Vector[(Node, Double)] =
     Trace.needed(of).filter(node => !margins(node.id).isNaN).map(node => (node, margins(node.id)))
@@ -21,19 +22,19 @@ final class ErrorBound private (values: Array[Double], errors: Array[Double], ma
 object ErrorBound:
   private val U = 1.0 / (1 << 24)
 
-  /** Errors of the polynomials, absolute, as `LaneMathSuite` holds them; the exponential's is relative. */
+  /** Absolute errors of the polynomials, which `LaneMathSuite` tests; that of the exponential is relative. */
   private val Sine, ArcTangent = 3e-7
   private val ArcCosine        = 6e-7
   private val Exponential      = 2.5e-7
 
-  /** Difference of a full turn in floats from one in doubles. */
+  /** Difference between a full turn in floats and in doubles. */
   private val Turn = 1.8e-7
 
   /** Computes the bounds.
     *
-    * @param off error of each input before it is rounded
-    * @param sameWay whether floats are assumed to decide like doubles, so that the error is that of the
-    *   branch taken
+    * @param off error of each input before rounding
+    * @param sameWay whether floats are assumed to decide like doubles; the error is then that of the branch
+    *   taken
     */
   def of(
       nodes: Seq[Node],

@@ -8,14 +8,14 @@ class ErrorBoundSuite extends munit.FunSuite:
   private def bound(node: Node, inputs: Array[Double], off: Double) =
     ErrorBound.of(Seq(node), inputs, inputs.map(_ => off), Array.emptyDoubleArray)
 
-  test("nothing times what may be anything may be anything"):
+  test("the product of zero and an unbounded number is unbounded"):
     val product = trace.mul(a, quotient)
     assertEquals(bound(product, Array(0.0, 1e-3), off = 0.01).error(product), Double.PositiveInfinity)
     assert(bound(product, Array(0.0, 1.0), off = 0.01).error(product) < 0.011)
 
   test(
-    "of two ways near a threshold, one unbounded, the choice is " +
-      "unbounded, and the threshold is told with how near"
+    "near a threshold with one unbounded branch, a choice is unbounded, and the threshold is reported " +
+      "with its distance"
   ):
     val choice = trace.where(trace.lt(a, b), quotient, trace.neg(quotient))
     val near   = bound(choice, Array(1e-3, 2e-3), off = 0.01)

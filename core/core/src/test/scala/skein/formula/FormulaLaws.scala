@@ -3,8 +3,8 @@ package skein.formula
 import skein.signal.SplitMix64
 import skein.units.Vector3
 
-/** A formula read from a method's bytecode computes the method's result, for every operator; what is no
-  * formula is refused with its reason.
+/** For every operator, a formula read from a method's bytecode computes the method's result. Methods that are
+  * not formulas are refused with a reason.
   */
 class FormulaLaws extends munit.FunSuite:
   import FormulaLaws.*
@@ -24,7 +24,7 @@ class FormulaLaws extends munit.FunSuite:
   )
 
   for (name, method) <- functions do
-    test(s"$name: to the bit (seed 5)"):
+    test(s"$name: the formula has the method's results, to the bit (seed 5)"):
       val random   = SplitMix64(5)
       val formula  = Formula.of(Operators, name).fold(throw _, identity)
       val special  = Vector(0.0, -0.0, 1.0, -1.0, 0.5, -0.5, 1e-300, Double.NaN, Double.PositiveInfinity)
@@ -40,7 +40,7 @@ class FormulaLaws extends munit.FunSuite:
           input.mkString(" ")
         )
 
-  test("equal expressions are one node, and known values are computed immediately"):
+  test("equal expressions share one node, and known values are computed immediately"):
     val trace  = Trace()
     val (a, b) = (trace.input(0), trace.input(1))
     assert(trace.add(a, b) eq trace.add(a, b))
@@ -49,7 +49,7 @@ class FormulaLaws extends munit.FunSuite:
     // −0 + 0 is 0, so adding 0 is not nothing.
     assertNotEquals(trace.add(a, trace.const(0)), a)
 
-  test("arguments and answers may be case classes and arrays of doubles"):
+  test("arguments and results may be case classes and arrays of doubles"):
     val formula = Formula.of(Operators, "middle", Map("weights" -> 3)).fold(throw _, identity)
     assertEquals(formula.inputs.size, 9)
     assertEquals(formula.outputs.map(_._1), Vector("x", "y", "z"))
@@ -68,7 +68,7 @@ class FormulaLaws extends munit.FunSuite:
       "remainder"  -> "% on doubles"
     )
   do
-    test(s"$method is refused, and the line is named"):
+    test(s"$method is refused, with its source line"):
       val refused = Formula.of(Refused(), method).fold(identity, _ => fail("it was traced"))
       assert(refused.getMessage.contains(reason), refused.getMessage)
       assert(refused.where.contains("FormulaLaws.scala:"), refused.getMessage)

@@ -12,7 +12,7 @@ class FusionSuite extends munit.FunSuite:
     sd * skein.signal.NormalQuantile(random.nextDouble().max(1e-9))
   )
 
-  /** Readings and detections of a vehicle on a curve, each at its own time. */
+  /** Readings and detections of a vehicle on a curve, each with its own valid time. */
   private def measured(count: Int, seed: Long): Vector[Measurement] =
     val random = SplitMix64(seed)
     val noise  = normals(random)
@@ -39,14 +39,14 @@ class FusionSuite extends munit.FunSuite:
       fusion.including(one).getOrElse(fail(s"too old: $one"))
     )
 
-  test("measurements in any order give the belief of those in order, to the last bit"):
+  test("measurements in any order give the estimate of the sorted measurements, to the last bit"):
     for seed <- 1L to 20L do
       val inOrder = measured(40, seed)
       val random  = SplitMix64(seed)
       val mixed   = inOrder.sortBy(_ => random.nextLong())
       assertEquals(joined(mixed).belief, joined(inOrder).belief, s"seed $seed")
 
-  test("the estimate solves all measurements simultaneously"):
+  test("the estimate is the least-squares solution for all measurements together"):
     for seed <- 1L to 5L do
       val all      = measured(12, seed)
       val belief   = joined(all).belief.get
@@ -63,7 +63,7 @@ class FusionSuite extends munit.FunSuite:
         for (value, i) <- Vector(came.x, came.y, came.z).zipWithIndex do
           assertEqualsDouble(value, cov(row + i)(column + j), 1e-6, s"seed $seed, ($i, $j)")
 
-  test("a measurement older than what is remembered is refused, one at its edge is joined"):
+  test("a measurement older than the history is refused, one at its limit is added"):
     val settings            = FusionSettings(history = Span.ofMillis(100))
     def reading(ms: Double) = Measurement(at(ms), Vector3.Zero, Matrix3.diagonal(1))
     val fusion              = joined(Vector(0, 50, 120, 200).map(ms => reading(ms)), settings)
@@ -71,17 +71,17 @@ class FusionSuite extends munit.FunSuite:
     assertEquals(fusion.including(reading(40)), None)
     assert(fusion.including(reading(100)).isDefined)
 
-  test("what is forgotten still counts: a short memory gives the belief of a long one"):
+  test("forgotten measurements still count: a short history gives the estimate of a long one"):
     val all   = measured(200, 3)
     val few   = FusionSettings(mostMeasurements = 4)
     val brief = FusionSettings(history = Span.ofMillis(50))
     for settings <- List(few, brief) do assertEquals(joined(all, settings).belief, joined(all).belief)
 
-  test("what is remembered is bounded by number: what is older than the oldest is refused"):
+  test("with a limited number of measurements, one older than all stored ones is refused"):
     val fusion = joined(measured(50, 1), FusionSettings(mostMeasurements = 4))
     assertEquals(fusion.including(Measurement(at(20 * 44), Vector3.Zero, Matrix3.diagonal(1))), None)
 
-  test("carried on, a belief moves with its velocity and grows uncertain"):
+  test("a predicted estimate moves with its velocity and becomes less certain"):
     val fusion = joined(measured(30, 2))
     val now    = fusion.belief.get
     val later  = fusion.at(now.at + Span.ofMillis(500)).get

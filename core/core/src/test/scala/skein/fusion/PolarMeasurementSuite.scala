@@ -20,7 +20,7 @@ class PolarMeasurementSuite extends munit.FunSuite:
         point
       )
 
-  test("to the right of a sensor that looks east is south, above it is up"):
+  test("for a sensor that faces east, right is south, and a positive elevation is up"):
     val east               = Quaternion(quarter, 0, 0, quarter)
     def seen(frd: Vector3) =
       PolarMeasurement.of(frd, sharp).seenFrom(Instant.Epoch, Vector3(10, 0, -20), east).positionNed
@@ -28,14 +28,16 @@ class PolarMeasurementSuite extends munit.FunSuite:
     near(seen(Vector3(5, 1, 0)), Vector3(9, 5, -20))
     near(seen(Vector3(5, 0, -1)), Vector3(10, 5, -21))
 
-  test("straight ahead, range varies along the line of sight and the angles across it"):
+  test(
+    "straight ahead, the range determines the variance along the line of sight, and the angles that across it"
+  ):
     val seen =
       PolarMeasurement.of(Vector3(10, 0, 0), sharp).seenFrom(Instant.Epoch, Vector3.Zero, Quaternion.Identity)
     assertEqualsDouble(seen.covariance.xx, 0.01, 1e-12)
     assertEqualsDouble(seen.covariance.yy, 1e-4, 1e-12)
     assertEqualsDouble(seen.covariance.zz, 4e-4, 1e-12)
 
-  test("the covariance is that of points drawn at random"):
+  test("the covariance is that of randomly drawn points"):
     val random = SplitMix64(1)
     def normal = NormalQuantile(random.nextDouble().max(1e-9))
     val turn   = Quaternion(0.5, 0.5, -0.5, 0.5)

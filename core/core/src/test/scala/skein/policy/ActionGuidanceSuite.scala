@@ -8,7 +8,7 @@ import skein.vehicle.Setpoint
 class ActionGuidanceSuite extends munit.FunSuite:
   private val down = Metres(-20)
 
-  test("a vehicle that hovers or turns is predicted to stay, one that lands to descend as AirSim does"):
+  test("a vehicle that hovers or turns is predicted to stay, and one that lands to descend as AirSim does"):
     val stays = Setpoint.velocity(0, 0, 0)
     assertEquals(ActionGuidance.of(Action.Hover), stays)
     assertEquals(ActionGuidance.of(Action.Turn(Yaw.Forward)), stays)
@@ -16,10 +16,7 @@ class ActionGuidanceSuite extends munit.FunSuite:
     assertEquals(ActionGuidance.of(Action.Turn(Yaw.Turning(0.2))), stays.withYawRate(0.2))
     assertEquals(ActionGuidance.of(Action.Land), Setpoint.velocity(0, 0, 0.2))
 
-  test(
-    "it looks where it flies only above half a metre a second, " +
-      "the vertical not counted where an altitude is held"
-  ):
+  test("a vehicle turns towards its direction of flight only above 0.5 m/s of horizontal speed"):
     def yaw(north: Double, east: Double) =
       (
         ActionGuidance.of(Action.VelocityAt(north, east, down, Yaw.Forward)),
@@ -37,13 +34,11 @@ class ActionGuidanceSuite extends munit.FunSuite:
       .of(Action.Position(here + wayNed, MetresPerSecond(4), yaw))
       .setpoint(Kinematics(here, Vector3.Zero, Quaternion.Identity, Vector3.Zero))
 
-  test("on its way to a position it flies at its speed, and stops within half a metre of it"):
+  test("on its way to a position a vehicle flies at its speed, and stops within half a metre of it"):
     assertEquals(towards(Vector3(100, 0, 0)), Setpoint.velocity(4, 0, 0))
     assertEquals(towards(Vector3(0, -100, 0), Yaw.Forward), Setpoint.velocity(0, -4, 0).withYaw(-math.Pi / 2))
     assertEquals(towards(Vector3(0.3, 0, 0)), Setpoint.velocity(0, 0, 0))
 
-  test(
-    "it climbs to a place once the point that AirSim aims at, 0.6 s ahead, lies more than half a metre above"
-  ):
+  test("a vehicle climbs to a position once AirSim's point 0.6 s ahead is more than half a metre above it"):
     assertEquals(towards(Vector3(10, 0, -2)).third, 0.0)
     assert(towards(Vector3(10, 0, -2.5)).third < -0.8, towards(Vector3(10, 0, -2.5)).toString)

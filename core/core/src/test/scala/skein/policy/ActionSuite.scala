@@ -2,7 +2,7 @@ package skein.policy
 
 import skein.units.*
 
-/** Headings and speeds of actions, for policies that need them. */
+/** Headings and speeds of actions, which some policies need. */
 class ActionSuite extends munit.FunSuite:
   private val down  = Metres(-20)
   private val place = Action.Position(Vector3(1, 2, -20), MetresPerSecond(4))
@@ -15,10 +15,7 @@ class ActionSuite extends munit.FunSuite:
     Action.Land
   )
 
-  test(
-    "its heading is where it flies, however slowly, or else where " +
-      "it looks; what says neither keeps the one before"
-  ):
+  test("the heading of an action is that of its velocity, else that of its yaw, else the previous heading"):
     assertEquals(Action.Velocity(Vector3(0, 0.5, -3)).headingRad(0.7), math.Pi / 2)
     assertEquals(Action.VelocityAt(-0.01, 0, down).headingRad(0.7), math.Pi)
     assertEquals(Action.Turn(Yaw.Towards(Radians(0.3))).headingRad(0.7), 0.3)
@@ -26,13 +23,13 @@ class ActionSuite extends munit.FunSuite:
     assertEquals(Action.Along(Radians(7), MetresPerSecond(0), down).headingRad(0.7), 7.0)
     for action <- still do assertEquals(action.headingRad(0.7), 0.7, action.toString)
 
-  test("only what flies with a velocity has a speed: the horizontal one"):
+  test("an action with a velocity has its horizontal speed, any other action has speed 0"):
     assertEquals(Action.Velocity(Vector3(3, 4, -12)).speed, MetresPerSecond(5))
     assertEquals(Action.VelocityAt(3, -4, down).speed, MetresPerSecond(5))
     assertEquals(Action.Along(Radians(7), MetresPerSecond(5), down).speed, MetresPerSecond(5))
     for action <- still do assertEquals(action.speed, MetresPerSecond(0), action.toString)
 
-  test("flight along a heading is a velocity with its altitude and yaw; nothing else is changed"):
+  test("flight along a heading becomes a velocity with its altitude and yaw; other actions stay unchanged"):
     val along = Action.Along(Radians(0.5), MetresPerSecond(4), down, Yaw.Forward)
     assertEquals(
       along.byVelocity,

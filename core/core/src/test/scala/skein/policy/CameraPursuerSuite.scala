@@ -11,7 +11,7 @@ class CameraPursuerSuite extends munit.FunSuite:
   private def at(positionNed: Vector3, velocityNed: Vector3 = Vector3.Zero, isPredicted: Boolean = false) =
     Seen(Kinematics(positionNed, velocityNed, Quaternion.Identity, Vector3.Zero), Span.Zero, isPredicted)
 
-  /** The decision of a pursuer at the origin, with the evader truly 5 m to the west. */
+  /** The decision of a pursuer at the origin, when the evader is actually 5 m to the west. */
   private def chosen(
       policy: CameraPursuer,
       sensed: Map[String, Sensed],
@@ -36,23 +36,24 @@ class CameraPursuerSuite extends munit.FunSuite:
         (StrictMath.atan2(east, north), yaw)
       case other => fail(s"$other")
 
-  /** An estimate 8 m to the north, moving east at 5 m/s. */
+  /** An estimate of the evader 8 m to the north, moving east at 5 m/s. */
   private def belief(age: Span) = Map(
     "evader" -> Sensed(Eye.Columns, Vector(8.0, 0, -20, 0, 5, 0) ++ Vector.fill(14)(0.0), age)
   )
 
-  test("given its opponent's position, it flies there and looks there"):
+  test("with a reading of its opponent, the pursuer flies there and points its camera there"):
     val told = chosen(pursuer.copy(sensor = None), Map.empty)
     assertEqualsDouble(told.heading, -math.Pi / 2, 1e-9)
     assertEquals(told.yaw, Yaw.Towards(Radians(told.heading)))
 
   test(
-    "by its camera alone: first to where the opponent started, then to where it is believed, not where it is"
+    "with its camera alone, the pursuer flies to the opponent's start, then to the estimate, not to the " +
+      "true position"
   ):
     assertEqualsDouble(chosen(pursuer, Map.empty).heading, 0, 1e-9)
     assertEqualsDouble(chosen(pursuer, belief(Span.ofMillis(300))).heading, 0, 1e-9)
 
-  test("where the own place is predicted, the belief is carried to when the command acts"):
+  test("if the own position is predicted, the estimate is predicted to the time at which the command acts"):
     val ahead = chosen(pursuer, belief(Span.ofMillis(300)), isPredicted = true)
     assertEqualsDouble(ahead.heading, StrictMath.atan2(5 * 0.5, 8), 1e-9)
     // What was lost long ago is looked for where it was then expected, not ever farther away.

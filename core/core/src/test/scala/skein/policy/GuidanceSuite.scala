@@ -2,8 +2,8 @@ package skein.policy
 
 import skein.signal.SplitMix64
 
-/** The defining properties of pursuers and evaders, with the game's ideal kinematics: the velocity is the
-  * command.
+/** The defining properties of pursuers and evaders under the game's ideal kinematics, in which the velocity
+  * equals the command.
   */
 class GuidanceSuite extends munit.FunSuite:
   private val fast = 1e6 // a turn rate that never limits
@@ -27,7 +27,8 @@ class GuidanceSuite extends munit.FunSuite:
       )
     )
 
-  /** Simulates pursuer and evader until they come within the distance of one step or time is over. */
+  /** Simulates pursuer and evader until they are within the distance of one step, or until the time is over.
+    */
   private def chase(
       pursuing: HeadingPolicy,
       evading: HeadingPolicy,
@@ -44,13 +45,15 @@ class GuidanceSuite extends munit.FunSuite:
 
   private def distance(p: Mover, e: Mover) = math.hypot(p.x - e.x, p.y - e.y)
 
-  test("pure pursuit points at the target once its turn rate lets it"):
+  test("pure pursuit points at the target as soon as its turn rate allows"):
     assertEqualsDouble(PurePursuit(fast).heading(3, 4, 0, 0, 0.2, 0, 0.1), math.atan2(4, 3), 1e-12)
     assertEqualsDouble(PurePursuit(1.0).heading(0, 5, 0, 0, 0, 0, 0.1), 0.1, 1e-12)
     // The shorter way, also from a heading of many turns.
     assertEqualsDouble(PurePursuit(1.0).heading(1, -1, 0, 0, 8 * math.Pi, 0, 0.1), 8 * math.Pi - 0.1, 1e-12)
 
-  test("proportional navigation ends on a straight line that meets a target which does not manoeuvre"):
+  test(
+    "against a target that does not manoeuvre, proportional navigation ends on a straight line that meets it"
+  ):
     val flown =
       chase(ProportionalNavigation(4, 10), KeepHeading, Mover(0, 0, 0.6, 10), Mover(40, 5, 1.9, 5), 0.005, 12)
     val closest = flown.indexWhere((pursuer, evader) => distance(pursuer, evader) < 0.1)
@@ -58,13 +61,16 @@ class GuidanceSuite extends munit.FunSuite:
     val late = flown.slice(closest / 2, closest - 100).map(_._1.headingRad)
     assert(late.max - late.min < 0.02, s"${late.min} to ${late.max}")
 
-  test("proportional navigation turns as often as the gain says, and towards a target that gets away"):
+  test(
+    "proportional navigation turns at the gain times the line of sight's rate, and towards a target that " +
+      "gets away"
+  ):
     // Closing at 10 m/s with 1 m/s across over 20 m: the line of sight turns 0.05 rad/s.
     val rate = (ProportionalNavigation(3, fast).heading(20, 0, -10, 1, 0.3, 0, 0.1) - 0.3) / 0.1
     assertEqualsDouble(rate, 3 * 0.05, 1e-12)
     assertEqualsDouble(ProportionalNavigation(3, 1).heading(-20, 1, -5, 0, 0, 0, 0.1), 0.1, 1e-12)
 
-  test("lead pursuit meets a target that keeps its course at the computed point, on a straight line"):
+  test("lead pursuit meets a target on a straight course at the computed point, on a straight line"):
     val source = SplitMix64(1)
     for case_ <- 1 to 20 do
       val target =
@@ -81,13 +87,13 @@ class GuidanceSuite extends munit.FunSuite:
       val flown = chase(LeadPursuit(0.5, 1, fast), KeepHeading, Mover(0, 0, 0, 10), target, dt, meetS * 0.999)
       assert(distance(flown.last._1, flown.last._2) < 0.1, s"case $case_: ${flown.last}")
 
-  test("without lead, lead pursuit is pure pursuit"):
+  test("lead pursuit with a lead of 0 is pure pursuit"):
     val lead = LeadPursuit(0.5, lead = 0, 1).heading(7, -3, 1, 2, 0.4, 2.2, 0.1)
     assertEqualsDouble(lead, PurePursuit(1).heading(7, -3, 1, 2, 0.4, 2.2, 0.1), 1e-12)
 
   test(
-    "the chauffeur's evader keeps one direction while the " +
-      "pursuer turns hard and dashes: the line of the chase"
+    "the chauffeur's evader keeps one direction, the line of the chase, while the pursuer turns hard and " +
+      "dashes"
   ):
     val evader = ChauffeurEvader(8, 0.5, dodgeM = 0)
     for (x, y) <- Seq((20.0, 15.0), (-12.0, 18.0), (-30.0, -9.0), (25.0, -2.0)) do
@@ -103,7 +109,7 @@ class GuidanceSuite extends munit.FunSuite:
         headings.take(turning).map(h => math.abs(math.IEEEremainder(h - headings.head, 2 * math.Pi)))
       assert(hardBend.forall(_ < 1e-2), s"from ($x, $y): ${hardBend.max} rad of $bend")
 
-  test("inside the pursuer's turning circle the chauffeur's evader makes for the centre"):
+  test("inside the pursuer's turning circle the chauffeur's evader heads for the centre"):
     for side <- Seq(1, -1) do
       // The evader is 4 m beside the pursuer, who faces 0.7 rad.
       val evader =
@@ -111,8 +117,8 @@ class GuidanceSuite extends munit.FunSuite:
       assertEqualsDouble(evader, 0.7 + side * math.Pi / 2, 1e-12)
 
   test(
-    "near ahead the chauffeur's evader breaks away at a right " +
-      "angle and keeps that course, not crossing the bow"
+    "close ahead, the chauffeur's evader breaks away at a right angle and keeps that course without " +
+      "crossing the bow"
   ):
     def ahead(right: Double, own: Double) = ChauffeurEvader().heading(-3, -right, 0, 0, own, 0, 0.1)
     assertEqualsDouble(ahead(0.1, own = 0.2), math.Pi / 2, 1e-12)
@@ -122,7 +128,8 @@ class GuidanceSuite extends munit.FunSuite:
     assertEqualsDouble(ahead(-0.1, own = 0.9), math.Pi / 2, 1e-12)
 
   test(
-    "in the ideal game the chauffeur's evader slips by at the threshold's radius, where it would be run over"
+    "in the ideal game the chauffeur's evader slips by at the threshold radius, and is run over without " +
+      "dodging"
   ):
     val (radius, ratio) = (8.0, 0.5)
     val threshold       = radius * (math.sqrt(1 - ratio * ratio) + ratio * math.asin(ratio) - 1)
@@ -141,7 +148,7 @@ class GuidanceSuite extends munit.FunSuite:
       assertEqualsDouble(closest(ratio * radius, x, y), threshold, 0.02, s"from ($x, $y)")
       assert(closest(0, x, y) < 0.1, s"from ($x, $y)")
 
-  test("every policy mirrors what it does where everything is mirrored"):
+  test("in a mirrored situation every policy makes the mirrored decision"):
     val source   = SplitMix64(3)
     val policies =
       Seq(
@@ -158,7 +165,7 @@ class GuidanceSuite extends munit.FunSuite:
       assertEqualsDouble(math.IEEEremainder(here + mirrored, 2 * math.Pi), 0, 1e-9, s"$policy at $v")
 
   test(
-    "every policy of bounded turn rate integrates over measured time: deciding twice as often turns no faster"
+    "a policy with a limited turn rate turns by the elapsed time: deciding twice as often turns no faster"
   ):
     val policies = Seq(
       PurePursuit(1),

@@ -4,8 +4,8 @@ import skein.formula.{Evaluation, Untraceable}
 import skein.signal.{Kinematics, SplitMix64}
 import skein.units.*
 
-/** The formula from the bytecode of a policy's own method decides like the method, over several decisions
-  * with memory; what is no formula is refused with its line.
+/** A formula from the bytecode of a policy's method decides like the method, over several decisions with
+  * memory. Methods that are not formulas are refused with their source line.
   */
 class PolicyFormulaSuite extends munit.FunSuite:
   import PolicyFormulaSuite.*
@@ -106,7 +106,7 @@ class PolicyFormulaSuite extends munit.FunSuite:
     )
 
   for (name, draw) <- own ++ ours; self <- Seq(0, 2) do
-    test(s"$name, at place $self: the formula decides as the method does (seed $seed)"):
+    test(s"$name, as vehicle $self: the formula decides like the method (seed $seed)"):
       val random  = SplitMix64(seed)
       val formula = formulaOf(draw(random), self).fold(throw _, identity)
       for _ <- 1 to 6 do
@@ -134,7 +134,7 @@ class PolicyFormulaSuite extends munit.FunSuite:
           numbers = came.drop(2).toArray
       assertEquals(formula.leaves(draw(random), Metres(-20)), None)
 
-  test("velocities in space and hovering are formulas with a vertical part, which leave the altitude"):
+  test("hovering and velocities in space are formulas with a vertical part, which leave the altitude"):
     for (policy, third, holds) <-
         Seq((Hovering, 0.0, 0.0), (Rising, -1.5, 0.0), (Higher(Metres(-30)), -30.0, 1.0))
     do
@@ -158,22 +158,22 @@ class PolicyFormulaSuite extends munit.FunSuite:
       ("what it remembers changes its form", Growing, "what it remembers is of another form")
     )
   do
-    test(s"$name is refused, and the line is named"):
+    test(s"$name is refused, with its source line"):
       val refused = formulaOf(policy, 0).fold(identity, _ => fail("it was traced"))
       assert(clue(refused.getMessage).contains(reason))
       assert(clue(refused.where).contains("PolicyFormulaSuite.scala:"))
 
-  test("a memory with a long and a policy with sensors are refused"):
+  test("a policy is refused if its memory contains a long, or if it reads sensors"):
     assert(clue(formulaOf(Longs, 0).left.map(_.getMessage)).left.exists(_.contains("is a long")))
     assert(clue(formulaOf(Sensing, 0).left.map(_.getMessage)).left.exists(_.contains("sensors")))
 
-  test("a policy that leaves its altitude is reported, and one that names the altitude of its start is not"):
+  test("a policy that leaves the altitude of its start is reported; one that commands that altitude is not"):
     val higher = formulaOf(Higher(Metres(-25)), 0).fold(throw _, identity)
     assert(clue(higher.leaves(Higher(Metres(-25)), Metres(-20))).nonEmpty)
     assertEquals(higher.leaves(Higher(Metres(-20)), Metres(-20)), None)
     assert(formulaOf(Climbing, 0).fold(throw _, identity).leaves(Climbing, Metres(-20)).nonEmpty)
 
-  test("whoever may turn is known, and who does not"):
+  test("a formula states whether its policy may turn the vehicle"):
     assert(formulaOf(Looking, 0).fold(throw _, identity).turns)
     assert(!formulaOf(Chase, 0).fold(throw _, identity).turns)
 

@@ -3,10 +3,9 @@ package skein.policy
 import skein.signal.Kinematics
 import skein.units.*
 
-/** Simulates a team by its policies without any delay, each velocity following its command with a first-order
-  * lag.
+/** Simulates a team by its policies without delays. Each velocity follows its command with a first-order lag.
   *
-  * @param lagS 0 for velocities that equal their commands immediately
+  * @param lagS with 0, velocities equal their commands immediately
   */
 final class TeamFlight(scenario: Fleet, lagS: Double, stepS: Double = 0.05):
   private val agents  = scenario.agents
@@ -16,7 +15,7 @@ final class TeamFlight(scenario: Fleet, lagS: Double, stepS: Double = 0.05):
   val eastMps         = Array.fill(agents.size)(0.0)
   private val heading = agents.map(_.startHeading.value).toArray
 
-  /** The smallest distance of any two vehicles so far, m. */
+  /** The smallest distance between any two vehicles so far, m. */
   var leastM: Double = Double.PositiveInfinity
 
   def seenBy(vehicle: Int): Observation =
@@ -50,7 +49,7 @@ final class TeamFlight(scenario: Fleet, lagS: Double, stepS: Double = 0.05):
     math.hypot(northM(one) - northM(other), eastM(one) - eastM(other))
 
 object TeamFlight:
-  /** The observation of a team by one vehicle without an opponent, all at one altitude. */
+  /** One vehicle's observation of a team that flies at one altitude, without an opponent. */
   def seen(
       self: Int,
       northM: Seq[Double],

@@ -5,7 +5,7 @@ import skein.units.*
 
 class TeamPolicySuite extends munit.FunSuite:
 
-  test("pursuers rest on the ring at even bearings around an evader that does not move"):
+  test("pursuers rest on the ring, at even bearings, around an evader that does not move"):
     val surround = Surround(vehicles = 6)
     val agents   = surround.agents
     val still    = agents.head.copy(policy = Flee(0))
@@ -22,7 +22,7 @@ class TeamPolicySuite extends munit.FunSuite:
     for (before, after) <- bearings.zip(bearings.tail) do
       assertEqualsDouble(after - before, 2 * math.Pi / 5, 0.01)
 
-  test("every pursuer has a slot of its own, wherever the bearings are cut open"):
+  test("every pursuer has its own slot, at whatever bearing the order begins"):
     val random = scala.util.Random(5)
     for turn <- 0 until 200 do
       val bearings                 = Seq.fill(7)((random.nextDouble() - 0.5) * 2 * math.Pi)
@@ -52,7 +52,7 @@ class TeamPolicySuite extends munit.FunSuite:
         7
       )
 
-  test("the evader flees straight away from the nearest"):
+  test("the evader flees straight away from the nearest pursuer"):
     val still = Seq.fill(3)(0.0)
     val seen  = TeamFlight.seen(0, Seq(0, 3, -2), Seq(0, 4, -1), still, still, 0, 0.1)
     Flee(4).choose(seen, ())._1 match
@@ -61,7 +61,7 @@ class TeamPolicySuite extends munit.FunSuite:
         assertEquals((speed, down), (MetresPerSecond(4), seen.startDown))
       case other => fail(s"came $other")
 
-  test("a place on the circuit is found again from its point, and directions follow the points"):
+  test("a place on the circuit is found again from its point, and directions are those from point to point"):
     val circuit = Racetrack(50, 20)
     for step <- 0 until 500 do
       val place         = circuit.lengthM * step / 500
@@ -87,7 +87,7 @@ class TeamPolicySuite extends munit.FunSuite:
     flight.fly(60)()
     assert(slotErrorsM(formation, flight).max < 0.01, slotErrorsM(formation, flight))
 
-  test("a formation turns with its leader"):
+  test("the slots of a formation turn with the leader"):
     val formation = Formation(straightM = 0, radiusM = 30, lagS = 0)
     val flight    = TeamFlight(formation.fleet, lagS = 0, stepS = 0.01)
     var worst     = 0.0
@@ -96,7 +96,7 @@ class TeamPolicySuite extends munit.FunSuite:
     // Without turn rate × offset in the slot's velocity it would be 0.6 m.
     assert(worst < 0.15, s"$worst m")
 
-  test("a formation of vehicles that lag turns with its leader when it knows by how much they do"):
+  test("a formation of lagging vehicles turns with its leader if its policies know the lag"):
     def worstM(lagS: Double) =
       val formation = Formation(straightM = 0, radiusM = 30, lagS = lagS)
       val scenario  = formation.fleet
@@ -132,12 +132,14 @@ class TeamPolicySuite extends munit.FunSuite:
       assertEqualsDouble(flight.northM(0), 30, 0.1)
       assertEqualsDouble(flight.northM(1), -30, 0.1)
 
-  test("two that lag 1.5 s behind their commands pass with the set minimum, by the margin"):
+  test(
+    "two vehicles that lag 1.5 s behind their commands pass with the minimum separation, due to the margin"
+  ):
     val flight = headOn(0, lagS = 1.5)
     assert(flight.leastM > 2.0, s"${flight.leastM} m")
 
   test(
-    "twenty in four streams cross with the required separation, if they follow their commands immediately"
+    "twenty vehicles in four streams cross with the required separation if they follow commands immediately"
   ):
     val crossing = Crossing()
     val flight   = TeamFlight(crossing.fleet, lagS = 0)
@@ -147,7 +149,9 @@ class TeamPolicySuite extends munit.FunSuite:
       math.hypot(goal._1 - flight.northM(vehicle), goal._2 - flight.eastM(vehicle))
     assert(missing.max < 1, missing)
 
-  test("the chosen velocity is the allowed one nearest to that wanted, as a search over a grid finds it"):
+  test(
+    "the chosen velocity is the allowed one nearest to the wanted velocity, as found by a search over a grid"
+  ):
     import Avoidance.*
     val random                = scala.util.Random(3)
     var allowed, least, edged = 0
@@ -188,7 +192,7 @@ class TeamPolicySuite extends munit.FunSuite:
       s"$allowed allowed, $least least broken, $edged side by side"
     )
 
-  test("of twenty and more neighbours, all are kept clear of that can be"):
+  test("the chosen velocity keeps clear of more than twenty neighbours, as far as that is possible"):
     val random                = scala.util.Random(4)
     var allowed, least, short = 0
     for turn <- 0 until 4000 do
@@ -219,7 +223,7 @@ class TeamPolicySuite extends munit.FunSuite:
     assert(allowed > 500 && least > 500, s"$allowed allowed, $least least broken")
     assert(short <= 4, s"$short of $least fell short")
 
-  test("vehicles out of reach, and those at one position, give finite numbers"):
+  test("neighbours out of reach or at one position give finite numbers"):
     for side <- Seq(0.0, 1e6) do
       val policy = Avoidance(10, 0, cruiseMps = 5, mostMps = 8, minimumM = 2, marginM = 1.5, horizonS = 4)
       val places = Seq(side, 0, 0)

@@ -21,7 +21,6 @@ class WeaveSuite extends munit.FunSuite:
     Metres(-20)
   )
 
-  /** Headings, rad, at the decisions of a minute. */
   private def headings(weave: Weave, periodS: Double): Vector[Double] =
     Iterator
       .iterate((weave.start, 0))((arc, made) =>
@@ -32,7 +31,9 @@ class WeaveSuite extends munit.FunSuite:
       .map(_._1.headingRad)
       .toVector
 
-  test("it turns at its rate, to the left and right in turn, for times between the least and the most"):
+  test(
+    "the leader turns at its rate, left and right in turn, for times between the shortest and the longest"
+  ):
     val turns = headings(weave, 0.01).sliding(2).map(pair => pair(1) - pair(0)).toVector
     // In a step in which an arc ends, it turns both ways.
     assert(turns.forall(math.abs(_) < 0.008 + 1e-9))
@@ -43,19 +44,19 @@ class WeaveSuite extends munit.FunSuite:
     assert(arcs.forall(arc => arc > 0.98 && arc < 4.02), arcs.toString)
     assert(arcs.max > 3 && arcs.min < 2, arcs.toString)
 
-  test("another period makes the same path, another course another one"):
+  test("the path does not depend on the period, but on the number of the course"):
     val (often, seldom) = (headings(weave, 0.05), headings(weave, 0.1))
     val apart           = seldom.indices.map(i => math.abs(seldom(i) - often(2 * i))).max
     assert(apart < 1e-6, s"$apart rad")
     assertNotEquals(headings(weave, 0.1), headings(weave.copy(course = 3), 0.1))
 
-  test("it holds its altitude"):
+  test("the leader holds its altitude"):
     def downMps(downM: Double) = weave.choose(seen(0, downM), weave.start)._1 match
       case Action.Velocity(velocity, _) => velocity.z
       case other                        => fail(other.toString)
     assertEquals((downMps(-20), downMps(-19.5), downMps(-40)), (0.0, -0.5, 2.0))
 
-  test("the follower's command is the leader's velocity, and more towards its place"):
+  test("the follower commands the leader's velocity plus a velocity towards its place"):
     def state(north: Double, east: Double, mps: Double) =
       Seen(
         Kinematics(Vector3(north, east, -20), Vector3(mps, 0, 0), Quaternion.Identity, Vector3.Zero),

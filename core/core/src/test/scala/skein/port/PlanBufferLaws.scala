@@ -9,7 +9,9 @@ class PlanBufferLaws extends munit.ScalaCheckSuite:
 
   private def ms(time: Int) = Instant.Epoch + Span.ofMillis(time)
 
-  /** A plan from a decision: an action every 100 ms from `firstMs` on, named by plan and moment. */
+  /** A plan with an action every 100 ms from `firstMs` on. The actions contain the numbers of plan and
+    * moment.
+    */
   private final case class Sent(sequence: Long, firstMs: Int, count: Int):
     def actions: Vector[(at: Instant, action: (Long, Int))] =
       Vector.tabulate(count)(number => (at = ms(firstMs + 100 * number), action = (sequence, number)))
@@ -32,34 +34,34 @@ class PlanBufferLaws extends munit.ScalaCheckSuite:
 
   private val times = Gen.choose(900, 4000)
 
-  property("in whatever order and however often plans arrive, the newest of all decides from its start on"):
+  property("whatever the order and number of arrivals, the newest plan decides from its first time on"):
     forAll(plans, Gen.listOfN(20, Gen.choose(0, 5)), times): (plans, order, time) =>
       val last   = plans.last
       val buffer = order.map(plans(_)).foldLeft(empty)(_.receive(_)).receive(last)
       time < last.firstMs || buffer.dueAt(time) == empty.receive(last).dueAt(time)
 
-  property("a plan that arrived before, or is older, changes nothing"):
+  property("a plan that is older, or that arrives again, changes nothing"):
     forAll(plans, Gen.choose(0, 5)): (plans, again) =>
       val buffer = plans.foldLeft(empty)(_.receive(_))
       buffer.receive(plans(again)) == buffer
 
-  property("before a newer plan's first moment the older one goes on"):
+  property("an older plan continues until the first time of a newer one"):
     forAll(plans, times): (plans, time) =>
       val (older, newer) = (empty.receive(plans.head), empty.receive(plans.head).receive(plans(1)))
       time >= plans(1).firstMs || newer.dueAt(time) == older.dueAt(time)
 
-  property("a lost plan leaves no gap: its predecessor's action of the moment acts"):
+  property("after a lost plan, its predecessor's action for each time acts"):
     forAll(plans.suchThat(_.head.count > 2), times): (plans, time) =>
       val first = plans.head
       val due   = empty.receive(first).dueAt(time).map(_._2)
       due == Option.when(time >= first.firstMs)(((time - first.firstMs) / 100).min(first.count - 1))
 
-  property("what has passed is not kept, and never more than the limit"):
+  property("past actions are dropped, and the number of stored actions is limited"):
     forAll(plans, Gen.choose(0, 5000)): (plans, now) =>
       val buffer = plans.foldLeft(empty)(_.receive(_, now))
       buffer.actions.count(_.at <= ms(now)) <= 1 && buffer.actions.size <= PlanBuffer.Limit
 
-  test("nothing is due before the first moment, and the next moment is known"):
+  test("no action is in effect before the first time, and the next time is known"):
     val buffer = empty.receive(Sent(0, 1000, 3))
     assertEquals(buffer.dueAt(999), None)
     assertEquals(buffer.nextAfter(ms(999)), Some(ms(1000)))
@@ -67,7 +69,7 @@ class PlanBufferLaws extends munit.ScalaCheckSuite:
     assertEquals(buffer.nextAfter(ms(1199)), Some(ms(1200)))
     assertEquals(buffer.nextAfter(ms(1200)), None)
 
-  test("a plan has at most 16 actions, in the order of their moments"):
+  test("a plan has at most 16 actions, ascending by their times"):
     def mistake(moments: Int*) =
       intercept[IllegalArgumentException](
         CommandPlan(0, moments.map(time => (at = ms(time), action = Action.Hover)).toVector)

@@ -7,7 +7,7 @@ class LimitSuite extends munit.FunSuite:
 
   /** Tracks of two vehicles.
     *
-    * @param placeNed of a vehicle at a time, s; velocities are its differences
+    * @param placeNed position of a vehicle at a time, s; velocities are its differences
     */
   private def flown(seconds: Int)(placeNed: (Int, Double) => Vector3): Tracks =
     val tracks = Vector.tabulate(2): vehicle =>
@@ -20,11 +20,13 @@ class LimitSuite extends munit.FunSuite:
       )
     Tracks.of(tracks).getOrElse(fail("no tracks"))
 
-  /** The second passes above the first: 3 m over it at 5 s, at 2 m/s. */
+  /** The second vehicle passes above the first, 3 m higher at 5 s, at 2 m/s. */
   private val passing = flown(10): (vehicle, second) =>
     if vehicle == 0 then Vector3(0, 0, -10) else Vector3((second - 5) * 2, 0, -13)
 
-  test("separation counts in space: vehicles above one another are apart, in the plane they are not"):
+  test(
+    "separation is measured in space, so vehicles one above the other are apart; horizontal separation is not"
+  ):
     assertEquals(Limit.separation(Metres(2.9)).violations(passing).size, 0)
     val Vector(one) = Limit.separation(Metres(3.5)).violations(passing): @unchecked
     assertEquals(one.vehicles, Vector(0, 1))
@@ -35,7 +37,7 @@ class LimitSuite extends munit.FunSuite:
     assertEqualsDouble(one.worstAtS, 5, 0.011)
     assertEqualsDouble(Limit.horizontalSeparation(Metres(1)).violations(passing).head.worst, 0, 1e-9)
 
-  test("every stretch counts once, of every vehicle for itself"):
+  test("every stretch of a violation counts once, for every vehicle"):
     val bobbing =
       flown(10)((vehicle, second) => Vector3(0, vehicle * 50.0, -10 + 2 * math.cos(second * math.Pi)))
     // At 0, 2, 4, 6, 8 and 10 s both are lowest.
@@ -43,12 +45,12 @@ class LimitSuite extends munit.FunSuite:
     assertEquals(Limit.ceiling(Metres(11)).violations(bobbing).size, 10)
     assertEquals(Limit.ceiling(Metres(12.1)).violations(bobbing).size, 0)
 
-  test("speed is that of the vehicle in space"):
+  test("a limit of the speed applies to the speed in space"):
     val Vector(one) = Limit.speed(MetresPerSecond(1.9)).violations(passing): @unchecked
     assertEquals(one.vehicles, Vector(1))
     assertEqualsDouble(one.worst, 2, 1e-9)
 
-  test("a fence is a circle or a polygon, which may be hollow; the worst is how far outside it was"):
+  test("a fence is a circle or a polygon, which need not be convex; the worst value is the distance outside"):
     val circle = Limit.geofence(north = Metres(0), east = Metres(0), radius = Metres(8))
     assertEquals(
       circle.violations(passing).map(one => (one.vehicles, one.worst.round)),
@@ -63,7 +65,7 @@ class LimitSuite extends munit.FunSuite:
     assertEqualsDouble(in.toS, 7, 0.03)
     assertEqualsDouble(in.worst, 1, 0.03)
 
-  test("a rectangle is a fence that has an inside"):
+  test("a rectangular fence must have an inside"):
     val fence = Fence.rectangle(-1, 3, -2, 2)
     assertEquals((fence.beyondM(0, 0), fence.beyondM(5, 0), fence.beyondM(6, -6)), (-1.0, 2.0, 5.0))
     for (minN, maxN, minE, maxE) <-
@@ -71,7 +73,7 @@ class LimitSuite extends munit.FunSuite:
     do
       intercept[IllegalArgumentException](Fence.rectangle(minN, maxN, minE, maxE))
 
-  test("limits of one's own have a name, a unit and a bound"):
+  test("a user's own limit has a name, a unit and a bound"):
     val above = Limit.least("height over the hill", "m", 2)((tracks, vehicle) =>
       instant => tracks.altitudeM(vehicle, instant) - 9
     )
@@ -80,7 +82,7 @@ class LimitSuite extends munit.FunSuite:
     assertEquals(Limit.ceiling(Metres(12_345_678)).text, "altitude of at most 12345678 m")
     assertEquals(above.violations(passing).map(_.vehicles), Vector(Vector(0)))
 
-  test("a series is reduced to measures, over the whole flight or a part of it"):
+  test("measures reduce a series over the whole flight or over a part of it"):
     val apart                           = Series("apart", "m")(tracks => tracks.separationM(0, 1, _))
     def value(measure: Measure): Double = measure.of(passing).getOrElse(fail("no value"))
     assertEqualsDouble(value(apart.least("closest")), 3, 1e-9)

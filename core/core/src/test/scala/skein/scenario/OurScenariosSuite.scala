@@ -11,7 +11,7 @@ class OurScenariosSuite extends munit.FunSuite:
       (agent.startPositionNed.x, agent.startPositionNed.y, agent.startPositionNed.z)
     )
 
-  test("duels: 21 m apart, each pair 60 m east of the last, numbered where there are several"):
+  test("duels start 21 m apart, each pair 60 m east of the last, with numbered names if there are several"):
     assertEquals(startsM(PaperDuel()), Vector((21.0, 0.0, -20.0), (0.0, 0.0, -20.0)))
     assertEquals(startsM(PaperDuel(pairs = 3, altitudeM = 7)).last, (0.0, 120.0, -7.0))
     assertEquals(PaperDuel().agents.map(_.name), Vector("Evader", "Pursuer"))
@@ -24,7 +24,7 @@ class OurScenariosSuite extends munit.FunSuite:
     assertEquals((PaperDuel().crowded(9).pairs, PaperDuel(pairs = 6).crowded(9).pairs), (4, 6))
     assertEquals(PaperDuel(pairs = 51).mistakes, Seq("pairs: expected 1 to 50, came 51"))
 
-  test("surround: pursuers start in a line, half a ring's radius apart, 30 m south of the evader"):
+  test("in surround, pursuers start in a line, half a ring's radius apart, 30 m south of the evader"):
     assertEquals(
       startsM(Surround(vehicles = 4, ringM = 8)),
       Vector((30.0, 0.0, -5.0), (0.0, -4.0, -5.0), (0.0, 0.0, -5.0), (0.0, 4.0, -5.0))
@@ -35,14 +35,14 @@ class OurScenariosSuite extends munit.FunSuite:
     assertEquals(Surround(vehicles = 2).mistakes, Seq("vehicles: expected 3 to 100, came 2"))
     assertEquals((0 to 3).map(Surround().shade), Seq(0, 0, 1, 2))
 
-  test("notes have lengths of three digits at most"):
+  test("lengths in notes have at most three digits"):
     assert(Surround().note.contains("the ring of 8 m,"), Surround().note)
     assert(Crossing(minimumM = 2.5).note.contains("minimum of 2.5 m; arrived: within 3 m"), Crossing().note)
     assert(Formation().note.contains("first 10 s:"), Formation().note)
     val scenarios = Seq(Convoy(), Forest(), Surround(), Crossing(), Formation())
     assertEquals(scenarios.filter(_.note.contains(".0 ")).map(_.note), Nil)
 
-  test("formation: a wedge behind its leader, right and left in turn"):
+  test("a formation starts as a wedge behind its leader, right and left in turn"):
     assertEquals(
       Formation(spacingM = 3).slots,
       Vector((-3.0, 3.0), (-3.0, -3.0), (-6.0, 6.0), (-6.0, -6.0))
@@ -54,7 +54,7 @@ class OurScenariosSuite extends munit.FunSuite:
     assertEquals(Formation(straightM = 0, lagS = 0).mistakes, Nil)
     assertEquals(Formation(radiusM = 0).mistakes, Seq("radiusM: expected more than 0, came 0.0"))
 
-  test("crossing: streams keep right of the middle, and whoever starts first flies no further than the last"):
+  test("in crossing, streams keep to the right, and all vehicles fly equally far"):
     val crossing = Crossing(vehicles = 5, streams = 2, spacingM = 6, entryM = 25, laneM = 4)
     val rounded  = (m: Double) => (m * 1e6).round / 1e6
     // Northward ones are 4 m east of the middle; eastward ones 4 m south of it.
@@ -69,7 +69,7 @@ class OurScenariosSuite extends munit.FunSuite:
     assertEquals((0 to 4).map(crossing.shade), Seq(0, 1, 0, 1, 0))
     assertEquals(Crossing(laneM = 0, marginM = 0).mistakes, Nil)
 
-  test("a scenario's name is its class's in words, and what is planar steers in the plane"):
+  test("a scenario's name is that of its class in words, and planar scenarios steer horizontally"):
     assertEquals(Seq(PaperDuel(), Surround(), Crossing()).map(_.name), Seq("duel", "surround", "crossing"))
     assertEquals(Scenario.worded("OverTheRidge"), "over-the-ridge")
     assert(Seq(PaperDuel(), Surround(), Formation(), Crossing()).forall(_.isPlanar))

@@ -4,7 +4,7 @@ import skein.policy.{Action, GraphPolicy, Observation, PolicyFormula, Seen, Yaw}
 import skein.signal.{Kinematics, SplitMix64}
 import skein.units.*
 
-/** A scenario's file says who flies, by which policies, measured how; and each mistake in it is one line with
+/** A scenario file defines vehicles, policies and measures; every mistake in it gives a one-line message with
   * its place.
   */
 class ScenarioFileSuite extends munit.FunSuite:
@@ -51,7 +51,7 @@ class ScenarioFileSuite extends munit.FunSuite:
     assert(patrol.measures(0).reduced.isDefined, "a search can optimise it")
     assertEquals(patrol.document.map(_._1), Some(ScenarioFile.Recorded))
 
-  test("a policy decides by its graph, with memory, and by the first action whose condition holds"):
+  test("a policy decides by its graph, with memory, and performs the first action whose condition holds"):
     val policy         = stated().agents(1).policy.asInstanceOf[GraphPolicy]
     val random         = SplitMix64(3)
     val now            = seen(random, 1)
@@ -65,7 +65,7 @@ class ScenarioFileSuite extends munit.FunSuite:
     val beside = now.copy(vehicles = Vector(now.own, now.own))
     assertEquals(policy.choose(beside, next)._1, Action.Hover)
 
-  test("a file that ends its flight, or whose quantity is of velocities, is not simulated as if it did not"):
+  test("a file that may end its flight ends it, and a quantity of velocities is not optimised"):
     val ending               = read(Patrol + "over 12\n").standard
     def known(north: Double) =
       val still = Kinematics(Vector3(0, 0, 0), Vector3.Zero, Quaternion.Identity, Vector3.Zero)
@@ -75,7 +75,7 @@ class ScenarioFileSuite extends munit.FunSuite:
     val fast = read(Patrol + "20 north-mps 0\nseries speed m/s 20\nmeasure fastest most\n").standard
     assertEquals(fast.measures.last.reduced, None)
 
-  test("the formula of a graph is the graph: equal bits, with no bytecode read"):
+  test("the formula of a graph policy is its graph, and no bytecode is read"):
     val level   = read(Patrol.replace("does when 12 hover\n", ""))
     val team    = level.standard.fleet
     val policy  = team.agents(1).policy.asInstanceOf[GraphPolicy]
@@ -96,11 +96,11 @@ class ScenarioFileSuite extends munit.FunSuite:
     )).left.exists(_.getMessage.contains("it decides for Action.Land")))
 
   for (name, change, expected) <- Mistakes do
-    test(s"told in one line: $name"):
+    test(s"a mistake in a file is reported in one line: $name"):
       val came = ScenarioText.read(change(Patrol)).left.toOption
       assertEquals(came, Some(expected))
 
-  test("a chain that is too deep, and vehicles that do too much, are refused"):
+  test("a file with too deep a chain of nodes, or with too many nodes in all, is refused"):
     def file(nodes: Iterator[String], vehicles: Int, does: Int) =
       val team = (0 until vehicles).map(one => s"vehicle V$one v 0 0 0 0 0\ndoes along $does $does $does\n")
       s"skein-scenario 1\nname large\n0 const 0\n1 north 0\n${nodes.mkString("\n")}\n${team.mkString}"
@@ -117,13 +117,13 @@ class ScenarioFileSuite extends munit.FunSuite:
       Some("line: expected at most 200000 nodes in what all vehicles do, came more")
     )
 
-  test("a mutated file is read or refused in one line (seed 5)"):
+  test("a mutated file is read, or refused with one line (seed 5)"):
     val whole =
       ScenarioMutants.check(Patrol, seed = 5, count = 20_000)((text, why) => fail(why + "\n" + text))
     assert(whole > 200 && whole < 19_000, s"$whole of 20000 could be read")
 
 object ScenarioFileSuite:
-  /** A runner, and a scout that flies at it and waits beside it. */
+  /** A scenario with a runner, and a scout that flies towards it and waits beside it. */
   val Patrol: String =
     """skein-scenario 1
       |# two vehicles
@@ -166,7 +166,7 @@ object ScenarioFileSuite:
       |measure "close by" time-positive
       |""".stripMargin
 
-  /** A change of the file, and what is said of it. */
+  /** Changes of the file, each with the resulting message. */
   private val Mistakes: Seq[(String, String => String, String)] =
     def line(of: String, by: String)(text: String) = text.replace(of + "\n", by + "\n")
     Seq(

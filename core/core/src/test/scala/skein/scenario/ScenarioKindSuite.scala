@@ -15,7 +15,7 @@ class ScenarioKindSuite extends munit.FunSuite:
 
   private val kind = ScenarioKind(OverTheRidge())
 
-  test("a case class is a kind of scenario: its fields are its settings, named by their defaults' types"):
+  test("a case class is a kind of scenario, whose fields are the settings"):
     assertEquals(kind.name, "over-the-ridge")
     assertEquals(
       kind.read(Map("scouts" -> "3", "heightM" -> "12.5", "isNight" -> "true", "area" -> "south")),
@@ -23,7 +23,9 @@ class ScenarioKindSuite extends munit.FunSuite:
     )
     assertEquals(kind.read(Map("scouts" -> "4")), Right(OverTheRidge(scouts = 4)))
 
-  test("all mistakes in settings are reported together: expected, given, nearest"):
+  test(
+    "all mistakes in settings are reported together, with the expected and given values and the nearest name"
+  ):
     assertEquals(
       kind.read(Map("scuots" -> "3", "heightM" -> "high", "isNight" -> "dusk")),
       Left(Seq(
@@ -33,7 +35,7 @@ class ScenarioKindSuite extends munit.FunSuite:
       ))
     )
 
-  test("ours are read back from what they are recorded as"):
+  test("Skein's scenarios are read back from their recorded settings"):
     for scenario <- Seq(
         PaperDuel(pairs = 3, asPublished = true),
         Surround(vehicles = 4),
@@ -45,7 +47,9 @@ class ScenarioKindSuite extends munit.FunSuite:
       assertEquals(Scenarios.ours.ofRecording(scenario.name, recorded), Right(scenario))
       assertEquals(scenario.mistakes, Nil)
 
-  test("recordings of duels name their settings as before; a setting introduced later takes its default"):
+  test(
+    "recordings of duels keep their older names of settings, and a setting introduced later has its default"
+  ):
     assertEquals(PaperDuel().recordedAs("pairs"), "pairs")
     assertEquals(Surround().recordedAs("ringM"), "surround.ringM")
     assertEquals(
@@ -78,7 +82,7 @@ class ScenarioKindSuite extends munit.FunSuite:
       Left("agents: expected finite numbers as a start, came NaN, 0.0, -10.0, of B")
     )
 
-  test("an exception in a scenario's own code is reported with its name and line"):
+  test("an exception in a scenario's own code is reported with the scenario's name and the line"):
     final case class Broken(where: String = "") extends Scenario:
       require(where != "constructor", "no such place")
       private def mayFail(place: String): Unit = if where == place then sys.error(s"in $place")
@@ -108,7 +112,7 @@ class ScenarioKindSuite extends munit.FunSuite:
     for place <- Seq("series", "measure") do
       isOf(told(Result.of(Broken(place), tracks)), s"RuntimeException: in $place")
 
-  test("a setting that cannot be simulated is named"):
+  test("settings that cannot be simulated are reported by name"):
     assertEquals(
       Crossing(vehicles = 1, streams = 3, spacingM = -1).mistakes,
       Seq(
@@ -118,7 +122,7 @@ class ScenarioKindSuite extends munit.FunSuite:
       )
     )
 
-  test("an unknown kind is reported with the nearest known one; no two kinds share a name"):
+  test("an unknown kind is reported with the nearest known one, and no two kinds may share a name"):
     assertEquals(
       Scenarios.ours.kind("crosing"),
       Left(
@@ -128,7 +132,7 @@ class ScenarioKindSuite extends munit.FunSuite:
     )
     intercept[IllegalArgumentException](Scenarios(ScenarioKind(Surround()), ScenarioKind(Surround(4))))
 
-  test("a scenario's name differs from the keys beside it in recordings and configurations"):
+  test("the name of a scenario must be one word, usable in recordings and configurations"):
     final case class Called(override val name: String = "") extends Scenario:
       def agents: Vector[Agent] = Vector.empty
     for name <- Seq("ridge, by night", "ridge.north", "ridge {}", "") do
@@ -136,7 +140,7 @@ class ScenarioKindSuite extends munit.FunSuite:
       assert(refused.getMessage.contains(s"came '$name'"), refused.getMessage)
     assertEquals(Scenarios(ScenarioKind(Called("über-2_b"))).names, Vector("über-2_b"))
 
-  test("the distance between words counts letters to change"):
+  test("the distance between two words is the number of letters to change"):
     assertEquals(Nearest.distance("durration", "duration"), 1)
     assertEquals(Nearest.distance("", "loops"), 5)
     assertEquals(Nearest.distance("seed", "period"), 4)

@@ -5,7 +5,7 @@ import skein.policy.{Observation, Seen}
 import skein.signal.{Kinematics, SplitMix64}
 import skein.units.*
 
-/** Files with random mistakes. */
+/** Creates scenario files with random mistakes. */
 private object ScenarioMutants:
   private val Words = Vector(
     "-1",
@@ -35,7 +35,7 @@ private object ScenarioMutants:
     "heading"
   )
 
-  /** Changes one to three words, letters or lines. */
+  /** Changes one to three words, letters or lines of a file. */
   def mutant(of: String, random: SplitMix64): String =
     def below(most: Int) = (random.nextDouble() * most).toInt.min(most - 1).max(0)
     (0 to below(3)).foldLeft(of): (text, _) =>
@@ -54,9 +54,9 @@ private object ScenarioMutants:
           if text.isEmpty then text else text.updated(below(text.length), (32 + below(96)).toChar)
         case _ => text.take(below(text.length + 1))
 
-  /** Reads mutants; those that can be read are flown for one decision.
+  /** Reads mutated files, and simulates one decision of those that are valid.
     *
-    * @return how many could be read
+    * @return number of valid files
     */
   def check(of: String, seed: Long, count: Int)(wrong: (String, String) => Nothing): Int =
     val random = SplitMix64(seed)

@@ -3,7 +3,7 @@ package skein.scenario
 import skein.policy.Role
 import skein.units.*
 
-/** Tracks and their measures, on flights with obvious numbers. */
+/** Tracks and their measures, for flights with simple numbers. */
 class TracksSuite extends munit.FunSuite:
 
   private def s(seconds: Double) = Instant.Epoch + Span.ofSeconds(seconds)
@@ -33,7 +33,7 @@ class TracksSuite extends munit.FunSuite:
     assertEquals((track.from, track.to), (s(1), s(1.4)))
     assert(track.isA(Role.Leader) && !track.isA(Role.Follower))
 
-  test("where velocities were not measured they are those of the way to the next sample, the last as before"):
+  test("velocities that were not measured are those towards the next sample; the last equals the one before"):
     val track = Track.ofPositions(
       "One",
       "Scout",
@@ -45,7 +45,7 @@ class TracksSuite extends munit.FunSuite:
       Vector(Vector3.Zero)
     )
 
-  test("vehicles are compared every 20 ms for as long as all were seen"):
+  test("vehicles are compared every 20 ms, over the time in which all were read"):
     val both = tracks(flying("One", 0, 2, 1), flying("Two", 0.5, 3, 2, eastM = 4))
     assertEquals((both.instants.size, both.lastS, both.stepS), (76, 1.5, 0.02))
     assertEqualsDouble(both.northM(0)(0), 0.5, 1e-9)
@@ -59,18 +59,23 @@ class TracksSuite extends munit.FunSuite:
     assertEquals(both.first(1).instants.size, 101)
     assert(both.first(2) eq both)
 
-  test("vehicles that were never seen at one time have no common flight"):
+  test("vehicles that were never read at one time have no common tracks"):
     assertEquals(Tracks.of(Vector(flying("One", 0, 1, 1), flying("Two", 1, 2, 1))), None)
     assertEquals(Tracks.of(Vector.empty), None)
 
-  test("the deviation of two flights counts their common time, with the height on request"):
+  test(
+    "the deviation of two flights is computed over their common time, and includes the altitude on request"
+  ):
     def at(height: Double, seconds: Double) =
       tracks(Track.ofPositions("One", "Scout", Vector(0.0, seconds).map(t => (s(t), Vector3(3, 0, -height)))))
     val off = tracks(Track.ofPositions("One", "Scout", Vector(0.0, 9.0).map(t => (s(t), Vector3(6, 0, -14)))))
     assertEqualsDouble(at(10, 2).rmsFrom(off, inSpace = true), 5, 1e-9)
     assertEqualsDouble(off.rmsFrom(at(10, 2), inSpace = false), 3, 1e-9)
 
-  test("windows: the whole, all but the begin, the last seconds; what was too short has none, or is whole"):
+  test(
+    "a window is a part of a flight; a flight that is too short has no last seconds, but is measured " +
+      "whole otherwise"
+  ):
     val flight             = tracks(flying("One", 0, 10, 1))
     def of(window: Window) = window.of(flight).map(range => (range.head, range.last))
     assertEquals(of(Window.Whole), Some((0, 500)))
@@ -81,7 +86,7 @@ class TracksSuite extends munit.FunSuite:
     assertEquals(of(Window.Last(10.5)), Some((0, 500)))
     assertEquals(of(Window.Last(10.6)), None)
 
-  test("reductions of 3, 4 and 8"):
+  test("reductions of the values 3, 4 and 8"):
     val values = Vector(3.0, 4.0, 8.0)
     assertEquals(Reduction.Mean.of(values), 5.0)
     assertEqualsDouble(Reduction.Rms.of(values), math.sqrt(89 / 3.0), 1e-12)
@@ -94,7 +99,7 @@ class TracksSuite extends munit.FunSuite:
     IArray.fill(northEastM.size)(-5.0)
   )
 
-  test("quantities of positions: off the ring, the widest gap, the nearest two"):
+  test("quantities of positions: deviation from the ring, widest gap, smallest separation"):
     val around = positions((1, 1), (1, 6), (1, -6), (-6, 1))
     // 5, 7 and 7 m from the evader.
     assertEqualsDouble(OffRing(6).of(around), 1, 1e-9)
@@ -112,7 +117,7 @@ class TracksSuite extends munit.FunSuite:
     assertEqualsDouble(slots.of(positions((25, 40), (29, 36), (29, 44))), 0, 1e-9)
     assertEqualsDouble(slots.of(positions((25, 40), (29, 36), (32, 44))), math.sqrt(4.5), 1e-9)
 
-  test("a series over time: when it was most, how long it was low, and its root of the mean square"):
+  test("measures of a series: time of the maximum, time below a value, root mean square, standard deviation"):
     val flight = tracks(flying("One", 0, 10, 1), flying("Two", 0, 10, -1))
     val apart  = Series("apart", "m")(tracks => tracks.distanceM(0, 1, _))
     assertEquals(apart.mostAt("at").of(flight), Some(10.0))
@@ -126,7 +131,7 @@ class TracksSuite extends munit.FunSuite:
     val arrived = Measure.count("arrived")(_.vehicles.size)
     assertEquals((arrived.title, arrived.isCount, arrived.of(flight)), ("arrived", true, Some(2.0)))
 
-  test("where a series is no number it has gaps, and what is measured of that has no value"):
+  test("a series has gaps where its value is not finite, and measures of such a part have no value"):
     val flight = tracks(flying("One", 0, 10, 1))
     val above3 = Series("log", ""): tracks =>
       instant => StrictMath.log(tracks.northM(0)(instant) - 3).min(tracks.timeS(instant) - 5)
@@ -153,7 +158,7 @@ class TracksSuite extends munit.FunSuite:
     val error = intercept[IllegalArgumentException](result.value("nearest"))
     assert(error.getMessage.contains("there are: apart"), error.getMessage)
 
-  test("a track is straight between near samples, and curves through a gap as its velocities say"):
+  test("a track is straight between near samples, and follows the velocities through a gap"):
     def circle(everyS: Double) = Track.of(
       "a",
       "pursuer",

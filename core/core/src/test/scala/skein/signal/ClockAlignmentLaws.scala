@@ -20,26 +20,26 @@ class ClockAlignmentLaws extends munit.ScalaCheckSuite:
     val readings = legs.zipWithIndex.map((leg, at) => reading(at, leg))
     readings.tail.foldLeft(ClockAlignment.of(readings.head))(_.updated(_))
 
-  property("the true offset lies within the stated uncertainty, whatever the asymmetry of the legs"):
+  property("the true offset lies within the stated uncertainty, whatever the asymmetry of the delays"):
     forAll(legs): legs =>
       val alignment = aligned(legs)
       math.abs((alignment.offset - trueOffset).toNanos) <= alignment.uncertainty.toNanos + 1
 
   property(
-    "the uncertainty is the way to the farther bound: between half and the whole of what lies between them"
+    "the uncertainty is the distance to the farther bound, at least half of the distance between the bounds"
   ):
     forAll(legs): legs =>
       val alignment = aligned(legs)
       val width     = alignment.upper - alignment.lower
       alignment.uncertainty * 2 >= width && alignment.uncertainty <= width
 
-  property("more readings never widen the bounds by more than the clocks may have drifted"):
+  property("more readings never widen the bounds by more than the possible drift of the clocks"):
     forAll(legs): legs =>
       val drifted       = Span.ofMillis((legs.size * 100 + 200) * ClockAlignment.MaxDrift) * 2
       val (first, last) = (aligned(legs.take(1)), aligned(legs))
       last.upper - last.lower <= first.upper - first.lower + drifted
 
-  test("readings after the simulator stood still start the estimate afresh"):
+  test("readings after the simulator was paused restart the estimate"):
     val before  = reading(0, (10, 10))
     val after   = reading(1, (10, 10)).copy(validAt = before.validAt + Span.ofMillis(1))
     val aligned = ClockAlignment.of(before).updated(after)
@@ -49,7 +49,7 @@ class ClockAlignmentLaws extends munit.ScalaCheckSuite:
     )
     assertEquals((aligned.restarts, aligned.standsStill), (1, false))
 
-  test("a simulator that stops is recognised at the next reading, and so is its resumption"):
+  test("a stop of the simulator's clock is noticed at the next reading, and so is its resumption"):
     val legs    = (10.0, 10.0)
     val before  = reading(0, legs)
     val paused  = (1 to 3).map(at => reading(at, legs).copy(validAt = before.validAt))
@@ -61,7 +61,7 @@ class ClockAlignmentLaws extends munit.ScalaCheckSuite:
     assertEquals(states.last.restarts, 1)
     assertEquals(states.last.offset, trueOffset + Span.ofMillis(300))
 
-  test("one sample reported twice within a tick of the simulator's clock is not a stop"):
+  test("a sample that is reported twice within a tick of the simulator's clock is not a stop"):
     val before            = reading(0, (10, 10))
     val first             = ClockAlignment.of(before)
     def told(after: Span) =
@@ -88,8 +88,7 @@ class ClockAlignmentLaws extends munit.ScalaCheckSuite:
           assertEquals(aligned.restarts, 0, s"seed $seed")
 
   test(
-    "clocks that run at rates 50 parts in a million apart stay " +
-      "aligned over ten minutes, also without a network"
+    "clocks whose rates differ by 50 parts per million stay aligned over ten minutes, also without a network"
   ):
     for
       legMs <- Seq(0.01, 9.0)
@@ -106,7 +105,7 @@ class ClockAlignmentLaws extends munit.ScalaCheckSuite:
       assertEqualsDouble((states.last.offset - trueNow).toMillis, 0, 0.5)
       assert(states.last.lower <= trueNow && trueNow <= states.last.upper, s"$legMs ms, rate $rate")
 
-  test("between readings both bounds give way by the drift that is allowed for, and no more"):
+  test("between readings both bounds widen by the allowed drift, and by no more"):
     val fast  = ClockAlignment.of(reading(0, (1, 1)))
     val slow  = reading(1000, (100, 100))
     val after = fast.updated(slow)
@@ -117,7 +116,10 @@ class ClockAlignmentLaws extends munit.ScalaCheckSuite:
 
   private def ms(at: Double) = Instant.Epoch + Span.ofMillis(at)
 
-  test("a late answer of the simulator's former run is older than the new run's, whatever its clock says"):
+  test(
+    "a late answer from a former run of the simulator counts as older than the new run, whatever its " +
+      "time stamp"
+  ):
     // Of torture's seed 4876: the second run's clock is 19.96 s behind the first's.
     def answer(validMs: Double, sentMs: Double, receivedMs: Double) =
       Stamped((), ms(validMs), ms(sentMs), ms(receivedMs))
@@ -133,7 +135,7 @@ class ClockAlignmentLaws extends munit.ScalaCheckSuite:
     assertEquals(known.updated(late), known)
     assertEquals((known.restarts, known.updated(late).updated(answer(2000, 2000, 2000)).restarts), (1, 1))
 
-  property("which of two readings is newer is known over restarts, in whatever order the answers come"):
+  property("the newer of two readings is known across restarts, whatever the order of arrival"):
     val restarts = Gen.listOfN(3, Gen.choose(1000.0, 20000.0).flatMap(jump => Gen.oneOf(jump, -jump)))
     forAllNoShrink(Gen.listOfN(40, Gen.zip(Gen.choose(0.0, 300.0), Gen.choose(0.0, 300.0))), restarts):
       (legs, jumps) =>
@@ -150,7 +152,7 @@ class ClockAlignmentLaws extends munit.ScalaCheckSuite:
           yield (one, other)
         wrong == Nil
 
-  test("of the runs before, the last few are remembered"):
+  test("the last few former runs are stored"):
     def first(run: Int) = Stamped((), ms(100.0 * run - 5000.0 * run), ms(100.0 * run), ms(100.0 * run + 1))
     val runs            = (0 to ClockAlignment.FormerRuns + 1).map(first)
     val known           = runs.tail.foldLeft(ClockAlignment.of(runs.head))(_.updated(_))

@@ -20,16 +20,16 @@ class LatencyDistributionSuite extends munit.FunSuite:
       assertEqualsDouble(sampledSd, sd, 1)
       assertEqualsDouble(distribution.mean.toMillis, sampledMean, 0.3)
 
-  test("a published quantile is returned as it was published"):
+  test("a published quantile is returned unchanged"):
     assertEquals(Direct.quantile(0), Span.ofMillis(17.8))
     assertEquals(Direct.quantile(0.5), Span.ofMillis(35.9))
     assertEquals(Vpn.quantile(0.99), Span.ofMillis(165.5))
     assertEquals(Vpn.quantile(1), Span.ofMillis(207.4))
 
-  test("between published quantiles the line is straight"):
+  test("quantiles between published ones are interpolated linearly"):
     assertEquals(Direct.quantile(0.55), Span.ofMillis((35.9 + 40.1) / 2))
 
-  test("the log-normal quantiles are those of the tables"):
+  test("the log-normal quantiles equal tabulated values"):
     val distribution = LogNormal(Span.ofMillis(36), 0.3)
     def z(p: Double) = math.log(distribution.quantile(p).toMillis / 36) / 0.3
     assertEqualsDouble(z(0.5), 0, 1e-7)
@@ -42,17 +42,17 @@ class LatencyDistributionSuite extends munit.FunSuite:
     test(s"the mean of $distribution is the mean of its samples"):
       assertEqualsDouble(distribution.mean.toMillis, meanAndSd(sampled(distribution))._1, 0.15)
 
-  test("samples come back as quantiles, the least first and the largest last"):
+  test("samples are quantiles, from the shortest to the longest"):
     val distribution = ofSamples(List(30, 10, 20))
     assertEquals(distribution.quantile(0), Span.ofMillis(10))
     assertEquals(distribution.quantile(0.5), Span.ofMillis(20))
     assertEquals(distribution.quantile(0.75), Span.ofMillis(25))
     assertEquals(distribution.quantile(1), Span.ofMillis(30))
 
-  test("one sample is a constant"):
+  test("a single sample is a constant"):
     assertEquals(ofSamples(List(30)), Constant(Span.ofMillis(30)))
 
-  test("the paper's links have the quantiles that were published of them, in percent and ms"):
+  test("the paper's links have the published quantiles"):
     val percent                               = Seq(0, 1, 5, 10, 20, 30, 40, 50, 60, 70, 80, 90, 95, 99, 100)
     def ms(distribution: LatencyDistribution) =
       percent.map(p => (distribution.quantile(p / 100.0).toMillis * 10).round / 10.0)

@@ -17,7 +17,7 @@ class LatencyProfileSuite extends munit.FunSuite:
 
   private def messageOf(text: String): String = parse(text).fold(_.message, p => fail(s"unexpected $p"))
 
-  test("the named profiles are found by their names"):
+  test("the predefined profiles are found by their names"):
     for profile <-
         List(LatencyProfile.none, LatencyProfile.direct, LatencyProfile.vpn, LatencyProfile.vpnMixed)
     do
@@ -44,7 +44,7 @@ class LatencyProfileSuite extends munit.FunSuite:
       Right(Steady("file:samples.txt", Quantiles(Vector(0, 1), Vector(10.5, 30))))
     )
 
-  test("an unknown name is answered with the forms there are"):
+  test("the message about an unknown name lists the possible forms"):
     assertEquals(
       messageOf("dsl"),
       "unknown latency profile \"dsl\"; expected none, direct, vpn, vpn-mixed, constant:200ms, " +
@@ -52,7 +52,7 @@ class LatencyProfileSuite extends munit.FunSuite:
         "or one of them after 'correlated:250ms,', 'rate:50mbit,', 'loss:5%,', 'loss:5%/4,' or 'outage:1s/10s,'"
     )
 
-  test("a mistake in a form is answered with what was expected there"):
+  test("the message about a mistake in a form states what was expected"):
     assertEquals(
       messageOf("constant:200"),
       "latency profile \"constant:200\": expected a time such as 200ms, got \"200\""
@@ -76,7 +76,7 @@ class LatencyProfileSuite extends munit.FunSuite:
         "deviation of the logarithm from 0 to 3, got \"-1\""
     )
 
-  test("a mistake in a file is answered with the file and the line"):
+  test("the message about a mistake in a file states the file and the line"):
     assertEquals(
       messageOf("file:words.txt"),
       "words.txt:2: expected a round trip in ms, zero or more, got \"ten\""
@@ -87,7 +87,7 @@ class LatencyProfileSuite extends munit.FunSuite:
       "empty.txt: expected at least one round trip in ms, one a line; the file has none"
     )
 
-  test("a profile may be correlated, and behind a rate"):
+  test("a profile may be correlated, and may have a rate"):
     val direct = LatencyProfile.direct
     val held   = LatencyProfile.Correlated("correlated:250ms,direct", direct, Span.ofMillis(250))
     val rate   = Bandwidth(50_000_000, 64_000)
@@ -113,14 +113,14 @@ class LatencyProfileSuite extends munit.FunSuite:
       )
     do assertEquals(messageOf(text), s"latency profile \"$text\": $expected")
 
-  test("a profile's mean is that of its round trips, whatever holds them or limits their rate"):
+  test("a profile's mean is that of its round trips, without the effects of correlation and rate"):
     def meanMs(text: String) =
       parse(text).map(_.meanRoundTrip.toMillis).fold(error => fail(error.message), identity)
     assertEqualsDouble(meanMs("uniform:10ms..40ms"), 25, 1e-9)
     assertEqualsDouble(meanMs("rate:1mbit,correlated:1s,constant:200ms"), 200, 1e-9)
     assertEqualsDouble(meanMs("vpn-mixed"), (40 * meanMs("vpn") + 55 * meanMs("direct")) / 95, 1e-3)
 
-  test("rate, correlation, loss and outages may come in any order, each once"):
+  test("rate, correlation, loss and outages may be stated in any order, each once"):
     for texts <- List("rate:1mbit", "correlated:1s", "loss:5%/4", "outage:1s/10s").permutations do
       val text    = texts.mkString(",") + ",vpn"
       val profile = parse(text).fold(error => fail(s"$text: ${error.message}"), identity)
@@ -132,10 +132,10 @@ class LatencyProfileSuite extends munit.FunSuite:
       )
       assertEquals(profile.meanRoundTrip, LatencyProfile.vpn.meanRoundTrip)
 
-  test("losses without bursts are independent: one in a row, and one more with the share's probability"):
+  test("losses without a stated burst length are independent"):
     assertEquals(parse("loss:20%,vpn").map(_.impairments), Right(Vector(Impairment.Loss(0.2, 1.25))))
 
-  test("a loss or an outage that is none is answered with what was expected"):
+  test("the message about an invalid loss or outage states what was expected"):
     val share =
       "expected a share from 0% to 90% such as 5%, or with a mean length of bursts such as 5%/4, got "
     for (text, expected) <- List(

@@ -8,11 +8,11 @@ class LatencySamplerSuite extends munit.FunSuite:
     val sampler = LatencySampler(profile, linkSeed, lineSeed)
     Vector.tabulate(count)(i => sampler.oneWay(Span.ofMillis(100.0 * i)).toMillis)
 
-  test("one direction takes half of a round trip"):
+  test("a one-way delay is half of a round trip"):
     val constant = LatencyProfile.Steady("constant:200ms", LatencyDistribution.Constant(Span.ofMillis(200)))
     assertEquals(delaysMs(constant, 1, 2, 3), Vector(100.0, 100.0, 100.0))
 
-  test("equal seeds give equal delays, another line seed gives others"):
+  test("equal seeds give equal delays, different line seeds give different ones"):
     val first = delaysMs(LatencyProfile.vpnMixed, 1, 2, 2000)
     assertEquals(delaysMs(LatencyProfile.vpnMixed, 1, 2, 2000), first)
     assertNotEquals(delaysMs(LatencyProfile.vpnMixed, 1, 3, 2000), first)
@@ -20,7 +20,7 @@ class LatencySamplerSuite extends munit.FunSuite:
   test("without a network there is no delay"):
     assertEquals(delaysMs(LatencyProfile.none, 1, 2, 2), Vector(0.0, 0.0))
 
-  test("over a long time vpn-mixed has the published mean and quantiles within 5 ms"):
+  test("over a long time vpn-mixed has the published mean and quantiles, within 5 ms"):
     val roundTrips = delaysMs(LatencyProfile.vpnMixed, 1, 2, 400_000).map(_ * 2).sorted
     assertEqualsDouble(roundTrips.sum / roundTrips.size, 65.1, 2.5)
     for (p, ms) <- List(0.1 -> 25.9, 0.3 -> 37.4, 0.5 -> 50.7, 0.7 -> 86.5, 0.9 -> 120.4, 0.99 -> 159.5) do
@@ -51,9 +51,7 @@ class LatencySamplerSuite extends munit.FunSuite:
       math.abs(sorted.count(_ <= ms).toDouble / sorted.size - percent / 100.0)
     .max
 
-  test(
-    "round trips over a correlated link are distributed as measured, over an independent one they spread less"
-  ):
+  test("round trips over a correlated link spread as measured, over an independent link they spread less"):
     for (name, measured) <- List("direct" -> LatencyDistribution.Direct, "vpn" -> LatencyDistribution.Vpn) do
       def profile(text: String) =
         LatencyProfile.parse(text, _ => Left("")).fold(e => fail(e.message), identity)
@@ -62,7 +60,7 @@ class LatencySamplerSuite extends munit.FunSuite:
       assert(held < 0.02, s"$name: $held")
       assert(halves > 0.08, s"$name: $halves")
 
-  test("the correlation of two delays falls by e in the stated time, and their distribution stays"):
+  test("the correlation of two delays decreases by e in the stated time, with an unchanged distribution"):
     val uniform = LatencyDistribution.Uniform(Span.Zero, Span.ofMillis(200))
     val profile =
       LatencyProfile.Correlated("", LatencyProfile.Steady("", uniform), over = Span.ofMillis(300))

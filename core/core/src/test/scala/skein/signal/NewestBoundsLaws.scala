@@ -7,13 +7,13 @@ import skein.units.*
 
 class NewestBoundsLaws extends munit.ScalaCheckSuite:
 
-  /** Few different numbers, so that many are equal, and more of them than are kept. */
+  /** Numbers with few different values, so that many are equal, and more of them than are stored. */
   private val all =
     Gen.choose(1, 2 * Memory).flatMap(n =>
       Gen.listOfN(n, Gen.zip(Gen.choose(-40, 40), Gen.choose(0, 1000)))
     )
 
-  property("its quartiles are those of the newest bounds, sorted"):
+  property("the quartiles are those of the newest bounds, sorted"):
     forAll(all): legs =>
       val bounds = legs.map((lower, upper) => Bounds(Span.ofNanos(lower), Span.ofNanos(upper)))
       val newest = bounds.takeRight(Memory)

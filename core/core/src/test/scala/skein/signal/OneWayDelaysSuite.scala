@@ -14,13 +14,13 @@ class OneWayDelaysSuite extends munit.FunSuite:
     val readings = legs.map(reading)
     readings.tail.foldLeft(OneWayDelays.of(readings.head))(_.updated(_))
 
-  test("the delays of the first readings are their means, the clocks' skew included"):
+  test("the means are those of the first readings, and include the offset of the clocks"):
     val seen = delays((10, 40), (20, 50), (60, 60))
     assertEqualsDouble((seen.toSimulator - skew).toMillis, 30, 1e-5)
     assertEqualsDouble((seen.fromSimulator + skew).toMillis, 50, 1e-5)
     assertEqualsDouble(seen.roundTrip.toMillis, 80, 1e-5)
 
-  test("a link that turns busy is followed: after 100 readings little of the quiet time is left"):
+  test("the means follow a link that becomes busy: after 100 readings the quiet time has little weight"):
     val seen = delays(Seq.fill(1000)((10.0, 10.0)) ++ Seq.fill(100)((50.0, 50.0))*)
     assertEqualsDouble((seen.toSimulator - skew).toMillis, 50, 2)
 

@@ -15,17 +15,17 @@ class PacketLossSuite extends munit.FunSuite:
 
   // Of n packets with share s, losses have a standard deviation of √(s (1 − s) n · (2 burst (1 − s) − 1)).
   for (text, share, burst) <- List(("loss:5%,none", 0.05, 1 / 0.95), ("loss:5%/4,none", 0.05, 4.0)) do
-    test(s"$text loses that share, in bursts of that length"):
+    test(s"$text loses the stated share of packets, in bursts of the stated length"):
       val lost   = losses(text, 200_000)
       val length = bursts(lost)
       assertEqualsDouble(lost.count(identity) / 200_000.0, share, 0.005)
       assertEqualsDouble(length.sum.toDouble / length.size, burst, 0.05 * burst)
 
-  test("without loss nothing is lost"):
+  test("without loss no packet is lost"):
     assert(!losses("vpn", 1000).contains(true))
     assert(!PacketLoss(profile("loss:0%,vpn"), 1, 2).isAny)
 
-  test("an outage loses everything for its length, begins that often on average, and equally for all"):
+  test("an outage loses everything for its duration, at the stated mean interval, in both directions"):
     val (here, there) = (losses("outage:1s/10s,vpn", 500_000), losses("outage:1s/10s,vpn", 500_000, seed = 2))
     assertEquals(here, there)
     assert(!here.head)
@@ -34,17 +34,17 @@ class PacketLossSuite extends munit.FunSuite:
     // 500 outages in 5,000 s; the number of Poisson-like gaps of 9 s varies by √500.
     assertEqualsDouble(length.size.toDouble, 500, 70)
 
-  test("outages are remembered: asked about an earlier moment, the answer is the same"):
+  test("times of outages are stored, so that an earlier moment gives its earlier answer"):
     val loss  = PacketLoss(profile("outage:1s/10s,vpn"), 7, 1)
     val times = Vector.tabulate(1000)(i => Span.ofMillis(i * 100.0))
     val first = times.map(loss.loses)
     assertEquals(times.reverse.map(loss.loses).reverse, first)
 
-  test("equal seeds lose equal packets, others do not"):
+  test("equal seeds lose equal packets, different seeds different ones"):
     assertEquals(losses("loss:5%/4,vpn", 1000), losses("loss:5%/4,vpn", 1000))
     assertNotEquals(losses("loss:5%/4,vpn", 1000), losses("loss:5%/4,vpn", 1000, seed = 2))
 
-  test("who sends alone waits a time-out, then twice as long, until a packet passes"):
+  test("a sender of a single packet waits a time-out, then twice as long, until the packet passes"):
     val outage                 = profile("outage:1s/60s,vpn")
     val begins                 = losses("outage:1s/60s,vpn", 300_000, everyMs = 1, linkSeed = 9).indexOf(true)
     def waits(afterMs: Double) =
@@ -56,7 +56,7 @@ class PacketLossSuite extends munit.FunSuite:
     assertEqualsDouble(waits(50), 2100, 1e-9)
 
 class RetransmissionSuite extends munit.FunSuite:
-  test("TCP waits its least variance beyond the mean round trip, or four mean deviations if they are more"):
+  test("TCP waits its minimum beyond the mean round trip, or four mean deviations if that is longer"):
     def timeout(text: String) =
       Retransmission.timeout(LatencyProfile.parse(text, Left(_)).toOption.get).toMillis
     assertEqualsDouble(timeout("none"), 200, 1e-9)
@@ -65,6 +65,6 @@ class RetransmissionSuite extends munit.FunSuite:
     // Mean 300 ms, mean deviation 150 ms.
     assertEqualsDouble(timeout("rate:1mbit,uniform:0ms..600ms"), 300 + 4 * 150, 1e-3)
 
-  test("each wait is twice the one before, up to two minutes"):
+  test("each time-out is twice the previous one, up to two minutes"):
     assertEquals(Retransmission.next(Span.ofMillis(300)), Span.ofMillis(600))
     assertEquals(Retransmission.next(Span.ofSeconds(100)), Span.ofSeconds(120))

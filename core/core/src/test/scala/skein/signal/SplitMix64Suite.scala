@@ -25,17 +25,17 @@ class SplitMix64Suite extends munit.FunSuite:
       counts((u * 10).toInt) += 1
     counts.foreach(count => assert(math.abs(count - 10_000) < 400, counts.toList))
 
-  test("whole numbers stay below their bound and are drawn equally often"):
+  test("integers are below their bound and equally frequent"):
     val random = SplitMix64(8)
     val counts = new Array[Int](7)
     for _ <- 1 to 70_000 do counts(random.nextInt(7)) += 1
     counts.foreach(count => assert(math.abs(count - 10_000) < 400, counts.toList))
 
-  test("sequences that belong to one seed differ from each other and from those of the next seed"):
+  test("sequences of one seed differ from each other and from those of the next seed"):
     val seeds = for seed <- 0 until 50; index <- 0 until 50 yield SplitMix64.seedOf(seed, index)
     assertEquals(seeds.distinct.size, seeds.size)
 
-  test("exponential numbers have the wanted mean"):
+  test("exponential numbers have the given mean"):
     val random = SplitMix64(11)
     val mean   = Iterator.fill(100_000)(random.nextExponential(40)).sum / 100_000
     assertEqualsDouble(mean, 40, 0.5)

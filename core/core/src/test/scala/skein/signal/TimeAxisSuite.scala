@@ -2,14 +2,14 @@ package skein.signal
 
 import skein.units.*
 
-/** Vehicles that are read ten times a second for half a minute, over a link of 20 to 120 ms. */
+/** Tests readings of vehicles, ten a second for half a minute, over a link of 20 to 120 ms. */
 class TimeAxisSuite extends munit.FunSuite:
 
   private val random = java.util.Random(5)
 
-  /** Readings of vehicles.
+  /** Readings of the vehicles.
     *
-    * @param clockS time of a vehicle's clock, s, at a time of the controller's, s
+    * @param clockS a vehicle's clock, s, as a function of the controller's, s
     */
   private def readings(
       lastsS: Double = 30,
@@ -30,25 +30,25 @@ class TimeAxisSuite extends munit.FunSuite:
   private def assertFault(readings: Vector[(String, Stamped[Unit])], words: String): Unit =
     assert(fault(readings).exists(_.contains(words)), fault(readings).toString)
 
-  test("a clock that runs is sound, whatever its epoch, with quartz drift and over any link"):
+  test("a running clock has no fault, whatever its epoch, with quartz drift and over any link"):
     for epoch <- Seq(0.0, 12345.678, -3e8, 1.7e9) do
       assertEquals(fault(readings()((_, s) => epoch + s * 1.0001)), None)
 
   test("a clock that runs backwards is a fault immediately"):
     assertFault(readings()((_, s) => if s < 10 then s else 20 - s), "ran back by 0.")
 
-  test("a clock that stops is a fault within a second, also while vehicles move"):
+  test("a clock that stops is a fault within a second, even if vehicles move"):
     assertFault(readings()((_, s) => s.min(10)), "stood still for 0.")
     assertEquals(fault(readings(10.4)((_, s) => s.min(10))), None)
     assertFault(readings()((_, _) => 0.0), "stood still")
 
-  test("a clock that jumps once, in either direction and by however much, is a fault"):
+  test("a clock that jumps once is a fault, whatever the direction and size of the jump"):
     for jump <- Seq(0.8, 5.0, 3600.0) do
       assertFault(readings()((_, s) => if s < 10 then s else s + jump), "advanced by")
     for jump <- Seq(0.3, 5.0, 3600.0) do
       assertFault(readings()((_, s) => if s < 10 then s else s - jump), "ran back by")
 
-  test("time at half or at double the speed for two seconds is a fault, and so is a rate a tenth off"):
+  test("time at half or double speed for two seconds is a fault, and so is a rate that is wrong by a tenth"):
     for rate <- Seq(0.5, 2.0) do
       assertFault(
         readings()((_, s) =>
@@ -58,7 +58,7 @@ class TimeAxisSuite extends munit.FunSuite:
       )
     for rate <- Seq(0.9, 1.1) do assertFault(readings()((_, s) => s * rate), "advanced by")
 
-  test("one bad time stamp is a fault, whatever it shows"):
+  test("one wrong time stamp is a fault, whatever its value"):
     val sound = readings()((_, s) => s)
     for at <- Seq(0L, -1L, Long.MaxValue, Long.MinValue, 42_000_000_000L) do
       val bad = sound.updated(100, (sound(100)._1, sound(100)._2.copy(validAt = Instant.ofNanos(at))))
@@ -68,7 +68,7 @@ class TimeAxisSuite extends munit.FunSuite:
     val wraps = 15.0
     assertFault(readings()((_, s) => s % wraps), "ran back by 14.")
 
-  test("clocks that differ from vehicle to vehicle are a fault that names both"):
+  test("clocks that differ between vehicles are a fault, whose message names both"):
     for by <- Seq(0.25, -0.25, 5.0, -3600.0) do
       val told = fault(readings()((vehicle, s) => if vehicle == "a" then s else s + by))
       assert(
@@ -76,7 +76,7 @@ class TimeAxisSuite extends munit.FunSuite:
         s"$by s: $told"
       )
 
-  test("a clock that is slightly off is reported as long as it is, and is not a fault"):
+  test("a slightly wrong clock is reported as long as it is wrong, and is not a fault"):
     def axis(lastsS: Double) = readings(lastsS)((_, s) => if s < 10 then s else s - (s - 10).min(0.3) * 0.99)
       .foldLeft(TimeAxis.begun)((axis, one) => axis.updated(one._1, one._2))
     assertEquals((axis(9).fault, axis(9).wandering), (None, None))
@@ -87,7 +87,7 @@ class TimeAxisSuite extends munit.FunSuite:
     )
     assertEquals((axis(24).fault, axis(24).wandering), (None, None))
 
-  test("answers that come late and overtake each other are no fault"):
+  test("answers that arrive late and overtake each other are not a fault"):
     val late = readings()((_, s) => s).zipWithIndex.map: (one, index) =>
       val more = Span.ofSeconds(if index % 40 == 7 then 3.0 else 0.0)
       (one._1, one._2.copy(receivedAt = one._2.receivedAt + more))
@@ -96,7 +96,8 @@ class TimeAxisSuite extends munit.FunSuite:
   private def at(ms: Double) = Instant.Epoch + Span.ofMillis(ms)
 
   test(
-    "a step of a stopped simulator is a fault if it took no time, too much or went back, or if time went on"
+    "a step of a stopped simulator is a fault if its duration is zero, negative or too long, or if time " +
+      "runs between"
   ):
     val period                                                       = Span.ofMillis(100)
     def step(before: Option[Double], oldest: Double, newest: Double) =

@@ -2,7 +2,7 @@ package skein.units
 
 class IntervalSuite extends munit.FunSuite:
 
-  test("a half width has two significant digits, and its mean as many decimals"):
+  test("a half width has two significant digits, and the mean is rounded to the last of them"):
     val shown = Seq(
       (10.69213, 0.003406),
       (10.7, 0.007061),
@@ -27,7 +27,7 @@ class IntervalSuite extends munit.FunSuite:
       )
     )
 
-  test("without a half width, or with none that is finite, or a huge one, the mean has up to four digits"):
+  test("with a half width that is 0, infinite or huge, the mean has up to four digits"):
     assertEquals(Interval.of(8.31649e300, 1.25e298).text, "8.316e300 ± 1.3e298")
     assertEquals(Interval.of(8.31049, 0).text, "8.31 ± 0")
     assertEquals(Interval.of(8.31649, Double.PositiveInfinity).text, "8.316 ± Infinity")

@@ -7,7 +7,7 @@ class OwnFailureSuite extends munit.FunSuite:
   private def told(mistake: => Throwable): String =
     intercept[OwnFailure](OwnFailure.told("the policy of Scout")(throw mistake)).getMessage
 
-  test("every exception is reported with its owner, checked exceptions too"):
+  test("every exception is reported with its origin, checked exceptions too"):
     val mistakes = Vector[() => Throwable](
       () => Exception("no luck"),
       () => FileNotFoundException("corners.csv"),
@@ -19,20 +19,20 @@ class OwnFailureSuite extends munit.FunSuite:
         clue(told(mistake())).startsWith(s"the policy of Scout failed: ${mistake()} (OwnFailureSuite.scala:")
       )
 
-  test("its text is its message, whichever process reports it"):
+  test("the text of a failure is its message, without the class name"):
     assertEquals(
       s"${OwnFailure("the policy of Scout", "answered null")}",
       "the policy of Scout answered null"
     )
 
-  test("lack of memory and the end of a thread are rethrown unchanged"):
+  test("exhausted memory and interrupts are rethrown unchanged"):
     for asItIs <- Seq(OutOfMemoryError(), InterruptedException()) do
       val thrown =
         try OwnFailure.told("it")(throw asItIs)
         catch case thrown: Throwable => thrown
       assert(thrown eq asItIs)
 
-  test("the line is the user's, not that of a library or of Skein's that was called"):
+  test("the reported line is in the user's code, not in a library or in Skein's code"):
     def thrown(classes: String*) =
       val mistake = IllegalStateException("bad")
       val frames  = (classes :+ OwnFailure.getClass.getName).zipWithIndex.map: (name, line) =>
@@ -52,7 +52,7 @@ class OwnFailureSuite extends munit.FunSuite:
     )
     assertEquals(line("scala.Option", "skein.scenario.Forest", "skein.loop.Decider"), "(Forest.scala:1)")
 
-  test("the cause of a failed class initialisation is reported itself"):
+  test("a failed class initialisation is reported by its cause"):
     assert(clue(told(ExceptionInInitializerError(IllegalStateException("no map")))).startsWith(
       "the policy of Scout failed: java.lang.IllegalStateException: no map"
     ))

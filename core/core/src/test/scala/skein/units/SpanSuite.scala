@@ -2,7 +2,7 @@ package skein.units
 
 class SpanSuite extends munit.FunSuite:
 
-  test("a length of time is read with its unit"):
+  test("a duration is read with its unit"):
     for
       (text, nanos) <- Seq(
         "40s"    -> 40_000_000_000L,
@@ -14,11 +14,11 @@ class SpanSuite extends munit.FunSuite:
       )
     do assertEquals(Span.parse(text).map(_.toNanos), Right(nanos), text)
 
-  test("a bare number is no length of time, and the error suggests a unit"):
+  test("a bare number is not a duration, and the message suggests a unit"):
     assertEquals(Span.parse("40"), Left("expected a duration with unit, such as 40s, came '40'"))
     assertEquals(Span.parse("0.5"), Left("expected a duration with unit, such as 0.5s, came '0.5'"))
 
-  test("what is negative, endless or no time at all is refused"):
+  test("negative and infinite durations, and other texts, are refused"):
     assertEquals(Span.parse("-1s"), Left("expected a duration that is not negative, came '-1s'"))
     for text <- Seq("Inf", "soon", "", "NaN", "1e400s", "99999999999d") do
       assertEquals(Span.parse(text), Left(s"expected a duration with unit, such as 100ms, came '$text'"))

@@ -2,7 +2,7 @@ package skein.units
 
 class TimeSuite extends munit.FunSuite:
 
-  test("a span keeps whole nanoseconds over a day of flight"):
+  test("a span is exact to the nanosecond over a day"):
     val start = Instant.ofNanos(1_790_000_000_000_000_000L)
     val later = start + Span.ofSeconds(86400.000000001)
     assertEquals(later.since(start).toNanos, 86400000000001L)

@@ -6,10 +6,10 @@ class AdaptiveQuadrotorSuite extends munit.FunSuite:
   private val Every = Span.ofMillis(51) // 17 steps of physics
   private val Ahead = Span.ofMillis(150)
 
-  /** A flight with turns and climbs, and predictions of it from its own readings.
+  /** Simulates a flight with turns and climbs, and predicts it from its own readings.
     *
-    * @return for each reading from 10 s on, by how far a prediction made at it was off, m, by the nominal and
-    *   by the adaptive model; and what was learned at the end
+    * @return for each reading from 10 s on, the errors of the predictions by the nominal and by the adaptive
+    *   model, m; and the final state of the adaptive model
     */
   private def flown(deviation: Deviation): (Vector[Double], Vector[Double], AdaptiveQuadrotor.Learning) =
     val vehicle = deviation.kind(seed = 5).make()
@@ -46,12 +46,12 @@ class AdaptiveQuadrotorSuite extends munit.FunSuite:
 
   private def p95(sorted: Vector[Double]) = sorted(sorted.size * 95 / 100)
 
-  test("where the nominal model is right it predicts, to the bit"):
+  test("with a correct nominal model, predictions are the nominal model's, to the bit"):
     val (nominal, adaptive, learned) = flown(Deviation())
     assertEquals(adaptive, nominal)
     assert(!learned.helps)
 
-  test("wind, mass, drag and lag that nobody stated are made up for after 10 s"):
+  test("unknown wind, mass, drag and lag are compensated for after 10 s"):
     val truth                        = Deviation(1.3, 2, 1.5, wind = Wind(Vector3(6, -5, 0)))
     val (nominal, adaptive, learned) = flown(truth)
     assert(p95(nominal) > 0.005, p95(nominal))
@@ -61,12 +61,15 @@ class AdaptiveQuadrotorSuite extends munit.FunSuite:
     assertEqualsDouble(believed.lag, truth.lag, 0.05)
     assert((believed.wind.steadyNed - truth.wind.steadyNed).norm < 1, believed)
 
-  test("a deviation beyond its bounds leaves it within them, and no worse than the nominal model"):
+  test(
+    "with a deviation beyond the bounds, parameters stay within them, and errors are not larger than the " +
+      "nominal ones"
+  ):
     val (nominal, adaptive, learned) = flown(Deviation(drag = 10, wind = Wind(Vector3(12, 0, 0))))
     assert(p95(adaptive) <= p95(nominal), (p95(adaptive), p95(nominal)))
     assert(learned.deviation.drag <= 5.0001, learned.deviation)
 
-  test("it does not learn across a gap"):
+  test("the model does not learn across a gap between readings"):
     val seen    = Quadrotor.AirSim.hovering(Vector3(0, 0, -20)).kinematics
     val before  = AdaptiveQuadrotor.start(seen)
     val jumped  = seen.copy(velocityNed = Vector3(3, 0, 0))

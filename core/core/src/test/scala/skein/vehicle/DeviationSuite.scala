@@ -4,7 +4,7 @@ import skein.units.Vector3
 
 class DeviationSuite extends munit.FunSuite:
 
-  test("a deviation is read, each part once and within bounds"):
+  test("a deviation is read, each part at most once and within its bounds"):
     assertEquals(
       Deviation.parse("mass=1.3,drag=2,lag=1.5,rotors=1/0.8/1/1,wind=8/-2/0,gusts=7.7,shear=0.05"),
       Right(Deviation(
@@ -23,7 +23,7 @@ class DeviationSuite extends munit.FunSuite:
     assert(mistake("").endsWith("; came ''"))
     assert(mistake("weight=2").startsWith("expected mass=FACTOR, "))
 
-  test("factors change what they name, and nothing else"):
+  test("each factor changes its own quantity alone"):
     val usual   = Quadrotor.AirSim
     val heavier = Deviation(mass = 1.3).quadrotor
     assertEqualsDouble(heavier.hoverControl(0), 1.3 * usual.hoverControl(0), 1e-12)
@@ -36,7 +36,7 @@ class DeviationSuite extends munit.FunSuite:
     assertEqualsDouble(Deviation(lag = 2).quadrotor.gains.velocityP, usual.gains.velocityP / 2, 1e-12)
     assertEquals(Deviation().quadrotor.airframe, usual.airframe)
 
-  test("in calm air and with whole rotors it flies as AirSim's, to the bit"):
+  test("without a deviation the vehicle flies as AirSim's, to the bit"):
     val theirs   = Quadrotor.AirSim.hovering(Vector3(0, 0, -20))
     val ours     = theirs.copy
     val deviated = Deviation().kind(seed = 1).make()
@@ -46,7 +46,7 @@ class DeviationSuite extends munit.FunSuite:
       deviated.step(ours, setpoint, Environment.Calm)
     assertEquals(ours.kinematics, theirs.kinematics)
 
-  test("a rotor of half its thrust tips the vehicle over"):
+  test("a rotor with half of its thrust tips the vehicle over"):
     val weak  = Deviation(rotors = Vector(0.5, 1, 1, 1)).kind(seed = 1).make()
     val state = Quadrotor.AirSim.hovering(Vector3(0, 0, -20))
     for _ <- 1 to 300 do weak.step(state, Setpoint.hold(Vector3(0, 0, -20)), Environment.Calm)

@@ -1,7 +1,7 @@
 package skein.vehicle
 
 class FirstOrderLagSuite extends munit.FunSuite:
-  test("it agrees with small steps of v' = −v / lag"):
+  test("the closed form agrees with small steps of v' = −v / lag"):
     for lagS <- Seq(0.3, 2.66); afterS <- Seq(0.0, 0.1, 1.7) do
       val steps             = 200_000
       val dtS               = afterS / steps
@@ -18,11 +18,11 @@ class FirstOrderLagSuite extends munit.FunSuite:
         s"lag $lagS s, after $afterS s"
       )
 
-  test("without a lag nothing remains, and nothing is carried"):
+  test("without a lag, no error remains and nothing is carried"):
     assertEquals(FirstOrderLag(0).remains(0.1), 0.0)
     assertEquals(FirstOrderLag(0).carriesS(0.1), 0.0)
 
-  test("a lag below 0 is refused"):
+  test("a negative lag is refused"):
     interceptMessage[IllegalArgumentException](
       "requirement failed: a lag must not be negative, came -1.0 s"
     )(FirstOrderLag(-1)): Unit

@@ -5,7 +5,7 @@ import skein.signal.SplitMix64
 class ParameterBeliefSuite extends munit.FunSuite:
   private val priors = Vector(2.0, 1.0)
 
-  test("after many measurements of a linear process it knows the parameters, as well as it says"):
+  test("after many measurements of a linear process the parameters are known, within the stated uncertainty"):
     val truth  = Vector(1.5, -0.4)
     val random = SplitMix64(3)
     val after  = (1 to 400).foldLeft(ParameterBelief(priors)): (belief, _) =>
@@ -18,7 +18,7 @@ class ParameterBeliefSuite extends munit.FunSuite:
       assert(deviation < 0.03, after)
       assert((after.mean(i) - truth(i)).abs < 4 * deviation, after)
 
-  test("one measurement divides the error between parameters by their variances and effects"):
+  test("one measurement distributes the error among the parameters by their variances and effects"):
     val after = ParameterBelief(priors).updated(Vector(1, 1), error = 3, noise = 1)
     // Variances 4 and 1, noise 1: gains 4/6 and 1/6.
     assertEqualsDouble(after.mean(0), 2, 1e-12)
@@ -26,7 +26,7 @@ class ParameterBeliefSuite extends munit.FunSuite:
     assertEqualsDouble(after.covariance(0)(0), 4 - 16.0 / 6, 1e-12)
     assertEqualsDouble(after.covariance(0)(1), -4.0 / 6, 1e-12)
 
-  test("with time it becomes less certain, up to where it began"):
+  test("the uncertainty increases with time, up to its initial value"):
     val known = ParameterBelief(priors).updated(Vector(1, 0), 0, 0.01)
     val later = known.drifted(Vector(0.5, 0.5), s = 4, priors)
     assertEqualsDouble(later.covariance(0)(0), known.covariance(0)(0) + 1, 1e-12)

@@ -2,8 +2,9 @@ package skein.vehicle
 
 import skein.units.Vector3
 
-/** Holds the quadrotor to step responses and turns recorded from AirSim 1.8's own flight code (headless, 3
-  * ms, from rest at hover). Tolerance 3 %; for altitudes 3 % of the excursion or 1 cm, whichever is larger.
+/** Compares the quadrotor with step responses and turns recorded from AirSim 1.8's own flight code (headless,
+  * 3 ms, from rest at hover). The tolerance is 3 %; for altitudes it is 3 % of the excursion or 1 cm,
+  * whichever is larger.
   */
 class QuadrotorGolden extends munit.FunSuite:
   import QuadrotorGolden.*
@@ -105,7 +106,7 @@ class QuadrotorGolden extends munit.FunSuite:
       close("largest tilt, degrees", trace.map(_.tiltRad).max.toDegrees, expected.maxTiltDeg)
 
   for expected <- turns do
-    test(s"${expected.name} turned by 90° follows AirSim"):
+    test(s"${expected.name} turned by 90° follows AirSim's flight"):
       val flight = Flight(expected.velocityZ, expected.downM)
       flight.command(expected.speed, 0.0, StepSeconds)
       val trace                   = flight.command(0.0, expected.speed, StepSeconds)
@@ -134,8 +135,8 @@ object QuadrotorGolden:
   /** Half of the last printed digit of the reference. */
   private val Printed = 0.005
 
-  /** Duration of a reference flight's two parts; it matters because altitudes drift slowly. Inferred: all
-    * final speeds and altitudes fit it.
+  /** Duration of each of a reference flight's two parts. It matters because altitudes drift slowly. Inferred:
+    * all final speeds and altitudes are consistent with it.
     */
   private val StepSeconds = 14.0
 

@@ -14,14 +14,14 @@ class QuadrotorSuite extends munit.FunSuite:
   ): Unit =
     for _ <- 1 to (seconds / quadrotor.stepS).round.toInt do quadrotor.step(state, setpoint, environment)
 
-  test("hover holds its position to a millimetre over 30 s"):
+  test("a hovering vehicle holds its position to a millimetre over 30 s"):
     val state = quadrotor.hovering(goal)
     val start = state.positionNed
     for _ <- 1 to 10000 do
       quadrotor.step(state, Setpoint.hold(goal))
       assert((state.positionNed - start).norm < 1e-3, state.positionNed)
 
-  test("a hovering vehicle hangs two millimetres below its goal"):
+  test("a hovering vehicle settles two millimetres below its goal"):
     assertEqualsDouble(quadrotor.hoverSagM(-20), 0.002, 2e-4)
 
   test("the hover control at 20 m is AirSim's 0.5947"):
@@ -40,7 +40,7 @@ class QuadrotorSuite extends munit.FunSuite:
     for (altitudeM, density) <- Seq(0.0 -> 1.2250, 142.0 -> 1.2084, 1000.0 -> 1.1117, 2000.0 -> 1.0065) do
       assertEqualsDouble(Atmosphere.SeaLevelDensity * Atmosphere.densityRatio(altitudeM), density, 6e-5)
 
-  test("two runs of equal commands are equal bit for bit, also from a copied state"):
+  test("two runs of equal commands are equal to the bit, also from a copied state"):
     val first = quadrotor.hovering(goal)
     fly(first, Setpoint.velocityZ(5, 1, -20), 1.0)
     val second = QuadrotorState()
@@ -52,7 +52,7 @@ class QuadrotorSuite extends munit.FunSuite:
     assertEquals(first.accelerationNed, second.accelerationNed)
     assertEquals(first.thrust3, second.thrust3)
 
-  test("flight looks the same in every direction once the vehicle's nose points there"):
+  test("flight does not depend on the direction once the vehicle's nose points there"):
     val north = quadrotor.hovering(Vector3(0, 0, -20))
     fly(north, Setpoint.velocityZ(5, 0, -20), 5.0)
     for degrees <- Seq(30.0, 90.0, -135.0) do
@@ -63,7 +63,7 @@ class QuadrotorSuite extends munit.FunSuite:
       assertEqualsDouble(math.atan2(turned.y, turned.x), heading, 1e-9)
       assertEqualsDouble(turned.z, north.z, 1e-9)
 
-  test("a vehicle on the ground stays until its thrust exceeds its weight, then climbs"):
+  test("a vehicle on the ground stays there until its thrust exceeds its weight, then climbs"):
     val state = quadrotor.landed(Vector3(1, 2, 0), yawRad = 0.3)
     fly(state, Setpoint.Disarmed, 1.0)
     fly(state, Setpoint.Armed, 1.0)
@@ -74,7 +74,7 @@ class QuadrotorSuite extends munit.FunSuite:
     assertEqualsDouble(state.z, -2, 0.05)
     assertEqualsDouble(state.yawRad, 0.3, 1e-3)
 
-  test("landing stops the vehicle level on the ground"):
+  test("landing leaves the vehicle level on the ground"):
     val state = quadrotor.hovering(Vector3(0, 0, -3), 0.5)
     fly(state, Setpoint.velocity(0, 0, 0.5).withYaw(0.5), 12.0)
     assert(state.grounded)
@@ -93,7 +93,7 @@ class QuadrotorSuite extends munit.FunSuite:
     assert(state.vx < 4, state.vx)
 
   test(
-    "a bounce keeps the orientation, returns 0.55 of the speed down and leaves half of that along the ground"
+    "a bounce keeps the orientation, returns 0.55 of the speed down and halves the speed along the ground"
   ):
     val state = quadrotor.hovering(Vector3(0, 0, -0.005), 0.4)
     state.vx = 6; state.vy = -1; state.vz = 3; state.az = 2; state.wz = 1
@@ -115,7 +115,7 @@ class QuadrotorSuite extends munit.FunSuite:
     assert(state.y - goal.y > 0.2, state.y)
     assert(state.tiltRad > 0.02, state.tiltRad)
 
-  test("a yaw goal is reached the shorter way, a yaw rate is held"):
+  test("a yaw goal is reached by the shorter way, and a yaw rate is held"):
     val state = quadrotor.hovering(goal, 170.0.toRadians)
     fly(state, Setpoint.velocityZ(0, 0, -20).withYaw(-170.0.toRadians), 0.2)
     assert(state.wz > 0, state.wz)
@@ -144,7 +144,7 @@ class QuadrotorSuite extends munit.FunSuite:
     fly(climbing, Setpoint.anglesThrottle(0, 0, 0, 0.7), 1.0)
     assert(climbing.vz < -1, climbing.vz)
 
-  test("a changed vertical mode starts its integrator anew, an unchanged one keeps it"):
+  test("a change of the vertical mode resets the integrator; otherwise it is kept"):
     val kept = quadrotor.hovering(goal)
     quadrotor.step(kept, Setpoint.velocityZ(0, 0, -20))
     assert(kept.verticalIntegral < -0.18, kept.verticalIntegral)

@@ -3,7 +3,7 @@ package skein.vehicle
 import skein.signal.Kinematics
 import skein.units.*
 
-/** Compares the car's model with results that follow from its source, and tests its driver. */
+/** Compares the car's model with results derived from its source, and tests its driver. */
 class SingleTrackSuite extends munit.FunSuite:
   private val car     = SingleTrack()
   private val gravity = Airframe.Gravity
@@ -16,7 +16,7 @@ class SingleTrackSuite extends munit.FunSuite:
   private def keeping(frontMps: Double, steeredRad: Double) =
     CarControls(car.coastMps2(frontMps) / car.driveMps2(frontMps), steeredRad / car.mostSteeredRad, 0)
 
-  test("it drives off straight ahead, and backwards with a negative throttle"):
+  test("the car drives off straight ahead, and backwards with a negative throttle"):
     val off = driven(CarState(0, 0, 0), CarControls(1, 0, 0), 2)
     // Half of its weight is on driven wheels.
     assertEqualsDouble(off.frontMps, (1.0489 / 2 - 0.015) * gravity * 2, 0.02)
@@ -24,31 +24,28 @@ class SingleTrackSuite extends munit.FunSuite:
     val back = driven(CarState(0, 0, math.Pi / 2), CarControls(-1, 0, 0), 1)
     assert(back.frontMps < -4 && back.eastM < -2, back)
 
-  test("full brakes stop it within v²/(2 μ g), and it stays"):
+  test("full brakes stop the car within v²/(2 μ g), and it stays"):
     val stopped = driven(rolling(20), CarControls.Stop, 5)
     assertEquals(stopped.frontMps, 0.0)
     assertEqualsDouble(stopped.northM, 400 / (2 * 1.0489 * gravity), 0.4)
     assertEquals(driven(stopped, CarControls.Stop, 1), stopped)
 
-  test("nothing touched, it rolls out"):
+  test("without any control the car rolls to a stop"):
     assertEquals(driven(rolling(5), CarControls.Neutral, 40).frontMps, 0.0)
 
-  test("stopped in a turn, it swings on its tyres for a moment and rests"):
+  test("stopped in a turn, the car swings on its tyres for a moment and comes to rest"):
     val turning = driven(rolling(8), CarControls(0.1, 0.4, 0), 3)
     assert(turning.yawRadPerS > 0.5, turning)
     val rested = driven(driven(turning, CarControls.Stop, 2), CarControls.Stop, 3)
     assert(rested.rightMps.abs < 1e-6 && rested.yawRadPerS.abs < 1e-6, rested)
 
-  test(
-    "with tyres alike at both axles it neither understeers nor " +
-      "oversteers: v · angle / wheelbase, at every speed"
-  ):
+  test("with equal tyres at both axles the car's yaw rate is v · angle / wheelbase, at every speed"):
     for frontMps <- Seq(4.0, 8.0, 14.0) do
       val steered = 0.01
       val round   = driven(rolling(frontMps), keeping(frontMps, steered), 4)
       assertEqualsDouble(round.yawRadPerS / (frontMps * steered / car.wheelbaseM), 1, 0.02, s"$frontMps m/s")
 
-  test("its tyres hold μ g at most, however it is steered"):
+  test("the lateral acceleration is at most μ g, however the car is steered"):
     var state = rolling(25)
     for _ <- 1 to 2000 do
       val next   = car.step(state, CarControls(0.2, 1, 0), 0.003)
@@ -61,7 +58,7 @@ class SingleTrackSuite extends munit.FunSuite:
     val stood = driven(CarState(0, 0, 0), CarControls(0, 1, 0), 3)
     assertEquals((stood.headingRad, stood.northM, stood.yawRadPerS), (0.0, 0.0, 0.0))
 
-  test("a tyre is deflected by 63 % of its slip angle when it has rolled by its relaxation length"):
+  test("a tyre's deflection is 63 % of its slip angle after it has rolled by its relaxation length"):
     // One that hardly pushes leaves the body where it is.
     val soft     = SingleTrack(stiffnessPerRad = 1e-9)
     val frontMps = 8.0
@@ -69,7 +66,7 @@ class SingleTrackSuite extends munit.FunSuite:
       soft.step(state, keeping(frontMps, 0.1), soft.relaxationM / frontMps / 1000)
     assertEqualsDouble(state.frontSlipRad / math.sin(0.1), 1 - math.exp(-1), 1e-3)
 
-  test("how its time is cut into steps makes no difference that counts"):
+  test("the division of time into steps makes no significant difference"):
     def way(dtS: Double) = (1 to 3).foldLeft(rolling(8)): (state, part) =>
       driven(state, CarControls(0.3, if part == 2 then -0.2 else 0.2, 0), 1.2, dtS)
     val (fine, coarse) = (way(0.001), way(0.01))
@@ -79,7 +76,7 @@ class SingleTrackSuite extends munit.FunSuite:
   /** The linear single-track model with two tyres, each with its relaxation length: Rajamani's equations 2.31
     * and 2.32 in kilograms and newtons, with lagging slip angles, in small steps.
     *
-    * @return heading, rad, after the steering angle has gone to `steerRad` as fast as it can
+    * @return heading, rad, after the steering angle has reached `steerRad` as fast as it can
     */
   private def linearHeadingRad(speedMps: Double, steerRad: Double, forS: Double): Double =
     val (mass, inertia, rear) = (1093.3, 1791.6, 1.4227)
@@ -98,7 +95,7 @@ class SingleTrackSuite extends munit.FunSuite:
     heading
 
   for speedMps <- Seq(7.0, 12.0, 20.0) do
-    test(s"at $speedMps m/s it turns as the linear single-track model with relaxation lengths, within 5 ms"):
+    test(s"at $speedMps m/s the car turns as the linear single-track model with lagging tyres, within 5 ms"):
       val steerRad = 0.72 / (speedMps * speedMps)
       for forS <- Seq(0.3, 0.6, 1.2, 2.1) do
         val ours   = driven(rolling(speedMps), keeping(speedMps, steerRad), forS).headingRad
@@ -111,7 +108,7 @@ class SingleTrackSuite extends munit.FunSuite:
           s"after $forS s"
         )
 
-  test("its driver takes it to the commanded velocity, by turning round where that lies behind"):
+  test("the driver reaches a commanded velocity, and turns round if it points backwards"):
     for
       degrees <- Seq(0, 30, -90, 180)
       driven = DrivenCar()
@@ -124,7 +121,7 @@ class SingleTrackSuite extends munit.FunSuite:
     val stood = (1 to 400).foldLeft(rolling(6))((state, _) => DrivenCar().step(state, 0, 0, 0.01))
     assertEquals(stood.frontMps, 0.0)
 
-  test("a prediction is where it drives to"):
+  test("a prediction equals the simulated drive"):
     val driven                = DrivenCar()
     val model                 = CarModel(driven)
     def seen(state: CarState) = Kinematics(

@@ -3,11 +3,13 @@ package skein.vehicle
 import scala.util.Random
 import skein.units.Vector3
 
-/** The model without rotors and rates beside the whole quadrotor, both commanded ten times a second. */
+/** Compares the model without rotors and rates with the complete quadrotor; both receive ten commands a
+  * second.
+  */
 class TiltModelSuite extends munit.FunSuite:
   private final case class Command(north: Double, east: Double, third: Double, holds: Boolean)
 
-  /** The greatest distance between the two, over the path. */
+  /** The greatest distance between the two, divided by the length of the path. */
   private def deviation(downM: Double, commands: Vector[Command]): Double =
     val model                                = TiltModel.AirSim
     val truth                                = Quadrotor.AirSim.hovering(Vector3(0, 0, downM))
@@ -48,12 +50,12 @@ class TiltModelSuite extends munit.FunSuite:
       ("flies level at 5 m", -5.0, lasting(30, 5, -5, holds = true), 0.002)
     )
   do
-    test(s"a vehicle that $name"):
+    test(s"the model agrees with the quadrotor for a vehicle that $name"):
       val off = deviation(downM, commands)
       assert(off < share, s"off by ${100 * off} % of the path")
 
   for seed <- 1 to 6 do
-    test(s"a vehicle that turns while it climbs, sinks and changes its altitude, seed $seed"):
+    test(s"the model agrees with the quadrotor in turns with changes of altitude and climb rate, seed $seed"):
       val random = Random(seed)
       var angle  = 0.0
       var goal   = Command(0, 0, 0, holds = false)

@@ -25,10 +25,10 @@ class TunedFlightControllerSuite extends munit.FunSuite:
     Setpoint.hold(Vector3(14, 25, -22)).withYaw(0.3) -> 5.0
   )
 
-  test("with the default gains it flies as the plain controller does, to the last bit"):
+  test("with the default gains the results equal those of the plain controller, to the last bit"):
     assertEquals(place(flown(plain.tuned(CascadeGains.Default), tour)), place(flown(plain, tour)))
 
-  test("each gain changes the flight, the rate controllers' integral and derivative excepted, as in AirSim"):
+  test("each gain changes the flight, except the rate controllers' integral and derivative, as in AirSim"):
     val default        = place(flown(plain.tuned(CascadeGains.Default), tour))
     def more(pid: Pid) = Seq(pid.copy(p = pid.p * 1.2), pid.copy(i = pid.i + 0.1), pid.copy(d = pid.d + 0.01))
     def each(axes: AxisGains) =
@@ -47,21 +47,21 @@ class TunedFlightControllerSuite extends munit.FunSuite:
     for axes <- others do
       assertEquals(place(flown(plain.tuned(base.copy(rate = axes)), tour)), default, axes.toString)
 
-  test("a greater velocity gain answers a velocity command faster"):
+  test("a greater velocity gain responds to a velocity command faster"):
     def speedAfterHalfASecond(p: Double) =
       val gains = CascadeGains.Default.copy(velocity = AxisGains(Pid(p), Pid(0.2), Pid(2, 2)))
       flown(plain.tuned(gains), Seq(Setpoint.velocity(5, 0, 0) -> 0.5)).vx
     assert(speedAfterHalfASecond(0.1) < speedAfterHalfASecond(0.2) * 0.8)
     assert(speedAfterHalfASecond(0.2) < speedAfterHalfASecond(0.4))
 
-  test("an integral of the velocity takes away the error that drag leaves"):
+  test("an integral gain of the velocity removes the error that drag causes"):
     def speedAfter30s(i: Double) =
       val gains = CascadeGains.Default.copy(velocity = AxisGains(Pid(0.2, i), Pid(0.2), Pid(2, 2)))
       flown(plain.tuned(gains), Seq(Setpoint.velocity(5, 0, 0) -> 30.0)).vx
     assertEqualsDouble(speedAfter30s(0), 4.86, 0.05)
     assertEqualsDouble(speedAfter30s(0.05), 5.0, 0.02)
 
-  test("a copy remembers on its own"):
+  test("a copied state has its own memory"):
     val quadrotor =
       plain.tuned(CascadeGains.Default.copy(velocity = AxisGains(Pid(0.2, 0.05), Pid(0.2), Pid(2, 2))))
     val state = flown(quadrotor, Seq(Setpoint.velocity(5, 0, 0) -> 2.0))

@@ -14,7 +14,7 @@ class VehicleModelSuite extends munit.FunSuite:
   private def assertClose(actual: Vector3, expected: Vector3, tolerance: Double)(using munit.Location): Unit =
     assert((actual - expected).norm <= tolerance, s"$actual is not $expected")
 
-  test("the quadrotor's model, seen hovering, flies as the quadrotor does, however time is cut"):
+  test("the quadrotor's model flies as the quadrotor does, whatever the division of time"):
     val state    = quadrotor.hovering(start)
     val model    = QuadrotorModel.AirSim
     val setpoint = Setpoint.velocityZ(10, 2, -20)
@@ -27,7 +27,7 @@ class VehicleModelSuite extends munit.FunSuite:
     assertEquals(model.kinematics(pieces).velocityNed, model.kinematics(whole).velocityNed)
     assertClose(model.kinematics(pieces).positionNed, model.kinematics(whole).positionNed, 1e-9)
 
-  test("a corrected quadrotor flies on as the one that was seen, within millimetres in half a second"):
+  test("a corrected model flies as the quadrotor that was read, within millimetres in half a second"):
     val model    = QuadrotorModel.AirSim
     val real     = quadrotor.hovering(start)
     val commands = Seq(Setpoint.velocityZ(10, 0, -20), Setpoint.velocityZ(0, 10, -20))
@@ -42,7 +42,7 @@ class VehicleModelSuite extends munit.FunSuite:
     flying = model.advanced(flying, commands(1), step * 166)
     assertClose(model.kinematics(flying).positionNed, real.positionNed, 5e-3)
 
-  test("a state of the quadrotor's model is a value: flying on from it leaves it as it was"):
+  test("a state of the quadrotor's model is a value, which predictions leave unchanged"):
     val model  = QuadrotorModel.AirSim
     val before = model.start(seen(start, Vector3(1, 2, 0)))
     val was    = model.kinematics(before)
@@ -50,7 +50,7 @@ class VehicleModelSuite extends munit.FunSuite:
     val _      = model.corrected(before, seen(Vector3.Zero, Vector3.Zero), Span.ofSeconds(1))
     assertEquals(model.kinematics(before), was)
 
-  test("the reduced model has covered 1 − 1/e of the way to its final speed after its lag"):
+  test("after its lag, the reduced model has reached 1 − 1/e of its final speed"):
     val model = PlantModel(ReducedModel.lag(gain = 0.9, lagS = 2, deadTimeS = 0))
     val after = model.kinematics(
       model.advanced(
@@ -62,7 +62,7 @@ class VehicleModelSuite extends munit.FunSuite:
     assertClose(after.velocityNed, Vector3(9, -4.5, 0) * (1 - 1 / math.E), 1e-12)
     assertClose(after.positionNed, start + Vector3(9, -4.5, 0) * (2 / math.E), 1e-12)
 
-  test("constant velocity continues as read"):
+  test("constant velocity continues a reading"):
     val after = ConstantVelocity.advanced(seen(start, Vector3(1, 2, -3)), Setpoint.Armed, Span.ofSeconds(0.5))
     assertClose(after.positionNed, start + Vector3(0.5, 1, -1.5), 1e-12)
 

@@ -3,13 +3,14 @@ package skein.onnx
 import skein.onnx.OnnxGraph.*
 import skein.policy.{Activation, LearnedPolicy, NeuralShape}
 
-/** Dense networks as ONNX graphs: from the observation in SI units to the share of the largest turn, −1 to 1.
+/** Converts between dense networks and ONNX graphs. A graph's input is the observation in SI units; its
+  * output is the share of the largest turn, between −1 and 1.
   */
 private[onnx] object DenseGraph:
-  /** A network with its parameters, as [[NeuralShape]] lays them out. */
+  /** A network with its parameters, in the order of [[NeuralShape]]. */
   type Network = (NeuralShape, Vector[Double])
 
-  /** The supported operators, those that pass numbers on unchanged first. */
+  /** The supported operators; those that pass numbers on unchanged are first. */
   val operators: Vector[String] = Vector(
     "Identity",
     "Cast",
@@ -36,7 +37,7 @@ private[onnx] object DenseGraph:
   /** Reads a graph as a network of [[LearnedPolicy]]. Multiplications, additions and divisions between two
     * layers are folded into their weights, in doubles.
     *
-    * @return Left states why the graph is no such network
+    * @return Left states why the graph is not such a network
     */
   def network(graph: OnnxGraph): Either[String, Network] =
     try
@@ -59,13 +60,14 @@ private[onnx] object DenseGraph:
   private sealed trait Value
   private final case class Fixed(tensor: Tensor) extends Value
 
-  /** Intermediate result of a walk along the graph: complete layers, and sums without an activation so far.
+  /** Intermediate result while following the graph: the complete layers, and sums that have no activation
+    * yet.
     */
   private final case class Flow(layers: Vector[(Affine, Activation)], sums: Affine) extends Value:
     def activated(kind: Activation): Flow =
       Flow(layers :+ (sums, kind), Affine.scaled(Vector.fill(sums.rows)(1.0)))
 
-    /** The complete network. An output that no activation has limited is clipped to −1 and 1. */
+    /** The complete network. An output without a limiting activation is clipped to −1 and 1. */
     def network: Network =
       if sums.rows != 1 then throw NotDense(s"expected one output, came ${sums.rows}")
       val isSquashed = layers.lastOption.exists(_._2.squashes) && sums.isIdentity
@@ -81,7 +83,7 @@ private[onnx] object DenseGraph:
 
   /** Sums of inputs, each with a bias.
     *
-    * @param weights by sum, then by input
+    * @param weights weights by sum, then by input
     */
   private final case class Affine(weights: Vector[Vector[Double]], biases: Vector[Double]):
     def rows: Int = weights.size
@@ -211,7 +213,7 @@ private[onnx] object DenseGraph:
       Some(Tensor(Vector(columns, rows), table_(tensor).transpose.flatten))
     case _ => None
 
-  /** One value per sum; a single value is repeated. */
+  /** One value for each sum; a tensor with a single value is repeated. */
   private def spread(tensor: Tensor, rows: Int, not: String => Nothing): Vector[Double] =
     if tensor.values.size == 1 then Vector.fill(rows)(tensor.values.head)
     else if tensor.values.size == rows && tensor.shape.last == rows then tensor.values
@@ -226,12 +228,12 @@ private[onnx] object DenseGraph:
       case _     =>
         flow.sums.each((weight, row) => quotient(weight, numbers(row)), (bias, row) => bias / numbers(row)))
 
-  /** A file's 32-bit float of a scale counts as the scale, so that Skein's own networks are restored bit for
-    * bit.
+  /** The quotient of two numbers, but 1 if they are equal as 32-bit floats, so that Skein's own networks are
+    * restored bit for bit although files store scales as such floats.
     */
   private def quotient(one: Double, by: Double): Double = if one.toFloat == by.toFloat then 1 else one / by
 
-  /** Writes a policy's network as a graph: scales, then a `Gemm` and an activation for each layer. */
+  /** Writes a policy's network as a graph: the scales, then a `Gemm` and an activation for each layer. */
   def graph(policy: LearnedPolicy, metadata: Map[String, String]): OnnxGraph =
     val shape  = policy.shape
     val widths = shape.widths

@@ -6,15 +6,15 @@ import java.nio.{ByteBuffer, ByteOrder}
 import scala.collection.mutable
 import skein.onnx.OnnxGraph.*
 
-/** Reads and writes ONNX files: protocol buffers, by field numbers. */
+/** Reads and writes ONNX files, which are protocol buffers, by their field numbers. */
 object OnnxFormat:
   private val IrVersion = 8L
   private val Opset     = 13L
 
-  /** Reads external tensor data: file name, offset, length in bytes. */
+  /** Reads external tensor data, from file name, offset and length, in bytes. */
   type Beside = (String, Long, Long) => Either[String, Array[Byte]]
 
-  /** Reads a model; Left states why it is none. */
+  /** Reads a model. Left states why the bytes are not a model. */
   def read(bytes: Array[Byte], beside: Beside): Either[String, OnnxGraph] =
     try
       val parts    = Parts(beside)
@@ -30,7 +30,7 @@ object OnnxFormat:
 
   private final class Mistake(reason: String) extends RuntimeException(reason)
 
-  /** Visits a message's fields; skips those for which `field` is not defined. */
+  /** Visits the fields of a message, and skips those for which `field` is not defined. */
   private def each(bytes: Array[Byte])(field: PartialFunction[(Int, CodedInputStream), Unit]): Unit =
     val in  = CodedInputStream.newInstance(bytes)
     var tag = in.readTag()
@@ -38,9 +38,9 @@ object OnnxFormat:
       field.applyOrElse((WireFormat.getTagFieldNumber(tag), in), _ => in.skipField(tag): Unit)
       tag = in.readTag()
 
-  /** A single number, or several packed ones: writers do either.
+  /** Reads a single number or several packed ones, since programs write either.
     *
-    * @param size in bytes of a single number; 0 where it varies
+    * @param size bytes of a single number; 0 if it varies
     */
   private def several(in: CodedInputStream, size: Int)(one: CodedInputStream => Double): Vector[Double] =
     if WireFormat.getTagWireType(in.getLastTag) != WireFormat.WIRETYPE_LENGTH_DELIMITED then Vector(one(in))
@@ -63,7 +63,7 @@ object OnnxFormat:
         case (5, in)  => constants += tensor(in.readByteArray())
         case (11, in) => inputs += port(in.readByteArray())
         case (12, in) => outputs += port(in.readByteArray())
-      // Before IR version 4 constants were inputs, too.
+      // Before IR version 4, constants were also inputs.
       OnnxGraph(
         nodes.result(),
         constants.toMap,
@@ -128,7 +128,7 @@ object OnnxFormat:
         )
       (name, Tensor(dimensions, values))
 
-  /** The numbers of a tensor; other element types cannot hold a network's weights. */
+  /** The numbers of a tensor. Only element types that can represent a network's weights are supported. */
   private def unpacked(element: Int, raw: Array[Byte]): Vector[Double] =
     val buffer                         = ByteBuffer.wrap(raw).order(ByteOrder.LITTLE_ENDIAN)
     def all(size: Int)(one: => Double) = Vector.fill(raw.length / size)(one)
@@ -171,7 +171,7 @@ object OnnxFormat:
       case (2, in) => value = in.readStringRequireUtf8()
     (key, value)
 
-  /** Writes a model; numbers become 32-bit floats, those of shapes and indices are not written. */
+  /** Writes a model. Numbers become 32-bit floats; those in shapes and indices are not written. */
   def write(graph: OnnxGraph): Array[Byte] = message: out =>
     out.writeInt64(1, IrVersion)
     out.writeString(2, "skein")

@@ -1,9 +1,9 @@
 package skein.onnx
 
-/** An ONNX model, limited to what small dense networks need. Source: onnx.proto3 of ONNX 1.23, by the numbers
-  * of its fields.
+/** An ONNX model, limited to the needs of small dense networks. Source: onnx.proto3 of ONNX 1.23, by its
+  * field numbers.
   *
-  * @param metadata notes by the program that wrote it, by key
+  * @param metadata notes of the program that wrote the model, by key
   */
 final case class OnnxGraph(
     nodes: Vector[OnnxGraph.Node],
@@ -19,7 +19,7 @@ object OnnxGraph:
 
   /** An operation of the graph.
     *
-    * @param inputs names of values; an empty name stands for an omitted one
+    * @param inputs names of the input values; an empty name means that the input is omitted
     * @param attributes by name
     */
   final case class Node(
@@ -38,14 +38,14 @@ object OnnxGraph:
 
   /** A constant array of numbers.
     *
-    * @param values row by row
+    * @param values the numbers, row by row
     */
   final case class Tensor(shape: Vector[Int], values: Vector[Double])
 
   /** An input or output of the model.
     *
-    * @param element its type
-    * @param shape lengths, each absent where any length is allowed; None where the model does not state it
+    * @param element number of the element type
+    * @param shape lengths, each None if any length is allowed; None if the model does not state the shape
     */
   final case class Port(name: String, element: Int, shape: Option[Vector[Option[Int]]]):
     def text: String =

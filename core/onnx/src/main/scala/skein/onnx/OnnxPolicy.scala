@@ -71,7 +71,7 @@ object OnnxPolicy:
     * @param role for which it was trained
     * @return Left states why the policy is no network
     */
-  def write(policy: HeadingPolicy, role: String): Either[String, Array[Byte]] =
+  def write(policy: Policy, role: String): Either[String, Array[Byte]] =
     (policy match
       case learned: LearnedPolicy => Right(learned)
       case neural: NeuralPolicy   => Right(seeingMore(neural))

@@ -4,13 +4,13 @@ import java.util.concurrent.atomic.{AtomicBoolean, AtomicLong}
 import java.util.concurrent.locks.LockSupport
 import scala.util.{Failure, Success, Try}
 
-/** Tests of programs that depend on the real clock: they fail where the machine suspends them, as it may on
-  * shared cores. Such a failure says nothing about the program.
+/** Tests of programs that depend on the real clock. They fail when the machine suspends them, as it may on
+  * shared cores; such a failure says nothing about the program.
   */
 trait Conclusive extends munit.FunSuite:
 
-  /** Repeats a failed test, at most twice, if the machine was suspended for more than 100 ms meanwhile. A
-    * test that fails each time so is skipped, and counted as inconclusive.
+  /** Repeats a failed test, at most twice, if the machine was suspended for more than 100 ms during it. A
+    * test that fails in this way each time is skipped, and counted as inconclusive.
     */
   def conclusive(test: => Unit): Unit =
     def attempt(left: Int): Unit =
@@ -30,8 +30,10 @@ trait Conclusive extends munit.FunSuite:
 private object Conclusive:
   val MostStandstillMs = 100L
 
-  /** The result of some work, and the longest time, ms, by which a thread that sleeps for 2 ms woke late
-    * meanwhile: one thread for each core.
+  /** Does some work, and measures how long the machine is suspended; one thread for each core sleeps for 2 ms
+    * at a time.
+    *
+    * @return the result of the work, and the longest delay with which a thread woke, ms
     */
   def standstillMs[A](work: => A): (A, Long) =
     val latest  = AtomicLong()

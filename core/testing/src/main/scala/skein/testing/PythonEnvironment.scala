@@ -8,9 +8,10 @@ import munit.Assertions.assume
 import scala.sys.process.{Process, ProcessLogger}
 import scala.util.Using
 
-/** Packages of PyPI in their own virtual environment, kept in the user's cache under their versions' names.
+/** Virtual Python environment with packages from PyPI, kept in the user's cache under a name that lists their
+  * versions.
   *
-  * @param imports what Python can import once all is installed
+  * @param imports modules that Python imports to check that the installation is complete
   * @param scripts a resource in the folder of the test scripts, if there are any
   * @param installs arguments of successive calls of `pip install`
   */
@@ -32,7 +33,7 @@ final class PythonEnvironment(imports: String, scripts: Option[String], installs
     val bin    = home.resolve("bin").resolve("python")
     val whole  = home.resolve("whole")
     def made =
-      // An environment with a pip of its own takes twice the time.
+      // Creating an environment with its own pip takes twice the time.
       val empty = ran("python3", "-m", "venv", "--clear", "--without-pip", home.toString)
       for
         _ <- installs.foldLeft(empty)((before, packages) => before.flatMap(_ => pip(bin, packages)))
@@ -41,7 +42,7 @@ final class PythonEnvironment(imports: String, scripts: Option[String], installs
         Files.createFile(whole): Unit
         bin
     Files.createDirectories(home.getParent)
-    // Modules' tests run side by side, each in a JVM of its own.
+    // Tests of several modules run concurrently, each in its own JVM.
     PythonEnvironment.synchronized:
       Using.resource(FileChannel.open(home.resolveSibling(s"${home.getFileName}.lock"), CREATE, WRITE)):
         channel =>
@@ -58,7 +59,7 @@ final class PythonEnvironment(imports: String, scripts: Option[String], installs
     val status  = process(command).!(ProcessLogger(line => output.append(line).append('\n'): Unit))
     (status, output.toString)
 
-  /** Installs packages without compiling their modules: most are never imported. */
+  /** Installs packages without compiling their modules, because most are never imported. */
   private def pip(python: Path, packages: Seq[String]): Either[String, Unit] =
     ran(
       Seq("python3", "-m", "pip", "--python", python.toString, "install", "--quiet", "--no-compile") ++
@@ -77,15 +78,15 @@ final class PythonEnvironment(imports: String, scripts: Option[String], installs
 
 object PythonEnvironment:
 
-  /** AirSim's own Python client.
+  /** Environment with AirSim's Python client.
     *
-    * @param scripts as of [[PythonEnvironment]]
+    * @param scripts see [[PythonEnvironment]]
     */
   def ofAirSim(scripts: Option[String] = None): PythonEnvironment = PythonEnvironment(
     imports = "airsim",
     scripts,
     Seq("setuptools", "wheel", "msgpack", "numpy"),
-    // They are built with the packages already installed; and airsim's set-up imports the client itself.
+    // They are built with the packages already installed, because airsim's setup imports the client itself.
     Seq("--no-deps", "--no-build-isolation", "msgpack-rpc-python==0.4.1", "tornado==4.5.3"),
     Seq("--no-deps", "--no-build-isolation", "airsim==1.8.1")
   )

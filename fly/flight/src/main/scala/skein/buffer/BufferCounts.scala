@@ -4,15 +4,15 @@ import skein.units.*
 
 /** Counts of a buffer since its start.
   *
-  * @param plans taken, newer than all before of their vehicle
-  * @param stalePlans that arrived again, or after a newer one
+  * @param plans accepted, each newer than all earlier ones of its vehicle
+  * @param stalePlans without effect: received again, or after a newer one
   * @param refusedPlans answered with an error
   * @param moves sent to the simulator
-  * @param failedMoves of these, that it refused or did not answer in time
-  * @param heldCalls of clients, that waited for a move of the buffer to be answered
-  * @param latest the longest time from a move's moment, or from its plan's arrival if that was later, to its
-  *   sending; on the simulator's clock
-  * @param lostConnections whose bytes are no MessagePack: they pass, and no plans are taken from them
+  * @param failedMoves sent moves that the simulator refused or did not answer in time
+  * @param heldCalls clients' calls that waited until a move of the buffer was answered
+  * @param latest greatest delay of a move: from its moment, or from its plan's arrival if that was later,
+  *   until it was sent; by the simulator's clock
+  * @param lostConnections connections whose bytes are no MessagePack: all of them pass, plans too
   */
 final case class BufferCounts(
     plans: Long = 0,

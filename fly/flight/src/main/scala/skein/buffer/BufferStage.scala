@@ -9,14 +9,14 @@ import scala.util.{Failure, Success, Try}
 import skein.buffer.Buffers.Verdict
 import skein.rpc.MessageWriter
 
-/** Takes plans out of one connection between a client and its simulator, and answers them. All else passes
-  * byte for byte, in its order, in both directions: answers to plans stand between two of the simulator's
-  * messages.
+/** Takes plans out of one connection between a client and its simulator, and answers them. All other bytes
+  * pass unchanged and in order, in both directions. Answers to plans are inserted between two of the
+  * simulator's messages.
   *
   *   - '''Emits when''' bytes have arrived that may pass; to the client also when a plan is answered.
-  *   - '''Backpressures when''' a call waits to be judged, downstream does, or [[BufferStage.MostOwnBytes]]
-  *     of answers to plans wait for the client.
-  *   - '''Completes when''' that direction's upstream has completed and everything from it has come out.
+  *   - '''Backpressures when''' a call waits for its verdict, downstream backpressures, or
+  *     [[BufferStage.MostOwnBytes]] of answers to plans wait for the client.
+  *   - '''Completes when''' that direction's upstream has completed and all of its bytes have been emitted.
   *   - '''Cancels when''' that direction's downstream cancels.
   */
 private[buffer] final class BufferStage(judge: BufferStage.Judge)
@@ -120,7 +120,7 @@ private[buffer] final class BufferStage(judge: BufferStage.Judge)
           if !isClosed(fromSimulator) then cancel(fromSimulator, cause)
     )
 
-    /** Judges what has arrived from the client, and passes on what may pass. */
+    /** Requests verdicts on the client's calls in order, and pushes what may pass to the simulator. */
     private def proceed(): Unit =
       while pieces.nonEmpty && judging.isEmpty do
         pieces.head match
@@ -148,7 +148,7 @@ private[buffer] final class BufferStage(judge: BufferStage.Judge)
           case Verdict.Pass(vehicle) =>
             outward = outward ++ bytes
             for name <- vehicle do
-              // Without an id, and among too many, its answer would not be noticed.
+              // Without an id, or beyond the limit of moves, its answer would not be noticed.
               val before = id.fold(Option(name))(number =>
                 if moves.size < MostMoves then moves.put(number, name) else Some(name)
               )
@@ -162,12 +162,12 @@ private[buffer] final class BufferStage(judge: BufferStage.Judge)
         require(other.isEmpty, s"judged $other")
         noticed(verdict)
 
-    /** Of a move that was let pass and does not. */
+    /** Reports a passed move as answered when its connection closed before the move was sent. */
     private def noticed(verdict: Verdict): Unit = verdict match
       case Verdict.Pass(vehicle) => vehicle.foreach(judge.answered)
       case Verdict.Answer(_)     => ()
 
-    /** Passes on to the client what has arrived from the simulator, and answers to plans. */
+    /** Pushes the simulator's bytes to the client, with the answers to plans. */
     private def deliver(): Unit =
       if isAvailable(toClient) then
         if !answers.isMidway then
@@ -180,29 +180,30 @@ private[buffer] final class BufferStage(judge: BufferStage.Judge)
       if inward.isEmpty && (own.isEmpty || answers.isMidway) && !isClosed(toClient) then
         ofServer.foreach(failure => failure.fold(complete(toClient))(fail(toClient, _)))
 
-    /** From now on everything passes, since one of the two does not speak MessagePack. */
+    /** Passes all further bytes unchanged, since one side does not speak MessagePack. */
     private def loseTrack(): Unit =
       if !isPassing then
         isPassing = true
         own = ByteString.empty
         if !calls.isLost then pieces += Piece.Rest(calls.giveUp())
         judge.lost()
-        // What held bytes waits for no more of them.
+        // Bytes held for an incomplete message pass now.
         proceed()
 
 private[buffer] object BufferStage:
-  /** Most bytes of answers to plans that wait for the client to take them. */
+  /** Limit of the bytes of answers to plans that wait for the client. */
   val MostOwnBytes: Int = 64 << 10
 
-  /** Most moves of a connection whose answers are noticed. */
+  /** Limit of a connection's moves whose answers are awaited. Further moves count as answered when they pass.
+    */
   val MostMoves = 1024
 
   /** Decides on the calls of all connections together. Thread-safe. */
   trait Judge:
     def judge(wish: Wish): Future[Verdict]
 
-    /** A vehicle's move, which a verdict let pass, was answered, or will not be noticed to be. */
+    /** Reports that a passed move of a vehicle was answered, or that its answer will not be noticed. */
     def answered(vehicle: String): Unit
 
-    /** A connection's bytes are not understood any more. */
+    /** Reports that a connection's bytes are no longer understood. */
     def lost(): Unit

@@ -6,23 +6,24 @@ import skein.simulator.{PlanCall, PlannedMove}
 import skein.units.*
 import upack.{Bool, Msg}
 
-/** The buffers of plans beside a simulator that has none: what happens to each call of a client, and which
-  * moves are sent when. Pure; whoever owns it passes the time, on the machine's clock, and carries out its
-  * orders. Of each call a ticket is known, by which it is judged.
+/** The buffers of plans beside a simulator that has none: decides what happens to each client's call, and
+  * which moves are sent when. Pure: the owner supplies the time, by the machine's clock, and carries out the
+  * orders. A ticket identifies each call until its verdict.
   *
   * A plan is answered when it arrives, as by the built-in simulator. Before that, the vehicle is read once,
-  * unless the simulator's clock is known from a reading just before. While moves of plans are due the clock
-  * is read every [[Buffers.ReadEvery]]. While it stands still, or no reading is answered, no move is sent.
+  * unless the simulator's clock is known from a recent reading. While a plan has unsent moves, the clock is
+  * read every [[Buffers.ReadEvery]]. While the clock stands still, or no reading is answered, no move is
+  * sent.
   *
   * Plans outlast the connections over which they arrived, as in the built-in simulator: they end with their
-  * last move. They end earlier when a client moves the vehicle, cancels its task, takes api control from it,
+  * last move. They end earlier when a client moves the vehicle, cancels its task, ends its API control,
   * places it or resets the simulator.
   *
-  * @param unnamed the vehicle that calls without a name mean
-  * @param known vehicles that the simulator has
+  * @param unnamed the simulator's default vehicle, for calls without a vehicle's name
+  * @param known vehicles that have answered a reading
   * @param waiting plans that wait for a reading of their vehicle, by vehicle
-  * @param resets calls that concern all vehicles, and wait for the buffer's moves to be answered
-  * @param looking vehicles of which a reading is awaited
+  * @param resets tickets of calls for all vehicles that wait for answers to the buffer's moves
+  * @param looking vehicles with a pending reading
   * @param lookAt earliest time of the next reading
   */
 private[buffer] final case class Buffers(
@@ -38,7 +39,7 @@ private[buffer] final case class Buffers(
 ):
   import Buffers.*
 
-  /** The buffers after a call of a client, which is judged now or later. */
+  /** Adds a client's call, which is judged now or later. */
   def received(ticket: Long, wish: Wish, now: Instant): Stepped = (wish match
     case Wish.Plan(Left(mistake)) => refused(ticket, mistake)
     case Wish.Plan(Right(plan))   => planned(ticket, plan, now)
@@ -54,9 +55,9 @@ private[buffer] final case class Buffers(
       ))
   ).settled(now)
 
-  /** A reading of a vehicle was answered; `Left` with the reason if it was not.
+  /** Adds a reading of a vehicle; `Left` states why it was not answered.
     *
-    * @param unnamed the vehicle that calls without a name mean
+    * @param unnamed the simulator's default vehicle
     */
   def looked(vehicle: String, answer: Either[String, Stamped[?]], unnamed: String, now: Instant): Stepped =
     val plans = waiting.getOrElse(vehicle, Vector.empty)
@@ -76,22 +77,22 @@ private[buffer] final case class Buffers(
           case (before, (ticket, plan)) => before.and(_.planned(ticket, plan, now))
     ).settled(now)
 
-  /** The simulator has answered a move of the buffer.
+  /** Adds the simulator's answer to a move of the buffer.
     *
-    * @param isDone whether the simulator carried it out, wholly or until another replaced it
+    * @param isDone whether the move was carried out, wholly or until another replaced it
     */
   def ended(vehicle: String, isDone: Boolean, now: Instant): Stepped =
     val failed = if isDone then counts else counts.copy(failedMoves = counts.failedMoves + 1)
     Stepped(copy(counts = failed).updated(vehicle)(_.ended(now))).settled(now)
 
-  /** The simulator has answered a move of a client, or will not be noticed to. */
+  /** Adds the simulator's answer to a client's move; also called if that answer will not be noticed. */
   def answered(vehicle: String, now: Instant): Stepped =
     Stepped(updated(vehicle)(_.endedTheirs(now))).settled(now)
 
-  /** The buffers when time has passed: see [[wakeAt]]. */
+  /** Carries out what is due now; to be called at [[wakeAt]]. */
   def due(now: Instant): Stepped = Stepped(this).settled(now)
 
-  /** When [[due]] has something to do, as long as nothing else happens. */
+  /** Time at which [[due]] has something to do, unless another event occurs earlier. */
   def wakeAt(now: Instant): Option[Instant] =
     val moves = vehicles.values.flatMap(_.wakeAt(clock, maySend = resets.isEmpty, now))
     (moves ++ Option.when(mayLook)(lookAt)).minOption
@@ -157,13 +158,13 @@ private[buffer] final case class Buffers(
       counts = if before.ours + before.theirs < Moves.InFlight || before.ours == 0 then counts else heldOne
     ))
 
-  /** Lets pass what may pass, sends what is due, and reads the clock where that is needed. */
+  /** Passes the calls that may pass, sends the moves that are due, and reads the clock if needed. */
   private def settled(now: Instant): Stepped =
     vehicles.keys.toVector.sorted
       .foldLeft(letAll())((before, name) => before.and(_.turn(name, now)))
       .and(_.look(now))
 
-  /** Lets calls pass that concern all vehicles, once none has two moves of the buffer. */
+  /** Passes the calls for all vehicles, once no vehicle has two unanswered moves of the buffer. */
   private def letAll(): Stepped =
     if resets.isEmpty || vehicles.values.exists(_.ours >= Moves.InFlight) then Stepped(this)
     else Stepped(copy(resets = Vector.empty), resets.map(Order.Judge(_, Verdict.Pass(None))))
@@ -196,7 +197,7 @@ private[buffer] final case class Buffers(
           )
       sent.getOrElse(Stepped(this))
 
-  /** Whether the clock will have to be read, and is not. */
+  /** Whether the clock must be read and no reading is pending. */
   private def mayLook = looking.isEmpty && vehicles.values.exists(_.isFollowing)
 
   private def look(now: Instant): Stepped =
@@ -211,17 +212,18 @@ private[buffer] object Buffers:
   /** Pause after a reading that was not answered, or refused. */
   val FailedPause: Span = Span.ofMillis(100)
 
-  /** Most vehicles that may have plans: others are refused. */
+  /** Limit of the vehicles with plans; plans for further vehicles are refused. */
   val MostVehicles = 256
 
   enum Verdict:
     /** The call goes to the simulator.
       *
-      * @param vehicle whose move it is: [[Buffers.answered]] is to be called with its answer
+      * @param vehicle that the call moves, if any: [[Buffers.answered]] must be called when the move is
+      *   answered
       */
     case Pass(vehicle: Option[String])
 
-    /** The call is answered and goes no further; `Left` is the text of its error. */
+    /** The call is answered by the buffer and goes no further; `Left` is the text of its error. */
     case Answer(answer: Either[String, Msg])
 
   enum Order:
@@ -229,10 +231,10 @@ private[buffer] object Buffers:
 
     case Look(vehicle: String)
 
-    /** Makes the vehicle move; the move is awaited until its end. */
+    /** Sends a move to the vehicle; [[Buffers.ended]] must be called at its end. */
     case Move(vehicle: String, move: PlannedMove)
 
-  /** The buffers after an event, and what it makes necessary. */
+  /** The buffers after an event, with the orders that follow from it. */
   final case class Stepped(buffers: Buffers, orders: Vector[Order] = Vector.empty):
     def and(step: Buffers => Stepped): Stepped =
       val next = step(buffers)

@@ -4,24 +4,23 @@ import org.apache.pekko.util.ByteString
 import scala.collection.mutable.ArrayBuffer
 import skein.rpc.{FrameLimits, Framed, Framer, RpcMessage}
 
-/** A piece of what a client sends. The bytes of all pieces, in their order, are those that were sent, without
-  * plans that are too long.
+/** A piece of a client's stream. The pieces in order are the whole stream, except for plans that are too
+  * long.
   */
 private[buffer] enum Piece:
-  /** Concerns no plan, or is not understood, and passes. */
+  /** Bytes that pass: they concern no plan, or are not understood. */
   case Rest(bytes: ByteString)
 
   /** A call that concerns the buffer.
     *
-    * @param id absent where no answer is awaited, or needs to be noticed
+    * @param id absent for a notification, and for a long call whose answer is not tracked
     */
   case Call(wish: Wish, id: Option[Long], bytes: ByteString)
 
-/** Cuts what a client sends over one connection into the calls that concern the buffer, and all else.
-  * Mutable; does no I/O.
+/** Cuts one client's stream into the calls that concern the buffer, and all else. Mutable; does no I/O.
   *
-  * A message is held until it is complete, or has [[Wish.MostBytes]]. A longer one passes as it comes, but
-  * for a plan, which is taken away. Where the bytes are no MessagePack, they pass from there on.
+  * A message is held until it is complete or has [[Wish.MostBytes]]. A longer one passes as it arrives,
+  * except for a plan, which is removed. From the first byte that is no MessagePack on, everything passes.
   */
 private[buffer] final class ClientCalls:
   import ClientCalls.*
@@ -33,12 +32,12 @@ private[buffer] final class ClientCalls:
   private var current: Current = Current.Held
   private var lost             = false
 
-  /** Whether the bytes are not understood any more. */
+  /** Whether the bytes are no longer understood. */
   def isLost: Boolean = lost
 
   /** Lets everything pass from now on.
     *
-    * @return what was held and may pass
+    * @return the held bytes that may pass
     */
   def giveUp(): ByteString =
     val rest = current match
@@ -48,7 +47,7 @@ private[buffer] final class ClientCalls:
     lost = true
     rest
 
-  /** The pieces that these bytes, cut anywhere, complete. */
+  /** Adds bytes, cut anywhere; returns the pieces that they complete. */
   def offer(bytes: ByteString): Vector[Piece] =
     if lost then Vector(Piece.Rest(bytes))
     else
@@ -91,7 +90,7 @@ private[buffer] final class ClientCalls:
             case _ => None
       call.getOrElse(Piece.Rest(message))
 
-  /** Decides on a long message by its beginning, which is held. */
+  /** Decides on a long message by its held beginning. */
   private def begin(): Option[Piece] = long(held) match
     case Some(Piece.Call(wish: Wish.Plan, id, _)) =>
       current = Current.Taken(wish, id)
@@ -114,7 +113,7 @@ private[buffer] final class ClientCalls:
 private object ClientCalls:
   private val HeadBytes = 1024
 
-  /** What happens to the message that is not complete. */
+  /** The treatment of the message that is still incomplete. */
   private enum Current:
     case Held
     case Passes

@@ -3,15 +3,15 @@ package skein.buffer
 import skein.signal.{ClockAlignment, Stamped}
 import skein.units.*
 
-/** The simulator's clock, as readings show it. Pure.
+/** The simulator's clock, estimated from readings. Pure.
   *
-  * The offset is [[ClockAlignment]]'s, whose uncertainty is half the round trip of the quickest readings, or
-  * less. The rate, for simulators whose clock is not the machine's, is measured over a second. Between two
-  * readings the clock is taken to go on. So one that is stopped, set or started is followed within two
-  * readings.
+  * The offset is [[ClockAlignment]]'s; its uncertainty is at most half the round trip of the quickest
+  * readings. The rate, for simulators whose clock does not run at the machine's rate, is measured over a
+  * second. Between two readings the clock is assumed to run on, so that a stop, a jump or a start is noticed
+  * within two readings.
   *
   * @param from the reading from which the rate is measured
-  * @param rate simulated seconds in a second
+  * @param rate simulated seconds per second of the machine's clock
   */
 private[buffer] final case class ObservedClock private (
     alignment: ClockAlignment,
@@ -33,7 +33,7 @@ private[buffer] final case class ObservedClock private (
       val usual    = if math.abs(measured - 1) < Usual then 1.0 else measured
       ObservedClock(next, if apart > Longest then reading else from, usual)
 
-  /** What the clock shows at `now`, on the machine's clock; None if no reading is new enough. */
+  /** The simulator's time when the machine's clock reads `now`; None if no reading is recent enough. */
   def shows(now: Instant): Option[Instant] =
     val age = now.since(alignment.receivedAt)
     Option.when(age <= MostAge)(
@@ -41,22 +41,25 @@ private[buffer] final case class ObservedClock private (
       else shown + Span.ofNanos((age.toNanos * rate).toLong)
     )
 
-  /** When the clock will show this or a little more, on the machine's clock; None while it stands still. */
+  /** The machine's time at which the simulator's clock will show `simulated` or a little more; None while it
+    * stands still.
+    */
   def comesTo(simulated: Instant): Option[Instant] = Option.when(!alignment.standsStill && rate > 0):
     alignment.receivedAt + Span.ofNanos(math.ceil(simulated.since(shown).toNanos / rate).toLong + 1)
 
-  /** What it showed when the newest reading was received. */
+  /** The simulator's time when the newest reading was received. */
   private def shown: Instant = alignment.receivedAt - alignment.offset
 
 private[buffer] object ObservedClock:
-  /** Age of the newest reading up to which the clock counts as known: ten periods of readings. */
+  /** Greatest age of the newest reading at which the clock counts as known: ten intervals of readings. */
   val MostAge: Span = Span.ofMillis(100)
 
-  /** Stretch over which a rate is measured at least, and at most. */
+  /** Shortest and longest time over which a rate is measured. */
   private val Shortest = Span.ofMillis(50)
   private val Longest  = Span.ofSeconds(1)
 
-  /** A rate this near to 1 is 1: what is measured over the shortest stretch may be off by as much. */
+  /** Rates within this distance of 1 count as 1: a measurement over the shortest time may be off by as much.
+    */
   private val Usual = 0.07
 
   def of(reading: Stamped[?]): ObservedClock = ObservedClock(ClockAlignment.of(reading), reading, rate = 1)

@@ -4,24 +4,24 @@ import org.apache.pekko.util.ByteString
 import scala.collection.mutable.ArrayBuffer
 import skein.rpc.{FrameLimits, Framed, Framer, RpcMessage}
 
-/** Finds in what a simulator sends over one connection the ends of its messages, and the calls that they
-  * answer. Mutable; does no I/O, and keeps a few bytes of each message.
+/** Finds the ends of messages in one connection's stream from the simulator, and the calls that they answer.
+  * Mutable; does no I/O, and keeps a few bytes of each message.
   */
 private[buffer] final class SimulatorAnswers:
   private val framer = new Framer(FrameLimits.Listening, SimulatorAnswers.KeptBytes)
   private var begun  = 0L // bytes of the message that is not complete
   private var lost   = false
 
-  /** Whether the bytes are not understood any more. */
+  /** Whether the bytes are no longer understood. */
   def isLost: Boolean = lost
 
-  /** Whether a message has begun and not ended: nothing may come between its bytes. */
+  /** Whether nothing may be inserted now: a message is incomplete, or the bytes are no longer understood. */
   def isMidway: Boolean = lost || begun > 0
 
   /** Adds bytes, cut anywhere.
     *
-    * @return the ids of messages that they complete, and where among them the last one ends; where none does,
-    *   and one had begun before, no place
+    * @return the ids of the completed messages, and the last position in these bytes between two messages, if
+    *   there is one
     */
   def offer(bytes: ByteString): (ids: Vector[Long], end: Option[Int]) =
     val ids = ArrayBuffer.empty[Long]

@@ -17,16 +17,17 @@ import skein.signal.Stamped
 import skein.simulator.{PlanCall, PlannedMove}
 import skein.units.*
 
-/** A buffer of plans beside a simulator that has none, such as AirSim: takes plans out of what clients send,
-  * and performs their moves at their moments by the simulator's ordinary functions, over connections of its
-  * own. It belongs near the simulator, behind the link that delays its clients: see [[LinkProxy.start]].
+/** A buffer of plans beside a simulator that has none, such as AirSim: takes plans out of its clients'
+  * connections, and performs their moves at their moments by the simulator's ordinary functions, over
+  * connections of its own. It belongs near the simulator, behind the link that delays its clients: see
+  * [[LinkProxy.start]].
   *
-  * Moves begin after their moments by half a round trip to the simulator, where the machine is quick enough.
-  * The simulator's clock is known to half a round trip, and to the step of physics by which AirSim's
-  * advances. A clock that is stopped, set or started is followed within 20 ms; what is due then is early or
-  * late by as much.
+  * Moves begin half a round trip to the simulator after their moments, if the machine is fast enough. The
+  * simulator's clock is known to half a round trip, and in AirSim to a step of physics. If the clock is
+  * stopped, set or started, the buffer notices it within 20 ms; moves due meanwhile are early or late by as
+  * much.
   *
-  * A simulator with a buffer of its own, such as `./skein serve`, gets no plans either.
+  * A simulator with a buffer of its own, such as `./skein serve`, receives no plans either.
   *
   * One actor holds the [[Buffers]] of all vehicles.
   */
@@ -45,7 +46,7 @@ final class SimulatorBuffer private (
     def answered(vehicle: String): Unit = keeper ! Message.Answered(vehicle)
     def lost(): Unit                    = keeper ! Message.Lost
 
-  /** What stands in one connection between a client and the simulator. */
+  /** The stage for one connection between a client and the simulator. */
   def passing(): LinkProxy.Passing = BidiFlow.fromGraph(BufferStage(judge))
 
   def counts: BufferCounts = counted.get
@@ -57,10 +58,10 @@ final class SimulatorBuffer private (
 
 object SimulatorBuffer:
 
-  /** Makes a buffer; connects with the first plan.
+  /** Starts a buffer, which connects to the simulator at the first plan.
     *
-    * @param simulator behind the link
-    * @param onLost called with one line for each answer to a move that is missed
+    * @param simulator its address, behind the link
+    * @param onLost called with a line for each move whose answer was lost
     */
   def start(
       simulator: Address,
@@ -75,7 +76,7 @@ object SimulatorBuffer:
     ))
     SimulatorBuffer(keeper, client, counted)
 
-  /** Time-out of readings; of moves, beyond their durations. */
+  /** Time-out of a reading, and of a move's answer after the move's duration. */
   private val AnswerWithin = Span.ofSeconds(2)
 
   private[buffer] enum Message:
@@ -158,7 +159,9 @@ object SimulatorBuffer:
         answer  <- Multirotor(client, name).kinematics()
       do self ! Message.Looked(name, answer.left.map(reason), default)
 
-    /** The vehicle that calls without a name mean; empty where the settings are not understood. */
+    /** Name of the simulator's default vehicle: empty if its settings are not understood, None if it does not
+      * answer.
+      */
     private def defaultVehicle(): Future[Option[String]] = client.settings().map:
       case Right(settings)           => Some(settings.defaultVehicle.name)
       case Left(AirSimError.Call(_)) => None

@@ -4,16 +4,14 @@ import skein.port.{Moves, PlanBuffer}
 import skein.simulator.PlannedMove
 import skein.units.*
 
-/** The plans of one vehicle, and the moves of it that the simulator has not answered. Pure.
+/** The plans of one vehicle, with its unanswered moves. Pure.
   *
-  * At most [[Moves.InFlight]] moves are unanswered at the simulator, but for those of clients that had sent
-  * more themselves.
+  * At most [[Moves.InFlight]] moves are unanswered at the simulator, unless clients sent more themselves.
   *
-  * @param begun the move that was sent last of the plans in effect
+  * @param begun the newest sent move of the plans in effect
   * @param ours unanswered moves of the buffer; `theirs`: of clients
-  * @param readyAt from when on a move may follow the last one that was sent or answered, on the machine's
-  *   clock
-  * @param held clients' moves that wait, the first first
+  * @param readyAt earliest time, by the machine's clock, of the move after the last sent or answered one
+  * @param held tickets of the clients' moves that wait, the oldest first
   */
 private[buffer] final case class VehicleBuffer(
     plans: PlanBuffer[VehicleBuffer.Due] = PlanBuffer.empty,
@@ -25,12 +23,12 @@ private[buffer] final case class VehicleBuffer(
 ):
   import VehicleBuffer.*
 
-  /** Takes a plan that arrives at `simulated`. */
+  /** Adds a plan that arrives at `simulated`, the simulator's time. */
   def received(sequence: Long, moves: Vector[PlannedMove], simulated: Instant): VehicleBuffer =
     val plan = moves.map(move => (at = move.at, action = Due(move, simulated)))
     copy(plans = plans.received(sequence, plan, simulated))
 
-  /** Ends all plans. Those older than the newest received stay without effect when they come. */
+  /** Ends all plans. Older plans that arrive later have no effect. */
   def stopped(simulated: Option[Instant]): VehicleBuffer =
     val none = PlanBuffer.empty[Due]
     copy(
@@ -41,20 +39,20 @@ private[buffer] final case class VehicleBuffer(
   /** Ends all plans and forgets their numbers. */
   def forgotten: VehicleBuffer = copy(plans = PlanBuffer.empty, begun = None)
 
-  /** Whether some of its moves have not been sent yet. */
+  /** Whether some moves of its plans have not been sent yet. */
   def isFollowing: Boolean = plans.actions.lastOption.exists(last => !hasBegun(last.action))
 
-  /** Whether it holds nothing that could still matter. */
+  /** Whether its state is empty, so that it can be dropped. */
   def isIdle: Boolean = this == VehicleBuffer(readyAt = readyAt)
 
-  /** Whether a client's move may pass: it must not be a third one because of the buffer's. */
+  /** Whether a client's move may pass: the buffer's moves must not make it the third unanswered one. */
   def lets(now: Instant): Boolean = ours == 0 || ours + theirs < Moves.InFlight && now >= readyAt
 
   /** The move to send now, if one is due and may be sent. */
   def next(simulated: Instant, now: Instant): Option[Due] =
     dueAt(simulated).filter(_ => hasRoom && now >= readyAt)
 
-  /** When, at the earliest, it has something to do, as long as nothing else happens.
+  /** Earliest time at which it has something to do, unless another event occurs earlier.
     *
     * @param maySend whether moves of plans may be sent
     */
@@ -83,7 +81,7 @@ private[buffer] final case class VehicleBuffer(
 
   private def dueAt(simulated: Instant) = plans.due(simulated).map(_.action).filterNot(isPast)
 
-  /** Whether this move was sent, or one after it: the clock as it is known may go back by a little. */
+  /** Whether this move or a later one was sent. The estimate of the clock may go back a little. */
   private def isPast(due: Due) = begun.exists(sent =>
     (sent eq due) || due.move.at < sent.move.at && plans.actions.exists(_.action eq sent)
   )
@@ -95,6 +93,6 @@ private[buffer] final case class VehicleBuffer(
 private[buffer] object VehicleBuffer:
   /** A move of a plan, to be sent at its moment.
     *
-    * @param since when its plan arrived, on the simulator's clock
+    * @param since the simulator's time when its plan arrived
     */
   final case class Due(move: PlannedMove, since: Instant)

@@ -4,20 +4,20 @@ import java.nio.charset.StandardCharsets.UTF_8
 import skein.simulator.PlanCall
 import upack.{Binary, Bool, Msg, Str}
 
-/** What a client's call means to the buffer; other calls pass without its knowledge. A vehicle's name may be
-  * empty: the simulator's default vehicle.
+/** The meaning of a client's call for the buffer, which does not see other calls. A vehicle's name may be
+  * empty, for the simulator's default vehicle.
   */
 private[buffer] enum Wish:
-  /** A plan for a vehicle, or the text of the error that answers it. */
+  /** A plan for a vehicle, or the text of the error with which the call is answered. */
   case Plan(call: Either[String, PlanCall])
 
-  /** Moves a vehicle: its plans end, and their numbers may begin anew. */
+  /** Moves a vehicle. Its plans end; a later plan may have any number. */
   case Move(vehicle: String)
 
-  /** Lets a vehicle hover: its plans end, older ones too that are still on their way. */
+  /** Lets a vehicle hover. Its plans end; older ones that arrive later have no effect. */
   case Hover(vehicle: String)
 
-  /** Ends what a vehicle does, like [[Hover]], without a move. */
+  /** Ends a vehicle's plans like [[Hover]], by a call that is no move. */
   case Stop(vehicle: String)
 
   /** Places a vehicle: its plans end, as by [[Move]]. */
@@ -27,7 +27,7 @@ private[buffer] enum Wish:
   case Reset
 
 private[buffer] object Wish:
-  /** Longest call that is read, bytes. Sixteen moves by velocity have some 2,000. */
+  /** Limit of a call that is decoded, in bytes. A plan of sixteen velocities takes about 2,000. */
   val MostBytes: Int = 64 << 10
 
   def of(method: String, params: IndexedSeq[Msg]): Option[Wish] = method match
@@ -40,13 +40,13 @@ private[buffer] object Wish:
     case "reset"                                 => Some(Reset)
     case _                                       => None
 
-  /** What a call means that is too long to be read: a move may be any vehicle's. */
+  /** The meaning of a call too long to decode. A long move may be any vehicle's, so it ends all plans. */
   def ofLong(method: String): Option[Wish] =
     if method == PlanCall.Function then
       Some(Plan(Left(PlanCall.refusal(s"expected a plan of at most $MostBytes bytes, came more"))))
     else Option.when(PlanCall.isMove(method))(Reset)
 
-  /** The last parameter of functions of one vehicle. */
+  /** The vehicle's name: the last parameter of functions of one vehicle. */
   private def vehicleOf(params: IndexedSeq[Msg]): String = params.lastOption match
     case Some(Str(name))   => name
     case Some(Binary(raw)) => String(raw, UTF_8)

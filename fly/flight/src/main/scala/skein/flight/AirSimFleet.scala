@@ -19,7 +19,8 @@ import skein.units.Decimals.fixed
   *
   * @param startsAirborne whether the simulator can place vehicles in the air; otherwise they climb to their
   *   starts
-  * @param calledOff why a flight, by its name, must not go on while its vehicles move to their starts
+  * @param calledOff why the flight of this name must be cancelled while its vehicles move to their starts, if
+  *   so
   * @param isWatched whether images and clouds that are not recorded are still offered to the recorder
   * @param tell shows a line to the user
   */
@@ -34,8 +35,8 @@ private[flight] final class AirSimFleet(
 )(using system: ActorSystem):
   import system.dispatcher
 
-  /** Brings the vehicles to their starts, and connects them over the link of the plan, or the controller of
-    * each over one of its own. The connections are added to `opened`, to be closed with it.
+  /** Brings the vehicles to their starts and connects them over the plan's link, or for each vehicle's own
+    * controller over a link of its own. Adds the connections to `opened`, which closes them.
     */
   def connect(
       plan: FlightPlan,
@@ -49,7 +50,7 @@ private[flight] final class AirSimFleet(
         before.flatMap(clients => connect(plan, address, line, opened, monitor).map(clients :+ _))
       reached = clients.map: client =>
         ready.zipWithIndex.map((vehicle, index) =>
-          // Altitudes count from where each vehicle starts, as in its own frame.
+          // Altitudes count from each vehicle's start, as in its own frame.
           vehicle.over(client, vehicle.originNed.copy(z = 0), index)
         )
       vehicles = ready.indices.toVector.map(at => reached(settings.own.indexOf(at).max(0) % reached.size)(at))
@@ -90,7 +91,7 @@ private[flight] final class AirSimFleet(
       apart = apart
     )
 
-  /** A controller's link: the only one, or that of a vehicle's controller. */
+  /** The link of the only controller, or of `vehicle`'s own controller. */
   private type Line = (vehicle: Option[String], seed: Long)
 
   private def lines(plan: FlightPlan): Vector[Line] =
@@ -211,7 +212,7 @@ object AirSimFleet:
   private def timeout(loop: AnyLoop): Span =
     if loop == LoopKind.Paused then Span.ofSeconds(3) else Asking.Timeout
 
-  /** Requests a simulator's vehicles, over a separate connection.
+  /** Checks over a separate connection that the simulator has a fleet's vehicles.
     *
     * @return Left states that it does not answer, or which of a fleet's vehicles it lacks
     */

@@ -6,7 +6,7 @@ import skein.airsim.{Eyes, Image, Shot}
 import skein.rpc.RpcError
 import skein.signal.{ClockAlignment, Stamped}
 
-/** A camera with the estimated offset of the simulator's clock from its images: decides which of two images
+/** A camera, with the offset of the simulator's clock estimated from its images. Decides which of two images
   * is newer, also across a restart of the simulator. Thread-safe.
   */
 private[flight] final class AlignedCamera(eyes: Eyes, camera: String):
@@ -22,5 +22,5 @@ private[flight] final class AlignedCamera(eyes: Eyes, camera: String):
   def isNewer(one: Stamped[?], other: Stamped[?]): Boolean =
     clocks.get.getOrElse(ClockAlignment.of(one)).isNewer(one, other)
 
-  /** Number of the simulator's restarts, as its clock shows. */
+  /** Number of the simulator's restarts, as detected by its clock. */
   def restarts: Int = clocks.get.fold(0)(_.restarts)

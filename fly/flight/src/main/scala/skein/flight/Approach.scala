@@ -13,9 +13,9 @@ import skein.vehicle.GoTo
 /** Moves one vehicle to a position by velocity commands, turns it to the north on the way, and lets it hover
   * there.
   *
-  * Position commands do not serve: AirSim's hold of a position works only while the vehicle looks north, and
-  * at more than 90° of yaw it drives the vehicle away. Each command replaces the one before; at most two are
-  * unanswered.
+  * Position commands are unsuitable: AirSim's hold of a position works only while the vehicle looks north,
+  * and at more than 90° of yaw it drives the vehicle away. Each command replaces the one before; at most two
+  * are unanswered.
   *
   * @param calledOff why it must stop, evaluated at every step
   */
@@ -33,8 +33,7 @@ private[flight] final class Approach(
   /** Moves the vehicle until it hovers within `limits` of the goal.
     *
     * @param goalNed in the frame of `vehicle`
-    * @return the last reading; `Left` where a call failed, or the vehicle was not there in twice the time
-    *   that it needs
+    * @return the last reading; `Left` if a call failed, or the vehicle did not arrive within the allowed time
     */
   def to(goalNed: Vector3, limits: Limits): Future[Either[String, Kinematics]] =
     look: start =>
@@ -65,7 +64,7 @@ private[flight] final class Approach(
             case None        => after(Every.toDuration)(steer(goal, Some(move)))
         yield next
 
-  /** Commands it to hover, and checks whether it stays. */
+  /** Commands the vehicle to hover, and checks whether it stays at the goal. */
   private def settle(goal: Goal, before: Option[Move]): Future[Either[String, Kinematics]] =
     def watch(looks: Int, good: Int): Future[Either[String, Kinematics]] = look: state =>
       val stays = if goal.isHeld(state) then good + 1 else 0
@@ -120,9 +119,9 @@ private[flight] object Approach:
 
   private val Every = Span.ofMillis(100)
 
-  /** Time allowed beyond twice that of the way. */
+  /** Time allowed for the way, in addition to twice its duration at cruise speed. */
   private val Patience = Span.ofSeconds(40)
 
-  /** Limit of readings of a hovering vehicle, and how many in a row must be within the limits. */
+  /** Limit of a hovering vehicle's readings, and how many in a row must be within the tolerances. */
   private val Looks     = 40
   private val GoodLooks = 10

@@ -44,7 +44,7 @@ private[skein] final class CameraSensor(
   private val newest                    = AtomicReference(Option.empty[Stamped[IArray[Double]]])
   private val stop                      = KillSwitches.shared(s"eye ${eye.vehicle}")
 
-  // Of one thread at a time: that of the stream, or of whoever asks while the simulator stands still.
+  // Used by one thread at a time: the stream's, or a reader's while the simulator stands still.
   private var images, found = 0
   private var newestSeen    = Option.empty[Seen]
   private var fusion        = Fusion(eye.fusion)
@@ -77,7 +77,7 @@ private[skein] final class CameraSensor(
       .mapConcat(counted)
       .map: seen =>
         newestSeen = Some(seen)
-        // What was measured before a restart of the simulator says nothing of what is since.
+        // Measurements from before a restart of the simulator do not hold after it.
         (camera.restarts, seen.measured)
       .via(Fuse(eye.fusion)((_, _) =>
         note(EventKind.Dropped, s"${eye.sensor}: older than all that is known")
@@ -135,7 +135,7 @@ private[skein] final class CameraSensor(
       .flatMap:
         case Left(reason) => Future.failed(IllegalArgumentException(reason))
         case Right(polar) =>
-          // In virtual time work takes no time, so that this is all of it.
+          // Work takes no virtual time, so this is the whole duration.
           val rest = lasts - clock.now().since(startedAt)
           if rest <= Span.Zero then Future.successful((image, polar))
           else after(rest.toDuration, system.scheduler)(Future.successful((image, polar)))
@@ -179,10 +179,10 @@ private[skein] object CameraSensor:
 
   /** Counts of an eye's images. After its end, each due image is in one of the other counts.
     *
-    * @param missed not requested, since others were on their way
+    * @param missed due images that were not requested, since others were still on their way
     * @param lost without a result: the call failed, recognition failed or was late, or a newer one was
     *   received first
-    * @param searched whether or not anything was found in them
+    * @param searched by recognition, with or without a detection
     */
   final case class Counts(due: Long, missed: Long, lost: Long, searched: Long):
     def asked: Long = due - missed

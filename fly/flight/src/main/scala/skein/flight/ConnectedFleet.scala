@@ -11,8 +11,8 @@ import skein.signal.ClockAlignment
   * @param cameras with recognisers
   * @param films of their other cameras
   * @param clocks the vehicles' clock against the controller's, if it is known already
-  * @param apart all vehicles as the controller of one reaches them, for each vehicle that has one here;
-  *   `vehicles` are then as their own controllers reach them
+  * @param apart for each vehicle `self` with its own controller: all vehicles, over that controller's
+  *   connections. `vehicles` are then over the connections of their own controllers
   */
 private[flight] final case class ConnectedFleet(
     vehicles: Vector[VehiclePort],

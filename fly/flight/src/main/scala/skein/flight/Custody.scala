@@ -51,7 +51,7 @@ private[flight] final class Custody(
     yield Held(vehicle.name, control, flight)
 
 private[flight] object Custody:
-  /** What a simulator does that has taken api control of a vehicle away. */
+  /** The message that the simulator has taken a vehicle's API control away. */
   def lost(vehicle: String): String =
     s"no longer gives $vehicle to this flight: it was started again or reset, or another client took api " +
       "control away"
@@ -59,7 +59,7 @@ private[flight] object Custody:
   /** The simulator's answer for a vehicle.
     *
     * @param isControlled whether it is under API control
-    * @param flies absent where it is not needed
+    * @param flies absent if it was not requested
     */
   final case class Held(vehicle: String, isControlled: Boolean, flies: Option[Boolean])
 

@@ -39,7 +39,7 @@ private[flight] final class EndCondition(scenario: Scenario, isPaused: Boolean, 
 
 private object EndCondition:
 
-  /** What was received so far.
+  /** The readings received so far.
     *
     * @param from time of the first decision
     */

@@ -13,7 +13,7 @@ import skein.link.*
 import skein.loop.*
 import skein.loop.learning.{Learning, Lessons, LessonsAgain, LessonsBeside}
 import skein.loop.planning.{CountedPlanWorkers, PlanThread, PlanWorkers, ThreadedPlanWorkers}
-import skein.policy.Fleet
+import skein.policy.{ActionGuidance, Fleet}
 import skein.port.{CommandPlan, VehicleError, VehiclePort}
 import skein.record.*
 import skein.settings.{ChosenPolicy, FlightPlan, FlySettings, PolicyFile, RecordedPlan, Wire}
@@ -134,8 +134,9 @@ final class FlightAssembler(
           Future.failed(CannotFly(missing))
         )
       yield
-        val loopSettings = settings.loopSettings(plan)
-        val planners     =
+        val loopSettings =
+          settings.loopSettings(plan).copy(guidance = elsewhere.fold(ActionGuidance.of)(_.guidance))
+        val planners =
           if plan.loop != LoopKind.Plan || solver.isDefined then PlanWorkers.none
           else
             opened.closing(workers(settings.planning)): threads =>

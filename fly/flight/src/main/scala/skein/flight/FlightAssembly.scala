@@ -37,7 +37,7 @@ final class FlightAssembly private[skein] (
   /** Continues a paused flight. The user is recorded. */
   def continue(who: String): Unit =
     if hold.isHeld then
-      // Before the first decision that it lets be made.
+      // Recorded before the first decision that the release allows.
       monitor.offer(Event(clock.now(), EventKind.Continued, None, who))
       hold.release(): Unit
 

@@ -11,10 +11,10 @@ import skein.units.*
   *
   * @param isStepped whether the simulator stands still between steps, so that its clock is not compared with
   *   the controller's
-  * @param hasPlaces whether readings are the vehicles' true places, which other clients may change, so that
-  *   implausible displacements are detected: an autopilot's estimates may jump
-  * @param movesLast duration of the flight's moves, where the simulator says which of them others replaced,
-  *   so that other clients' moves are detected
+  * @param hasPlaces whether readings are the vehicles' true positions. Then an implausible displacement shows
+  *   that another client placed a vehicle; an autopilot's estimates may jump by themselves
+  * @param movesLast duration of the flight's moves, for detecting other clients' moves; absent if the
+  *   simulator does not report replaced moves
   */
 final class FlightMonitor(
     recorder: Recorder,
@@ -107,7 +107,7 @@ final class FlightMonitor(
       decision <- newest.map(_.row)
       heard    <- heardAt
     yield
-      // From when physics was sampled until the reading came.
+      // From the sampling of physics to the reading's receipt.
       val underWay = decision.trueAge.fold(Span.Zero)(_.own - decision.observations.ownAge)
       val apart    =
         decision.own.state.value.positionNed.horizontalDistance(decision.opponent.state.value.positionNed)

@@ -3,13 +3,13 @@ package skein.flight
 import skein.record.{Acknowledgement, CommandOutcome, CommandRow}
 import skein.units.{Instant, Span}
 
-/** Whether another client moves a vehicle of the flight. A simulator answers false to a move that another one
-  * replaced, or whose time was over. If the flight itself has sent no other since, and its time was not over,
-  * the other one was a stranger's. Pure.
+/** Detects whether another client moves a vehicle of the flight. A simulator answers false to a move that was
+  * replaced by another one, or whose time was over. If the flight has sent no newer move and the time was not
+  * over, another client's move replaced it. Pure.
   *
   * @param newest sequence and time of the flight's newest move of the vehicle
-  * @param replaced whether a stranger's move replaced each of the [[ForeignMoves.Judged]] moves that ended
-  *   last
+  * @param replaced for each of the last [[ForeignMoves.Judged]] ended moves, whether another client's
+  *   replaced it
   */
 private[flight] final case class ForeignMoves(
     newest: Option[(Long, Instant)] = None,
@@ -23,8 +23,8 @@ private[flight] final case class ForeignMoves(
       sequence == move.command && move.endedAt.since(sentAt) < lasts
     copy(replaced = (replaced :+ isForeign).takeRight(ForeignMoves.Judged))
 
-  /** Few are no sign: after a lost answer, the flight itself ends its newest move
-    * ([[skein.airsim.MoveQueue]]).
+  /** Whether other clients replaced several of the last moves. A few prove nothing: after a lost answer, the
+    * flight itself ends its newest move ([[skein.airsim.MoveQueue]]).
     */
   def areMany: Boolean = replaced.count(identity) >= ForeignMoves.Many
 

@@ -11,7 +11,7 @@ import skein.units.*
 
 /** Records images and scans of a vehicle's cameras and lidars. Thread-safe and non-blocking.
   *
-  * @param isWanted whether they are used by anyone
+  * @param isWanted whether images and scans are used by anyone
   */
 private[skein] final class ImageRecorder(
     vehicle: VehicleClient,

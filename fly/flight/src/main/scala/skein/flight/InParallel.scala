@@ -3,7 +3,7 @@ package skein.flight
 import java.util.concurrent.{Callable, ExecutionException, ExecutorCompletionService, Executors, Future}
 
 /** Runs work on separate threads. An exception of one is thrown to the caller, and no further work is begun.
-  * Blocks. Work in pieces of microseconds is distributed in another way; the code there states why.
+  * Blocks. Too slow for pieces of work that take microseconds.
   */
 private[skein] object InParallel:
 
@@ -15,7 +15,7 @@ private[skein] object InParallel:
       val _ = pool.shutdownNow()
 
   /** Parallel map that passes each result to `use` on the calling thread as soon as it is ready. `all` may be
-    * infinite: the next is taken when one has ended.
+    * infinite: the next element is taken when one has ended.
     */
   def asTheyCome[A, B](all: Iterator[A], threads: Int)(one: A => B)(use: B => Unit): Unit =
     val pool                  = Executors.newFixedThreadPool(threads)

@@ -52,7 +52,7 @@ final class LinkedVehicle(
 
   private def over[A](ask: => Future[Either[VehicleError, Stamped[A]]]) =
     val sentAt = clock.now()
-    // Vehicles of topics answer by a message that was sent before it was asked for.
+    // Vehicles behind topics answer with a message that was sent before the request.
     called(ask).map(_.map(read => read.copy(sentAt = read.sentAt.min(sentAt), receivedAt = clock.now())))
 
   private final class Direction(number: Int):

@@ -43,7 +43,6 @@ final class LiveFlights private (assembler: Vector[FlightAssembly])(using system
 
   private def of(id: String) = assembler.find(_.plan.id == id)
 
-  /** The running graphs, by the flights' names. */
   def graphs: Vector[(id: String, graph: RunningGraph)] =
     assembler.map(assembly => (assembly.plan.id, assembly.graph))
 
@@ -53,7 +52,8 @@ object LiveFlights:
 
   /** Starts all flights, or none.
     *
-    * @param observe called with every record of a flight that begins with a heading; it must not block
+    * @param observe called with each flight's heading; its result is called with every record of that flight,
+    *   and must not block
     * @param beside receives a flight's rows in addition to its recording, or why it cannot
     * @return Left states why they cannot start; those that had started were stopped again
     */
@@ -98,7 +98,7 @@ object LiveFlights:
       .flatMap:
         case Left(reason)    => Future.successful(Left(reason))
         case Right(recorder) =>
-          // Its end is the flight's, of which the graph is asked until then.
+          // It lives as long as the flight, whose graph can be requested until then.
           val own = Materializer(system)
           assembler
             .start(plan, ObservedRecorder(recorder, observe(heading), assembler.keeps), Some(own))

@@ -10,8 +10,8 @@ import skein.rpc.RpcError
 import skein.units.*
 import skein.vehicle.CarControls
 
-/** Brings a scenario's vehicles to their starts: at rest, hovering, under api control. Altitudes of a
-  * scenario are above the place where each vehicle's own frame has its origin.
+/** Brings a scenario's vehicles to their starts: at rest, hovering, under api control. A scenario's altitudes
+  * are above the origin of each vehicle's own frame.
   *
   * @param calledOff why vehicles must not go on to their starts
   */
@@ -42,7 +42,7 @@ final class Preparation(
     * any state: API control that a vehicle already has is not requested again, since a flying vehicle falls
     * in AirSim if it is. Vehicles on the ground take off.
     *
-    * @param at its address
+    * @param at the simulator's address
     * @param commands which vehicles fly there, by name; all are returned
     */
   def climb(
@@ -70,7 +70,7 @@ final class Preparation(
             taken(vehicles.map(_._1), at).map(why => throw why.fold(failed)(NotReady(_)))
     yield all.map(_._1)
 
-  /** What became of the api control of the first vehicle that has lost it. */
+  /** Why the first vehicle without API control has lost it, if there is one. */
   private def taken(vehicles: Vector[VehicleClient], at: Address): Future[Option[String]] =
     Future
       .traverse(vehicles)(vehicle => vehicle.isApiControlEnabled().map(vehicle.name -> _))

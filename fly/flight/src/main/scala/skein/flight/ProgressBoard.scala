@@ -8,10 +8,10 @@ import skein.units.Decimals.fixed
 /** The progress of a flight.
   *
   * @param silentFor time without an answer of the simulator, if it is silent
-  * @param flown by the controller's clock
+  * @param flown elapsed time by the controller's clock
   * @param hasEnded whether it has ended, while others still run
-  * @param stepped time by the simulator's clock, where that passes in steps: then the flight's duration
-  *   counts in it
+  * @param stepped elapsed time by the simulator's clock, if that advances in steps; it then measures the
+  *   flight's duration
   */
 final case class FlightProgress(
     id: String,
@@ -69,7 +69,7 @@ object ProgressBoard:
       for furthest <- progress.map(_.flown).maxOption if furthest >= shownAt + every do
         shownAt = furthest
         val flights = progress.map(one => s"${one.id} ${one.text.trim}").mkString("; ")
-        // Of flights that start one after another, the last still flies when the first has ended.
+        // When flights start one after another, the last one still runs after the first has ended.
         val flown = progress.map(_.done).max.min(duration).toSeconds
         out.println(s"${flown.fixed(0)} s of ${duration.toSeconds.fixed(0)} s: $flights")
 

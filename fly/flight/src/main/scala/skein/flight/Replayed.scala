@@ -14,7 +14,7 @@ import skein.units.Expect
   * @param decidedAgain the first difference when the decisions are repeated on the recorded readings and
   *   moves
   * @param flownAgain for a flight in virtual time, of a loop that the program knows and with the built-in
-  *   simulator: the result of repeating it, physics, network and all
+  *   simulator: the result of repeating it, with physics and network
   */
 final case class Replayed(
     id: String,

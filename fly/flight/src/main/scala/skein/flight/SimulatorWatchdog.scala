@@ -16,7 +16,7 @@ import skein.units.Decimals.fixed
   *
   * @param isOther checks whether the simulator is another one; `Left` if it did not answer, else the
   *   evidence, if any
-  * @param answers asks the simulator for a sign of life over the flight's link
+  * @param answers requests a sign of life from the simulator over the flight's link
   * @param isShared whether other clients may take the vehicles: then it is checked every
   *   [[SimulatorWatchdog.AskEvery]]
   * @param within time-out of an answer
@@ -41,8 +41,7 @@ private[flight] final class SimulatorWatchdog(
 
   @volatile private var life = SignsOfLife()
 
-  // When a silence ended last, and when the simulator was known last to be the one that the flight began
-  // with.
+  // When the last silence ended, and when the simulator was last known to be the original one.
   @volatile private var backAt, knownAt = startedAt
   @volatile private var asking          = false
   @volatile private var askedAt         = startedAt
@@ -54,8 +53,8 @@ private[flight] final class SimulatorWatchdog(
   /** Time since the last answer, while the simulator is silent. */
   def silentFor: Option[Span] = life.silentSince.map(clock.now().since(_))
 
-  /** The outcome of the flight when its time is over, unless [[last]] finds another: where the simulator is
-    * silent then, it still has to answer.
+  /** The outcome of the flight when its time is over, unless [[last]] finds another. A simulator that is
+    * silent then must still answer.
     */
   def onTime: FlightOutcome =
     endedSilent = silentFor
@@ -68,7 +67,7 @@ private[flight] final class SimulatorWatchdog(
   def last(): Future[FlightOutcome] = endedSilent match
     case None        => checked()
     case Some(lasts) =>
-      // An outage of the link at the end of a flight says nothing against it; a dead simulator does.
+      // An outage of the link at the end of a flight does not invalidate it; a dead simulator does.
       val asked = UntilCertain(answers(), AttemptsAtEnd, LookEvery)(identity)
       asked.transformWith:
         case Success(true) => checked()
@@ -163,13 +162,15 @@ private[flight] object SimulatorWatchdog:
   /** Time without an answer after which a flight ends. */
   val GivesUp: Span = Span.ofSeconds(10)
 
-  /** Most attempts to hear of a simulator that is silent when the flight's time is over. Each takes a
+  /** Limit of the attempts to reach a simulator that is silent when the flight's time is over. Each takes a
     * time-out of [[skein.forward.Asking.Timeout]] and a pause: 6 s in all, more than an outage of a second
     * and the waits of TCP after it.
     */
   private val AttemptsAtEnd = 10
 
-  /** Silence is reported within a second of the last answer, where there are ten decisions a second. */
+  /** Shortest silence that is reported: at ten decisions a second, it is reported within a second of the last
+    * answer.
+    */
   private val ToldAfter = Span.ofMillis(700)
   private val LookEvery = Span.ofMillis(100)
 
@@ -179,10 +180,12 @@ private[flight] object SimulatorWatchdog:
   /** Duration of a policy's decision from which it is named as the reason why the loop sends no requests. */
   private val Slow = Span.ofMillis(200)
 
-  /** From the start of a flight to the first check: coincides with no tick of it. */
+  /** Time from a flight's start to the first check, so that checks coincide with no tick. */
   private val Offset = Span.ofMillis(137)
 
-  /** Time-out of an answer: with a long period, two requests may be lost. */
+  /** How long no answer may arrive before the simulator counts as silent: 700 ms, or more with a long period,
+    * so that two lost requests in a row do not count as silence.
+    */
   def within(period: Span, askTimeout: Span): Span = ToldAfter.max(period * 2 + askTimeout)
 
   /** The report of a silence: a loop that waits for a policy sends no requests. */

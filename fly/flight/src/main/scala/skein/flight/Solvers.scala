@@ -9,7 +9,7 @@ import skein.units.*
   *
   * @param build of this program; the solver's must be equal
   * @param link to a solver, or why there is none
-  * @param patience longest time before its start for which a flight waits until a solver accepts it
+  * @param patience longest wait of a flight, before its start, for a solver that accepts it
   * @param toldAfter time after which the user is informed that it waits
   */
 final case class Solvers(

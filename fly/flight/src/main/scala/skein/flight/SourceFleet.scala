@@ -28,7 +28,7 @@ private[flight] final class SourceFleet(
           StartPositioning.Starting(
             agent.startPositionNed,
             Approach(agent.name, vehicle, clock, calledOff),
-            // The way to its layer leads straight up from where it is.
+            // The vehicle climbs vertically to its layer from its present position.
             () => vehicle.read().map(_.fold(cannot, _.value.positionNed))
           )
         StartPositioning

@@ -12,7 +12,7 @@ import skein.units.*
   * @param headingBefore last commanded to this vehicle
   * @param elapsed since this vehicle's last decision; zero at the first
   * @param action the chosen one
-  * @param plan this decision's action and those foreseen after it, where they are sent in one command
+  * @param plan this decision's action and the foreseen ones after it, if one command sends them together
   */
 final case class Decision(
     vehicle: Int,

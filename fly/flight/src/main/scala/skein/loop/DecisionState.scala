@@ -18,7 +18,7 @@ private final class DecisionState(decider: Decider, memory: Memory):
     val (next, decision) = one.decideInstead(memory, view, now)
     (DecisionState(decider, next), decision)
 
-  /** With the policy's memory as before the first decision. */
+  /** This state with the policy's memory as before the first decision. */
   def begunAnew: DecisionState = DecisionState(decider, memory.copy(held = decider.start.held))
 
 /** The state for repeating decisions of vehicles that plan together. Immutable except for scratch memory. */

@@ -11,7 +11,7 @@ import skein.port.SteppedTime
 import skein.record.{EventKind, Recorder}
 import skein.units.*
 
-// Recordings name it, too, and so it is theirs.
+// Recordings contain loops, too, so the type is defined there.
 export skein.record.LoopKind
 
 /** The end of a flight: completed, stopped or failed. */
@@ -108,7 +108,7 @@ object Flight:
       stopping.trySuccess(failure.fold(onTime())(FlightOutcome.Failed(_)))
       failure.foreach(team.log.note(EventKind.Aborted, None, _))
       val hovering = loop match
-        // It has told them already.
+        // These loops have already commanded their vehicles to hover.
         case LoopKind.Paused                => Future.unit
         case _: LoopKind if failure.isEmpty => Future.unit
         case _                              => team.hoverAll()
@@ -139,7 +139,7 @@ object Flight:
     val streams   = system.actorOf(Props(Streams(started)))
     // A graph that cannot be built is a flight that fails: its vehicles hover, and its recording is closed.
     val running = started.future.flatMap(own.graph(team, switch).run()(using _))
-    // What it answers with need not end with its streams.
+    // Its future need not complete when its streams end.
     val ended = Future.firstCompletedOf(Seq(running, brokenOff.future))
     stopping.foreach: _ =>
       val breakingOff = system.scheduler.scheduleOnce(OwnLoop.Grace.toDuration):

@@ -9,15 +9,15 @@ import skein.units.*
 /** A team's decisions, rolled forward by its own policies and the models that predict it: what each vehicle
   * will be commanded if nothing unforeseen happens. Pure.
   *
-  * Each vehicle decides once a period on the predicted states of all. Their readings are taken to be as old
-  * as they are now. Where the policies of others are not known, one vehicle alone decides.
+  * Each vehicle decides once a period on the predicted states of all. Their readings are assumed to keep
+  * their present ages. Where the policies of others are not known, one vehicle alone decides.
   */
 private final class Foreseen(fleet: Fleet, deciders: IndexedSeq[Decider], period: Span):
   import Foreseen.*
 
-  /** The next actions of a vehicle and of all that are known to decide as it does, [[CommandPlan.Most]] of
-    * each, the first ones for the moments of the view's estimates; of others none. Cost: that many decisions
-    * of each, and the predicted flight of all.
+  /** The next [[CommandPlan.Most]] actions of a vehicle and of every vehicle known to decide as it does, from
+    * the moments of the view's estimates on; none of other vehicles. Cost: as many decisions of each, and the
+    * predicted flight of all.
     *
     * @param view with estimates
     * @param minds by vehicle
@@ -44,7 +44,7 @@ private final class Foreseen(fleet: Fleet, deciders: IndexedSeq[Decider], period
       before ++ action.map(action => (at = course.at, action = action))
     if all.exists(_.sizeIs >= CommandPlan.Most) then all
     else
-      // One that does not decide is predicted from its readings, whatever it is told.
+      // A vehicle that does not decide is predicted from its readings, whatever its commands.
       val flown = courses.lazyZip(actions).map: (course, action) =>
         course.flown(ActionGuidance.of(action.getOrElse(Action.Hover)), period)
       val moved = made.flatten.foldLeft(view)((view, made) => view.withMove(made._2.move(now)))
@@ -67,8 +67,8 @@ private final class Foreseen(fleet: Fleet, deciders: IndexedSeq[Decider], period
 private object Foreseen:
   type Actions = Vector[(at: Instant, action: Action)]
 
-  /** What a vehicle decides with.
+  /** The state with which a vehicle decides.
     *
-    * @param decision the one that led to this memory, where it was made on the very view
+    * @param decision that led to this memory, if it was made on the present view
     */
   final case class Mind(memory: Memory, decision: Option[Decision])

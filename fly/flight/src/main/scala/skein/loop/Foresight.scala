@@ -3,13 +3,13 @@ package skein.loop
 import skein.forecast.Forecast
 import skein.port.CommandPlan
 
-/** What a running loop foresees: with each decision, the vehicle's further actions. */
+/** Adds to each decision of a running loop the vehicle's foreseen actions. */
 private final class Foresight(foreseen: Foreseen, starts: Vector[Memory]):
   import Foreseen.*
 
   @volatile private var minds = starts.map(Mind(_, None))
 
-  // The vehicles of a team foresee the same: what was foreseen for one is kept for the others.
+  // Each vehicle of a team foresees equal actions: those foreseen for one are kept for the others.
   @volatile private var last = Option.empty[(Forecast, Vector[Actions])]
 
   /** Notes a decision and the memory after it. */

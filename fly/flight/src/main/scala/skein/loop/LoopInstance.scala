@@ -28,7 +28,7 @@ object LoopInstance:
         Flight.start(loop, team, None, Span.ofSeconds(600), Clock.system, Forgetting, on = Some(own))
       flight.outcome.onComplete(_ => own.shutdown())
       val running = RunningGraph(team.meters, flight.streams)
-      // A graph that has just been started tells nothing yet.
+      // The interpreter of a graph that has just started reports nothing yet.
       UntilCertain(running.shape(), MostAsked, AskEvery)(_.isDefined).andThen(_ => flight.stop())
 
   private val AskEvery  = Span.ofMillis(10)

@@ -1,15 +1,17 @@
 package skein.loop
 
 import skein.planning.Planner
-import skein.policy.{Agent, Fleet, HeadingPolicy}
+import skein.policy.{Agent, Fleet, Policy}
 
 /** A plan's model of the opponent of a vehicle that plays against one. */
 object OpponentModel:
 
   /** The assumed policy of an opponent, or why it is assumed to fly straight on. */
-  private[loop] def of(opponent: Agent): Either[String, HeadingPolicy] = opponent.policy match
-    case policy: HeadingPolicy => Planner.refusal(policy).toLeft(policy)
-    case _                     => Left("it plays against more than one vehicle")
+  private[loop] def of(opponent: Agent): Either[String, Policy] =
+    if !opponent.policy.isAgainstOne then Left("it plays against more than one vehicle")
+    else
+      val policy = opponent.policy.guessed(_ => 0)
+      Planner.refusal(policy).toLeft(policy)
 
   /** The vehicles whose decisions plans may predict, by their places. */
   private[loop] def known(fleet: Fleet): Vector[Int] =

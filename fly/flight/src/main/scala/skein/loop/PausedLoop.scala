@@ -95,7 +95,7 @@ private final class PausedFlight(
     if step.number == steps || stopped() then Future.successful(None)
     else if team.hold.isHeld then
       for
-        // So that a simulator that falls silent is noticed.
+        // So that a simulator's silence is noticed.
         _    <- patiently(team.readAll())
         next <- after(PausedFlight.LookEvery)(next(step))
       yield next

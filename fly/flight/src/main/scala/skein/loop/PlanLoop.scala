@@ -29,7 +29,7 @@ object PlanLoop:
       val fan     = builder.add(team.fan)
 
       observed ~> cast
-      // The end overtakes what waits: a vehicle that cannot be commanded takes no more of it.
+      // The end overtakes waiting decisions: a vehicle that cannot be commanded accepts none of them.
       for vehicle <- single do
         cast ~> PredictiveLoop.newest(team, Some(vehicle)) ~> team.predict(vehicle) ~>
           team.decide(vehicle).via(stop.flow) ~> team.steer(vehicle) ~> steered.in(vehicle)

@@ -20,8 +20,8 @@ import skein.units.*
   * @param slowestShare least commanded speed, as a share of the vehicle's; 1: only its heading is planned
   * @param separationM to be kept from vehicles that are not the opponent; 0: none
   * @param geofenceM to be kept to north and south, east and west of the origin; 0: none
-  * @param kept of the scenario's limits, with a margin of [[PlanSettings.Doubt]], of speeds
-  *   [[PlanSettings.SpeedDoubt]]; not in the text
+  * @param kept the scenario's limits that plans keep, with the margin [[PlanSettings.Doubt]], or
+  *   [[PlanSettings.SpeedDoubt]] of speeds; not part of the text
   */
 final case class PlanSettings(
     deadline: Span = Span.ofMillis(60),
@@ -102,7 +102,9 @@ final case class PlanSettings(
       _ min _
     )
 
-  /** The altitude nearest to a vehicle's own between floor and ceiling; midway where these are close, m. */
+  /** The altitude nearest to a vehicle's own between floor and ceiling, m; midway between them if they are
+    * close.
+    */
   def altitudeM(ownM: Double): Double =
     val leastM = kept.collect { case Kept.Above(leastM) => leastM + PlanSettings.Doubt }.maxOption
     val mostM  = kept.collect { case Kept.Below(mostM) => mostM - PlanSettings.Doubt }.minOption
@@ -119,7 +121,9 @@ object PlanSettings:
   val CrossEntropy = "cross-entropy"
   val PathIntegral = "path-integral"
 
-  /** Longest search for a plan: the data of its start are older then than those of any other loop. */
+  /** Limit of the deadline: after a longer search, the data behind a plan would be older than in any other
+    * loop.
+    */
   val MostDeadline: Span = Span.ofSeconds(2)
 
   /** Margin added to the separation, since vehicles deviate from their models and commands arrive at other
@@ -135,7 +139,7 @@ object PlanSettings:
     PathIntegral -> PlanMethod.PathIntegral(temperature = 0.1)
   )
 
-  /** Blocks for a tenth of a millisecond with SIMD, for two without. */
+  /** Blocks of a slice by default: a slice takes some 0.1 ms with SIMD, and 2 ms without. */
   val defaultBlocks: Int = if Planner.isFast then 4 else 1
 
   /** The text form of a setting, if it is one word. */
@@ -155,7 +159,7 @@ object PlanSettings:
   private given Word[Double] = word("", _.toString, _.toDoubleOption)
   private given Word[String] = word("", identity, Some(_))
 
-  // The scenario says these.
+  // Set by the scenario.
   private given Word[Vector[Kept]] = Word("", _ => None, _ => Some(Vector.empty))
 
   private val mirror = summon[Mirror.ProductOf[PlanSettings]]

@@ -1,7 +1,7 @@
 package skein.loop
 
 import skein.planning.*
-import skein.policy.{Action, Agent, Fleet, Goal, HeadingPolicy, Role}
+import skein.policy.{Action, Agent, Fleet, Goal, Role}
 import skein.record.PlannedPath
 import skein.units.*
 import skein.vehicle.{PlaneReading, VehicleKind}
@@ -131,9 +131,8 @@ object Planning:
     */
   private[loop] def plans(agent: Agent): Boolean =
     agent.kind == VehicleKind.Multirotor && (agent.policy match
-      case _: Goal          => true
-      case _: HeadingPolicy => agent.role == Role.Pursuer
-      case _                => false)
+      case _: Goal => true
+      case policy  => policy.isAgainstOne && agent.role == Role.Pursuer)
 
   /** The vehicles that plan and those that do not, in a line for the user.
     *
@@ -152,7 +151,7 @@ object Planning:
            s"${names(others)} ${
                if others.sizeIs == 1 then "flies by its own policy" else "fly by their own policies"
              }"),
-      "plan: expected a multirotor that can plan, by a policy with a Goal or by a HeadingPolicy that " +
+      "plan: expected a multirotor that can plan, by a policy with a Goal or by one that " +
         s"pursues one opponent, came none: ${names(others)} would fly by their own policies"
     )
 

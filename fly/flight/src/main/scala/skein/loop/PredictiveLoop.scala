@@ -22,7 +22,7 @@ object PredictiveLoop:
       val fan      = builder.add(team.fan)
 
       observed ~> cast
-      // The end overtakes what waits: a vehicle that cannot be commanded takes no more of it.
+      // The end overtakes waiting decisions: a vehicle that cannot be commanded accepts none of them.
       for vehicle <- team.own do
         cast ~> newest(team, Some(vehicle)) ~> team.predict(vehicle) ~>
           team.decide(vehicle).via(team.foresee(vehicle)).via(stop.flow) ~> team.steer(vehicle) ~> steered

@@ -15,7 +15,7 @@ import skein.units.*
   * and compared to the last bit: everything else in a decision, above all its opponent and the chosen
   * heading. The memory from decision to decision is the replay's own.
   *
-  * @param settings of the flight; a loop that does not plan needs of them only what its controllers know
+  * @param settings of the flight; for a loop that does not plan, only its controllers' knowledge matters
   * @throws IllegalArgumentException if planning does not support the recorded models here
   */
 final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = LoopSettings())(using
@@ -32,7 +32,7 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
   private val bySequence  = readings.map(reading => (reading.vehicle, reading.sequence) -> reading).toMap
   private val controllers = Reading.controllers(recording.heading)
 
-  /** What each controller was answered, by vehicle. */
+  /** The readings that each controller received, by controller and vehicle. */
   private val heard = Vector.tabulate(controllers): controller =>
     fleet.agents.map: agent =>
       Heard(
@@ -153,7 +153,7 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
         else before.decide(views, recorded.decidedAt, slices)
       val decisions = made.map(rows.decision)
       val decided   = decisions.map(decision => (decision.vehicle, decision.sequence) -> decision).toMap
-      // Where its number is another, it differs from what is recorded.
+      // If its number is wrong, the comparison with the recorded decision finds that.
       val own = decisions(planners.indexOf(recorded.vehicle))
       (states.copy(jointly = Some(next), decided = decided), own)
 

@@ -1,6 +1,6 @@
 package skein.loop
 
-import skein.policy.{Action, Agent, Fleet, HeadingPolicy, Role, Yaw}
+import skein.policy.{Action, Agent, Fleet, Role, Yaw}
 import skein.record.{
   CommandRow,
   DecisionRow,
@@ -91,10 +91,10 @@ private final class Rows(fleet: Fleet):
       action = actionColumn(decision.action, fleet.agents(self))
     )
 
-  /** The recorded speed: absent for that of a vehicle whose policy always commands its own. */
+  /** The recorded speed: absent for the vehicle's own, where its policy plays against one opponent. */
   private def speedColumn(action: Action, agent: Agent): Option[MetresPerSecond] = action match
-    case Action.Along(_, agent.speed, _, Yaw.Still) if agent.policy.isInstanceOf[HeadingPolicy] => None
-    case _ => Some(action.speed)
+    case Action.Along(_, agent.speed, _, Yaw.Still) if agent.policy.isAgainstOne => None
+    case _                                                                       => Some(action.speed)
 
   /** The recorded action: absent for a heading at the altitude of the start. */
   private def actionColumn(action: Action, agent: Agent): Option[Action] = action match

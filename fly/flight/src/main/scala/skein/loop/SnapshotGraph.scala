@@ -25,7 +25,7 @@ object SnapshotGraph:
       val steered = builder.add(team.steered)
       val fan     = builder.add(team.fan)
 
-      // The end overtakes what waits: a vehicle that cannot be commanded takes no more of it.
+      // The end overtakes waiting decisions: a vehicle that cannot be commanded accepts none of them.
       for vehicle <- team.own do
         cast ~> team.decide(vehicle) ~> team.newest(vehicle).via(stop.flow) ~>
           team.steer(vehicle) ~> steered

@@ -26,8 +26,7 @@ trait Solver:
       searching: Span = Span.Zero
   ): Future[Solved]
 
-  /** Recent time from a request to its answer, without that meant for searching: commands are sent later by
-    * this.
+  /** Recent time from a request to its answer, less the time for searching: commands are sent later by this.
     */
   def delay: Span
 

@@ -145,8 +145,8 @@ private final class TeamDeciding(
         finally underWay = None)
       .via(decided(vehicle))
 
-  /** Adds to a vehicle's decisions the actions foreseen after them, for one command together; a part of the
-    * graph only where the settings want it.
+  /** Adds to each decision of a vehicle the actions foreseen after it, to be sent in one command. A part of
+    * the graph only if the settings enable it.
     */
   def foresee(vehicle: Int): Flow[Decision, Decision, NotUsed] =
     if !settings.planInPacket then Flow[Decision]
@@ -277,6 +277,8 @@ private final class TeamDeciding(
   def decideAt(vehicle: Int, memory: Memory, view: TeamView, now: Instant): (Memory, Decision) =
     deciders(vehicle).decide(memory, view, now)
 
-  /** Whose predictions a decider compares with readings: if each of a team predicts all, only its own. */
+  /** The vehicles whose predictions a decider compares with readings: only its own, if each vehicle predicts
+    * all.
+    */
   private def verified(decider: Int): Int => Boolean =
     if fleet.agents(decider).policy.isAgainstOne then _ => true else _ == decider

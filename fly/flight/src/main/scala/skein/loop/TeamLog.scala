@@ -78,7 +78,6 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
     val kind = TeamLog.kindOf(error)
     recorder.offer(Event(clock.now(), kind, Some(name(vehicle)), s"$what: ${error.message}", about = about))
 
-  /** A vehicle's reading was received. */
   def read(reading: Reading): Unit = recorder.offer(rows.reading(reading))
 
   def sensed(reading: SensorReading): Unit = recorder.offer(rows.measurement(reading))

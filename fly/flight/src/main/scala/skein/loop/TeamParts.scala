@@ -6,7 +6,6 @@ import skein.policy.Fleet
 /** The parts of a team's graph: their names and meters. */
 private final class TeamParts(fleet: Fleet):
 
-  /** The meters of the parts of the loop's graph. */
   val meters: StageMeters = StageMeters()
 
   def named(part: String): Attributes = Attributes(meter(part))

@@ -56,7 +56,7 @@ private final class TeamPlanning(
     )
     val limits = turningAtOnce(alone.sinceDecisionS)
     Part(
-      // Other speeds than that of the place wanted are for catching up.
+      // The vehicle cruises at the speed of its goal; other speeds serve to catch up with it.
       objective.copy(limits = limits, cruiseSpeed = settings.speedMps(speed(along))),
       alone.copy(suggested = suggested(request, memory, alone, limits)),
       Planning.stream(seed, self, memory)
@@ -101,7 +101,7 @@ private final class TeamPlanning(
     PlannedMove(turn, settings.speedMps(action.speed.value), Vector.empty)
 
 private object TeamPlanning:
-  /** Limit of a turn in a step, of a multirotor that turns on the spot. With less than its policy turns, a
-    * vehicle could not turn back in time.
+  /** Limit of a multirotor's turn in a step. If it were less than the policy's turns, a vehicle could not
+    * turn back in time.
     */
   val MostTurnRad = 1.0

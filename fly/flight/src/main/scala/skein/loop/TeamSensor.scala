@@ -4,15 +4,15 @@ import java.util.concurrent.atomic.AtomicLong
 import scala.concurrent.{ExecutionContext, Future}
 import skein.port.{Sensor, VehicleError}
 
-/** A sensor of a vehicle, as far as the vehicle's policy reads it. */
+/** A vehicle's sensor, whose readings and errors are recorded. */
 private final class TeamSensor(val vehicle: Int, val name: String, sensor: Sensor, log: TeamLog)(using
     ExecutionContext
 ):
   private val asked   = AtomicLong()
   private val columns = sensor.columns
 
-  /** Reads it; records the answer or the error. An answer with another count of numbers than columns, or with
-    * infinite ones, is an error.
+  /** Reads it; records the answer or the error. An answer is an error if it has not one number for each
+    * column, or a number that is not finite.
     */
   def read(): Future[Either[VehicleError, SensorReading]] =
     val sequence = asked.getAndIncrement()

@@ -142,7 +142,7 @@ private final class TeamSteering(
   private def hover(vehicle: Int)(using ActorSystem): Future[Unit] =
     val sent = moves.get(vehicle)
     for
-      // To hover is a command, too, and must not be a third one outstanding.
+      // Hovering is a command, too, and must not be the third unanswered one.
       _      <- allEnded(sent.dropRight(1))
       answer <- UntilCertain(ports(vehicle).hover())(TeamSteering.isHovering).transform(Success(_))
       _      <- allEnded(sent)

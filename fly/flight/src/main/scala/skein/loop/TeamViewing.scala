@@ -5,7 +5,7 @@ import org.apache.pekko.stream.{Graph, UniformFanOutShape}
 import org.apache.pekko.stream.scaladsl.{Broadcast, Flow, MergePreferred, Source}
 import skein.flow.Hold
 import skein.forecast.{Commanded, ForecastEvent, Forecast}
-import skein.policy.{ActionGuidance, Fleet}
+import skein.policy.Fleet
 import skein.port.CommandPlan
 import skein.record.EventKind
 import skein.signal.ClockAlignment
@@ -89,11 +89,11 @@ private final class TeamViewing(
 
   private def told(move: SentCommand, plan: Option[CommandPlan]): ForecastEvent = plan match
     case None =>
-      val command = Commanded(move.decision, ActionGuidance.of(move.action), move.sentAt)
+      val command = Commanded(move.decision, settings.guidance(move.action), move.sentAt)
       ForecastEvent.Sent(move.vehicle, command)
     case Some(plan) =>
       val commands = plan.actions.map: (at, action) =>
-        Commanded(move.decision, ActionGuidance.of(action), move.sentAt, actsAt = Some(at))
+        Commanded(move.decision, settings.guidance(action), move.sentAt, actsAt = Some(at))
       ForecastEvent.Planned(move.vehicle, commands)
 
   private def request(view: TeamView, deciders: Set[Int]) =

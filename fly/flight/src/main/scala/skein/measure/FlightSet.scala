@@ -33,7 +33,6 @@ final case class FlightSet private (flights: Vector[FlightSummary], twins: Vecto
 
   def predictions: Vector[PredictionGroup] = PredictionGroup.of(flights)
 
-  /** A flight's deviation from its [[Truth]]. */
   def deviation(flight: FlightSummary): Option[Double] = truths.deviation(flight)
 
   private lazy val truths = Truth.among(all)

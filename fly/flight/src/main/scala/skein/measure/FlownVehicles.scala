@@ -35,11 +35,12 @@ object FlownVehicles:
           val Vector3(x, y, _)   = state.value.positionNed
           val Vector3(vx, vy, _) = state.value.velocityNed
           Sample(state.validAt.since(start).toSeconds, x, y, vx, vy)
-        // What it is told to do after its last command, hovering, is not recorded.
+        // The command after its last recorded one, to hover, is not recorded.
         .takeWhile(_.atS <= arrivals.last.atS)
       TimeHistory(s"${recording.flight.id}, ${vehicle.name}", samples, arrivals, commands.last.down.value)
 
-  /** Commands that arrived, with their times on the simulator's clock; none before one that was sent earlier.
+  /** Commands that arrived, with their arrival times on the simulator's clock: never before that of an
+    * earlier command.
     */
   private def arrivalsOf(
       recording: Recording,

@@ -6,11 +6,11 @@ import skein.units.Span
 
 /** The profile of a link, fitted to requests over it.
   *
-  * @param lossShare of all requests, each of which lost nothing or one packet
+  * @param lossShare share of the requests that were lost
   * @param burst mean number of requests that were lost in a row; None if no more than by chance
-  * @param correlatedS for how long a round trip lasts; None if no longer than by chance
+  * @param correlatedS correlation time of successive round trips; None if no longer than by chance
   * @param logNormal median in ms, and standard deviation of the logarithm
-  * @param distance of the log-normal distribution function to the measured one, at most
+  * @param distance greatest distance between the log-normal and the measured distribution function
   */
 final case class LinkFit(
     samples: Int,
@@ -38,10 +38,10 @@ final case class LinkFit(
 object LinkFit:
   /** Fits a link.
     *
-    * Loss: the share of lost requests, and their mean number in a row, which is fitted if it exceeds that of
-    * independent losses, 1/(1 − share), by three standard errors. Correlation: of the ranks r of successive
-    * round trips, which are Δ apart, e^(−Δ/τ), fitted if it exceeds that of independent ones by three
-    * standard errors; ranks, because [[skein.signal.LatencyProfile.Correlated]] holds the share at which the
+    * Loss: the share of lost requests. Their mean number in a row is fitted if it exceeds that of independent
+    * losses, 1/(1 − share), by three standard errors. Correlation: e^(−Δ/τ) between the ranks of successive
+    * round trips, which are Δ apart; fitted if it exceeds that of independent ranks by three standard errors.
+    * Ranks are used because [[skein.signal.LatencyProfile.Correlated]] holds the share at which the
     * distribution is read.
     */
   def of(traces: Seq[RoundTripTrace]): LinkFit =

@@ -12,8 +12,8 @@ import skein.units.*
 /** Encodes a flight's summary, every number to the bit. Derived values (distance, result) are computed anew,
   * and the scenario is the reader's own.
   *
-  * As [[Codec]] writes it, but numbers of one kind by their bytes, all first bytes first, since these repeat;
-  * then deflated.
+  * Encoded by [[Codec]], except that numbers of one kind are transposed: all first bytes first, since these
+  * repeat. Then deflated.
   */
 object SummaryBytes:
   /** Limit of the inflated size, in bytes. */

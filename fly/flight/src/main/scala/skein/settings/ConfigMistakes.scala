@@ -10,15 +10,15 @@ import skein.scenario.{Nearest, ScenarioText, Scenarios}
   */
 private[skein] object ConfigMistakes:
 
-  /** Mistakes of form below `path`, whatever the values: keys that `reference.conf` does not know, nulls, and
-    * settings, lists and single values in one another's places.
+  /** Structural mistakes below `path`, whatever the values: keys that `reference.conf` does not know, nulls,
+    * and a section, list or single value where another of these is expected.
     *
     * @return None if there is none
     */
   def ofShape(config: Config, path: String)(using Scenarios): Option[String] =
     ofValue(config.getValue(path), known(config).getValue(path), path).reduceOption(_ + "\n" + _)
 
-  /** Keys of a file beside `path` or above, none of which is read. */
+  /** Keys of a file that lie outside `path`: none of them is read. */
   def besideInFile(file: Config, path: String): Option[String] =
     path
       .split('.')

@@ -53,7 +53,6 @@ object ModelFile:
       altitudeM: Option[Double] = None
   )
 
-  /** Renders the text of a model file. */
   def render(use: Structure, fits: Vector[Fit], from: Provenance): String =
     val sections = fits.map: fit =>
       val found      = fit.identification

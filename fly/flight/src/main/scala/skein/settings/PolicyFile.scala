@@ -6,7 +6,7 @@ import java.util.Locale
 import scala.jdk.CollectionConverters.*
 import scala.util.Try
 import skein.onnx.OnnxPolicy
-import skein.policy.{Fleet, HeadingPolicy, PolicyFamily, Role}
+import skein.policy.{Fleet, Policy, PolicyFamily, Role}
 import skein.scenario.Scenarios
 import skein.units.Decimals.significant
 import skein.units.Expect
@@ -17,7 +17,7 @@ import skein.units.Expect
   * @param parameters in the order of the family's axes
   */
 final case class PolicyFile(role: Role, family: PolicyFamily, parameters: Vector[Double]):
-  def policy: HeadingPolicy = family.policy(parameters)
+  def policy: Policy = family.policy(parameters)
 
   /** The scenario with this policy for all agents of its role. */
   def flownIn(fleet: Fleet): Fleet =

@@ -28,7 +28,7 @@ enum PredictionModel:
 
   case ConstantTurn
 
-  /** The whole quadrotor, with what it lacks learned in flight. */
+  /** The whole quadrotor, with a correction of its errors that is learned in flight. */
   case Adaptive
 
   def at(altitudeM: Double): VehicleModel[?] = this match

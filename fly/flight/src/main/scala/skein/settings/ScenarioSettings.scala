@@ -55,8 +55,9 @@ object ScenarioSettings:
     scenario.settings.map((name, value) => ParameterRow(scenario.recordedAs(name), value)) ++
       scenario.document.map(ParameterRow(_, _))
 
-  /** What `--scenario` names: a scenario, or, by its ending, a file of data, of which the text stands for it
-    * from here on: in settings, questions to other processes, and recordings.
+  /** Resolves a word of `--scenario`: a scenario's name, or the path of a data file, recognised by its
+    * ending. The file's text replaces the path from here on: in settings, questions to other processes, and
+    * recordings.
     *
     * @return Left states where the file is wrong
     */

@@ -46,7 +46,7 @@ object SimulatedBody:
 
   val forms: String = s"${AirSim.text}, airsim:DEVIATION, or mujoco:FILE"
 
-  /** Whether a step ends each time that autopilots' sensors are read. */
+  /** Whether each reading of the autopilots' sensors falls on the end of a step. */
   private[settings] def meetsSensors(stepS: Double): Boolean =
     val steps = AutopilotInterface.Step.toSeconds / stepS
     steps >= 1 && math.abs(steps - steps.round) <= 1e-9

@@ -11,7 +11,9 @@ import scala.util.Using
 object TextFile:
   private val MostBytes = 64 << 20
 
-  /** The file's path. Not relative to a configuration's folder, nor to that of a recorded flight. */
+  /** Says in an error where a relative path was sought: not in a configuration's or a recorded flight's
+    * folder.
+    */
   private def sought(file: Path): String =
     if file.isAbsolute then "" else s", sought from ${Path.of("").toAbsolutePath}"
 

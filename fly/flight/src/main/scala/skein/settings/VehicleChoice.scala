@@ -16,8 +16,8 @@ import skein.units.Decimals.fixed
 import skein.units.Expect
 import skein.vehicle.{Deviation, DrivenCar, Quadrotor, ReducedModel, TiltModel}
 
-/** Models of vehicles by the names that users give: one list for simulated vehicles (`--plant`) and, as far
-  * as they predict, for predictions (`--predictor`, [[PredictionModel]]).
+/** Models of vehicles by the names that users give: one list for simulated vehicles (`--plant`) and, for
+  * those that can predict, for predictions (`--predictor`, [[PredictionModel]]).
   *
   * @param description one line about the vehicle
   */

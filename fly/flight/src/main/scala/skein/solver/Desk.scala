@@ -52,7 +52,7 @@ final case class Desk private (vehicles: Vector[Desk.Vehicle], overtaken: Long, 
   def done(question: Question, held: Option[Any]): Desk =
     val known = vehicles(question.vehicle)
     val from  = question.remembered.fold(-1L)(_.question)
-    // Nobody goes on from what is older than what was used last.
+    // No request continues from a memory older than the last used one.
     val kept  = known.memories.filter((number, _) => number >= from)
     val added = held.fold(kept)(now => kept.updated(question.number, now))
     val most  = added.keysIterator.filter(_ != from).toVector.sorted.takeRight(MostMemories).toSet

@@ -61,7 +61,9 @@ final case class Exchange private (
           (heard.copy(trips = lately, counts = counts.copy(used = counts.used + 1)), Verdict.Counts(asked))
         else (heard.copy(counts = counts.copy(late = counts.late + 1)), Verdict.Late(at.since(asked)))
 
-  /** Counts that the solver reports beyond its last report; to be called after the answer was judged. */
+  /** The counts that the solver reports in excess of its last report; to be called after the answer was
+    * judged.
+    */
   def news(answer: Answer): (Exchange, Told) =
     if !solver.contains(answer.solver) then (this, Told(0, 0))
     else
@@ -76,7 +78,7 @@ final case class Exchange private (
   /** Aligns the clocks. Another start of a solver has another clock, and begins new counts. */
   private def aligned(answer: Answer, asked: Instant, at: Instant): Exchange =
     val thinking = answer.answeredAt.since(answer.takenAt).max(Span.Zero)
-    // As if it had taken no time: then both ways bound the offset.
+    // As if the solver had taken no time: then both directions bound the offset.
     val seen = Stamped((), answer.takenAt, asked, at - thinking)
     if solver.contains(answer.solver) then
       copy(clocks = Some(clocks.fold(ClockAlignment.of(seen))(_.updated(seen))))

@@ -16,7 +16,7 @@ import skein.units.*
   */
 final class FlightDeciders(val fleet: Fleet, plans: Option[FlightDeciders.Plans] = None):
 
-  // Whoever plans is asked one question at a time.
+  // A planner serves one request at a time.
   private val planner = JointPlanner()
 
   /** The vehicles whose decisions are joint with a vehicle's, in their order; only itself unless it plans. */
@@ -34,7 +34,7 @@ final class FlightDeciders(val fleet: Fleet, plans: Option[FlightDeciders.Plans]
   ): Future[(Vector[Chosen], Any)] =
     plans.filter(_.planning.vehicles.contains(question.vehicle)) match
       case Some(plans) =>
-        // A memory is this planner's own.
+        // Every memory was made by this planner.
         planned(plans, question, held.map(_.asInstanceOf[PlanStage.Answer]), now)
       case None =>
         val decider          = Decider(fleet, question.vehicle)
@@ -49,7 +49,7 @@ final class FlightDeciders(val fleet: Fleet, plans: Option[FlightDeciders.Plans]
       now: Instant
   )(using ActorSystem): Future[(Vector[Chosen], PlanStage.Answer)] =
     import plans.planning
-    // A policy that decides in a plan's place remembers nothing.
+    // A policy that decides instead of a plan keeps no memory.
     val memories =
       question.deciders.map((vehicle, memory) => memory.copy(held = Decider(fleet, vehicle).start.held))
     val views   = memories.map(_ => question.view)

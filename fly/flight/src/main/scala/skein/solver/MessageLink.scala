@@ -32,5 +32,5 @@ enum LinkNews:
   case Up
   case Down(reason: String)
 
-  /** The other side, or what is between, rejects this side; there are no retries. */
+  /** The other side, or a node between, rejects this side; there are no retries. */
   case Refused(reason: String)

@@ -41,7 +41,7 @@ final class SolverClient(
   private var preparedAt     = Option.empty[Instant]
   private var late           = Option.empty[Cancellable]
 
-  // Other threads that are told of news meanwhile wait for it.
+  // Other threads that report news meanwhile wait for this value.
   private lazy val open = link.open(received, told)
   open: Unit
 
@@ -119,7 +119,7 @@ final class SolverClient(
         case SolverMessage.Refused(`flight`, reason)               => refused(s"the solver refuses: $reason")
         case SolverMessage.Unknown(`flight`)                       => again("it does not know this flight")
         case SolverMessage.Tell(answer) if answer.flight == flight => heard(answer)
-        // On a link that several flights share.
+        // A message for another flight on a shared link.
         case _ => ()
 
   private def heard(answer: Answer): Unit =

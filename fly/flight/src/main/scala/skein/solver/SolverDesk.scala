@@ -114,7 +114,7 @@ final class SolverDesk(
       }(using workers)
       true
     else
-      // It says hello again until then.
+      // The flight repeats its hello until then.
       val isPreparing = lock.synchronized(greeting(flight))
       if isPreparing then answer(SolverMessage.Preparing(flight))
       isPreparing
@@ -136,7 +136,7 @@ final class SolverDesk(
     val left = lock.synchronized:
       uses += 1
       val others = sessions.removed(flight)
-      // Whoever did not say goodbye makes room in the end.
+      // Flights that ended without a goodbye are removed in the end.
       val kept =
         if others.size < MostFlights then others else others.removed(others.minBy(_._2.usedAt)._1)
       val left = sessions.removedAll(kept.keys).values
@@ -195,7 +195,7 @@ final class SolverDesk(
   private def decided(session: Session, question: Question): Future[Either[String, (Choice, Any)]] =
     val memory = session.desk.memory(question, id)
     val begins = memory.isEmpty && question.remembered.isDefined
-    // By the controller's clock, as far as that is known to be.
+    // By the controller's clock, as far as it is known.
     val now = question.solverClock
       .filter(_.solver == id)
       .fold(question.askedAt)(known => question.askedAt.max(clock.now() + known.offset))
@@ -227,7 +227,7 @@ final class SolverDesk(
     for (reply, answer) <- answer do
       val told =
         try SolverMessageCodec.bytes(SolverMessage.Tell(answer))
-        catch // The courses of very many vehicles.
+        catch // Plans of very many vehicles may exceed a message.
           case tooLong: IllegalArgumentException =>
             SolverMessageCodec.bytes(SolverMessage.Tell(answer.copy(result = Left(tooLong.getMessage))))
       reply(told)

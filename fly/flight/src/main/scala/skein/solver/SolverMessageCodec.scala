@@ -50,7 +50,7 @@ object SolverMessageCodec:
   private given Codec[Estimate]      = Codec.derived
   private given Codec[TeamView]      = Codec.derived[Seen].imap(_.view)(Seen.of)
 
-  // What the policy itself remembers is with the solver.
+  // The policy's own memory stays at the solver.
   private given Codec[Memory] = Codec
     .derived[(Double, Option[Instant], Long)]
     .imap(Memory(_, _, _))(memory => (memory.headingRad, memory.decidedAt, memory.decisions))
@@ -100,7 +100,7 @@ object SolverMessageCodec:
       TeamView(
         readings,
         moves,
-        // Bounds whose middle and half width these are.
+        // Bounds with this middle and half width.
         clocks.map((offset, uncertainty) =>
           ClockAlignment.of(Stamped(
             (),

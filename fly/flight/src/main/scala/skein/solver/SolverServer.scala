@@ -30,7 +30,6 @@ final class SolverServer private (listening: Listening, switch: SharedKillSwitch
     listening.close()
 
 object SolverServer:
-  /** Limit of simultaneously open connections. */
   val MostConnections = 64
 
   /** Time-out of the first message: a flight says hello as soon as it is connected. */
@@ -49,14 +48,14 @@ object SolverServer:
 
     def accept(incoming: Incoming): Unit =
       val own = KillSwitches.shared("solver-connection")
-      // Its peer may not read what it is sent, so nothing is waited for.
+      // The displaced peer may not read, so nothing is awaited.
       seats.enter(() => own.abort(Displaced)) match
         case None       => Source.empty[ByteString].via(incoming.flow).runWith(Sink.cancelled): Unit
         case Some(seat) => serve(incoming, seat, own)
 
     def serve(incoming: Incoming, seat: Seats.Seat, own: SharedKillSwitch): Unit =
       val (out, replies) = Source.queue[ByteString](TcpLink.MostWaiting).preMaterialize()
-      // What does not fit is lost, as on any link; the flight asks again.
+      // A message that does not fit is lost, as on any link; the flight repeats its request.
       def reply(message: Array[Byte]): Unit = out.offer(ByteString.fromArrayUnsafe(message)): Unit
       replies
         .via(switch.flow)

@@ -15,8 +15,8 @@ import skein.testing.Unhurried
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** The paper's duel in virtual time, with plans in the packets, against a simulator that was started before:
-  * once by its own buffer, once by one beside it.
+/** The paper's duel in virtual time, with plans in the packets, against a running simulator: once with the
+  * simulator's own buffer, once with an external one.
   */
 class BufferFlightSimulation extends munit.FunSuite, Unhurried:
   private given Scenarios = Scenarios.ours
@@ -36,7 +36,7 @@ class BufferFlightSimulation extends munit.FunSuite, Unhurried:
   private def distanceM(recorder: MemoryRecorder): Double =
     FlightSummary.of(recorder.recording).headline.getOrElse(fail("no distance"))
 
-  /** The distance that a flight ends with, and what the buffer beside its simulator has counted. */
+  /** A flight's final distance, and the counts of the external buffer. */
   private def fly(isBeside: Boolean): (Double, BufferCounts) = VirtualTime
     .run(seed = 1): system =>
       given ActorSystem = system
@@ -67,7 +67,7 @@ class BufferFlightSimulation extends munit.FunSuite, Unhurried:
     .value
 
   test(
-    "through losses and outages a flight by a buffer beside the simulator is as near to the truth as by its own"
+    "through losses and outages, an external buffer's flights are as near to the truth as the built-in one's"
   ):
     val paused =
       settings.copy(loops = List(LoopKind.Paused), links = List(LatencyProfile.none), planInPacket = false)

@@ -22,7 +22,7 @@ class BufferLiveSuite extends munit.FunSuite, Waiting:
 
   private def right[E, A](answer: Either[E, A]): A = answer.fold(error => fail(error.toString), identity)
 
-  test("through losses, an outage and 400 ms a vehicle flies by plans, and hovers after their end"):
+  test("a vehicle follows plans through losses, an outage and 400 ms of delay, and hovers after their end"):
     val transport = TcpTransport()
     val free      = Address("127.0.0.1", 0)
     val profile   = right(LatencyProfile.parse("loss:5%/4,outage:500ms/3s,constant:400ms", Left(_)))
@@ -60,7 +60,7 @@ class BufferLiveSuite extends munit.FunSuite, Waiting:
       assert(counts.moves > 1 && counts.plans > 1, counts.toString)
       assertEquals((counts.refusedPlans, counts.failedMoves), (0L, 0L))
 
-  /** The vehicle's state at a time of the simulator's clock, or later. */
+  /** The vehicle's state at `at` on the simulator's clock, or later. */
   private def resting(drone: Multirotor, at: Instant): Future[Stamped[Kinematics]] =
     drone.kinematics().map(right).flatMap: seen =>
       if seen.validAt >= at then Future.successful(seen) else after(200.millis)(resting(drone, at))

@@ -17,17 +17,17 @@ import skein.testing.Unhurried
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** The buffer beside the built-in simulator's ordinary moves, in virtual time; the simulator's own buffer is
-  * the oracle.
+/** The external buffer, which uses the built-in simulator's ordinary moves, in virtual time. The simulator's
+  * own buffer is the oracle.
   */
 class BufferSimulation extends munit.FunSuite, Unhurried:
 
   /** A call that has reached the simulator. */
   private final case class Called(at: Instant, method: String)
 
-  /** A simulator, a link with a buffer beside it, and clients of both.
+  /** A simulator, a link with a buffer in front of it, and clients of both.
     *
-    * @param lan between the buffer and the simulator
+    * @param lan link between the buffer and the simulator
     * @param speed of the simulator's clock
     */
   private final class Bench(lan: LatencyProfile, speed: Double)(using val system: ActorSystem):
@@ -94,8 +94,8 @@ class BufferSimulation extends munit.FunSuite, Unhurried:
 
   private def right[E, A](answer: Either[E, A]): A = answer.fold(error => fail(error.toString), identity)
 
-  /** Flies plans of turns, a new one every 100 ms, of which some do not arrive, and reads the position every
-    * 50 ms over a connection of its own.
+  /** Sends plans of turns, a new one every 100 ms, of which some do not arrive, and reads the position every
+    * 50 ms over a separate connection.
     *
     * @param through the address that plans are sent to
     */
@@ -128,7 +128,7 @@ class BufferSimulation extends munit.FunSuite, Unhurried:
     yield places
 
   for (lan, speed) <- Seq("none" -> 1.0, "constant:1ms" -> 1.0, "none" -> 4.0) do
-    test(s"a vehicle flies as by the simulator's own buffer; near link $lan, clock $speed times as fast"):
+    test(s"a vehicle flies as with the simulator's own buffer; near link $lan, clock $speed times as fast"):
       val own              = on(lan, speed)(bench => flown(bench, Address("simulator", 41451), speed))
       val (places, counts) = on(lan, speed): bench =>
         import bench.system.dispatcher
@@ -140,7 +140,7 @@ class BufferSimulation extends munit.FunSuite, Unhurried:
       assert(counts.moves > 80, counts.toString)
 
   test(
-    "moves reach the simulator within half a round trip and the handover after their moments, two at most"
+    "moves arrive at most half a round trip and the handover late, and at most two are unanswered"
   ):
     val (calls, start, counts) = on("constant:1ms"): bench =>
       import bench.system.dispatcher
@@ -165,7 +165,7 @@ class BufferSimulation extends munit.FunSuite, Unhurried:
       assert(late >= 0 && late < 3, s"move $index was $late ms late")
     assert(counts.latest < Span.ofMillis(3), counts.toString)
 
-  test("the simulator is never asked for a plan, and refusals are those of the simulator's own buffer"):
+  test("the simulator receives no plan, and plans are refused as by the simulator's own buffer"):
     def asked(through: Address)(bench: Bench): Future[Vector[Either[String, Boolean]]] =
       import bench.system.dispatcher
       import upack.{Arr, Int64, Msg, Str}
@@ -199,7 +199,7 @@ class BufferSimulation extends munit.FunSuite, Unhurried:
     assertEquals(own.take(2), Vector(Right(true), Right(true)))
     assert(!seen("skeinFollowPlan"), seen.toString)
 
-  test("whatever else a client sends and hears is byte for byte what passes without a buffer"):
+  test("all other bytes between client and simulator are identical with and without a buffer"):
     def heard(through: Address)(bench: Bench): Future[ByteString] =
       given ActorSystem = bench.system
       import upack.{Arr, Int32, Msg, Obj, Str}

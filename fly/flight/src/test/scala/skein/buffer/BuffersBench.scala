@@ -7,8 +7,8 @@ import skein.simulator.{PlanCall, PlannedMove}
 import skein.units.*
 import upack.{Float32, Int32}
 
-/** [[Buffers]] beside a simulator of few words: it has a clock, answers readings, and answers a move when the
-  * next one arrives, after the handover, or when the move's time is over.
+/** [[Buffers]] with a minimal simulator: it has a clock, answers readings, and answers a move when its time
+  * is over, or a handover after the next one arrived.
   *
   * @param roundTrip between the buffer and the simulator
   * @param speed of the simulator's clock
@@ -37,7 +37,7 @@ private[buffer] final class BuffersBench(roundTrip: Span = Span.ofMillis(0.4), s
 
   def now: Instant = clock
 
-  /** What the simulator's clock shows. */
+  /** The time of the simulator's clock. */
   def simulated: Instant =
     val ran = stopped.getOrElse(clock).since(began) - stood
     Start + Span.ofNanos((ran.toNanos * speed).toLong)
@@ -48,12 +48,12 @@ private[buffer] final class BuffersBench(roundTrip: Span = Span.ofMillis(0.4), s
     stopped.foreach(since => stood = stood + clock.since(since))
     stopped = None
 
-  /** Does something later. */
+  /** Runs `act` after a delay. */
   def after(ms: Double)(act: => Unit): Unit =
     number += 1
     agenda.enqueue((at = clock + Span.ofMillis(ms), number = number, act = () => act))
 
-  /** Lets time pass. */
+  /** Advances the time by `ms`. */
   def pass(ms: Double): Unit =
     val until = clock + Span.ofMillis(ms)
     while
@@ -68,7 +68,8 @@ private[buffer] final class BuffersBench(roundTrip: Span = Span.ofMillis(0.4), s
 
   def come(ticket: Long, wish: Wish): Unit = follow(buffers.received(ticket, wish, clock))
 
-  /** A plan for `Drone` of moves to the north at these times, in ms of the simulator's clock since its start.
+  /** Sends a plan for `Drone` with moves to the north at these times, in ms of the simulator's clock since
+    * its start.
     */
   def plan(sequence: Long, times: Double*): Unit =
     val moves = times.map(time => north(time, sequence.toDouble)).toVector
@@ -96,7 +97,7 @@ private[buffer] final class BuffersBench(roundTrip: Span = Span.ofMillis(0.4), s
 
   private var unanswered = 0
 
-  /** Brings a move to the simulator, which answers the one before. */
+  /** Sends a move to the simulator, which then answers the previous one. */
   private def send(answered: () => Unit, move: Option[PlannedMove] = None): Unit =
     unanswered += 1
     mostUnanswered = mostUnanswered.max(unanswered)
@@ -119,10 +120,10 @@ private[buffer] object BuffersBench:
   val Start: Instant     = Instant.Epoch + Span.ofSeconds(3)
   private val HandoverMs = 0.3
 
-  /** A move that has reached the simulator. */
+  /** A move that the simulator has received. */
   final case class Performed(simulated: Instant, at: Instant, move: PlannedMove)
 
-  /** A move by velocity for 10 s from this time on, ms of the simulator's clock since its start. */
+  /** A move by velocity for 10 s from `timeMs` on, in ms of the simulator's clock since its start. */
   def north(timeMs: Double, mps: Double): PlannedMove =
     val numbers = Vector(mps, 0, -20, 10).map(number => Float32(number.toFloat))
     val yaw     = upickle.default.writeMsg(skein.airsim.wire.YawMode.Still)

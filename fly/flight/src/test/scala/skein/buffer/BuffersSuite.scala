@@ -14,7 +14,7 @@ class BuffersSuite extends munit.FunSuite:
 
   private val accepted = Verdict.Answer(Right(Bool(true)))
 
-  /** Speeds and times of the moves that have reached the simulator. */
+  /** Speeds and times of the moves that the simulator received. */
   private def flown(bench: BuffersBench): Vector[(Double, Double)] =
     bench.performed.toVector.map(one => (speedOf(one.move), atMs(one.simulated)))
 
@@ -22,7 +22,9 @@ class BuffersSuite extends munit.FunSuite:
     case Some(Float32(mps)) => mps.toDouble
     case _                  => 0
 
-  test("a plan is answered with the first reading, and its moves reach the simulator half a round trip late"):
+  test(
+    "a plan is answered after the first reading, and its moves reach the simulator half a round trip late"
+  ):
     val bench = BuffersBench()
     bench.plan(1, 100, 200, 300)
     bench.pass(500)
@@ -36,7 +38,7 @@ class BuffersSuite extends munit.FunSuite:
 
   for speed <- Seq(1.0, 0.25, 5) do
     test(
-      s"whatever arrives when, moves are those of the plans' buffer at its times; clock $speed times as fast"
+      s"for plans at random times, moves are those of a buffer in the simulator; clock $speed times as fast"
     ):
       for seed <- 1L to 20 do
         val random = SplittableRandom(seed)
@@ -87,7 +89,7 @@ class BuffersSuite extends munit.FunSuite:
             Seq(0, 100 * speed).exists(step => math.abs(since - step) <= 0.5 * speed)
           assert(isDue || isEven, s"seed $seed: ${atMs(one.move.at)} was never due")
 
-  test("a clock that seems to go back by a little repeats no move"):
+  test("no move is repeated when the estimated clock goes back a little"):
     val now                = Instant.Epoch + Span.ofSeconds(9)
     val moves              = Vector(north(100, 1), north(200, 2))
     val plan               = VehicleBuffer().received(1, moves, Start)
@@ -116,7 +118,7 @@ class BuffersSuite extends munit.FunSuite:
     bench.pass(10)
     assertEquals(bench.performed.map(_.move.method).toVector, Vector("hover"))
 
-  test("while the simulator stands still nothing is performed, and afterwards all at its moment"):
+  test("while the simulator stands still no move is performed; afterwards each is at its moment"):
     val bench = BuffersBench()
     bench.plan(1, 100, 150, 200)
     bench.pass(120)
@@ -131,7 +133,7 @@ class BuffersSuite extends munit.FunSuite:
     assertEqualsDouble(times(2), 200, 0.5)
 
   test(
-    "an action due when the clock is stopped is at most 20 ms early, and when it is started at most 20 ms late"
+    "a move due when the clock stops is at most 20 ms early, and one due when it starts at most 20 ms late"
   ):
     for ms <- 100 to 130 do
       val bench = BuffersBench()
@@ -143,7 +145,7 @@ class BuffersSuite extends munit.FunSuite:
       bench.pass(100)
       assertEqualsDouble(flown(bench).head._2, ms, 20)
 
-  test("a simulator that does not answer readings is sent nothing"):
+  test("a simulator that does not answer readings receives no moves"):
     val bench = BuffersBench()
     bench.plan(1, 400)
     bench.pass(50)
@@ -151,7 +153,7 @@ class BuffersSuite extends munit.FunSuite:
     bench.pass(600)
     assertEquals(flown(bench), Vector.empty)
 
-  test("a move of a client ends the plans, and numbers may begin anew; a hover ends older ones too"):
+  test("a client's move ends the plans and resets their numbers; a client's hover also disables older plans"):
     val bench = BuffersBench()
     bench.plan(7, 100, 200, 300)
     bench.pass(150)
@@ -173,7 +175,7 @@ class BuffersSuite extends munit.FunSuite:
     bench.pass(500)
     assertEquals(flown(bench).map(_._1), Vector(7.0, 0.0, 6.0))
 
-  test("a reset, a cancelled task, a vehicle placed or taken away ends the plans; of others they go on"):
+  test("a reset, a cancelled task or a new place ends a vehicle's plans; plans of other vehicles continue"):
     for wish <- Seq(Wish.Reset, Wish.Stop("Drone"), Wish.Place("Drone")) do
       val bench = BuffersBench()
       bench.plan(7, 100, 200)
@@ -187,7 +189,7 @@ class BuffersSuite extends munit.FunSuite:
     bench.pass(500)
     assertEquals(flown(bench).size, 2)
 
-  test("a client's move passes without delay, but is never a third one beside two of the buffer"):
+  test("a client's move passes without delay, but waits if two moves of the buffer are unanswered"):
     val bench = BuffersBench(roundTrip = Span.ofMillis(10))
     bench.plan(7, 100, 200)
     bench.pass(150)
@@ -206,7 +208,7 @@ class BuffersSuite extends munit.FunSuite:
     assertEquals(bench.mostUnanswered, 2)
     assertEquals(bench.buffers.counts.heldCalls, 1L)
 
-  test("a reset waits for one of two moves on their way"):
+  test("a reset waits until one of two unanswered moves is answered"):
     val bench = BuffersBench(roundTrip = Span.ofMillis(10))
     bench.plan(8, 100, 103)
     bench.pass(105)
@@ -216,7 +218,7 @@ class BuffersSuite extends munit.FunSuite:
     assertEquals(bench.verdicts(2)._1, Verdict.Pass(None))
     assertEquals(flown(bench).size, 2)
 
-  test("a plan that is wrong, or for a vehicle that is not there, is refused with the reason"):
+  test("an invalid plan, or one for a missing vehicle, is refused with the reason"):
     val bench = BuffersBench()
     bench.come(1, Wish.Plan(Left("std::bad_cast")))
     assertEquals(bench.verdicts(1)._1, Verdict.Answer(Left("std::bad_cast")))
@@ -227,7 +229,7 @@ class BuffersSuite extends munit.FunSuite:
       case other                      => fail(other.toString)
     assertEquals(bench.buffers.counts.refusedPlans, 2L)
 
-  test("an empty plan asks for a vehicle, and changes nothing"):
+  test("an empty plan checks that the vehicle exists, and changes nothing"):
     val bench = BuffersBench()
     bench.plan(1, 100)
     bench.plan(2)

@@ -36,7 +36,7 @@ class ClientCallsSuite extends munit.FunSuite:
   private val messages = Vector(state, plan, hover, image, Null, path, Obj(Str("x") -> True), told, plan)
 
   for most <- Seq(100, 5_000, 200_000) do
-    test(s"all bytes pass in their order, and calls are found, in pieces of up to $most bytes"):
+    test(s"all bytes pass in order, and calls are found, in pieces of up to $most bytes"):
       for seed <- 1L to 30 do
         val calls  = ClientCalls()
         val pieces = cut(bytes(messages*), most, SplittableRandom(seed)).flatMap(calls.offer)
@@ -55,7 +55,7 @@ class ClientCallsSuite extends munit.FunSuite:
           s"seed $seed"
         )
 
-  test("a plan that is too long is taken away and refused, and what follows passes"):
+  test("a plan that is too long is removed and refused, and later bytes pass"):
     for seed <- 1L to 30 do
       val calls  = ClientCalls()
       val pieces = cut(bytes(state, long, state), 50_000, SplittableRandom(seed)).flatMap(calls.offer)
@@ -64,7 +64,7 @@ class ClientCallsSuite extends munit.FunSuite:
         case Vector((Wish.Plan(Left(text)), Some(5L))) => assert(text.contains("65536 bytes"), text)
         case other                                     => fail(s"seed $seed: $other")
 
-  test("of a long message no more than 64 KiB are held"):
+  test("at most 64 KiB of a long message are held"):
     val calls = ClientCalls()
     var sent  = 0
     var gone  = 0
@@ -74,7 +74,7 @@ class ClientCallsSuite extends munit.FunSuite:
       assert(sent - gone < Wish.MostBytes + 1000, s"${sent - gone} bytes held of $sent")
     assertEquals(gone, bytes(image).size)
 
-  test("bytes that are no MessagePack pass, and all after them"):
+  test("bytes that are no MessagePack pass, and so do all later ones"):
     val calls  = ClientCalls()
     val begun  = bytes(plan).take(1)
     val broken = ByteString(0xc1) ++ bytes(plan)
@@ -83,7 +83,7 @@ class ClientCallsSuite extends munit.FunSuite:
     assert(calls.isLost)
     assertEquals(calls.offer(bytes(plan)), Vector(Piece.Rest(bytes(plan))))
 
-  test("which calls concern plans, and of which vehicle"):
+  test("a call is classified by its effect on plans, with its vehicle"):
     def wish(method: String, params: Msg*) = Wish.of(method, params.toVector)
     assertEquals(wish("moveByVelocityZ", Int32(1), Str("A")), Some(Wish.Move("A")))
     assertEquals(wish("takeoff", Int32(20), Binary("A".getBytes)), Some(Wish.Move("A")))

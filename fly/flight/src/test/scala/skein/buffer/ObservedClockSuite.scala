@@ -8,7 +8,7 @@ class ObservedClockSuite extends munit.FunSuite:
 
   private def ms(time: Double) = began + Span.ofMillis(time)
 
-  /** What a simulator's clock shows that has gone at a speed, but stood still meanwhile. */
+  /** A simulator's clock that ran at a constant speed, except for a pause. */
   private final case class Simulator(
       speed: Double,
       stopMs: Double = 1e9,
@@ -44,22 +44,22 @@ class ObservedClockSuite extends munit.FunSuite:
       val off = Simulator(1, stepMs = 3).offMs(until, later)
       assert(math.abs(off) <= 3.2, s"$off ms off, $later ms after a reading")
 
-  test("one that stands still shows its last time from the second reading on, and comes to nothing"):
+  test("a stopped clock shows its last time from the second reading on, and reaches no later time"):
     val stopped = Simulator(1, stopMs = 1003)
     assert(stopped.offMs(1010, 10) <= 10.1)
     assertEqualsDouble(stopped.offMs(1020, 10), 0, 1e-6)
     assertEquals(stopped.read(1020).comesTo(stopped.shows(1020) + Span.ofSeconds(1)), None)
 
-  test("one that is started again is followed from the first reading on"):
+  test("a restarted clock is followed from the first reading on"):
     val resumed = Simulator(1, stopMs = 1003, startMs = 2006)
     assertEqualsDouble(resumed.offMs(2010, 10), 0, 0.21)
     assertEqualsDouble(resumed.offMs(3000, 10), 0, 0.21)
 
-  test("it is not known any more 100 ms after the last reading"):
+  test("the clock is unknown from 100 ms after the last reading on"):
     assertEquals(Simulator(1).read(1000).shows(ms(1100.5)), None)
     assert(Simulator(1).read(1000).shows(ms(1100.3)).isDefined)
 
-  test("when it comes to a time is when it shows that time"):
+  test("the predicted moment of a simulated time is when the clock shows that time"):
     for speed <- Seq(1.0, 0.3, 7); ahead <- Seq(0.001, 3, 90) do
       val clock = Simulator(speed).read(2000)
       val time  = clock.shows(ms(2000.4)).get + Span.ofMillis(ahead)

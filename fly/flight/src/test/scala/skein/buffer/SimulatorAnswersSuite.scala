@@ -19,7 +19,7 @@ class SimulatorAnswersSuite extends munit.FunSuite:
     answer(3, Arr(Seq.fill(1000)(Int32(300))*))
   )
 
-  test("ends of messages and the calls that they answer are found, wherever the bytes are cut"):
+  test("ends of messages and answered calls are found, wherever the bytes are cut"):
     val ends = sent.scanLeft(0)(_ + _.size)
     for seed <- 1L to 100 do
       val random  = SplittableRandom(seed)
@@ -38,7 +38,7 @@ class SimulatorAnswersSuite extends munit.FunSuite:
         left = rest
       assertEquals(ids, Vector(1L, 70_000L, 4_000_000_000L, 3L), s"seed $seed")
 
-  test("bytes that are no MessagePack have no ends from there on"):
+  test("after bytes that are no MessagePack, no ends of messages are found"):
     val answers = SimulatorAnswers()
     assertEquals(answers.offer(answer(1, Null) ++ ByteString(0xc1)).end, Some(answer(1, Null).size))
     assert(answers.isLost && answers.isMidway)

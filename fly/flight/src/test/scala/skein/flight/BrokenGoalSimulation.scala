@@ -27,7 +27,7 @@ class BrokenGoalSimulation extends munit.FunSuite, Unhurried:
       .result(Errand(() => place), LoopKind.Plan, LatencyProfile.none, seed = 1, duration = Span.ofSeconds(1))
       .fold(identity, _ => fail("it was flown"))
 
-  test("a goal that is no place ends the flight, by the vehicle's name"):
+  test("a goal that is not finite, or an exception in it, ends the flight with the vehicle's name"):
     assert(clue(reason((
       Double.NaN,
       0

@@ -16,7 +16,7 @@ import skein.simulator.{SimulatorServer, SimulatorSettings}
 import skein.units.*
 import upack.{Bool, Str}
 
-/** How images are transferred to the controller meanwhile. */
+/** The transfer of images to the controller during the run. */
 private enum Beside(val name: String):
   case Nothing     extends Beside("no images")
   case OwnLane     extends Beside("images on their own lane")

@@ -9,19 +9,19 @@ class CustodySuite extends munit.FunSuite:
   private val flies  = Vector(Held("a", true, Some(true)), Held("b", true, Some(true)))
   private val landed = Vector(Held("a", true, Some(true)), Held("b", true, Some(false)))
 
-  test("vehicles that fly under api control are the flight's"):
+  test("vehicles that fly under API control belong to the flight"):
     assertEquals(taken(flies, flies, flies), None)
 
-  test("one without api control is not, and is named"):
+  test("a vehicle without API control is lost, and the reason names it"):
     val without = Vector(Held("a", true, Some(true)), Held("b", false, Some(true)))
     assert(taken(flies, without).exists(_.startsWith("no longer gives b to this flight")))
 
-  test("one that has landed is not, once two answers in a row say so"):
+  test("a vehicle that has landed is lost after two such answers in a row"):
     assertEquals(taken(flies, landed), None)
     assertEquals(taken(flies, landed, flies, landed), None)
     assert(taken(flies, landed, landed).exists(_.contains("b has landed")))
 
-  test("a simulator that never says that a vehicle flies does not know, and cars need not fly"):
+  test("landing is not detected by a simulator that never reports flying, and cars need not fly"):
     assertEquals(taken(landed, landed, landed), None)
     val car = Vector(Held("car", true, None))
     assertEquals(taken(car, car), None)

@@ -41,8 +41,8 @@ class DecentralisedSimulation extends munit.FunSuite, TemporaryFolders, Optimise
     assertEquals(flown.landed.outcome, FlightOutcome.Completed)
     flown.recorder
 
-  /** What was decided when and by which states, without the numbers of the readings, and without what the
-    * others were commanded, which only one controller of all knows.
+  /** The decisions, with their times and states, but without the numbers of the readings and the commands to
+    * other vehicles, which only a single controller knows.
     */
   private def decisions(recording: Recording): Vector[DecisionRow] = recording.decisions
     .sortBy(made => (made.vehicle, made.sequence))
@@ -58,13 +58,13 @@ class DecentralisedSimulation extends munit.FunSuite, TemporaryFolders, Optimise
 
   for (loop, scenario) <- loops.map((_, PaperDuel())) :+ (LoopKind.Stream, Surround()) do
     test(
-      s"${loop.label}, ${scenario.name}: without a link, controllers decide as a single one that knows positions"
+      s"${loop.label}, ${scenario.name}: without a link, controllers decide as one that knows only positions"
     ):
       val apart  = settings(loop, LatencyProfile.none, scenario)
       val single = decisions(fly(apart.copy(decentralised = false, knows = Knowledge.Positions)).recording)
       assertEquals(decisions(fly(apart).recording), single)
 
-  test("paused has one controller, which decides as if it did not know the others' commands"):
+  test("paused has one controller, which decides without knowledge of the others' commands"):
     val paused = settings(LoopKind.Paused, LatencyProfile.none)
     assertEquals(
       fly(paused).digest,
@@ -72,7 +72,9 @@ class DecentralisedSimulation extends munit.FunSuite, TemporaryFolders, Optimise
     )
 
   for loop <- loops do
-    folder.test(s"${loop.label}: equal seeds give equal flights, others others, and a recording replays"):
+    folder.test(
+      s"${loop.label}: equal seeds give equal flights, other seeds other ones, and a recording replays"
+    ):
       folder =>
         // In two duels a decision's opponent depends on readings that it does not record.
         val flight = settings(loop, scenario = PaperDuel(pairs = 2))
@@ -94,7 +96,7 @@ class DecentralisedSimulation extends munit.FunSuite, TemporaryFolders, Optimise
     assertEquals((replayed.decidedAgain, replayed.isSame), (None, true))
 
   for loop <- loops do
-    test(s"${loop.label}: a decision is made from its own controller's readings, and its ages are theirs"):
+    test(s"${loop.label}: a decision uses its own controller's readings, and their ages"):
       val recording = fly(settings(loop, scenario = Surround())).recording
       val names     = recording.heading.vehicles.map(_.name)
       val known     = recording.readings.map(read => (read.vehicle, read.sequence)).toSet
@@ -113,7 +115,7 @@ class DecentralisedSimulation extends munit.FunSuite, TemporaryFolders, Optimise
           val offMs = age.own.toMillis - made.decidedAt.since(made.own.state.validAt).toMillis
           assert(offMs.abs <= age.uncertainty.toMillis, s"off by $offMs of ${age.uncertainty.toMillis} ms")
 
-  test("each controller has delays of its own, and a fit of the link finds each of its traces"):
+  test("each controller has its own delays, and a fit of the link finds each controller's trace"):
     val recording = fly(settings(LoopKind.Stream)).recording
     val traces    = RoundTripTrace.of(recording)
     assertEquals(traces.size, 4)
@@ -122,7 +124,9 @@ class DecentralisedSimulation extends munit.FunSuite, TemporaryFolders, Optimise
     assertEquals(traces.map(_.roundTripsMs.head).distinct.size, 4)
 
   for inPacket <- Seq(false, true) do
-    test(s"the own vehicle is predicted by its model, others by what is read of them; in packets: $inPacket"):
+    test(
+      s"a controller predicts its own vehicle by its model, others from their readings; in packets: $inPacket"
+    ):
       val flown = fly(settings(LoopKind.Predictive, seconds = 20).copy(planInPacket = inPacket))
       val found = PredictionErrors.of(flown.recording, isDuel = true).get
 
@@ -130,7 +134,7 @@ class DecentralisedSimulation extends munit.FunSuite, TemporaryFolders, Optimise
       assert(p95M(found.own) < 0.01, s"own ${p95M(found.own)} m")
       assert(p95M(found.others) > 0.01, s"others ${p95M(found.others)} m")
 
-  test("one learner for all, and vehicles that are reached once for all, are refused in a line"):
+  test("a single learner for all, and vehicles behind a single connection, are refused in a line"):
     val flight   = settings(LoopKind.Stream)
     val learning = ChosenPolicy("own", PolicyFile.paperOf(Role.Pursuer), Some(Learning.Again(0, Map.empty)))
     assertEquals(

@@ -8,8 +8,8 @@ import skein.signal.LatencyProfile
 import skein.scenario.Scenarios
 import skein.units.*
 
-/** Prints how the paper's duel flies when vehicle and air differ from the model: by predictor, the mean
-  * distance over the last 10 s beside the paused truth's, and the errors of predictions after 10 s.
+/** Prints the effect on the paper's duel if vehicle and air differ from the model: for each predictor the
+  * mean distance over the last 10 s, that of the paused truth, and the errors of predictions after 10 s.
   *
   * {{{
   * ./sbtw "flight/Test/runMain skein.flight.deviationFigures 4 airsim airsim:wind=8/0/0"

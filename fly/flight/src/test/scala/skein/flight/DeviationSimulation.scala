@@ -34,24 +34,24 @@ class DeviationSimulation extends munit.FunSuite, Unhurried:
     learnt(learnt.size * 95 / 100)
 
   test(
-    "10 s into a flight in wind, of a heavier, slower vehicle with more drag, the adaptive model is five times better"
+    "in wind, adaptive predicts a heavier, slower vehicle with more drag five times better after 10 s"
   ):
     val fixed    = errorM(flown(All, PredictionModel.Quadrotor).recorder.recording)
     val adaptive = errorM(flown(All, PredictionModel.Adaptive).recorder.recording)
     assert(fixed > 0.01, fixed)
     assert(adaptive < fixed / 5, s"$adaptive m against $fixed m")
 
-  test("where the model is right, the adaptive one is as good"):
+  test("if the model is right, the adaptive one is as good"):
     val fixed    = errorM(flown("airsim", PredictionModel.Quadrotor).recorder.recording)
     val adaptive = errorM(flown("airsim", PredictionModel.Adaptive).recorder.recording)
     assert(adaptive < 1.1 * fixed, s"$adaptive m against $fixed m")
 
-  test("gusts are the flight's seed's, and each vehicle meets its own"):
+  test("gusts depend on the flight's seed, and differ between vehicles"):
     def digest() = flown("airsim:gusts=15", PredictionModel.Quadrotor, 4).recorder.digest
     assertEquals(digest(), digest())
     assertNotEquals(digest(), flown("airsim", PredictionModel.Quadrotor, 4).recorder.digest)
 
-  test("a mistake in a deviation is one line, and autopilots outside are refused"):
+  test("a mistake in a deviation is one line, and external autopilots are refused"):
     assertEquals(
       SimulatedBody.parse("airsim:mass=9").map(_.text),
       Left("expected a number from 0.5 to 1.6, came 'mass=9'")

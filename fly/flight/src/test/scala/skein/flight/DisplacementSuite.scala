@@ -16,14 +16,14 @@ class DisplacementSuite extends munit.FunSuite:
   private def displaced(from: Stamped[Kinematics], to: Stamped[Kinematics]) =
     Displacement.between("Evader", from, to).isDefined
 
-  test("what flies evenly, brakes hard, bounces off a wall, or was not read for a while, is where it can be"):
+  test("steady flight, hard braking, a bounce off a wall and a gap in the readings are no displacement"):
     assert(!displaced(at(0, 0, 10), at(0.1, 1.0, 10)))
     assert(!displaced(at(0, 0, 10), at(0.1, 0.85, 7)))
     assert(!displaced(at(0, 0, 10), at(0.1, 0.2, -5)))
     assert(!displaced(at(0, 0, 0), at(2, 25, 20)))
     assert(!displaced(at(0, 0, 0), at(0, 0, 0)))
 
-  test("a vehicle that was placed elsewhere, or reported another one's position, is recognised anywhere"):
+  test("a vehicle that was placed elsewhere, or reports another vehicle's position, is detected"):
     assert(displaced(at(0, 40, 10), at(0.1, 0, 0)), "reset")
     assert(displaced(at(0, 40, 10), at(0.1, 42.5, 10)), "a pose ahead")
     assert(displaced(at(0, 40, 10), at(0.1, 41, 10, down = -21)), "a pose above")

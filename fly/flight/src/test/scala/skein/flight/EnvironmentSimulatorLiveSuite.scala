@@ -154,7 +154,7 @@ class EnvironmentSimulatorLiveSuite extends munit.FunSuite, Unhurried:
     assertEquals(recording.measurements.map(_.quantities).distinct, Vector(EnvironmentSimulator.Columns))
 
   for loop <- Seq(LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream, LoopKind.Predictive) do
-    test(s"${loop.label} flies it over the VPN, run by the clock; every step is on record"):
+    test(s"${loop.label} flies the environment in real time over the VPN, and every step is recorded"):
       val recording = flown(loop, LatencyProfile.vpn)
       val steps     = recording.measurements.filter(_.vehicle == "Evader")
       assertEquals(steps.map(_.sequence), Vector.tabulate(steps.size)(_ + 1L))
@@ -164,7 +164,7 @@ class EnvironmentSimulatorLiveSuite extends munit.FunSuite, Unhurried:
         recording.readings.map(reading => reading.state.receivedAt.since(reading.state.sentAt).toMillis)
       assert(ages.sum / ages.size > 60, "over a VPN")
 
-  test("its time begins at the first reading, and stops while it is paused"):
+  test("the environment's time begins at the first reading, and stops while it is paused"):
     val recorded = served(points(Points())): path =>
       VirtualTime
         .run(seed = 1): system =>
@@ -194,7 +194,7 @@ class EnvironmentSimulatorLiveSuite extends munit.FunSuite, Unhurried:
         .value
     assertEquals(recorded, Vector(0L, 3L, 3L, 5L, 8L).map(step => (step, step)))
 
-  test("a question that is longer than what a socket holds comes whole"):
+  test("a request that is longer than a socket's buffer arrives whole"):
     val many  = Vector.tabulate(20_000)(number => s"Vehicle$number")
     val heard = served(asked => Some(s"""{"error": "heard of ${asked("velocities").obj.size}"}""")): path =>
       EnvironmentProcess.connect(path, many).flatMap(_.step(many.map(_ => Vector3(1, 2, 3))))

@@ -62,7 +62,7 @@ class FlightAssemblerSuite extends munit.FunSuite:
             case Right(assembly) => assembly.landed.map(_ => (Right(()), ports.open))
       .value
 
-  test("a flight that cannot start for want of a port for its link closes its simulator"):
+  test("a flight that finds no port for its link closes its simulator"):
     val (result, open) = start(allowed = 1)
     assert(result.left.exists(_.contains("taken")), result.toString)
     assertEquals(open, 0)

@@ -68,7 +68,7 @@ class HeldFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimised:
 
   for loop <- LoopKind.values do
     test(
-      s"${loop.label}: while it is paused there are no decisions and the vehicles hover; then it continues"
+      s"${loop.label}: a paused flight makes no decisions and its vehicles hover; then it continues"
     ):
       val (outcome, recorder) = fly(loop)
       val recording           = recorder.recording
@@ -112,7 +112,7 @@ class HeldFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimised:
         Files.delete(file.getParent)
 
   for loop <- Seq(LoopKind.Paused, LoopKind.Stream, LoopKind.Predictive) do
-    test(s"${loop.label}: a flight that is paused can be ended"):
+    test(s"${loop.label}: a paused flight can be ended"):
       val (outcome, recorder) = fly(loop, stopping = true)
       assertEquals(outcome, FlightOutcome.Stopped)
       assertEquals(FlightSummary.of(recorder.recording).paused.map(_.toSeconds.round), Some(5L))

@@ -21,20 +21,20 @@ class KeptLimitsSimulation extends munit.FunSuite, Optimised:
     val theirs = flown.violations.filter(_.vehicles.exists(by.contains))
     (flown, theirs.map(_.limit.name).distinct.sorted)
 
-  test("plans keep apart and inside a fence of any shape, and arrive, where policies alone do neither"):
+  test("plans keep the separation and a fence of any shape, and arrive; policies alone break both limits"):
     val (_, broken) = violations(Couriers(), LoopKind.Predictive, 0, 1)
     assertEquals(broken, Vector("distance outside the geofence", "separation"))
     val (flown, kept) = violations(Couriers(), LoopKind.Plan, 0, 1)
     assertEquals(kept, Vector.empty)
     assert(flown.value("furthest from the goals").exists(_ < 6), flown.measured.toString)
 
-  test("a pursuer that plans keeps the scenario's separation from its opponent too, in a round fence"):
+  test("a planning pursuer keeps the scenario's separation from its opponent, too, in a round fence"):
     val (_, broken) = violations(Shadow(), LoopKind.Predictive, 1)
     assertEquals(broken, Vector("distance from the geofence's middle", "separation"))
     assertEquals(violations(Shadow(), LoopKind.Plan, 1)._2, Vector.empty)
 
   test(
-    "plans climb or sink to where floor and ceiling let them fly, and stay below the speed that is allowed"
+    "plans climb or sink to between floor and ceiling, and stay below the speed limit"
   ):
     for corridor <- Seq(Corridor(7, 12), Corridor(1, 3.8)) do
       val (_, broken) = violations(corridor, LoopKind.Predictive, 0, 1)

@@ -35,7 +35,7 @@ class KnowledgeSimulation extends munit.FunSuite, TemporaryFolders, Unhurried:
 
   for inPacket <- Seq(false, true) do
     test(
-      s"the own vehicle is predicted by its model, the other by its readings; plans in packets: $inPacket"
+      s"the own vehicle is predicted by its model, the other from its readings; plans in packets: $inPacket"
     ):
       val known                   = settings(LoopKind.Predictive, inPacket).copy(knows = Knowledge.All)
       def errors(of: FlySettings) = PredictionErrors.of(fly(of).recording, isDuel = true).get
@@ -44,7 +44,7 @@ class KnowledgeSimulation extends munit.FunSuite, TemporaryFolders, Unhurried:
       assert(errorP95M(blind.own) < 0.01, s"own ${errorP95M(blind.own)} m")
       assert(errorP95M(blind.others) > 0.02, s"others ${errorP95M(blind.others)} m")
 
-  folder.test("every loop's flight repeats its decisions from the recording"): folder =>
+  folder.test("every loop's flight replays to equal decisions"): folder =>
     for loop <- Seq(LoopKind.Paused, LoopKind.Sequential, LoopKind.Stream, LoopKind.Predictive) do
       val flight = settings(loop).copy(duration = Span.ofSeconds(8))
       val file   = flight.plans.head.file(folder)

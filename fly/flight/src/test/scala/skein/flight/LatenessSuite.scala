@@ -6,15 +6,15 @@ class LatenessSuite extends munit.FunSuite:
   private def ticked(ms: Double*) =
     ms.foldLeft(Lateness())((lateness, by) => lateness.ticked(Span.ofMillis(by)))
 
-  test("a machine on which less than one tick in twenty comes late is not too busy"):
+  test("a machine with less than one late tick in twenty is not too busy"):
     assertEquals(ticked(Seq.fill(600)(3.0)*).starved, None)
     assertEquals(ticked((Seq.fill(570)(3.0) ++ Seq.fill(30)(80.0))*).starved, None)
 
-  test("a flight with more late ticks is starved, and the share is reported"):
+  test("a flight with more late ticks is starved, and their share is reported"):
     assertEquals(
       ticked((Seq.fill(500)(3.0) ++ Seq.fill(99)(80.0) :+ 310.0)*).starved,
       Some("the machine was too busy: 17 % of 600 ticks came more than 20 ms late, one 310 ms")
     )
 
-  test("a few ticks are not enough for a judgement"):
+  test("a few ticks allow no judgement"):
     assertEquals(ticked(Seq.fill(10)(500.0)*).starved, None)

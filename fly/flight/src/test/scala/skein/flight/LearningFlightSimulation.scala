@@ -45,7 +45,7 @@ class LearningFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimis
 
   private def learned(recording: Recording) = recording.events.filter(_.kind == EventKind.Learned)
 
-  test("versions are replaced between decisions, recorded, and repeated with an equal digest"):
+  test("versions change between decisions, are recorded, and are repeated with an equal digest"):
     var seen      = Vector.empty[Transition]
     val landed    = flown(every10(seen :+= _))
     val recording = landed.recorder.recording
@@ -76,7 +76,7 @@ class LearningFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimis
   private def headings(recording: Recording) =
     recording.decisions.filter(_.vehicle == "Pursuer").map(_.heading)
 
-  test("it explores as much as configured: not at all, and never beyond the largest turn"):
+  test("exploration is as large as configured: none if it is 0, and never beyond the largest turn"):
     val alone = VirtualFlights.fly(settings, settings.plansWith(ChosenPolicy("alone", first)).last)
     val same  = flown(_ => None, explore = 0)
     assertEquals(headings(same.recorder.recording), headings(alone.fold(fail(_), _.recorder.recording)))
@@ -86,7 +86,7 @@ class LearningFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimis
     assertEquals((shares.min, shares.max), (-1.0, 1.0))
     assert(shares.distinct.sizeIs > shares.size / 3, shares)
 
-  test("a version that is not finite is refused, and the last one decides on"):
+  test("a version that is not finite is refused, and the previous one continues to decide"):
     val learner: FlownLearner = _ => Some(first.parameters.updated(3, Double.NaN))
     val landed                = flown(learner)
     assertEquals(landed.landed.outcome, FlightOutcome.Completed)
@@ -100,7 +100,7 @@ class LearningFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimis
       "has not all its classes" -> NoClassDefFoundError("no such luck")
     )
   do
-    test(s"a learner that $what ends learning alone"):
+    test(s"a learner that $what ends learning, but not the flight"):
       val learner: FlownLearner = _ => throw error
       val landed                = flown(learner)
       assertEquals(landed.landed.outcome, FlightOutcome.Completed)

@@ -22,7 +22,7 @@ import skein.testing.Unhurried
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** Flights with a simulator whose clock is wrong, and beside another client of it. */
+/** Flights with a simulator whose clock is wrong, or that has another client. */
 class LyingSimulatorSimulation extends munit.FunSuite, Unhurried:
   private given Scenarios = Scenarios.ours
 
@@ -135,7 +135,7 @@ class LyingSimulatorSimulation extends munit.FunSuite, Unhurried:
     test(s"${loop.label}: a clock that runs backwards ends the flight without result"):
       fly(loop, Some(s => -s)).assertNoResult(EventKind.ClockBroken, "the simulator's ")
 
-  test("restarts of the clocks' alignment are events"):
+  test("restarts of the clocks' alignment are recorded as events"):
     val flown = fly(LoopKind.Stream, Some(_ * 0.98))
     assertEquals(flown.landed.outcome, FlightOutcome.Completed)
     assert(flown.count(EventKind.ClockRestarted) > 0)
@@ -147,7 +147,7 @@ class LyingSimulatorSimulation extends munit.FunSuite, Unhurried:
     assertEquals(flown.summary.noResult, None)
 
   for loop <- LoopKind.values.toSeq.filterNot(_ == LoopKind.Plan) do
-    test(s"${loop.label}: beside an honest simulator nothing is reported, and the flight has its result"):
+    test(s"${loop.label}: with a correct simulator nothing is reported, and the flight has its result"):
       val flown = fly(loop)
       assertEquals(flown.landed.outcome, FlightOutcome.Completed)
       assertEquals(flown.told, Vector.empty)
@@ -195,7 +195,7 @@ class LyingSimulatorSimulation extends munit.FunSuite, Unhurried:
     test(s"${loop.label}: another client that $what ends the flight without result, and is reported"):
       fly(loop, acts = acts).assertNoResult(EventKind.VehicleTaken, words)
 
-  test("a stranger's move or two are no sign, nor are moves whose time was over"):
+  test("one or two foreign moves are tolerated, and so are moves whose time was over"):
     def at(ms: Double)    = Instant.Epoch + Span.ofMillis(ms)
     def move(number: Int) =
       CommandRow(number, "A", None, MetresPerSecond(0), MetresPerSecond(0), Metres(0), at(100.0 * number))
@@ -214,7 +214,7 @@ class LyingSimulatorSimulation extends munit.FunSuite, Unhurried:
     assert(!one.areMany)
     assert(!flown((number, moves) => moves.ended(end(number, 100.0 * number + 1000), lasts)).areMany)
 
-  test("stream: another client that disarms a vehicle takes nothing: moves drive it on, as in AirSim"):
+  test("stream: a client that disarms a vehicle does not end the flight: moves drive it on, as in AirSim"):
     def flown(acts: AirSimClient => ActorSystem ?=> Future[Any]) =
       val flight = fly(LoopKind.Stream, acts = acts)
       assertEquals(flight.landed.outcome, FlightOutcome.Completed)
@@ -229,7 +229,7 @@ class LyingSimulatorSimulation extends munit.FunSuite, Unhurried:
   test("stream: another client that pauses the simulator ends the flight without result"):
     fly(LoopKind.Stream, acts = _.pause()).assertNoResult(EventKind.ClockBroken, "stood still")
 
-  test("paused: another client that lets the simulator run is noted"):
+  test("paused: another client that resumes the simulator is recorded"):
     assert(fly(LoopKind.Paused, acts = _.resume()).count(EventKind.StepDrift) > 0)
 
   /** Changes the time stamps in the simulator's messages. */

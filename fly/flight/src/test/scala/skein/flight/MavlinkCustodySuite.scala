@@ -1,7 +1,7 @@
 package skein.flight
 
 class MavlinkCustodySuite extends munit.FunSuite:
-  /** What the last check finds, of checks that see these vehicles taken. */
+  /** The result of the last of several checks, each with its set of vehicles that follow no setpoints. */
   private def found(lands: Set[String], taken: Set[String]*): Option[String] =
     var now     = Set.empty[String]
     val custody = MavlinkCustody(
@@ -12,10 +12,10 @@ class MavlinkCustodySuite extends munit.FunSuite:
       now = seen; custody.check()
     }.last
 
-  test("vehicles that follow setpoints are the flight's"):
+  test("vehicles that follow setpoints belong to the flight"):
     assertEquals(found(Set.empty, Set.empty, Set.empty), None)
 
-  test("one that follows none is not, once two checks in a row say so, and is named with the reason"):
+  test("a vehicle that follows no setpoints is lost after two such checks in a row, with the reason"):
     assertEquals(found(Set.empty, Set("b")), None)
     assertEquals(found(Set.empty, Set("b"), Set.empty, Set("b")), None)
     assertEquals(found(Set.empty, Set("a"), Set("b")), None)
@@ -24,6 +24,6 @@ class MavlinkCustodySuite extends munit.FunSuite:
       Some("b is no longer this flight's: system of b is disarmed")
     )
 
-  test("one that the flight lands is the flight's"):
+  test("a vehicle that the flight itself lands is not lost"):
     assertEquals(found(Set("b"), Set("b"), Set("b")), None)
     assert(found(Set("b"), Set("a", "b"), Set("a", "b")).exists(_.startsWith("a is")))

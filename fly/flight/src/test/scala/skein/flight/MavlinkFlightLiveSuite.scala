@@ -84,7 +84,7 @@ class MavlinkFlightLiveSuite extends munit.FunSuite, Lengthy, Waiting:
       Future.successful(server.peerAddresses.head)
     )
 
-  test("the duel flies by datagrams over an emulated link that delays each by itself"):
+  test("the duel flies by datagrams over an emulated link that delays each one separately"):
     val profile =
       LatencyProfile.parse("uniform:10ms..30ms", Left(_)).fold(error => fail(error.message), identity)
     val link = EmulatedLink(LinkProfile.symmetric(profile), seed = 1, Clock.system)
@@ -100,6 +100,6 @@ class MavlinkFlightLiveSuite extends munit.FunSuite, Lengthy, Waiting:
         .map(_.address)(using system.dispatcher)
     assert(link.counts.bytesToServer > 10_000 && link.counts.bytesToClient > 10_000, s"${link.counts}")
 
-  test("without a MAVLink peer, the flight says so"):
+  test("a flight without a MAVLink peer reports that"):
     val why = Await.result(unheard, 1.minute)
     assert(why.left.exists(_.contains("expected MAVLink systems 1, 2")), why.toString)

@@ -29,7 +29,7 @@ class MavlinkFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimise
       assertEquals(over.landed.outcome, FlightOutcome.Completed)
       assert(over.recorder.recording.decisions.size >= 320, s"${over.recorder.recording.decisions.size}")
 
-    test(s"over $link, ages are true within 5 ms, from the first decision on"):
+    test(s"over $link, ages are correct within 5 ms, from the first decision on"):
       // The vehicles' clock began with the flight's.
       val began     = over.recorder.recording.heading.flight.startedAt
       val decisions = over.recorder.recording.decisions

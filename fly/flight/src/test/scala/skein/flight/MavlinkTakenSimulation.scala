@@ -72,7 +72,7 @@ class MavlinkTakenSimulation extends munit.FunSuite, Unhurried:
     assertEquals(outcome, FlightOutcome.Failed(taken.head.detail))
     assert(FlightSummary.of(recording).noResult.isDefined)
 
-  test("one that only listens takes nothing"):
+  test("a ground station that only listens does not end the flight"):
     val (outcome, recording) = flown(_.read())
     assertEquals(outcome, FlightOutcome.Completed)
     assertEquals(recording.events.filter(_.kind == EventKind.VehicleTaken), Vector.empty)

@@ -45,7 +45,7 @@ class MujocoFlightLiveSuite extends MujocoHere:
         assertNotEquals(places, tracks(ours)(name), "it is not MuJoCo's")
       assert(theirs.heading.parameter("plant").exists(_.endsWith(example("quadrotor"))))
 
-  test("a flight of a model repeats to the bit"):
+  test("a flight of a MuJoCo model repeats to the bit"):
     assumeMujoco()
     def again() = tracks(flown(example("slung-load"), LoopKind.Stream))
     assertEquals(again(), again())
@@ -64,7 +64,7 @@ class MujocoFlightLiveSuite extends MujocoHere:
       refused(s"mujoco:$heavy", "by which it hovers")
     finally Files.delete(heavy)
 
-  test("autopilots outside are refused models whose steps do not meet their sensors'"):
+  test("external autopilots are refused for models whose steps do not match their sensors' steps"):
     assumeMujoco()
     val body = SimulatedBody.parse(example("quadrotor")).fold(fail(_), identity)
     assert(

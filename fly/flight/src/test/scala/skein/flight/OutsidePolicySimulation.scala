@@ -41,7 +41,7 @@ class OutsidePolicySimulation extends munit.FunSuite, Unhurried:
   private def missed(recording: Recording) =
     recording.events.filter(_.kind == EventKind.DeadlineMissed)
 
-  test("it flies like that policy in this process, with a deadline and without"):
+  test("an outside policy flies as an equal policy in this process does, with a deadline and without"):
     val (outcome, own) = flown(settings)
     assertEquals(outcome, FlightOutcome.Completed)
     assert(own.decisions.size > 60, own.decisions.size)
@@ -51,7 +51,7 @@ class OutsidePolicySimulation extends munit.FunSuite, Unhurried:
       assertEquals(missed(outside), Vector.empty)
       assertEquals(headings(outside), headings(own))
 
-  test("where it fails, the fallback decides, and the recording says each time why"):
+  test("if the outside policy fails, the fallback decides, and each recorded event states why"):
     val (outcome, recording) = flownBy(timely): (number, seen) =>
       Some(if number % 2 == 0 then Peer.refusal("no such luck") else Peer.pursuer(seen))
     assertEquals(outcome, FlightOutcome.Completed)
@@ -62,7 +62,7 @@ class OutsidePolicySimulation extends munit.FunSuite, Unhurried:
     ).forall(_.detail.contains("by the fallback: Failed(the policy: no such luck)")))
     assertEquals(headings(recording), headings(flown(settings)._2))
 
-  test("where it hangs, the fallback decides from then on"):
+  test("if the outside policy hangs, the fallback decides from then on"):
     val (outcome, recording) = flownBy(timely, within = Span.ofMillis(200)): (number, seen) =>
       Some(if number < 10 then Peer.pursuer(seen) else Array.empty)
     assertEquals(outcome, FlightOutcome.Completed)
@@ -71,14 +71,14 @@ class OutsidePolicySimulation extends munit.FunSuite, Unhurried:
     assertEquals(missed(recording).size, decided.size - 10)
     assert(missed(recording).forall(_.detail.contains("expected an answer within 200 ms, came none")))
 
-  test("without a deadline a policy that fails ends the flight with its words"):
+  test("without a deadline, an outside policy that fails ends the flight with its error message"):
     flownBy(settings)((number, seen) =>
       Some(if number < 5 then Peer.pursuer(seen) else Peer.refusal("no such luck"))
     ) match
       case (FlightOutcome.Failed(reason), _) => assert(reason.contains("the policy: no such luck"), reason)
       case (other, _)                        => fail(s"$other")
 
-  test("flights to warm up in virtual time do not ask it"):
+  test("warm-up flights in virtual time do not call the outside policy"):
     Using.resource(Peer((_, _) => None)): peer =>
       val outside = settings.copy(policies = OutsidePolicy.reach(peer.option).toOption.toList)
       assertEquals(WarmUp.fly(outside, 2, Clock.ofNanos(() => 0)), Right(2))

@@ -52,7 +52,9 @@ class OwnLoopSimulation extends munit.FunSuite, Unhurried:
 
   private lazy val flown = fly(eager)
 
-  test("it flies in virtual time, equal seeds give equal recordings, and a replay repeats the decisions"):
+  test(
+    "an own loop has equal recordings for equal seeds in virtual time, and a replay repeats its decisions"
+  ):
     val recording = flown.recorder.recording
     assertEquals(flown.outcome, FlightOutcome.Completed)
     assertEquals(recording.flight.loop, "eager")
@@ -60,13 +62,13 @@ class OwnLoopSimulation extends munit.FunSuite, Unhurried:
     assertEquals(flown.recorder.digest, fly(eager).recorder.digest)
     assertEquals(Replay(PaperDuel().fleet, recording).firstDifference, None)
 
-  test("replay of its recording's file decides again, and does not fly again what is not on record"):
+  test("a replay of an unknown loop's file repeats its decisions, but not its flight"):
     val file = Files.createTempDirectory("own").resolve("eager.duckdb")
     assert(flown.recorder.writeTo(file).isRight)
     val replayed = Replayed.of(file)(using Scenarios.ours).fold(fail(_), identity)
     assertEquals((replayed.isSame, replayed.flownAgain), (true, None))
 
-  test("vehicles hover after a graph that does not command it"):
+  test("vehicles hover at the end even if the graph does not command it"):
     val idle = OwnLoop(
       "idle",
       (team, stop) =>
@@ -81,7 +83,7 @@ class OwnLoopSimulation extends munit.FunSuite, Unhurried:
     assertEquals(landed.hovers, 2)
     assert(landed.recorder.recording.events.exists(_.kind == skein.record.EventKind.Aborted))
 
-  test("a graph whose answer never comes is broken off, and the vehicles hover"):
+  test("a graph whose future never completes is aborted, and the vehicles hover"):
     val mute = OwnLoop(
       "mute",
       (team, stop) =>
@@ -107,7 +109,7 @@ class OwnLoopSimulation extends munit.FunSuite, Unhurried:
     val landed = fly(broken)
     assertEquals((landed.outcome, landed.hovers), (FlightOutcome.Failed("no such instrument"), 2))
 
-  test("its name is no loop of ours, and fits tables and files"):
+  test("an own loop must have another name than Skein's, and one that fits tables and files"):
     for name <- Seq("stream", "", "My loop", "a" * 41) do
       intercept[IllegalArgumentException](OwnLoop(name, (team, stop) => OwnLoopSimulation.eager(team, stop)))
 

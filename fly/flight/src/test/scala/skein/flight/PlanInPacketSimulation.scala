@@ -46,19 +46,21 @@ class PlanInPacketSimulation extends munit.FunSuite, TemporaryFolders, Unhurried
     val paused = settings(LatencyProfile.none).copy(loops = List(LoopKind.Paused), planInPacket = false)
     distanceM(fly(paused))
 
-  test("over 400 ms with two moves in flight predictive flies within 2 % of the paused truth, not 20 % off"):
+  test(
+    "over 400 ms with two moves in flight, plans bring predictive from 20 % to within 2 % of the paused truth"
+  ):
     val far = settings(link("constant:400ms"))
     val off = distanceM(fly(far)) / truthM - 1
     assert(math.abs(off) < 0.02, s"${100 * off} %")
     val without = distanceM(fly(far.copy(planInPacket = false))) / truthM - 1
     assert(without > 0.15, s"without plans: ${100 * without} %")
 
-  test("through losses and outages flights come to their end, and fly within 2 % of the truth"):
+  test("through losses and outages, flights complete within 2 % of the truth"):
     val offs = Seq(1L, 5L).map: seed =>
       distanceM(fly(settings(lossy), seed)) / truthM - 1
     assert(offs.forall(off => math.abs(off) < 0.02), offs.toString)
 
-  test("a command is answered when the buffer has it, and each period has one"):
+  test("each command is answered once the buffer has it, and each period has one command"):
     val flown   = fly(settings(link("constant:400ms"), seconds = 5)).recording
     val answers = flown.acknowledgements.filter(_.vehicle == "Pursuer")
     val sentAt = flown.commands.filter(_.vehicle == "Pursuer").map(sent => sent.sequence -> sent.sentAt).toMap
@@ -78,7 +80,7 @@ class PlanInPacketSimulation extends munit.FunSuite, TemporaryFolders, Unhurried
     assertEquals((replayed.decidedAgain, replayed.isSame), (None, true))
     assert(flown.recording.events.exists(_.kind == EventKind.TimedOut), "no outage came")
 
-  /** A vehicle that moves a little with each command, and holds no plans. */
+  /** A vehicle that moves a little with each command, and accepts no plans. */
   private final class Plain(clock: Clock) extends VehiclePort:
     private var at = Vector3.Zero
 
@@ -95,7 +97,7 @@ class PlanInPacketSimulation extends munit.FunSuite, TemporaryFolders, Unhurried
 
     def hover(): Future[Either[VehicleError, Boolean]] = Future.successful(Right(true))
 
-  test("a flight of vehicles that hold no plans does not begin, and says what was expected"):
+  test("a flight with vehicles that accept no plans is refused, with what was expected"):
     val flight = settings(LatencyProfile.none)
     val result = VirtualTime
       .run(seed = 1): system =>

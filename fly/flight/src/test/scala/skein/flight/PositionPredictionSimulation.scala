@@ -43,7 +43,7 @@ class PositionPredictionSimulation extends munit.FunSuite, Unhurried:
     flown.recorder.recording.predictions.map(_.error.value).sorted
 
   for yaw <- Seq(Yaw.Still, Yaw.Forward) do
-    test(s"a vehicle on its way to positions, yaw $yaw, is predicted within two centimetres over vpn"):
+    test(s"a vehicle that flies to positions, yaw $yaw, is predicted within two centimetres over vpn"):
       val errors = errorsM(yaw)
       assert(errors.sizeIs > 300, s"only ${errors.size} predictions were verified")
       assert(

@@ -5,7 +5,9 @@ import java.nio.charset.StandardCharsets.UTF_8
 import skein.units.Span
 
 class ProgressBoardSuite extends munit.FunSuite:
-  test("a flight that started later than the first continues, and no time beyond the flights' is shown"):
+  test(
+    "when one of two flights has ended, progress shows the other, and no time beyond the flights' duration"
+  ):
     val bytes = ByteArrayOutputStream()
     val board = ProgressBoard(Vector("a", "b"), Span.ofSeconds(20), PrintStream(bytes, true, UTF_8))
     board.show(Vector(
@@ -15,7 +17,7 @@ class ProgressBoardSuite extends munit.FunSuite:
     board.close()
     assertEquals(bytes.toString(UTF_8), "20 s of 20 s: a ended; b \n")
 
-  test("where time passes in steps, the flight's time is shown, every 10 s of the clock's"):
+  test("where time passes in steps, progress shows the simulator's time, every 10 s of the controller's"):
     val bytes = ByteArrayOutputStream()
     val board = ProgressBoard(Vector("paused"), Span.ofSeconds(15), PrintStream(bytes, true, UTF_8))
     for s <- Seq(10, 14, 20, 30) do

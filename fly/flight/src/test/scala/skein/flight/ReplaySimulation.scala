@@ -42,13 +42,13 @@ class ReplaySimulation extends munit.FunSuite, TemporaryFolders, Optimised:
 
   for loop <- LoopKind.values do
     folder.test(
-      s"${loop.label} makes equal decisions when the flight is repeated, and when its recording is replayed"
+      s"${loop.label}: a repeated flight and a replay of its recording have equal decisions"
     ): folder =>
       check(settings.copy(loops = List(loop)), folder)
 
   for scenario <- Seq(PaperDuel(), Crossing(vehicles = 4)) do
     folder.test(
-      s"so does a plan of ${scenario.name} by a user's own plant, from states that readings lack"
+      s"a plan of ${scenario.name} by a user's own plant is repeated, from states that readings lack"
     ): folder =>
       val own = settings.copy(loops = List(LoopKind.Plan), scenario = scenario, predictor = Tilting.predictor)
       val plan = own.plans.head
@@ -58,7 +58,7 @@ class ReplaySimulation extends munit.FunSuite, TemporaryFolders, Optimised:
       assertEquals(states.size, recording.planned.size)
       assert(states.map(_.own.takeRight(2)).distinct.size > 10, "tilts do not differ")
 
-  test("from other states, or by a plant of other numbers, other plans come out"):
+  test("other states, or a plant with other parameters, give other plans"):
     val own = settings.copy(
       loops = List(LoopKind.Plan),
       scenario = Crossing(vehicles = 4),
@@ -71,7 +71,7 @@ class ReplaySimulation extends munit.FunSuite, TemporaryFolders, Optimised:
     val other = own.copy(predictor = PredictionModel.Own(Tilting.structure, Vector(1.5, 0.15)))
     assert(Replay(own.fleet, recording, other.loopSettings(plan)).firstDifference.isDefined)
 
-  folder.test("so does a predictive flight by a reduced model, which the recording holds"): folder =>
+  folder.test("a predictive flight by a reduced model is repeated with the model in its recording"): folder =>
     check(
       settings.copy(
         loops = List(LoopKind.Predictive),
@@ -83,7 +83,9 @@ class ReplaySimulation extends munit.FunSuite, TemporaryFolders, Optimised:
       folder
     )
 
-  folder.test("so does a team of eight, as published, over a link of another kind"): folder =>
+  folder.test(
+    "a team of eight as published, over another kind of link, is repeated with equal decisions"
+  ): folder =>
     val link =
       LatencyProfile.parse("lognormal:40ms,0.8", Left(_)).fold(error => fail(error.message), identity)
     check(
@@ -95,7 +97,7 @@ class ReplaySimulation extends munit.FunSuite, TemporaryFolders, Optimised:
       folder
     )
 
-  test("a replay names the first decision whose heading is not what the policy gives, with both values"):
+  test("a replay reports the first decision whose heading differs from the policy's, with both values"):
     val recording = fly(settings, predictive).recording
     val forged    = recording.decisions(7)
     val heading   = Radians(forged.heading.value + 1e-12)
@@ -117,7 +119,7 @@ class ReplaySimulation extends munit.FunSuite, TemporaryFolders, Optimised:
     val found = Replay(PaperDuel().fleet, recording.copy(readings = forged)).firstDifference
     assert(found.exists(_.column.endsWith("Sequence")), found.toString)
 
-  folder.test("flying again what was recorded with another seed gives other decisions"): folder =>
+  folder.test("repeating a flight with another seed than the recorded one gives other decisions"): folder =>
     val plan     = predictive
     val recorder = fly(settings, plan)
     val records  = recorder.records

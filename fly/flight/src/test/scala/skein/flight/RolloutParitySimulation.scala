@@ -112,7 +112,7 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
 
   private def recordedStart(flown: TappedFlight): Instant = flown.recording.readings.head.state.validAt
 
-  test("paused, which meets no delays"):
+  test("forward simulation repeats paused, which has no delays"):
     check(LoopKind.Paused, LatencyProfile.none, 1)
 
   for
@@ -140,10 +140,10 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
       (LoopKind.Predictive, "outage:1s/10s,vpn", 1)
     )
   do
-    test(s"${loop.label} over $link"):
+    test(s"forward simulation repeats ${loop.label} over $link"):
       check(loop, profile(link), seed, duration = if link == "vpn-mixed" then minute else once)
 
-  test("stream over vpn, lower, where vehicles answer faster"):
+  test("forward simulation repeats stream over vpn at a low altitude, where vehicles respond faster"):
     check(LoopKind.Stream, profile("vpn"), 4, PaperDuel(altitudeM = 6))
 
   for (team, loop) <- Seq(
@@ -158,14 +158,13 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
     )
   do
     test(
-      s"${loop.label} over vpn, the team of ${team.name}, whose policies regard all and choose their speed"
+      s"forward simulation repeats ${loop.label} for ${team.name}, whose policies regard all vehicles"
     ):
       val link = if loop == LoopKind.Paused then LatencyProfile.none else LatencyProfile.vpn
       check(loop, link, 5, team, duration = Span.ofSeconds(8))
 
   test(
-    "futures over direct, twenty vehicles that cross: eighty " +
-      "tasks overlap, each with a reading of every vehicle"
+    "forward simulation repeats futures over direct for twenty vehicles, with eighty overlapping tasks"
   ):
     check(
       LoopKind.Futures,
@@ -188,29 +187,33 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
     (loop, links) <- ties
     link          <- links
   do
-    test(s"${loop.label} over $link, where times tie"):
+    test(s"forward simulation repeats ${loop.label} over $link, where events coincide"):
       check(loop, profile(link), 1, duration = Span.ofSeconds(6))
 
   for loop <- Seq(LoopKind.Futures, LoopKind.Stream) do
-    test(s"${loop.label} over vpn with two pursuers and two evaders, each against the nearest"):
+    test(
+      s"forward simulation repeats ${loop.label} over vpn with two duels, each against the nearest opponent"
+    ):
       check(loop, LatencyProfile.vpn, 1, PaperDuel(pairs = 2))
 
   for loop <- Seq(LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream, LoopKind.Predictive) do
-    test(s"${loop.label} over vpn, policies of four kinds, with memories, that know the commands of others"):
+    test(s"forward simulation repeats ${loop.label} over vpn with four kinds of policies, with memories"):
       check(loop, LatencyProfile.vpn, 2, AnyPolicies(), Span.ofSeconds(8))
 
-  test("paused, policies of four kinds"):
+  test("forward simulation repeats paused with four kinds of policies"):
     check(LoopKind.Paused, LatencyProfile.none, 2, AnyPolicies(), Span.ofSeconds(8))
 
   for loop <- Seq(LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream, LoopKind.Predictive) do
-    test(s"${loop.label} over vpn in three dimensions: climbing, turning, at altitudes of their own"):
+    test(s"forward simulation repeats ${loop.label} over vpn in three dimensions, with climbs and turns"):
       check(loop, LatencyProfile.vpn, 3, InSpace(), Span.ofSeconds(8))
 
-  test("paused in three dimensions"):
+  test("forward simulation repeats paused in three dimensions"):
     check(LoopKind.Paused, LatencyProfile.none, 3, InSpace(), Span.ofSeconds(8))
 
   for loop <- Seq(LoopKind.Sequential, LoopKind.Stream) do
-    test(s"${loop.label} over vpn: a scenario ends in forward simulation when its flight does, to a period"):
+    test(
+      s"${loop.label} over vpn: a scenario ends in forward simulation within a period of its flight's end"
+    ):
       val asked   = settings(loop, LatencyProfile.vpn, EndsInSpace(), Span.ofSeconds(12))
       val flown   = TappedFlight.fly(asked, FlightPlan("parity", loop, LatencyProfile.vpn, 4))
       val timing  = LoopTimings.of(loop, LoopSettings.every(Span.ofMillis(100))).get
@@ -229,10 +232,10 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
 
   // Where delays are equal in both directions, a flight knows the ages of its readings as they are.
   for loop <- Seq(LoopKind.Sequential, LoopKind.Stream) do
-    test(s"${loop.label} over 100 ms, a policy that goes by ages"):
+    test(s"forward simulation repeats ${loop.label} over 100 ms, with a policy that depends on ages"):
       check(loop, profile("constant:100ms"), 1, AnyPolicies(byAges = true), Span.ofSeconds(6))
 
-  test("stream over vpn as published: spread questions, answers in order, a decision at each"):
+  test("forward simulation repeats stream over vpn as published: spread requests, a decision at each answer"):
     check(LoopKind.Stream, LatencyProfile.vpn, 3, PaperDuel(asPublished = true))
 
   private def profile(name: String): LatencyProfile =

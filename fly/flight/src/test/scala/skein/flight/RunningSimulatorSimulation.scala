@@ -156,8 +156,7 @@ class RunningSimulatorSimulation extends munit.FunSuite, Unhurried:
   private def orFail[A](result: Either[String, A]): A = result.fold(fail(_), identity)
 
   test(
-    "flights of one command and of several begin at rest at the " +
-      "starts, and nothing that flies falls between them"
+    "consecutive flights, of one command or several, begin at rest at the starts, and no vehicle falls"
   ):
     val (recordings, seen, atFirst, inAll) = on(duel): bench =>
       import bench.system.dispatcher
@@ -178,7 +177,7 @@ class RunningSimulatorSimulation extends munit.FunSuite, Unhurried:
     )
     assertEquals(inAll, atFirst, "taken of vehicles that flew under api control")
 
-  test("vehicles that look elsewhere are turned to the north before they hover at their starts"):
+  test("vehicles with another heading turn north before they hover at their starts"):
     val turned = duel.zip(Seq(99.0, -150.0)).map((one, deg) => one.copy(yaw = Radians(math.toRadians(deg))))
     for recording <- orFail(on(turned)(_.command(brief))) do
       assertBeginsAtRest(recording)
@@ -186,7 +185,7 @@ class RunningSimulatorSimulation extends munit.FunSuite, Unhurried:
         val q = firstSeen(recording, vehicle.name).orientation
         assert(math.abs(2 * math.atan2(q.z, q.w)) < math.toRadians(4), s"$vehicle: $q")
 
-  test("a vehicle that falls, and one whose last move still flies, are caught and brought to their starts"):
+  test("a falling vehicle, and one whose last move still runs, are brought to their starts"):
     val recordings = on(duel): bench =>
       import bench.system.dispatcher
       for
@@ -199,7 +198,7 @@ class RunningSimulatorSimulation extends munit.FunSuite, Unhurried:
     assertEquals(recordings.size, 2)
     recordings.foreach(assertBeginsAtRest)
 
-  test("altitudes count from where each vehicle starts, wherever its frame has its origin"):
+  test("altitudes count from each vehicle's start, wherever its frame has its origin"):
     val truth            = settings.copy(loops = List(LoopKind.Paused))
     def flown(z: Double) = on(duel.map(one => one.copy(startNed = one.startNed.copy(z = z)))): bench =>
       import bench.system.dispatcher
@@ -216,14 +215,14 @@ class RunningSimulatorSimulation extends munit.FunSuite, Unhurried:
       last.own.state.value.positionNed.horizontalDistance(last.opponent.state.value.positionNed)
     assertEqualsDouble(apartM(raised), apartM(level), 0.1)
 
-  test("a simulator that was left standing still is let run"):
+  test("a simulator that stands still is resumed"):
     val recordings = on(duel): bench =>
       import bench.system.dispatcher
       bench.operate(_.pause()).flatMap(_ => bench.command(brief))
     orFail(recordings).foreach(assertBeginsAtRest)
 
   for loop <- Seq(LoopKind.Stream, LoopKind.Predictive, LoopKind.Futures) do
-    test(s"${loop.label}: after one lost cancel moves are answered in time again within a second"):
+    test(s"${loop.label}: within a second after a lost cancel, moves are answered in time again"):
       var lost    = 0
       var mayLose = false
       def loses() =
@@ -245,7 +244,7 @@ class RunningSimulatorSimulation extends munit.FunSuite, Unhurried:
         flown.events.filter(event => event.kind == EventKind.TimedOut && event.detail.contains("cancel"))
       assertEquals(told.size, 1, told.toString)
 
-  /** When moves were sent whose predecessors were answered more than 300 ms later. */
+  /** Times of moves whose predecessors were answered more than 300 ms later. */
   private def answeredLate(recording: Recording): Vector[Instant] =
     val ended = recording.acknowledgements.map(ack => (ack.vehicle, ack.command) -> ack.endedAt).toMap
     for
@@ -256,7 +255,7 @@ class RunningSimulatorSimulation extends munit.FunSuite, Unhurried:
     yield next.sentAt
 
   test(
-    "a flight that is called off while its vehicles are brought to their starts lets them hover on the way"
+    "a flight that is called off while its vehicles move to their starts lets them hover on the way"
   ):
     val (outcome, seen) = on(duel): bench =>
       import bench.system.dispatcher
@@ -274,7 +273,7 @@ class RunningSimulatorSimulation extends munit.FunSuite, Unhurried:
     assert(high.max > 2 && high.max < 15, s"the highest were at ${high.max} m")
     assert(seen.last.forall(_.velocityNed.norm < 0.3), seen.last)
 
-  test("a flight whose simulator another client resets while its vehicles fly to their starts says so"):
+  test("a flight whose simulator is reset by another client on the way to the starts reports that"):
     val outcome = on(duel): bench =>
       import bench.system.dispatcher
       given ActorSystem = bench.system
@@ -299,7 +298,7 @@ class RunningSimulatorSimulation extends munit.FunSuite, Unhurried:
       val lenses = images.filter(_.vehicle == vehicle).map(_.fov)
       assert(lenses.last.isDefined, s"$vehicle: $lenses")
 
-  test("without one of the vehicles a flight is refused, with the names of those that are there"):
+  test("a flight with a missing vehicle is refused, with the names of the existing ones"):
     assertEquals(
       on(duel.take(1))(_.command(settings)).left.map(_.replaceFirst("^[^:]*: ", "")),
       Left("the simulator has no vehicle 'Pursuer'; it has 'Evader'")

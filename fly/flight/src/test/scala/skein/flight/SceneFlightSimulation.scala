@@ -21,7 +21,7 @@ class SceneFlightSimulation extends munit.FunSuite, Unhurried:
   private def contacts(flown: VirtualFlightResult) =
     flown.recorder.recording.events.filter(_.kind == EventKind.Contact)
 
-  test("a duel among trees touches them: every contact is on record, and the scene is, too"):
+  test("a duel among trees records every contact, and the scene"):
     val duel = settings(LoopKind.Stream, Span.ofSeconds(20))
       .copy(scenario = PaperDuel(altitudeM = 5), scene = NamedScene.shipped("forest"))
     val flown = fly(duel)
@@ -50,7 +50,7 @@ class SceneFlightSimulation extends munit.FunSuite, Unhurried:
       assert(last.forall(_ > 112), s"they came to $last m")
       assertEquals(Replay(crossing.fleet, recording).firstDifference, None)
 
-  test("what is touched again within half a second is one contact, anything else another"):
+  test("contacts with one object within half a second count once, others separately"):
     val tree = skein.airsim.Collision(Instant.ofNanos(0), Vector3.Zero, Vector3.Zero, "Tree1")
     assert(ContactWatch.isNew(tree, None))
     assert(!ContactWatch.isNew(tree.copy(at = Instant.Epoch + Span.ofMillis(500)), Some(tree)))

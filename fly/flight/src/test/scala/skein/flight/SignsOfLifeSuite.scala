@@ -31,7 +31,7 @@ class SignsOfLifeSuite extends munit.FunSuite:
       clue(told(500)).endsWith("while Pursuer's policy has not decided for 1.5 s; --deadline limits that")
     )
 
-  test("a simulator that answers within a flight's period is never silent, however long that is"):
+  test("a simulator that answers within a flight's period is never silent, however long the period is"):
     assert(SimulatorWatchdog.within(Span.ofMillis(100), Asking.Timeout) < Span.ofMillis(850))
     for seconds <- Seq(0.1, 1.0, 10.0) do
       val period = Span.ofSeconds(seconds)

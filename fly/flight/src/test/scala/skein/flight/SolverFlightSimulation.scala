@@ -32,7 +32,7 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
     solver = SolverChoice.parse("link:lognormal:8ms,0.5").toOption
   )
 
-  test("every loop that can is flown twice, with equal seeds: decided here, and by a solver"):
+  test("every loop except paused has two flights with equal seeds: decided here, and by a solver"):
     assertEquals(
       settings.plans.map(_.id),
       Vector("paused-none", "stream-vpn", "predictive-vpn", "stream-vpn-solver", "predictive-vpn-solver")
@@ -40,7 +40,7 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
     assertEquals(settings.plans.filter(_.id.startsWith("stream")).map(_.seed).distinct.size, 1)
 
   test(
-    "a flight with a solver is recorded with its round trips, replays, and repeats equally"
+    "a flight with a solver is recorded with its round trips, replays, and repeats with an equal digest"
   ):
     for plan <- settings.plans.filter(_.solver.isDefined) do
       val flown     = VirtualFlights.fly(settings, plan).fold(fail(_), identity)
@@ -55,7 +55,7 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
       val digest = VirtualFlights.fly(again.settings, again.plan).map(_.recorder.digest)
       assertEquals(digest, Right(flown.recorder.digest))
 
-  test("planned elsewhere over a hop that takes no time, a flight is the one that its own process plans"):
+  test("over a link without delay, a solver's plans equal those of the flight's own process"):
     for
       scenario  <- Seq(PaperDuel(), Crossing(vehicles = 4))
       predictor <- Seq(PredictionModel.Quadrotor, Tilting.predictor)
@@ -78,7 +78,7 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
       val again = RecordedPlan.of(there).fold(fail(_), identity)
       assertEquals(Replay(again.fleet, there, again.settings.loopSettings).firstDifference, None)
 
-  test("a solver whose program has not got the plant that is planned by says so, and what it expected"):
+  test("a solver without the plant of a flight's plans reports what it expected"):
     val plans = settings.copy(loops = List(LoopKind.Plan), predictor = Tilting.predictor)
     val asked = Briefing.of(plans, plans.plans.last)
     assert(Briefing.plan(asked).isRight)
@@ -87,7 +87,7 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
       Left("its parameter 'predictor': expected a model's name or five numbers")
     )
 
-  test("without a deadline of its own, a decision made elsewhere has the period for one"):
+  test("without a configured deadline, a remote decision has the period for one"):
     val slow  = settings.copy(solver = SolverChoice.parse("link:constant:300ms").toOption)
     val flown = VirtualFlights.fly(slow, slow.plans.last).fold(fail(_), identity).recorder.recording
     assertEquals(flown.solved, Vector.empty)
@@ -141,7 +141,7 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
         yield answer.toEither.left.map(_.getMessage)
       .value
 
-  test("a solver of another build, scenario or policy refuses, and says what differs"):
+  test("a solver of another build, scenario or policy refuses, with the difference"):
     val briefing = Briefing.of(settings, settings.plans.last)
     assertEquals(welcomed(briefing), Right(SolverClient.Welcomed(byVectors = true)))
     assertEquals(
@@ -156,11 +156,11 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
     val other = welcomed(briefing.copy(agents = briefing.agents.map(_.replace("PaperPursuer", "Ambush"))))
     assert(other.left.exists(_.contains("the scenario is another here: the flight has Pursuer")), other)
 
-  test("a solver without vectors says so, for flights that plan"):
+  test("a solver without SIMD warns flights that plan"):
     val told = welcomed(Briefing.of(settings, settings.plans.last), byVectors = false).map(_.warning)
     assert(told.exists(_.exists(_.contains("jdk.incubator.vector"))), told)
 
-  test("without a solver, a flight waits for its patience, and says where it looked"):
+  test("without a solver, a flight waits for its patience, and reports the address that it tried"):
     val run = VirtualTime.run(seed = 1): system =>
       given ActorSystem = system
       import system.dispatcher
@@ -176,7 +176,7 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
       "no solver within 3 s: nobody listens at solver:7400; is the program there started?"
     )
 
-  test("a solver that prepares for long is waited for, up to a limit"):
+  test("a flight waits for a solver that prepares, up to a limit"):
     val briefing = Briefing.of(settings, settings.plans.last)
     assert(welcomed(briefing, prepares = Span.ofSeconds(200)).isRight)
     assertEquals(
@@ -184,7 +184,7 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
       Left("no solver within 600 s: the solver prepares for the flight, and has not finished")
     )
 
-  test("a stranger who speaks garbage at a solver's port loses the connection, and flights fly on"):
+  test("a peer that sends garbage to a solver loses its connection, and flights continue"):
     val garbage =
       Seq("GET / HTTP/1.1\r\n\r\n", "\u0000\u0000\u0000\u0004abcd", "\u007f\u007f\u007f\u007f", "\u0000")
     val run = VirtualTime.run(seed = 1): system =>
@@ -224,7 +224,7 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
     assertEquals(run.value.refused, 0L)
 
   test(
-    "strangers who stay silent, drip, or send a word and stay keep no flight out, and displace no useful peer"
+    "silent or slow strangers at a solver keep no flight out, and displace no useful peer"
   ):
     val word = ByteString(SolverMessageCodec.bytes(SolverMessage.Goodbye(5)))
     val said = ByteString(0, 0, 0, word.size.toByte) ++ word

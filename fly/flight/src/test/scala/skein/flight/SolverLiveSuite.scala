@@ -30,7 +30,7 @@ class SolverLiveSuite extends munit.FunSuite, Optimised:
   private def served(id: Long, at: Address): Future[SolverServer] =
     SolverServer.start(at, TcpTransport(), SolvedFlight.desk(id), Clock.system)
 
-  test("plans come from a solver, within the deadline, and replay"):
+  test("a solver's plans arrive within the deadline, and replay"):
     val server = Await.result(served(1, Address("127.0.0.1", 0)), 10.seconds)
     val flight = SolvedFlight(
       SolverChoice.Tcp(server.address),
@@ -54,7 +54,7 @@ class SolverLiveSuite extends munit.FunSuite, Optimised:
     assertEquals(Replay(again.fleet, recording, again.settings.loopSettings).firstDifference, None)
 
   test(
-    "a peer that accepts the connection and sends nothing is no solver: reported long before patience ends"
+    "a peer that accepts the connection and sends nothing is reported long before patience ends"
   ):
     // Backlog: what nobody accepts is connected all the same.
     Using.resource(ServerSocket(0, 8, InetAddress.getLoopbackAddress)): silent =>
@@ -74,7 +74,7 @@ class SolverLiveSuite extends munit.FunSuite, Optimised:
       ))
       assert(clue(said.asScala.toSeq).head.contains(s"waits for --solver tcp://$at, 600 s at most: "))
 
-  test("a solver that ends and is started again in a flight: the flight hovers, flies on, and replays"):
+  test("when a solver is restarted in flight, vehicles hover, fly on, and the flight replays"):
     val first  = Await.result(served(1, Address("127.0.0.1", 0)), 10.seconds)
     val at     = first.address
     val flight = SolvedFlight(

@@ -7,9 +7,9 @@ import skein.signal.LatencyProfile
 import skein.units.*
 
 /** Prints how many times faster than the clock a 60 s `stream` flight of two vehicles runs on one thread,
-  * warm: run it with `flight/Test/runMain skein.flight.measureSpeed 40`; under `taskset -c 0`, collections
-  * and compilations share the one core. The last line is of the last half of the flights: by the clock, and
-  * by the processor time of the whole process, which a busy machine disturbs less. The digests are the
+  * warm: run it with `flight/Test/runMain skein.flight.measureSpeed 40`. Under `taskset -c 0`, collections
+  * and compilations share the one core. The last line covers the second half of the flights: by the clock,
+  * and by the processor time of the whole process, which a busy machine disturbs less. The digests are the
   * witnesses.
   */
 @main def measureSpeed(flights: Int): Unit =

@@ -26,7 +26,7 @@ class VirtualFlightSimulation extends munit.FunSuite, Unhurried:
     assert(flown.recorder.records.size > 50)
     flown.recorder.digest
 
-  test("equal flights leave equal recordings, repeated and beside another flight in another thread"):
+  test("equal flights have equal recordings, repeated and beside another flight on another thread"):
     val plans   = settings.plans
     val alone   = plans.map(digest)
     val threads = Executors.newFixedThreadPool(2)
@@ -36,12 +36,12 @@ class VirtualFlightSimulation extends munit.FunSuite, Unhurried:
     assertEquals(beside, alone)
     assertEquals(digest(plans.last), alone.last)
 
-  test("another seed leaves another recording"):
+  test("another seed gives another recording"):
     val plan = settings.plans.last
     assertNotEquals(digest(plan.copy(seed = plan.seed + 1)), digest(plan))
 
   test(
-    "a paused flight without delays passes in one instant, and may do as much more in it as it flies longer"
+    "a paused flight without delays passes in one instant, and its limit of tasks grows with its duration"
   ):
     val paused = settings.copy(loops = List(LoopKind.Paused), links = List(LatencyProfile.none))
     val flown  = VirtualFlights.fly(paused, paused.plans.head, RunLimits(tasksPerInstant = 1))

@@ -35,7 +35,7 @@ class AskingSuite extends munit.FunSuite:
     PaperDuel(pairs = 2).fleet.agents.map: agent =>
       recording.readings.filter(_.vehicle == agent.name).map(_.state.sentAt).min.since(start).toMillis
 
-  test("a stream reads all vehicles simultaneously, as published one after the other over the period"):
+  test("stream reads all vehicles simultaneously; as published, one after another over the period"):
     assertEquals(firstAsked(flown(LoopKind.Stream, LatencyProfile.none)), Seq(0.0, 0.0, 0.0, 0.0))
     val published = flown(LoopKind.Stream, LatencyProfile.none, LoopSettings().asPublished)
     assertEquals(firstAsked(published), Seq(0.0, 25.0, 50.0, 75.0))
@@ -43,7 +43,7 @@ class AskingSuite extends munit.FunSuite:
   private def missedSteps(recording: Recording) =
     recording.events.filter(_.kind == EventKind.Skipped).map(event => (event.at.since(start), event.detail))
 
-  test("futures note the steps that they miss while as many run as may, and none where all end in time"):
+  test("futures record the steps that they miss while the limit is running, and none if all end in time"):
     assertEquals(missedSteps(flown(LoopKind.Futures, LatencyProfile.direct)), Vector.empty)
     // Four steps begin before the first has ended, after 4 × 137 ms; of the two that are due by then one is
     // missed.

@@ -53,8 +53,7 @@ class DecideWithinSuite extends munit.FunSuite:
     .value
 
   test(
-    "a deadline missed is recorded, and the policy goes on from " +
-      "the decision before, over the time that has passed"
+    "a missed deadline is recorded, and the next decision continues from the last one over the elapsed time"
   ):
     val (decisions, events) = flown(instead = None)
     assertEquals(
@@ -64,14 +63,14 @@ class DecideWithinSuite extends munit.FunSuite:
     assertEquals(decisions.map(_.sequence), Vector(0L, 1L, 2L, 3L))
     assertEquals(decisions.map(_.elapsed.toMillis), Vector(0.0, 100.0, 200.0, 100.0))
 
-  test("the last decision is repeated where configured, and counts as a decision"):
+  test("if configured, the last decision is repeated, and counts as a decision"):
     val (decisions, events) = flown(instead = Some(KeepHeading))
     assertEquals(events.map(_.kind), Vector(EventKind.DeadlineMissed))
     assertEquals(decisions.map(_.sequence), (0L to 4L).toVector)
     assertEquals(decisions(2).heading.value, decisions(1).heading.value)
     assertNotEquals(decisions(3).heading.value, decisions(2).heading.value)
 
-  test("a loop within a deadline decides on other threads, and where a policy is late the fallback decides"):
+  test("with a deadline, a loop decides on other threads, and the fallback decides if a policy is late"):
     val run = VirtualTime.run(seed = 1): system =>
       given ActorSystem      = system
       given ExecutionContext = system.dispatcher
@@ -91,7 +90,7 @@ class DecideWithinSuite extends munit.FunSuite:
     assertEquals(recording.events.filter(_.kind == EventKind.DeadlineMissed), Vector.empty)
     assertEquals(Replay(scenario, recording).firstDifference, None)
 
-  test("a replay asks the fallback for what it decided, and only for that"):
+  test("a replay uses the fallback for its recorded decisions, and only for these"):
     val (decisions, events) = flown(instead = Some(KeepHeading))
     assertEquals(events.map(_.detail), Vector("decision 2 by the fallback: Late"))
     assertEquals(events.map(_.decision), Vector(Some(2L)))
@@ -103,7 +102,7 @@ class DecideWithinSuite extends munit.FunSuite:
     val silent = Replay(scenario, recording.copy(events = Vector.empty)).firstDifference
     assertEquals(silent.map(_.column), Some("headingRad"))
 
-  test("a replay asks the fallback that the recording names among its parameters"):
+  test("a replay uses the fallback that the recording's parameters name"):
     val pursuit             = Fallback.parse("pure-pursuit").fold(fail(_), identity)
     val (decisions, events) = flown(pursuit.policy(scenario.agents(pursuer)))
     val readings            = decisions.flatMap(decision => Seq(decision.own, decision.opponent)).distinct
@@ -119,7 +118,7 @@ class DecideWithinSuite extends munit.FunSuite:
     assertEquals(column(others :+ ParameterRow(Replay.Fallback, pursuit.label)*), None)
     assertEquals(column(others*), Some("headingRad"))
 
-  test("a fallback is hold, repeat or a policy for the roles that it is meant for"):
+  test("a fallback is hold, repeat, or a policy for the roles that it supports"):
     assertEquals(Fallback.parse("hold").map(_.policy(scenario.agents(0))), Right(None))
     assertEquals(Fallback.parse("repeat").map(_.policy(scenario.agents(0))), Right(Some(KeepHeading)))
     val pursuit = Fallback.parse("pure-pursuit").fold(fail(_), identity)

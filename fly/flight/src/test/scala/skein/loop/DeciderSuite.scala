@@ -46,7 +46,9 @@ class DeciderSuite extends munit.FunSuite:
     assertEquals(second.elapsed, Span.ofMillis(150))
     assertEquals(second.sequence, 1L)
 
-  test("another's heading is the one commanded, or where commands are not known, its direction of motion"):
+  test(
+    "another vehicle's heading is the last commanded one, or its direction of motion if commands are unknown"
+  ):
     def seen(knows: Knowledge, velocity: Vector3) =
       val moving = reading(0, 21, 4, 1010, 100, 120)
       val state  = moving.state.copy(value = moving.state.value.copy(velocityNed = velocity))
@@ -118,7 +120,7 @@ class DeciderSuite extends munit.FunSuite:
       assert(clue(failure).startsWith(s"the policy of Pursuer failed: $told"))
       assert(clue(failure).matches(".* \\(DeciderSuite.scala:\\d+\\)"))
 
-  test("an exception in a policy's initial memory is reported likewise"):
+  test("an exception in a policy's initial memory is reported with its vehicle and line, too"):
     object Broken extends Policy:
       type Memory = Unit
       def start: Unit                                             = throw IllegalStateException("no memory")
@@ -138,7 +140,7 @@ class DeciderSuite extends munit.FunSuite:
     assertEqualsDouble(ofPursuer.relativeX.value, 2, 1e-12)
     assertEqualsDouble(ofPursuer.relativeY.value, -20, 1e-12)
 
-  test("the four observations count from arrival and from the moves sent"):
+  test("the four observations are times since receipt and since the sent moves"):
     val moved    = view.withMove(sent(0, 1, millis(150))).withMove(sent(1, 1, millis(170)))
     val decision = row(evader.decide(evader.start, moved, millis(200)))
     assertEquals(decision.observations.ownAge, Span.ofMillis(80))
@@ -157,8 +159,7 @@ class DeciderSuite extends munit.FunSuite:
     assertEqualsDouble(age.opponent.toMillis, 60, driftMs)
 
   test(
-    "it sees itself heading where it was last told, the others " +
-      "where they were sent, and all as they are foreseen"
+    "a policy observes the last commanded headings, and predicted states if there are any"
   ):
     val moved =
       view.withMove(sent(0, 0.4, millis(150))).withMove(sent(1, 0.6, millis(150)))
@@ -176,6 +177,6 @@ class DeciderSuite extends munit.FunSuite:
     assertEqualsDouble(foreseen(1150).actsIn.toMillis, 50, 0.01)
     assertEquals(foreseen(1050).actsIn, Span.Zero, "what was to act already acts now")
 
-  test("no decision is made before every vehicle was seen"):
+  test("no decision is made before every vehicle was read"):
     assert(!TeamView.empty(2).withReading(reading(0, 0, 0, 0, 0, 0)).isComplete)
     assert(view.isComplete)

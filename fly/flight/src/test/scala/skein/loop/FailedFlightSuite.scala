@@ -15,7 +15,7 @@ import skein.vtime.VirtualTime
 class FailedFlightSuite extends munit.FunSuite:
   private val lost = Left(VehicleError.TimedOut("hover: no answer within 500 ms"))
 
-  /** Counts unfinished calls; its first hovers are lost, and moves also end by themselves. */
+  /** Counts unfinished calls. Its first hovers are lost, and its moves also end by themselves. */
   private final class Counted(port: VehiclePort, lostHovers: Int)(using system: ActorSystem)
       extends VehiclePort:
     import system.dispatcher
@@ -83,8 +83,7 @@ class FailedFlightSuite extends munit.FunSuite:
 
   for kind <- LoopKind.values.toSeq if kind != LoopKind.Plan do
     test(
-      s"${kind.label}: when a policy throws, vehicles are told to " +
-        "hover until they say so, and every call ends"
+      s"${kind.label}: when a policy throws, hovering is repeated until it is confirmed, and every call ends"
     ):
       val landed = fly(kind, IllegalStateException("no idea"), lostHovers = 3)
       assertFailed(landed, "the policy of Pursuer failed: java.lang.IllegalStateException: no idea (")
@@ -93,25 +92,25 @@ class FailedFlightSuite extends munit.FunSuite:
         assert(port.isAnswered, "a call was outstanding at the end")
         assert(port.mostOutstanding <= 2, s"${port.mostOutstanding} commands were outstanding at once")
 
-  test("an exception without a message is named by its class"):
+  test("an exception without a message is reported by its class"):
     assertFailed(
       fly(LoopKind.Stream, ArithmeticException()),
       "the policy of Pursuer failed: java.lang.ArithmeticException ("
     )
 
-  test("vehicles that never say that they hover are given up and noted"):
+  test("vehicles that never confirm to hover are given up and recorded"):
     val landed = fly(LoopKind.Stream, IllegalStateException("no idea"), lostHovers = 999)
     val noted  = landed.recording.events.filter(_.detail.startsWith("not known to hover"))
     assertEquals(noted.flatMap(_.vehicle).toSet, Set("Pursuer", "Evader"))
 
-  test("where two moves are outstanding when a flight fails, hovering waits until one of them has ended"):
+  test("if two moves are unanswered when a flight fails, hovering waits until one of them has ended"):
     val landed = fly(LoopKind.Stream, IllegalStateException("no idea"), link = VirtualDuel.constant(400))
     assertEquals(
       landed.ports.map(port => (port.hovering, port.mostOutstanding)),
       Vector.fill(2)((true, 2))
     )
 
-  test("where six may be outstanding, it waits until all but one have ended"):
+  test("if six moves may be unanswered, hovering waits until all but one have ended"):
     val landed = fly(
       LoopKind.Stream,
       IllegalStateException("no idea"),
@@ -122,7 +121,7 @@ class FailedFlightSuite extends munit.FunSuite:
       assert(port.mostOutstanding > 2, port.mostOutstanding.toString)
       assertEquals((port.hovering, port.outstandingAtHover), (true, 1))
 
-  test("what lets the simulator's time pass in steps is needed by paused, and by no other"):
+  test("only paused needs a simulator whose time passes in steps"):
     def flown(kind: LoopKind): FlightOutcome = VirtualTime
       .run(seed = 1): system =>
         given ActorSystem      = system

@@ -26,20 +26,20 @@ class ForeseenSuite extends munit.FunSuite:
       val state = Kinematics(agent.startPositionNed, Vector3.Zero, Quaternion.Identity, Vector3.Zero)
       view.withReading(Reading(vehicle, 0, Stamped(state, millis(20), millis(0), millis(40))))
 
-  /** The view of a loop that has sent its commands and asks again `later`, with nothing read since. */
+  /** The view of a loop that has sent its commands and decides again at `now`, without newer readings. */
   private def predicted(view: TeamView, now: Instant) =
     view.copy(estimates = view.forecast.flatMap(_.whenActing(now)))
 
   private val now  = millis(50)
   private val view = predicted(seen, now)
 
-  test("as many actions are foreseen as a plan may have, a period apart, from when a command acts"):
+  test("a plan's full number of actions is foreseen, a period apart, from the time at which a command acts"):
     val all = foreseen.actions(0, view, starts.map(Foreseen.Mind(_, None)), now)
     assertEquals(all.map(_.size), Vector.fill(2)(CommandPlan.Most))
     val moments = Vector.tabulate(CommandPlan.Most)(number => millis(70) + period * number.toLong)
     assertEquals(all.map(_.map(_.at)), Vector.fill(2)(moments))
 
-  test("what is foreseen is what is decided, period by period, where nothing else is read"):
+  test("foreseen actions equal the later decisions, period by period, if nothing else is read"):
     val all  = foreseen.actions(0, view, starts.map(Foreseen.Mind(_, None)), now)
     val sent = all.zipWithIndex.foldLeft(seen): (view, planned) =>
       val commands = planned._1.map((at, action) =>
@@ -60,7 +60,7 @@ class ForeseenSuite extends munit.FunSuite:
           assertEquals(d, down)
         case other => fail(other.toString)
 
-  test("a decision made on the view is the first action of its vehicle, and is not made again"):
+  test("a decision made on the view is its vehicle's first action, and is not made again"):
     val (memory, decision) = deciders(0).decide(starts(0), view, now)
     val minds              = Vector(Foreseen.Mind(memory, Some(decision)), Foreseen.Mind(starts(1), None))
     assertEquals(
@@ -68,7 +68,7 @@ class ForeseenSuite extends munit.FunSuite:
       foreseen.actions(0, view, starts.map(Foreseen.Mind(_, None)), now)
     )
 
-  test("where others' policies are not known, a plan does not depend on them"):
+  test("if the others' policies are unknown, a plan does not depend on them"):
     val stranger = Fleet(fleet.agents.updated(0, fleet.agents(0).copy(policy = Flee(3))))
     val blind    = predicted(
       seen
@@ -99,7 +99,7 @@ class ForeseenSuite extends munit.FunSuite:
     assertNotEquals(plans(fleet, known), plans(stranger, known))
     assertEquals(plans(fleet, blind).map(_.size), Vector(0, CommandPlan.Most))
 
-  test("a vehicle's plan begins with its decision, and a view without predictions makes none"):
+  test("a vehicle's plan begins with its decision; without predictions there is no plan"):
     val foresight          = Foresight(foreseen, starts)
     val (memory, decision) = deciders(0).decide(starts(0), view, now)
     foresight.decided(0, memory, decision)

@@ -8,18 +8,17 @@ class GraphLayoutSuite extends munit.FunSuite:
       .of(LoopGraph(stages.toVector, edges.toVector.map((from, to) => (from = from, to = to))))
       .map((name, spot) => name -> (spot.column, spot.row))
 
-  test("a chain is a row, in its order, whatever its parts are called"):
+  test("a chain is one row, in its order, whatever the names of its parts"):
     assertEquals(
       places("a", "b", "c")("c" -> "b", "b"      -> "a"),
       Map("c"                   -> (0, 0.0), "b" -> (1, 0.0), "a" -> (2, 0.0))
     )
 
-  test("nothing is drawn of a graph without parts"):
+  test("a graph without parts has an empty layout"):
     assertEquals(places()(), Map.empty)
 
   test(
-    "what branches stands in one column, each behind the one that " +
-      "leads to it, and narrower columns in the middle"
+    "branches stand in one column, each behind its predecessor, and narrower columns are centred"
   ):
     assertEquals(
       places("cast", "x1", "x2", "y1", "y2", "z")(
@@ -40,7 +39,7 @@ class GraphLayoutSuite extends munit.FunSuite:
       )
     )
 
-  test("a part is one column after the last of those that lead to it"):
+  test("a part is one column after the last of its predecessors"):
     assertEquals(
       places("a", "b", "c")("a" -> "b", "b"      -> "c", "a"      -> "c"),
       Map("a"                   -> (0, 0.0), "b" -> (1, 0.0), "c" -> (2, 0.0))
@@ -64,11 +63,11 @@ class GraphLayoutSuite extends munit.FunSuite:
       )
     )
 
-  test("a cycle without a source is laid out, and a self-loop moves nothing"):
+  test("a cycle without a source is laid out, and a self-loop moves no part"):
     assertEquals(places("a", "b")("a" -> "b", "b" -> "a"), Map("a" -> (0, 0.0), "b" -> (1, 0.0)))
     assertEquals(places("a", "b")("a" -> "a", "a" -> "b"), Map("a" -> (0, 0.0), "b" -> (1, 0.0)))
 
-  test("a part is vertically centred on those that lead to it"):
+  test("a part is vertically centred on its predecessors"):
     val sources = Seq("a", "b", "c", "d")
     val placed  = places(sources ++ Seq("m", "n")*)((sources.map(_ -> "n") :+ ("c" -> "m"))*)
     // n comes of rows 0 to 3, m of row 2.

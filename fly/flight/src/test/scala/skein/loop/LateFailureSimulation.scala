@@ -47,7 +47,7 @@ class LateFailureSimulation extends munit.FunSuite, Unhurried:
         FlightOutcome.Failed(LateFailureSimulation.Full.message)
       )
 
-  test("a flight that has failed already keeps its first reason"):
+  test("a flight that has already failed keeps its first reason"):
     val first = FlightOutcome.Failed("nobody answers")
     assertEquals(outcome(LoopKind.Stream, Some(Span.ofMillis(2100)), () => first), first)
 

@@ -12,7 +12,7 @@ import skein.testing.Optimised
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** The paper's duel with a controller for each vehicle, seen from the vehicles: who calls them. */
+/** The paper's duel with a controller for each vehicle; the vehicles record which controllers call them. */
 class OwnControllersSimulation extends munit.FunSuite, Optimised:
 
   /** A vehicle as one controller reaches it. */
@@ -84,12 +84,12 @@ class OwnControllersSimulation extends munit.FunSuite, Optimised:
       else assertEquals((port.moves, port.hovers), (0, 0), s"$controller commanded $vehicle")
 
   for kind <- Seq(LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream, LoopKind.Predictive) do
-    test(s"${kind.label}: a vehicle is read by all, and commanded by its own controller until it hovers"):
+    test(s"${kind.label}: all controllers read a vehicle, and its own one commands it until it hovers"):
       val flown = fly(kind)
       assertEquals(flown.outcome, FlightOutcome.Completed)
       assertEachByItsOwn(flown)
 
-    test(s"${kind.label}: a controller that fails ends the flight by its name, and all vehicles hover"):
+    test(s"${kind.label}: a controller that fails ends the flight with its name, and all vehicles hover"):
       val flown = fly(kind, failsAfter = 10)
       flown.outcome match
         case FlightOutcome.Failed(why) =>
@@ -98,7 +98,7 @@ class OwnControllersSimulation extends munit.FunSuite, Optimised:
         case other => fail(s"expected a failure, came $other")
       assertEachByItsOwn(flown)
 
-  test("while a flight is held, no controller decides"):
+  test("while a flight is paused, no controller decides"):
     val decided = fly(LoopKind.Stream, held = true).recording.decisions
     val start   = decided.map(_.decidedAt).min
     val seconds =

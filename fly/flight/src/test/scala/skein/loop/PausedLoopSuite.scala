@@ -13,7 +13,7 @@ import skein.vtime.VirtualTime
 class PausedLoopSuite extends munit.FunSuite:
   private val lost = Left(VehicleError.TimedOut("lost: no answer within 500 ms"))
 
-  /** A vehicle whose readings in `failing` fail, and whose first hovers do. */
+  /** A vehicle whose readings in `failing`, and whose first hovers, fail. */
   private final class Fragile(port: VehiclePort, isPaused: () => Boolean, failing: Range, failedHovers: Int)
       extends VehiclePort:
     private var reads, hovers = 0
@@ -126,7 +126,7 @@ class PausedLoopSuite extends munit.FunSuite:
     assert(!landed.toldWhilePaused, s"to hover was commanded before the simulator ran again: $landed")
     assertEquals(landed.ends, landed.commands, landed.toString)
 
-  test("after its last step the vehicles hover and the simulator runs"):
+  test("after the last step the vehicles hover and the simulator runs"):
     val landed = fly()
     assertEquals((landed.outcome, landed.commands), (FlightOutcome.Completed, 20))
     assert(landed.stoodStill, "it was to be paused once, before anything was read")
@@ -135,7 +135,7 @@ class PausedLoopSuite extends munit.FunSuite:
   private def readAt(ms: Double*): Vector[Stamped[Unit]] =
     ms.toVector.map(at => Stamped((), Instant.Epoch + Span.ofMillis(at), Instant.Epoch, Instant.Epoch))
 
-  test("a step with a wrong duration, or with time passing while it was read, is reported"):
+  test("a step with a wrong duration, or during whose readings time passed, is reported"):
     def drift(step: Long, before: Vector[Stamped[Unit]], read: Vector[Stamped[Unit]]) =
       PausedLoop.drift(step, before, read, Span.ofMillis(100))
     assertEquals(PausedLoop.newest(readAt(500, 503, 501)), Instant.Epoch + Span.ofMillis(503))
@@ -150,13 +150,13 @@ class PausedLoopSuite extends munit.FunSuite:
       )
 
   test(
-    "a flight whose steps are as long as they should be notes no drift, and a simulator that runs on is noted"
+    "steps of the right duration are recorded without drift, and steps of a wrong one with it"
   ):
     assertEquals(fly().drifts, 0)
     assertEquals(fly(stepsBy = _ => Some(Span.ofMillis(90))).drifts, 9)
 
   test(
-    "a request without an answer is repeated, and a step is made once, whether its answer or itself was lost"
+    "an unanswered request is repeated, and a step is made once, whether it or its answer was lost"
   ):
     val truth = fly()
     for
@@ -169,7 +169,7 @@ class PausedLoopSuite extends munit.FunSuite:
     do
       assertEquals(landed.copy(stoodStill = true), truth)
 
-  test("a simulator whose clock stops, runs back or leaps in a step ends the flight, which says so"):
+  test("a simulator whose clock stops, runs back or leaps in a step ends the flight with that reason"):
     for
       (step, why) <- Seq(
         Span.Zero          -> "stood still in a step of 0.10 s",
@@ -185,7 +185,7 @@ class PausedLoopSuite extends munit.FunSuite:
 
   private val forGood = 5 until 1_000_000
 
-  test("a flight that fails midway, in a reading or in a step, lets the simulator run, too"):
+  test("a flight that fails during a reading or a step resumes the simulator, too"):
     for
       landed <- Seq(
         fly(failingReads = forGood),
@@ -202,7 +202,7 @@ class PausedLoopSuite extends munit.FunSuite:
     isReleased(fly(failedHovers = 3))
     isReleased(fly(failingReads = forGood, failedHovers = 2, failedResumes = 4))
 
-  test("a simulator that never answers again is given up, and the outcome says so"):
+  test("a simulator that never answers again is given up, and the outcome states that"):
     fly(failedResumes = 999).outcome match
       case FlightOutcome.Failed(reason) => assert(reason.contains("stands still"), reason)
       case other                        => fail(s"expected a failure, came $other")

@@ -29,7 +29,7 @@ class PlanLoopSimulation extends munit.FunSuite, Optimised:
     // Under `stream`, the paper's pursuer orbits at 10.8 m.
     assert(duel.distanceM < 10.8 / 2, s"seed 4: ${duel.distanceM} m on the average of the last 10 s")
 
-  test("every decision of the pursuer is planned, by the slices that are set, and leaves at the deadline"):
+  test("every decision of the pursuer is planned with the configured slices, and sent at the deadline"):
     val decisions = duel.recording.decisions.filter(_.vehicle == "Pursuer").map(_.sequence)
     assertEquals(duel.recording.planned.map(_.decision), decisions)
     val slices = Vector.fill(planning.searches)(planning.slices.toLong)
@@ -38,7 +38,7 @@ class PlanLoopSimulation extends munit.FunSuite, Optimised:
     assertEquals(duel.recording.events.filter(_.kind == EventKind.DeadlineMissed), Vector.empty)
 
   test(
-    "its plans begin when their first command will act: the deadline, the way there and the dead time later"
+    "plans begin when their first command acts: after the deadline, the link and the dead time"
   ):
     for decision <- duel.recording.decisions if decision.vehicle == "Pursuer" do
       val acts  = decision.predicted.get.actsAt + decision.trueAge.get.clockOffset
@@ -53,7 +53,7 @@ class PlanLoopSimulation extends munit.FunSuite, Optimised:
       val turned = math.abs(turn.heading.value - turn.headingBefore.value)
       assert(turned <= most * turn.elapsed.toSeconds + 1e-9, s"decision ${turn.sequence} turns by $turned")
 
-  test("where no slice is ever ready the policy decides, and every such deadline is counted"):
+  test("if no slice ever finishes, the policy decides, and every such deadline is counted"):
     val starved = LoopSettings(planning = planning)
     val flown   = VirtualDuel.fly(LoopKind.Plan, LatencyProfile.direct, 5, starved, slices = 0)
     val missed  = flown.recording.events.filter(_.kind == EventKind.DeadlineMissed)
@@ -68,7 +68,7 @@ class PlanLoopSimulation extends munit.FunSuite, Optimised:
     for place <- places do
       assert(math.max(place.x.abs, place.y.abs) < 60.5, s"seed 6: at ${place.x}, ${place.y}")
 
-  test("settings survive their text"):
+  test("settings are read back from their text"):
     val settings =
       PlanSettings(deadline = Span.ofMillis(31.25), method = PlanSettings.PathIntegral, slices = 9)
     assertEquals(PlanSettings.parse(settings.text), Some(settings))

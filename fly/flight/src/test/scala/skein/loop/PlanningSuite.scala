@@ -47,8 +47,7 @@ class PlanningSuite extends munit.FunSuite:
       .pose(Memory(0.25, decidedBefore.map(now - _), 7), view, now)
 
   test(
-    "vehicles that are neither planned nor the opponent are kept " +
-      "from where a separation is set, with a metre more"
+    "with a configured separation, vehicles outside a duel are avoided, with a margin of a metre"
   ):
     val apart = part(PlanSettings(separationM = 5))
     assertEquals(apart.objective.separation, SeparationCost(5, margin = 1))
@@ -60,8 +59,7 @@ class PlanningSuite extends munit.FunSuite:
     assert(!pursuit(PlanSettings()).regardsTeam)
 
   test(
-    "what the scenario keeps between any two is kept from " +
-      "opponents, too, with a metre more, however little it is"
+    "the scenario's separation applies to opponents, too, with a margin of a metre, however small it is"
   ):
     val settings = PlanSettings(separationM = 5, kept = Vector(skein.scenario.Kept.Apart(7)))
     val kept     = part(settings)
@@ -90,7 +88,7 @@ class PlanningSuite extends munit.FunSuite:
     (made.decision, made)
 
   test(
-    "in the plan's place its policy decides, within the turn limit, at the speed that the vehicle always has"
+    "instead of a plan, a pursuer's policy decides, within the turn limit, at the vehicle's constant speed"
   ):
     // 10 m/s over 8 m for 0.2 s are 0.25 rad.
     assertEquals(fleet.agents(pursuer).speed.value, 10.0)
@@ -99,24 +97,24 @@ class PlanningSuite extends munit.FunSuite:
       assertEqualsDouble(decision.heading.value, heading, 1e-9)
       assertEquals((decision.action.speed, made.byPolicy), (fleet.agents(pursuer).speed, true))
 
-  test("a speed is chosen where less than the vehicle's own may be commanded"):
+  test("a plan chooses the speed if the limit is below the vehicle's own"):
     val slower = PlanSettings(kept = Vector(Kept.NoFaster(5)))
     assertEquals(byPolicy(0.1, slower)._1.action.speed.value, slower.speedMps(10))
     assertEquals(decidedBy(pursuit(PlanSettings()), isOld = false)._1.action.speed.value, 10.0)
 
-  test("it may turn for as long as it has not decided, at most for half a second"):
+  test("a pursuer may turn for the time since its last decision, at most for half a second"):
     assertEquals(part(PlanSettings()).situation.sinceDecisionS, 0.0)
     assertEquals(part(PlanSettings(), Some(Span.ofMillis(200))).situation.sinceDecisionS, 0.2)
     assertEquals(part(PlanSettings(), Some(Span.ofSeconds(3))).situation.sinceDecisionS, 0.5)
 
-  test("its turn rate is its speed over its turning radius, its least speed a share of the one it commands"):
+  test("the turn rate is speed over turning radius, and the least speed a share of the greatest"):
     val limits = part(PlanSettings(turningRadiusM = 4, slowestShare = 0.5)).objective.limits
     val speed  = fleet.agents(pursuer).speed.value
     assertEquals((limits.minSpeed, limits.maxSpeed), (speed / 2, speed))
     assertEqualsDouble(limits.turnRateAt(speed), speed / 4, 1e-12)
 
   test(
-    "the opponent is taken to fly by the policy that the scenario states, from the heading it was sent last"
+    "the opponent is predicted by the scenario's policy, from the heading last sent to it"
   ):
     val evader                  = fleet.opponentOf(pursuer, places)
     def flownBy(policy: Policy) =
@@ -152,7 +150,7 @@ class PlanningSuite extends munit.FunSuite:
       told
     )
 
-  test("each vehicle's each plan has random numbers of its own"):
+  test("each plan of each vehicle has its own random numbers"):
     val streams =
       for seed <- 1L to 5L; self <- 0 until 5; decisions <- 0L until 20L
       yield Planning.stream(seed, self, Memory(0, None, decisions))
@@ -171,7 +169,7 @@ class PlanningSuite extends munit.FunSuite:
     teamwork(team, policy, settings)
       .pose(Memory(0.25, decidedBefore.map(now - _), 7), view, now)
 
-  test("one of a team cruises as fast as the place moves where its policy wants to be"):
+  test("a team's vehicle cruises at the speed of the place at which its policy wants to be"):
     for steps <- Seq(2, 10) do
       val posed = teamPart(Moving(), PlanSettings(horizonSteps = steps, step = Span.ofMillis(200)))
       assertEqualsDouble(posed.objective.cruiseSpeed, 3, 1e-12)
@@ -188,8 +186,7 @@ class PlanningSuite extends munit.FunSuite:
     assertEquals(teamPart(Moving(), PlanSettings(horizonSteps = 1)).objective.cruiseSpeed, 0.0)
 
   test(
-    "it keeps the widest separation that anybody set, and a " +
-      "metre more, and is suggested no policy that avoids"
+    "a team's plan keeps the widest separation and a metre more; no policy that avoids is suggested"
   ):
     def separation(policy: Moving, settings: PlanSettings) =
       val posed = teamPart(policy, settings)
@@ -201,7 +198,7 @@ class PlanningSuite extends munit.FunSuite:
     val kept = PlanSettings(separationM = 5, kept = Vector(Kept.Apart(7)))
     assertEquals(separation(Moving(), kept), (8.0, 1))
 
-  test("speeds stay below a limit by a tenth, however they come about"):
+  test("every speed stays below a limit by a tenth of it"):
     val kept  = PlanSettings(kept = Vector(Kept.NoFaster(5), Kept.NoFaster(2), Kept.Above(1)))
     val posed = teamPart(Moving(), kept).objective
     assertEquals((posed.limits.maxSpeed, posed.cruiseSpeed), (1.8, 1.8))
@@ -209,7 +206,7 @@ class PlanningSuite extends munit.FunSuite:
     assertEquals((alone.limits.minSpeed, alone.limits.maxSpeed, alone.cruiseSpeed), (1.8, 1.8, 1.8))
     assertEquals(PlanSettings(kept = Vector(Kept.NoFaster(5))).speedMps(3), 3.0)
 
-  test("the altitude is a vehicle's own as far as floor and ceiling let it, a metre inside, or midway"):
+  test("the altitude is a vehicle's own if floor and ceiling allow it, else a metre inside, or midway"):
     def flown(kept: Kept*) = PlanSettings(kept = kept.toVector).altitudeM(5)
     assertEquals(flown(), 5.0)
     assertEquals(flown(Kept.Above(4), Kept.Below(6)), 5.0)
@@ -217,7 +214,7 @@ class PlanningSuite extends munit.FunSuite:
     assertEquals(flown(Kept.Below(9), Kept.Below(4)), 3.0)
     assertEquals(flown(Kept.Above(7), Kept.Below(8)), 7.5)
 
-  test("after a longer pause the first turn of a team's vehicle is limited to a radian"):
+  test("after a longer pause, the first turn of a team's vehicle is limited to a radian"):
     def mostAtOnce(pauseS: Double) =
       teamPart(
         Moving(),
@@ -228,8 +225,7 @@ class PlanningSuite extends munit.FunSuite:
     assertEquals(mostAtOnce(0.4), 1 / 0.4)
 
   test(
-    "vehicles of a team that do not plan are kept from where a " +
-      "separation is set, and else are in nobody's way"
+    "vehicles of a team that do not plan are avoided only with a configured separation"
   ):
     val mixed = Fleet(fleet.agents.zipWithIndex.map((agent, place) =>
       if place == pursuer then agent.copy(policy = Moving()) else agent.copy(policy = Together)
@@ -246,7 +242,7 @@ class PlanningSuite extends munit.FunSuite:
     def start: Unit                                             = ()
     def choose(seen: Observation, memory: Unit): (Action, Unit) = (seen.along(0, 1), ())
 
-  test("in the plan's place the policy of one of a team decides its heading and its speed"):
+  test("instead of a plan, the policy of a team's vehicle decides its heading and its speed"):
     val team             = Fleet(fleet.agents.map(_.copy(policy = Moving())))
     val planning         = teamwork(team, Moving(), PlanSettings())
     val (decision, made) = decidedBy(planning, isOld = true)
@@ -254,8 +250,7 @@ class PlanningSuite extends munit.FunSuite:
     assertEquals((decision.action.speed, made.byPolicy), (MetresPerSecond(3), true))
 
   test(
-    "a plan is begun with where it saves a tenth of a metre " +
-      "against what the policy would do, else the policy's way"
+    "a plan is used if it saves a tenth of a metre against the policy's manoeuvre, else the policy's"
   ):
     val team                 = Fleet(fleet.agents.map(_.copy(policy = Moving())))
     val planning             = teamwork(team, Moving(), PlanSettings())
@@ -277,7 +272,7 @@ class PlanningSuite extends munit.FunSuite:
       val saved = costs.toMap.apply(suggested) - least
       assertEqualsDouble(begun(suggested, best), if saved < 0.1 then suggested else best, 1e-6)
 
-  test("where nothing was searched for a vehicle for more than half a horizon, its policy decides"):
+  test("if no search finished for a vehicle for more than half a horizon, its policy decides"):
     val settings = PlanSettings(horizonSteps = 20, step = Span.ofMillis(50))
     val joint    = jointly(fleet, settings).getOrElse(fail("nobody plans"))
     val memories = joint.vehicles.map(_ => Memory(0.25, Some(now - Span.ofMillis(200)), 7))

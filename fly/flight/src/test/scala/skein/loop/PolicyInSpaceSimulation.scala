@@ -63,7 +63,9 @@ class PolicyInSpaceSimulation extends munit.FunSuite, Unhurried:
   for kind <-
       Seq(LoopKind.Paused, LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream, LoopKind.Predictive)
   do
-    test(s"${kind.label}: a policy climbs, remembers, sinks and hovers; another turns to look at it"):
+    test(
+      s"${kind.label}: a policy climbs, remembers, sinks and hovers; another turns to look at that vehicle"
+    ):
       val recording = fly(kind)
       val altitudes = downs(recording, "Evader")
       assert(altitudes.max >= 26 && altitudes.max < 29, s"the top was ${altitudes.max} m")
@@ -75,12 +77,12 @@ class PolicyInSpaceSimulation extends munit.FunSuite, Unhurried:
       assert(recording.decisions.exists(_.action.contains(Action.Hover)))
 
   for kind <- Seq(LoopKind.Paused, LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream) do
-    test(s"${kind.label}: what they decided is decided again from the recording, to the last bit"):
+    test(s"${kind.label}: a replay repeats the decisions to the last bit"):
       val recording = fly(kind)
       assert(recording.decisions.size > 150, s"${recording.decisions.size} decisions")
       assertEquals(Replay(both, recording).firstDifference, None)
 
-  test("where each predicts the whole team, its predictions are held against its own readings alone"):
+  test("if each vehicle predicts the whole team, only its own predictions are compared with readings"):
     val predictions = fly(LoopKind.Predictive).predictions
     assertEquals(
       predictions.map(one => (one.decider, one.vehicle)).toSet,
@@ -88,8 +90,7 @@ class PolicyInSpaceSimulation extends munit.FunSuite, Unhurried:
     )
 
   test(
-    "as published it is decided at every view and paced then; " +
-      "else paced first, and all that is decided is sent"
+    "as published, each view is decided on and then paced; else pacing is first, and all decisions are sent"
   ):
     val published                    = LoopSettings().asPublished
     def flown(is: Boolean)           = fly(LoopKind.Stream, settings = published.copy(decideThenPace = is))

@@ -26,8 +26,7 @@ class PredictiveLoopSimulation extends munit.FunSuite, Unhurried:
       assert(math.abs(off) < bound, s"seeds $seeds: ${off * 100} %")
 
   test(
-    "at a constant 200 ms each way predictive flies within 2 % " +
-      "where as many moves may be in flight as the link holds"
+    "at a constant 200 ms each way predictive flies within 2 % if enough moves may be in flight"
   ):
     val (link, settings) = (VirtualDuel.constant(400), LoopSettings(movesInFlight = 6))
     val off              = deviation(LoopKind.Predictive, link, settings)

@@ -70,7 +70,7 @@ class ReplaySimulation extends munit.FunSuite, Optimised:
       ) :+ ("plan, a team", LoopKind.Plan, team(Slot))
 
   for (name, kind, fleet) <- flights do
-    test(s"$name: a replay makes equal decisions, and finds a changed decision, the last one, too"):
+    test(s"$name: a replay makes equal decisions, and finds any changed decision, also the last one"):
       val recording = flown(kind, fleet)
       val decisions = recording.decisions
       assert(decisions.size > 10, decisions.size.toString)
@@ -80,7 +80,7 @@ class ReplaySimulation extends munit.FunSuite, Optimised:
         assertEquals(difference.where, s"decision ${decisions(at).sequence} of ${decisions(at).vehicle}")
         assertEquals(difference.column, "headingRad")
 
-  test("a vehicle's own speed may be recorded or not, and another speed is found"):
+  test("a replay accepts a vehicle's own speed, recorded or not, and finds another speed"):
     val recording             = flown(LoopKind.Stream, duels)
     def stated(share: Double) = recording.copy(decisions = recording.decisions.map: decision =>
       val own = duels.agents.find(_.name == decision.vehicle).get.speed
@@ -89,7 +89,7 @@ class ReplaySimulation extends munit.FunSuite, Optimised:
     assertEquals(found(duels, stated(1)), None)
     assertEquals(found(duels, stated(0.5)).map(_.column), Some("speedMps"))
 
-  test("a recording that broke off within decisions made together is compared up to there"):
+  test("a recording truncated within a joint decision is compared up to that decision"):
     val recording = flown(LoopKind.Plan, team(Slot))
     val last      = recording.decisions.size - 1
     val broken    = recording.copy(decisions = recording.decisions.init)
@@ -99,14 +99,13 @@ class ReplaySimulation extends munit.FunSuite, Optimised:
     assertEquals(found(team(Slot), forged(broken, last - 1)(turned)), None)
     assert(found(team(Slot), forged(broken, last - 4)(turned)).isDefined)
 
-  test("a decision that lacks another with which it was made is found where it is not the last"):
+  test("a missing part of a joint decision is found unless it is the last one"):
     val recording = flown(LoopKind.Plan, team(Slot))
     val lacking   = recording.copy(decisions = recording.decisions.patch(30, Nil, 1))
     assert(found(team(Slot), lacking).exists(_.column == "vehicle"), found(team(Slot), lacking).toString)
 
   test(
-    "plans of a team are on record with whom they regarded, " +
-      "their speeds, and how their predictions turned out"
+    "a team's plans are recorded with the regarded vehicles, their speeds, and the errors of predictions"
   ):
     val recording = flown(LoopKind.Plan, team(Slot))
     val names     = team(Slot).agents.map(_.name)
@@ -114,7 +113,7 @@ class ReplaySimulation extends munit.FunSuite, Optimised:
     assertEquals(recording.sightings.size, recording.decisions.size)
     assertEquals(recording.predictions.map(one => (one.decider, one.vehicle)).toSet, names.zip(names).toSet)
 
-  test("a team's decision is held against whom it saw"):
+  test("a replay compares a team's decision with its recorded sightings"):
     val fleet     = team(Together)
     val recording = flown(LoopKind.Stream, fleet)
     val sighting  = recording.sightings(40)
@@ -136,8 +135,7 @@ class ReplaySimulation extends munit.FunSuite, Optimised:
     )
 
   test(
-    "a decision upon a reading or a command that is not on record " +
-      "is found, and so is one that is on record otherwise"
+    "a replay finds a decision on a reading or a command that is missing or was changed"
   ):
     val recording = flown(LoopKind.Stream, duels)
     val decision  = recording.decisions(20)

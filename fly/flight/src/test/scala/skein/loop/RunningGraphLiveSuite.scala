@@ -9,7 +9,7 @@ import skein.testing.Unhurried
 
 class RunningGraphLiveSuite extends munit.FunSuite, Unhurried:
 
-  test("the named parts of a running graph, and its edges, are reported by its interpreter"):
+  test("the interpreter reports the named parts of a running graph, and its edges"):
     given system: ActorSystem = ActorSystem("graph")
     import system.dispatcher
     try
@@ -27,7 +27,7 @@ class RunningGraphLiveSuite extends munit.FunSuite, Unhurried:
       switches.foreach(_.shutdown())
     finally Await.result(system.terminate(), 10.seconds): Unit
 
-  test("a flight's graph is reported whatever other streams of its actor system do"):
+  test("a flight's graph is reported whatever the actor system's other streams do"):
     given system: ActorSystem = ActorSystem("graph-beside-others")
     val released              = java.util.concurrent.CountDownLatch(1)
     val entered               = java.util.concurrent.CountDownLatch(1)

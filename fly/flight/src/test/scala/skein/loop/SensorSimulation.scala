@@ -128,14 +128,14 @@ class SensorSimulation extends munit.FunSuite, Optimised:
       val sensed = recording.measurements.filter(_.vehicle == vehicle).map(_.sentAt).min
       assertEquals(sensed.since(first), Span.ofMillis(25))
 
-  test("a decision knows how old its sensor's reading is"):
+  test("a decision records the age of its sensor's reading"):
     val recording = fly(LoopKind.Stream, delay = Span.ofSeconds(3))
     // Older than the policy flies by: it hovers.
     assert(recording.sensings.nonEmpty)
     assert(recording.decisions.forall(_.action.contains(Action.Hover)))
     assertEqualsDouble(lastAltitude(recording, "Evader"), 20, 0.3)
 
-  test("a sensor that fails, or says nonsense, is noted, and its last reading grows old"):
+  test("a sensor that fails, or returns invalid numbers, is recorded, and its last reading ages"):
     for says <- Seq(
         (_: Double) => Left(VehicleError.TimedOut("no answer in 500 ms")),
         (_: Double) => Right(Double.NaN)

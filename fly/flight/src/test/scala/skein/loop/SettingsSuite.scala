@@ -23,7 +23,7 @@ class SettingsSuite extends munit.FunSuite:
       )
     do assert(intercept[IllegalArgumentException](make()).getMessage.contains(expected))
 
-  test("a decision's deadline leaves it some time"):
+  test("a decision's deadline must leave it some time"):
     assertEquals(Deadline(Span.ofNanos(1), Fallback.Hold).within, Span.ofNanos(1))
     assert(intercept[IllegalArgumentException](Deadline(
       Span.Zero,
@@ -36,8 +36,7 @@ class SettingsSuite extends munit.FunSuite:
     assertEquals((slow.period, slow.paceInterval, slow.patience), (ms(300), ms(150), ms(300)))
 
   test(
-    "as published: asked in turn over the period, answers waited " +
-      "for in order, decided at each, paced by the period"
+    "as published, requests are spread over the period, answers are awaited in order, and each is decided on"
   ):
     val published = LoopSettings(period = ms(80)).asPublished
     assertEquals((published.paceInterval, published.spread, published.patience), (ms(80), ms(80), Span.Zero))
@@ -67,7 +66,7 @@ class SettingsSuite extends munit.FunSuite:
 
   private def mistake(settings: PlanSettings): String = settings.mistakes.mkString("; ")
 
-  test("plans: what is just possible is no mistake"):
+  test("plans: values at their limits are valid"):
     for
       settings <- Seq(
         PlanSettings(),
@@ -84,7 +83,7 @@ class SettingsSuite extends munit.FunSuite:
       )
     do assertEquals(mistake(settings), "")
 
-  test("plans: what is beyond is named, with what was expected"):
+  test("plans: a value beyond its limit is reported, with what was expected"):
     for
       (settings, told) <- Seq(
         PlanSettings(deadline =
@@ -118,12 +117,12 @@ class SettingsSuite extends munit.FunSuite:
       assertEquals(mistake(settings), told)
       assertEquals(PlanSettings.parse(settings.text), None, told)
 
-  test("plans: a text that is none, or lacks a value, is no settings"):
+  test("plans: a text with an unknown or missing value is no settings"):
     val text = PlanSettings(slices = 7, separationM = 2.5).text
     assertEquals(PlanSettings.parse(text), Some(PlanSettings(slices = 7, separationM = 2.5)))
     for value <- text.split(' ') do assertEquals(PlanSettings.parse(text.replace(value, "x=1")), None, value)
 
-  test("plans: the horizon in seconds, and a fence around the origin"):
+  test("plans: the horizon is in seconds, and the fence is around the origin"):
     val settings = PlanSettings(horizonSteps = 20, step = ms(50), geofenceM = 30)
     assertEquals((settings.planner.steps, settings.planner.dtS), (20, 0.05))
     assertEquals(settings.geofences, Vector(Geofence(Fence.rectangle(-30, 30, -30, 30))))

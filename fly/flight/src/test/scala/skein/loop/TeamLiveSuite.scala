@@ -14,7 +14,7 @@ import skein.units.*
 
 class TeamLiveSuite extends munit.FunSuite, Unhurried:
 
-  /** Answers when it is requested to, and never before. */
+  /** A vehicle that answers only when the test requests it. */
   private final class Slow extends VehiclePort:
     @volatile var answers = false
     private val here      = Kinematics(Vector3.Zero, Vector3.Zero, Quaternion.Identity, Vector3.Zero)

@@ -27,7 +27,7 @@ class TeamLogSuite extends munit.FunSuite:
     def decision(vehicle: Int): Decision =
       deciders(vehicle).decide(deciders(vehicle).start, view, now)._2
 
-  test("a command is done, superseded, or why it failed"):
+  test("a command is recorded as done, superseded, or failed with the reason"):
     import CommandOutcome.*
     val ends = Seq[(Try[Either[VehicleError, Boolean]], CommandOutcome)](
       Success(Right(true))                                -> Done,
@@ -66,7 +66,9 @@ class TeamLogSuite extends munit.FunSuite:
     def choose(seen: Observation, memory: Unit): (Action, Unit) =
       (seen.along(seen.vehicles.indices.map(seen.northM).sum, 2), ())
 
-  test("of a policy that regards its team it is on record whom else it saw, of a duellist not"):
+  test(
+    "decisions are recorded with the other vehicles seen, if the policy regards its team; a duel's are not"
+  ):
     val duels = PaperDuel(pairs = 2).fleet
     val team  = Fleet(duels.agents.map(_.copy(policy = Together)))
     val books = Books(team)
@@ -81,7 +83,7 @@ class TeamLogSuite extends munit.FunSuite:
     duel.log.decided(duel.decision(1))
     assertEquals((duel.recording.decisions.size, duel.recording.sightings), (1, Vector.empty))
 
-  test("a decision is offered without its rows, which who writes them makes"):
+  test("a decision is offered without its rows, which the writer makes"):
     val team     = Fleet(PaperDuel(pairs = 2).fleet.agents.map(_.copy(policy = Together)))
     val deciders = team.agents.indices.map(Decider(team, _))
     val taken    = Vector.newBuilder[Recordable]
@@ -101,7 +103,7 @@ class TeamLogSuite extends munit.FunSuite:
     val rows = books.recording
     assertEquals(taken.result().map(_.row), (rows.decisions ++ rows.sightings).toVector)
 
-  test("a sensor's answer has as many finite numbers as columns, else it is an error on record"):
+  test("a sensor's answer with a missing or infinite number is recorded as an error"):
     given ExecutionContext    = ExecutionContext.parasitic
     val names                 = Vector("north", "east")
     def read(values: Double*) =

@@ -69,7 +69,9 @@ class TeamViewSuite extends munit.FunSuite:
     assert(view.isNews(reading(0, 3, 111, 90, 160)))
     assert(view.isNews(reading(0, 3, 50, 131, 160)), "a simulator that was started again")
 
-  test("a late answer of the simulator's former run is no news, nor does it move the clocks' estimate"):
+  test(
+    "a late answer from before the simulator's restart is no news, and does not move the clocks' estimate"
+  ):
     val next = reading(0, 3, 20, 200, 230)
     val view = TeamView.empty(2).withReading(later).withReading(next)
     assert(!view.isNews(reading(0, 2, 170, 160, 240)), "by its clock alone it would be")
@@ -81,7 +83,7 @@ class TeamViewSuite extends munit.FunSuite:
       SensorReading(0, "gps", 2, Vector("x"), reading(0, 2, 170, 160, 240).state.map(_ => Vector(0.0)))
     assertEquals(said.withSensorReading(old), said)
 
-  test("a vehicle is at its reading or estimate, and heads for its last commanded heading"):
+  test("a vehicle's state is its reading or estimate, and its heading the last commanded one"):
     val fleet = PaperDuel().fleet
     val view  = TeamView.empty(2).withReading(first).withReading(other)
     assertEquals(view.kinematics(0), first.state.value)
@@ -119,12 +121,12 @@ class TeamViewSuite extends munit.FunSuite:
     assertEquals(requests.map(_.deciders), Vector(Set(0, 1)))
     assertEquals(stale, Vector("reading 2 is stale"))
 
-  test("there are no decisions before every vehicle was read"):
+  test("no decision is made before every vehicle was read"):
     assertEquals(seen(LoopEvent.Read(first), LoopEvent.Due(Set(0, 1)))._1, Vector.empty)
     assertEquals(seen(LoopEvent.Seen(Vector(first), Set(0)))._1, Vector.empty)
     assertEquals(seen(LoopEvent.Seen(Vector(first, other), Set(1)))._1.map(_.deciders), Vector(Set(1)))
 
-  test("while the team is held there are no decisions, and its readings still update the view"):
+  test("while the team is paused there are no decisions, and readings still update the view"):
     val held = seenBy(_.hold.hold(): Unit)(
       LoopEvent.Read(first),
       LoopEvent.Read(other),
@@ -132,7 +134,7 @@ class TeamViewSuite extends munit.FunSuite:
     )
     assertEquals(held._1, Vector.empty)
 
-  test("what passes a part of the loop is counted, with the age of the oldest reading in it"):
+  test("elements that pass a part are counted, with the age of their oldest reading"):
     var meter = Option.empty[StageMeter]
     val _     = seenBy(team => meter = Some(team.meters("view")))(
       LoopEvent.Read(first),
@@ -153,7 +155,7 @@ class TeamViewSuite extends munit.FunSuite:
     assertEquals((one.unanswered, one.entered), (1L, 0L))
 
   test(
-    "a forecast receives sent commands and failed ones; a move that ran to its end is no news"
+    "a forecast receives sent, replaced and failed commands; a move that ran to its end changes nothing"
   ):
     import scala.util.{Failure, Success}
     val pursuer  = Decider(PaperDuel().fleet, 1)
@@ -184,7 +186,7 @@ class TeamViewSuite extends munit.FunSuite:
       )
     )
 
-  test("a command that comes while the team is held is not sent, and its note says so; at the end likewise"):
+  test("a command that arrives while the team is paused is not sent, and the event states that"):
     val pursuer  = Decider(PaperDuel().fleet, 1)
     val view     = TeamView.empty(2).withReading(first).withReading(other)
     val decision = pursuer.decide(pursuer.start, view, millis(200))._2
@@ -203,7 +205,7 @@ class TeamViewSuite extends munit.FunSuite:
       .value
     assertEquals(noted, Vector(EventKind.Dropped -> "command 0 not sent while the flight is paused"))
 
-  test("everybody is due to decide once a period, in the middle between two questions"):
+  test("all vehicles are due to decide once a period, midway between two requests"):
     val due = VirtualTime
       .run(seed = 1): system =>
         given ActorSystem      = system

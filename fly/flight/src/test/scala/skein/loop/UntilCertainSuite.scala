@@ -23,7 +23,7 @@ class UntilCertainSuite extends munit.FunSuite:
       UntilCertain(attempt())(_ % 2 == 0).transform(result => Success((times, result)))
     .value
 
-  test("repeats until an answer is certain, and stops immediately where the first one is"):
+  test("a command is repeated until an answer is certain, and not if the first one is"):
     assertEquals(told(_ => Success(8)), (Vector(0.0), Success(8)))
     val pauseMs = UntilCertain.Pause.toMillis
     assertEquals(told(count => Success(count + 3)), (Vector(0.0), Success(4)))
@@ -32,7 +32,7 @@ class UntilCertainSuite extends munit.FunSuite:
       (Vector(0.0, pauseMs, 2 * pauseMs), Success(6))
     )
 
-  test("a failure is not certain, and the last attempt's answer is returned whatever it is"):
+  test("a failure is not certain, and the last attempt's answer is returned in any case"):
     val lost  = Failure(IllegalStateException("lost"))
     val never = told(_ => lost)
     assertEquals((never._1.size, never._2), (UntilCertain.Attempts, lost))

@@ -2,7 +2,7 @@ package skein.measure
 
 class DistributionSuite extends munit.FunSuite:
 
-  test("of the numbers from 0 to 1000, each quantile is itself"):
+  test("the quantiles of the numbers from 0 to 1000 are those numbers"):
     val numbers = Distribution.of((0 to 1000).reverse.map(_.toDouble)).get
     assertEquals((numbers.least, numbers.most, numbers.count), (0.0, 1000.0, 1001))
     assertEqualsDouble(numbers.median, 500, 1e-9)
@@ -10,7 +10,7 @@ class DistributionSuite extends munit.FunSuite:
     assertEqualsDouble(numbers.quantile(0.3), 300, 1e-9)
     assertEqualsDouble(numbers.mean, 500, 1e-9)
 
-  test("one sample is every quantile, and no samples are no distribution"):
+  test("each quantile of one sample is that sample, and no samples give no distribution"):
     val one = Distribution.of(Seq(7.0)).get
     assertEquals((one.least, one.median, one.p99, one.most, one.sd), (7.0, 7.0, 7.0, 7.0, 0.0))
     assertEquals(Distribution.of(Seq.empty), None)

@@ -69,7 +69,7 @@ class FlownVehiclesSuite extends munit.FunSuite:
     }
 
   test(
-    "a vehicle that was commanded is seen until its last command arrives, and one that was not is left out"
+    "a commanded vehicle's history ends when its last command arrives, and other vehicles are left out"
   ):
     val all = flown("stream", command(1, 50), command(2, 450))
     assertEquals(all.map(_.name), Vector("f, Red"))
@@ -80,8 +80,7 @@ class FlownVehiclesSuite extends munit.FunSuite:
     assertEquals((sample.x, sample.y, sample.vx, sample.vy), (3.0, -3.0, 10.0, -10.0))
 
   test(
-    "a command whose predecessor was answered as superseded " +
-      "arrived in the middle of what is over in its round trip"
+    "a command that superseded another arrived in the middle of its round trip's known part"
   ):
     // 60 ms instead of 40: half of it on either way.
     assertEquals(
@@ -98,7 +97,7 @@ class FlownVehiclesSuite extends munit.FunSuite:
       Seq(50.0 -> 1.0, 250.0 -> 2.0)
     )
 
-  test("a command whose call failed counts only if it superseded the one before"):
+  test("a command whose call failed counts only if it superseded the previous one"):
     assertEquals(
       arrivals(command(1, 50), command(2, 250), ended(1, 300, Done), ended(2, 400, Failed("timed out"))),
       Seq(50.0 -> 1.0)
@@ -114,14 +113,14 @@ class FlownVehiclesSuite extends munit.FunSuite:
     )
     assertEquals(flown("stream", command(1, 50), ended(1, 300, Failed("refused"))), Vector.empty)
 
-  test("none arrives before one that was sent earlier"):
+  test("no command arrives before one that was sent earlier"):
     // The second was answered late: by its round trip alone it would have come 100 ms after the third.
     assertEquals(
       arrivals(command(1, 50), command(2, 250), command(3, 280), ended(1, 550, Superseded)),
       Seq(50.0 -> 1.0, 380.0 -> 2.0, 380.0 -> 3.0)
     )
 
-  test("while the simulator is stopped a command arrives when it is decided"):
+  test("while the simulator stands still, a command arrives when it is decided"):
     val decided =
       Samples.decision(7).copy(vehicle = "Red", decidedAt = start + ms(530) - Span.ofSeconds(1000))
     val other = decided.copy(vehicle = "Blue", decidedAt = start)

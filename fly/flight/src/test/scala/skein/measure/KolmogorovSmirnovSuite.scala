@@ -6,16 +6,16 @@ class KolmogorovSmirnovSuite extends munit.FunSuite:
   private def distance(one: Double*)(other: Double*): Double =
     KolmogorovSmirnov.distance(Distribution.of(one).get, Distribution.of(other).get)
 
-  test("equal samples are 0 apart, however often each value occurs"):
+  test("equal samples have a distance of 0, however often each value occurs"):
     assertEquals(distance(1, 2, 3)(3, 1, 2), 0.0)
     assertEquals(distance(0, 0, 0)(0), 0.0)
     assertEquals(distance(1, 2)(1, 1, 2, 2), 0.0)
 
-  test("samples that lie wholly apart are 1 apart"):
+  test("samples that lie wholly apart have a distance of 1"):
     assertEquals(distance(1, 2, 3)(4, 5), 1.0)
     assertEquals(distance(7)(6.999), 1.0)
 
-  test("between them it is the largest gap of the cumulative shares"):
+  test("the distance is the largest gap of the cumulative shares"):
     // By hand: after 2, half of the one and none of the other.
     assertEqualsDouble(distance(1, 2, 3, 4)(3, 4, 5, 6), 0.5, 1e-12)
     // After 1: 3/4 against 1/4; ties are counted on both sides before the gap is taken.
@@ -23,7 +23,7 @@ class KolmogorovSmirnovSuite extends munit.FunSuite:
     // After 2: 2/3 against 0; after 4: 1 against 1/2.
     assertEqualsDouble(distance(1, 2, 4)(3, 4, 5, 6), 2 / 3.0, 1e-12)
 
-  test("it is symmetric, does not depend on the scale, and is what a search over all values gives"):
+  test("the distance is symmetric, independent of scale, and equal to a search over all values"):
     val random = Random(11)
     for _ <- 1 to 50 do
       val one   = Vector.fill(1 + random.nextInt(30))(random.nextInt(20).toDouble)

@@ -21,7 +21,7 @@ class LinkFitSuite extends munit.FunSuite:
     RoundTripTrace(Vector.tabulate(count)(_ * everyS), trips)
 
   test(
-    "a link is found again: losses of one direction, bursts, how long round trips last, their distribution"
+    "a fit recovers a link's losses in one direction, bursts, correlation and distribution"
   ):
     val fit = LinkFit.of(Seq(trace("loss:5%/4,correlated:2s,lognormal:100ms,0.4", 20_000, 0.2)))
     // Either direction's loss: 1 − 0.95².
@@ -37,7 +37,7 @@ class LinkFitSuite extends munit.FunSuite:
       0.007
     )
 
-  test("what is independent is not fitted as bursts or as lasting"):
+  test("independent losses and round trips are fitted without bursts and correlation"):
     val fit = LinkFit.of(Seq(trace("loss:5%,vpn", 2000, 0.2)))
     assertEquals(fit.burst, None)
     assertEquals(fit.correlatedS, None)
@@ -47,7 +47,7 @@ class LinkFitSuite extends munit.FunSuite:
     assertEquals(LinkFit.of(Seq(trace("constant:80ms", 50, 0.1))).text("constant:80ms"), "constant:80ms")
 
   test(
-    "ping's output is read: missing numbers and those behind the last answer are lost, repeated ones count once"
+    "in ping's output, numbers that are missing or follow the last answer are lost, repeated ones count once"
   ):
     val text = """PING 10.0.0.1 (10.0.0.1) 56(84) bytes of data.
                  |64 bytes from 10.0.0.1: icmp_seq=1 ttl=64 time=36.1 ms
@@ -62,7 +62,7 @@ class LinkFitSuite extends munit.FunSuite:
     assertEquals(trace.roundTripsMs, Vector(Some(36.1), Some(40.2), None, Some(38.0), None, None))
     assertEqualsDouble(trace.sentAtS.last, 1, 1e-9)
 
-  test("a table is read, and a mistake in it is told with its line"):
+  test("a table is read, and a mistake in it is reported with its line"):
     assertEquals(
       RoundTripTrace.parse("time_s,rtt_ms\n0.0,36.2\n0.1,\n0.2,40\n"),
       Right(RoundTripTrace(Vector(0, 0.1, 0.2), Vector(Some(36.2), None, Some(40))))

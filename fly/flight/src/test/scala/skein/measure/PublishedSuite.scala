@@ -40,7 +40,7 @@ class PublishedSuite extends munit.FunSuite:
         yield Published.ofRole(flight.observedMs(observation), role)
       assertEquals(told.map(Some(_)), observed, s"$loop over $link")
 
-  test("the paper's paused flight is comparable over any link, others over their own"):
+  test("the paper's paused flight is comparable over any link, other flights over their own"):
     assertEquals(Published.flight(LoopKind.Paused, "vpn").map(_.link), Some("direct"))
     assertEquals(Published.flight(LoopKind.Futures, "none"), None)
     assertEquals(Published.flight(LoopKind.Futures, "vpn").map(_.loop), Some(LoopKind.Futures))

@@ -93,7 +93,7 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
   test("plan is refused where no vehicle plans, and the message lists the policies"):
     assertTold(
       "scenario = forest, loops = [stream, plan]",
-      "2: skein.fly.loops: plan: expected a multirotor that can plan, by a policy with a Goal or by a HeadingPolicy that " +
+      "2: skein.fly.loops: plan: expected a multirotor that can plan, by a policy with a Goal or by one that " +
         "pursues one opponent, came none: Scout1, Scout2, Scout3, Scout4, Scout5 would fly by their own policies"
     )
     assertEquals(

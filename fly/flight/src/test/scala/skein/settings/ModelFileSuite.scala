@@ -66,7 +66,7 @@ class ModelFileSuite extends munit.FunSuite, TemporaryFolders:
     ModelFile.Provenance(Vector("one.duckdb"), Vector("Red"), 2, "1", altitudeM = Some(5))
   )
 
-  test("a file of a structure of one's own is read back, for what flies and for what predicts"):
+  test("a file of a user's own structure is read back, for simulation and for prediction"):
     val path = Files.writeString(temporaryFolder().resolve("model.conf"), text(late)).toString
     val file = ModelFile.read(path).fold(fail(_), identity)
     assertEquals(file.use, late)
@@ -77,7 +77,7 @@ class ModelFileSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(predictor.map(_.at(20)), Right(PlantModel(Late(0.75, 0.25))))
     assertEquals(VehicleChoice.parse(path, 20).map(_.response), Right(PlantResponse(Late(0.75, 0.25))))
 
-  test("a file has the tables of the errors that were measured, and no others"):
+  test("a file has tables of the measured errors, and no others"):
     val both                = fit(late, 0.75, 0.25)
     def tables(fitted: Fit) =
       val written = ModelFile.render(late, Vector(fitted), ModelFile.Provenance(Vector(), Vector(), 1, "v"))
@@ -88,25 +88,25 @@ class ModelFileSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(tables(both.copy(againstQuadrotor = Vector.empty)).toSet, Set("against-readings"))
     assertEquals(tables(both.copy(againstReadings = Vector.empty)).toSet, Set("against-quadrotor"))
 
-  test("only models of Skein's structures hold at the altitude of their flights alone"):
+  test("only models of Skein's structures are limited to the altitude of their flights"):
     def altitude(use: Structure) = ModelFile.parse(text(use), "model.conf").map(_.altitudeM)
     assertEquals(altitude(Structure.Lag), Right(Some(5.0)))
     assertEquals(altitude(late), Right(None))
 
-  test("a recording keeps which structure predicted, by which values"):
+  test("a recording keeps the structure of its predictor, with its values"):
     val model = PredictionModel.Own(late, Vector(0.1 + 0.2, 0.25))
     assertEquals(PredictionModel.recorded(PredictionModel.text(model)), Some(model))
     assertEquals(PredictionModel.recorded(PredictionModel.text(model))(using Scenarios.ours), None)
     assertEquals(PredictionModel.recorded("late 0.5"), None)
 
-  test("a program that does not know the structure says which it knows"):
+  test("a program that does not know the structure lists those that it knows"):
     val said = ModelFile.parse(text(late), "model.conf")(using Scenarios.ours)
     assertEquals(
       said.left.toOption,
       Some("model.conf: use: expected a structure (lag, turn, drag, drag-and-turn), came 'late'")
     )
 
-  test("no structure and no parameter has the name of a key of these files"):
+  test("no structure or parameter may have the name of a key of model files"):
     val section                              = ConfigFactory.parseString(text(late)).getConfig("skein.model")
     def keys(of: com.typesafe.config.Config) = of.root.keySet.asScala.toSet
     def refused(label: String, name: String) =
@@ -123,7 +123,7 @@ class ModelFileSuite extends munit.FunSuite, TemporaryFolders:
         s"structure mine: expected another name of a parameter: '$key' is a key of model files"
       )
 
-  test("plans are made by a plant of one's own that is a formula; by another they are refused before flight"):
+  test("plans use a user's own plant if it is a formula; another one is refused before the flight"):
     val path = Files.writeString(temporaryFolder().resolve("model.conf"), text(late)).toString
     def read(loop: String, plant: ObservedPlant[?]) =
       val known = Structure("late", late.space, _ => plant)

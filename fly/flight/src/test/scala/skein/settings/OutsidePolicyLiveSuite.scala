@@ -10,13 +10,15 @@ import skein.testing.{TemporaryFolders, Unhurried}
 import skein.units.{OwnFailure, Span}
 
 class OutsidePolicyLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders:
+  private def reached(file: Either[String, PolicyFile]) =
+    file.map(_.policy.asInstanceOf[OutsidePolicy]).fold(fail(_), identity)
+
   private val seen = PlanarObservation(3, 4, 1, -2, 0.5, 1.5, 0.1, 0.02, 0.03)
 
   /** Decisions or failures of as many requests as there are answers. */
   private def decided(answers: Array[Byte]*): Seq[Either[String, Double]] =
     Using.resource(Peer((number, _) => answers.lift(number))): peer =>
-      val policy =
-        OutsidePolicy.reach(peer.option).map(_.policy.asInstanceOf[OutsidePolicy]).fold(fail(_), identity)
+      val policy = reached(OutsidePolicy.reach(peer.option))
       answers.map: _ =>
         Try(policy.heading(seen)).toEither.left.map:
           case reason: OwnFailure => reason.getMessage
@@ -64,7 +66,7 @@ class OutsidePolicyLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders
     do assertEquals(decided(answer, Peer.number(0)), Seq.fill(2)(Left(s"the policy: $reason")))
 
     Using.resource(Peer((_, _) => None)): peer =>
-      val policy = OutsidePolicy.reach(peer.option).fold(fail(_), identity).policy
+      val policy = reached(OutsidePolicy.reach(peer.option))
       for _ <- 1 to 2 do
         assert(intercept[OwnFailure](policy.heading(
           1, 1, 0, 0, 0, 0, 0.1
@@ -81,7 +83,7 @@ class OutsidePolicyLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders
     val path = temporaryFolder().resolve("policy")
     Using.resource(ServerSocketChannel.open(StandardProtocolFamily.UNIX)): listener =>
       listener.bind(UnixDomainSocketAddress.of(path)): Unit
-      val policy = OutsidePolicy.reach(s"unix:pursuer:$path").fold(fail(_), identity).policy
+      val policy = reached(OutsidePolicy.reach(s"unix:pursuer:$path"))
       listener.accept().close()
       for _ <- 1 to 2 do
         val reason = intercept[OwnFailure](policy.heading(1, 1, 0, 0, 0, 0, 0.1)).getMessage
@@ -104,7 +106,7 @@ class OutsidePolicyLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders
   test("an answer that is not complete in time is none, and there is no second question"):
     for part <- Seq(Array.empty[Byte], Array[Byte](0, 0)) do
       Using.resource(Peer((_, _) => Some(part))): peer =>
-        val policy = OutsidePolicy.reach(peer.option, Span.ofMillis(30)).fold(fail(_), identity).policy
+        val policy = reached(OutsidePolicy.reach(peer.option, Span.ofMillis(30)))
         for _ <- 1 to 2 do
           val reason = intercept[OwnFailure](policy.heading(1, 1, 0, 0, 0, 0, 0.1)).getMessage
           assertEquals(reason, "the policy: expected an answer within 30 ms, came none")

@@ -11,7 +11,7 @@ class PolicyFileSuite extends munit.FunSuite, TemporaryFolders:
   private def read(folder: Path, text: String): Either[String, PolicyFile] =
     PolicyFile.read(Files.writeString(folder.resolve("policy.conf"), text).toString)
 
-  folder.test("a policy that was written is read back, with any remarks below"): folder =>
+  folder.test("a written policy is read back, with any remarks below it"): folder =>
     for family <- PolicyFamily.all; role <- family.roles if role == Role.Pursuer || role == Role.Evader do
       val policy =
         PolicyFile(role, family, family.space.axes.map(axis => axis.least + 0.123456789012345 * axis.width))
@@ -19,7 +19,7 @@ class PolicyFileSuite extends munit.FunSuite, TemporaryFolders:
       assertEquals(again, Right(policy))
       assertEquals(PolicyFile.parse(role, policy.text), Right(policy))
 
-  folder.test("its policy is the family's with these parameters"): folder =>
+  folder.test("a file's policy is its family's with the file's parameters"): folder =>
     val policy = read(folder, "family = paper-pursuer\nparameters.turnRateRadPerS = 1.5").map(_.policy)
     assertEquals(policy, Right(PaperPursuer(1.5)))
 
@@ -51,11 +51,11 @@ class PolicyFileSuite extends munit.FunSuite, TemporaryFolders:
       ("no HOCON", "family = {", Seq("policy.conf"))
     )
   do
-    folder.test(s"$what is refused with place and expectation"): folder =>
+    folder.test(s"$what is refused with its place and what was expected"): folder =>
       val mistake = read(folder, text).left.getOrElse("accepted")
       for part <- expected do assert(mistake.contains(part), mistake)
 
-  test("a policy's text names each of its parameters once, in their order"):
+  test("a policy's text has each of its parameters once, in order"):
     def parsed(text: String) = PolicyFile.parse(Role.Pursuer, text).map(_.parameters)
     assertEquals(parsed("paper-pursuer turnRateRadPerS=1.5"), Right(Vector(1.5)))
     for wrong <- Seq("", " speed=1.5", " turnRateRadPerS=fast", " turnRateRadPerS=1 turnRateRadPerS=1") do
@@ -64,7 +64,7 @@ class PolicyFileSuite extends munit.FunSuite, TemporaryFolders:
         Left(s"expected turnRateRadPerS=NUMBER after paper-pursuer, came 'paper-pursuer$wrong'")
       )
 
-  test("it is flown by all agents of its role, and by no other"):
+  test("a policy is used by all agents of its role, and by no others"):
     val fleet  = PaperDuel().fleet
     val policy = PolicyFile(Role.Pursuer, PolicyFamily.paperPursuer, Vector(1.5))
     assertEquals(
@@ -73,7 +73,7 @@ class PolicyFileSuite extends munit.FunSuite, TemporaryFolders:
         (agent.name, if agent.role == Role.Pursuer then PaperPursuer(1.5) else agent.policy)
     )
 
-  test("a family of one role needs none, and one of both roles needs one of them"):
+  test("the role may be omitted for a family of one role, but not for a family of both"):
     val one  = PolicyFamily.paperPursuer
     val both = PolicyFamily("either", "", Set(Role.Pursuer, Role.Evader), one.space, one.policy)
     assertEquals(PolicyFile.roleOf(one, None), Right(Role.Pursuer))
@@ -83,6 +83,6 @@ class PolicyFileSuite extends munit.FunSuite, TemporaryFolders:
       Left("family either is for pursuer and evader: expected one of them, came none")
     )
 
-  test("a missing file is named"):
+  test("a missing file is reported with its path"):
     val mistake = PolicyFile.read("no/such/policy.conf").left.getOrElse("accepted")
     assert(mistake.contains("no/such/policy.conf"), mistake)

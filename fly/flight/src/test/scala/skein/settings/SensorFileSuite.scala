@@ -24,7 +24,7 @@ class SensorFileSuite extends munit.FunSuite:
       read("takes-ms" -> "[-5]")
     )
 
-  test("a file of which no value is wrong is a sensor"):
+  test("a file with valid values is read as a sensor"):
     assert(read().isRight, read())
 
   for

@@ -5,7 +5,7 @@ import skein.signal.LatencyProfile
 
 class SolverChoiceSuite extends munit.FunSuite:
 
-  test("where decisions are made is read from its text, and written as that text"):
+  test("a solver's place is read from its text, and written as that text"):
     for
       (text, choice) <- Seq(
         "tcp://lab:7400"         -> SolverChoice.Tcp(Address("lab", 7400)),
@@ -16,7 +16,7 @@ class SolverChoiceSuite extends munit.FunSuite:
       assertEquals(SolverChoice.parse(text), Right(choice))
       assertEquals(choice.text, text)
 
-  test("a text that is none is refused, with what was expected and what came"):
+  test("an invalid text is refused, with what was expected and given"):
     val forms = "expected tcp://HOST:PORT, kafka://HOST:PORT/PREFIX or link:PROFILE, came "
     for
       (text, expected) <- Seq(

@@ -8,7 +8,7 @@ class VehicleChoiceSuite extends munit.FunSuite:
 
   private def parsed(text: String, altitudeM: Double = 20) = VehicleChoice.parse(text, altitudeM)
 
-  test("a quadrotor and a tilting one deviate in mass, drag and lag, and in nothing else"):
+  test("a quadrotor and a tilting vehicle can deviate in mass, drag and lag, and in nothing else"):
     for (name, response) <- Seq("quadrotor" -> classOf[QuadrotorResponse], "tilt" -> classOf[SpatialResponse])
     do
       for deviation <- Seq("mass=1.3", "drag=2", "lag=1.5", "mass=1.3,drag=2,lag=1.5") do
@@ -32,12 +32,12 @@ class VehicleChoiceSuite extends munit.FunSuite:
     for name <- Seq("drag", "quadrotor", "tilt", "ideal", "car") do
       assertEquals(parsed(name, 5).map(_.name), Right(name))
 
-  test("vehicles that fly in steps of milliseconds are known"):
+  test("vehicles that are simulated in steps of milliseconds are known"):
     val inSteps =
       Seq("reduced", "drag", "quadrotor", "tilt", "ideal", "car").filter(parsed(_).exists(_.fliesInSteps))
     assertEquals(inSteps, Seq("quadrotor"))
 
-  test("what is neither a name nor a file is refused, with the names"):
+  test("a text that is neither a name nor a file is refused, with the names"):
     assert(clue(
       parsed("nosuch")
     ).left.exists(_.startsWith("expected reduced, drag, quadrotor, tilt, ideal, car, ")))

@@ -22,7 +22,7 @@ class ExchangeSuite extends munit.FunSuite:
   ) =
     Answer(7, vehicle, number, solver, at(takenMs), at(takenMs + 1), overtaken, 0, choice)
 
-  test("the answer to the newest question counts, once, before its deadline"):
+  test("only the first answer to the newest request, before its deadline, counts"):
     val (heard, verdict) = asking(0).heard(answer(0), at(30))
     assertEquals(verdict, Verdict.Counts(at(0)))
     assertEquals(heard.heard(answer(0), at(31))._2, Verdict.Repeated)
@@ -39,18 +39,18 @@ class ExchangeSuite extends munit.FunSuite:
     assertEquals(second, Verdict.Late(Span.ofMillis(61)))
     assertEquals((last.counts.asked, last.counts.used, last.counts.late), (2L, 1L, 1L))
 
-  test("what is remembered of questions has a bound"):
+  test("the number of remembered requests is limited"):
     val exchange = asking((0 to 1000).map(_.toDouble)*)
     assert(exchange.vehicles(0).open.size <= Exchange.MostOpen)
     assertEquals(exchange.heard(answer(3), at(1001))._2, Verdict.Repeated)
 
-  test("the solver's clock is known from questions and answers, and anew with a new start"):
+  test("the solver's clock is known from requests and answers, and anew after the solver's restart"):
     val (one, _) = asking(0).heard(answer(0, takenMs = 1005), at(11))
     assertEquals(one.solverClock, Some((solver = 1L, offset = Span.ofMillis(-1000))))
     val (two, _) = one.asked(0, at(100), at(200))._1.heard(answer(1, solver = 2, takenMs = 5), at(111))
     assertEquals(two.solverClock, Some((solver = 2L, offset = Span.ofMillis(100))))
 
-  test("the delay expected is the mean of late, of answers that counted"):
+  test("the expected delay is the recent mean of answers that counted"):
     assertEquals(Exchange.of(1).delay, Span.Zero)
     val (one, _) = asking(0).heard(answer(0), at(10))
     val (two, _) = one.asked(0, at(100), at(200))._1.heard(answer(1), at(130))
@@ -58,7 +58,7 @@ class ExchangeSuite extends munit.FunSuite:
     val (late, _) = two.asked(0, at(300), at(400))._1.heard(answer(2), at(900))
     assertEquals(late.delay, Span.ofMillis(20))
 
-  test("what is meant for searching is no part of the delay"):
+  test("time meant for searching is no part of the delay"):
     val (first, _)  = asking().asked(0, at(0), at(0) + within, searching = Span.ofMillis(60))
     val (one, _)    = first.heard(answer(0), at(68))
     val (second, _) = one.asked(1, at(100), at(100) + within)

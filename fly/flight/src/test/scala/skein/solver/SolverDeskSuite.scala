@@ -30,7 +30,7 @@ class SolverDeskSuite extends munit.FunSuite:
         waits = waits.tail
         next.run()
 
-  /** What a desk replies, and whether the message was of use. */
+  /** A desk's replies, and whether the message was useful. */
   private final class Trial(workers: ExecutionContext)(using ActorSystem):
     private var replies = Vector.empty[SolverMessage]
     val desk            =
@@ -63,7 +63,7 @@ class SolverDeskSuite extends munit.FunSuite:
 
   private def welcome(flight: Long) = SolverMessage.Welcome(flight, 7, byVectors = true)
 
-  test("a flight is welcomed, and again when it repeats its hello; its requests are answered until its end"):
+  test("a flight is welcomed at each hello, and its requests are answered until its end"):
     on(): trial =>
       for _ <- 1 to 2 do assertEquals(trial.greet(5), (Right(true), Vector(welcome(5))))
       val (isOfUse, replies)                 = trial.ask(5, 0)
@@ -74,7 +74,7 @@ class SolverDeskSuite extends munit.FunSuite:
       assertEquals(trial.say(SolverMessage.Goodbye(5)), (Right(false), Vector.empty))
       assertEquals(trial.ask(5, 1), (Right(false), Vector(SolverMessage.Unknown(5))))
 
-  test("a flight of another build, or with another fleet, is refused and told what differs"):
+  test("a flight of another build, or with another fleet, is refused with the difference"):
     on(): trial =>
       assertEquals(
         trial.greet(5, build = "theirs"),
@@ -92,7 +92,7 @@ class SolverDeskSuite extends munit.FunSuite:
       assert(clue(reason).exists(_.startsWith("the scenario is another here: the flight has ")))
       assertEquals(trial.desk.stats.flights, 0)
 
-  test("of more flights than there are places, the one silent for the longest time makes room"):
+  test("beyond the limit of flights, the one silent for the longest time is removed"):
     on(): trial =>
       val flights = 1L to SolverDesk.MostFlights
       flights.foreach(trial.greet(_))
@@ -102,7 +102,7 @@ class SolverDeskSuite extends munit.FunSuite:
       assertEquals(trial.ask(flights.last, 1)._2, Vector(SolverMessage.Unknown(flights.last)))
       assert(trial.ask(flights.head, 1)._2.head.isInstanceOf[SolverMessage.Tell])
 
-  test("as many flights are prepared at once as may fly, each once; a further one repeats its hello"):
+  test("as many flights are prepared simultaneously as may fly, each once; a further one repeats its hello"):
     val workers = Held()
     on(workers): trial =>
       val flights = 1L to SolverDesk.MostFlights
@@ -116,7 +116,7 @@ class SolverDeskSuite extends munit.FunSuite:
       workers.run()
       assertEquals(trial.saidSince(before).last, welcome(99))
 
-  test("answers, refusals, and what is no message or no request of its flight, are counted"):
+  test("answers, refusals and invalid messages are counted"):
     on(): trial =>
       trial.greet(1): Unit
       for number <- 0 until 3 do trial.ask(1, number)

@@ -162,20 +162,20 @@ class SolverMessageCodecLaws extends munit.ScalaCheckSuite:
     Gen.long.map(SolverMessage.Goodbye(_))
   )
 
-  property("a message reads back as it was written, to the last bit"):
+  property("a message is read back as it was written, to the last bit"):
     forAll(message): message =>
       val bytes = SolverMessageCodec.bytes(message)
       val read  = SolverMessageCodec.message(bytes).fold(fail(_), identity)
       assertEquals(read, message)
       assertEquals(SolverMessageCodec.bytes(read).toVector, bytes.toVector)
 
-  property("a message that is cut off, or goes on, is refused"):
+  property("a truncated message, or one with extra bytes, is refused"):
     forAll(message, Gen.double): (message, share) =>
       val bytes = SolverMessageCodec.bytes(message)
       assert(SolverMessageCodec.message(bytes.take((bytes.length * share).toInt)).isLeft)
       assert(SolverMessageCodec.message(bytes :+ 0.toByte).left.exists(_.contains("1 more byte")))
 
-  property("whatever comes is read or refused, and no length that it states is believed"):
+  property("any bytes are read or refused, and no length in them is trusted"):
     forAll(message, Gen.listOf(Gen.zip(Gen.double, Arbitrary.arbitrary[Byte]))): (message, changes) =>
       val bytes = SolverMessageCodec.bytes(message)
       for (share, value) <- changes do bytes((bytes.length * share).toInt.min(bytes.length - 1)) = value

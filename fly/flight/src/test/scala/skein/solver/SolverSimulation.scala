@@ -56,7 +56,7 @@ class SolverSimulation extends munit.FunSuite, Optimised:
       ("they take long, and after 3 s it flies", 1000, (_, _) => Seq(Span.ofMillis(100)), 15 to 100)
     )
   do
-    test(s"a link is rehearsed by greetings before the first question, and by none later: $name"):
+    test(s"a link is rehearsed by greetings before the first request, and by none later: $name"):
       var sent  = Vector.empty[Boolean]
       val trial = SolverTrial.fly(fate = fate, rehearsals = rehearsals)(hand =>
         hand.at(4)(hand.breakLink("cut"))
@@ -68,8 +68,7 @@ class SolverSimulation extends munit.FunSuite, Optimised:
       assert(clue(sent.dropWhile(identity).count(identity)) <= 3)
 
   test(
-    "decisions are made elsewhere, at the solver's time on the " +
-      "controller's clock, and replay from the recording"
+    "remote decisions are at the solver's time on the controller's clock, and replay from the recording"
   ):
     val trial = checked(SolverTrial.fly(takes = _ => Span.ofMillis(20))())
     assert(trial.recording.decisions.size > 100)
@@ -82,7 +81,7 @@ class SolverSimulation extends munit.FunSuite, Optimised:
       assertEqualsDouble(one.roundTrip.toMillis, 30, 1e-9)
       assertEqualsDouble(one.thinking.toMillis, 20, 1e-9)
 
-  test("a prediction is made for when a command acts that was decided elsewhere"):
+  test("a prediction is for the time at which a remotely decided command acts"):
     def ahead(hopMs: Double) =
       val trial = SolverTrial.fly(fate = (_, _) => Seq(Span.ofMillis(hopMs)))()
       val made  = trial.recording.decisions.drop(20)
@@ -93,7 +92,7 @@ class SolverSimulation extends munit.FunSuite, Optimised:
       ).sum / made.size
     assertEqualsDouble(ahead(20) - ahead(5), 30, 3)
 
-  test("where the solver is slow, answers that come too late are not used, and vehicles hover"):
+  test("late answers of a slow solver are not used, and vehicles hover"):
     val slow  = 40L
     val trial = checked(SolverTrial.fly(
       takes = question => if question.number >= slow then Span.ofMillis(130) else Span.Zero
@@ -104,7 +103,7 @@ class SolverSimulation extends munit.FunSuite, Optimised:
     // The newest wins: those that waited meanwhile were left.
     assert(trial.counts.overtaken > 0 || trial.questions.size > 60, trial.counts)
 
-  test("a solver that dies and is started again: vehicles hover meanwhile, and fly on"):
+  test("when a solver dies and is restarted, vehicles hover meanwhile, and fly on"):
     val trial = checked(SolverTrial.fly(): hand =>
       hand.at(2)(hand.kill())
       hand.at(4)(hand.start(2)))
@@ -118,7 +117,7 @@ class SolverSimulation extends munit.FunSuite, Optimised:
       fleet.agents.map(_.name).toSet
     )
 
-  test("a link that is lost fails immediately, and reports its loss and its return"):
+  test("a lost link fails immediately, and its loss and return are reported"):
     val trial = checked(SolverTrial.fly(): hand =>
       hand.at(2)(hand.breakLink("cut"))
       hand.at(3)(hand.mendLink()))
@@ -127,14 +126,14 @@ class SolverSimulation extends munit.FunSuite, Optimised:
     assert(trial.events(EventKind.DeadlineMissed).exists(_.detail.contains("Failed(cut)")))
     assertEquals(trial.events(EventKind.SolverRestarted), Vector.empty)
 
-  test("answers and questions that come twice count once"):
+  test("repeated answers and requests count once"):
     val trial = checked(SolverTrial.fly(fate = (_, _) => Seq(Span.ofMillis(5), Span.ofMillis(9)))())
     assertEquals(trial.events(EventKind.DeadlineMissed), Vector.empty)
     assert(trial.counts.repeated > 50, trial.counts)
     assert(trial.counts.repeatedThere > 50, trial.counts)
     assertEquals(trial.questions.distinct, trial.questions)
 
-  test("messages lost, repeated and reordered at random: nothing overtakes, and what was decided replays"):
+  test("with messages lost, repeated and reordered at random, nothing overtakes, and the decisions replay"):
     for seed <- 1L to 20L do
       val random                       = SplitMix64(seed)
       val fate: (To, Int) => Seq[Span] = (_, number) =>
@@ -157,8 +156,7 @@ class SolverSimulation extends munit.FunSuite, Optimised:
       assert(trial.recording.solved.size > 30, s"seed $seed: ${trial.counts}")
 
   test(
-    "a policy with a memory goes on from the answer that was " +
-      "used, and begins anew with a new start of its solver"
+    "a policy with a memory continues from the answer that was used, and begins anew after a solver's restart"
   ):
     val counting = SolverSimulation.Counting
     val team     =
@@ -181,7 +179,7 @@ class SolverSimulation extends munit.FunSuite, Optimised:
     hovering(recording.copy(events = recording.events.filter(_.kind != EventKind.SolverRestarted)))
 
   test(
-    "plans are made elsewhere; where the solver is slow or starts again vehicles hover, and it all replays"
+    "remote plans replay; vehicles hover while the solver is slow or restarts"
   ):
     val trial = checked(SolverTrial.fly(
       kind = LoopKind.Plan,
@@ -196,7 +194,7 @@ class SolverSimulation extends munit.FunSuite, Optimised:
     assert(trial.byFallback.count(_._1 == "Pursuer") > 10, trial.byFallback)
     assert(trial.events(EventKind.SolverRestarted).exists(_.vehicle.contains("Pursuer")))
 
-  test("a team is planned for by one question, and an answer decides for all or for none of them"):
+  test("a team is planned by one request, and an answer decides for all of it or none"):
     val team  = Crossing(vehicles = 4).fleet
     val trial = checked(
       SolverTrial.fly(kind = LoopKind.Plan, fleet = team, seconds = 10): hand =>
@@ -222,7 +220,7 @@ class SolverSimulation extends munit.FunSuite, Optimised:
       LoopSettings(planning = SolverTrial.planning)
     ).firstDifference.isDefined)
 
-  test("a prediction is made for when the command of a plan acts that was made elsewhere"):
+  test("a prediction is for the time at which a remotely planned command acts"):
     def ahead(hopMs: Double) =
       val fate: (To, Int) => Seq[Span] = (_, _) => Seq(Span.ofMillis(hopMs))
       val made = checked(SolverTrial.fly(kind = LoopKind.Plan, fate = fate)()).recording.decisions
@@ -236,7 +234,7 @@ class SolverSimulation extends munit.FunSuite, Optimised:
   test("equal seeds give equal recordings"):
     assertEquals(SolverTrial.fly(seed = 3)().recording, SolverTrial.fly(seed = 3)().recording)
 
-  test("over vpn, predictive with its solver behind a link of its own flies within 2 % of the paused truth"):
+  test("over vpn, predictive with its solver behind a separate link flies within 2 % of the paused truth"):
     val seeds = 1L to 3L
     for (name, median) <- Seq("a broker's" -> 4.0, "a slower" -> 30.0) do
       val flown = seeds.map: seed =>

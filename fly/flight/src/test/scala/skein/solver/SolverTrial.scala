@@ -36,7 +36,7 @@ object SolverTrial:
 
   val within: Span = Span.ofMillis(100)
 
-  /** Settings for loops that plan: fast, and not good. */
+  /** Settings of planning that is fast, but of low quality. */
   val planning: PlanSettings = PlanSettings(horizonSteps = 10, searches = 2, slices = 2, blocksPerSlice = 1)
 
   /** Controls of a test over a running trial. */

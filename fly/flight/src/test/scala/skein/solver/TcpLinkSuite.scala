@@ -12,7 +12,7 @@ import skein.link.*
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** In virtual time, where attempts to connect go as scripted. */
+/** Links in virtual time, whose attempts to connect follow a script. */
 class TcpLinkSuite extends munit.FunSuite:
   private val at      = Address("solver", 7400)
   private val message = ByteString(SolverMessageCodec.bytes(SolverMessage.Unknown(5)))
@@ -31,9 +31,9 @@ class TcpLinkSuite extends munit.FunSuite:
   private val framed     = ByteString(0, 0, 0, message.size.toByte) ++ message
   private val saying     = Source.single(framed).initialDelay(50.millis)
 
-  /** What happens on a link within some seconds.
+  /** The events of a link within some seconds.
     *
-    * @param attempts the first ones; the last repeats
+    * @param attempts results of the first attempts; the last one repeats
     */
   private final class Trial(attempts: Attempt*)(using system: ActorSystem):
     var news     = Vector.empty[LinkNews]
@@ -65,12 +65,12 @@ class TcpLinkSuite extends munit.FunSuite:
 
   private def closing(trial: Trial): Future[Done] = trial.link.close()
 
-  test("a side that is not trusted at two attempts in a row is refused, and not tried again"):
+  test("a side that is not trusted at two attempts in a row is refused, without retries"):
     val (trial, _) = within(3, failing(mistrusted))(_ => Future.unit)
     assertEquals(trial.news, Vector(LinkNews.Refused(mistrusted.getMessage)))
     assertEquals(trial.tried, 2)
 
-  test("a handshake that fails once, or after a message, refuses nobody"):
+  test("a handshake that fails once, or after a message, is no refusal"):
     val no   = failing(mistrusted)
     val said = open(
       Source(Seq(framed, ByteString.empty))
@@ -92,7 +92,7 @@ class TcpLinkSuite extends munit.FunSuite:
       Vector(LinkNews.Up, LinkNews.Down(s"the solver at $at closed the connection"), LinkNews.Up)
     )
 
-  test("what is sent before a connection is refused with the reason, and what is accepted crosses on close"):
+  test("messages sent before a connection are refused with the reason, and accepted ones are sent on close"):
     var heard      = ByteString.empty
     val hears      = Sink.foreach[ByteString](bytes => heard ++= bytes)
     val echo       = Flow.fromSinkAndSourceCoupled(hears, Source.maybe[ByteString])
@@ -104,7 +104,7 @@ class TcpLinkSuite extends munit.FunSuite:
         closing(trial).map(_ => sent)(using ExecutionContext.parasitic)
     assertEquals((sent, heard), (Right(()), framed))
 
-  test("a side that says nothing in time is refused"):
+  test("a side that sends nothing in time is refused"):
     val (trial, _) = within(11, open(Source.maybe))(_ => Future.unit)
     assertEquals(
       trial.news,

@@ -10,14 +10,16 @@ import skein.units.Expect
 /** A flight's link to a solver behind a Kafka broker. All flights of a prefix share the topics; each reads
   * only its own messages.
   *
-  * A broker stores messages and may deliver one twice, and its client does not know whether there is a
-  * reader: so this link is up from the first message that was written, and down only if one could not be
+  * A broker stores messages, may deliver one twice, and does not inform a writer whether there is a reader.
+  * So this link counts as up from the first written message on, and as down only if a message could not be
   * written within half a second.
   */
 final class KafkaLink(topics: KafkaTopics) extends MessageLink:
   private given ExecutionContext = ExecutionContext.parasitic
 
-  /** Two clients and a broker: cold, they add 1.5 ms at the median. */
+  /** Many, since messages pass two of Kafka's clients and a broker: before compilation these add 1.5 ms at
+    * the median.
+    */
   override def rehearsals: Int = 400
 
   def open(received: Array[Byte] => Unit, news: LinkNews => Unit): OpenLink =
@@ -43,7 +45,7 @@ final class KafkaLink(topics: KafkaTopics) extends MessageLink:
       case Failure(error) => news(LinkNews.Refused(error.getMessage))
     new OpenLink:
       def send(message: Array[Byte]): Either[String, Unit] =
-        // What is said while it is down is how the broker is found to be back.
+        // Messages are written while the link is down, too: a success shows that the broker is back.
         Expect.that(
           pipe.ready.value.exists(_.isSuccess) && pipe.send(message)
         )(isDown.get.getOrElse(away.get))

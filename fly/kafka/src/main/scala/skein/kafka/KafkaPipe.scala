@@ -39,7 +39,7 @@ private[kafka] final class KafkaPipe(
 
   @volatile private var consumer = Option.empty[KafkaConsumer[Array[Byte], Array[Byte]]]
 
-  // Since a message was not written. A broker that is back may be a new one, without topics.
+  // Set when a message was not written: a broker that is back may be a new one, without topics.
   @volatile private var isDoubtful = false
 
   /** Completes once messages that others write from now on will be read; fails if the broker refuses, without
@@ -113,7 +113,7 @@ private[kafka] final class KafkaPipe(
             if came.nonEmpty then received(came)
           catch
             case _: WakeupException => ()
-            // A broker that is away comes back; what is wrong with a broker that is there stays, and is said.
+            // An unreachable broker comes back; an error of a reachable one stays, and is reported.
             case _: RetriableException => ()
       finally reader.close()
 
@@ -128,7 +128,7 @@ private[kafka] final class KafkaPipe(
       "compression.type"                      -> "none",
       "enable.idempotence"                    -> "false",
       "max.in.flight.requests.per.connection" -> "1",
-      // Who is asked late answers late: an old question is not worth more than this.
+      // A late request has a late answer: after this time it is worthless.
       "request.timeout.ms"  -> "400",
       "delivery.timeout.ms" -> "500",
       "max.block.ms"        -> "500",

@@ -17,7 +17,7 @@ final class KafkaSolver(topics: KafkaTopics, desk: SolverDesk, told: String => U
     told
   )
 
-  // What is no message is counted there; the next ones are read.
+  // Invalid messages are counted there; the next ones are read.
   private def taken(came: Seq[Array[Byte]]): Unit =
     desk.received(came, message => pipe.send(message): Unit): Unit
 

@@ -36,7 +36,7 @@ final case class KafkaTopics(broker: Address, prefix: String)(val security: Map[
         for name <- Seq(questions, answers) do
           val short = Map("retention.ms" -> "600000", "segment.bytes" -> "16777216").asJava
           val topic = NewTopic(name, 1, 1.toShort).configs(short)
-          // It says by itself what it waited for in vain, before that.
+          // Longer than Kafka's own time-out, whose error states what it waited for.
           try admin.createTopics(java.util.List.of(topic)).all.get(8, TimeUnit.SECONDS): Unit
           catch case exists: ExecutionException if exists.getCause.isInstanceOf[TopicExistsException] => ()
       Right(())

@@ -73,8 +73,7 @@ class KafkaLiveSuite extends munit.FunSuite, Lengthy:
     assert(isSo(recorder.recording))
 
   test(
-    "a broker that is killed and started again in a flight: until it is back the deadline's " +
-      "fallback decides for all, who hover; then they fly on, and all is recorded"
+    "while a killed broker restarts, the deadline's fallback lets vehicles hover; then they fly on"
   ):
     val own                                      = Files.createTempDirectory("kafka-killed")
     val log                                      = Files.createTempFile("kafka-killed", ".log")
@@ -121,7 +120,7 @@ class KafkaLiveSuite extends munit.FunSuite, Lengthy:
     assert(recording.ending.isDefined)
     assert(SolverSummary.of(recording).exists(_.roundTripsMs.isDefined))
 
-  test("where two solvers answer, each answer counts once"):
+  test("if two solvers answer, each answer counts once"):
     val recording = flown("twice", broker.address, repeats = 2)(
       until(_)(seen => seen.solved.size > 20 && seen.events.count(_.kind == EventKind.Repeated) > 10)
     )
@@ -129,7 +128,7 @@ class KafkaLiveSuite extends munit.FunSuite, Lengthy:
     assertEquals(used.distinct, used)
 
   for (whose, number) <- Seq("clients", "its controller").zipWithIndex do
-    test(s"a broker whose port for $whose is taken while it starts takes another"):
+    test(s"a broker whose port for $whose is taken while it starts takes another port"):
       val folder            = Files.createTempDirectory("kafka-late")
       var asked             = 0
       def free(at: Address) =
@@ -145,7 +144,7 @@ class KafkaLiveSuite extends munit.FunSuite, Lengthy:
     Exit.exit(1, "of a test")
     Exit.halt(1, "of a test")
 
-  test("a broker whose port is taken is not started, and says so"):
+  test("a broker whose port is taken is not started, and the error states that"):
     val at    = broker.address
     val other = Files.createTempDirectory("kafka-other")
     val no    = KafkaBroker.start(other, at)

@@ -4,7 +4,7 @@ import skein.link.Address
 
 class KafkaTopicsSuite extends munit.FunSuite:
 
-  test("a broker's security goes to every client, changes nothing that the link needs, and is not shown"):
+  test("a broker's security settings apply to every client, keep the link's own settings, and are not shown"):
     val secret   = Map("security.protocol" -> "SSL", "ssl.truststore.password" -> "goose", "acks" -> "0")
     val topics   = KafkaTopics(Address("broker.lab", 9093), "skein")(secret)
     val settings = KafkaTopics.settings(topics)("acks" -> "1")

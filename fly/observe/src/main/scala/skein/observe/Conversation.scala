@@ -7,8 +7,8 @@ import upack.{Msg, Str}
 
 /** Parses the bytes of one connection. Mutable; one thread at a time.
   *
-  * Memory: 64 KiB of a message in each direction. The rest of a longer one, such as an image, is counted and
-  * not kept.
+  * Memory: the first 64 KiB of a message in each direction. The rest of a longer one, such as an image, is
+  * only counted.
   */
 final class Conversation(connection: Int):
   import Conversation.*

@@ -15,21 +15,23 @@ final case class Finding(name: String, what: String, remedy: String)
   */
 object Diagnosis:
 
-  /** Share of a period from which it is reported. */
+  /** A delay is reported from this share of a period on. */
   private val Notable = 0.2
 
-  /** More simultaneous calls than AirSim is sure to answer: it keeps a worker for each unanswered move. */
+  /** Limit of the simultaneous calls that AirSim surely answers: each unanswered move occupies one of its
+    * workers.
+    */
   private val MostMoves = 2
 
   /** Factor by which images slow small calls on a link that they fill. */
   private val SlowedBy = 2.0
 
-  /** Quantile by which small calls are compared. A program that waits for each sends few while an image's
-    * bytes are ahead of them, and more before these are sent.
+  /** Quantile by which small calls are compared. A program that waits for each answer sends few calls while
+    * an image's bytes are ahead of them, and more afterwards.
     */
   private val Slow = 0.75
 
-  /** One physics step of AirSim: readings of one moment differ by up to this. */
+  /** A physics step of AirSim: readings of one instant may differ by this. */
   private val LeastSkewMs = 3.0
 
   private val RateWithin = 0.02

@@ -8,6 +8,6 @@ private[observe] final class Kept[A](most: Int):
 
   def all: Iterator[A] = entries.valuesIterator
 
-  /** The entry of a name, made at its first use; None where it would be one too many. */
+  /** The entry of a name, made at its first use; None if there are already `most` others. */
   def get(name: String)(make: => A): Option[A] =
     if entries.size < most then Some(entries.getOrElseUpdate(name, make)) else entries.get(name)

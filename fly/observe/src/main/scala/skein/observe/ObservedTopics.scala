@@ -3,19 +3,20 @@ package skein.observe
 import skein.measure.Distribution
 import skein.units.Span
 
-/** What messages of a topic are: readings of vehicles, or commands to them. */
+/** The kind of a topic's messages: readings of vehicles, or commands to them. */
 enum TopicKind(val label: String):
   case Readings extends TopicKind("readings")
   case Commands extends TopicKind("commands")
 
-/** Observations of a loop whose messages are topics'. Ages are in milliseconds, when a command was sent.
+/** Observations of a loop that exchanges messages on topics. Ages are in milliseconds, at the time of a
+  * command.
   *
   * @param lasted from the first message to the last
   * @param caused commands with the stamp of the reading that caused them
-  * @param byOtherClock vehicles whose stamps are by another clock than the times at which messages arrived
-  * @param notKept messages of vehicles or topics beyond the most
+  * @param byOtherClock vehicles whose stamps are not by the clock of the arrival times
+  * @param notKept messages of vehicles or topics beyond the limit
   * @param log of the first [[LoopAccount.MostLogged]] commands
-  * @param simulated where times are those of a simulation
+  * @param simulated present if times are simulated
   */
 final case class ObservedTopics(
     lasted: Span,
@@ -31,8 +32,8 @@ final case class ObservedTopics(
 
 /** The simulated time of a graph.
   *
-  * @param step usual time from one of its messages to the next, to within which it is known
-  * @param before messages from before it began, which are not counted otherwise
+  * @param step usual interval of its messages: the uncertainty of the time
+  * @param before number of messages before it began, which are not counted elsewhere
   */
 final case class SimulatedTime(step: Span, before: Long)
 
@@ -41,8 +42,8 @@ final case class SimulatedTime(step: Span, before: Long)
   * @param intervalMs from one message to the next
   * @param lateMs from a header's stamp to the arrival of its message; absent where they are on different
   *   clocks
-  * @param gaps intervals of more than two and a half usual ones
-  * @param backwards messages with an earlier stamp than one before
+  * @param gaps number of intervals longer than 2.5 usual ones
+  * @param backwards number of messages with an earlier stamp than a previous one
   */
 final case class ObservedTopic(
     name: String,

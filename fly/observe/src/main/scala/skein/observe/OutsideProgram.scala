@@ -7,7 +7,7 @@ import scala.jdk.CollectionConverters.*
 import scala.jdk.StreamConverters.*
 import skein.units.Span
 
-/** A program that was started from here, without input. Of what it prints the ends are kept. */
+/** A program started by this process, without input. The last parts of its outputs are kept. */
 final class OutsideProgram private (process: Process, out: OutsideProgram.Tail, err: OutsideProgram.Tail):
   import OutsideProgram.*
 
@@ -15,16 +15,16 @@ final class OutsideProgram private (process: Process, out: OutsideProgram.Tail, 
 
   def await(most: Span): Unit = process.waitFor(most.toNanos.max(0), TimeUnit.NANOSECONDS): Unit
 
-  /** The last line of its standard output that is not blank. Complete after [[stop]]. */
+  /** The last non-blank line of its standard output. Complete after [[stop]]. */
   def lastLine: Option[String] = out.lastLine
 
   def lastError: Option[String] = err.lastLine
 
-  /** The ends of its standard output and of its standard error, at most 64 KiB of each. */
+  /** The last parts of its standard output and standard error, at most 64 KiB of each. */
   def printed: String = Seq(out.text, err.text).filter(_.nonEmpty).mkString("\n")
 
-  /** Ends it, if it has not ended, with all processes that it started, and waits for the rest of what it
-    * printed.
+  /** Ends the program, if it still runs, with all processes that it started, and waits for the rest of their
+    * output.
     */
   def stop(): Unit =
     OutsideProgram.stop(process)
@@ -45,7 +45,7 @@ object OutsideProgram:
       Right(OutsideProgram(process, Tail(process.getInputStream), Tail(process.getErrorStream)))
     catch case absent: IOException => Left(s"cannot start ${command.head}: ${absent.getMessage}")
 
-  /** Asks a process and all that it started to end; whichever has not ended 5 s later is killed. */
+  /** Requests a process and all that it started to end, and kills those that still run 5 s later. */
   def stop(process: Process): Unit =
     val all = process.descendants().toScala(Vector) :+ process.toHandle
     all.foreach(_.destroy(): Unit)

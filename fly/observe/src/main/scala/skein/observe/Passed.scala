@@ -2,7 +2,7 @@ package skein.observe
 
 import skein.units.Instant
 
-/** A message between a client and its simulator, as it passed the observer. Instants are on the observer's
+/** A message between a client and its simulator that passed the observer. Instants are on the observer's
   * clock.
   */
 enum Passed:
@@ -11,7 +11,7 @@ enum Passed:
   /** A call on its way to the simulator.
     *
     * @param id of the call within its connection
-    * @param vehicle as the call names it; empty for the simulator's first
+    * @param vehicle its name in the call; empty for the simulator's default vehicle
     */
   case Called(connection: Int, id: Long, method: String, vehicle: String, at: Instant)
 

@@ -37,14 +37,14 @@ class ConversationSuite extends munit.FunSuite:
         s"seed $seed"
       )
 
-  test("the vehicle's name is found where a request for images has a flag after it"):
+  test("the vehicle's name is found in a request for images with a flag after it"):
     val request = bytes(Arr(Int32(0), Int32(9), Str("simGetImages"), Arr(Arr(), Str("Drone"), upack.False)))
     assertEquals(
       Conversation(0).fromClient(request, now),
       Vector(Passed.Called(0, 9, "simGetImages", "Drone", now))
     )
 
-  test("of a large answer its length is known, and what comes behind it is understood"):
+  test("only the length of a large answer is kept, and messages behind it are understood"):
     val image = bytes(Arr(Int32(1), Int32(1), Null, Binary(new Array[Byte](3_000_000))))
     val talk  = Conversation(0)
     val found = (image ++ answered).grouped(10_000).toVector.flatMap(talk.fromSimulator(_, now))
@@ -53,7 +53,7 @@ class ConversationSuite extends munit.FunSuite:
       Vector(image.size.toLong, answered.size.toLong)
     )
 
-  test("bytes that are no messages are reported once, and harm nothing"):
+  test("bytes that are no messages are reported once, and the rest is ignored"):
     for seed <- 1L to 500 do
       val random = SplittableRandom(seed)
       val noise  = ByteString(Array.fill(1 + random.nextInt(2_000))(random.nextInt.toByte))

@@ -16,9 +16,9 @@ import skein.simulator.{SimulatorServer, SimulatorSettings}
 import skein.testing.{Conclusive, Lengthy, PythonEnvironment, Waiting}
 import skein.units.*
 
-/** Scripts as users write them with AirSim's own Python client, each with a fault of timing planted in it,
-  * through the observer. The diagnosis names the fault, and the ages are those that the script itself knows
-  * by the simulator's clock.
+/** Users' scripts with AirSim's own Python client, each with a fault in its timing, run through the observer.
+  * The diagnosis must state the fault, and the ages must be those that the script itself knows by the
+  * simulator's clock.
   */
 class ObservedScriptsLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
   private given system: ActorSystem = ActorSystem("observed-scripts")
@@ -44,7 +44,7 @@ class ObservedScriptsLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Wait
   private def parsed(text: String) =
     LatencyProfile.parse(text, Left(_)).fold(error => fail(error.message), identity)
 
-  /** What was observed, and the ages that the script knows, ms. */
+  /** The observations, and the ages that the script knows, ms. */
   private def observe(script: String, link: LatencyProfile): (observed: Observed, inside: Distribution) =
     val (clock, transport) = (Clock.system, TcpTransport())
     val settings           = SimulatorSettings(
@@ -117,5 +117,5 @@ class ObservedScriptsLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Wait
 
   private val Seconds = 10
 
-  /** From the script's look at the clock to the command's passing, ms. */
+  /** Time from the script's reading of the clock to the command's passing, ms. */
   private val Apart = 5.0

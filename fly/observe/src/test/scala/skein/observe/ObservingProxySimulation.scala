@@ -79,7 +79,7 @@ class ObservingProxySimulation extends munit.FunSuite, Unhurried:
   private def named(client: AirSimClient, name: String)(using ExecutionContext): Future[Multirotor] =
     Multirotor.named(client, name).map(_.fold(error => throw AssertionError(error.message), identity))
 
-  test("what a browser sends is closed and does not reach the simulator, which answers others"):
+  test("a browser's connection is closed and does not reach the simulator, which still answers others"):
     val (told, answered) = VirtualTime
       .run(7): system =>
         given ActorSystem      = system

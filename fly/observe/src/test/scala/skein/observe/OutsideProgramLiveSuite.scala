@@ -14,21 +14,21 @@ class OutsideProgramLiveSuite extends munit.FunSuite, Waiting:
     program.stop()
     program
 
-  test("its status, its last lines and what it was given are known once it has ended"):
+  test("a program gets its environment, and its status and last lines are known once it has ended"):
     val program = ended(started("echo one; echo $WORD; echo; echo oh >&2; exit 3", "WORD" -> "two"))
     assertEquals(program.exit, Some(3))
     assertEquals(program.lastLine, Some("two"))
     assertEquals(program.lastError, Some("oh"))
 
-  test("of much that it prints the end is kept"):
+  test("only the end of a long output is kept"):
     val program = ended(started("yes | head -c 1000000; echo last"))
     assertEquals(program.lastLine, Some("last"))
     assertEquals(program.printed.length, 64 << 10)
 
-  test("a program that reads gets the end of its input at once"):
+  test("a program that reads its input gets its end immediately"):
     assertEquals(ended(started("cat; echo over")).lastLine, Some("over"))
 
-  test("what it started ends with it, even what does not want to"):
+  test("processes that the program started end with it, even reluctant ones"):
     val program                = started("(trap '' TERM; while true; do sleep 0.1; done) & echo $!; wait")
     @tailrec def child(): Long = program.lastLine match
       case Some(number) => number.toLong
@@ -38,6 +38,6 @@ class OutsideProgramLiveSuite extends munit.FunSuite, Waiting:
     assert(program.exit.isDefined)
     handle.ifPresent(one => one.onExit().get(): Unit)
 
-  test("a program that is not there is told in a line"):
+  test("a missing program is reported in a line"):
     val told = OutsideProgram.start(Seq("no-such-program"), Map.empty).left.toOption
     assert(told.exists(_.startsWith("cannot start no-such-program: ")), told)

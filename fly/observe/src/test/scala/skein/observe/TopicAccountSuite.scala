@@ -39,7 +39,7 @@ class TopicAccountSuite extends munit.FunSuite:
     assertEquals(graph.ages, Vector(Some(40.0), Some(40.0)))
     assertEquals(graph.observed.caused, 1L)
 
-  test("a message that was overtaken is no newer reading, and is counted"):
+  test("an overtaken message is no newer reading, and is counted"):
     val graph = Graph()
     graph.reading("a", 20, 30)
     graph.reading("a", 10, 40)
@@ -47,7 +47,7 @@ class TopicAccountSuite extends munit.FunSuite:
     assertEquals(graph.ages, Vector(Some(30.0)))
     assertEquals(graph.observed.topics.head.backwards, 1L)
 
-  test("the others' age is that of the oldest of their newest readings"):
+  test("the age of others is that of the oldest of their newest readings"):
     val graph = Graph()
     graph.reading("a", 10, 20)
     graph.reading("b", 5, 21)
@@ -58,7 +58,7 @@ class TopicAccountSuite extends munit.FunSuite:
     assertEquals(first.othersAgeMs, Some(25.0))
     assertEquals(second.sinceOthersMs, Some(4.0))
 
-  test("stamps of simulated time give ages beyond the way of the fastest message"):
+  test("with stamps of simulated time, ages are relative to the fastest message's way"):
     val graph = Graph(offsetMs = -900_000)
     graph.reading("a", 10, 30)
     graph.reading("a", 60, 65)
@@ -76,7 +76,7 @@ class TopicAccountSuite extends munit.FunSuite:
     assertEquals((topic.messages, topic.gaps), (7L, 1L))
     assertEqualsDouble(topic.lateMs.get.mean, 3, 1e-9)
 
-  test("of vehicles beyond the most, messages are counted, not kept"):
+  test("messages of vehicles beyond the limit are counted, but not kept"):
     val graph = Graph()
     for number <- 0 until 300 do graph.reading(s"v$number", number, number)
     assertEquals((graph.observed.vehicles.size, graph.observed.notKept), (256, 44L))

@@ -3,8 +3,8 @@ package skein.rosbag
 import scala.collection.mutable
 import skein.units.Instant
 
-/** Handles messages in the order in which they arrived: middleware hands them over topic by topic. Mutable.
-  * Holds [[ArrivalOrder.MostHeld]] messages at most; one more, and the earliest is handled early.
+/** Handles messages in the order of their arrival, although middleware delivers them topic by topic. Mutable.
+  * Keeps at most [[ArrivalOrder.MostHeld]] messages; beyond that, the earliest is handled early.
   */
 private[rosbag] final class ArrivalOrder:
   import ArrivalOrder.*
@@ -18,7 +18,7 @@ private[rosbag] final class ArrivalOrder:
     number += 1
     if held.size > MostHeld then held.dequeue().handle()
 
-  /** Handles every message that had arrived by then. */
+  /** Handles every message that had arrived by `at`. */
   def upTo(at: Instant): Unit = while held.nonEmpty && held.head.order._1 <= at do held.dequeue().handle()
 
 private object ArrivalOrder:

@@ -10,18 +10,18 @@ import skein.observe.ObservedTopics
 import skein.record.FileReason
 import skein.units.{Expect, Instant}
 
-/** Measures the loop that a bag of ROS 2 holds, from MCAP files, of any message types.
+/** Measures the loop in a bag of ROS 2 with MCAP files and any message types.
   *
-  * @param readings topics that vehicles are read by; without any, those of poses whose name sounds like no
-  *   command
-  * @param commands topics of commands; without any, those of twists and poses whose name sounds like one
+  * @param readings topics with vehicles' readings; if empty, those of poses whose name does not suggest
+  *   commands
+  * @param commands topics of commands; if empty, those of twists and poses whose name suggests commands
   */
 final class BagLoop(readings: Set[String], commands: Set[String]):
   import BagLoop.*
 
   /** Reads a bag: its folder, or an MCAP file.
     *
-    * @return Left states in a line what is no bag, or which topic is missing
+    * @return Left states in a line why it is no bag, or which topic is missing
     */
   def observed(bag: Path): Either[String, ObservedTopics] =
     val loop = TopicLoop(readings, commands)

@@ -12,20 +12,21 @@ import skein.units.{Instant, Vector3 as Ned}
 
 /** A message of a bag.
   *
-  * @param at when the controller knew it, on its clock
+  * @param at when the controller received it, on its clock
   */
 final case class BagMessage(topic: String, kind: MessageType[?], at: Instant, bytes: Array[Byte])
 
-/** Makes messages of ROS 2 from the rows of a recording; rows in their order.
+/** Converts the rows of a recording to messages of ROS 2, in the order of the rows.
   *
   *   - `/NAME/odom` (`nav_msgs/Odometry`) and `/tf`: readings;
-  *   - `/NAME/cmd_vel` (`geometry_msgs/TwistStamped`, in the frame `map`): commands, as `fly --ros` sends
-  *     them;
+  *   - `/NAME/cmd_vel` (`geometry_msgs/TwistStamped`, in the frame `map`): commands, in the form in which
+  *     `fly --ros` sends them;
   *   - `/NAME/CAMERA/image_raw` (`sensor_msgs/Image`), `/NAME/LIDAR/points` (`sensor_msgs/PointCloud2`), each
   *     with its frame in `/tf`: images and scans.
   *
-  * Headers are stamped with the time of sampling, on the controller's clock by the offset known at that row.
-  * Frames are those of REP 103 and 105. Bytes that are no letter, digit or `_` in a name become `_`.
+  * Headers are stamped with the time of sampling, converted to the controller's clock by the offset that was
+  * known at that row. Frames are those of REP 103 and 105. Bytes that are no letter, digit or `_` in a name
+  * become `_`.
   */
 final class BagMessages(rows: Vector[Record]):
   private var offset  = McapRecording.firstOffset(rows)

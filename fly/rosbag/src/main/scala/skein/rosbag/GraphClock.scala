@@ -3,10 +3,12 @@ package skein.rosbag
 import scala.collection.mutable
 import skein.units.{Instant, Span}
 
-/** The simulated time of a graph, by the messages on its topic `/clock`. Mutable; times in their order.
+/** The simulated time of a graph, from the messages on its topic `/clock`. Mutable; times must be given in
+  * order.
   *
-  * Between two messages it is assumed to go on as fast as it did over the last [[GraphClock.MostRecent]], by
-  * one usual step at most. So it is known to within such a step, at any speed, and while it stands still.
+  * Between two messages the time is assumed to advance at its rate over the last [[GraphClock.MostRecent]]
+  * messages, by at most one usual step. So its error is at most one step, at any speed, and while it stands
+  * still.
   */
 private[rosbag] final class GraphClock:
   import GraphClock.*
@@ -16,10 +18,11 @@ private[rosbag] final class GraphClock:
   private var steps   = 0L
   private var reached = Instant.Epoch
 
-  /** Takes a message's time; one that is up to [[MostLate]] older than the newest is late, and ignored.
+  /** Adds the time of a message. A time that is older than the newest by up to [[MostLate]] is ignored as
+    * late.
     *
     * @param at when the message arrived
-    * @return whether the time begins with it: it is the first, or the time went back
+    * @return whether the time begins here: this is the first message, or the time went back
     */
   def add(time: Instant, at: Instant): Boolean =
     val begins = recent.lastOption.forall(_.time.since(time) > MostLate)
@@ -34,11 +37,11 @@ private[rosbag] final class GraphClock:
       if recent.size > MostRecent then recent.dequeue(): Unit
     begins
 
-  /** The usual step from one message to the next; None without any message. */
+  /** The usual step from one message to the next; None before the first message. */
   def step: Option[Span] = recent.lastOption.map(last => last.time.since(begun) / steps.max(1))
 
-  /** The simulated time of an arrival, or `at` itself where there is no simulated time; never runs back, but
-    * where it begins anew.
+  /** The simulated time of an arrival, or `at` itself if there is no simulated time. It never runs back,
+    * except where the time begins anew.
     */
   def timeOf(at: Instant): Instant =
     for last <- recent.lastOption; usual <- step do
@@ -49,8 +52,8 @@ private[rosbag] final class GraphClock:
       reached = reached.max(last.time + beyond.max(Span.Zero).min(usual))
     if recent.isEmpty then at else reached
 
-  /** Whether a node may read this time from `/clock` at `now`: it is no older than two steps. Nodes stamp
-    * with the last message's time, and so may simulators.
+  /** Whether a node may have read this time from `/clock` by `now`: it is at most two steps old. Nodes stamp
+    * their messages with the last message's time, and so may simulators.
     */
   def mayShow(time: Instant, now: Instant): Boolean = step.exists(usual => now.since(time) <= usual * 2)
 
@@ -59,5 +62,7 @@ private object GraphClock:
 
   val MostRecent: Int = 32
 
-  /** Best effort may deliver a message after a newer one; a simulation that begins anew goes back further. */
+  /** Limit of the lateness of a message: best effort may deliver one after a newer one. A simulation that
+    * begins anew goes back further.
+    */
   val MostLate: Span = Span.ofSeconds(1)

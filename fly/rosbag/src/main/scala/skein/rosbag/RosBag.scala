@@ -15,9 +15,10 @@ import skein.units.{Instant, Span}
   */
 object RosBag:
 
-  /** Writes a recording as a bag, with the topics of [[BagMessages]]. Blocks; holds the recording in memory.
+  /** Writes a recording as a bag, with the topics of [[BagMessages]]. Blocks. Keeps the whole recording in
+    * memory.
     *
-    * @param folder empty, or absent in a folder that exists
+    * @param folder must be empty, or not exist yet in an existing folder
     * @return topics with their numbers of messages
     */
   def write(recording: Path, folder: Path): Either[String, VectorMap[String, Long]] =

@@ -4,11 +4,13 @@ import skein.rosbag.GraphLoop
 import skein.testing.{Conclusive, Lengthy, Waiting}
 import skein.units.Clock
 
-/** A running graph, observed: vehicles of ours, and a stranger's pilot by `rclpy` with a planted delay. */
+/** The observation of a running graph: our vehicles, and an outside pilot by `rclpy` with a known delay. */
 class ObservedGraphLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
 
   for speed <- Seq(1, 4) do
-    test(s"a pilot that sleeps 150 ms between reading and command is said to be so late, at speed $speed"):
+    test(
+      s"a pilot that sleeps 150 ms between reading and command is reported with that delay, at speed $speed"
+    ):
       conclusive:
         val variables    = RosHere.variables()
         val served       = ServedProcess.start(variables, speed, port = 0)
@@ -34,7 +36,7 @@ class ObservedGraphLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waitin
         assert(commands("a") >= 40, ended)
         for fault <- Seq("did not appear", "expected", "refused") do assert(!ended.contains(fault), ended)
 
-  /** From the pilot's look at the clock to the observer's reception of its command, ms by the wall. */
+  /** Time from the pilot's reading of the clock to the observer's receipt of its command, ms of real time. */
   private val Apart = 10.0
 
 /** Observes the graph until its input ends. */

@@ -17,7 +17,7 @@ class ArrivalOrderSuite extends munit.FunSuite:
       messages.clear()
       all
 
-  test("messages taken topic by topic are handled in the order in which they arrived"):
+  test("messages delivered topic by topic are handled in the order of their arrival"):
     val handled = Handled()
     for (at, name) <- Seq(10L -> "a", 30L -> "a2", 20L -> "b", 20L -> "b2", 40L -> "b3") do
       handled.add(at, name)
@@ -26,7 +26,7 @@ class ArrivalOrderSuite extends munit.FunSuite:
     assertEquals(handled.upTo(34), Vector.empty)
     assertEquals(handled.upTo(99), Vector("a3", "b3"))
 
-  test("beyond the most that are held, the earliest is handled early"):
+  test("beyond the limit of held messages, the earliest is handled early"):
     val handled = Handled()
     for at <- 0L to ArrivalOrder.MostHeld do handled.add(at, at.toString)
     assertEquals(handled.messages.toVector, Vector("0"))

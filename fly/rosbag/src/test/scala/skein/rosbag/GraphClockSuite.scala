@@ -11,12 +11,12 @@ class GraphClockSuite extends munit.FunSuite:
     for tick <- 0 to 50 do clock.add(at(5_000 + 20.0 * tick), at(900_000 + 20 / speed * tick)): Unit
     clock
 
-  test("without messages times are those of the arrivals"):
+  test("without messages, times are those of arrival"):
     assertEquals(GraphClock().timeOf(at(7)), at(7))
     assertEquals(GraphClock().step, None)
 
   for speed <- Seq(0.5, 1.0, 10.0) do
-    test(s"between messages time goes on at their speed, here $speed, by one step at most"):
+    test(s"between messages time advances at its rate, here $speed, by at most one step"):
       val clock = running(speed)
       assertEquals(clock.step, Some(Span.ofMillis(20)))
       val last = 900_000 + 20 / speed * 50
@@ -24,7 +24,7 @@ class GraphClockSuite extends munit.FunSuite:
       assertEqualsDouble(ms(clock.timeOf(at(last + 8 / speed))), 6_008, 1e-3)
       assertEqualsDouble(ms(clock.timeOf(at(last + 500 / speed))), 6_020, 1e-3)
 
-  test("while it stands still it is known to within a step, and never runs back"):
+  test("while the clock stands still it is known within a step, and never runs back"):
     val clock   = running(speed = 1)
     val stopped =
       for tick <- 1 to 50 yield
@@ -34,7 +34,7 @@ class GraphClockSuite extends munit.FunSuite:
     assertEquals(stopped, stopped.sorted)
 
   test(
-    "it begins with the first message, and where it goes back by more than a second; a late one is ignored"
+    "time begins with the first message, and anew if it goes back by over a second; a late message is ignored"
   ):
     val clock = GraphClock()
     assert(clock.add(at(5_000), at(0)))

@@ -5,7 +5,7 @@ import skein.ros.message.*
 import skein.ros.{Qos, RosGraph}
 import skein.units.{Expect, Instant, Span}
 
-/** The loop of a graph without a middleware. Times are in milliseconds: of arrivals on the observer's clock.
+/** The loop of a graph without a middleware. Times are in milliseconds; arrivals are on the observer's clock.
   */
 class GraphLoopSuite extends munit.FunSuite:
   private val zero  = Vector3(0, 0, 0)
@@ -70,19 +70,19 @@ class GraphLoopSuite extends munit.FunSuite:
 
   private def usual(graph: Graph): Unit = graph.topics("/a/odom" -> odometry, "/a/cmd_vel" -> stamped)
 
-  test("topics of poses and commands are found by type and name, also those that appear later"):
+  test("topics of poses and commands are found by type and name, also if they appear later"):
     val graph = Graph()
     graph.topics("/rosout" -> "rcl_interfaces/msg/Log", "/a/odom" -> odometry)
     graph.topics("/a/odom" -> odometry, "/a/goal" -> "geometry_msgs/msg/PoseStamped", "/a/speed" -> stamped)
     assertEquals(graph.subscribed, Vector("/a/odom", "/a/goal"))
     assertEquals(graph.qualities.toSet, Set(Qos(isReliable = false, depth = 64)))
 
-  test("of a topic with several types, that of use is taken"):
+  test("of a topic's several types, the useful one is taken"):
     val graph = Graph()
     graph.loop.topics(Vector("/a/cmd_vel" -> Vector("std_msgs/msg/String", stamped)))
     assertEquals(graph.subscribed, Vector("/a/cmd_vel"))
 
-  test("a command with a reading's stamp is caused by it; behind any other the newest is assumed"):
+  test("a command with a reading's stamp was caused by it; for any other, the newest reading is assumed"):
     val graph = Graph()
     usual(graph)
     graph.reading("a", 0, 2)
@@ -92,14 +92,14 @@ class GraphLoopSuite extends munit.FunSuite:
     assertEquals(graph.ages, Vector(50.0, 40.0))
     assertEquals(graph.loop.observed.caused, 1L)
 
-  test("a reading whose stamp was not filled in is as old as its arrival"):
+  test("the age of a reading without a stamp counts from its arrival"):
     val graph = Graph()
     usual(graph)
     graph.reading("a", -1_000_000, 20)
     graph.command("a", ms = 50, stampMs = 50)
     assertEquals(graph.ages, Vector(30.0))
 
-  test("messages that were taken topic by topic are counted in the order of their arrival"):
+  test("messages delivered topic by topic are counted in the order of their arrival"):
     val graph = Graph()
     usual(graph)
     graph.reading("a", 0, 2)
@@ -108,7 +108,7 @@ class GraphLoopSuite extends munit.FunSuite:
     graph.loop.upTo(at(22))
     assertEquals(graph.ages, Vector(10.0))
 
-  test("with /clock ages and times are simulated, at any speed; what came before is left out, and counted"):
+  test("with /clock, ages and times are simulated, at any speed; earlier messages are only counted"):
     val graph = Graph()
     usual(graph)
     graph.topics("/clock" -> "rosgraph_msgs/msg/Clock")
@@ -128,7 +128,7 @@ class GraphLoopSuite extends munit.FunSuite:
     assertEquals((observed.caused, observed.byOtherClock), (1L, Vector.empty))
     assertEqualsDouble(observed.topics.head.intervalMs.get.median, 100, 20)
 
-  test("with /clock a stamp that a node may have read from it names no reading"):
+  test("with /clock, a stamp that a node may have read from it identifies no reading"):
     val graph = Graph()
     usual(graph)
     graph.topics("/clock" -> "rosgraph_msgs/msg/Clock")
@@ -142,7 +142,7 @@ class GraphLoopSuite extends munit.FunSuite:
     assertEqualsDouble(old, 102, 0.2)
     assertEquals(graph.loop.observed.caused, 1L)
 
-  test("whether a type begins with a header is read from its definition"):
+  test("a type's definition shows whether it begins with a header"):
     val definitions = Seq("uint64 at\nstd_msgs/Header header\n" -> 30.0, "# Of.\nstd_msgs/Header h\n" -> 50.0)
     for (definition, age) <- definitions do
       val graph = Graph(readings = Set("/a/state"))
@@ -153,7 +153,7 @@ class GraphLoopSuite extends munit.FunSuite:
       graph.command("a", ms = 50, stampMs = 50)
       assertEquals(graph.ages, Vector(age))
 
-  test("a topic that did not appear, a package that is missing, and topics that are too many are said"):
+  test("a topic that did not appear, a missing package, and too many topics are reported"):
     val graph = Graph(readings = Set("/x/odom"))
     graph.absent = Set(stamped)
     graph.refused = 3

@@ -51,7 +51,7 @@ class RosBagSimulation extends munit.FunSuite, TemporaryFolders, Unhurried:
           case other                            => Left(other)
         assert(read.isRight, read)
 
-  folder.test("a topic that is missing, SQLite, and what is no bag are reported in a line"): folder =>
+  folder.test("a missing topic, SQLite, and a file that is no bag are reported in a line"): folder =>
     def refused(bag: Path, topic: Option[String] = None) =
       BagLoop(topic.toSet, Set.empty).observed(bag).fold(identity, _ => "")
     assert(refused(made, Some("/x/odom")).startsWith("expected the topic /x/odom in "))
@@ -62,7 +62,7 @@ class RosBagSimulation extends munit.FunSuite, TemporaryFolders, Unhurried:
     val broken = Files.writeString(folder.resolve("broken.mcap"), "no MCAP")
     assert(refused(broken).startsWith(broken.toString), refused(broken))
 
-  test("the vehicle of a topic is its first part"):
+  test("a topic's vehicle is the first part of its name"):
     assertEquals(
       Vector("/uav1/mavros/odom", "/uav1/cmd_vel", "/odom").map(TopicLoop.vehicleOf),
       Vector("uav1", "uav1", "")

@@ -14,7 +14,7 @@ class RosbagsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
     assertEquals(status, 0, said)
     said
 
-  folder.test("it reads our bags by the definitions in them, and finds the readings' ages"): folder =>
+  folder.test("rosbags reads our bags by the definitions in them, and finds the readings' ages"): folder =>
     val recorder: MemoryRecorder = Flown.stream(seconds = 10)
     val file                     = folder.resolve("flight.duckdb")
     assert(recorder.writeTo(file).isRight)
@@ -27,7 +27,7 @@ class RosbagsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
       if line(0).endsWith("cmd_vel") then assertEqualsDouble(late, 0, 1e-3)
       else assert(late > 20 && late < 100, late)
 
-  folder.test("we read its bags: each command is as old as its reading"): folder =>
+  folder.test("we read rosbags' bags: each command is as old as its reading"): folder =>
     val bag = folder.resolve("bag")
     run("write", bag.toString): Unit
     val loop            = BagLoop(Set.empty, Set.empty).observed(bag).fold(fail(_), identity)

@@ -49,7 +49,7 @@ object Checks:
     for (vehicle, port) <- seen.vehicles.zip(seen.ports) if port.commands.most > Moves.InFlight
     yield s"$vehicle: ${port.commands.most} commands were outstanding at once"
 
-  /** Commands must keep their least interval. While the simulator stands still no time passes between
+  /** Commands must keep their minimum interval. While the simulator stands still no time passes between
     * commands.
     */
   private def tooFast(seen: FlightTrace): Vector[String] =
@@ -96,7 +96,7 @@ object Checks:
       )
     ).flatten ++ (if isRecorded(seen) then unrecorded(seen) else Vector.empty)
 
-  /** Every due image must be searched, or counted by its fate. */
+  /** Every due image must be searched, or counted as missed or lost. */
   private def unseen(seen: FlightTrace): Vector[String] =
     for counts <- seen.images if counts.due != counts.missed + counts.lost + counts.searched
     yield s"of ${counts.due} images that were due ${counts.missed} were " +
@@ -131,11 +131,11 @@ object Checks:
     case _                       => true
 
   private def unbounded(seen: FlightTrace): Vector[String] =
-    // Each sensor that a policy reads is asked beside the vehicle.
+    // Each sensor that a policy reads is requested separately from the vehicle.
     val sensors = seen.faultPlan.scenario.agents.map(_.policy.sensors.size).sum
     val most    = seen.vehicles.size.toLong * (seen.window + Moves.InFlight + SignsOfLife) +
       sensors * seen.window + seen.images.size * ImagesOnTheWay
-    // Where steps take no time, the flight is longer than it took.
+    // Steps may take no time on the controller's clock: then they measure the flight's length.
     val flown = seen.endedAt.since(seen.startedAt).toSeconds.max(seen.steps.begun * seen.period.toSeconds) + 1
     val rows  = Recorded.rows(seen.recording)
     val each  =
@@ -192,8 +192,8 @@ object Checks:
     yield s"$vehicle flies on after the end: ${drift.value.fixed(1)} m in " +
       s"${FlightTrace.Watched.toSeconds.fixed(0)} s (${seen.outcome})"
 
-  /** The simulator must run after a flight. A flight that ended during faults may have failed to resume it;
-    * it has tried for a while.
+  /** The simulator must run after a flight. A flight that ended during faults may have failed to resume it,
+    * after several attempts.
     */
   private def standingStill(seen: FlightTrace): Vector[String] =
     Option
@@ -216,7 +216,7 @@ object Checks:
         )
       ).flatten
 
-  /** The recorder must hold what was offered to it, and the file must give it back, row by row. */
+  /** The recorder must keep what was offered to it, and the file must contain it, row by row. */
   private def notInTheFile(seen: FlightTrace): Vector[String] =
     val offered                                  = Recording(seen.recording.heading, seen.offered)
     def missing(where: String, found: Recording) = Option.when(found != offered)(

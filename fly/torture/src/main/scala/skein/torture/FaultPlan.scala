@@ -11,10 +11,10 @@ import skein.units.*
   *
   * @param calmFrom end of the faults
   * @param faults of the link between controller and simulator
-  * @param messageFaults of a broken peer's messages until `calmFrom`
+  * @param messageFaults faults of single messages until `calmFrom`, as of a broken peer
   * @param restarts of the simulator; afterwards a supervisor prepares the vehicles again
-  * @param stopAt when a user ends the flight before its time
-  * @param clockAhead of the simulator against the controller, until a restart
+  * @param stopAt when a user ends the flight early
+  * @param clockAhead the simulator's clock less the controller's, until a restart
   * @param scene of the simulator's world
   * @param looks whether the last vehicle detects the first by a camera, in addition to the scenario's eyes
   */
@@ -39,8 +39,8 @@ final case class FaultPlan(
   def eyes: Vector[Eye] = scenario.eyes ++
     Option.when(looks)(FaultyEye(scenario.agents.last.name, scenario.agents.head.name, seed))
 
-  /** These faults for another task. Loops that read their vehicles in turn need a round trip for each, and
-    * standing still costs the simulator a worker for each: with many vehicles, `stream` replaces them.
+  /** These faults for another scenario, under `stream` if it has too many vehicles for the drawn loop: loops
+    * that read vehicles in turn need a round trip for each, and a paused simulator needs a worker for each.
     */
   def flying(task: Scenario): FaultPlan =
     val most = loop match
@@ -113,8 +113,8 @@ enum Disk:
   case Fails(at: Span)
 
 object FaultPlan:
-  /** Time after the last fault within which control must resume: connecting again takes up to 2 s; an answer
-    * lost on a living connection blocks control for 1.4 s at most (see [[skein.airsim.MoveQueue]]).
+  /** Time after the last fault within which control must resume: a new connection takes up to 2 s, and an
+    * answer lost on an open connection blocks control for at most 1.4 s (see [[skein.airsim.MoveQueue]]).
     */
   val ResumesWithin: Span = Span.ofSeconds(3)
 
@@ -191,7 +191,7 @@ object FaultPlan:
         often(0.3)
       )
 
-    /** One restart in each of equal parts of the faulty time, so that they do not overlap. */
+    /** One restart in each of several equal parts of the faulty time, so that they do not overlap. */
     private def restarts(): Vector[Restart] =
       val count = 1 + random.nextInt((trouble.toSeconds / 4).toInt.max(1).min(5))
       val part  = trouble / count.toLong

@@ -6,8 +6,8 @@ import skein.scenario.{Eye, Recogniser}
 import skein.signal.{LatencyDistribution, LatencyProfile, SplitMix64}
 import skein.units.*
 
-/** An eye with a faulty recogniser: it invents, misses, refuses images, fails, and is late. No decision uses
-  * it.
+/** An eye with a faulty recogniser: it reports false detections, misses objects, refuses images, fails, and
+  * is late. No decision uses it.
   */
 private[torture] object FaultyEye:
   def apply(vehicle: String, target: String, seed: Long): Eye = Eye(

@@ -13,7 +13,7 @@ import skein.signal.SplitMix64
 import skein.units.*
 import upack.{Arr, Float64, Int32, Msg, Null, Str}
 
-/** A move as it arrived at the simulator: the velocity as on the wire. */
+/** A move on arrival at the simulator, with the velocity in the message. */
 final case class ReceivedMove(at: Instant, vehicle: String, north: Float, east: Float)
 
 /** The simulator's transport with an interceptor that records every move in the order of arrival, and until
@@ -56,7 +56,7 @@ final class FaultyTransport(
     val moves = mutable.LongMap.empty[String]
     val tap   = Flow.fromFunction[Array[Byte], ByteString](request(moves, _))
     val ended = Flow[ByteString].watchTermination(): (_, done) =>
-      // Whatever was under way on a connection that is gone has no answer to come.
+      // Pending calls of a closed connection receive no answer.
       done.onComplete(_ => moves.values.foreach(unanswered(_) -= 1))
       NotUsed
     Flow[ByteString].via(replies(moves)).via(client).via(frames).via(tap).via(ended)

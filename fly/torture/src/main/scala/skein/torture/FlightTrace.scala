@@ -6,7 +6,7 @@ import skein.record.{Record, RecordError, Recording}
 import skein.rpc.{RpcSettings, RpcStats}
 import skein.units.*
 
-/** External observations of one flight: enough to judge it.
+/** External observations of one flight, by which it is judged.
   *
   * @param ports by vehicle
   * @param arrivals at the simulator, in order, of all vehicles

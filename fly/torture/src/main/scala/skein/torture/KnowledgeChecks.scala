@@ -169,8 +169,8 @@ private[torture] object KnowledgeChecks:
   private final class History(answers: Vector[ReportedState]):
     private val arrivals = answers.map(_.state.receivedAt)
 
-    /** The first report received before `until` that is newer than a reading. Much newer ones were received
-      * lately: only the last [[Recent]] are searched.
+    /** The first report received before `until` that is newer than a reading. Only the last [[Recent]]
+      * reports are searched, which include every much newer one.
       */
     def newerThan(
         used: ReadingRow,
@@ -182,7 +182,7 @@ private[torture] object KnowledgeChecks:
         answer.state.receivedAt < until && isNewer(answer.state, used.state)
       )
 
-  /** Number of answers of one vehicle within some 6 s. */
+  /** Number of a vehicle's answers in about 6 s. */
   private val Recent = 64
 
   /** Time after which an answer has timed out, and its view is joined without it. */

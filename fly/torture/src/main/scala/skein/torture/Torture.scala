@@ -22,7 +22,6 @@ object Torture:
     val drawn = plan(seed, duration, scenario, scene)
     FaultVerdict(drawn, violations(Checks.violations(TortureFlight.fly(drawn))))
 
-  /** The fault plan of a seed's flight. */
   def plan(seed: Long, duration: Span, scenario: Option[Scenario], scene: Option[NamedScene]): FaultPlan =
     val drawn = FaultPlan.of(seed, duration)
     val flown = scenario.fold(drawn)(drawn.flying)

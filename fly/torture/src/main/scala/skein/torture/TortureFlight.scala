@@ -97,7 +97,7 @@ object TortureFlight:
           )
         )
         eyes = asked.flatMap(look)
-        // Through these policies look; while the simulator stands still, each asks for an image.
+        // The policies' cameras; while the simulator stands still, each reading takes an image.
         sensors = eyes.map(one =>
           (one.eye.vehicle, one.eye.sensor, if isPaused then one.looking else one.sensor)
         )

@@ -8,7 +8,8 @@ import skein.port.{Sensor, SteppedTime, VehicleError, VehiclePort}
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 
-/** A move as the loop sent it. One that is no velocity is identified only by its place among the moves.
+/** A move sent by the loop. A move that is no velocity is identified only by its position in the sequence of
+  * moves.
   *
   * @param north m/s; 0 if it is no velocity
   */
@@ -20,7 +21,8 @@ final case class Sending(at: Instant, north: Float, east: Float)
   */
 final case class ReportedState(question: Long, state: Stamped[Kinematics])
 
-/** A port that counts every call: its start, its end, its report, and the number of unfinished calls.
+/** A port that records its calls: their start and end, the reported states, and the number of unfinished
+  * calls.
   *
   * @param eyes further sensors, which count their calls themselves
   */

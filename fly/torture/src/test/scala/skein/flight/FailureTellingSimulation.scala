@@ -15,7 +15,7 @@ import skein.torture.{Disk, FaultyRecorder}
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** What is reported, recorded and answered when a flight goes wrong, and when. */
+/** The reports, records and outcomes of flights with faults, and their times. */
 class FailureTellingSimulation extends munit.FunSuite, Unhurried:
   private def settings(loop: LoopKind) = FlySettings(
     List(loop),
@@ -112,8 +112,7 @@ class FailureTellingSimulation extends munit.FunSuite, Unhurried:
     loop <- LoopKind.values.toSeq
   do
     test(
-      s"${loop.label}: a simulator that dies in flight is told " +
-        "within a second, recorded, and has failed the flight"
+      s"${loop.label}: a simulator that dies in flight fails the flight, and is reported within a second"
     ):
       val flown = fly(loop, dies = true)
       val line  = flown.toldInTime("no answer from the simulator at simulator:41451")
@@ -129,7 +128,7 @@ class FailureTellingSimulation extends munit.FunSuite, Unhurried:
       assert(ended < Span.ofSeconds(80), s"it went on for ${ended.toSeconds} s")
 
   test(
-    "a simulator that is silent for 3 s is reported, and so is its return; the flight continues to its end"
+    "a simulator's silence of 3 s, and its return, are reported, and the flight continues to its end"
   ):
     val flown = fly(stall = Some(Span.ofSeconds(3)))
     val _     = flown.toldInTime("no answer from the simulator")
@@ -148,8 +147,7 @@ class FailureTellingSimulation extends munit.FunSuite, Unhurried:
     pause <- Seq(Span.ofMillis(200), Span.ofSeconds(3))
   do
     test(
-      s"${loop.label}: a simulator started again after " +
-        s"${pause.toMillis} ms fails the flight, whose vehicles are lost to it"
+      s"${loop.label}: a restart of the simulator after ${pause.toMillis} ms fails the flight"
     ):
       val flown = fly(loop, dies = true, restarts = Some(pause))
       // A simulator that is quick to be back is found out by where its vehicles stand.
@@ -164,7 +162,7 @@ class FailureTellingSimulation extends munit.FunSuite, Unhurried:
       assert(flown.told.exists((at, line) => saysWhy(line) && at < latest), flown.told.toString)
       assertEquals(flown.recording.ending.map(_.how), Some(EndingKind.Failed))
 
-  test("a disk that is full in flight is reported within a second, and the end of the recording says why"):
+  test("a disk that fills up in flight is reported within a second, and the recording's end states why"):
     val flown  = fly(disk = true)
     val reason = "cannot write to recording flight.duckdb: the disk is full"
     val _      = flown.toldInTime(reason)

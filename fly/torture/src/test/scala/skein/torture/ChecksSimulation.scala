@@ -10,9 +10,7 @@ import skein.signal.Stamped
 import skein.testing.Unhurried
 import skein.units.*
 
-/** The checks find what they are meant to find: the trace of a clean flight is forged in one detail at a
-  * time.
-  */
+/** Each check finds its violation: the trace of a clean flight is forged in one detail after another. */
 class ChecksSimulation extends munit.FunSuite, Unhurried:
   private val clean = undisturbed(LoopKind.Stream)
 
@@ -33,12 +31,12 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
 
   private def found(forged: FlightTrace): String = Checks.violations(forged).mkString("\n")
 
-  test("a flight in which nothing goes wrong is clean"):
+  test("the checks find nothing in a flight without faults"):
     assertEquals(Checks.violations(clean), Vector.empty)
     assert(clean.arrivals.size > 50)
 
   for loop <- Seq(LoopKind.Sequential, LoopKind.Futures, LoopKind.Predictive, LoopKind.Paused) do
-    test(s"${loop.label}: undisturbed it is clean, and a decision made at another moment is found"):
+    test(s"${loop.label}: the checks find nothing without faults, and find a decision at another time"):
       val seen = undisturbed(loop)
       assertEquals(Checks.violations(seen), Vector.empty)
       val decisions = seen.recording.decisions
@@ -61,7 +59,7 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     def agents: Vector[Agent] =
       Vector(Agent("Scout", Role.Traveller, MetresPerSecond(3), Vector3(0, 0, -20), Radians(0), Still))
 
-  test("commands that are no velocities are distinguished by their places alone"):
+  test("the checks distinguish commands that are no velocities by their order alone"):
     val seen = undisturbed(LoopKind.Stream, Patrol())
     assertEquals(Checks.violations(seen), Vector.empty)
     assert(
@@ -69,14 +67,14 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
       seen.arrivals.toString
     )
 
-  test("a command that arrives after a newer one"):
+  test("the checks find a command that arrives after a newer one"):
     val evaders        = clean.arrivals.indices.filter(clean.arrivals(_).vehicle == "Evader")
     val (first, later) = (evaders(40), evaders(41))
     val swapped        =
       clean.arrivals.updated(first, clean.arrivals(later)).updated(later, clean.arrivals(first))
     assert(found(clean.copy(arrivals = swapped)).contains("overtook a newer one"))
 
-  test("commands that stop coming"):
+  test("the checks find commands that cease"):
     val until = clean.startedAt + Span.ofSeconds(4)
     assert(found(clean.copy(arrivals =
       clean.arrivals.filter(_.at < until)
@@ -86,11 +84,11 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     ))
     assert(one.contains("Evader: no command for") && !one.contains("Pursuer: no command for"), one)
 
-  test("a call that never ended"):
+  test("the checks find a call that never ended"):
     val stats = clean.stats.copy(answered = clean.stats.answered - 1)
     assert(found(clean.copy(stats = stats)).contains("1 calls that never ended"))
 
-  test("a reading, a command and an acknowledgement that are not on record"):
+  test("the checks find a missing reading, command and acknowledgement in the recording"):
     val recording = clean.recording
     val without   = Seq(
       recording.copy(readings = recording.readings.tail),
@@ -100,12 +98,12 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     for forged <- without do
       assert(found(clean.copy(recording = forged)).contains("on record"), forged.flight.id)
 
-  test("a rate above the cap, and too many calls under way"):
+  test("the checks find a rate above the limit, and too many pending calls"):
     assert(found(clean.copy(minCommandInterval = Span.ofMillis(300))).contains("two commands within"))
     assert(found(clean.copy(mostPending = 1000)).contains("1000 calls were under way at once"))
     assert(found(clean.copy(mostUnanswered = 5)).contains("5 unanswered moves"))
 
-  test("what is just allowed is no violation"):
+  test("the checks accept values at their limits"):
     val most = clean.vehicles.size * (clean.window + 3L)
     assertEquals(found(clean.copy(mostPending = most, mostUnanswered = 4)), "")
     assert(found(clean.copy(mostPending = most + 1)).contains(s"of $most at most"))
@@ -117,7 +115,7 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     assertEquals(found(clean.copy(minCommandInterval = gaps.min)), "")
     assert(found(clean.copy(minCommandInterval = gaps.min + Span.ofNanos(1))).contains("two commands within"))
 
-  test("a third command outstanding, and calls that did not end, by vehicle and of the stepper"):
+  test("the checks find a third unanswered command, and calls of vehicles and stepper that did not end"):
     val counts = clean.ports.head.commands
     val most   = counts.most
     counts.most = 3
@@ -132,7 +130,7 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     assert(found(clean.copy(steps = steps)).contains("2 calls of the stepper began, 1 ended"))
     assertEquals(found(clean), "")
 
-  test("counts that do not agree: calls that were never made, written or answered"):
+  test("the checks find counts of calls made, written and answered that disagree"):
     val stats = clean.stats
     val calls = clean.copy(stats = stats.copy(called = stats.called + 1, answered = stats.answered + 1))
     assert(
@@ -148,7 +146,7 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
       twice
     ).contains(s"${twice.arrivals.size} moves arrived of ${clean.ports.map(_.sendings.size).sum}"))
 
-  test("images without a recorded fate"):
+  test("the checks find images without a recorded fate"):
     val counts = CameraSensor.Counts(due = 80, missed = 10, lost = 5, searched = 65)
     val forged = clean.copy(
       images = Vector(counts),
@@ -164,14 +162,14 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
       "of 80 images that were due 10 were missed, 4 lost, 65 searched"
     )
 
-  test("of what was written each call was answered, refused or lost"):
+  test("the checks find a written call that was neither answered, refused nor lost"):
     val stats = clean.stats
     val mixed = stats.copy(answered = stats.answered - 5, refused = 3, lost = 2)
     assertEquals(found(clean.copy(stats = mixed)), "")
     val short = found(clean.copy(stats = mixed.copy(sent = stats.sent - 1)))
     assert(short.contains(s"${mixed.answered} answered, 3 refused and 2 lost of ${stats.sent - 1}"), short)
 
-  test("a reading that failed is on record as an event of its vehicle"):
+  test("the checks require an event of its vehicle for each failed reading"):
     val recording                                           = clean.recording
     val lost                                                = recording.readings.head
     def noted(vehicle: String, about: Option[EventSubject]) =
@@ -182,7 +180,9 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     assert(!noted(lost.vehicle, Some(EventSubject.Reading)))
     assert(noted(other, Some(EventSubject.Reading)) && noted(lost.vehicle, None))
 
-  test("more commands on record than decisions, and more rows than a flight of its length has"):
+  test(
+    "the checks find more recorded commands than decisions, and more rows than the flight's length allows"
+  ):
     val recording = clean.recording
     val less      = recording.copy(decisions = recording.decisions.filterNot(_.vehicle == "Evader"))
     assert(found(clean.copy(recording = less)).contains("Evader: 0 decisions led to"))
@@ -207,7 +207,7 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     assert(found(dense).contains("are many for this flight"))
     assert(!found(tapped).contains("are many for this flight"), found(tapped))
 
-  test("control that does not resume in calm: no decision on new data, no command"):
+  test("the checks find control that does not resume after the faults: no decision on new data, no command"):
     val due = clean.calmFrom + FaultPlan.ResumesWithin
     val old = clean.recording.copy(decisions =
       clean.recording.decisions.filterNot(decision =>
@@ -227,7 +227,7 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     assert(!found(paused).contains("no command came within"))
 
   test(
-    "control must have resumed three seconds into the calm, and continue until the flight's time is over"
+    "the checks require control from three seconds after the faults until the flight's time is over"
   ):
     val due    = clean.calmFrom + FaultPlan.ResumesWithin
     val silent = clean.copy(arrivals =
@@ -242,7 +242,7 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     val late = found(begun.copy(endedAt = due + Span.ofSeconds(1.5) + Span.ofNanos(1)))
     assert(late.contains("no command for 1.50 s in calm"), late)
 
-  test("from three seconds into the calm commands reach the simulator: to run, and vehicles to hover"):
+  test("the checks require commands to arrive from three seconds after the faults on"):
     val due    = clean.calmFrom + FaultPlan.ResumesWithin
     val before = due - Span.ofNanos(1)
     assert(found(clean.copy(leftPaused = true, endedAt = due)).contains("left standing still"))
@@ -258,19 +258,19 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     val still = unheard.copy(arrivals = Vector.empty)
     assert(!found(still).contains("no command to hover came"), "who never moved need not be told")
 
-  test("a simulator that is left standing still by a flight that had time to let it run"):
+  test("the checks find a simulator that was not resumed by a flight that had time for it"):
     val still = clean.copy(leftPaused = true)
     assert(found(still).contains("left standing still"))
     assert(!found(still.copy(endedAt = clean.calmFrom + Span.ofSeconds(2.9))).contains("left standing still"))
 
-  test("a flight that failed has the beginning on record alone"):
+  test("the checks accept the beginning of a recording after a failed flight"):
     val begun = clean.recording.copy(readings = clean.recording.readings.take(10))
     val cut   = clean.copy(recording = begun, outcome = FlightOutcome.Failed("the disk is full"))
     assert(!found(cut).contains("readings were asked for"))
     assert(found(cut.copy(outcome = FlightOutcome.Completed)).contains("readings were asked for"))
 
   test(
-    "reports of a simulator before its restart with another clock are not compared with those after it"
+    "the checks do not compare reports from before a simulator's restart with later ones"
   ):
     def restarted(atS: Double, jump: Span) = clean.copy(runs =
       clean.runs :+ Run(clean.startedAt + Span.ofSeconds(atS), clean.runs.head.clockOffset + jump)
@@ -299,7 +299,7 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     val third = Run(clean.startedAt + Span.ofSeconds(4.5), clean.runs.head.clockOffset + Span.ofSeconds(100))
     assert(!found(again.copy(runs = again.runs :+ third)).contains(wrong))
 
-  test("a vehicle that does not hover after the end"):
+  test("the checks find a vehicle that does not hover after the end"):
     assert(found(clean.copy(drifts =
       Vector(Metres(0.1), Metres(18))
     )).contains("Pursuer flies on after the end: 18.0 m in 4 s"))
@@ -309,20 +309,19 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     val recording = clean.recording.copy(decisions = decisions.updated(number, change(decisions(number))))
     clean.copy(recording = recording)
 
-  test("a decision on a reading that is older than one received long before"):
+  test("the checks find a decision on a reading older than one received long before"):
     val older = clean.recording.decisions(20).own
     assert(clean.recording.decisions(60).own.vehicle == older.vehicle)
     assert(found(withDecision(60)(_.copy(own = older))).contains("and had the newer"))
 
-  test("a decision on a reading that is older than that of an earlier decision"):
+  test("the checks find a decision on a reading older than that of an earlier decision"):
     val published = clean.faultPlan.copy(scenario = PaperDuel(asPublished = true))
     val older     = clean.recording.decisions(20).own
     val forged    = withDecision(60)(_.copy(own = older)).copy(faultPlan = published)
     assert(found(forged).contains("after the newer"))
 
   test(
-    "an answer of a run before, with a later clock, is not " +
-      "newer than one of the run that followed (seed 1851)"
+    "an answer of an earlier run with a later clock is not newer than one of the next run (seed 1851)"
   ):
     def answer(validMs: Double, sentMs: Double, receivedMs: Double) =
       Stamped((), at(validMs), at(sentMs), at(receivedMs))
@@ -339,7 +338,7 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     assert(!KnowledgeChecks.isNewer(runs)(again, atOnce) && !KnowledgeChecks.isNewer(runs)(atOnce, again))
     assert(KnowledgeChecks.isNewer(Vector(runs.head))(late, next), "by the clock alone it is")
 
-  test("with an unknown clock a report is newer where both clocks, or the times of request, say so"):
+  test("with an unknown clock, a report is newer if both clocks, or the times of request, show it"):
     def answer(validMs: Double, sentMs: Double, receivedMs: Double) =
       def at(ms: Double) = Instant.Epoch + Span.ofMillis(ms)
       Stamped((), at(validMs), at(sentMs), at(receivedMs))
@@ -352,19 +351,21 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     )
     assert(newer(answer(100, 91, 95), held) && !newer(answer(100, 90, 95), held))
 
-  test("a reading on record that no vehicle gave"):
+  test("the checks find a recorded reading that no vehicle gave"):
     val readings = clean.recording.readings
     val forged   = readings.updated(7, readings(7).copy(sequence = readings(8).sequence + 1))
     assert(found(clean.copy(recording = clean.recording.copy(readings = forged))).contains("is not what"))
 
-  test("ages that are not those since arrival"):
+  test("the checks find ages that do not count from arrival"):
     val forged = withDecision(9): decision =>
       decision.copy(observations =
         decision.observations.copy(opponentAge = decision.observations.ownAge + Span.ofMillis(1))
       )
     assert(found(forged).contains("its opponent's data had come"))
 
-  test("a true age beyond its uncertainty, as by an offset of the clocks with the wrong sign"):
+  test(
+    "the checks find a true age that is wrong by more than its uncertainty, as with an offset of wrong sign"
+  ):
     for change <- Seq[TrueAge => TrueAge](
         age => age.copy(own = age.own + age.uncertainty * 2 + Span.ofMillis(1)),
         age => age.copy(opponent = age.opponent - age.uncertainty * 2 - Span.ofMillis(1))
@@ -373,7 +374,7 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
       val forged = withDecision(40)(decision => decision.copy(trueAge = decision.trueAge.map(change)))
       assert(found(forged).contains("ms old, told were"))
 
-  test("a true age is right up to its uncertainty, to either side"):
+  test("the checks accept a true age within its uncertainty, in both directions"):
     val decision       = clean.recording.decisions(40)
     val told           = decision.trueAge.get
     val old            = decision.decidedAt.since(decision.own.state.validAt + clean.runs.head.clockOffset)
@@ -384,7 +385,7 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     assert(!age(told.uncertainty) && !age(Span.Zero - told.uncertainty))
     assert(age(told.uncertainty + Span.ofNanos(1)) && age(Span.Zero - told.uncertainty - Span.ofNanos(1)))
 
-  test("rows that were offered and are not on record, or not in the file"):
+  test("the checks find offered rows that are missing in the recording or its file"):
     val events = clean.recording.decisions
     val less   = clean.recording.copy(decisions = events.patch(30, Nil, 1))
     assert(found(clean.copy(recording = less)).contains("are on record"))
@@ -396,7 +397,7 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
       Some(Left(RecordError.NoSuchFile(java.nio.file.Path.of("x"))))
     )).contains("cannot be read"))
 
-  test("a flight whose last command is not to hover, or does not come through"):
+  test("the checks find a flight whose last command is not to hover, or does not arrive"):
     assert(found(clean.copy(lastHovers = clean.lastHovers - "Evader")).contains("no command to hover came"))
     clean.ports(1).act(skein.policy.Action.VelocityAt(0, 0, Metres(-20)), Span.ofSeconds(1)): Unit
     assert(found(clean).contains("Pursuer was not told to hover"))

@@ -5,7 +5,7 @@ import skein.loop.LoopKind
 import skein.scenario.PaperDuel
 import skein.units.*
 
-/** The faults that seeds draw: enough of every kind, none in the calm. */
+/** The faults drawn from seeds: enough of every kind, and none in the calm. */
 class FaultPlanSuite extends munit.FunSuite:
   private val duration   = Span.ofSeconds(30)
   private val start      = Span.ofMillis(500)
@@ -26,7 +26,7 @@ class FaultPlanSuite extends munit.FunSuite:
     assertEquals(FaultPlan.of(7, duration), faultPlans(6))
     assertEquals(faultPlans.map(_.copy(seed = 0)).distinct.size, faultPlans.size)
 
-  test("nothing goes wrong in the first half second and in the last five, but for the disk and an early end"):
+  test("there are no faults in the first half second and the last five, except of the disk and an early end"):
     for faultPlan <- faultPlans do
       assertEquals((faultPlan.duration, faultPlan.calmFrom), (duration, duration - Span.ofSeconds(5)))
       for fault <- faultPlan.faults do
@@ -43,7 +43,7 @@ class FaultPlanSuite extends munit.FunSuite:
         case Disk.Sound     => ()
       assert(faultPlan.stopAt.forall(at => at >= start && at <= duration), faultPlan.toString)
 
-  test("restarts come one after the other, with time for the supervisor between them, before the calm"):
+  test("restarts follow each other with time for the supervisor between them, before the calm"):
     for faultPlan <- faultPlans do
       for restart <- faultPlan.restarts do
         assert(restart.at >= start && restart.lasts <= Span.ofSeconds(3), faultPlan.toString)
@@ -91,7 +91,7 @@ class FaultPlanSuite extends munit.FunSuite:
       each.scenario.isAsPublished
     )
 
-  test("mischief is bounded, so that flights still have something to show"):
+  test("message faults are limited, so that flights still have results"):
     for faultPlan <- faultPlans do
       val MessageFaults(late, lateBy, doubled, nonsense, stray, garbage, refused, lost) =
         faultPlan.messageFaults
@@ -101,7 +101,7 @@ class FaultPlanSuite extends munit.FunSuite:
       assert(lateBy <= Span.ofSeconds(1.5), faultPlan.toString)
     assert(faultPlans.map(_.messageFaults.late).max > 0.19 && faultPlans.map(_.messageFaults.lost).max > 0.19)
 
-  test("as many vehicles as a loop can serve, and not always two"):
+  test("a fault plan draws as many vehicles as its loop can serve, and not always two"):
     for faultPlan <- faultPlans do
       val most = faultPlan.loop match
         case LoopKind.Paused                        => 2
@@ -121,19 +121,19 @@ class FaultPlanSuite extends munit.FunSuite:
     assert(ahead.forall(_.abs <= 20) && ahead.min < -19.5 && ahead.max > 19.5)
     often("ahead", 0.5)(_.clockAhead > Span.Zero)
 
-  test("a flight that leaves no time for faults is refused, and the shortest is not"):
+  test("a flight too short for faults is refused, and the shortest valid one is not"):
     val refused = intercept[IllegalArgumentException](FaultPlan.of(1, FaultPlan.Shortest - Span.ofMillis(1)))
     assert(refused.getMessage.contains("6.5 s at least"), refused.getMessage)
     for seed <- 1L to 200L do assert(FaultPlan.of(seed, FaultPlan.Shortest).calmFrom > start)
 
-  test("a flight of seven seconds has room for one restart at most"):
+  test("a flight of seven seconds has at most one restart"):
     val short = (1L to 400L).map(FaultPlan.of(_, FaultPlan.Shortest)).flatMap(plan =>
       plan.restarts.headOption.map(plan -> _)
     )
     assert(short.nonEmpty && short.forall((plan, _) => plan.restarts.sizeIs == 1))
     for (plan, restart) <- short do assert(restart.at + restart.lasts <= plan.calmFrom, plan.toString)
 
-  test("another task runs under the drawn loop, or under stream where the loop cannot serve its vehicles"):
+  test("another scenario uses the drawn loop, or stream if the loop cannot serve its vehicles"):
     def flown(loop: LoopKind, pairs: Int) =
       val plan = faultPlans.head.copy(loop = loop).flying(PaperDuel(pairs))
       assertEquals(plan.scenario, PaperDuel(pairs))
@@ -143,7 +143,7 @@ class FaultPlanSuite extends munit.FunSuite:
       assertEquals((flown(loop, 3), flown(loop, 4)), (loop, LoopKind.Stream))
     assertEquals(flown(LoopKind.Predictive, 10), LoopKind.Predictive)
 
-  test("a line for a person names all that will happen, and nothing else"):
+  test("a line for people lists all faults of a plan, and nothing else"):
     val calm = faultPlans.head.copy(
       loop = LoopKind.Stream,
       scenario = PaperDuel(2),

@@ -18,7 +18,7 @@ class FaultyRecorderSuite extends munit.FunSuite:
 
     def failure: Option[RecordError] = recorder.failure.value.map(_.get)
 
-  test("a sound disk takes all, and so does one that blocks for no more rows than the queue holds"):
+  test("a disk without fault, or one that blocks for no more rows than the queue holds, keeps all rows"):
     for disk <- Seq(Disk.Sound, Disk.Blocks(Span.ofMillis(100), Span.ofMillis(50), capacity = 3)) do
       val assembly = Assembly(disk)
       assembly.offer(0, 5)
@@ -32,7 +32,7 @@ class FaultyRecorderSuite extends munit.FunSuite:
       assertEquals(assembly.recorder.offered, assembly.memory.records)
 
   test(
-    "one row more than the queue holds fails the recording, which must hold all rows before"
+    "one row more than the queue holds fails the recording, which must keep all earlier rows"
   ):
     val assembly = Assembly(Disk.Blocks(Span.ofMillis(100), Span.ofMillis(50), capacity = 3))
     assembly.offer(0, 2)
@@ -43,7 +43,7 @@ class FaultyRecorderSuite extends munit.FunSuite:
     assembly.offer(500, 4)
     assertEquals((assembly.memory.records.size, assembly.recorder.offered.size), (5, 5))
 
-  test("a full disk takes nothing from its moment on, but for the word of the flight's end"):
+  test("a full disk keeps nothing from then on, except for the flight's end"):
     val assembly = Assembly(Disk.Fails(Span.ofMillis(100)))
     assembly.offer(99, 2)
     assertEquals(assembly.failure, None)

@@ -6,7 +6,7 @@ import skein.scenario.PaperDuel
 import skein.testing.Unhurried
 import skein.units.*
 
-/** Each fault alone really happens, is survived by the loop, and ends when the calm begins. */
+/** Each kind of message fault occurs, does not end the loop, and ceases when the calm begins. */
 class MischiefSimulation extends munit.FunSuite, Unhurried:
   private def flown(messageFaults: MessageFaults): FlightTrace =
     val faultPlan = FaultPlan
@@ -32,7 +32,7 @@ class MischiefSimulation extends munit.FunSuite, Unhurried:
 
   private lazy val calm = flown(MessageFaults.None)
 
-  test("without any, every call is answered on the two connections that it takes"):
+  test("without message faults, every call is answered, on two connections"):
     val stats = calm.stats
     assertEquals(
       (stats.refused, stats.timedOut, stats.lost, stats.unexpected, stats.ignored),
@@ -86,7 +86,7 @@ class MischiefSimulation extends munit.FunSuite, Unhurried:
     seen =>
       seen.recording.readings.size < seen.ports.map(_.reads.begun).sum && seen.stats.timedOut == 0
 
-  test("all requested seeds run, each once, several in parallel"):
+  test("all given seeds run, each once, several in parallel"):
     var told = Vector.empty[Long]
     Torture.all(Iterator(1L, 2L, 3L, 4L), FaultPlan.Shortest, threads = 2)(verdict =>
       told :+= verdict.faultPlan.seed

@@ -25,12 +25,12 @@ class TortureSimulation extends munit.FunSuite, Unhurried:
         failed :+= (verdict.faultPlan.toString +: verdict.violations :+ again).mkString("\n  ")
     assert(failed.isEmpty, failed.mkString("\n", "\n", ""))
 
-  test("a team that relies on its lidars breaks no rule under these faults"):
+  test("a team that relies on its lidars breaks no rule under faults"):
     for seed <- 1L to 2L do
       val verdict = Torture.of(seed, duration, Some(Forest()), None)
       assert(verdict.isClean, (verdict.faultPlan.toString +: verdict.violations).mkString("\n  "))
 
-  test("a disk that is full when the last answers come has failed the flight"):
+  test("a disk that is full at the last answers fails the flight"):
     val full      = Disk.Fails(duration - Span.ofMillis(8))
     val faultPlan = FaultPlan.of(seed = 1, duration).copy(
       loop = LoopKind.Futures,
@@ -50,7 +50,7 @@ class TortureSimulation extends munit.FunSuite, Unhurried:
     assertEquals(Checks.violations(seen), Vector.empty, faultPlan.toString)
 
   test(
-    "images that are late, lost, wrong and not recognised are counted each, and those that come are searched"
+    "late, lost, wrong and unrecognised images are each counted, and all others are searched"
   ):
     val plans = Iterator.from(1).map(seed => FaultPlan.of(seed, duration)).filter(_.looks).take(6).toVector
     val seen  = plans.map(TortureFlight.fly)
@@ -72,7 +72,7 @@ class TortureSimulation extends munit.FunSuite, Unhurried:
       assertEquals(one.recording, other.recording, s"seed $seed")
       assertEquals(one.stats, other.stats, s"seed $seed")
 
-  test("a flight that dies of whatever error is a violation, not a seed that is missing"):
+  test("a flight that dies of any error is a violation, not a missing seed"):
     assertEquals(
       Torture.violations(throw StackOverflowError("deep")),
       Vector("java.lang.StackOverflowError: deep")

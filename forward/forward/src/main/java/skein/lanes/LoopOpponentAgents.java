@@ -20,23 +20,23 @@ import skein.lanes.policy.LaneObservation;
 import skein.lanes.policy.LanePolicy;
 import skein.lanes.policy.VehicleNumbers;
 
-/** One of two that play against one another, in many worlds with separate delays. */
+/** One side of a duel in many worlds, each with its own delays. */
 final class LoopOpponentAgents extends LaneAgents implements TeamMember {
   private static final int WORLDS = LanePolicy.WORLDS;
 
   private final LanePolicy policy;
   private final float startHeading;
 
-  /** Sums of the changes of the decided headings, rad. */
+  /** Sum of the changes of the decided headings, in each world, rad. */
   private final float[] effort;
 
   private final LaneObservation observation = new LaneObservation(elapsedS);
   private final Directions known = new Directions(WORLDS);
 
-  /** The camera that is its only knowledge of the opponent, or null. */
+  /** The camera through which alone the vehicle knows its opponent; null if it reads the opponent. */
   private LoopEye eye;
 
-  /** @param effort receives the sums of the changes of the decided headings, rad */
+  /** @param effort receives the sum of the changes of the decided headings in each world, rad */
   LoopOpponentAgents(
       int self, RolloutAgent agent, LoopLanes loop, LaneDynamics model, LanePolicy policy, float[] effort) {
     super(self, loop, model.deadTimeS(), model.flights(agent, loop));
@@ -57,7 +57,7 @@ final class LoopOpponentAgents extends LaneAgents implements TeamMember {
     return effort;
   }
 
-  /** Sets the camera that is its only knowledge of the opponent. */
+  /** Makes a camera the vehicle's only source about its opponent. */
   void seeBy(LoopEye eye) {
     this.eye = eye;
   }
@@ -98,7 +98,7 @@ final class LoopOpponentAgents extends LaneAgents implements TeamMember {
     else see(all[1 - self], offers, vectors, readAt);
   }
 
-  /** Decides by the camera's estimate of the opponent. */
+  /** Decides from the camera's estimate of the opponent. */
   private void believe(LaneVectors vectors) {
     float[] own = seen();
     int from = seenFrom();
@@ -119,14 +119,14 @@ final class LoopOpponentAgents extends LaneAgents implements TeamMember {
     policy.decide(observation, decided, 0, eye.heading(), 0, decidedNow, 0);
   }
 
-  /** Decides by the readings of both vehicles. */
+  /** Decides from the readings of both vehicles. */
   private void see(LaneAgents opponents, LaneOffers offers, LaneVectors vectors, int[][] readAt) {
     for (int what = 0; what < (policy.needsVelocity() ? LaneObservation.READ : LaneObservation.VX); what++) {
       int from = seenFrom() + what * WORLDS;
       observation.see(what, opponents.seen(), from, seen(), from);
     }
     if (policy.needsAges()) age(1 - self, readAt, observation.opponentAge);
-    // What the opponent sends after the offer was made is not known in it.
+    // The offer does not contain commands that the opponent sends after it.
     if (!together) opponents.knownAt(vectors, offers.joinedAt, opponents.sent, opponents.sentBefore, known);
     policy.decide(observation, decided, 0, together ? opponents.sent : known, 0, decidedNow, 0);
   }

@@ -10,17 +10,18 @@ import jdk.incubator.vector.IntVector;
 import skein.simd.LaneMath;
 import skein.simd.LaneRandom;
 
-/** Draws a block's candidates by SIMD, and weights them. {@link ScalarBlock} is the scalar reference. */
+/** Draws and weights a block's candidates by SIMD. {@link ScalarBlock} is the scalar reference. */
 abstract class SampledBlock extends CandidateBlock {
   private static final float LEAST_EXPONENT = -80f, MOST_EXPONENT = 20f;
 
-  // The sum of the four bytes of a hash: nearly normal, with mean 510; this is one over its standard deviation.
+  // The sum of a hash's four bytes is nearly normal, with mean 510; this is the reciprocal of its standard
+  // deviation.
   private static final float NORMAL_SCALE = Draws.Scale();
   private static final int BYTES = 0x00ff00ff;
   private static final int LOWER = 0xffff;
 
-  /** The bits of the float 2²³: adding an integer below 2²³ to them, as an integer, gives 2²³ plus that
-   * number.
+  /** The bits of the float 2²³. Added to an integer below 2²³, they give the bits of the float 2²³ plus that
+   * integer.
    */
   private static final int FLOAT_BITS = 0x4b000000;
 

@@ -6,15 +6,16 @@ import jdk.incubator.vector.FloatVector;
 import jdk.incubator.vector.IntVector;
 import jdk.incubator.vector.VectorSpecies;
 
-/** Primitives of SIMD passes over floats: the lanes, and the exponential by polynomials, with identical bits
- * in every lane, on every machine and at every lane count. Error bounds are held by {@code LaneMathSuite}.
+/** Primitives of SIMD passes over floats: the lane count, and the exponential by polynomials. Results have
+ * identical bits in every lane, on every machine and at every lane count. {@code LaneMathSuite} tests the
+ * error bounds.
  *
  * <p>Kernels are written as passes over blocks of worlds. The compiler stops inlining methods of ours once a
- * compilation holds 18,000 nodes, some 60 vector operations, and a vector that crosses a call is boxed, which
- * costs a factor of ten; methods of the vector API itself it always inlines. So a pass calls none of our
- * methods; then it may be long. A constant vector is an object whose lanes are read from memory in every
- * round, since a pass's stores might have changed them: what a loop needs is broadcast before it. A vector
- * that a loop carries begins as a computed one; with a constant it is boxed.
+ * compilation reaches 18,000 nodes, some 60 vector operations, and a vector that crosses a call is boxed,
+ * which costs a factor of ten; methods of the vector API itself it always inlines. So a pass calls none of
+ * our methods; then it may be long. A constant vector is an object whose lanes are read from memory in every
+ * round, since a pass's stores might have changed them: a loop's constants are broadcast before it. A vector
+ * that a loop carries must start as a computed vector; a constant would be boxed.
  */
 public final class LaneMath {
   private LaneMath() {}
@@ -44,18 +45,20 @@ public final class LaneMath {
   private static final float EXP_6 = 1.3981999507e-3f;
   private static final float EXP_7 = 1.9875691500e-4f;
 
-  // For passes that need an exponential in their midst, of few numbers: 2^x = 2^k 2^r. Minimax of
-  // 2^r on ±1/2, 1 at 0, relative error 9.2e-8; that of x itself, times ln 2, comes on top.
+  // For passes in which only a few numbers need an exponential: 2^x = 2^k 2^r. Minimax of 2^r on ±1/2, 1 at
+  // 0, relative error 9.2e-8; the error of x, times ln 2, adds to it.
   public static final float POWER_1 = 0.693147f;
   public static final float POWER_2 = 0.24022242f;
   public static final float POWER_3 = 0.055507336f;
   public static final float POWER_4 = 0.009671513f;
   public static final float POWER_5 = 0.0013264727f;
 
-  /** Exponents of two below this count as this: floats hold no power that is much smaller. */
+  /** Smallest exponent of two; lower exponents count as this. Floats have hardly any smaller powers. */
   public static final float LEAST_POWER = -120f;
 
-  /** 2 to these powers, none below {@link #LEAST_POWER}; relative error below 2e-7, exactly 1 at 0. */
+  /** 2 to the power of each lane, with exponents below {@link #LEAST_POWER} raised to it. Relative error
+   * below 2e-7; exactly 1 at 0.
+   */
   public static FloatVector powerOf2(FloatVector exponent) {
     FloatVector rounded = exponent.add(ROUND);
     FloatVector rest = exponent.sub(rounded.sub(ROUND)), square = rest.mul(rest);
@@ -72,13 +75,12 @@ public final class LaneMath {
         .reinterpretAsFloats();
   }
 
-  /** The value in every lane. For static constants. */
+  /** A vector with this value in every lane, for static constants. */
   public static FloatVector constant(float value) {
     return FloatVector.broadcast(SPECIES, value);
   }
 
-  /**
-   * Replaces {@code count} numbers x, |x| up to 80, by e to the power x. Relative error below 2e-7;
+  /** Replaces {@code count} numbers x, |x| up to 80, by e to the power of x. Relative error below 2e-7;
    * exactly 1 at 0.
    *
    * @param count a multiple of {@link #LANES}

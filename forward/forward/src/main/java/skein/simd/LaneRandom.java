@@ -7,8 +7,8 @@ import static skein.simd.LaneMath.LANES;
 
 import jdk.incubator.vector.IntVector;
 
-/** {@link WorldRandom} for many worlds by SIMD. A separate class, so that the scalar one runs without
- * vectors.
+/** {@link WorldRandom} for many worlds by SIMD. It is a separate class so that the scalar one loads no vector
+ * classes.
  */
 public final class LaneRandom {
   private LaneRandom() {}
@@ -18,8 +18,7 @@ public final class LaneRandom {
   private static final IntVector MULTIPLIER_2 =
       IntVector.broadcast(INTS, WorldRandom.MULTIPLIER_2);
 
-  /**
-   * {@link WorldRandom#bits} at one place of many worlds' sequences.
+  /** Computes {@link WorldRandom#bits} at one place of many worlds' sequences.
    *
    * @param count a multiple of the lane count
    */

@@ -1,12 +1,10 @@
 package skein.simd;
 
-/**
- * Random numbers without state: the number at a place of a world's sequence is a hash of the
- * world's key and the place. So it depends on seed, candidate and episode alone, whatever the
- * order, the batch or the number of threads.
+/** Random numbers without state: the number at a place of a world's sequence is a hash of the world's key and
+ * the place. It depends on seed, candidate and episode alone, and not on order, batch or number of threads.
  *
- * <p>The hash is the two-round 32-bit mixer {@code lowbias32} (Chris Wellons, public domain; bias
- * 0.17). It serves simulation, not secrets.
+ * <p>The hash is the two-round 32-bit mixer {@code lowbias32} (Chris Wellons, public domain; bias 0.17). It
+ * is for simulation, not for secrets.
  */
 public final class WorldRandom {
   private WorldRandom() {}
@@ -14,10 +12,10 @@ public final class WorldRandom {
   public static final int MULTIPLIER_1 = 0x7feb352d;
   public static final int MULTIPLIER_2 = 0x846ca68b;
 
-  /** Steps from one place to the next; odd, so that all places differ. */
+  /** Difference between the hash inputs of successive places; odd, so that all places differ. */
   public static final int STRIDE = 0x9e3779b9;
 
-  /** The key of the world for a candidate's episode. */
+  /** The key of the world in which a candidate flies an episode. */
   public static int key(long seed, long candidate, long episode) {
     long mixed = mix64(mix64(mix64(seed) + candidate) + episode);
     return (int) (mixed >>> 32);
@@ -31,7 +29,7 @@ public final class WorldRandom {
     return x ^ x >>> 16;
   }
 
-  /** A number from 0 to below 1, of 24 bits, at a place of a world's sequence. */
+  /** A random number in [0, 1), with 24 bits, at a place of a world's sequence. */
   public static double uniform(int key, int place) {
     return (bits(key, place) >>> 8) * 0x1p-24;
   }

@@ -8,14 +8,14 @@ private[skein] abstract class AskingRun(protected val world: RolloutWorld, perio
   protected val questions: Array[PeriodicQuestions] =
     Array.tabulate(world.count)(PeriodicQuestions(world, _, Nanos.of(periodS), asking, this))
 
-  /** Times of the newest reading of each vehicle, ns. */
+  /** Sampling and arrival time of the newest reading of each vehicle, ns. */
   protected val validAt, receivedAt = Array.ofDim[Long](world.count)
 
   protected val known = Array.ofDim[Boolean](world.count)
 
   def start(): Unit = begin(0)
 
-  /** Begins at a request, when all before were answered and used, if there were any. */
+  /** Begins at a request. All earlier requests, if any, must have been answered and used. */
   protected def begin(question: Int): Unit =
     java.util.Arrays.fill(known, question > 0)
     java.util.Arrays.fill(validAt, Long.MinValue)
@@ -36,5 +36,5 @@ private[skein] abstract class AskingRun(protected val world: RolloutWorld, perio
       receivedAt(vehicle) = world.receivedAtNs(at)
       renewed(vehicle, question)
 
-  /** Called when an answer is newer than the previous reading of its vehicle. */
+  /** Called for an answer that is newer than the vehicle's previous reading. */
   protected def renewed(vehicle: Int, question: Int): Unit

@@ -17,6 +17,7 @@ private[skein] final class CameraTracker(
     link: Delays
 ) extends ImageTiming(world, agent, model, link), OpponentView:
   import ImageTiming.{Bearing, Found, Range, Ring}
+  import OpponentView.Believed
 
   private val images    = Array.ofDim[Option[Measurement]](Ring)
   private var waitedFor = -1
@@ -52,17 +53,18 @@ private[skein] final class CameraTracker(
     model.measured(Instant.ofNanos(world.nowNs), image)
 
   /** The estimate; in a world that waits for the controller, the time of an image passes first. */
-  def believed(aheadS: Option[Double]): (placeNed: Vector3, velocityNed: Vector3, ageS: Double) =
+  def believed(aheadS: Option[Double]): Believed =
     if world.standsStill then
       waitedFor += 1
       taken(waitedFor)
       known(waitedFor)
-    fusion.belief.fold((startNed(opponent), Vector3.Zero, world.nowS)): belief =>
-      val ageS = (world.nowNs - belief.at.toNanos) * 1e-9
-      (
-        CameraPursuer.carried(belief.positionNed, belief.velocityNed, aheadS.map(ageS + _)),
+    val now = Instant.ofNanos(world.nowNs)
+    fusion.belief.fold(Believed(startNed(opponent), Vector3.Zero, Span.ofNanos(world.nowNs))): belief =>
+      val age = now.since(belief.at)
+      Believed(
+        CameraPursuer.carried(belief.positionNed, belief.velocityNed, aheadS.map(age.toSeconds + _)),
         belief.velocityNed,
-        ageS
+        age
       )
 
   def turn(northM: Double, eastM: Double): Unit = axisRad = StrictMath.atan2(eastM, northM)

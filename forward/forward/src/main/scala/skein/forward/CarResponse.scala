@@ -3,9 +3,9 @@ package skein.forward
 import skein.policy.Action
 import skein.vehicle.{ConstantVelocity, DrivenCar, VehicleModel}
 
-/** A car with its driver, beside vehicles of any other response: `skein.airsim.AirSimCar` with a driver who
-  * looks at every step of the model, and not only when a command arrives. A velocity's vertical part is
-  * ignored; hovering and landing brake.
+/** A car with a driver, which may drive among vehicles of any other kind. It differs from
+  * `skein.airsim.AirSimCar` in that the driver reacts at every step of the model, not only to a new command.
+  * The vertical part of a velocity is ignored; hovering and landing brake.
   */
 private[skein] final class CarResponse(startHeadingRad: Double) extends VelocityResponse:
   def create(): Vehicle = PlantVehicle(DrivenCar(startHeadingRad = startHeadingRad))

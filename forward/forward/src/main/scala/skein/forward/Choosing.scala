@@ -3,9 +3,9 @@ package skein.forward
 import skein.policy.*
 import skein.units.*
 
-/** Asks a policy of any kind for the action of a vehicle. Mutable: it holds the policy's memory.
+/** Evaluates a policy of any kind for one vehicle. Mutable: it contains the policy's memory.
   *
-  * @param by how the vehicle responds
+  * @param by response of the vehicle
   */
 private[skein] final class Choosing(agent: RolloutAgent, by: VelocityResponse):
   private val policy      = agent.policy
@@ -15,9 +15,9 @@ private[skein] final class Choosing(agent: RolloutAgent, by: VelocityResponse):
 
   def start(): Unit = memory = OwnFailure.told(whose)(policy.start)
 
-  /** Decides on an observation.
+  /** Chooses the action for an observation.
     *
-    * @throws OwnFailure if the policy throws, or the vehicle does not perform its action
+    * @throws OwnFailure if the policy throws, or chooses an action that the vehicle does not perform
     */
   def choose(seen: Observation): Action =
     val (action, next) = OwnFailure.told(whose)(policy.choose(seen, own))

@@ -1,9 +1,9 @@
 package skein.forward
 
 import skein.forecast.Forecast
-import skein.policy.{Action, Observation, PlanarObservation, HeadingPolicy, Seen}
+import skein.policy.{Action, Observation, Seen}
 import skein.signal.Kinematics
-import skein.units.{Instant, Metres, MetresPerSecond, OwnFailure, Radians, Span}
+import skein.units.{Instant, Metres, MetresPerSecond, Radians, Span}
 
 /** The data for a decision: a reading of each vehicle, and the last headings sent to them. Mutable.
   *
@@ -74,7 +74,6 @@ private[skein] final class Controller(
   import RolloutWorld.*
 
   private val own        = world.agents(agent)
-  private val policy     = own.policy
   private val minNs      = Nanos.of(steering.minIntervalS)
   private val handoverNs = Nanos.of(steering.handoverS)
   private val held       = RolloutView(world)
@@ -90,10 +89,12 @@ private[skein] final class Controller(
   private var sentNumber    = 0
   private var made, unused  = 0
 
-  /** Evaluates a policy that is not a [[HeadingPolicy]]. */
-  private val choosing       = Choosing(world.agents(agent), world.responses(agent))
-  private var action: Action = Action.Hover
-  private var memory: Any    = ()
+  private val choosing       = Choosing(own, world.responses(agent))
+  private val startDown      = Metres(own.altitudeDownM)
+  private var action: Action = straight
+
+  /** Flight along the last decided heading. */
+  private def straight: Action = Action.Along(Radians(decided), MetresPerSecond(own.speed), startDown)
 
   /** The view of the present decision, and its distance to another vehicle. */
   private var upon                    = held
@@ -118,7 +119,7 @@ private[skein] final class Controller(
     outstanding = 0; mayCommandAt = 0; mayCommand = false; turnAt = 0; holds = false
     lastDecidedAt = Controller.Never
     decided = own.startHeadingRad
-    if world.isAsked(agent) then choosing.start() else memory = asked(policy.start)
+    if world.asksPolicies then choosing.start() else action = straight
     sent = decided; sentNumber = 0
     made = 0; unused = 0; turned = 0
     goOn()
@@ -157,109 +158,61 @@ private[skein] final class Controller(
     val elapsed   = elapsedNs * 1e-9
     val before    = decided
     for forecast <- observation.forecast do ahead(observation, forecast)
-    policy match
-      case duel: HeadingPolicy =>
-        decided = heading(duel, observation, elapsed)
-        action = Action.Along(Radians(decided), MetresPerSecond(own.speed), Metres(own.altitudeDownM))
-      case _ =>
-        action = choosing.choose(observed(observation, elapsedNs))
-        decided = action.headingRad(decided)
+    upon = observation
+    val opponent = world.assignment.opponentOf(agent, distance)
+    val believed = world.views(agent).map: view =>
+      val known = view.believed(observation.forecast.map(actsIn(_).toSeconds))
+      view.turn(known.placeNed.x - observation.x(agent), known.placeNed.y - observation.y(agent))
+      known
+    if world.asksPolicies then
+      action = choosing.choose(observed(observation, opponent, believed, elapsedNs))
+      decided = action.headingRad(decided)
     turned += math.abs(math.IEEEremainder(decided - before, 2 * math.Pi))
     lastDecidedAt = now
     made += 1
     world.decided(agent, elapsed, observation)
 
-  /** The observation for a policy of any kind, as `skein.loop.Decider` builds it. */
-  private def observed(observation: RolloutView, elapsedNs: Long): Observation =
-    upon = observation
-    val now = world.nowNs
-    Observation(
+  /** The observation for a policy, as `skein.loop.Decider` builds it.
+    *
+    * @param believed what a camera tells of the opponent, in place of its reading
+    */
+  private def observed(
+      observation: RolloutView,
+      opponent: Int,
+      believed: Option[OpponentView.Believed],
+      elapsedNs: Long
+  ): Observation =
+    val now         = world.nowNs
+    val isPredicted = observation.forecast.isDefined
+    val seen        = Observation(
       agent,
       Vector.tabulate(world.count): vehicle =>
         val age = Span.ofNanos(now - observation.validAtNs(vehicle))
-        Seen(observation.kinematics(vehicle), age, isPredicted = observation.forecast.isDefined)
+        Seen(observation.kinematics(vehicle), age, isPredicted)
       ,
-      world.assignment.opponentOf(agent, distance),
+      opponent,
       Vector.tabulate(world.count)(each =>
         Radians(if each == agent then decided else observation.sent(each))
       ),
       Span.ofNanos(elapsedNs),
       made,
       MetresPerSecond(own.speed),
-      Metres(own.altitudeDownM),
+      startDown,
       actsIn = observation.forecast.fold(Span.Zero)(actsIn)
     )
+    believed.fold(seen): known =>
+      import known.velocityNed
+      val motion = seen.vehicles(opponent).kinematics.copy(known.placeNed, velocityNed)
+      seen.copy(
+        vehicles = seen.vehicles.updated(opponent, Seen(motion, known.age, isPredicted)),
+        headings =
+          seen.headings.updated(opponent, Radians(StrictMath.atan2(velocityNed.y, velocityNed.x)))
+      )
 
-  private def heading(policy: HeadingPolicy, observation: RolloutView, elapsedS: Double): Double =
-    upon = observation
-    val other = world.assignment.opponentOf(agent, distance)
-    val seen  = world.views(agent) match
-      case None =>
-        planar(
-          observation,
-          elapsedS,
-          observation.x(other),
-          observation.y(other),
-          observation.vx(other),
-          observation.vy(other),
-          observation.sent(other),
-          ageS(observation, other)
-        )
-      case Some(view) =>
-        val (place, velocity, sinceS) = view.believed(observation.forecast.map(actsInS))
-        view.turn(place.x - observation.x(agent), place.y - observation.y(agent))
-        planar(
-          observation,
-          elapsedS,
-          place.x,
-          place.y,
-          velocity.x,
-          velocity.y,
-          StrictMath.atan2(velocity.y, velocity.x),
-          sinceS
-        )
-    val (heading, next) = asked(policy.decide(seen, memory.asInstanceOf[policy.Memory]))
-    memory = next
-    heading
-
-  /** Time from now until a command sent now takes effect, s. */
-  private def actsInS(forecast: Forecast): Double = actsIn(forecast).toSeconds
-
+  /** Time from now until a command sent now takes effect. */
   private def actsIn(forecast: Forecast): Span =
     val now = Instant.ofNanos(world.nowNs)
     forecast.whenActing(now).get(agent).predictedFor.since(now).max(Span.Zero)
-
-  private def ageS(observation: RolloutView, vehicle: Int) =
-    (world.nowNs - observation.validAtNs(vehicle)) * 1e-9
-
-  /** What a policy observes, given its opponent's position, velocity, last commanded heading, and age. */
-  private def planar(
-      observation: RolloutView,
-      elapsedS: Double,
-      x: Double,
-      y: Double,
-      vx: Double,
-      vy: Double,
-      sentRad: Double,
-      otherAgeS: Double
-  ): PlanarObservation = PlanarObservation(
-    x - observation.x(agent),
-    y - observation.y(agent),
-    vx - observation.vx(agent),
-    vy - observation.vy(agent),
-    decided,
-    sentRad,
-    elapsedS,
-    ageS(observation, agent),
-    otherAgeS
-  )
-
-  /** Evaluates the policy's code.
-    *
-    * @throws OwnFailure if the policy throws
-    */
-  private def asked[A](answer: => A): A =
-    OwnFailure.told(OwnFailure.named("policy", policy))(answer)
 
   /** Replaces the readings by predictions. */
   private def ahead(observation: RolloutView, forecast: Forecast): Unit =

@@ -2,7 +2,7 @@ package skein.forward
 
 import java.util.Arrays.copyOf
 
-/** Holds commands for a vehicle's dead time, [[DeadTime.Most]] of them at most. Mutable. */
+/** Delays commands by a vehicle's dead time. At most [[DeadTime.Most]] commands may be pending. Mutable. */
 private[forward] final class DeadTime(seconds: Double):
   import DeadTime.{Most, Room}
   private var atS, north, east = Array.ofDim[Double](Room)
@@ -12,7 +12,9 @@ private[forward] final class DeadTime(seconds: Double):
   def clear(): Unit =
     first = 0; afterLast = 0
 
-  /** Adds a command received at this time; see [[skein.vehicle.SpatialPlant.step]]. */
+  /** Adds a command that arrives at `nowS`; the other parameters are those of
+    * [[skein.vehicle.SpatialPlant.step]].
+    */
   def put(nowS: Double, northMps: Double, eastMps: Double, third: Double = 0, holds: Double = 0): Unit =
     if afterLast - first == atS.length then makeRoom()
     val slot = afterLast % atS.length
@@ -32,7 +34,7 @@ private[forward] final class DeadTime(seconds: Double):
     third = inOrder(third); holds = inOrder(holds)
     first = 0; afterLast = count
 
-  /** Removes the commands that take effect until a time, the earliest first. */
+  /** Removes the commands that take effect up to a time, and calls `act` for each, the earliest first. */
   inline def until(timeS: Double)(inline act: (Double, Double, Double, Double, Double) => Unit): Unit =
     while hasUntil(timeS) do
       val slot = take()

@@ -4,10 +4,10 @@ import skein.signal.LatencyDistribution
 import skein.simd.WorldRandom
 import skein.units.*
 
-/** One-way delays of a link by 1024 equally likely values, for kernels: a random number's upper ten bits
-  * choose one. Successive messages are independent.
+/** One-way delays of a link as 1024 equally likely values, for kernels: the upper ten bits of a random number
+  * choose one. Delays of successive messages are independent.
   *
-  * @param delaysS ascending, s: half of the round trip's quantile in the middle of each 1024th
+  * @param delaysS ascending, s: half of the round trip's quantile at the middle of each 1024th
   */
 final class DelayTable private (val delaysS: Array[Float]) extends TabledDelays:
   private val delaysNs =
@@ -17,8 +17,8 @@ final class DelayTable private (val delaysS: Array[Float]) extends TabledDelays:
 
   private[skein] def stretches(worldKey: Int): TableStretch = TableStretch.Only(this)
 
-  /** Copies all delays, in units of [[DelayTable.GrainNs]], into an array from an index on; all must be less
-    * than eight seconds.
+  /** Copies all delays into an array, from index `at` on, in units of [[DelayTable.GrainNs]]. All delays must
+    * be less than eight seconds.
     */
   private[skein] def copyGrains(into: Array[Int], at: Int): Unit =
     for i <- delaysNs.indices do into(at + i) = Math.toIntExact(delaysNs(i) / DelayTable.GrainNs)
@@ -32,10 +32,11 @@ final class DelayTable private (val delaysS: Array[Float]) extends TabledDelays:
 object DelayTable:
   val Size = 1024
 
-  /** Unit of delays, ns: they are whole multiples of it, so that kernels count time exactly in 32 bits. */
+  /** Unit of delays, ns. Delays are whole multiples of it, so that kernels compute times exactly in 32 bits.
+    */
   private[skein] val GrainNs: Int = 4
 
-  /** Number of low bits of a random number that are not used. */
+  /** Number of low bits of a random number that do not choose the delay. */
   val Drop: Int = 32 - Integer.numberOfTrailingZeros(Size)
 
   def of(roundTrip: LatencyDistribution): DelayTable =
@@ -45,8 +46,8 @@ object DelayTable:
   val direct: DelayTable = of(LatencyDistribution.Direct)
   val vpn: DelayTable    = of(LatencyDistribution.Vpn)
 
-/** Delays from a [[DelayTable]], either constant or replaced by another after a while: the links that kernels
-  * support.
+/** Delays from a [[DelayTable]], which may be replaced by another table from time to time. Kernels support
+  * only such links.
   */
 trait TabledDelays extends Delays:
   /** The longest one-way delay of the link, s. */
@@ -54,11 +55,13 @@ trait TabledDelays extends Delays:
 
   private[skein] def stretches(worldKey: Int): TableStretch
 
-/** A stretch of time in which a world's delays come from one table. Mutable: moves to the next stretch. */
+/** A stretch of time in which a world's delays come from one table. Mutable: `next` moves to the following
+  * stretch.
+  */
 private[skein] trait TableStretch:
   def table: DelayTable
 
-  /** Messages sent from this time on use the next stretch's delays, ns since the flight's start. */
+  /** End of the stretch, exclusive, ns since the flight's start. It applies to the times of sending. */
   def untilNs: Long
 
   def next(): Unit

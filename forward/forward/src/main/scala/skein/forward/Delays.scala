@@ -7,12 +7,12 @@ import skein.simd.WorldRandom
   */
 trait Delays:
 
-  /** The one-way delay of a message, ns. A message that shares its line with others arrives after them,
-    * whatever its own delay; [[LoopTiming]] says which lines keep their order.
+  /** The one-way delay of a message, ns. Some lines keep the order of their messages ([[LoopTiming]]): a
+    * message then arrives no earlier than its predecessors, even if its own delay is shorter.
     *
     * @param worldKey of [[WorldRandom]]
-    * @param line kind of message, and its vehicle: see [[Delays.question]] and the others
-    * @param step of the loop, to which it belongs
+    * @param line kind and vehicle of the message; see [[Delays.question]] and the following methods
+    * @param step of the loop to which the message belongs
     * @param number index among the messages of this kind and vehicle, from all senders; an answer has the
     *   index of its request or command
     * @param sentAtNs since the flight's start
@@ -20,8 +20,8 @@ trait Delays:
   def delayNs(worldKey: Int, line: Int, step: Int, number: Int, sentAtNs: Long): Long
 
 object Delays:
-  /** Number of lines of two vehicles, and so of places in the random sequence per step, also in the kernels.
-    * Each further pair of senders and vehicles has as many lines.
+  /** Number of lines of one pair of vehicles, and of random numbers that a pair uses per step. The first pair
+    * is vehicles 0 and 1; each further pair of senders and vehicles has equally many.
     */
   val Lines = 16
 
@@ -29,7 +29,7 @@ object Delays:
 
   /** The line of a request.
     *
-    * @param asker the vehicle whose controller requests (`Futures`); 0 where one controller requests for all
+    * @param asker the vehicle whose controller requests (`Futures`); 0 if one controller requests for all
     */
   def question(asker: Int, vehicle: Int): Int =
     Lines * (asker / 2 * MostPairs + vehicle / 2) + 4 * (asker % 2) + 2 * (vehicle % 2)
@@ -42,23 +42,22 @@ object Delays:
 
   private[skein] def isCommand(line: Int): Boolean = line % Lines >= FirstCommand
 
-  /** The vehicle to which a line leads. */
+  /** The vehicle that receives or sends a line's messages. */
   private[skein] def vehicleOf(line: Int): Int =
     val ofPair = if isCommand(line) then (line % Lines - FirstCommand) / 2 else line % 4 / 2
     line / Lines % MostPairs * 2 + ofPair
 
-  /** The key of the random sequence of a line's delays; for the first two vehicles it is the world's own. */
+  /** The key of the random sequence of a line's delays. For the first two vehicles it is the world's key. */
   private[skein] def keyOf(worldKey: Int, line: Int): Int =
     if line < Lines then worldKey else WorldRandom.key(worldKey, line / Lines, 0)
 
-  /** A line without messages: its random numbers decide how long a link stays busy or quiet. */
+  /** A line without messages: its random numbers are the durations of a link's busy and quiet stretches. */
   private[skein] val Stretch = 12
 
-/** The recorded delays of one flight, used in every simulated world. A message that is not on record never
-  * arrives.
+/** Recorded delays of one flight, used in every simulated world. A message without a record never arrives.
   *
   * @param delaysNs by vehicle and kind (request, answer, command, acknowledgement), then by number;
-  *   [[RecordedDelays.Lost]] where one did not arrive
+  *   [[RecordedDelays.Lost]] if the message did not arrive
   */
 final class RecordedDelays(delaysNs: Vector[Vector[Array[Long]]]) extends Delays:
   import RecordedDelays.Lost

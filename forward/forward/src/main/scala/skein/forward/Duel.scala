@@ -14,8 +14,7 @@ object Duel:
   def of(fleet: Fleet, durationS: Double = 60.0): Duel =
     require(fleet.agents.size == 2, s"a duel has two agents, this fleet ${fleet.agents.size}")
     def the(role: Role) =
-      val agent = fleet.agents.find(_.role == role).get
-      RolloutAgent.of(agent).copy(policy = agent.duelPolicy)
+      RolloutAgent.of(fleet.agents.find(_.role == role).get)
     Duel(the(Role.Pursuer), the(Role.Evader), durationS)
 
   val paper: Duel = of(PaperDuel().fleet)

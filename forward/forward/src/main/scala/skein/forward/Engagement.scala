@@ -4,12 +4,12 @@ import skein.policy.{Assignment, Fleet, Policy, Role}
 import skein.scenario.{Known, OwnEnd, Scenario}
 import skein.vehicle.VehicleKind
 
-/** Vehicles as a rollout simulates them: pursuers and evaders, 1 against 1 up to M against N, or a team
-  * without sides. Depending on its policy, each considers the rival assigned to it at its decision, or the
-  * whole team. A captured vehicle continues to fly.
+/** The vehicles of a rollout: pursuers and evaders, from one against one up to M against N, or a team without
+  * sides. Depending on its policy, a vehicle considers either the rival that its assignment has for it at
+  * that moment, or all others. A captured vehicle continues to fly.
   *
   * @param roles of the agents, in the order in which a loop reads them
-  * @param isOver whether it ends before its duration; evaluated at every decision
+  * @param isOver whether the engagement ends before its duration; evaluated at every decision
   */
 final case class Engagement(
     agents: Vector[RolloutAgent],
@@ -36,13 +36,13 @@ final case class Engagement(
     s"expected pursuers and evaders, or neither, came ${roles.mkString(", ")}"
   )
 
-  /** The agents with outcomes: the evaders; in a team without sides, all. */
+  /** Indices of the agents whose outcome counts: the evaders, or all agents of a team without sides. */
   val judged: Vector[Int] = if bothSides then evaders else agents.indices.toVector
 
   lazy val isTraced: Boolean =
     agents.indices.forall(self => Level.formula(agents(self).policy, self, assignment, false).isRight)
 
-  /** With another policy of the agents of a role. */
+  /** Replaces the policy of all agents of a role. */
   def flownBy(role: Role, policy: Policy): Engagement =
     copy(agents =
       agents.zip(roles).map((agent, own) => if own == role then agent.copy(policy = policy) else agent)
@@ -50,24 +50,24 @@ final case class Engagement(
 
   def hasCars: Boolean = agents.exists(_.kind == VehicleKind.Car)
 
-  /** Why some vehicle may leave the altitude of its start, or turn; None if all are known to fly level. */
+  /** The reason why some vehicle may turn or may leave the altitude of its start; None if all fly level. */
   lazy val climbs: Option[String] = agents.indices.iterator
     .filter(agents(_).kind != VehicleKind.Car)
     .flatMap(self => Level.refusal(agents(self).policy, self, assignment, agents(self).altitudeDownM))
     .nextOption()
 
-  /** The agents from which an agent's distance is measured: the pursuers; in a team without sides, the
-    * others.
+  /** Indices of the agents whose distance to an agent counts: the pursuers, or, in a team without sides, all
+    * other agents.
     */
   def against(one: Int): Vector[Int] = if bothSides then pursuers else judged.filter(_ != one)
 
 object Engagement:
   val Most = 64
 
-  /** The agents of a fleet that flies level, under its own assignment.
+  /** An engagement of a fleet that flies level, with the fleet's assignment.
     *
-    * @throws IllegalArgumentException if a policy may choose another action than a horizontal velocity at the
-    *   altitude of its start, or reads sensors
+    * @throws IllegalArgumentException if a policy reads sensors, or may choose an action other than a
+    *   horizontal velocity at the altitude of its start
     */
   def of(fleet: Fleet, durationS: Double = 60.0): Engagement =
     val flown = inSpace(fleet, durationS)
@@ -76,14 +76,15 @@ object Engagement:
         throw IllegalArgumentException(s"vehicle ${fleet.agents(self).name}: $reason")
     flown
 
-  /** The agents of a fleet, under its own assignment.
+  /** An engagement of a fleet, with the fleet's assignment.
     *
     * @throws IllegalArgumentException if a policy reads sensors
     */
   def inSpace(fleet: Fleet, durationS: Double = 60.0): Engagement =
     Engagement(fleet.agents.map(RolloutAgent.of), fleet.agents.map(_.role), fleet.assignment, durationS)
 
-  /** The agents of a scenario, and its own end.
+  /** An engagement of a scenario's vehicles, which ends when the scenario does, and after `durationS` at the
+    * latest.
     *
     * @throws IllegalArgumentException if a policy reads sensors
     */
@@ -92,7 +93,7 @@ object Engagement:
       Option.when(OwnEnd.has(scenario))(known => Scenario.told(scenario.name)(scenario.isOver(known)))
     )
 
-  /** The agents of a duel; the evader is read first. */
+  /** An engagement of the two vehicles of a duel; the evader is read first. */
   def of(duel: Duel): Engagement =
     Engagement(
       Vector(duel.evader, duel.pursuer),

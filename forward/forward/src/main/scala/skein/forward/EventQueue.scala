@@ -1,8 +1,10 @@
 package skein.forward
 
-/** A bounded queue of events in the order of their times, ns; events of equal times keep the order of
-  * insertion, but for those that come last. An event is a `Long` of the caller's. Allocates only when it must
-  * grow.
+/** A bounded queue of events in the order of their times, ns. Events of equal times keep the order of
+  * insertion, except those added by [[addLast]]. The meaning of an event, a `Long`, is the caller's.
+  * Allocates only when it grows.
+  *
+  * @throws IllegalStateException from `add` and `addLast` if the queue is full
   */
 private[skein] final class EventQueue(capacity: Int):
   import java.util.Arrays.copyOf
@@ -22,7 +24,7 @@ private[skein] final class EventQueue(capacity: Int):
 
   def add(time: Long, event: Long): Unit = add(time, event, added)
 
-  /** Adds an event that comes behind all others of its time, also those added later. */
+  /** Adds an event after all others of its time, even those that are added later. */
   def addLast(time: Long, event: Long): Unit = add(time, event, added | EventQueue.Last)
 
   private def add(time: Long, event: Long, number: Long): Unit =
@@ -70,5 +72,5 @@ private[skein] final class EventQueue(capacity: Int):
 private[skein] object EventQueue:
   private val Room = 16
 
-  /** Added to the number of an event to put it behind all others of its moment. */
+  /** Added to an event's sequence number, which places it after all others of its time. */
   private val Last = 1L << 62

@@ -9,11 +9,13 @@ private[skein] final class FuturesRun(timing: LoopTiming.Futures, protected val 
   val controllers: Array[Controller] =
     Array.tabulate(world.count)(Controller(world, _, timing.steering, 0, decidesFirst = true, this))
 
-  /** By request to a vehicle: the task's request to the previous vehicle. */
+  /** For each request to a vehicle, by [[RolloutWorld.slot]]: the request of that task to the previous
+    * vehicle.
+    */
   private val before = Array.ofDim[Int](world.count * world.ring)
 
-  // Whose task of the current step begins next (the number of vehicles: all have), and the step that waits
-  // behind it.
+  // The vehicle whose task of the current step begins next (their number if all have begun), and the step
+  // that waits after it.
   private var next, current = 0
   private var waiting       = FuturesRun.Nothing
   private var underWay      = 0
@@ -27,7 +29,7 @@ private[skein] final class FuturesRun(timing: LoopTiming.Futures, protected val 
     if waiting == FuturesRun.Nothing then waiting = number
     begin()
 
-  /** Begins tasks up to the limit of those that may be unfinished. */
+  /** Begins waiting tasks while the limit of unfinished tasks allows. */
   private def begin(): Unit =
     while underWay < most && (next < world.count || waiting != FuturesRun.Nothing) do
       if next == world.count then

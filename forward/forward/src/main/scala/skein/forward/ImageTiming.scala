@@ -3,8 +3,8 @@ package skein.forward
 import skein.fusion.SensorModel
 import skein.simd.WorldRandom
 
-/** When a vehicle's images are taken, and when their results become known, as in `skein.flow.Frames` and
-  * `Recognise`. Independent of the vehicles' positions. Mutable.
+/** Simulates when a vehicle's images are taken and when their results become known, as in `skein.flow.Frames`
+  * and `Recognise`. These times do not depend on the vehicles' positions. Mutable.
   */
 private[skein] abstract class ImageTiming(world: RolloutWorld, agent: Int, model: SensorModel, link: Delays):
   import ImageTiming.*
@@ -16,7 +16,8 @@ private[skein] abstract class ImageTiming(world: RolloutWorld, agent: Int, model
   private var onTheWay, busy            = 0
   private var newest, waiting, reported = -1
 
-  /** Resets to the start of an episode. Images are due from then on, unless the world waits for each. */
+  /** Resets to the start of an episode. Images are due from then on, unless the world waits for each image.
+    */
   def start(worldKey: Int): Unit =
     key = WorldRandom.key(worldKey, Stream, agent)
     onTheWay = 0; busy = 0; newest = -1; waiting = -1; reported = -1
@@ -24,12 +25,12 @@ private[skein] abstract class ImageTiming(world: RolloutWorld, agent: Int, model
 
   protected def taken(number: Int): Unit
 
-  /** Called when an image's result becomes known; numbers ascend. */
+  /** Called when an image's result becomes known; the numbers ascend. */
   protected def known(number: Int): Unit
 
   /** Handles an event of an image.
     *
-    * @param kind of event, see [[RolloutWorld]]
+    * @param kind of the event, a constant of [[RolloutWorld]]
     */
   final def handle(kind: Int, number: Int): Unit = kind match
     case RolloutWorld.Look          => look(number)
@@ -49,7 +50,9 @@ private[skein] abstract class ImageTiming(world: RolloutWorld, agent: Int, model
     val delay = link.delayNs(key, Delays.answer(0, agent), number, number, world.nowNs)
     world.schedule(world.nowNs + delay, RolloutWorld.ImageReceived, agent, number)
 
-  /** The newest image waits for a free recogniser. */
+  /** Recognises an image, or lets it wait for a free recogniser. An image that is overtaken by a newer one is
+    * dropped.
+    */
   private def received(number: Int): Unit =
     onTheWay -= 1
     if number > newest then
@@ -71,25 +74,25 @@ private[skein] abstract class ImageTiming(world: RolloutWorld, agent: Int, model
 
   private def takesNs(number: Int) = model.takes.quantile(even(number, Takes)).toNanos
 
-  /** A random number of an image, uniform in 0 to 1.
+  /** A random number of an image, uniform in [0, 1).
     *
-    * @param what [[ImageTiming.Found]] and so on
+    * @param what use of the number: [[ImageTiming.Found]] or a following constant
     */
   protected final def even(number: Int, what: Int): Double =
     WorldRandom.uniform(key, number * Delays.Lines + Delays.FirstCommand + what)
 
 private[skein] object ImageTiming:
-  /** Number of images that are remembered at most. */
+  /** Number of images whose results may still be used. */
   val Ring = 64
 
-  // What is drawn for each image: whether what is in view is found, the errors, how long recognition takes.
+  // The random numbers of an image: for detection in view, the two errors, and the duration of recognition.
   val Found         = 0
   val Bearing       = 1
   val Range         = 2
   private val Takes = 3
 
-  /** Limit of images on their way, as in `skein.flight.CameraSensor`. */
+  /** Maximum number of images that are being transmitted, as in `skein.flight.CameraSensor`. */
   private val MostOnTheWay = 2
 
-  /** Separates this random sequence from that of all other delays. */
+  /** Separates this random sequence from those of all other delays. */
   private val Stream = 0x65796573L

@@ -10,7 +10,7 @@ private[skein] abstract class JoiningRun(timing: LoopTiming.Stream, world: Rollo
 
   protected val observation: RolloutView = RolloutView(world)
 
-  /** By vehicle: whether its reading was not renewed since the view before. */
+  /** For each vehicle, whether no newer reading has arrived since the last view. */
   protected val waiting: Array[Boolean] = Array.ofDim(world.count)
 
   private var patienceEnds = NoEnd

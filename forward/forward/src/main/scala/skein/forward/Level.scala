@@ -6,16 +6,16 @@ import skein.policy.{Policy, Assignment, PolicyFormula}
 import skein.simd.Forms
 import skein.units.Metres
 
-/** Finds the policies that choose only horizontal velocities at the altitude of their vehicle's start:
-  * forward simulation supports no others. [[skein.policy.Policy.isPlanar]] promises it; for others it is
-  * checked in their formula.
+/** Checks that policies choose only horizontal velocities at the altitude of their vehicle's start, as level
+  * simulation requires. [[skein.policy.Policy.isPlanar]] promises it; other policies are checked by their
+  * formula.
   */
 private object Level:
   private val known = ConcurrentHashMap[(Int, Assignment, Boolean), Forms[Policy, PolicyFormula]]()
 
-  /** Why a policy may choose another action.
+  /** The reason why a policy may choose another action; None if it never does.
     *
-    * @param self its place in a team
+    * @param self the vehicle's index in the team
     */
   def refusal(policy: Policy, self: Int, assignment: Assignment, startDownM: Double): Option[String] =
     if policy.isPlanar then None
@@ -28,9 +28,9 @@ private object Level:
           )
         .nextOption()
 
-  /** The formula of a policy, traced once for each form.
+  /** The formula of a policy; each form is traced only once.
     *
-    * @param self its place in a team
+    * @param self the vehicle's index in the team
     */
   def formula(
       policy: Policy,

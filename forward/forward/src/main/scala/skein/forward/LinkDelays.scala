@@ -4,7 +4,7 @@ import skein.signal.{LatencyProfile, Retransmission}
 import skein.simd.WorldRandom
 import skein.units.Expect
 
-/** Delays of links by their latency profiles, for forward simulation. */
+/** Creates the delays of links from their latency profiles, for forward simulation. */
 object LinkDelays:
 
   /** The longest round trip that forward simulation supports, s. */
@@ -12,7 +12,7 @@ object LinkDelays:
 
   /** The delays of a link, if forward simulation supports it.
     *
-    * @param packetsPerS of all vehicles in each direction: see [[LossyDelays.of]]
+    * @param packetsPerS packets of all vehicles in each direction; see [[LossyDelays.of]]
     * @return Left states what was expected and what was given
     */
   def checked(link: LatencyProfile, packetsPerS: Double): Either[String, Delays] =
@@ -31,22 +31,22 @@ object LinkDelays:
         s"expected round trips of at most $LongestRoundTripS s, came ${link.name} with up to $longestS s"
     yield LossyDelays.of(delays, link.impairments, Retransmission.timeout(link).toSeconds, packetsPerS)
 
-  /** The packets of a loop in each direction, without those that only acknowledge others: a request and a
-    * command of each vehicle in each period.
+  /** Number of packets of a loop per second in each direction: a request and a command per vehicle and
+    * period. Packets that only acknowledge others are not counted.
     */
   def packetsPerS(vehicles: Int, periodS: Double): Double = 2 * vehicles / periodS
 
-  /** The delays of a link: half of a sampled round trip each. */
+  /** The delays of a link; each is half of a sampled round trip. */
   def of(profile: LatencyProfile.Steady | LatencyProfile.Alternating): TabledDelays = profile match
     case LatencyProfile.Steady(_, roundTrip)                    => DelayTable.of(roundTrip)
     case LatencyProfile.Alternating(_, busy, quiet, lasts, not) =>
       AlternatingDelays(DelayTable.of(busy), DelayTable.of(quiet), lasts.toSeconds, not.toSeconds)
 
-  /** The paper's VPN over a long time: stretches of `vpn` and of `direct`. */
+  /** The paper's VPN over a long time, which alternates between `vpn` and `direct`. */
   val vpnMixed: Delays = of(LatencyProfile.vpnMixed)
 
-/** A link that is busy for a while and then quiet for a while; the durations are exponentially distributed,
-  * and independent in each world. A flight begins at a random moment.
+/** A link that alternates between busy and quiet. The durations are exponentially distributed, and
+  * independent in each world. A flight begins at a random moment.
   */
 final case class AlternatingDelays(
     busy: DelayTable,
@@ -58,8 +58,8 @@ final case class AlternatingDelays(
 
   def maxS: Float = busy.maxS.max(quiet.maxS)
 
-  /** Whether the link is busy at a time of a world's flight. Cost grows with the number of stretches before
-    * it.
+  /** Whether the link is busy at a time of a world's flight. Cost is proportional to the number of earlier
+    * stretches.
     */
   def isBusy(worldKey: Int, timeNs: Long): Boolean =
     val stretch = Alternating(worldKey)
@@ -80,7 +80,7 @@ final case class AlternatingDelays(
     def next(): Unit =
       isBusy = !isBusy
       number += 1
-      // Exponential stretches have no memory: the first, cut anywhere, lasts as long as any.
+      // Exponential durations have no memory: the remainder of the first is distributed like a whole one.
       untilS -= StrictMath.log1p(-uniform(worldKey, number)) * (if isBusy then busyLastsS else quietLastsS)
 
   def delayNs(worldKey: Int, line: Int, step: Int, number: Int, sentAtNs: Long): Long =

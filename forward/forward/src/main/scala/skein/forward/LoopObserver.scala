@@ -4,34 +4,37 @@ import skein.forecast.{Forecast, Leg}
 import skein.fusion.Exposure
 import skein.policy.Action
 
-/** The data on which a decision is based, by vehicle. */
+/** The data on which a decision is based; arrays are indexed by vehicle. */
 private[skein] trait Grounds:
-  /** Number of each vehicle's reading, which equals that of its request. */
+  /** Number of each vehicle's reading, which is the number of the request for it. */
   def reading: Array[Int]
 
   def validAtNs: Array[Long]
 
-  /** Number of the last sent decision for each vehicle, from 1; the heading at the start is 0. */
+  /** Number of the last decision sent to each vehicle, from 1; 0 stands for the heading at the start. */
   def sentDecision: Array[Int]
 
   def forecast: Option[Forecast]
 
 /** Receives the events of a simulated loop; every method does nothing by default. */
 trait LoopObserver:
-  /** A vehicle was read at this time; position (north, east and down, m) as in the answer. */
+  /** Called when a vehicle is read; position north, east and down, m, as in the answer. */
   def read(vehicle: Int, number: Int, atNs: Long, x: Double, y: Double, z: Double): Unit = ()
 
-  /** A vehicle's position (north, east and down, m) when the world is scored, once a period. */
+  /** Called when the world is scored, once a period; a vehicle's position north, east and down, m. */
   def scored(timeS: Double, vehicle: Int, x: Double, y: Double, z: Double): Unit = ()
 
-  /** A decision was made for a vehicle, the first one or some time after the previous one. */
+  /** Called at a decision for a vehicle.
+    *
+    * @param elapsedS time since its previous decision; 0 at the first
+    */
   private[skein] def decided(vehicle: Int, atNs: Long, elapsedS: Double, upon: Grounds): Unit = ()
 
-  /** Under `Predictive`: a reading was added to the forecast.
+  /** Called under `Predictive` when a reading is added to the forecast.
     *
     * @param atNs now
-    * @param validAtNs when it was sampled
-    * @param legs the vehicle's legs since the previous reading, by what is known now; empty at its first
+    * @param validAtNs when the vehicle was sampled
+    * @param legs the vehicle's legs since the previous reading, as known now; empty at the first reading
     */
   private[skein] def entered(
       vehicle: Int,
@@ -41,11 +44,11 @@ trait LoopObserver:
       legs: => Vector[Leg]
   ): Unit = ()
 
-  /** A command was sent: the newest decision for the vehicle. */
+  /** Called when a command is sent, which is the newest decision for the vehicle. */
   def commanded(vehicle: Int, number: Int, atNs: Long, action: Action): Unit = ()
 
-  /** A command has reached the vehicle and replaced the one before; it takes effect after the vehicle's dead
-    * time.
+  /** Called when a command reaches the vehicle and replaces the previous one; it takes effect after the
+    * vehicle's dead time.
     */
   def acts(vehicle: Int, number: Int, atNs: Long): Unit = ()
 

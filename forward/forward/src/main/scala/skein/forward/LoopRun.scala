@@ -2,7 +2,7 @@ package skein.forward
 
 import skein.policy.Action
 
-/** A loop during simulation: its reactions to events. One implementation for each case of [[LoopTiming]].
+/** A loop in virtual time, which reacts to events. Each case of [[LoopTiming]] has an implementation.
   * Mutable.
   */
 private[skein] trait LoopRun extends Controller.OnSent:
@@ -14,7 +14,7 @@ private[skein] trait LoopRun extends Controller.OnSent:
 
   def start(): Unit
 
-  /** Handles an event of a request, or of the loop's own clock. */
+  /** Handles an event of a request or of the loop's own clock. */
   final def handle(event: Long): Unit =
     val vehicle = vehicleOf(event)
     val number  = numberOf(event)
@@ -43,5 +43,5 @@ private[skein] trait LoopRun extends Controller.OnSent:
 
   def sent(agent: Int, number: Int, action: Action): Unit = ()
 
-  /** A command was answered because a newer one has replaced it. */
+  /** Called when a command is answered because a newer one has replaced it. */
   def replaced(agent: Int, number: Int): Unit = ()

@@ -4,26 +4,26 @@ import skein.port.Moves
 import skein.units.Span
 import skein.vehicle.{QuadrotorModel, VehicleModel}
 
-/** The timing of a control loop as data: when an observation is taken, how old it is at the decision, when
-  * the command takes effect, what replaces what. [[Rollout]] derives its events from it; the kernels derive
-  * equal events by SIMD.
+/** The timing of a control loop as data. It determines when an observation is taken, how old it is at the
+  * decision, when the command takes effect, and which messages replace others. [[Rollout]] derives its events
+  * from it; the kernels derive equal events by SIMD.
   *
-  * '''What all loops share''' (but `Paused`, where nothing takes time):
+  * '''What all loops share''' (except `Paused`, in which nothing takes time):
   *   - A request, its answer, a command and the command's answer take a one-way delay each ([[Delays]]). A
-  *     reading shows the vehicle as it is when the request reaches it. Requests go over a pool of connections
-  *     and may overtake one another, so may their answers; commands to one vehicle keep their order, so do
-  *     their answers.
+  *     reading is the vehicle's state at the arrival of the request. Requests go over a pool of connections
+  *     and may overtake one another, and so may their answers. Commands to one vehicle keep their order, and
+  *     so do their answers.
   *   - A request not answered in time has failed ([[Asking]]).
-  *   - A command takes effect when it arrives; one that replaces another, the vehicle's own handover later
-  *     ([[VelocityResponse.handoverS]]). The one replaced is answered at the arrival of its successor, the
-  *     newest not at all.
-  *   - [[Steering]] decides when a vehicle may be commanded. What waits meanwhile is replaced by anything
-  *     newer.
-  *   - A view holds a reading of each vehicle and the headings sent to both so far. A policy knows the
-  *     opponent's heading from the view: what was sent to the opponent later it does not know.
+  *   - The first command takes effect when it arrives; a command that replaces another does so after the
+  *     vehicle's handover time ([[VelocityResponse.handoverS]]). A command is answered at the arrival of its
+  *     successor; the newest command is unanswered.
+  *   - [[Steering]] decides when a vehicle may be commanded. A view or decision that waits is replaced by a
+  *     newer one.
+  *   - A view contains a reading of each vehicle, and the headings sent to both until then. A policy knows
+  *     the opponent's heading from the view alone, and not from later commands.
   *
-  * `skein.loop.LoopTimings` gives the timing of the live loops by their settings; `RolloutParitySimulation`
-  * holds each case to its loop in virtual time.
+  * `skein.loop.LoopTimings` derives the timing of the live loops from their settings;
+  * `RolloutParitySimulation` compares each case with its live loop in virtual time.
   */
 enum LoopTiming:
   def periodS: Double
@@ -32,7 +32,7 @@ enum LoopTiming:
     */
   case Paused(periodS: Double = 0.1)
 
-  /** Reads the vehicles in sequence, decides for all at the last answer and commands all; the next round
+  /** Reads the vehicles in sequence; at the last answer decides for all and commands all. The next round
     * begins one period after that answer, or after a failed request. A decision waits until it may be sent.
     */
   case Sequential(
@@ -41,11 +41,11 @@ enum LoopTiming:
       steering: Steering = Steering()
   )
 
-  /** Every period begins one task per vehicle: it reads all vehicles in sequence, decides for its own at the
-    * last answer and commands it. Tasks may overlap, `window` for each vehicle; a further one waits, and
-    * later periods are missed. A decision waits until it may be sent. If tasks of two vehicles end in one
-    * nanosecond, which needs a link without jitter, the one started first decides first; a flight's streams
-    * may choose otherwise.
+  /** Every period begins one task per vehicle. A task reads all vehicles in sequence; at the last answer it
+    * decides for its own vehicle and commands it. Up to `window` tasks per vehicle may overlap; a further
+    * task waits, and the periods that begin meanwhile are missed. A decision waits until it may be sent. If
+    * two tasks end in one nanosecond, which requires a link without jitter, the one that started first
+    * decides first; the streams of a live flight may order them differently.
     */
   case Futures(
       periodS: Double = 0.1,
@@ -53,17 +53,15 @@ enum LoopTiming:
       steering: Steering = Steering()
   )
 
-  /** Reads every vehicle once a period, while no more than `window` of its requests are unanswered; the
-    * newest readings are joined to a view when each vehicle's was renewed since the last view, or `patienceS`
-    * after the first of them was. A reading that an answer to a later request overtook, or that was sampled
-    * before the one held, is dropped. Each vehicle decides on the newest view once an interval of `periodS −
-    * toleranceS` is over since it last did and it may be commanded; a view that a newer one replaces before
-    * is skipped.
+  /** Reads every vehicle once a period, while fewer than `window` of its requests are unanswered. The newest
+    * readings are joined to a view when each vehicle has a new reading since the last view, or `patienceS`
+    * after the first new reading. A reading is dropped if an answer to a later request overtook it, or if it
+    * was sampled before the present reading. A vehicle decides on the newest view as soon as `periodS −
+    * toleranceS` has passed since its last decision and it may be commanded. A view that is replaced by a
+    * newer one before that is skipped.
     *
-    * @param toleranceS how much less than a period may pass between two decisions; live loops take half a
-    *   period
-    * @param decideThenPace decides at every view; interval and steering then hold decisions back instead of
-    *   views
+    * @param toleranceS time by which two decisions may be closer than a period; live loops take half a period
+    * @param decideThenPace decides on every view; interval and steering then delay decisions instead of views
     */
   case Stream(
       periodS: Double = 0.1,
@@ -74,10 +72,11 @@ enum LoopTiming:
       steering: Steering = Steering()
   )
 
-  /** Reads like `Stream`; readings, commands and their answers are added to a [[skein.forecast.Forecast]] as
-    * they arrive. Half-way between two requests every vehicle is due to decide on what is known then; it does
-    * so once it may be commanded, unless it is due anew before. It decides on the states of all vehicles
-    * predicted for the time at which a command sent at that moment takes effect.
+  /** Reads like `Stream`. Readings, commands and their answers are added to a [[skein.forecast.Forecast]] as
+    * they arrive. Half-way between two requests a decision becomes due for every vehicle, based on what is
+    * known at that time. A vehicle decides as soon as it may be commanded, unless its next decision becomes
+    * due before that. The decision uses the states of all vehicles, predicted for the time at which a command
+    * that is sent now takes effect.
     *
     * @param predictor predicts each vehicle from its readings
     */
@@ -89,8 +88,8 @@ enum LoopTiming:
   )
 
 object LoopTiming:
-  /** The `stream` loop of a period as in live flights: at least half of it between two decisions, and all of
-    * it as patience.
+  /** The `stream` loop as in live flights: two decisions are at least half a period apart, and the patience
+    * is one period.
     */
   def stream(periodS: Double): LoopTiming.Stream =
     LoopTiming.Stream(periodS, toleranceS = periodS / 2, patienceS = periodS)
@@ -111,11 +110,12 @@ object LoopTiming:
 
 /** How vehicles are read.
   *
-  * @param window limit of unanswered requests to one vehicle; a request due meanwhile waits, a second one is
-  *   missed
-  * @param timeoutS after which a request has failed
-  * @param spreadS over which the requests to the vehicles are spread: of n, the i-th is sent i/n of it later
-  * @param inOrder an answer waits until those to all older requests were received or failed
+  * @param window limit of unanswered requests to one vehicle; a request that becomes due meanwhile waits, a
+  *   second one is missed
+  * @param timeoutS time after which a request has failed
+  * @param spreadS time over which the requests to n vehicles are spread: vehicle i is read spreadS · i/n
+  *   later than vehicle 0
+  * @param inOrder whether an answer waits until all older requests were answered or failed
   */
 final case class Asking(
     window: Int = 4,
@@ -126,12 +126,12 @@ final case class Asking(
   require(window > 0 && window <= 16, s"the window must be from 1 to 16, got $window")
 
 object Asking:
-  /** Time after which a request to a simulator has failed; the paper's. */
+  /** Time after which a request to a simulator has failed, as in the paper. */
   val Timeout: Span = Span.ofMillis(500)
 
-/** When a vehicle may be commanded, as `skein.flow.Steer` decides: while fewer than `mostOutstanding`
-  * commands are unanswered, `minIntervalS` after the last one, and `handoverS` after an answer that leaves
-  * one under way. The permission lasts until the next command.
+/** When a vehicle may be commanded, as `skein.flow.Steer` decides: when fewer than `mostOutstanding` commands
+  * are unanswered, `minIntervalS` has passed since the last command, and `handoverS` has passed since an
+  * answer that left another command unanswered. The permission lasts until the next command.
   */
 final case class Steering(
     minIntervalS: Double = Moves.LeastInterval.toSeconds,

@@ -4,20 +4,22 @@ import skein.signal.{Impairment, Retransmission}
 import skein.simd.WorldRandom
 import skein.units.Span
 
-/** A link that loses packets, as TCP meets it: a lost message is sent again after a time-out, which doubles
-  * each time, and is delayed by as much. Every message is a packet with none behind it that would report its
-  * loss, since a vehicle has few commands under way and every request a connection of its own.
+/** A link that loses packets, as seen over TCP: a lost message is sent again after a time-out, which doubles
+  * each time, and arrives later by the sum of these. A loss is never detected by later packets, because there
+  * are none: a vehicle has few unanswered commands, and every request has its own connection.
   *
-  * Independent losses are drawn for each message and try. Bursts and outages are stretches of time in which
-  * everything is lost, bursts of each direction by itself.
+  * Independent losses are drawn for each message and try. In bursts and outages all packets are lost; bursts
+  * are independent in the two directions.
   *
-  * The number of tries is limited so that a chance of 10^−5^ is left out: the last one always passes.
+  * The number of tries is limited, and the last try always succeeds; more tries would be needed with a
+  * probability of 10^−5^.
   *
   * @param share of packets that are lost independently
-  * @param bursts mean lengths of bursts and of the time between them, s
-  * @param outages length of outages, and mean time between them, s
-  * @param timeout the first ([[skein.signal.Retransmission.timeout]]), a multiple of [[DelayTable.GrainNs]]
-  * @param mostTries with which a message is sent again
+  * @param bursts mean duration of bursts and of the time between them, s
+  * @param outages duration of outages, and mean time between them, s
+  * @param timeout the first time-out ([[skein.signal.Retransmission.timeout]]), a multiple of
+  *   [[DelayTable.GrainNs]]
+  * @param mostTries maximum number of times that a message is sent again
   */
 final class LossyDelays private (
     private[skein] val base: TabledDelays,
@@ -29,7 +31,8 @@ final class LossyDelays private (
 ) extends TabledDelays:
   import LossyDelays.*
 
-  /** Numbers of the low bits of a random number that mean a loss; its upper bits choose the delay. */
+  /** A message is lost if the low bits of its random number are below this; the upper bits choose the delay.
+    */
   private[skein] val lossThreshold: Int = math.round(share * (1 << DelayTable.Drop)).toInt
 
   /** Whether losses depend on the time of sending. */
@@ -49,7 +52,7 @@ final class LossyDelays private (
     val bits = WorldRandom.bits(Delays.keyOf(worldKey, line), step * Delays.Lines + line % Delays.Lines)
     base.delayNs(worldKey, line, step, number, sentAtNs) + waitNs(lossTimes, bits, line, sentAtNs)
 
-  /** The stretches of a world in which everything is lost. */
+  /** The stretches of time in which one world's link loses everything. */
   private[skein] def times(worldKey: Int): LossTimes = LossTimes(
     worldKey,
     Vector(BurstsToServer, BurstsToClient).map(line =>
@@ -58,7 +61,7 @@ final class LossyDelays private (
     outages.map(LossStretches(worldKey, Outages, _, isFixed = true))
   )
 
-  /** How long a message is sent in vain, ns.
+  /** Time from the first try until the successful one, ns.
     *
     * @param bits the random number of the message
     */
@@ -81,11 +84,11 @@ object LossyDelays:
 
   private def longest(timeout: Span, tries: Int): Span = Retransmission.wait(timeout, tries)((_, _) => true)
 
-  /** The delays of a link with these losses; without any, the base itself.
+  /** Adds losses to a link's delays; without any losses, returns the base itself.
     *
     * @param timeoutS the first time-out
-    * @param packetsPerS of all connections in one direction: turns the length of bursts into a time. Packets
-    *   at equal distances meet an equal chain live
+    * @param packetsPerS of all connections in one direction, which converts the length of bursts from packets
+    *   to time. If packets are sent at equal distances, the chain of losses equals that of a live link
     */
   def of(
       base: TabledDelays,
@@ -95,7 +98,7 @@ object LossyDelays:
   ): TabledDelays =
     val loss   = impairments.collectFirst { case loss: Impairment.Loss if loss.share > 0 => loss }
     val outage = impairments.collectFirst { case outage: Impairment.Outage => outage }
-    // Of the chain's states, a share 1 − p − r is kept from packet to packet.
+    // From packet to packet, the chain keeps its state with the share 1 − p − r.
     val keeps  = loss.fold(0.0)(one => 1 - 1 / one.burst / (1 - one.share))
     val bursts = loss.filter(_ => keeps > 1e-6).map: one =>
       val rate = -StrictMath.log(keeps) * packetsPerS
@@ -122,7 +125,7 @@ object LossyDelays:
         tries
       )
 
-/** When one world's link loses everything. Mutable: computes the flight as far as needed. */
+/** The times in which one world's link loses everything. Mutable: the times are computed as far as needed. */
 private[skein] final class LossTimes(
     val worldKey: Int,
     bursts: Vector[Option[LossStretches]],
@@ -130,12 +133,12 @@ private[skein] final class LossTimes(
 ):
   private val all = bursts.map(own => (own ++ outages).toArray)
 
-  /** When the calm began that was found last, and when it ends, ns; both are the requested time where it is
-    * lost.
+  /** Begin and end of the loss-free time that [[isLost]] found last, ns; if everything was lost, the end is
+    * not after the requested time.
     */
   var calmFromNs, calmUntilNs = 0L
 
-  /** Whether everything is lost at a time.
+  /** Whether the link loses everything at a time.
     *
     * @param direction 0 to the server, 1 to the client
     */
@@ -151,11 +154,11 @@ private[skein] final class LossTimes(
       i += 1
     calmUntilNs <= atNs
 
-/** Stretches of time in which everything is lost, and exponentially distributed times between them.
+/** Stretches of time in which everything is lost, with exponentially distributed times between them.
   *
-  * @param line of the random numbers
-  * @param isFixed whether all last equally long, and the flight begins between two; else they are
-  *   exponentially distributed, and the flight begins anywhere
+  * @param line whose random numbers are used
+  * @param isFixed whether all stretches have equal length and the flight begins between two of them;
+  *   otherwise their lengths are exponentially distributed, and the flight may begin within one
   */
 private[skein] final class LossStretches(
     worldKey: Int,
@@ -174,7 +177,8 @@ private[skein] final class LossStretches(
 
   private def exponential(meanS: Double): Double = -StrictMath.log1p(-uniform()) * meanS
 
-  /** When the stretch before a time ended, and when the one at it or behind it begins, ns. */
+  /** End of the last stretch before the time passed to `find`, and begin of the stretch at or after it, ns.
+    */
   var endedNs, beginsNs = 0L
 
   def find(atNs: Long): Unit =

@@ -1,8 +1,8 @@
 package skein.forward
 
-/** Reads one vehicle once a period, as `skein.flow.Sense` does: a request due while the window is full waits,
-  * a second one is missed; an answer received after one to a later request is dropped, unless it was sampled
-  * later or all are delivered in order.
+/** Reads one vehicle once a period, as `skein.flow.Sense` does. If a request becomes due while the window is
+  * full, it waits; a second one is missed. An answer that arrives after the answer to a later request is
+  * dropped, unless it was sampled later or `asking.inOrder` is set.
   */
 private[skein] final class PeriodicQuestions(
     world: RolloutWorld,
@@ -23,13 +23,13 @@ private[skein] final class PeriodicQuestions(
   private var told     = -1
   private var oldest   = 0
 
-  /** Begins at a request, when all before have ended, if there were any. */
+  /** Begins at a request. All earlier requests, if any, must have ended. */
   def begin(question: Int): Unit =
     waits = false; asked = question; underWay = 0; newest = question - 1; told = newest; oldest = question
     world.schedule(offsetNs + question * periodNs, RolloutWorld.Tick, vehicle, question)
 
-  /** Whether this request's answer was the last delivered, as the newest, with none before it unanswered,
-    * none waiting, and this number sent.
+  /** Whether the reading of `question` is the newest and the last delivered, all requests up to it have
+    * ended, all later ones are unanswered, none waits, and as many were sent as given.
     */
   def isUpTo(question: Int, asked: Int): Boolean =
     newest == question && told == question && underWay == asked - 1 - question &&
@@ -55,7 +55,8 @@ private[skein] final class PeriodicQuestions(
         seen.seen(vehicle, question)
     ask()
 
-  /** Whether an answer was sampled later than the last delivered one: requests, too, overtake each other. */
+  /** Whether an answer was sampled later than the last delivered one. Requests may overtake one another too.
+    */
   private def isNewer(question: Int): Boolean =
     val last = world.slot(vehicle, told)
     world.isNewer(world.slot(vehicle, question), world.validAtNs(last), world.receivedAtNs(last))
@@ -69,7 +70,7 @@ private[skein] final class PeriodicQuestions(
       asked += 1
 
 private[skein] object PeriodicQuestions:
-  /** Receives the readings, in the order of the requests. */
+  /** Receives the readings in the order in which they are delivered. */
   trait Seen:
     def seen(vehicle: Int, question: Int): Unit
 

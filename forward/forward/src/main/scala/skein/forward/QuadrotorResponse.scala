@@ -5,11 +5,11 @@ import skein.port.Moves
 import skein.units.{Quaternion, Vector3}
 import skein.vehicle.{Environment, Guidance, Quadrotor, QuadrotorState, Rotorcraft, Setpoint}
 
-/** AirSim's quadrotor as in the built-in simulator (`skein.simulator.SimulatedMultirotor`), with any action:
-  * physics advances in whole steps from the time at which the vehicle was placed at its start; a command
-  * takes effect at the first step after it. Commands are 32-bit floats on AirSim's wire; [[SteppedVehicle]]
-  * defines the readings. A vehicle that turns in place or hovers holds the position at which the command
-  * arrived; the simulator's holds that of up to 60 ms later.
+/** AirSim's quadrotor as in the built-in simulator (`skein.simulator.SimulatedMultirotor`), with all actions.
+  * Physics advances in whole steps, counted from the time at which the vehicle was placed at its start; a
+  * command takes effect at the first step after its arrival. Commands are 32-bit floats, as on AirSim's wire;
+  * [[SteppedVehicle]] defines the readings. A vehicle that turns in place or hovers holds its position at the
+  * arrival of the command; in the built-in simulator it holds the position of up to 60 ms later.
   */
 private[skein] final class QuadrotorResponse(val quadrotor: Quadrotor, val hoveredS: Double)
     extends VelocityResponse:
@@ -26,7 +26,7 @@ private[skein] final class QuadrotorVehicle(quadrotor: Rotorcraft, hoveredNs: Lo
   private var setpoint: Setpoint = Setpoint.Disarmed
   private var renewedAt          = 0L
 
-  // Since it was put to its start, ns.
+  // Since the vehicle was placed at its start, ns.
   private var now, steppedTo = 0L
 
   def start(x: Double, y: Double, z: Double): Unit =

@@ -3,13 +3,18 @@ package skein.forward
 /** Simulates engagements, above all duels, under a loop's real timing: the scalar reference, readable and in
   * double. Events happen in the order of their times, in whole nanoseconds; between them the vehicles move
   * independently. Given the delays of a flight in virtual time ([[RecordedDelays]]) it reproduces that flight
-  * exactly; `RolloutParitySimulation` compares the two. Mutable: one per thread; an episode allocates nothing
-  * but what the policies, their observations of a team, the quadrotor's setpoints and the `predictive` loop's
-  * forecast need.
+  * exactly; `RolloutParitySimulation` compares the two. Mutable: one per thread.
   *
   * @param link delays of requests, answers, commands and acknowledgements; `Paused` ignores it
+  * @param asksPolicies see [[RolloutWorld]]
   */
-final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, model: VelocityResponse):
+final class Rollout(
+    engagement: Engagement,
+    timing: LoopTiming,
+    link: Delays,
+    model: VelocityResponse,
+    asksPolicies: Boolean = true
+):
   import RolloutWorld.*
 
   def this(duel: Duel, timing: LoopTiming, link: Delays, model: VelocityResponse) =
@@ -21,6 +26,7 @@ final class Rollout(engagement: Engagement, timing: LoopTiming, link: Delays, mo
     model,
     LoopTiming.askingOf(timing),
     keepsAll = timing.isInstanceOf[LoopTiming.Predictive],
+    asksPolicies,
     standsStill = timing.isInstanceOf[LoopTiming.Paused],
     ringOf(timing, engagement.agents.size)
   )

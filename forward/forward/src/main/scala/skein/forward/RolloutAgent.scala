@@ -6,14 +6,14 @@ import skein.vehicle.VehicleKind
 
 /** One vehicle of a duel or of a team in a rollout.
   *
-  * @param speed of the commanded velocity, where its policy does not choose one, m/s
+  * @param speed of the commanded velocity, unless the policy chooses one, m/s
   * @param startX north, m
   * @param startY east, m
-  * @param altitudeDownM z of its start, and of the whole flight where it flies level, world NED, m
-  * @param startHeadingRad assumed command before its first decision, from north
-  * @param policy must be a pure function; [[VelocityResponse]] says which actions it may choose
-  * @param eye the camera that is its only knowledge of its one opponent, if any
-  * @param kind a car drives as [[CarResponse]] does, whatever the others are
+  * @param altitudeDownM z of the start, and of the whole flight if the vehicle flies level, world NED, m
+  * @param startHeadingRad heading assumed as the command before the first decision, from north
+  * @param policy must be a pure function; [[VelocityResponse.performs]] limits its actions
+  * @param eye camera through which alone the vehicle knows its one opponent, if any
+  * @param kind a car drives like [[CarResponse]], whatever the kind of the other vehicles
   */
 final case class RolloutAgent(
     speed: Double,
@@ -27,7 +27,7 @@ final case class RolloutAgent(
 )
 
 object RolloutAgent:
-  /** An agent of a scenario.
+  /** The agent for a scenario's vehicle.
     *
     * @throws IllegalArgumentException if its policy reads sensors, which forward simulation does not have
     */

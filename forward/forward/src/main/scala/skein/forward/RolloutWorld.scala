@@ -1,6 +1,6 @@
 package skein.forward
 
-import skein.policy.{Action, Assignment, HeadingPolicy, Seen}
+import skein.policy.{Action, Assignment, Seen}
 import skein.scenario.Known
 import skein.signal.{Kinematics, Stamped}
 import skein.units.Span
@@ -10,6 +10,7 @@ import skein.vehicle.VehicleKind
   * way to and from the vehicles. Mutable; during a flight only the vehicles allocate.
   *
   * @param keepsAll keeps whole readings, not just positions and velocities
+  * @param asksPolicies or vehicles keep their headings: where only the times of events matter
   * @param standsStill during decisions
   * @param ring [[RolloutWorld.ringOf]]
   */
@@ -19,6 +20,7 @@ private[skein] final class RolloutWorld(
     model: VelocityResponse,
     asking: Asking,
     keepsAll: Boolean,
+    val asksPolicies: Boolean,
     val standsStill: Boolean,
     val ring: Int
 ):
@@ -27,11 +29,8 @@ private[skein] final class RolloutWorld(
   val agents: Array[RolloutAgent] = engagement.agents.toArray
   val assignment: Assignment      = engagement.assignment
 
-  /** By vehicle: whether its policy decides on a full observation, and not on numbers alone. */
-  val isAsked: Array[Boolean] = agents.map(!_.policy.isInstanceOf[HeadingPolicy])
-
   /** Whether readings are kept whole, with attitude and rates. */
-  val keepsKinematics: Boolean = keepsAll || isAsked.contains(true) || engagement.isOver.isDefined
+  val keepsKinematics: Boolean = keepsAll || asksPolicies || engagement.isOver.isDefined
 
   val responses: Array[VelocityResponse] = agents.map: agent =>
     if agent.kind == VehicleKind.Car then CarResponse(agent.startHeadingRad) else model

@@ -5,8 +5,8 @@ import skein.signal.Kinematics
 import skein.units.{Quaternion, Vector3}
 import skein.vehicle.{SpaceReading, SpatialPlant, StepwiseFlight}
 
-/** Forward simulation by a [[skein.vehicle.SpatialPlant]]: it performs velocities, at an altitude or not.
-  * Yaws are ignored; who hovers or turns is commanded to stand still.
+/** Vehicles that move by a [[skein.vehicle.SpatialPlant]]. They perform velocities, with or without an
+  * altitude. Yaws are ignored; to hover or to turn in place becomes a command to stand still.
   */
 final case class SpatialResponse(plant: SpatialPlant[?]) extends VelocityResponse:
   require(plant.stepS > 0, s"a plant's step must be positive, came ${plant.stepS} s")
@@ -73,7 +73,7 @@ private final class SpatialFlight[S](plant: SpatialPlant[S])
 
   def rest(downM: Double): Unit = begin(0, plant.initial(downM))
 
-  /** Sets the command in effect from now on; the caller has simulated up to it. */
+  /** Sets the command in effect from `atS` on; the caller has simulated up to that time. */
   def act(atS: Double, northMps: Double, eastMps: Double, third: Double, holds: Double): Unit =
     north = northMps; east = eastMps
     this.third = third; this.holds = holds

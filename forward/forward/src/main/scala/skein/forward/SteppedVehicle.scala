@@ -3,16 +3,16 @@ package skein.forward
 import skein.signal.Kinematics
 import skein.units.{Quaternion, Vector3}
 
-/** A vehicle whose state is known at the ends of whole steps. In between it is extrapolated with constant
-  * acceleration, as the built-in simulator does. Its readings are 32-bit floats, as on AirSim's wire, with
-  * positions in the frame whose origin is its start. Mutable.
+/** A vehicle whose state is known at the ends of whole steps. Between steps it is extrapolated with constant
+  * acceleration, as in the built-in simulator. Readings are rounded to 32-bit floats relative to the start,
+  * as on AirSim's wire. Mutable.
   */
 private[skein] abstract class SteppedVehicle extends Vehicle:
   protected var originX, originY = 0.0
 
   protected def sinceStepS: Double
 
-  // Its state then, from where it started: m, m/s, m/s², rad/s.
+  // The state at the end of the last step, relative to the start: m, m/s, m/s², rad/s.
   protected def stepX: Double
   protected def stepY: Double
   protected def stepZ: Double

@@ -2,29 +2,29 @@ package skein.forward
 
 import skein.units.{Quaternion, Vector3}
 
-/** A response whose vehicles many worlds step side by side, in equal whole steps, faster than one by one. The
-  * results equal those of vehicles created one by one.
+/** A response whose vehicles can be stepped together in many worlds, in equal whole steps, faster than one by
+  * one and with equal results.
   */
 trait SteppedResponse extends VelocityResponse:
   def stepS: Double
 
-  /** Time for which they have hovered when a flight starts, s: decides the phase of the steps. */
+  /** Time for which a vehicle has hovered when a flight starts, s; it determines the phase of the steps. */
   def hoveredS: Double
 
-  /** This number of vehicles, for use by one thread. */
+  /** Creates this number of vehicles, for use by one thread. */
   def together(vehicles: Int): SteppedVehicles
 
-/** Vehicles that are stepped together; places count from 0. World frame NED, positions from each vehicle's
-  * start. Mutable.
+/** Vehicles that are stepped together, by index from 0. World frame NED; positions are relative to each
+  * vehicle's start. Mutable.
   */
 trait SteppedVehicles:
-  /** Limits simulation to the first vehicles from now on. */
+  /** Limits the simulation to the first vehicles, until the next call. */
   def use(vehicles: Int): Unit
 
-  /** Sets a vehicle to hover at its start, settled at `downM` (NED). */
+  /** Makes a vehicle hover at its start, settled, `downM` below the origin (NED). */
   def hover(place: Int, downM: Double): Unit
 
-  /** Commands `moveByVelocityZ`, m/s and m, from the next step on. */
+  /** Commands `moveByVelocityZ`, m/s and m; takes effect at the next step. */
   def command(place: Int, northMps: Float, eastMps: Float, downM: Float): Unit
 
   def step(): Unit

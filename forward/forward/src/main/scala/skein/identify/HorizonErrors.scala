@@ -5,12 +5,12 @@ import skein.vehicle.*
 
 /** Errors of predictions over one horizon.
   *
-  * @param horizonS length of the predictions, s
-  * @param predictions number that were compared
-  * @param positionP50M distance from the actual position, m: median
-  * @param positionP95M its 95th percentile, m
-  * @param velocityP50Mps difference to the actual velocity, m/s: median
-  * @param velocityP95Mps its 95th percentile, m/s
+  * @param horizonS duration of the predictions, s
+  * @param predictions number of predictions that were compared
+  * @param positionP50M median distance from the actual position, m
+  * @param positionP95M 95th percentile of that distance, m
+  * @param velocityP50Mps median difference from the actual velocity, m/s
+  * @param velocityP95Mps 95th percentile of that difference, m/s
   */
 final case class HorizonError(
     horizonS: Double,
@@ -21,12 +21,12 @@ final case class HorizonError(
     velocityP95Mps: Double
 )
 
-/** Errors of a fitted model's predictions over some seconds. */
+/** Measures a fitted model's predictions over several horizons. */
 object HorizonErrors:
   val HorizonsS: Vector[Double] = Vector(1, 2, 5)
 
-  /** The errors of a model's predictions from a sample every half second, against the samples nearest to the
-    * horizons; omits horizons for which no flight is long enough.
+  /** The errors of a model's predictions. A prediction starts from a sample every half second, and is
+    * compared with the sample nearest to the horizon. Horizons that are longer than all flights are omitted.
     */
   def of[S](plant: ObservedPlant[S], flights: Vector[TimeHistory]): Vector[HorizonError] =
     val flight = PlantFlight(plant)
@@ -51,8 +51,9 @@ object HorizonErrors:
         quantile(velocity, 0.95)
       )
 
-  /** The response of the full quadrotor to equal commands at equal times, from hovering at the first sample:
-    * the truth that a reduced model approximates. Samples each 0.1 s, at the nearest whole step.
+  /** Simulates the full quadrotor from hovering at the first sample, with the recorded commands at their
+    * times: the truth that a reduced model approximates. Samples are 0.1 s apart, each at the nearest whole
+    * step.
     */
   def reflown(flown: TimeHistory, quadrotor: Quadrotor = Quadrotor.AirSim): TimeHistory =
     if flown.samples.isEmpty then flown
@@ -78,7 +79,7 @@ object HorizonErrors:
 
   private val SampleEveryS = 0.1
 
-  /** Errors of position and velocity at the sample nearest to the horizon. */
+  /** Errors of position and velocity of one prediction, at the sample nearest to the horizon. */
   private def atHorizon[S](
       flight: PlantFlight[S],
       state: S,
@@ -92,7 +93,7 @@ object HorizonErrors:
       .filter(i => i > from && math.abs(flown.samples(i).atS - goal) <= SampleEveryS)
       .map: index =>
         val sample = flown.samples(index)
-        // The tenth of a microsecond includes the nearest sample whatever the rounding.
+        // The tenth of a microsecond includes the nearest sample despite rounding.
         flown.predict(flight, state, from, sample.atS - flown.samples(from).atS + 1e-7)(_ => ())
         val predicted = flight.reading
         (

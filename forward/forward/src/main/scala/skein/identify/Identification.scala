@@ -5,18 +5,18 @@ import skein.signal.NormalQuantile
 import skein.units.Decimals.fixed
 import skein.vehicle.{ObservedPlant, PlantFlight}
 
-/** A fitted parameter. The interval covers the truth with 95 % probability.
+/** A fitted parameter with its 95 % confidence interval from `least` to `most`.
   *
-  * @param atBound the fit stopped at a bound of the parameter: then value and interval are unreliable
+  * @param atBound whether the fit stopped at a bound of the parameter; then value and interval are unreliable
   */
 final case class Fitted(name: String, value: Double, least: Double, most: Double, atBound: Boolean)
 
 /** A plant fitted to flights.
   *
-  * @param predictions number of predicted samples, each from an earlier one
-  * @param velocityRmsMps of one component's error over all predictions
-  * @param positionRmsM likewise of the position
-  * @param isConverged if false, the parameters are where the fit stopped, still improving
+  * @param predictions number of predicted samples, each predicted from an earlier one
+  * @param velocityRmsMps root mean square error of one velocity component over all predictions
+  * @param positionRmsM root mean square error of one position component
+  * @param isConverged if false, the fit was still improving when it stopped
   */
 final case class Identification(
     structure: Structure,
@@ -30,21 +30,21 @@ final case class Identification(
 )
 
 /** Fits the plants of a [[skein.forecast.Structure]] to flights. From a sample every
-  * [[Identification.StartEveryS]] all samples within the horizon are predicted; the parameters minimise the
-  * sum of squared errors of velocity (m/s) and position (m). The part of the plant's state that a sample
-  * lacks is simulated from the samples before.
+  * [[Identification.StartEveryS]], all samples within the horizon are predicted; the parameters minimise the
+  * sum of squared errors of velocity (m/s) and position (m). If a sample lacks a part of the plant's state,
+  * that part is simulated from the earlier samples.
   *
-  * Errors within one stretch of flight are correlated, so the intervals come from the Jacobian with the
-  * sandwich estimator over blocks of [[Identification.BlockS]] of one vehicle (Liang, Zeger, Biometrika 73
-  * (1986)): the first-order form of a bootstrap over such blocks. They cover random errors, but not a bias of
-  * the arrival times, which is added to the dead time in full.
+  * Errors within one stretch of flight are correlated. Therefore the intervals come from the Jacobian with
+  * the sandwich estimator over blocks of [[Identification.BlockS]] of one vehicle (Liang, Zeger, Biometrika
+  * 73 (1986)), which is the first-order form of a bootstrap over such blocks. They cover random errors, but
+  * no bias of the arrival times, which adds to the dead time in full.
   */
 object Identification:
   val StartEveryS     = 0.5
   val BlockS          = 5.0
   val DefaultHorizonS = 2.0
 
-  /** Fits a structure; Left states what the flights lack. */
+  /** Fits a structure. Left states what the flights lack. */
   def of(
       flights: Vector[TimeHistory],
       structure: Structure,
@@ -70,7 +70,7 @@ object Identification:
 
   /** A stretch of flight within which samples are predicted.
     *
-    * @param block flight and stretch: errors within one are correlated
+    * @param block flight and stretch; errors within one block are correlated
     */
   private final case class Window(flown: TimeHistory, from: Int, horizonS: Double, block: (Int, Long)):
     val size: Int =
@@ -79,7 +79,7 @@ object Identification:
         case -1    => flown.samples.size - from - 1
         case index => index - from - 1
 
-  /** Per predicted sample: errors of vx, vy, x, y. */
+  /** Number of errors per predicted sample: vx, vy, x, y. */
   private val PerSample = 4
 
   private def residuals[S](
@@ -119,8 +119,8 @@ object Identification:
       .toRight(s"the flights do not tell the parameters of ${structure.label} apart")
       .map(fitted(structure, solution, _, blocks, samples))
 
-  /** A value this close to a bound, as a share of the range, counts as at the bound: steps end beside a bound
-    * that is the best value.
+  /** A value within this share of the range from a bound counts as at the bound, because a fit whose best
+    * value is the bound stops beside it.
     */
   private val AtBound = 1e-6
 
@@ -149,9 +149,9 @@ object Identification:
     val plant = structure.plant(solution.parameters.toVector)
     Identification(structure, fitted, plant, samples, blocks, rms(0), rms(2), solution.isConverged)
 
-  /** The sandwich (JᵀJ)⁻¹ (Σ gᵦgᵦᵀ) (JᵀJ)⁻¹ with gᵦ = Jᵦᵀrᵦ summed over a block.
+  /** The sandwich (JᵀJ)⁻¹ (Σ gᵦgᵦᵀ) (JᵀJ)⁻¹, where gᵦ = Jᵦᵀrᵦ is summed over a block.
     *
-    * @return none where JᵀJ is singular
+    * @return None if JᵀJ is singular
     */
   private def standardErrors(
       solution: LeastSquares.Solution,

@@ -3,7 +3,8 @@ package skein.identify
 import java.util.stream.IntStream
 import scala.annotation.tailrec
 
-/** Levenberg and Marquardt's method within bounds, with a Jacobian by central differences.
+/** Minimises a sum of squares within bounds by Levenberg and Marquardt's method, with a Jacobian by central
+  * differences.
   *
   * Source: Marquardt, SIAM J. Appl. Math. 11 (1963); damping by the diagonal of JᵀJ.
   */
@@ -11,9 +12,9 @@ private[identify] object LeastSquares:
 
   /** The result of a fit.
     *
-    * @param jacobian at the solution: by parameter, then by residual
-    * @param isConverged whether no step improved it, or the last one was small or made hardly a difference;
-    *   else [[MostIterations]] were reached
+    * @param jacobian at the solution, by parameter, then by residual
+    * @param isConverged whether the search ended because no step improved the sum, or because the last step
+    *   or its gain was small; false if it ended after [[MostIterations]]
     */
   final case class Solution(
       parameters: Array[Double],
@@ -24,19 +25,19 @@ private[identify] object LeastSquares:
 
   private val MostIterations = 200
 
-  /** A step that changes no parameter by more than this share ends the search. */
+  /** A step that changes every parameter by less than this share ends the search. */
   private val SmallStep = 1e-7
 
-  /** A step that lowers the sum of squares by no more than this share ends the search: the square root of the
-    * precision of a `Double`, as in MINPACK's `lmdif1`.
+  /** A step that lowers the sum of squares by less than this share ends the search. It is the square root of
+    * the precision of a `Double`, as in MINPACK's `lmdif1`.
     */
   private val SmallGain = 1.5e-8
 
-  /** Minimises the sum of squares. A parameter at a bound that the descent would cross is left there for that
-    * step.
+  /** Minimises the sum of squares. If a descent would cross the bound at which a parameter lies, the
+    * parameter stays there for that step.
     *
     * @param residuals a pure function of the parameters, called by several threads at a time; always of one
-    *   size, more than the parameters
+    *   size, which exceeds the number of parameters
     */
   def solve(start: Array[Double], least: Array[Double], most: Array[Double])(
       residuals: Array[Double] => Array[Double]

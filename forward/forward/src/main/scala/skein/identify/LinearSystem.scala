@@ -6,8 +6,8 @@ private[skein] object LinearSystem:
     *
     * @param matrix A, n × n, row by row
     * @param right b
-    * @param least pivots that are not above it in magnitude count as 0
-    * @return x; None if A has no inverse
+    * @param least a pivot whose magnitude is not above this counts as 0
+    * @return x, or None if A has no inverse
     */
   def solve(matrix: Array[Array[Double]], right: Array[Double], least: Double = 0): Option[Array[Double]] =
     val n          = right.length
@@ -26,7 +26,7 @@ private[skein] object LinearSystem:
       column += 1
     Option.unless(isSingular)(Array.tabulate(n)(i => m(i)(n) / m(i)(i)))
 
-  /** The columns of A⁻¹, each computed as in [[solve]]; None if there is no inverse. */
+  /** The columns of A⁻¹, each computed by [[solve]]; None if A has no inverse. */
   def inverseColumns(matrix: Array[Array[Double]], least: Double = 0): Option[Array[Array[Double]]] =
     val n       = matrix.length
     val columns =

@@ -3,21 +3,21 @@ package skein.identify
 import skein.fusion.SensorModel
 import skein.signal.{LatencyDistribution, NormalQuantile}
 
-/** One detection compared with the truth.
+/** One detection and the true values.
   *
   * @param bearingErrorRad measured less true azimuth
-  * @param rangeM measured
-  * @param trueRangeM from the camera
+  * @param rangeM measured range
+  * @param trueRangeM range from the camera's true position
   * @param tookMs duration of recognition
   */
 final case class Detected(bearingErrorRad: Double, rangeM: Double, trueRangeM: Double, tookMs: Double)
 
-/** What a camera with its recogniser detected in a flight.
+/** The detections of one camera and its recogniser in a flight.
   *
   * @param everyS requested time between images
-  * @param fovRad horizontal
-  * @param images that were searched
-  * @param inView share of the flight in which the target was in view, by both true positions
+  * @param fovRad horizontal field of view
+  * @param images number of images that were searched
+  * @param inView share of the flight in which the target was in view, according to both true positions
   */
 final case class Seeing(
     everyS: Double,
@@ -29,18 +29,18 @@ final case class Seeing(
     detections: Vector[Detected]
 )
 
-/** A [[skein.fusion.SensorModel]] fitted to a recogniser's detections: moments of its errors, the frequency
-  * of detection in view, and the measured durations of recognition. Deviations and the frequency have 95 %
-  * intervals that assume independent detections; persistent errors, such as a range that is wrong for as long
-  * as one side of the target is visible, are not covered.
+/** A [[skein.fusion.SensorModel]] fitted to a recogniser's detections: the mean and deviation of its errors,
+  * the frequency of detection in view, and the measured durations of recognition. Deviations and the
+  * frequency have 95 % confidence intervals that assume independent detections. Persistent errors are not
+  * covered, such as a range that is wrong as long as one side of the target is visible.
   */
 final case class SensorFit(model: SensorModel, images: Int, detections: Int, fitted: Vector[Fitted])
 
 object SensorFit:
-  /** Least number of detections from which deviations can be estimated. */
+  /** Smallest number of detections from which deviations can be estimated. */
   val LeastDetections = 30
 
-  /** Fits the model; Left states what the flights lack. */
+  /** Fits the model. Left states what the flights lack. */
   def of(seeing: Vector[Seeing]): Either[String, SensorFit] =
     val all = seeing.flatMap(_.detections)
     if all.sizeIs < LeastDetections then
@@ -91,7 +91,7 @@ object SensorFit:
       )
     )
 
-  /** Reduces durations to a limited number of quantiles. */
+  /** Reduces the durations of recognition to a limited number of quantiles. */
   private def takes(sorted: Vector[Double]): Vector[Double] =
     if sorted.sizeIs <= Quantiles then sorted
     else

@@ -2,17 +2,17 @@ package skein.identify
 
 import skein.vehicle.{ObservedPlant, PlaneReading, PlantFlight}
 
-/** Horizontal position and velocity of a vehicle at a time: s, m, m/s. */
+/** Horizontal position, m, and velocity, m/s, of a vehicle at a time, s. */
 final case class Sample(atS: Double, x: Double, y: Double, vx: Double, vy: Double):
   def reading: PlaneReading = PlaneReading(x, y, vx, vy)
 
-/** A commanded horizontal velocity with the time of its arrival at the vehicle: s, m/s. */
+/** A commanded horizontal velocity, m/s, and the time of its arrival at the vehicle, s. */
 final case class ArrivedCommand(atS: Double, vx: Double, vy: Double)
 
-/** One vehicle's flight: the commands that arrived and the samples of its motion, on one clock, both in the
-  * order of their times.
+/** One vehicle's flight: the commands that arrived, and samples of its motion. Both are on one clock and
+  * ordered by time.
   *
-  * @param downM the altitude that its commands keep, NED
+  * @param downM the altitude that all commands hold, NED
   */
 final case class TimeHistory(
     name: String,
@@ -23,7 +23,7 @@ final case class TimeHistory(
 
   private val times = arrivals.map(_.atS).toArray
 
-  /** A plant's state at each sample: predicted from the sample before, and corrected by the reading. */
+  /** The plant's state at each sample: predicted from the sample before, then corrected by the sample. */
   def states[S](plant: ObservedPlant[S]): Vector[S] =
     val flight = PlantFlight(plant)
     val first  = samples.headOption.map(sample => plant.corrected(plant.initial, sample.reading))
@@ -32,15 +32,15 @@ final case class TimeHistory(
         predict(flight, state, sample - 1, samples(sample).atS - samples(sample - 1).atS)(_ => ())
         plant.corrected(flight.state, samples(sample).reading)
 
-  /** Predicts from one sample over all later ones within a horizon.
+  /** Predicts from one sample over all later samples within a horizon.
     *
     * @param state at that sample
-    * @param each called with each later sample's index when the prediction has reached its time
+    * @param each called for each later sample with its index, when the prediction has reached its time
     */
   def predict[S](flight: PlantFlight[S], state: S, from: Int, horizonS: Double)(each: Int => Unit): Unit =
     val deadTimeS = flight.plant.deadTimeS
     val start     = samples(from)
-    // The first command that does not act yet.
+    // The first command that is not in effect yet.
     var next     = firstAfter(start.atS - deadTimeS)
     val (ux, uy) = if next == 0 then (0.0, 0.0) else (arrivals(next - 1).vx, arrivals(next - 1).vy)
     flight.start(start.atS, state, ux, uy)
@@ -54,9 +54,7 @@ final case class TimeHistory(
       each(sample)
       sample += 1
 
-  /** Indices of samples at least this far apart from each other, from each of which a whole horizon can be
-    * predicted.
-    */
+  /** Indices of samples that are at least `everyS` apart and from which a whole horizon can be predicted. */
   def starts(everyS: Double, horizonS: Double): Vector[Int] =
     val last = samples.lastOption.fold(0.0)(_.atS) - horizonS + TimeHistory.Rounding
     samples.indices
@@ -68,7 +66,7 @@ final case class TimeHistory(
         then chosen :+ index
         else chosen
 
-  /** Index of the sample nearest to a time, not before `from`. */
+  /** Index of the sample nearest to a time, from index `from` on. */
   def nearest(timeS: Double, from: Int): Int =
     var index = from
     while index + 1 < samples.size && math.abs(samples(index + 1).atS - timeS) <= math.abs(

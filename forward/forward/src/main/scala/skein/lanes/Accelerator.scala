@@ -2,17 +2,17 @@ package skein.lanes
 
 import skein.forward.{LoopTiming, VelocityResponse}
 
-/** Simulates candidates through shared episodes in place of this machine's processors, as a GPU does.
+/** Simulates candidates that share their episodes in place of this machine's processors, for example a GPU.
   * Outcomes are identical, to the bit.
   */
 trait Accelerator:
-  /** The engine, with the number of candidates of some episodes that keeps it busy. */
+  /** The engine; its `sideBySide` is the number of candidates that keeps the accelerator busy. */
   def engine: Engine
 
   /** Prepares teams.
     *
-    * @param threads that prepare flights
-    * @return Left states why it does not support such teams
+    * @param threads number of threads that prepare the simulation
+    * @return Left states why the accelerator does not support such teams
     */
   private[lanes] def teams(
       timing: LoopTiming,
@@ -22,9 +22,10 @@ trait Accelerator:
   ): Either[String, AcceleratedTeams]
 
 private[lanes] object Accelerator:
-  /** The engine that replaces SIMD, or why none does; None where no accelerator was requested.
+  /** The engine that replaces SIMD, or why it does not; None if no accelerator was requested.
     *
-    * @param flights that it offers, or why none
+    * @param flights what the accelerator prepared, or why it could not
+    * @param together whether the candidates share episodes
     */
   def engine(
       accelerator: Option[Accelerator],
@@ -37,12 +38,12 @@ private[lanes] object Accelerator:
     yield offer.flatMap: _ =>
       Either.cond(together, by.engine, "the GPU flies candidates that share episodes")
 
-/** Teams on an accelerator; one call at a time, not thread-safe. */
+/** Teams prepared for an accelerator. Not thread-safe: one call at a time. */
 private[lanes] trait AcceleratedTeams:
   /** Simulates the candidates that are formulas, unless it is cancelled.
     *
-    * @param worlds with [[Worlds.episodesOfEach]]
-    * @param prepared a world's candidate
+    * @param worlds of which [[Worlds.episodesOfEach]] is above 0
+    * @param prepared the candidate of a world
     */
   def fly(
       worlds: TeamWorlds,
@@ -55,15 +56,15 @@ private[lanes] trait AcceleratedTeams:
 /** The result of an accelerator's call.
   *
   * @param flown number of worlds that were simulated
-  * @param left the worlds of candidates that are not formulas
+  * @param left the other worlds, whose candidates are not formulas
   */
 private[lanes] final case class Accelerated(flown: Int, left: Array[Int])
 
 private[lanes] object Accelerated:
-  /** Lets an accelerator simulate its worlds before the processors do: none, unless they are candidates that
+  /** Lets an accelerator simulate worlds before the processors do. It simulates none unless the candidates
     * share their episodes.
     *
-    * @param flights see [[Accelerator.instead]]
+    * @param flights what the accelerator prepared, or why it could not
     */
   def first[F](flights: Option[Either[String, F]], worlds: Worlds)(
       fly: F => Accelerated

@@ -1,11 +1,11 @@
 package skein.lanes
 
-/** The engine that simulates worlds, with the reason why no faster one does. Chosen once, and shown to the
-  * user.
+/** The engine that simulates worlds. Its text includes the reason why no faster engine is used, and is shown
+  * to the user.
   *
-  * @param kind of the slowest, where links differ
-  * @param text a line for the user
-  * @param sideBySide number of candidates with shared episodes that take no longer than one
+  * @param kind of the engine; if links differ, the slowest of their engines
+  * @param text one line for the user
+  * @param sideBySide number of candidates with shared episodes that are simulated in the time of one
   */
 final case class Engine(kind: Engine.Kind, text: String, sideBySide: Int = 1):
 
@@ -17,27 +17,29 @@ final case class Engine(kind: Engine.Kind, text: String, sideBySide: Int = 1):
 
 object Engine:
   enum Kind:
-    /** Flights in virtual time, a few per second. */
+    /** Flies each episode in virtual time; a few per second. */
     case Flights
 
-    /** The scalar reference, one world at a time. */
+    /** The scalar reference, which simulates one world at a time. */
     case Scalar
 
-    /** The loops as in `Scalar`, with MuJoCo's bodies side by side, or quadrotors by SIMD. */
+    /** Loops as in `Scalar`, but with the bodies of many worlds stepped together, by MuJoCo or, for
+      * quadrotors, by SIMD.
+      */
     case Bodies, Quadrotors
 
-    /** Whole worlds by SIMD, on processors or on a GPU. */
+    /** Whole worlds by SIMD, on the processors or on a GPU. */
     case Lanes, Gpu
 
   def scalar(why: String): Engine = Engine(Kind.Scalar, s"scalar: $why")
 
-  /** Chooses an engine for worlds over links.
+  /** Chooses an engine for worlds over several links.
     *
-    * @param lanes the SIMD engine over links that it supports, or why there is none
-    * @param refusals by link, why SIMD does not support it
-    * @param stepped the engine that steps vehicles side by side, if any
-    * @param gpu the engine that replaces SIMD, or why it does not; None where it was not requested
-    * @param sideBySide see [[Engine]], for SIMD
+    * @param lanes text of the SIMD engine, or why SIMD does not support the worlds
+    * @param refusals why SIMD does not support each link; None if it does
+    * @param stepped the engine that steps vehicles together, if any
+    * @param gpu the engine that replaces SIMD, or why it does not; None if it was not requested
+    * @param sideBySide of the SIMD engine, see [[Engine]]
     */
   private[lanes] def of(
       lanes: Either[String, String],

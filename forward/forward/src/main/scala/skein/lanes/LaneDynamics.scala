@@ -23,17 +23,18 @@ import skein.lanes.timetable.{
 import skein.units.Expect
 import skein.vehicle.ReducedModel
 
-/** How SIMD simulates a kind of vehicle: by [[skein.lanes.timetable.Timetable]]s and, if it [[fliesAlone]],
-  * with separate delays in every world.
+/** Simulates a kind of vehicle by SIMD: with [[skein.lanes.timetable.Timetable]]s and, if it [[fliesAlone]],
+  * also with separate delays in every world.
   */
 private[skein] trait LaneDynamics extends TimetableDynamics:
-  /** Longest duration of one of its steps, s. */
+  /** Maximum duration of one simulation step, s. */
   def stepS: Double
 
-  /** Whether its flight consists of closed-form pieces, so that it can be read at any recent moment. */
+  /** Whether a flight consists of closed-form pieces, so that the vehicle can be read at any recent moment.
+    */
   def fliesAlone: Boolean = true
 
-  /** All worlds' vehicles of one role, whose commands take effect at different times. */
+  /** The vehicles of one role in all worlds, whose commands take effect at different times. */
   private[lanes] def flights(agent: RolloutAgent, loop: LoopLanes): LaneVehicles
 
 private[skein] object LaneDynamics:
@@ -58,15 +59,15 @@ private[skein] object LaneDynamics:
           LanePredictor.of(predictive.predictor).map(PredictedDynamics(vehicles, _))
         case _ => Right(vehicles)
 
-  /** Checks where vehicles start; Left states why SIMD does not fly them from there. */
+  /** Checks that all vehicles start high enough. Left states why SIMD does not support their start. */
   def isHighEnough(model: VelocityResponse, vehicles: Seq[RolloutAgent]): Either[String, Unit] = Expect.that(
     !model.isInstanceOf[QuadrotorResponse] || vehicles.forall(-_.altitudeDownM >= LeastAltitudeM)
   )(s"the lanes know no ground and fly from $LeastAltitudeM m altitude on")
 
-  /** Least altitude of the start, m: AirSim's quadrotor loses height while it turns. */
+  /** Minimum altitude of the start, m: AirSim's quadrotor loses height while it turns. */
   private val LeastAltitudeM = 5.0
 
-/** Dynamics of vehicles whose states the loop predicts. */
+/** Adds a loop's predictions to the dynamics of vehicles. */
 private final class PredictedDynamics(model: LaneDynamics, by: TimetablePredictor) extends LaneDynamics:
   export model.{clock, deadTimeS, flights, handoverS, stepS}
   override def fliesAlone: Boolean                     = model.fliesAlone
@@ -76,7 +77,7 @@ private final class PredictedDynamics(model: LaneDynamics, by: TimetablePredicto
     flown.predicted = by.vehicles(agent)
     flown
 
-/** Dynamics by [[TimetablePlants]] and [[PlantFlights]]; a plain lag also by [[LagVehicles]]. */
+/** Dynamics by [[TimetablePlants]] and [[PlantFlights]]; a simple lag may also use [[LagVehicles]]. */
 private final class PlantDynamics(lanes: PlantLanes) extends LaneDynamics:
   def stepS: Double                                    = lanes.plant.stepS
   def deadTimeS: Double                                = lanes.plant.deadTimeS
@@ -87,7 +88,7 @@ private final class PlantDynamics(lanes: PlantLanes) extends LaneDynamics:
 
   private[lanes] def flights(agent: RolloutAgent, loop: LoopLanes): LaneVehicles =
     (lanes.plant, loop.timing) match
-      // Where hardly a reading is of a period before, the way of a lag alone is the faster one.
+      // If hardly any reading is from an earlier period, LagVehicles is faster.
       case (lag: ReducedModel, stream: LoopTiming.Stream)
           if lag.isLag && !loop.sees && stream.periodS >= PlantDynamics.LeastPeriodS &&
             LagVehicles.canFly(lag, loop.longestS) =>
@@ -96,11 +97,11 @@ private final class PlantDynamics(lanes: PlantLanes) extends LaneDynamics:
       case _ => PlantFlights(agent, lanes, loop)
 
 private object PlantDynamics:
-  /** Below this period, s, too many commands are on their way for [[LagVehicles]]. */
+  /** Shortest period for [[LagVehicles]], s; below it, too many commands are pending. */
   private val LeastPeriodS = 0.02
 
-/** Dynamics by [[TimetableQuadrotors]]: by the number of steps until an event, and the time since the last
-  * step.
+/** Dynamics by [[TimetableQuadrotors]]. A time is represented by the number of steps since the last event,
+  * and by the time since the last step.
   */
 private final class QuadrotorDynamics(model: QuadrotorResponse, lanes: QuadrotorLanes) extends LaneDynamics:
   private val stepNs    = Nanos.of(model.quadrotor.stepS)

@@ -2,9 +2,9 @@ package skein.lanes
 
 import skein.units.Expect
 
-/** Whether this Java runtime has the vector module that SIMD needs. */
+/** Checks whether this Java runtime has the vector module that SIMD requires. */
 private[skein] object LaneSupport:
-  /** Right if the vector module is present; a class with vectors must not be loaded without it. */
+  /** Right if the vector module is present. Without it, no class that uses vectors may be loaded. */
   val present: Either[String, Unit] = Expect.that(
     ModuleLayer.boot().findModule("jdk.incubator.vector").isPresent
   ):

@@ -3,18 +3,18 @@ package skein.lanes
 import java.time.Duration
 import java.util.concurrent.atomic.{AtomicInteger, AtomicReference}
 
-/** Distributes batches of worlds to workers, each on its own thread: a worker reuses its arrays from batch to
-  * batch, and cancellation is checked between them.
+/** Distributes batches of worlds to workers, each on its own thread. A worker reuses its arrays from batch to
+  * batch; cancellation is checked between batches.
   */
 private[lanes] object LaneThreads:
 
   /** Runs the workers until all batches are done.
     *
-    * @param isCancelled polled before each batch, from any thread, and meanwhile by the caller: then working
-    *   threads are interrupted, and a batch that throws because of it is abandoned
-    * @param onProgress called with the number of worlds done, after each batch, by one thread at a time
-    * @return number of worlds done
-    * @throws InterruptedException if the caller is interrupted; running batches have finished then
+    * @param isCancelled polled before each batch, from any thread, and during batches by the caller. When it
+    *   is true, working threads are interrupted, and a batch that throws because of that is abandoned
+    * @param onProgress called with the number of simulated worlds, after each batch, by one thread at a time
+    * @return number of simulated worlds
+    * @throws InterruptedException if the caller is interrupted, after all running batches have ended
     */
   def run[W](
       workers: Vector[W],
@@ -30,7 +30,7 @@ private[lanes] object LaneThreads:
     def handle(worker: W): Unit =
       var going = true
       while going do
-        // Every batch that was handed out is flown.
+        // Every batch that was taken is completed.
         val number = if failure.get == null && !isCancelled() then next.getAndIncrement() else batches.count
         if number >= batches.count then going = false
         else

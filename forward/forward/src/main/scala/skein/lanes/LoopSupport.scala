@@ -4,14 +4,14 @@ import skein.forward.{Asking, Delays, LoopTiming, TabledDelays}
 import skein.lanes.loop.{LaneAgents, LaneFlights, LanePredictor, LaneViews, LoopLanes}
 import skein.units.Expect
 
-/** The loops that SIMD supports with separate delays in every world. */
+/** Checks which loops SIMD supports with separate delays in every world. */
 private[lanes] object LoopSupport:
   import LoopLanes.{MostS, readingS}
 
-  /** Longest time of all requests of a round or task, each as slow as the link allows, s. */
+  /** Limit of the total time of a round's or task's requests, each as slow as the link allows, s. */
   private val MostInTurnS = 3.5
 
-  /** Why SIMD does not support this loop over a link, for a person. */
+  /** The reason why SIMD does not support this loop over a link, for the user; None if it does. */
   def refusal(timing: LoopTiming, vehicles: Int, link: Delays, model: LaneDynamics): Option[String] =
     link match
       case tabled: TabledDelays => refusal(timing, vehicles, tabled.maxS, model)
@@ -41,7 +41,7 @@ private[lanes] object LoopSupport:
         for
           _ <- asksAtOnce(predictive.asking)
           _ <- LanePredictor.of(predictive.predictor)
-        // It is due in the middle between two questions.
+        // Decisions are due half-way between two requests.
         yield Vector(predictive.periodS / 2)
       case _: LoopTiming.Paused => Left("worlds that stand still while it is decided meet no delays")
     val refused =

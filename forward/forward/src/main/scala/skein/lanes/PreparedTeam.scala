@@ -6,10 +6,11 @@ import skein.lanes.policy.{TeamPolicies, VehicleNumbers}
 import skein.lanes.score.ScoreLanes
 import skein.lanes.timetable.Timetable
 
-/** What teams that are simulated side by side have in common.
+/** The common properties of teams that are simulated together.
   *
-  * @param efforts by judged number, the vehicle whose effort it is; else it is the next one of the scores
-  * @param altitudesDownM of vehicles that fly level
+  * @param efforts for each judged number, the vehicle whose effort it is; None if it is the next of the
+  *   scores
+  * @param altitudesDownM altitudes of vehicles that fly level
   */
 private[lanes] final case class TeamForm(
     policies: TeamPolicies,
@@ -22,14 +23,14 @@ private[lanes] final case class TeamForm(
 
   export policies.{count, inSpace}
 
-  /** Whether somebody knows another vehicle by a camera alone. */
+  /** Whether some vehicle knows its opponent by a camera alone. */
   def sees: Boolean = policies.eyes.nonEmpty
 
   lazy val hasParameters: Boolean = scores.judged.indices.exists(scores.parameters(_) > 0)
 
   private lazy val last = Array.ofDim[(RolloutAgent, VehicleNumbers)](policies.count)
 
-  /** The numbers of a vehicle: one object for what is the very same agent as the one before. */
+  /** The numbers of a vehicle; the previous object if the agent is the identical object. */
   def numbersOf(self: Int, agent: RolloutAgent): VehicleNumbers =
     val known = last(self)
     if known != null && (known._1 eq agent) then known._2
@@ -38,39 +39,39 @@ private[lanes] final case class TeamForm(
       last(self) = (agent, numbers)
       numbers
 
-/** A candidate with the numbers by which it differs from others of its form.
+/** A candidate with the numbers that distinguish it from others of its form.
   *
-  * @param lanes its form, or why SIMD does not support it
-  * @param stepped the engine that steps its vehicles side by side, if any
+  * @param lanes its form, or why SIMD does not support the candidate
+  * @param stepped the engine that steps its vehicles together, if any
   */
 private[lanes] final class PreparedTeam(
     val candidate: TeamCandidate,
     lanes: => Either[String, TeamForm],
     stepped: => Option[Engine]
 ):
-  /** Null if SIMD does not support its policies or quantities. */
+  /** The candidate's form; null if SIMD does not support its policies or quantities. */
   lazy val form: TeamForm     = lanes.getOrElse(null)
   lazy val isStepped: Boolean = stepped.isDefined
 
   def vehicles: Vector[RolloutAgent] = candidate.engagement.agents
 
-  /** By vehicle; only where it has a [[form]]. */
+  /** The numbers of each vehicle; requires a [[form]]. */
   lazy val numbers: Array[VehicleNumbers] =
     Array.tabulate(form.count)(self => form.numbersOf(self, vehicles(self)))
 
-  /** By quantity; only where it has a [[form]]. */
+  /** The parameters of each quantity; requires a [[form]]. */
   lazy val ofQuantities: Array[Array[Double]] =
     candidate.quantities.toArray.zipWithIndex.map: (each, number) =>
       form.scores.parametersOf(number, each.quantity)
 
-/** The episodes that teams share, under one loop's timing. */
+/** The episodes that teams share under one loop. */
 private[lanes] final class Episodes(timing: LoopTiming):
-  /** Whether all worlds of teams of a form have one episode: worlds that wait for their controller have no
+  /** Whether all worlds of a form have one episode, because they wait for their controller and so have no
     * delays.
     */
   def areOne(form: TeamForm): Boolean = timing.isInstanceOf[LoopTiming.Paused] && !form.sees
 
-  /** The key by which an episode differs from others. */
+  /** Everything that distinguishes an episode from others, as a key. */
   def nameOf(link: Delays, key: Int, form: TeamForm): Any =
     val delays = if areOne(form) then () else (link, key)
     (delays, form.count, form.durationS, form.policies.needsMore, form.policies.eyes)

@@ -6,7 +6,7 @@ import skein.forward.{Delays, LoopObserver, LoopTiming, Rollout, VelocityRespons
 import skein.lanes.score.{Effort, Judged, OfMoment}
 import skein.scenario.{Positions, Quantity, Reduction}
 
-/** The scalar reference for a team's results. Mutable.
+/** Simulates teams one world at a time: the scalar reference. Mutable.
   *
   * @param model of the vehicles of one rollout
   */
@@ -15,7 +15,7 @@ private[skein] final class ScalarTeam(timing: LoopTiming, model: => VelocityResp
   private var rollout: Rollout              = null
   private var tallies: Vector[Tally]        = Vector.empty
 
-  /** Simulates one episode; returns its values of the judged numbers. */
+  /** Simulates one episode and returns its judged numbers. */
   def fly(candidate: TeamCandidate, link: Delays, key: Int): Vector[Double] =
     start(candidate, link, key).flyUntil(Rollout.Never): Unit
     values
@@ -29,7 +29,7 @@ private[skein] final class ScalarTeam(timing: LoopTiming, model: => VelocityResp
     rollout.start(key, 0, Judging(candidate))
     rollout
 
-  /** The results of the finished episode, one per judged number. */
+  /** The judged numbers of the finished episode, in their order. */
   private[lanes] def values: Vector[Double] =
     val next = tallies.iterator
     last._1.judged.map:
@@ -48,10 +48,9 @@ private[skein] final class ScalarTeam(timing: LoopTiming, model: => VelocityResp
           tally.add(timeS, Quantity.told(tally.judged.quantity, places))
 
 private[skein] object ScalarTeam:
-  /** Number of worlds that a thread takes together. */
   private[lanes] val Worlds = 16
 
-/** A judged number of one episode, from its values. Mutable. */
+/** Computes a judged number of one episode from its values. Mutable. */
 private final class Tally(val judged: Judged):
   private val values = ArrayBuilder.ofDouble()
   private var firstS = Double.PositiveInfinity
@@ -60,7 +59,7 @@ private final class Tally(val judged: Judged):
     case OfMoment.FirstWithin(limit) => if value <= limit then firstS = firstS.min(timeS)
     case _                           => values += value
 
-  /** The number so far; NaN where no value counted. */
+  /** The number from the values so far; NaN if there were none. */
   def value: Double =
     def all = ArraySeq.unsafeWrapArray(values.result())
     judged.reduction match
@@ -69,7 +68,7 @@ private final class Tally(val judged: Judged):
       case OfMoment.Newest         => all.last
       case reduction: Reduction    => reduction.of(all)
 
-/** Simulates a team's vehicles side by side, and their loops by the scalar reference. Mutable. */
+/** Steps the vehicles of many teams together, with the loops of the scalar reference. Mutable. */
 private final class SteppedTeams(timing: LoopTiming, stepped: SteppedRollouts):
   private val teams = Array.tabulate(stepped.worlds)(lane => ScalarTeam(timing, stepped.vehiclesOf(lane)))
 

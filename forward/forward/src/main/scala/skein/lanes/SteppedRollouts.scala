@@ -6,12 +6,12 @@ import skein.policy.Action
 import skein.simd.LaneMath
 import skein.units.{Quaternion, Vector3}
 
-/** Many worlds' vehicles are stepped side by side ([[skein.forward.SteppedVehicles]]), each world by its own
-  * [[Rollout]] and in its own time: before each step of physics every rollout handles the events between the
-  * previous step and this one. A single such vehicle handles events in that order too, so only the stepping
-  * differs; loops, delays and policies are the scalar reference's. Mutable.
+/** Steps the vehicles of many worlds together ([[skein.forward.SteppedVehicles]]), while each world has its
+  * own [[Rollout]]. Before each step of physics, every rollout handles the events since the previous step. A
+  * vehicle that is stepped alone handles events in that order too, so only the stepping differs; loops,
+  * delays and policies are those of the scalar reference. Mutable.
   *
-  * @param worlds limit of worlds simulated together
+  * @param worlds maximum number of worlds simulated together
   * @param each number of vehicles per world
   */
 private final class SteppedRollouts private (
@@ -26,16 +26,17 @@ private final class SteppedRollouts private (
   private val hoveredNs = Nanos.of(hoveredS)
   private val nextNs    = Array.ofDim[Long](worlds)
 
-  /** The end of the last step, since the flight's start, ns. */
+  /** End of the last step, ns since the flight's start. */
   private var steppedTo = 0L
 
-  /** The response whose vehicles belong to one world, for one rollout. */
+  /** The response for one world's rollout: creates handles of that world's vehicles. */
   def vehiclesOf(world: Int): VelocityResponse = Places(world)
 
   /** Simulates worlds to their end.
     *
-    * @param start begins the rollout of a world, with the vehicles [[vehiclesOf]] it
-    * @throws InterruptedException if the thread is interrupted: a model may take many seconds for them
+    * @param start begins the rollout of a world, with the vehicles of [[vehiclesOf]]
+    * @throws InterruptedException if the thread is interrupted, which is checked at every step, because a
+    *   simulation may take many seconds
     */
   def fly(count: Int)(start: Int => Rollout): Unit =
     steppedTo = Math.floorDiv(hoveredNs, stepNs) * stepNs - hoveredNs
@@ -64,7 +65,7 @@ private final class SteppedRollouts private (
       next += 1
       Flying(next - 1)
 
-  /** One of the vehicles, as the loops use it. */
+  /** One vehicle as the loops see it, by its index among all. */
   private final class Flying(place: Int) extends SteppedVehicle:
     private var down         = 0f
     protected var sinceStepS = 0.0
@@ -95,7 +96,7 @@ private final class SteppedRollouts private (
     protected def angularVelocityFrd: Vector3 = vehicles.angularVelocityFrd(place)
 
 private object SteppedRollouts:
-  /** Stepped rollouts of these vehicles; None if they cannot be stepped side by side. */
+  /** Creates rollouts for these vehicles; None if they cannot be stepped together. */
   def of(model: VelocityResponse, vehicles: Seq[RolloutAgent]): Option[SteppedRollouts] =
     val each = vehicles.size
     model match
@@ -117,7 +118,7 @@ private object SteppedRollouts:
         )
       case _ => None
 
-  /** The engine for such vehicles; None if they cannot be stepped side by side. */
+  /** The engine for such vehicles; None if they cannot be stepped together. */
   def engine(model: VelocityResponse, vehicles: Seq[RolloutAgent]): Option[Engine] =
     model match
       case _: SteppedResponse => Some(Engine(Engine.Kind.Bodies, s"vehicles side by side; $Loops"))

@@ -13,14 +13,14 @@ trait TeamWorlds extends Worlds:
   * @param judged the numbers to compute; equal in count and form for every candidate, except for numbers in
   *   the quantities
   * @param areAtOnePace whether candidates beside it have its vehicles' speeds and first headings: then two
-  *   that play against one another by [[skein.policy.HeadingPolicy]] fly fastest
+  *   that play against one another by headings fly fastest
   */
 final class TeamCandidate(
     val engagement: Engagement,
     val judged: Vector[Judged | Effort],
     val areAtOnePace: Boolean = true
 ):
-  private[lanes] val quantities: Vector[Judged] = judged.collect { case each: Judged => each }
+  private[skein] val quantities: Vector[Judged] = judged.collect { case each: Judged => each }
 
 /** The results of each world.
   *

@@ -1,6 +1,6 @@
 package skein.lanes
 
-/** Assignment of worlds to batches that are simulated together. */
+/** Assigns worlds to batches that are simulated together. */
 private[lanes] final class WorldBatches(order: Array[Int], starts: Array[Int]):
   def count: Int = starts.length
 
@@ -15,9 +15,10 @@ private[lanes] object WorldBatches:
   def inOrder(numbers: Array[Int], most: Int): WorldBatches =
     WorldBatches(numbers, Array.range(0, numbers.length, most))
 
-  /** Groups worlds into batches of one key and one link.
+  /** Groups worlds into batches that share one key and one link.
     *
-    * @param numbers of the worlds to simulate
+    * @param numbers the worlds to simulate
+    * @param most limit of worlds per batch
     */
   def byEpisode(worlds: Worlds, numbers: Array[Int], most: Int): WorldBatches =
     val groups  = java.util.HashMap[(AnyRef, Int), Integer]()

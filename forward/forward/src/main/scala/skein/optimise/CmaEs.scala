@@ -6,10 +6,10 @@ import skein.signal.{NormalQuantile, SplitMix64}
   * whose mean, size and full covariance follow the better half of the one before.
   *
   * Source of the algorithm and of every constant: N. Hansen, "The CMA Evolution Strategy: A Tutorial",
-  * arXiv:1604.00772, figure 6 and table 1, with the weights of the worse half set to zero. `CmaEsSuite` holds
-  * it to the minima of the sphere, an ellipsoid and Rosenbrock's function.
+  * arXiv:1604.00772, figure 6 and table 1, with the weights of the worse half set to zero. `CmaEsSuite` tests
+  * that it finds the minima of the sphere, an ellipsoid and Rosenbrock's function.
   *
-  * @param population λ, candidates in a generation; at least 4
+  * @param population λ, number of candidates in a generation; at least 4
   */
 final class CmaEs(dimension: Int, population: Int, seed: Long):
   import CmaEs.*
@@ -36,7 +36,7 @@ final class CmaEs(dimension: Int, population: Int, seed: Long):
     val zeros = Vector.fill(n)(0.0)
     State(0, mean, size, Vector.tabulate(n, n)((i, j) => if i == j then 1.0 else 0.0), zeros, zeros)
 
-  /** The next generation; equal states give equal generations. */
+  /** Draws the next generation; equal states give equal generations. */
   def sample(state: State): Vector[Vector[Double]] =
     val axes   = Axes(state)
     val source = SplitMix64(SplitMix64.seedOf(seed, state.generation))
@@ -47,7 +47,7 @@ final class CmaEs(dimension: Int, population: Int, seed: Long):
   /** The state after a generation.
     *
     * @param samples the result of [[sample]] for `state`
-    * @param costs of each; small is good
+    * @param costs cost of each sample; small is good
     */
   def next(state: State, samples: Vector[Vector[Double]], costs: Vector[Double]): State =
     val axes   = Axes(state)
@@ -62,7 +62,7 @@ final class CmaEs(dimension: Int, population: Int, seed: Long):
     val length = math.sqrt(sizePath.map(p => p * p).sum)
     val size   = state.size * StrictMath.exp((sizePathRate / damping * (length / normalLength - 1)).min(1))
 
-    // h_σ: the covariance's path stands still while the step size grows fast.
+    // h_σ: stops the covariance's path while the step size increases fast.
     val settled = math.sqrt(1 - StrictMath.pow(1 - sizePathRate, 2.0 * (state.generation + 1)))
     val moves   = if length / settled < (1.4 + 2.0 / (n + 1)) * normalLength then 1.0 else 0.0
     val path    =
@@ -87,7 +87,7 @@ final class CmaEs(dimension: Int, population: Int, seed: Long):
     sum
 
 object CmaEs:
-  /** The tutorial's λ for a dimension; noisy objectives need more. */
+  /** The tutorial's default of λ for a dimension; noisy objectives need a larger one. */
   def defaultPopulation(dimension: Int): Int = 4 + (3 * StrictMath.log(dimension)).toInt
 
   /** The state of the search before a generation.
@@ -108,7 +108,7 @@ object CmaEs:
     /** The distribution's largest standard deviation along an axis. */
     def spread: Double = size * math.sqrt(covariance.indices.map(i => covariance(i)(i)).max)
 
-  /** The covariance's principal axes: B and D of C = B·D²·Bᵀ. */
+  /** Principal axes of the covariance: B and D of C = B·D²·Bᵀ. */
   private final class Axes(state: State):
     private val n       = state.mean.size
     private val eigen   = SymmetricEigen.of(state.covariance.map(_.toArray).toArray)

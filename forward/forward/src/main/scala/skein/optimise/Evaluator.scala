@@ -1,21 +1,22 @@
 package skein.optimise
 
 /** Evaluates candidates for a [[Search]]. All candidates use equal episodes (common random numbers), so that
-  * differences between them are their own.
+  * different results come from the candidates alone.
   */
 trait Evaluator:
 
   /** The objective's mean and spread over these episodes for each candidate. A pure function: a candidate's
-    * tally depends only on the candidate and the episodes, to the bit, not on other candidates of the call.
+    * tally depends only on the candidate and the episodes, to the bit, and not on the other candidates of the
+    * call.
     *
     * @param episodes numbers of the episodes, at least one
     */
   def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[RunningStats]
 
-  /** Number of candidates that take no longer than one. */
+  /** Number of candidates that are evaluated in the time of one. */
   def sideBySide: Int = 1
 
-  /** The tallies, or None if it was cancelled.
+  /** [[tallies]], or None if the evaluation was cancelled.
     *
     * @param isCancelled polled repeatedly, from any thread
     */
@@ -26,12 +27,13 @@ trait Evaluator:
     val all = tallies(candidates, episodes)
     Option.when(!isCancelled())(all)
 
-/** An evaluator that returns single values, so that a candidate's episodes too can be distributed: combined
-  * values give an identical tally, to the bit.
+/** An evaluator that returns single values, so that the episodes of one candidate can be distributed too. The
+  * values combine to an identical tally, to the bit.
   */
 trait ValueEvaluator extends Evaluator:
 
-  /** The objective's values of each candidate, by its episodes; or None if it was cancelled.
+  /** The objective's values of each candidate, in the order of the episodes; None if the evaluation was
+    * cancelled.
     *
     * @param isCancelled polled repeatedly, from any thread
     */

@@ -3,13 +3,13 @@ package skein.optimise
 import skein.signal.LatencyDistribution
 import skein.units.*
 
-/** How an objective changes with the latency and jitter of a link, one cell per pair.
+/** An objective as a function of the mean latency and the jitter of a link: a map with one cell per pair.
   *
-  * @param meansMs of the round trip, ascending
-  * @param jittersMs of the round trip, p99 − p50, ascending
-  * @param cells `cells(jitter)(mean)`; none where no log-normal link has such a mean and jitter
-  * @param truth of the paused loop with the same vehicles
-  * @param per the unit of deviations: the truth's size, or 1 for deviations in the objective's own unit
+  * @param meansMs mean round trips, ascending
+  * @param jittersMs jitters of the round trip, p99 − p50, ascending
+  * @param cells `cells(jitter)(mean)`; None if no log-normal link has such a mean and jitter
+  * @param truth the objective under the paused loop with the same vehicles
+  * @param per unit of deviations: the magnitude of the truth, or 1 for deviations in the objective's own unit
   */
 final case class LatencyBudget(
     meansMs: Vector[Double],
@@ -27,11 +27,11 @@ final case class LatencyBudget(
   def deviation(jitter: Int, mean: Int): Option[Double] =
     cells(jitter)(mean).map(tally => (tally.mean - truth) / per)
 
-  /** The mean latency up to which, at a jitter, the objective stays within a tolerance of the truth, by
-    * linear interpolation between the cells' deviations. It does not hold where the objective has no finite
-    * value.
+  /** The mean latency up to which, at one jitter, the objective stays within a tolerance of the truth.
+    * Deviations are interpolated linearly between the cells. A cell without a finite value is outside every
+    * tolerance.
     *
-    * @param tolerance of [[deviation]], for example 0.05
+    * @param tolerance limit of the magnitude of [[deviation]], for example 0.05
     */
   def holdsUpTo(jitter: Int, tolerance: Double): LatencyBudget.Bound = LatencyBudget.holdsUpTo(
     meansMs.indices.flatMap(mean => deviation(jitter, mean).map(meansMs(mean) -> _.abs)).toVector,
@@ -43,18 +43,18 @@ object LatencyBudget:
   enum Bound:
     case At(meanMs: Double)
 
-    /** It holds up to the largest latency of the map. */
+    /** The tolerance holds even at the largest latency of the map. */
     case Beyond(meanMs: Double)
 
-    /** It does not hold even at the smallest latency. */
+    /** The tolerance does not hold even at the smallest latency. */
     case Below(meanMs: Double)
 
     case Unknown
 
-  /** The mean latency up to which deviations stay within a tolerance, on straight lines between them.
+  /** The mean latency up to which deviations stay within a tolerance, by linear interpolation.
     *
-    * @param known mean latencies, ms, ascending, each with the size of its deviation; not a finite number
-    *   where there is no value
+    * @param known mean latencies, ms, ascending, each with the magnitude of its deviation, which is infinite
+    *   or NaN if there is no value
     */
   def holdsUpTo(known: Vector[(Double, Double)], tolerance: Double): Bound =
     known.indexWhere((_, off) => !(off <= tolerance)) match
@@ -66,10 +66,11 @@ object LatencyBudget:
         if !toOff.isFinite then Bound.At(fromMs)
         else Bound.At(fromMs + (toMs - fromMs) * (tolerance - fromOff) / (toOff - fromOff))
 
-  /** The link of a cell: round trips are log-normal with this mean and jitter; constant without jitter.
+  /** The link of a cell. Round trips are log-normal with this mean and jitter; without jitter they are
+    * constant.
     *
-    * @return none where the jitter is so large beside the mean that the logarithm's standard deviation would
-    *   exceed [[MostSigma]]
+    * @return None if the jitter is so large, relative to the mean, that the standard deviation of the
+    *   logarithm would exceed [[MostSigma]]
     */
   def link(meanMs: Double, jitterMs: Double): Option[LatencyDistribution] =
     if jitterMs == 0 then Some(LatencyDistribution.Constant(Span.ofMillis(meanMs)))
@@ -82,13 +83,13 @@ object LatencyBudget:
       val median = meanMs * StrictMath.exp(-low * low / 2)
       Some(LatencyDistribution.LogNormal(Span.ofMillis(median), low))
 
-  /** Jitter (p99 − p50) over mean of a log-normal distribution: e^(−σ²/2)·(e^(z₉₉σ) − 1); grows with σ up to
-    * 2.3.
+  /** Jitter (p99 − p50) over mean of a log-normal distribution: e^(−σ²/2)·(e^(z₉₉σ) − 1). It increases with σ
+    * up to σ = 2.3.
     */
   private def jitterOverMean(sigma: Double): Double =
     StrictMath.exp(-sigma * sigma / 2) * (StrictMath.exp(Z99 * sigma) - 1)
 
-  /** Limit of σ: beyond it, a few round trips of seconds would make up the mean. */
+  /** Maximum of σ; beyond it, a few round trips of seconds would determine the mean. */
   val MostSigma = 1.0
 
   private val Z99 = 2.3263478740408408

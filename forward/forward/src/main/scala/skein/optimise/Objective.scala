@@ -8,23 +8,25 @@ import skein.scenario.{Measure, Scenario}
 
 /** The objective of a search: a weighted sum of numbers of a flight, averaged over episodes.
   *
-  * @param terms weights and numbers
+  * @param terms each number with its weight
   */
 final case class Objective(terms: Vector[(Double, Term)], direction: Direction):
   require(terms.nonEmpty, "an objective needs at least one term")
 
-  /** The weights with a scenario's measures, without other terms. */
+  /** The terms that are measures of a scenario, with their weights. */
   def measures: Vector[(Double, Measure)] = terms.collect { case (weight, ScenarioTerm(measure)) =>
     weight -> measure
   }
 
-  /** What forward simulation computes of an episode; the terms must not need whole flights. */
+  /** The numbers that forward simulation computes for this objective; every term must be one that it
+    * supports.
+    */
   def judged(durationS: Double, periodS: Double): Vector[Judged | Effort] =
     terms.map((_, term) => term.judged(durationS, periodS).get)
 
-  /** The value in one world.
+  /** The objective's value in one world.
     *
-    * @param outcomes of [[judged]]
+    * @param outcomes the numbers of [[judged]]
     */
   def value(outcomes: TeamOutcomes, world: Int, durationS: Double): Double =
     var sum    = 0.0
@@ -35,7 +37,7 @@ final case class Objective(terms: Vector[(Double, Term)], direction: Direction):
       number += 1
     sum
 
-  /** The text that is read, without the direction. */
+  /** The objective as text, without the direction, as [[Objective.ofRole]] and the other methods read it. */
   def formula: String = terms.zipWithIndex
     .map:
       case ((1.0, term), 0)    => term.key
@@ -47,21 +49,21 @@ final case class Objective(terms: Vector[(Double, Term)], direction: Direction):
 
   def text: String = s"${direction.text} $formula"
 
-  /** Unit of the value, if all terms agree; else empty. */
+  /** Unit of the value if all terms have one unit; else empty. */
   def unit: String = terms.map((_, term) => term.unit).distinct match
     case Vector(one) => one
     case _           => ""
 
-  /** The formula with its unit, for the axis of a picture. */
+  /** The formula with its unit, as a plot's axis label. */
   def title: String = if unit.isEmpty then formula else s"$formula, $unit"
 
 object Objective:
 
-  /** Reads the objective of one of two that play against one another: a name, or a sum such as `0.7*last10s +
-    * 0.3*effort`, with an optional `minimise` or `maximise` before it. The default minimises a sum, and takes
-    * the role's direction for a single term. The evader is vehicle 0.
+  /** Reads the objective of one side of a duel: a name, or a sum such as `0.7*last10s + 0.3*effort`,
+    * optionally preceded by `minimise` or `maximise`. By default, a sum is minimised, and a single term has
+    * the role's direction. The evader is vehicle 0.
     *
-    * @param role whose effort counts
+    * @param role whose effort is meant
     * @return Left states what was expected, what was given, and at which character
     */
   def ofRole(text: String, role: Role): Either[String, Objective] =
@@ -77,7 +79,7 @@ object Objective:
     case Vector((1.0, _: DistanceTerm)) => naturally(role)
     case _                              => Direction.Minimise
 
-  /** The default direction: a pursuer minimises, an evader maximises. */
+  /** The default direction of a role: a pursuer minimises, an evader maximises. */
   def naturally(role: Role): Direction =
     if role == Role.Evader then Direction.Maximise else Direction.Minimise
 
@@ -101,8 +103,8 @@ object Objective:
 
   private def call(name: String, arguments: Option[String]) = name + arguments.fold("")(a => s"($a)")
 
-  /** A scenario's measures that forward simulation supports, by their keys: those of a quantity, in their
-    * order.
+  /** The measures of a scenario that forward simulation supports, which are those of a quantity, by their
+    * keys and in their order.
     */
   def measures(scenario: Scenario): ListMap[String, Measure] =
     byKey(scenario.measures.filter(_.reduced.nonEmpty))
@@ -110,8 +112,8 @@ object Objective:
   private def byKey(measures: Vector[Measure]) =
     measures.map(measure => ScenarioTerm.keyOf(measure) -> measure).to(ListMap)
 
-  /** Reads `off-ring + 0.1*gap`, with an optional direction before it: a scenario's measures of a quantity,
-    * as [[Objective.judged]] requires.
+  /** Reads a weighted sum of a scenario's measures such as `off-ring + 0.1*gap`, optionally preceded by a
+    * direction. Only measures of a quantity are allowed, as [[Objective.judged]] requires.
     *
     * @param otherwise the default direction
     * @return Left states what was expected, what was given, and at which character
@@ -124,13 +126,13 @@ object Objective:
       if known.isEmpty then (s"another scenario, since ${scenario.name} has no measure of a quantity", note)
       else (s"one of ${known.keys.mkString(", ")}", note)
 
-  /** Reads a sum of any measures of the scenario; minimises by default. */
+  /** Reads a weighted sum of any of the scenario's measures; minimises by default. */
   def ofScenario(text: String, scenario: Scenario): Either[String, Objective] =
     val known = byKey(scenario.measures)
     if known.isEmpty then Left(s"expected a scenario with measures; ${scenario.name} has none")
     else read(text, known, Direction.Minimise)(_ => (s"one of ${known.keys.mkString(", ")}", ""))
 
-  /** @param expected in place of an unknown name, and a note behind it */
+  /** @param expected what error messages call a known name, and a note that follows it */
   private def read(text: String, known: ListMap[String, Measure], otherwise: Direction)(
       expected: String => (String, String)
   ): Either[String, Objective] = WeightedSum

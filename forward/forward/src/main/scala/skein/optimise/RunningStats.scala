@@ -2,11 +2,11 @@ package skein.optimise
 
 import skein.signal.NormalQuantile
 
-/** Count of values, their mean, and the sum of their squared deviations from it. */
+/** Count and mean of values, and the sum of their squared deviations from the mean. */
 final case class RunningStats(count: Int, mean: Double, squares: Double):
 
-  /** The statistics of both together (Chan, Golub, LeVeque, "Updating formulae and a pairwise algorithm for
-    * computing sample variances", 1979).
+  /** The statistics of both sets of values together (Chan, Golub, LeVeque, "Updating formulae and a pairwise
+    * algorithm for computing sample variances", 1979).
     */
   def +(other: RunningStats): RunningStats =
     if count == 0 then other
@@ -27,12 +27,12 @@ final case class RunningStats(count: Int, mean: Double, squares: Double):
   /** Standard deviation of the values; 0 for fewer than two. */
   def sd: Double = if count < 2 then 0.0 else math.sqrt(squares / (count - 1))
 
-  /** Half width of the 95 % confidence interval of the mean, by the normal approximation. */
+  /** Half width of the mean's 95 % confidence interval, by the normal approximation. */
   def halfWidth95: Double =
     if count == 0 then Double.PositiveInfinity else NormalQuantile.TwoSided95 * sd / math.sqrt(count)
 
-  /** Half width of the 95 % confidence interval of the mean of few normal values, by Student's distribution;
-    * infinite for fewer than two.
+  /** Half width of the mean's 95 % confidence interval for a few normally distributed values, by Student's
+    * distribution; infinite for fewer than two values.
     */
   def studentHalfWidth95: Double =
     if count < 2 then Double.PositiveInfinity
@@ -50,13 +50,13 @@ object RunningStats:
     2.052, 2.048, 2.045, 2.042
   )
 
-  /** Whether all pairs are [[RunningStats.isSame identical]]. */
+  /** Whether the statistics are pairwise [[RunningStats.isSame identical]]. */
   def areSame(some: Seq[RunningStats], others: Seq[RunningStats]): Boolean =
     some.corresponds(others)(_.isSame(_))
 
   val empty: RunningStats = RunningStats(0, 0, 0)
 
-  /** The statistics of `count` values, by their number from 0. */
+  /** The statistics of `count` values, each computed from its index. */
   def of(count: Int)(value: Int => Double): RunningStats =
     var sum = 0.0
     var i   = 0

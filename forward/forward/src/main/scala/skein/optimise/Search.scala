@@ -3,14 +3,14 @@ package skein.optimise
 import skein.policy.SearchSpace
 import skein.signal.{NormalQuantile, SplitMix64}
 
-/** A candidate with its tally of the objective. */
+/** A candidate with the tally of its objective values. */
 final case class Scored(candidate: Vector[Double], tally: RunningStats)
 
-/** The state of a search: a value that can be stored and resumed.
+/** The state of a search, which can be stored and resumed.
   *
-  * @param results of the round's candidates so far, in their order
-  * @param leaders the best so far, best first; at the end the standings of the play-off
-  * @param flown episodes
+  * @param results tallies of the round's candidates so far, in their order
+  * @param leaders the best candidates so far, the best first; at the end the standings of the play-off
+  * @param flown number of episodes simulated so far
   */
 final case class SearchState(
     course: MethodState,
@@ -21,34 +21,34 @@ final case class SearchState(
   def isDone: Boolean      = course == MethodState.Ended
   def best: Option[Scored] = leaders.headOption
 
-/** The state of a method between rounds. */
+/** The state of a search method between rounds. */
 enum MethodState:
-  /** Grid and random: number of the round's first candidate. */
+  /** Grid and random search: number of the round's first candidate. */
   case Listed(next: Long)
 
-  /** Cross-entropy: the distribution from which the generation is drawn. */
+  /** Cross-entropy: the distribution from which the next generation is drawn. */
   case Drawn(generation: Int, means: Vector[Double], deviations: Vector[Double])
 
   case Adapted(state: CmaEs.State)
 
-  /** Racing: the remaining candidates with their results; empty in the first round. */
+  /** Racing: the remaining candidates with their tallies; empty before the first round. */
   case Raced(round: Int, field: Vector[Scored])
 
-  /** The play-off of the leaders, the distribution's centre and the defaults on fresh episodes: their number
-    * so far, with each candidate's results.
+  /** The play-off on fresh episodes between the leaders, the centre of the distribution and the defaults:
+    * number of its episodes so far, and the tally of each candidate.
     */
   case PlayOff(episodes: Int, field: Vector[Scored])
 
   case Ended
 
-/** Chooses the best of many candidates. All use equal episodes, and the leaders are compared again on fresh
-  * ones, since the best of many on a few episodes was partly lucky.
+/** Finds the best of many candidates. All candidates are evaluated on equal episodes. The leaders are
+  * compared again on fresh episodes, because the best of many on a few episodes was partly lucky.
   *
-  * A state machine: [[step]] is a pure function, so that a search that was stopped and resumed ends like one
-  * that never stopped. Of equal candidates the first wins.
+  * [[step]] is a pure function, so a search that was stopped and resumed ends like one that ran through. Of
+  * equal candidates the first wins.
   *
   * @param seed of the candidates
-  * @param leastPlayOff least number of episodes in the play-off
+  * @param leastPlayOff minimum number of episodes in the play-off
   */
 final class Search(
     space: SearchSpace,
@@ -71,7 +71,7 @@ final class Search(
   private val playOffEpisodes =
     (method.evaluations(space.dimension) / 10 / (MostLeaders + 2)).max(leastPlayOff).min(MostPlayOff).toInt
 
-  /** Expected number of episodes of the whole search, if it does not end early. */
+  /** Number of episodes of the whole search, unless it ends early. */
   val expected: Long = method.evaluations(space.dimension) + (MostLeaders + 2L) * playOffEpisodes
 
   def start: SearchState =
@@ -90,9 +90,9 @@ final class Search(
 
   /** Advances the search by one step.
     *
-    * @param state not done
-    * @param atMost approximate number of episodes in the step; more where candidates are simulated side by
-    *   side. The division into steps does not change the result.
+    * @param state of a search that is not done
+    * @param atMost approximate limit of the step's episodes; exceeded if candidates are simulated together.
+    *   The division into steps has no effect on the result.
     * @param isCancelled polled repeatedly, from any thread; a cancelled step leaves the state unchanged
     */
   def step(
@@ -116,7 +116,7 @@ final class Search(
           after(state.course, state.leaders, candidates.zip(results).map(Scored(_, _)))
         SearchState(course, Vector.empty, leaders, flown)
 
-  /** The round's candidates, and the episodes of each. */
+  /** The candidates of the round, and the episodes on which each is evaluated. */
   private def round(course: MethodState): (Vector[Vector[Double]], Range) = course match
     case MethodState.Listed(next) =>
       val numbers = Vector.range(next, (next + MostListed).min(listed))
@@ -192,8 +192,9 @@ final class Search(
         )
       case _ => (MethodState.Ended, before)
 
-  /** The cell of a candidate, shared by its neighbours: leaders that differ by less than a hundredth of every
-    * axis were lucky on equal episodes, and would leave no room for others.
+  /** The grid cell of a candidate. Of the candidates in one cell, only the best can be a leader: candidates
+    * that differ by less than a hundredth of every axis share their luck on the episodes, and would leave no
+    * room for others.
     */
   private def place(candidate: Vector[Double]): Vector[Long] =
     space.shares(candidate).map(share => (share * 100).round)
@@ -202,7 +203,7 @@ final class Search(
     val candidates = (leaders.map(_.candidate) ++ centre :+ space.defaults).distinct
     MethodState.PlayOff(0, candidates.map(Scored(_, RunningStats.empty)))
 
-  /** The cost to minimise; NaN is worst. */
+  /** The cost to minimise; NaN counts as the worst. */
   private def cost(scored: Scored): Double =
     val cost = direction.sign * scored.tally.mean
     if cost.isNaN then Double.PositiveInfinity else cost
@@ -226,7 +227,7 @@ object Search:
   /** Number of candidates in the play-off, besides the distribution's centre and the defaults. */
   val MostLeaders = 16
 
-  /** First episode of the play-off; a search's own are below it. */
+  /** First episode of the play-off; all other episodes of a search are below it. */
   val PlayOffFrom: Int = 1 << 24
 
   // A tenth of the search's episodes, within these bounds.
@@ -236,9 +237,9 @@ object Search:
   private val MostListed   = 16384
   private val LeastSpread  = 1e-6
 
-  /** Runs a whole search.
+  /** Runs a search to its end.
     *
-    * @return the standings of the play-off, best first
+    * @return the standings of the play-off, the best first
     */
   def run(
       space: SearchSpace,

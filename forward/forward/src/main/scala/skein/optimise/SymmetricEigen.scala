@@ -2,18 +2,18 @@ package skein.optimise
 
 /** Eigenvalues and eigenvectors of a symmetric matrix.
   *
-  * @param values in no order
-  * @param vectors `vectors(row)(k)` is the row-th component of the k-th, of length 1
+  * @param values eigenvalues, in no particular order
+  * @param vectors `vectors(row)(k)` is component `row` of the k-th eigenvector, whose length is 1
   */
 private[skein] final case class SymmetricEigen(values: Array[Double], vectors: Array[Array[Double]])
 
 private[skein] object SymmetricEigen:
   private val MostSweeps = 64
 
-  /** By cyclic Jacobi rotations (Golub, Van Loan, "Matrix Computations", 8.5): slow for large matrices, exact
-    * to rounding, and bit-identical on all machines.
+  /** Computes them by cyclic Jacobi rotations (Golub, Van Loan, "Matrix Computations", 8.5): slow for large
+    * matrices, exact to rounding, and bit-identical on all machines.
     *
-    * @param matrix row by row; only its symmetric part counts
+    * @param matrix row by row; its symmetric part is used
     */
   def of(matrix: Array[Array[Double]]): SymmetricEigen =
     val n = matrix.length

@@ -4,14 +4,14 @@ import skein.forward.Delays
 import skein.lanes.{TeamBatch, TeamCandidate, TeamWorlds}
 import skein.simd.WorldRandom
 
-/** Simulates a team's candidates in [[TeamBatch]].
+/** Evaluates a team's candidates by simulation in a [[TeamBatch]].
   *
-  * @param candidate made from parameters, with the objective's numbers; a pure function
+  * @param candidate creates a candidate, with the objective's numbers, from parameters; a pure function
   * @param seed of the delays, which are equal for all candidates
-  * @param shareEpisodes see [[skein.lanes.Worlds.shareEpisodes]]: for many candidates; a single one runs
-  *   faster without
-  * @param usual parameters of a typical candidate, from which the number that run side by side is derived, if
-  *   they share episodes
+  * @param shareEpisodes see [[skein.lanes.Worlds.shareEpisodes]]; faster for many candidates, slower for a
+  *   single one
+  * @param usual parameters of a typical candidate, which determine how many candidates run together if they
+  *   share episodes
   */
 final class TeamEvaluator(
     batch: TeamBatch,
@@ -40,7 +40,7 @@ final class TeamEvaluator(
         Array.tabulate(keys.length): episode =>
           objective.value(outcomes, number * keys.length + episode, durationS)
 
-  /** The worlds of all candidates, by candidate and episode. */
+  /** The worlds of all candidates: for each candidate, its episodes in order. */
   private final class Worlds(teams: Array[TeamCandidate], keys: Array[Int]) extends TeamWorlds:
     def size: Int                            = teams.length * keys.length
     override def shareEpisodes: Boolean      = TeamEvaluator.this.shareEpisodes

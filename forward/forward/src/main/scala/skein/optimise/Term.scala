@@ -4,23 +4,23 @@ import skein.forward.Rollout
 import skein.lanes.score.{Effort, Judged, OfMoment}
 import skein.scenario.{Measure, Reduction, Separation, Window}
 
-/** A number of a flight that an objective weighs. */
+/** A number of a flight that an objective may contain. */
 trait Term:
-  /** Its name, as users write it in an objective. */
+  /** The term's name as users write it in an objective. */
   def key: String
 
   def unit: String
 
-  /** What forward simulation computes for it; None if only a whole flight has it. */
+  /** The number that forward simulation computes for this term; None if only a complete flight has it. */
   def judged(durationS: Double, periodS: Double): Option[Judged | Effort]
 
-  /** Its value in an episode.
+  /** The term's value in an episode.
     *
-    * @param computed the number of [[judged]]
+    * @param computed the number described by [[judged]]
     */
   def value(computed: Float, durationS: Double): Double
 
-/** A measure of a scenario, named by its key: `off-ring`. */
+/** A measure of a scenario; its key is the measure's, such as `off-ring`. */
 final case class ScenarioTerm(measure: Measure) extends Term:
   def key: String  = ScenarioTerm.keyOf(measure)
   def unit: String = measure.unit
@@ -37,7 +37,7 @@ final case class ScenarioTerm(measure: Measure) extends Term:
 object ScenarioTerm:
   def keyOf(measure: Measure): String = measure.name.replace(' ', '-')
 
-/** A number of two that play against one another, by their distance. */
+/** A number of a duel that depends on the distance between the two vehicles. */
 enum DistanceTerm(val key: String, val unit: String) extends Term:
   case Last10s extends DistanceTerm("last10s", "m")
 
@@ -45,12 +45,12 @@ enum DistanceTerm(val key: String, val unit: String) extends Term:
 
   case Min extends DistanceTerm("min", "m")
 
-  /** 1 if the distance was at most `radiusM` within the first `withinS` of the episode, else 0: its mean is
-    * the probability of capture.
+  /** 1 if the distance was at most `radiusM` within the first `withinS` of the episode, else 0. The mean over
+    * episodes is the probability of capture.
     */
   case Capture(radiusM: Double, withinS: Double) extends DistanceTerm(s"capture($radiusM, $withinS)", "")
 
-  /** First time at which the distance was at most `radiusM`, s; the episode's duration if it never was. */
+  /** First time at which the distance was at most `radiusM`, s; the episode's duration if there is none. */
   case CaptureTime(radiusM: Double) extends DistanceTerm(s"captureTime($radiusM)", "s")
 
   def judged(durationS: Double, periodS: Double): Option[Judged] = Some(this match
@@ -61,12 +61,12 @@ enum DistanceTerm(val key: String, val unit: String) extends Term:
     case CaptureTime(radiusM) => Judged(Separation, OfMoment.FirstWithin(radiusM), 0))
 
   def value(computed: Float, durationS: Double): Double = this match
-    // The time of a score is known as a Float alone: a capture exactly then counts.
+    // The time of a score is a Float, and a capture exactly at the limit counts.
     case Capture(_, withinS) => if computed <= withinS.toFloat then 1.0 else 0.0
     case CaptureTime(_)      => computed.toDouble.min(durationS)
     case _                   => computed
 
-/** The control effort of a vehicle, by its place in the team. */
+/** The control effort of a vehicle, by its index in the team. */
 final case class EffortTerm(vehicle: Int) extends Term:
   def key: String                                                = "effort"
   def unit: String                                               = "rad"

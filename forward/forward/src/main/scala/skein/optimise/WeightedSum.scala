@@ -2,11 +2,11 @@ package skein.optimise
 
 import skein.units.Expect
 
-/** An objective as users write it: `0.7*last10s + 0.3*effort`, with an optional `minimise` or `maximise`
-  * before it.
+/** An objective as users write it, such as `0.7*last10s + 0.3*effort`, optionally preceded by `minimise` or
+  * `maximise`.
   *
-  * @param terms weights and terms
-  * @param stated the direction, if given
+  * @param terms each term with its weight
+  * @param stated the direction, if the text has one
   */
 final case class WeightedSum[M](terms: Vector[(Double, M)], stated: Option[Direction])
 
@@ -21,9 +21,9 @@ object WeightedSum:
 
   /** Reads a sum.
     *
-    * @param forms of measures, for error messages
-    * @param hyphened whether names may have hyphens; a minus between two of them then needs blanks around it
-    * @param measureOf reads a name, and the text in brackets after it
+    * @param forms forms of a measure, for error messages
+    * @param hyphened whether names may contain hyphens; then a minus between two names needs blanks around it
+    * @param measureOf creates a term from a name and the text in brackets after it
     * @return Left states what was expected, what was given, and at which character
     */
   def parse[M](text: String, forms: String, hyphened: Boolean = false)(

@@ -3,9 +3,9 @@ package skein.planning
 /** The limits of a vehicle's commands.
   *
   * @param minSpeed m/s
-  * @param maxSpeed m/s; where both are equal, only the heading is planned
+  * @param maxSpeed m/s; if it equals the minimum, only the heading is planned
   * @param maxTurnRate rad/s
-  * @param turningRadius m: the turn rate stays below speed / radius; 0 for a vehicle that turns on the spot
+  * @param turningRadius m; limits the turn rate to speed / radius; 0 for a vehicle that turns on the spot
   */
 final case class CommandLimits(
     minSpeed: Double,
@@ -23,5 +23,5 @@ final case class CommandLimits(
   def turnRateAt(speed: Double): Double = math.min(maxTurnRate, speed * curvature)
 
 object CommandLimits:
-  /** The paper's pursuer: always 10 m/s, and a turning circle of 8 m, so 1.25 rad/s. */
+  /** The limits of the paper's pursuer: a constant 10 m/s and a turning radius of 8 m, hence 1.25 rad/s. */
   val paperPursuer: CommandLimits = CommandLimits(10, 10, 1.25, 8)

@@ -1,25 +1,26 @@
 package skein.planning
 
-/** One vehicle's part in a joint plan for several.
+/** One vehicle's part in a joint plan.
   *
-  * @param situation in which `others` are only vehicles that are not planned here
-  * @param stream of random numbers
+  * @param situation its `others` are only the vehicles that the joint plan does not control
+  * @param stream number of the vehicle's random stream
   */
 final case class Part(objective: PlanCost, situation: Situation, stream: Long)
 
-/** A joint plan for vehicles of one controller: a plan each, and each considers all others.
+/** A joint plan for the vehicles of one controller: one plan for each, which takes all others into account.
   *
-  * @param tracks predicted tracks of the plans
+  * @param tracks tracks predicted for the plans
   * @param turn index of the plan to improve next
-  * @param slices searched so far, of all together
+  * @param slices number of slices searched so far, for all vehicles together
   */
 final case class JointPlan(plans: Vector[Plan], tracks: Vector[PredictedTrack], turn: Int, slices: Int):
 
-  /** One vehicle's situation, in which it also keeps apart from the planned tracks of the others. */
+  /** One vehicle's situation, with the planned tracks of all others added to those from which it keeps apart.
+    */
   def situation(self: Int, part: Part): Situation = meeting(part, tracks.indices.filter(_ != self))
 
-  /** [[situation]] restricted to the planned tracks that come nearest: at most [[JointPlan.Regarded]],
-    * without those too far for any manoeuvre of the horizon.
+  /** [[situation]] with only the nearest planned tracks: at most [[JointPlan.Regarded]], and none that is out
+    * of reach of all manoeuvres within the horizon.
     */
   private[planning] def nearSituation(self: Int, part: Part): Situation =
     if !part.objective.separation.isKept then part.situation
@@ -37,7 +38,7 @@ final case class JointPlan(plans: Vector[Plan], tracks: Vector[PredictedTrack], 
     if !part.objective.separation.isKept then part.situation
     else part.situation.copy(others = part.situation.others ++ regarded.map(tracks))
 
-  /** Total cost: each plan by its objective, where the others follow theirs. */
+  /** Sum of the plans' costs, each by its own objective, with all others following their plans. */
   def cost(parts: Vector[Part], dtS: Double): Double =
     parts.indices
       .map: self =>
@@ -46,10 +47,10 @@ final case class JointPlan(plans: Vector[Plan], tracks: Vector[PredictedTrack], 
       .sum
 
 object JointPlan:
-  /** Limit of the other vehicles that a search considers. */
+  /** Maximum number of other planned vehicles that a search takes into account. */
   val Regarded = 8
 
-  /** How far a manoeuvre may lead from the planned track, plus the separation there, m. */
+  /** Maximum distance from the planned track to which a manoeuvre may lead, plus the separation there, m. */
   private val ReachM = 15.0
 
   private def nearestM(one: PredictedTrack, other: PredictedTrack): Double =

@@ -2,25 +2,26 @@ package skein.planning
 
 import scala.collection.mutable
 
-/** The input of a joint planner: several vehicles' parts at one moment. */
+/** The input of a joint planner: the vehicles' parts at one moment. */
 final case class PlanProblem(settings: PlannerSettings, parts: Vector[Part]):
   require(parts.nonEmpty, "a plan is for one vehicle at least")
 
 object PlanProblem:
   val MostSearches = 64
 
-/** Plans for several vehicles of one controller, as an anytime algorithm: slice by slice the vehicles take
-  * turns, and each improves its plan against the newest plans of all others (best responses in turn, as in
+/** Plans for several vehicles of one controller, as an anytime algorithm. Slice by slice the vehicles take
+  * turns: each improves its plan against the newest plans of all others (best responses in turn, as in
   * decentralised model predictive control; Richards and How, ''Robust distributed model predictive control'',
-  * Int. J. Control 80, 2007). So no track is guessed, and two vehicles do not dodge to one side: the second
-  * knows the first one's plan.
+  * Int. J. Control 80, 2007). So no vehicle's track is guessed, and two vehicles do not dodge to one side:
+  * the second knows the plan of the first.
   *
-  * A plan is only given up for a better one, and coming too near costs more than all else. So plans that keep
-  * apart still do after part of them was executed, even where a tick has no slice for some vehicle; the next
-  * tick begins with that one. How well depends on how well the vehicles follow [[Situation.own]].
+  * A plan is replaced only by a better one, and a separation below the limit costs more than all else. So
+  * plans that keep apart still do so after a part of them was executed, even if a tick has no slice for some
+  * vehicle; the next tick begins with that vehicle. This depends on how well the vehicles follow
+  * [[Situation.own]].
   *
-  * Equal problems, plans and numbers of slices give equal plans, to the last bit. Holds the memory for blocks
-  * of candidates: one per thread.
+  * Equal problems, plans and numbers of slices give equal plans, to the bit. Contains the memory for blocks
+  * of candidates; one per thread.
   */
 final class JointPlanner:
   private val blocks   = mutable.Map.empty[Int, CandidateBlock]
@@ -37,7 +38,7 @@ final class JointPlanner:
     planners((settings, objective)) = planner
     planner
 
-  /** The initial plan: the remainder of the last, or straight on for all. */
+  /** The plan to start from: the remainder of the last plan, or straight on for all vehicles. */
   def resumed(problem: PlanProblem, last: Option[JointPlan]): JointPlan =
     val plans = problem.parts.indices.toVector.map: self =>
       val part   = problem.parts(self)
@@ -48,12 +49,12 @@ final class JointPlanner:
 
   /** Searches one slice for the vehicle whose turn it is.
     *
-    * @param search its number: parallel searches draw different candidates
+    * @param search number of the search; parallel searches draw different candidates
     */
   def improved(problem: PlanProblem, plan: JointPlan, search: Int): JointPlan =
     val self = plan.turn
     val part = problem.parts(self)
-    // What it cost before was by the others' plans of then; it is among the candidates.
+    // Its cost was computed against the others' former plans; the plan itself is among the candidates.
     val before = plan.plans(self).copy(cost = Float.PositiveInfinity)
     val stream = part.stream * PlanProblem.MostSearches + search
     val better =
@@ -65,7 +66,7 @@ final class JointPlanner:
       plan.slices + 1
     )
 
-  /** The plan after searching this number of slices. */
+  /** Searches this number of slices, one vehicle after the other. */
   def searched(problem: PlanProblem, warm: JointPlan, search: Int, slices: Int): JointPlan =
     Iterator.iterate(warm)(improved(problem, _, search)).drop(slices).next()
 
@@ -73,13 +74,15 @@ final class JointPlanner:
     ManoeuvreRollout(part.situation, part.objective, problem.settings.dtS).track(plan.manoeuvre)
 
 object JointPlanner:
-  /** Limit of the cached blocks, by their steps; beyond it, the cache is cleared. */
+  /** Maximum number of cached blocks, which differ in their steps; beyond it, the cache is cleared. */
   private val MostBlocks = 8
 
-  /** Limit of the cached planners, by their settings and objectives. */
+  /** Maximum number of cached planners, which differ in settings and objective. */
   private val MostPlanners = 64
 
-  /** The best of several searches' plans; of equal ones the first. Its plans count the candidates of all. */
+  /** The best plan of several searches; of equal ones the first. Its counts of slices and candidates are
+    * totals of all searches.
+    */
   def best(problem: PlanProblem, found: Vector[JointPlan]): JointPlan =
     val chosen =
       if found.size == 1 then found.head else found.minBy(_.cost(problem.parts, problem.settings.dtS))

@@ -1,12 +1,14 @@
 package skein.planning
 
-/** A sequence of actions: the turn rate, rad/s, and the commanded speed, m/s, of each step. */
+/** A sequence of actions, each for one step: turn rate, rad/s, and commanded speed, m/s. */
 final case class Manoeuvre(turnRates: IArray[Float], speeds: IArray[Float]):
   require(turnRates.length == speeds.length, "a turn rate and a speed per step")
 
   def steps: Int = turnRates.length
 
-  /** The remainder after some time; its last action is held. Actions are interpolated between steps. */
+  /** The remainder of the manoeuvre after some time, extended by its last action. Actions are interpolated
+    * between steps.
+    */
   def shifted(elapsedS: Double, dtS: Double): Manoeuvre =
     Manoeuvre(Manoeuvre.shifted(turnRates, elapsedS / dtS), Manoeuvre.shifted(speeds, elapsedS / dtS))
 

@@ -1,6 +1,8 @@
 package skein.planning
 
-import skein.policy.PlanarObservation
+import skein.policy.{Observation, Seen}
+import skein.signal.Kinematics
+import skein.units.*
 import skein.vehicle.PlaneReading
 
 /** Simulates one manoeuvre in a situation, in doubles: the reference for the kernel, the check of the chosen
@@ -87,22 +89,32 @@ final class ManoeuvreRollout(situation: Situation, objective: PlanCost, dtS: Dou
         var (heading, memory, now) = (headingRad, policy.start, start: PredictedVehicle[?])
         for step <- 0 until own.length - 1 yield
           val (last, at) = (own(step), now.motion)
-          val seen       = PlanarObservation(
-            last.northM - at.northM,
-            last.eastM - at.eastM,
-            last.northMps - at.northMps,
-            last.eastMps - at.eastMps,
-            heading,
-            commanded(step).headingRad,
-            dtS,
-            0,
-            0
+          val observed   = Observation(
+            self = 0,
+            Vector(seen(at), seen(last)),
+            opponent = 1,
+            Vector(Radians(heading), Radians(commanded(step).headingRad)),
+            Span.ofSeconds(dtS),
+            decisions = step,
+            MetresPerSecond(speed),
+            startDown = Metres(0)
           )
-          val decided = policy.decide(seen, memory)
-          heading = decided._1
-          memory = decided._2
+          val (action, next) = policy.choose(observed, memory)
+          heading = action.headingRad(heading)
+          memory = next
           now = now.flown(speed * StrictMath.cos(heading), speed * StrictMath.sin(heading), dtS)
           now.motion
+
+  private def seen(motion: PlaneReading) = Seen(
+    Kinematics(
+      Vector3(motion.northM, motion.eastM, 0),
+      Vector3(motion.northMps, motion.eastMps, 0),
+      Quaternion.Identity,
+      Vector3.Zero
+    ),
+    Span.Zero,
+    isPredicted = false
+  )
 
 /** A simulated manoeuvre with its cost.
   *

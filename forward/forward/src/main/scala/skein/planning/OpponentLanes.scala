@@ -60,7 +60,7 @@ private object OpponentLanes:
     def cos: Array[Float] = arrays(In.OwnCos)
     def sin: Array[Float] = arrays(In.OwnSin)
 
-    def take(policy: skein.policy.HeadingPolicy): Unit = parameters = form.parametersOf(policy).map(_.toFloat)
+    def take(policy: skein.policy.Policy): Unit = parameters = form.parametersOf(policy).map(_.toFloat)
 
     def begin(opponent: Target.Opponent, dtS: Double): Unit =
       def fill(input: Int, value: Double) = Arrays.fill(arrays(input), value.toFloat)

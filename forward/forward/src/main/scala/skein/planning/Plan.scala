@@ -3,8 +3,8 @@ package skein.planning
 /** The best manoeuvre found so far, and the distribution of further candidates. Immutable.
   *
   * @param cost infinite if the manoeuvre was not evaluated in this situation
-  * @param slices searched so far
-  * @param candidates tried so far
+  * @param slices number of slices searched so far
+  * @param candidates number of candidates evaluated so far
   */
 final case class Plan(
     manoeuvre: Manoeuvre,

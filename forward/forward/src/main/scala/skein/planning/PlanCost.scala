@@ -5,25 +5,25 @@ import skein.vehicle.PlaneReading
 
 /** The area that a plan must not leave.
   *
-  * @param marginM kept inside of it
+  * @param marginM distance to keep from its boundary, on the inside, m
   */
 final case class Geofence(fence: Fence, marginM: Double = 0):
-  /** Distance of a place outside, m; negative inside. */
+  /** Distance of a position beyond the allowed area, m; negative inside. */
   def beyond(x: Double, y: Double): Double = fence.beyondM(x, y) + marginM
 
-  /** Adds the cost of a position at the end of a step to the costs so far. */
+  /** Adds the cost of a step's final position. */
   private[planning] def added(cost: Double, x: Double, y: Double): Double =
     cost + PlanCost.breach(beyond(x, y))
 
-  /** The geofence relative to another origin. */
+  /** The geofence in coordinates with another origin. */
   private[planning] def from(x: Double, y: Double): Geofence = copy(fence.from(x, y))
 
 /** The cost of coming near other vehicles.
   *
-  * @param minimum m, a hard limit
-  * @param margin m beyond it, within which coming nearer costs
-  * @param growth of the margin with the time ahead, m/s: later predictions are less certain
-  * @param price per second and per square metre missing
+  * @param minimum least distance, a hard limit, m
+  * @param margin width of the zone beyond the minimum in which coming nearer has a cost, m
+  * @param growth of the margin with the time ahead, m/s; later predictions are less certain
+  * @param price per second and per square metre of missing distance
   */
 final case class SeparationCost(
     minimum: Double,
@@ -35,28 +35,28 @@ final case class SeparationCost(
 
   def isKept: Boolean = minimum > 0
 
-  /** Distance within which coming nearer costs, m. */
+  /** Distance below which coming nearer has a cost, m. */
   def clearance(aheadS: Double): Double = minimum + margin + growth * aheadS
 
-/** The cost of a manoeuvre, in metres, so that weights are comparable. It includes the distance to the
-  * target: the integral over time, the least, and, at the end of the horizon, the distance to which momentum
-  * would carry the two, because a position without its velocity says little about vehicles with lag.
+/** The cost of a manoeuvre, in metres, so that weights are comparable. It contains three terms of the
+  * distance to the target: its integral over time, its minimum, and the distance to which their momentum
+  * would carry the two after the horizon, because the position alone says little about vehicles with lag.
   *
-  * Leaving a geofence or going below the least separation costs more than anything else, once per step, and
-  * the more the further.
+  * Every step outside a geofence or below the minimum separation costs more than everything else, and more
+  * with the size of the breach.
   *
-  * Turning costs by the acceleration that it asks for, so that a vehicle which hardly moves may turn back
-  * immediately.
+  * Turning costs by its lateral acceleration, so that a vehicle that hardly moves may turn back immediately.
   *
-  * @param distance per second and metre
-  * @param closest per metre of the least distance
-  * @param carried per metre of the distance carried to
-  * @param capture subtracted where the least distance is below the capture radius
+  * @param distance weight of the integral, per second and metre
+  * @param closest weight of the minimum distance, per metre
+  * @param carried weight of the distance after the horizon, per metre
+  * @param capture amount subtracted if the minimum distance is below the capture radius
   * @param captureRadius m
-  * @param turning per second and (m/s²)², of turn rate times commanded speed
-  * @param speedChange per second and (m/s)² off the cruise speed
-  * @param softness m: a distance d counts as √(d² + softness²), so that one below it costs by its square, and
-  *   a vehicle that is almost there does not hurry; above 0 only where nothing is captured
+  * @param turning weight of the squared lateral acceleration (turn rate times commanded speed), per second
+  *   and (m/s²)²
+  * @param speedChange weight of the squared difference from the cruise speed, per second and (m/s)²
+  * @param softness m: a distance d counts as √(d² + softness²). Distances below it then cost by their square,
+  *   and a vehicle that has nearly arrived does not hurry. Must be 0 if captures count
   */
 final case class PlanCost(
     limits: CommandLimits,
@@ -77,12 +77,13 @@ final case class PlanCost(
     s"expected no softness, or one above 0 m and no capture, came $softness m and a capture worth $capture"
   )
 
-  // Formulas: of doubles in ManoeuvreRollout, of a block's candidates in PlanKernel. They add to the costs so far.
+  // Formulas: ManoeuvreRollout evaluates them in doubles, PlanKernel for a block's candidates. Each adds to
+  // the costs so far.
 
-  /** The command of a step, with its own cost, the effort.
+  /** The command of a step, with the cost of its effort added.
     *
-    * @param headingRad commanded before
-    * @param turnRate rad/s, for `turnS`
+    * @param headingRad commanded heading before the step
+    * @param turnRate rad/s, for the duration `turnS`
     * @param speed m/s
     */
   private[planning] def steered(
@@ -99,9 +100,9 @@ final case class PlanCost(
     val effort        = aside * aside * (turning * dtS) + slow * slow * (speedChange * dtS)
     Steered(cost + effort, heading, cos, sin, speed * cos, speed * sin)
 
-  /** The cost of ending a step at this distance from another vehicle.
+  /** Adds the cost of a step that ends at this distance from another vehicle.
     *
-    * @param clearance within which coming nearer costs, m
+    * @param clearance distance below which coming nearer has a cost, m
     */
   private[planning] def neared(
       cost: Double,
@@ -116,7 +117,7 @@ final case class PlanCost(
     val missing  = (clearance - distance).max(0)
     cost + missing * missing * (separation.price * dtS) + PlanCost.breach(separation.minimum - distance)
 
-  /** The distances to the target so far, including the end of a step. */
+  /** Adds the distance to the target at the end of a step. */
   private[planning] def approached(
       so: Approach,
       x: Double,
@@ -127,10 +128,10 @@ final case class PlanCost(
     val distance = softened(targetX - x, targetY - y)
     Approach(so.sum + distance, so.least.min(distance))
 
-  /** The cost of these distances at the end of the horizon.
+  /** Adds the cost of the distances at the end of the horizon.
     *
-    * @param carriesS time for which its last velocity carries the vehicle
-    * @param weight of the behaviour
+    * @param carriesS time for which the vehicle's last velocity carries it, s
+    * @param weight weight of the opponent's behaviour
     */
   private[planning] def ended(
       cost: Double,
@@ -156,20 +157,22 @@ object PlanCost:
   /** Cost of one step that breaches a hard limit. */
   val Breach = 1000.0
 
-  /** Distance to a hard limit that already counts as a breach when candidates are priced, m: so a candidate
-    * within the limits in floats is so in doubles.
+  /** Distance inside a hard limit that already counts as a breach when candidates are priced, m. A candidate
+    * within the limits in floats is then within them in doubles too.
     */
   val Guard = 0.01
 
-  /** Cost of a step that ends this far beyond a hard limit, m. */
+  /** Cost of a step that ends this far beyond a hard limit, m; 0 if it ends within the limit. */
   private[planning] def breach(beyond: Double): Double =
     if beyond + Guard > 0 then Breach * (1 + (beyond + Guard)) else 0
 
 /** The command of a step.
   *
-  * @param cost so far
-  * @param headingRad commanded, with its cosine and sine
-  * @param northMps the commanded velocity
+  * @param cost total so far
+  * @param headingRad commanded heading
+  * @param cos cosine of the heading
+  * @param sin sine of the heading
+  * @param northMps north component of the commanded velocity
   */
 private[planning] final case class Steered(
     cost: Double,
@@ -180,9 +183,9 @@ private[planning] final case class Steered(
     eastMps: Double
 )
 
-/** Distances to a target at the ends of steps: their sum and the least of them, m. */
+/** Distances to a target at the ends of the steps so far: their sum and their minimum, m. */
 private[planning] final case class Approach(sum: Double, least: Double)
 
 private[planning] object Approach:
-  /** Before the first step: farther than any distance. */
+  /** The value before the first step; its minimum exceeds every distance. */
   val none: Approach = Approach(0, 1e9)

@@ -3,13 +3,13 @@ package skein.planning
 import java.util.Arrays
 import skein.simd.FixedFormula
 
-/** Simulates many candidate manoeuvres of one vehicle by SIMD and computes their costs, by the compiled
-  * formulas of [[ManoeuvreRollout]], its scalar reference; `PlanKernelSuite` compares the two. The vehicle's
-  * track does not depend on its opponent, so it is simulated once, and every behaviour of the opponent
-  * against it.
+/** Simulates many candidate manoeuvres of one vehicle by SIMD and computes their costs. The code is compiled
+  * from the formulas of [[ManoeuvreRollout]], the scalar reference; `PlanKernelSuite` compares the two. The
+  * vehicle's track does not depend on its opponent; so it is simulated once, and then priced against every
+  * behaviour of the opponent.
   *
-  * Positions are relative to the vehicle's start, so that floats resolve them. Results do not depend on the
-  * lane count. One instance per thread.
+  * Positions are relative to the vehicle's start, where floats are finest. Results do not depend on the lane
+  * count. One instance per thread.
   */
 private[planning] final class PlanKernel(steps: Int) extends SampledBlock(steps):
   import PlanKernel.*
@@ -21,7 +21,7 @@ private[planning] final class PlanKernel(steps: Int) extends SampledBlock(steps)
   private var opponents   = Vector.empty[OpponentLanes]
   private val cos, sin    = Array.ofDim[Float]((steps + 1) * Size) // headed before each step
   private val north, east = Array.ofDim[Float](Size)
-  // Of these the present row and the next one.
+  // The present row and the next row of these.
   private val heading, effort, sum, nearest = Array.ofDim[Float](2 * Size)
   private val lastRow                       = steps % 2 * Size
   private var cost, nextCost                = Array.ofDim[Float](Size)
@@ -140,9 +140,9 @@ private[planning] final class PlanKernel(steps: Int) extends SampledBlock(steps)
 private object PlanKernel:
   private final val Size = CandidateBlock.Size
 
-  /** A compiled method, bound to the last requested object.
+  /** A compiled method of the object that was passed last.
     *
-    * @param alike number of its last arguments that are equal for all candidates
+    * @param alike number of the last arguments that are equal for all candidates
     * @param bind sets the arrays of a call
     */
   private final class Compiled(method: String, alike: Int)(bind: FixedFormula.Call => Unit):

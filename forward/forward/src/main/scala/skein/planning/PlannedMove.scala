@@ -2,17 +2,17 @@ package skein.planning
 
 /** The next command of a plan.
   *
-  * @param turned from the last commanded heading, rad
+  * @param turned angle from the last commanded heading, rad
   * @param speed m/s
-  * @param breaches of hard limits that the plan could not avoid within its horizon
+  * @param breaches hard limits that the plan could not keep within its horizon
   */
 final case class PlannedMove(turned: Double, speed: Double, breaches: Vector[Breached])
 
 object PlannedMove:
 
-  /** The first action of a plan, checked in doubles: speed and turn are limited exactly, and the manoeuvre is
-    * simulated against geofence and separation. A search that has found any manoeuvre within the limits never
-    * returns one beyond them, so a breach means that none was found.
+  /** The first action of a plan, checked in doubles: speed and turn rate are clamped to the limits, and the
+    * manoeuvre is simulated against geofences and separation. A search that has found a manoeuvre within the
+    * hard limits never returns one beyond them, so a breach means that it found none.
     */
   def of(plan: Plan, situation: Situation, objective: PlanCost, dtS: Double): PlannedMove =
     val limits   = objective.limits

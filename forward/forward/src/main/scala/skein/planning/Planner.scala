@@ -2,7 +2,7 @@ package skein.planning
 
 import skein.lanes.plant.PlantLanes
 import skein.lanes.policy.PolicyLanes
-import skein.policy.HeadingPolicy
+import skein.policy.Policy
 import skein.simd.WorldRandom
 import skein.vehicle.Plant
 
@@ -234,7 +234,7 @@ object Planner:
   def isFast: Boolean = CandidateBlocks.isFast
 
   /** Why plans against an opponent of this policy are not supported: for SIMD, it must be a formula. */
-  def refusal(opponent: HeadingPolicy): Option[String] =
+  def refusal(opponent: Policy): Option[String] =
     if isFast then PolicyLanes.of(opponent).left.toOption.map(_.getMessage) else None
 
   /** Why plans for vehicles that move by this plant are not supported. */

@@ -4,15 +4,16 @@ import skein.policy.{Observation, Policy}
 import skein.units.{Radians, Span, Vector3}
 import skein.vehicle.PlaneReading
 
-/** The decisions of a vehicle's own policy, as a manoeuvre for a search. */
+/** Converts a policy's decisions to a manoeuvre, as a candidate for a search. */
 object PolicyManoeuvre:
 
-  /** Evaluates the policy before each step of the horizon, with the vehicle moved by its earlier decisions,
-    * and all others straight on. Its headings are followed as fast as the limits allow.
+  /** Evaluates the policy before each step of the horizon. In these observations the own vehicle has followed
+    * its earlier decisions, and all others fly straight on. Headings are followed as fast as the limits
+    * allow.
     *
-    * @param memory the policy's own
-    * @param observation at the beginning
-    * @param situation of this vehicle at this moment
+    * @param memory the policy's present memory
+    * @param observation the present observation
+    * @param situation the vehicle's present situation
     */
   def of(
       policy: Policy,
@@ -42,7 +43,7 @@ object PolicyManoeuvre:
       own = own.flown(speed * StrictMath.cos(heading), speed * StrictMath.sin(heading), dtS)
     Manoeuvre(IArray.unsafeFromArray(turns), IArray.unsafeFromArray(speeds))
 
-  /** The observation after the own vehicle has reached this state and the others went straight on. */
+  /** The observation after the own vehicle has reached this state, while the others flew straight on. */
   private def later(
       seen: Observation,
       own: PlaneReading,

@@ -4,10 +4,10 @@ import skein.vehicle.{ObservedPlant, PlaneReading, Plant, PlantState, ReducedMod
 
 /** A vehicle's state, with the plant that predicts it.
   *
-  * @param plant by which it moves; its dead time has no effect here
-  * @param northM origin of its plant, m, world NED
-  * @param carriesS time for which its last velocity carries it without further commands, s: for a first-order
-  *   lag, the lag
+  * @param plant predicts the vehicle; its dead time has no effect here
+  * @param northM north component of the plant's origin, m, world NED
+  * @param carriesS time for which the last velocity carries the vehicle without further commands, s; for a
+  *   first-order lag, the lag
   */
 final case class PredictedVehicle[S](
     plant: Plant[S],
@@ -16,16 +16,16 @@ final case class PredictedVehicle[S](
     eastM: Double,
     carriesS: Double
 ):
-  /** Its position and velocity: m and m/s, world NED. */
+  /** The vehicle's position, m, and velocity, m/s, world NED. */
   def motion: PlaneReading =
     val read = plant.read(state)
     read.copy(northM = northM + read.northM, eastM = eastM + read.eastM)
 
-  /** The vehicle with another origin of its plant. */
+  /** The vehicle, moved by this distance, m north and east. */
   def moved(northM: Double, eastM: Double): PredictedVehicle[S] =
     copy(northM = this.northM + northM, eastM = this.eastM + eastM)
 
-  /** The vehicle after a commanded velocity has lasted for this time. */
+  /** The vehicle after a commanded velocity has been in effect for this time. */
   def flown(northMps: Double, eastMps: Double, dtS: Double): PredictedVehicle[S] =
     val pieces = PredictedVehicle.pieces(plant, dtS)
     var now    = state
@@ -36,15 +36,15 @@ final case class PredictedVehicle[S](
     copy(state = now)
 
 object PredictedVehicle:
-  /** Time after which a vehicle with a command to stand still counts as standing, s. */
+  /** Time after which a vehicle that is commanded to stand still is assumed to stand, s. */
   private val StandsWithinS = 10.0
 
   def apply(model: ReducedModel, at: PlaneReading): PredictedVehicle[PlaneReading] =
     of(model, at, model.lagS)
 
-  /** A vehicle from its reading.
+  /** Creates a vehicle from its reading.
     *
-    * @param state of its plant as numbers, if the reading does not contain the whole state; else empty
+    * @param state the numbers of the plant's state if the reading lacks a part of it; else empty
     */
   def of[S](
       plant: ObservedPlant[S],
@@ -61,13 +61,13 @@ object PredictedVehicle:
       carriesS
     )
 
-  /** Time for which a plant's velocity carries it: its stopping distance over its speed before, m/s. */
+  /** Time for which a plant's velocity carries the vehicle, s: its stopping distance divided by its speed. */
   def carriesS(plant: ObservedPlant[?], speedMps: Double): Double = plant match
     case model: ReducedModel => model.lagS
     case _                   =>
       val still = of(plant, PlaneReading(0, 0, speedMps, 0), 0).flown(0, 0, StandsWithinS).motion
       StrictMath.hypot(still.northM, still.eastM) / speedMps
 
-  /** Number of the plant's steps within this time, none longer than its limit. */
+  /** Number of equal steps of the plant within this time, none longer than the plant's limit. */
   private[planning] def pieces(plant: Plant[?], dtS: Double): Int =
     math.ceil(dtS / plant.stepS - 1e-9).toInt.max(1)

@@ -1,9 +1,9 @@
 package skein.planning
 
-/** The distribution of candidates: independent normal distributions of each step's actions.
+/** The distribution of candidates: every step's turn rate and speed are independent and normally distributed.
   *
-  * @param turnSds standard deviations, rad/s
-  * @param speedSds m/s
+  * @param turnSds standard deviations of the turn rates, rad/s
+  * @param speedSds standard deviations of the speeds, m/s
   */
 final case class SamplingDistribution(
     turnMeans: IArray[Float],

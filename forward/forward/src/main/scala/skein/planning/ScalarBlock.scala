@@ -1,7 +1,7 @@
 package skein.planning
 
-/** A block whose candidates are simulated one by one, where the JVM has no vector module: the kernel's
-  * candidates, some fifty times slower.
+/** Simulates its candidates one by one, for JVMs without the vector module. The candidates are those of
+  * [[PlanKernel]]; it is some fifty times slower.
   */
 private[planning] final class ScalarBlock(steps: Int) extends CandidateBlock(steps):
   private val size = CandidateBlock.Size

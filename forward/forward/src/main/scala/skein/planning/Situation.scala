@@ -1,6 +1,6 @@
 package skein.planning
 
-import skein.policy.HeadingPolicy
+import skein.policy.Policy
 import skein.vehicle.PlaneReading
 
 /** Predicted positions of an object at the end of each step of the horizon, m, world NED: x north, y east. */
@@ -59,7 +59,7 @@ enum Target(val carriesS: Option[Double] = None):
     * @param speed that it commands, m/s
     * @param headingRad last commanded to it
     */
-  case Opponent(vehicle: PredictedVehicle[?], speed: Double, headingRad: Double, policy: HeadingPolicy)
+  case Opponent(vehicle: PredictedVehicle[?], speed: Double, headingRad: Double, policy: Policy)
       extends Target(Some(vehicle.carriesS))
 
   /** An object or a place whose track does not depend on this vehicle. */

@@ -5,8 +5,8 @@ import scala.collection.mutable
 import skein.lanes.plant.PlantLanes
 import skein.vehicle.{PlaneReading, Plant, PlantState, ReducedModel}
 
-/** One vehicle in each candidate's world: north, east, m, and velocity north and east, m/s, a row of each at
-  * the start and at the end of each step. Mutable.
+/** The track of one vehicle in each candidate's world. For the start and for the end of each step, `way` has
+  * four rows: north and east, m, and velocity north and east, m/s. Mutable.
   */
 private[planning] final class VehicleLanes(steps: Int):
   import VehicleLanes.*
@@ -18,9 +18,9 @@ private[planning] final class VehicleLanes(steps: Int):
   private var last           = Option.empty[(Plant[?], Double)]
   private val startX, startY = Array.ofDim[Float](Size)
 
-  /** Sets the vehicle, in one initial state.
+  /** Sets the vehicle, in one initial state for all candidates.
     *
-    * @param origin of the positions
+    * @param origin position to which all positions are relative
     */
   def take(vehicle: PredictedVehicle[?], origin: PlaneReading, dtS: Double): Unit =
     if known.size >= MostPlants then known.clear()
@@ -49,7 +49,7 @@ private[planning] final class VehicleLanes(steps: Int):
 
   /** Simulates the next step.
     *
-    * @param north of each commanded velocity, over `speed`, m/s
+    * @param north north component of each commanded velocity, divided by `speed`
     */
   def fly(north: Array[Float], east: Array[Float], speed: Float): Unit =
     flight.foreach(_.fly(north, east, speed))
@@ -61,7 +61,7 @@ private[planning] final class VehicleLanes(steps: Int):
       case _                                                                    => plant
     Flight(flown, pieces, dtS / pieces)
 
-  /** Simulates a plant in steps of equal length. */
+  /** Simulates a plant in steps of equal duration. */
   private final class Flight(plant: Plant[?], pieces: Int, pieceS: Double):
     private val lanes  = PlantLanes.of(plant).fold(why => throw IllegalArgumentException(why), identity)
     private val count  = lanes.count
@@ -100,10 +100,10 @@ private[planning] object VehicleLanes:
 
   private final val Numbers = 4
 
-  /** Distance between the rows of successive steps. */
+  /** Distance between the rows of successive steps, floats. */
   final val Apart = Numbers * Size
 
   private val MostPlants = 64
 
-  /** Offset of a row: of north, east, velocity north, east. */
+  /** Index of a row in `way`: 0 north, 1 east, 2 velocity north, 3 velocity east. */
   def row(step: Int, number: Int): Int = step * Apart + number * Size

@@ -8,15 +8,15 @@ import skein.simd.{LaneCompiler, LaneFunction}
 /** A compiled function and the mapping of its inputs to the expressions' inputs. Expressions that are equal
   * except for the numbers of their inputs share the code. Parameters are equal in all worlds.
   *
-  * @param inputs numbers in the expressions, in the order of the function's inputs
-  * @param nodes the expressions with the numbers of the function's inputs
+  * @param inputs for each input of the function, its number in the expressions
+  * @param nodes the expressions, with their inputs renumbered as in the function
   */
 private[skein] final class BoundFunction private (
     val inputs: Array[Int],
     val nodes: Vector[Node],
     val function: LaneFunction
 ):
-  /** The function's index of an input of the expressions; −1 if it is unused. */
+  /** The function's index of an expression's input; −1 if the input is unused. */
   def place(input: Int): Int = inputs.indexOf(input)
 
   def outputs: Int = nodes.size
@@ -25,10 +25,10 @@ private[skein] object BoundFunction:
   private type Key = (Vector[(Op, Vector[Int], Long)], Vector[Int], Vector[(Int, Int)])
   private val compiled = ConcurrentHashMap[Key, LaneFunction]()
 
-  /** Compiles expressions.
+  /** Compiles expressions; equal ones only once.
     *
-    * @param rowOf rows of inputs that share an array, by their numbers in the expressions; for all of these,
-    *   [[LaneCall.input]] takes the array and the offset of its first row
+    * @param rowOf row of each input, by its number in the expressions, for inputs that share an array.
+    *   [[LaneCall.input]] of the first of them takes the array and the offset of its row 0
     * @param areRows whether the outputs are the rows of one array
     */
   def of(
@@ -53,9 +53,9 @@ private[skein] object BoundFunction:
   private def leafOf(node: Node): Long =
     if node.isConst then java.lang.Double.doubleToRawLongBits(node.value) else node.index.toLong
 
-/** A call of a [[BoundFunction]] with arrays for its inputs and outputs. Mutable.
+/** Calls a [[BoundFunction]] with arrays for its inputs and outputs. Mutable.
   *
-  * @param parameters read at each call
+  * @param parameters array that is read at each call
   */
 private[skein] final class LaneCall(bound: BoundFunction, parameters: Array[Float] = Array.emptyFloatArray):
   private val arrays   = Array.ofDim[Array[Float]](bound.inputs.length + bound.outputs)
@@ -66,19 +66,22 @@ private[skein] final class LaneCall(bound: BoundFunction, parameters: Array[Floa
   private val function = bound.function
   private var worlds   = LaneFunction.COUNT
 
-  /** From now on only the first worlds count. */
+  /** Limits evaluation to the first worlds, until the next call. */
   def use(worlds: Int): Unit = this.worlds = worlds
 
-  /** Sets the array and offset of an input, by the function's index of it. */
+  /** Sets the array of an input, by the function's index, with the offset for this call and the distance by
+    * which [[next]] advances it.
+    */
   def input(number: Int, array: Array[Float], offset: Int, stride: Int = 0): Unit =
-    // Nearly always the same one: to store a reference costs the collector's bookkeeping.
+    // Nearly always the array is unchanged, and storing a reference costs the garbage collector's
+    // bookkeeping.
     if arrays(number) ne array then arrays(number) = array
     offsets(number) = offset
     if stride != strides(number) || stride > 0 then
       starts(number) = offset
       strides(number) = stride
 
-  /** Sets the array of an input that the function may not have: its index is −1 then. */
+  /** Sets the array of an input unless its index is −1, which means that the function does not use it. */
   def inputIfAny(number: Int, array: Array[Float], offset: Int = 0, stride: Int = 0): Unit =
     if number >= 0 then input(number, array, offset, stride)
 
@@ -94,7 +97,9 @@ private[skein] final class LaneCall(bound: BoundFunction, parameters: Array[Floa
       if strides(i) > 0 then offsets(i) = starts(i)
       i += 1
 
-  /** Evaluates, and then advances every argument by its stride; at the end of an array, back to its start. */
+  /** Evaluates the function, and then advances every argument by its stride. A strided argument that passes
+    * the end of its array returns to offset 0.
+    */
   def next(): Unit =
     apply()
     var i = 0

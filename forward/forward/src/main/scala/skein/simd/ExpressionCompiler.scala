@@ -3,22 +3,22 @@ package skein.simd
 import scala.collection.mutable
 import skein.formula.{Node, Op, Untraceable}
 
-/** Generates code for expressions, for any instruction set. Everything that decides the bits of a result is
-  * here: elementary functions are the polynomials of [[LaneMath]], inlined; products are fused with sums;
-  * minimum and maximum are comparisons. So machines whose single operations round as IEEE 754 says agree to
+/** Generates code for expressions, for any instruction set. This class determines all bits of a result:
+  * elementary functions are the polynomials of [[LaneMath]], inlined; products are fused with sums; minimum
+  * and maximum are comparisons. So all machines whose single operations round as IEEE 754 requires agree to
   * the bit.
   *
-  * The result of an operation is identified by the number of its register or variable: of a float, of a
-  * condition, or of the 32 bits of a float. Mutable: for one stretch of code.
+  * The result of an operation is identified by the number of its register or variable. It is a float, a
+  * condition, or the 32 bits of a float. Mutable; one instance per stretch of code.
   */
 private[skein] abstract class ExpressionCompiler:
   import ExpressionCompiler.Round
 
-  /** Slots of the nodes that are already computed. */
+  /** Register or variable of each node that is already computed. */
   protected final val slots   = mutable.HashMap.empty[Node, Int]
   private val sinesAndCosines = mutable.HashMap.empty[Node, (Int, Int)]
 
-  // What a machine has.
+  // The operations of a machine.
 
   protected def input(number: Int): Int
   protected def parameter(number: Int): Int
@@ -35,7 +35,7 @@ private[skein] abstract class ExpressionCompiler:
   protected def fma(a: Int, b: Int, c: Int): Int
   protected def choose(otherwise: Int, where: Int, condition: Int): Int
 
-  // What is no number compares as false.
+  // A comparison with NaN is false.
   protected def isLess(a: Int, b: Int): Int
   protected def isAtMost(a: Int, b: Int): Int
   protected def isEqual(a: Int, b: Int): Int
@@ -52,10 +52,10 @@ private[skein] abstract class ExpressionCompiler:
   protected def xorBits(a: Int, b: Int): Int
   protected def shiftLeft(a: Int, by: Int): Int
 
-  /** Condition: whether the highest bit is set. */
+  /** The condition that the highest bit is set. */
   protected def isHighest(a: Int): Int
 
-  /** Slot of a node's number or condition; generates its code first if needed. */
+  /** Register or variable of a node's result; generates its code first if needed. */
   protected final def of(node: Node): Int = node.op match
     case Op.Const => constant(node.value.toFloat)
     case _        => slots.getOrElseUpdate(node, computed(node))
@@ -134,8 +134,7 @@ private[skein] abstract class ExpressionCompiler:
         else fma(neg(times), of(y), x)
       case Op.Always => throw Untraceable("a condition that always holds")
 
-  // Polynomials of Cephes' sinf.c, atanf.c and expf.c; LaneMath has that of the last for passes written by
-  // hand.
+  // Polynomials of Cephes' sinf.c, atanf.c and expf.c; LaneMath has the last one for passes written by hand.
 
   private def sinCos(of: Node): (Int, Int) = sinesAndCosines.getOrElseUpdate(
     of, {
@@ -182,7 +181,7 @@ private[skein] abstract class ExpressionCompiler:
     val angle  = choose(third, sub(constant(3.14159265f), third), isLess(x, constant(0f)))
     ofBits(orBits(bitsOf(angle), andBits(bitsOf(y), bitConstant(Int.MinValue))))
 
-  /** The exponential, valid from −87 to 88: beyond, the result exceeds floats. */
+  /** The exponential, for arguments from −87 to 88; larger results exceed floats. */
   private def exp(x: Int): Int =
     val rounded = fma(x, constant(1.44269504f), constant(Round))
     val power   = sub(rounded, constant(Round))
@@ -197,7 +196,7 @@ private[skein] abstract class ExpressionCompiler:
       5.0000001201e-1f
     )
     val fraction = bitsOf(fma(tail, mul(rest, rest), add(rest, constant(1f))))
-    // The bits of what is no number differ between machines, and with a sum they may become one.
+    // The bits of a NaN differ between machines, and could become a number by the sum.
     choose(x, ofBits(addBits(fraction, shiftLeft(bitsOf(rounded), 23))), isEqual(x, x))
 
   private def tanh(x: Int): Int =
@@ -205,8 +204,8 @@ private[skein] abstract class ExpressionCompiler:
     val power  = exp(add(inside, inside))
     div(sub(power, constant(1f)), add(power, constant(1f)))
 
-  /** √(1 − |x|) · polynomial: Abramowitz and Stegun, 4.4.46. Arguments that exceed 1 by rounding count as 1;
-    * beyond, the root is NaN.
+  /** The arc cosine as √(1 − |x|) · polynomial: Abramowitz and Stegun, 4.4.46. Arguments that exceed 1 by
+    * rounding count as 1; beyond that, the root is NaN.
     */
   private def acos(of: Node): Int =
     val x     = this.of(of)
@@ -238,16 +237,19 @@ private[skein] abstract class ExpressionCompiler:
 
   private def rint(x: Int): Int = sub(add(x, constant(Round)), constant(Round))
 
-  /** By Horner's rule, the highest power's coefficient first. */
+  /** A polynomial by Horner's rule.
+    *
+    * @param coefficients that of the highest power first
+    */
   private def series(x: Int, coefficients: Float*): Int =
     coefficients.tail.foldLeft(constant(coefficients.head))((sum, each) => fma(sum, x, constant(each)))
 
   private def signed(x: Int, sign: Int): Int = ofBits(xorBits(bitsOf(x), sign))
 
-  /** Limits a value by a comparison: two instructions, where a machine's own `min` and `max` take up to six.
-    * NaN stays NaN if only one of the two can be NaN, which is then the value.
+  /** The minimum or maximum, by a comparison. It takes two instructions, a machine's own `min` or `max` up to
+    * six. NaN stays NaN if only one of the two arguments can be NaN; that one is then the value.
     *
-    * @param isBeyond compares a limit and a value
+    * @param isBeyond compares the limit with the value
     */
   private def extreme(node: Node)(isBeyond: (Int, Int) => Int): Int =
     val Vector(a, b)   = node.args
@@ -259,9 +261,9 @@ private[skein] abstract class ExpressionCompiler:
 
   private val numbers = mutable.HashMap.empty[Node, Boolean]
 
-  /** Whether it is a number if the inputs are, and no intermediate value overflows. */
+  /** Whether a node is never NaN if its inputs are not NaN and no intermediate value overflows. */
   private def isNumber(node: Node): Boolean =
-    // Expressions may be deeper than a stack of calls.
+    // Expressions may be deeper than the call stack.
     val asked = mutable.Stack(node)
     while asked.nonEmpty do
       val unknown = asked.top.args.filterNot(numbers.contains)

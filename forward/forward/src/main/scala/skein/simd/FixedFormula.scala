@@ -4,11 +4,11 @@ import java.util.concurrent.ConcurrentHashMap
 import skein.formula.{Angles, Evaluation, Formula, Fused, Trace, Untraceable}
 import skein.simd.LaneFunction
 
-/** A method of one object, compiled with the object's own numbers, which are equal in all worlds.
+/** A compiled method of one object. The object's own numbers are parameters, which are equal in all worlds.
   *
-  * @param alike number of the method's last inputs that are equal in all worlds too
-  * @param bound computed from the inputs and [[parameters]]
-  * @param evaluation computes those from the object's own numbers
+  * @param alike number of the method's last inputs that are also equal in all worlds
+  * @param bound computes the result from the inputs and [[parameters]]
+  * @param evaluation computes the parameters from the object's own numbers
   */
 private[skein] final class FixedFormula private (
     formula: Formula,
@@ -21,19 +21,21 @@ private[skein] final class FixedFormula private (
 
   def inputs: Vector[String] = formula.inputs
 
-  /** Whether another object's method is this formula, with its own numbers. */
+  /** Whether another object's method differs from this formula only in its own numbers. */
   def fits(other: AnyRef): Boolean = formula.fits(other)
 
   def of(other: AnyRef): FixedFormula =
     if other eq of then this else new FixedFormula(formula, other, alike, bound, evaluation)
 
-  /** The parameters of an object that [[fits]], which follow those of the equal inputs. */
+  /** The parameters for an object that [[fits]]: room for the inputs that are equal in all worlds, then its
+    * own.
+    */
   private[skein] def parametersOf(other: AnyRef): Array[Double] =
     Array.ofDim[Double](alike) ++ evaluation(Array.emptyDoubleArray, formula.parametersOf(other))
 
   private[skein] val parameters: Array[Double] = parametersOf(of)
 
-  /** Converts the method's inputs to those of [[bound]]. */
+  /** Reorders the method's inputs to those of [[bound]]. */
   private[skein] def inputsOf(own: Array[Double]): Array[Double] = bound.inputs.map(own(_))
 
   def call: FixedFormula.Call = call(of)
@@ -46,7 +48,8 @@ private[skein] object FixedFormula:
 
   /** Compiles a formula.
     *
-    * @param rows number of the first inputs that are rows of one array; all outputs are rows of another
+    * @param rows number of the first inputs that are rows of one array; if above 0, all outputs are rows of
+    *   another
     */
   def apply(
       formula: Formula,
@@ -68,7 +71,7 @@ private[skein] object FixedFormula:
       BoundFunction.of(fused.map(angles.convert), { case input if input < rows => input }, areRows = rows > 0)
     new FixedFormula(formula, of, alike, bound, Evaluation(angles.derived))
 
-  /** Compiles an object's method, once for all objects of a form.
+  /** Compiles an object's method, once for all objects of a form. Left states why SIMD does not support it.
     *
     * @param alike number of the method's last inputs that are equal in all worlds
     */
@@ -87,7 +90,7 @@ private[skein] object FixedFormula:
     private val places = Array.fill(own)(-1)
     for (input, place) <- formula.bound.inputs.zipWithIndex do places(input) = place
 
-    /** Sets another object, which [[FixedFormula.fits]]. */
+    /** Replaces the object by another one that [[FixedFormula.fits]]. */
     def take(of: AnyRef): Unit =
       val numbers = formula.parametersOf(of)
       for i <- formula.alike until numbers.length do parameters(i) = numbers(i).toFloat
@@ -95,7 +98,7 @@ private[skein] object FixedFormula:
     /** Sets an input that is equal in all worlds. */
     def everywhere(number: Int, value: Float): Unit = parameters(number - own) = value
 
-    /** Sets the array and offset of an input, with one number for each world. */
+    /** Sets the array and offset of an input that has one number per world. */
     def input(number: Int, array: Array[Float], from: Int): Unit =
       if places(number) >= 0 then call.input(places(number), array, from)
 
@@ -108,10 +111,10 @@ private[skein] object FixedFormula:
 
     def output(number: Int, array: Array[Float], from: Int): Unit = call.output(number, array, from)
 
-    /** Binds an input that advances by a row at each [[next]] call, and after the last row returns to the
-      * first.
+    /** Binds an input that advances by a row at each [[next]] call, and returns to the first row after the
+      * last.
       *
-      * @param apart distance of the rows
+      * @param apart distance between the rows
       */
     def rows(number: Int, array: Array[Float], from: Int, apart: Int): Unit =
       if places(number) >= 0 then call.input(places(number), array, from, apart)
@@ -126,7 +129,7 @@ private[skein] object FixedFormula:
         output(i, array, from + i * LaneFunction.COUNT)
         i += 1
 
-    /** From now on only the first worlds count. */
+    /** Limits evaluation to the first worlds, until the next call. */
     def use(worlds: Int): Unit = call.use(worlds)
 
     def apply(): Unit = call()

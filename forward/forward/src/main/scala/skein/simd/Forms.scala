@@ -4,19 +4,19 @@ import java.util.{Collections, WeakHashMap}
 import java.util.concurrent.CopyOnWriteArrayList
 import skein.formula.Untraceable
 
-/** A cache of compiled forms of one kind of object, for all threads.
+/** A cache of the compiled forms of one kind of object, shared by all threads.
   *
-  * @param fits whether an object is of a form
-  * @param mostRefused after this number of refusals of a class, and no success, further objects are refused
-  *   without an attempt: to compile takes milliseconds
-  * @param compile an object's form, or why it has none
+  * @param fits whether an object has a form
+  * @param mostRefused number of refusals after which, without any success, further objects are refused
+  *   without an attempt, because compiling takes milliseconds
+  * @param compile compiles an object's form, or states why it has none
   */
 private[skein] final class Forms[Of, Form](fits: (Form, Of) => Boolean, mostRefused: Int = Int.MaxValue)(
     compile: Of => Either[Untraceable, Form]
 ):
   private val known = CopyOnWriteArrayList[Form]()
 
-  /** Refused objects: another object of such a class may still be a formula. */
+  /** Objects that were refused. Others of their class may still be formulas. */
   private val refused  = Collections.synchronizedMap(WeakHashMap[Of, Untraceable]())
   private var refusals = 0
   private var last     = Option.empty[Untraceable]

@@ -7,14 +7,13 @@ import java.lang.reflect.AccessFlag
 import scala.collection.mutable
 import skein.formula.Node
 
-/** Compiles expressions to a [[LaneFunction]]: straight passes over blocks of worlds, in which a number stays
-  * in a register from where it is computed to where it is used. Elementary functions are the polynomials of
-  * [[LaneMath]], written out, so that every lane computes identical bits on every machine; products are fused
-  * with sums.
+/** Compiles expressions to a [[LaneFunction]]: passes over blocks of worlds, in which a number stays in a
+  * register from its computation to its last use. Elementary functions are the polynomials of [[LaneMath]],
+  * written out, so that every lane computes identical bits on every machine; products are fused with sums.
   *
-  * A pass calls the vector API alone and is no longer than the JIT compiler can compile in one piece without
-  * boxing vectors (see [[LaneMath]]). A longer expression becomes several passes; intermediate values are
-  * stored in scratch, which stays in the first-level cache.
+  * A pass calls nothing but the vector API, and is short enough for the JIT compiler to compile in one piece
+  * without boxing vectors (see [[LaneMath]]). A longer expression becomes several passes; their intermediate
+  * values are stored in scratch memory, which stays in the first-level cache.
   */
 object LaneCompiler:
 
@@ -22,11 +21,11 @@ object LaneCompiler:
     *
     * @param inputs number of inputs
     * @param outputs expressions to compute
-    * @param differences number of the first inputs that are differences of two arrays' numbers; the
-    *   subtrahends are in the arrays after those of the outputs
-    * @param parameters number per world; 0: all worlds share them
-    * @param places of the inputs and then of the outputs, where several share an array: the array's number
-    *   and the row in it; None: each has its own
+    * @param differences number of the first inputs that are differences of two arrays; the subtrahends'
+    *   arrays follow those of the outputs
+    * @param parameters number of parameters per world; 0 if all worlds share them
+    * @param places number of the array, and row in it, of each input, then of each output; if it ends
+    *   earlier, each of the remaining ones has its own array
     */
   def compile(
       inputs: Int,
@@ -104,7 +103,7 @@ object LaneCompiler:
             ): Unit
       )
 
-  /** Offset in scratch of a stored number, by place. */
+  /** Index in scratch memory of a stored number, by its place. */
   private[simd] def laidBy(place: Int): Int = LaneFunction.UNUSED + place * LaneFunction.COUNT
 
 private object Names:
@@ -126,9 +125,9 @@ private object Names:
   val apply: MethodTypeDesc =
     MethodTypeDesc.of(ConstantDescs.CD_void, floats.arrayType, ints, floats, floats, ConstantDescs.CD_int)
 
-/** Generates the bytecode of one pass. A vector is a local variable, given by its number.
+/** Generates the bytecode of one pass. A vector is identified by its local variable.
   *
-  * @param subtrahends offset of the arrays whose numbers are subtracted from the first inputs
+  * @param subtrahends number of the first array whose numbers are subtracted from inputs
   */
 private final class PassCompiler(
     code: CodeBuilder,
@@ -154,7 +153,7 @@ private final class PassCompiler(
     next - 1
 
   def emit(): Unit =
-    // Everything before the loop is found by writing the loop once for nothing.
+    // A first, unused generation of the loop finds everything that must precede it.
     val rehearsal = ClassFile.of(
       ClassFile.StackMapsOption.DROP_STACK_MAPS,
       ClassFile.DeadCodeOption.KEEP_DEAD_CODE,
@@ -200,7 +199,7 @@ private final class PassCompiler(
     for (node, place) <- pass.loads do slots(node) = loaded(3, laidBy(place))
     for node <- pass.computes if !node.op.isLeaf do computed(node): Unit
     for (node, place) <- pass.stores do store(of(node), 3, laidBy(place))
-    // All is read before anything is written: see LaneFunction.isOnePass.
+    // All inputs are read before any output is written: see LaneFunction.isOnePass.
     val written = pass.outputs.map((node, output) => (of(node), inputs + output))
     for (vector, number) <- written do storeTo(vector, number)
 
@@ -297,7 +296,7 @@ private final class PassCompiler(
     code.astore(place)
     place
 
-  /** Loads the worlds' numbers from an argument's array, from an index on. */
+  /** Loads numbers of the present worlds from an argument's array, from an index on. */
   private def loaded(argument: Int, from: Int): Int =
     code.getstatic(math, "SPECIES", species).aload(argument).iload(world).loadConstant(from).iadd()
     code.invokestatic(float, "fromArray", MethodTypeDesc.of(float, species, floats, ConstantDescs.CD_int))
@@ -306,7 +305,7 @@ private final class PassCompiler(
   protected def parameter(number: Int): Int =
     code.getstatic(math, "SPECIES", species).aload(2)
     if parameters == 0 then
-      // The same in all worlds. Fetched where it is used: registers are few.
+      // Equal in all worlds. Loaded at each use, because registers are few.
       code.loadConstant(number).faload()
       code.invokestatic(float, "broadcast", MethodTypeDesc.of(float, species, ConstantDescs.CD_float))
     else
@@ -325,7 +324,7 @@ private final class PassCompiler(
     code.invokestatic(float, "fromArray", MethodTypeDesc.of(float, species, floats, ConstantDescs.CD_int))
     stored()
 
-  /** Generates the array of an input or output, and the index of the present worlds in it. */
+  /** Pushes the array of an input or output, and the index of the present worlds in it. */
   private def locate(number: Int): Unit =
     val (of, row)       = places.applyOrElse(number, (own: Int) => (own, 0))
     val (array, offset) = arrays.getOrElseUpdate(of, (fresh(), fresh()))

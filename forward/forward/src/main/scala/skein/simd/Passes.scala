@@ -5,10 +5,10 @@ import skein.formula.{Node, Op}
 
 /** One loop over the worlds.
   *
-  * @param computes nodes, in this order
-  * @param loads from scratch, by place
-  * @param stores to scratch
-  * @param outputs by the output's number
+  * @param computes nodes to compute, in this order
+  * @param loads nodes that are loaded from scratch, with their places
+  * @param stores nodes that are stored in scratch, with their places
+  * @param outputs nodes with the numbers of the outputs that they are
   */
 private final case class Pass(
     computes: Vector[Node],
@@ -19,22 +19,22 @@ private final case class Pass(
 
 /** Splits a long expression into passes that the JIT compiler handles well. */
 private object Passes:
-  // Chosen by measuring (`PolicyBenchmark`): with more of either, constants are fetched from memory in every
+  // Chosen by measurement (`PolicyBenchmark`): above either limit, constants are loaded from memory in every
   // round.
 
-  /** Limit of the vector operations in one pass. */
+  /** Maximum number of vector operations in one pass. */
   private val Most = 50
 
-  /** Limit of the constants in one pass, of 32 registers. */
+  /** Maximum number of constants in one pass, of 32 registers. */
   private val MostConstants = 20
 
-  // The same where inputs and outputs are rows of few arrays, whose addresses leave registers: a step with
-  // drag and two lags in one pass takes 210 ns, in two 250 to 300; the quadrotor's 400 operations fly 119 M
-  // steps a second in four passes, and 95 M in eight of 60.
+  // The limits if inputs and outputs are rows of few arrays, whose addresses need few registers: a step with
+  // drag and two lags takes 210 ns in one pass and 250 to 300 in two; the quadrotor's 400 operations reach
+  // 119 M steps a second in four passes, and 95 M in eight of 60.
   private val MostOfRows          = 140
   private val MostConstantsOfRows = 30
 
-  // In what laying a number by costs: a pass, and to fetch a number.
+  // Costs of a pass and of loading a number, relative to storing one.
   private val PassCost  = 8.0
   private val FetchCost = 0.5
 
@@ -56,7 +56,7 @@ private object Passes:
       ofPass(pass).flatMap(argsOf).distinct.filter(arg =>
         !arg.op.isLeaf && passOf(arg) < pass
       )
-    // Conditions are computed again where another pass needs them: a mask is not laid by.
+    // A pass that needs another pass's condition computes it again, because masks cannot be stored.
     val again   = needs.map(conditionsOf)
     val numbers = needs
       .zip(again)
@@ -74,7 +74,9 @@ private object Passes:
         outputs.zipWithIndex.filter((node, _) => passOf.getOrElse(node, 0) == pass)
       )
 
-  /** The conditions among the nodes, and those that they depend on, each once and arguments last. */
+  /** The conditions among the nodes, and the conditions on which these depend, each once and arguments before
+    * their users.
+    */
   private def conditionsOf(nodes: Vector[Node]): Vector[Node] =
     val found                  = mutable.LinkedHashSet.empty[Node]
     def find(node: Node): Unit = if node.op.isCondition && !found(node) then
@@ -83,9 +85,9 @@ private object Passes:
     nodes.foreach(find)
     found.toVector
 
-  /** Ends of passes that minimise the numbers stored and loaded.
+  /** Divides nodes, in this order, into passes that store and load as few numbers as possible.
     *
-    * @return places in the order, the last its end
+    * @return the end of each pass, as an index in the order
     */
   private def cut(
       order: Vector[Node],
@@ -125,8 +127,8 @@ private object Passes:
             from(end) = first
     Iterator.iterate(count)(from(_)).takeWhile(_ > 0).toVector.reverse
 
-  /** Assigns scratch places to numbers from their pass to their last use: a place is reused as soon as it is
-    * free, so that all stay in a near cache. A pass loads before it stores.
+  /** Assigns a scratch place to each number from its computation to its last use. Places are reused as soon
+    * as they are free, so that all stay in a near cache. A pass loads before it stores.
     */
   private def placed(
       lastUse: collection.Map[Node, Int],
@@ -162,7 +164,7 @@ private object LaneCosts:
     case Op.Signum                         => 4
     case _                                 => 1
 
-  /** Constants that must be in registers for it. */
+  /** Constants that an operation needs in registers. */
   def constantsOf(node: Node): Set[Any] =
     def named(op: Op, count: Int) = Set.tabulate[Any](count)(i => (op, i))
     val own                       = node.op match

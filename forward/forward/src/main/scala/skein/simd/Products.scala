@@ -2,7 +2,7 @@ package skein.simd
 
 import skein.formula.{Node, Op, Trace}
 
-/** Which products of some expressions are fused with sums, and which are also computed by themselves. */
+/** Determines which products in expressions are fused with sums, and which are computed by themselves. */
 private[skein] final class Products(outputs: Vector[Node]):
   private val order = Trace.needed(outputs)
 
@@ -15,13 +15,13 @@ private[skein] final class Products(outputs: Vector[Node]):
 
   private def isFusedAlone(node: Node) = node.op == Op.Mul && fused(node) && !usedPlainly(node)
 
-  /** All nodes that are computed, arguments before their users. */
+  /** All nodes to compute, arguments before their users. */
   val computed: Vector[Node] = order.filterNot(isFusedAlone)
 
   def argsOf(node: Node): Vector[Node] =
     node.args.flatMap(arg => if isFusedAlone(arg) then arg.args else Vector(arg))
 
 private[skein] object Products:
-  /** The product that is fused into a sum, if any. */
+  /** The product that is fused with a sum, if any. */
   def factor(sum: Node): Option[Node] =
     if sum.op == Op.Add then sum.args.find(_.op == Op.Mul) else None

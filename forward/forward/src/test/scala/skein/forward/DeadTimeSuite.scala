@@ -4,7 +4,7 @@ import skein.policy.Action
 import skein.units.Metres
 
 class DeadTimeSuite extends munit.FunSuite:
-  test("each of many commands takes effect a dead time after its arrival, however many wait"):
+  test("each of many commands takes effect a dead time after its arrival, however many are pending"):
     val vehicle = VelocityResponses.lag(gain = 1, lagS = 0, deadTimeS = 3).create()
     vehicle.start(0, 0, 0)
     for step <- 0 until 1000 do

@@ -13,18 +13,18 @@ class DelaysSuite extends munit.FunSuite:
   private def busyAt(key: Int, seconds: Range): Seq[Boolean] =
     seconds.map(s => mixed.isBusy(WorldRandom.key(3, 0, key), s * second))
 
-  test("a link that alternates is busy for its share of the time, at any time"):
+  test("an alternating link is busy for its share of the time, at every moment"):
     for at <- Seq(0, 60, 300) do
       val busy = (0 until 4000).count(key => busyAt(key, at to at).head) / 4000.0
       assertEqualsDouble(busy, 40.0 / 95, 0.025)
 
-  test("its stretches last as long as they should, on average"):
+  test("the stretches of an alternating link have the stated mean duration"):
     val changes =
       (0 until 200).map(key => busyAt(key, 0 until 950).sliding(2).count(pair => pair(0) != pair(1))).sum
     // Two changes in 95 s; those less than a second apart are not seen.
     assertEqualsDouble(changes / 200.0, 20, 1.0)
 
-  test("within a stretch delays are those of the busy or of the quiet link"):
+  test("within a stretch, delays are those of the busy or of the quiet link"):
     for key <- 0 until 50 do
       val world = WorldRandom.key(3, 0, key)
       val link  = if mixed.isBusy(world, 7 * second) then DelayTable.vpn else DelayTable.direct
@@ -43,7 +43,7 @@ class DelaysSuite extends munit.FunSuite:
     case Right(lossy: LossyDelays) => lossy
     case other                     => fail(other.toString)
 
-  /** By how much the messages of a line are late, over many worlds and steps, ns. */
+  /** Additional delays of a line's messages due to losses, over many worlds and steps, ns. */
   private def waits(text: String, line: Int, worlds: Int = 400, steps: Int = 300): Seq[Seq[Long]] =
     val delays = lossy(text)
     for world <- 0 until worlds yield
@@ -59,7 +59,10 @@ class DelaysSuite extends munit.FunSuite:
       assertEquals(all.distinct.sorted.take(3), Seq(0L, 303L, 909L))
       assertEqualsDouble(all.count(_ > 303).toDouble / all.count(_ > 0), after, 0.02)
 
-  test("bursts of four packets come in the next message of a line as often as on a link with forty a second"):
+  test(
+    "with bursts of four packets, a line's next message is lost as often as on a link with forty packets " +
+      "a second"
+  ):
     // From packet to packet the chain keeps a share of 1 − 1/4 / 0.95; messages of a line are four apart.
     val keeps              = math.pow(1 - 0.25 / 0.95, 4)
     def next(text: String) =
@@ -69,7 +72,7 @@ class DelaysSuite extends munit.FunSuite:
     assertEqualsDouble(next("loss:5%/4,vpn"), 0.05 + 0.95 * keeps, 0.03)
     assertEqualsDouble(next("loss:5%,vpn"), 0.05, 0.01)
 
-  test("bursts of one direction are not those of the other, outages are"):
+  test("bursts are independent in the two directions, outages are not"):
     def together(text: String) =
       val (there, back) =
         (waits(text, Delays.command(0)).flatten, waits(text, Delays.acknowledgement(0)).flatten)
@@ -77,7 +80,7 @@ class DelaysSuite extends munit.FunSuite:
     assertEqualsDouble(together("loss:5%/4,vpn"), 0.05, 0.02)
     assertEquals(together("outage:1s/10s,vpn"), 1.0)
 
-  test("in an outage all waits end behind it, the longest after the last try needed"):
+  test("all messages of an outage arrive after it, at one of the tries"):
     val each = waits("outage:1s/10s,vpn", Delays.command(0)).map(_.map(ns => (ns * 1e-6).round))
     val all  = each.flatten
     // The later in an outage a message is sent, the sooner it passes; few outages follow another directly.
@@ -88,7 +91,7 @@ class DelaysSuite extends munit.FunSuite:
     assertEquals(all.distinct.sorted, Seq(0L, 303L, 909L, 2120L))
     assertEqualsDouble(lossy("outage:1s/10s,vpn").maxS, 2.12 + 0.1035, 0.01)
 
-  test("what forward simulation does not support, it names; without losses nothing changes"):
+  test("the message about an unsupported link states the link; a loss of 0 changes nothing"):
     for text <- Seq("rate:1mbit,loss:5%,vpn", "loss:5%,correlated:1s,vpn") do
       assertEquals(
         checked(text),
@@ -98,9 +101,7 @@ class DelaysSuite extends munit.FunSuite:
       )
     assert(checked("loss:0%,vpn").exists(_.isInstanceOf[DelayTable]))
 
-  test(
-    "a recorded flight's delays come back by vehicle, kind and number; what is not on record never arrives"
-  ):
+  test("recorded delays are found by vehicle, kind and number; a message without a record never arrives"):
     val delays = RecordedDelays(Vector(
       Vector(Array(1L, 2L), Array(3L), Array(4L), Array(5L)),
       Vector(Array(6L), Array(7L), Array(8L), Array(9L, 10L))

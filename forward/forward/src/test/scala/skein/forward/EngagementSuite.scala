@@ -8,7 +8,7 @@ import skein.vehicle.ReducedModel
 class EngagementSuite extends munit.FunSuite:
   private val duel = PaperDuel().fleet.agents
 
-  private def agent(role: Role, number: Int, north: Double, east: Double, policy: HeadingPolicy): Agent =
+  private def agent(role: Role, number: Int, north: Double, east: Double, policy: Policy): Agent =
     duel
       .find(_.role == role)
       .getOrElse(duel.head.copy(role = role))

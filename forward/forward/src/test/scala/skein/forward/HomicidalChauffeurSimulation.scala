@@ -31,7 +31,7 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
         2 * math.Pi * random.nextDouble()
       )
 
-  private def duel(pursuer: HeadingPolicy, evader: HeadingPolicy, start: Start, durationS: Double): Rollout =
+  private def duel(pursuer: Policy, evader: Policy, start: Start, durationS: Double): Rollout =
     val engaged = Duel(
       Duel.paper.pursuer.copy(policy = pursuer, startX = 0, startY = 0, startHeadingRad = 0),
       Duel.paper.evader.copy(
@@ -45,8 +45,8 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
     Rollout(engaged, LoopTiming.Paused(0.0025), DelayTable.none, VelocityResponses.Ideal)
 
   private def closestM(
-      pursuer: HeadingPolicy,
-      evader: HeadingPolicy,
+      pursuer: Policy,
+      evader: Policy,
       start: Start,
       durationS: Double
   ): Double =
@@ -54,8 +54,8 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
 
   /** Simulates until capture, or to the end without it. */
   private def captureS(
-      pursuer: HeadingPolicy,
-      evader: HeadingPolicy,
+      pursuer: Policy,
+      evader: Policy,
       start: Start,
       captureM: Double,
       durationS: Double
@@ -102,7 +102,7 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
   private val hunter: HeadingPolicy.Memoryless = seen => math.atan2(seen.dyM, seen.dxM)
   private val away: HeadingPolicy.Memoryless   = seen => math.atan2(-seen.dyM, -seen.dxM)
 
-  private val evaders: Seq[(String, Int => HeadingPolicy)] =
+  private val evaders: Seq[(String, Int => Policy)] =
     val shape = NeuralShape(Vector(6))
     Seq(
       "the barrier's evader"      -> (_ => barrier),

@@ -51,6 +51,7 @@ class ImageTimingSuite extends munit.FunSuite:
       plant,
       Asking(),
       keepsAll = false,
+      asksPolicies = false,
       standsStill = false,
       RolloutWorld.Ring
     )

@@ -1,7 +1,7 @@
 package skein.forward
 
 import scala.collection.mutable.ArrayBuffer
-import skein.policy.{Action, PaperPursuer, HeadingPolicy, PurePursuit}
+import skein.policy.{Action, HeadingPolicy, PaperPursuer, Policy, PurePursuit}
 import skein.signal.LatencyDistribution
 import skein.simd.WorldRandom
 import skein.units.*
@@ -16,8 +16,8 @@ class RolloutOracleSuite extends munit.FunSuite:
     Seq(LoopTiming.Paused(), LoopTiming.Sequential(), LoopTiming.Futures(), LoopTiming.Stream(), perfect)
 
   private def duel(
-      pursuer: HeadingPolicy,
-      evader: HeadingPolicy,
+      pursuer: Policy,
+      evader: Policy,
       startX: Double,
       startY: Double,
       durationS: Double

@@ -28,11 +28,11 @@ class RolloutSuite extends munit.FunSuite:
     for (a, e) <- actual.zip(expected) do assertEqualsDouble(a, e, tolerance)
 
   for model <- Seq(VelocityResponses.quadrotor(), lag, VelocityResponses.Ideal); loop <- loops do
-    test(s"without delays $loop flies as paused does, with ${model.getClass.getSimpleName}"):
+    test(s"without delays, $loop flies as paused does, with ${model.getClass.getSimpleName}"):
       val truth = distances(Rollout(Duel.paper, LoopTiming.Paused(), DelayTable.none, model), 1)
       assertClose(distances(Rollout(Duel.paper, loop, DelayTable.none, model), 1), truth, 1e-6)
 
-  test("an exception in a policy or a plant is reported with its name and line"):
+  test("an exception in a policy or a plant is reported with its class and line"):
     final class Lost extends HeadingPolicy.Memoryless:
       def heading(seen: PlanarObservation): Double = throw Exception("no way")
     final class Stuck extends Plant[PlaneReading]:
@@ -50,13 +50,13 @@ class RolloutSuite extends munit.FunSuite:
       assert(clue(text).matches(".* failed: java.lang.Exception: no way \\(RolloutSuite.scala:\\d+\\)"))
 
   for loop <- loops do
-    test(s"under $loop a world depends on its key alone"):
+    test(s"under $loop the result of a world depends on its key alone"):
       val rollout = Rollout(Duel.paper, loop, DelayTable.vpn, lag)
       val alone   = rollout.fly(WorldRandom.key(7, 3, 11))
       for episode <- 0 until 5 do rollout.fly(WorldRandom.key(7, 3, episode))
       assertEquals(rollout.fly(WorldRandom.key(7, 3, 11)), alone)
 
-    test(s"under $loop nothing changes when the world is turned and moved"):
+    test(s"under $loop a rotation and a shift of the world change no distance"):
       // Off the axis, since straight ahead the pursuer's turn hangs on the sign of a rounding error.
       val offset                = Duel.paper.copy(evader = Duel.paper.evader.copy(startY = 2))
       val angle                 = 0.7
@@ -71,7 +71,7 @@ class RolloutSuite extends munit.FunSuite:
       val plain  = distances(Rollout(offset, loop, DelayTable.direct, lag), key)
       assertClose(distances(Rollout(turned, loop, DelayTable.direct, lag), key), plain, 1e-6)
 
-  test("with symmetric policies the mirrored duel is the mirror image"):
+  test("with symmetric policies, the mirrored duel has the mirrored flight"):
     val evader: HeadingPolicy.Memoryless =
       seen => 0.7 * math.atan2(-seen.dyM, -seen.dxM) + 0.3 * math.sin(seen.ownHeadingRad)
     val key               = WorldRandom.key(5, 0, 0)
@@ -116,39 +116,39 @@ class RolloutSuite extends munit.FunSuite:
         assert(settled > least && settled < most, s"episode $episode: $settled m")
 
   test(
-    "sequential reads both vehicles one after the other, then " +
-      "waits: its step lasts two round trips and a period"
+    "sequential reads one vehicle after the other and then waits, so a step lasts two round trips and a " +
+      "period"
   ):
     val link    = DelayTable.of(LatencyDistribution.Constant(Span.ofMillis(50)))
     val rollout = Rollout(Duel.paper, LoopTiming.Sequential(0.1), link, lag)
     assertEqualsDouble(rollout.fly(0).decisions / 2.0, 60 / 0.2, 1.0)
 
-  test("stream skips views when acknowledgements of commands take longer than two periods"):
+  test("stream skips views if acknowledgements of commands take longer than two periods"):
     val link  = DelayTable.of(LatencyDistribution.Constant(Span.ofMillis(300)))
     val flown = Rollout(Duel.paper, LoopTiming.Stream(), link, lag).fly(0)
     assert(flown.skipped > 300, flown)
     assertEqualsDouble(flown.decisions + flown.skipped, 1200, 20)
 
-  test("stream without patience has a view at each reading, with patience at each pair of them"):
+  test("stream has a view at each reading without patience, and one per pair of readings with it"):
     def flown(patienceS: Double) =
       Rollout(Duel.paper, LoopTiming.Stream(patienceS = patienceS), DelayTable.none, lag).fly(0)
     assertEquals((flown(0.1).decisions, flown(0).decisions), (1200, 2398))
 
-  test("stream goes on, by its patience, without a vehicle that answers no more"):
+  test("after its patience, stream continues without a vehicle that no longer answers"):
     val link: Delays =
       (_, line, step, _, _) => if line == Delays.answer(0, 1) && step > 0 then 1L << 40 else 0L
     val timing = LoopTiming.Stream(patienceS = 0.05)
     // The first view is of the start; in each of the 599 periods after it one waits in vain.
     assertEquals(Rollout(Duel.paper, timing, link, lag).fly(0).decisions, 1200)
 
-  test("the last ten seconds of a minute begin after its fiftieth: their mean is of a hundred distances"):
+  test("the last ten seconds of a minute contain a hundred distances, those after its fiftieth second"):
     assertEqualsDouble(Rollout.last10sFromS(60, 0.1), 50.1, 1e-9)
     assertEqualsDouble(Rollout.last10sFromS(12, 0.25), 2.25, 1e-9)
     val score = Score(last10sFromS = 50.1)
     for number <- 1 to 600 do score.add(number * 0.1, number)
     assertEqualsDouble(score.outcome.meanLast10sM, 550.5, 1e-9)
 
-  test("kept are 64 readings of a vehicle, or as many as a loop may still need"):
+  test("64 readings of a vehicle are stored, or as many as a loop may need"):
     assertEquals(RolloutWorld.ringOf(LoopTiming.Stream(), 2), 64)
     // Twice the periods in a time-out, the window of 4, and 2.
     assertEquals(RolloutWorld.ringOf(LoopTiming.Stream(0.01), 2), 106)
@@ -156,7 +156,7 @@ class RolloutSuite extends munit.FunSuite:
     assertEquals(RolloutWorld.ringOf(LoopTiming.Futures(0.02), 2), 110)
     assertEquals(RolloutWorld.ringOf(LoopTiming.Sequential(0.001), 2), 64)
 
-  test("the reduced model follows its differential equation through dead time and commands"):
+  test("the reduced model follows its differential equation, with dead time and changing commands"):
     val vehicle = VelocityResponses.lag(gain = 0.8, lagS = 0.5, deadTimeS = 0.12).create()
     vehicle.start(0, 0, 0)
     vehicle.act(Action.VelocityAt(10, 0, Metres(0)))
@@ -172,5 +172,5 @@ class RolloutSuite extends munit.FunSuite:
       vx += (wx - vx) / 0.5 * dt; vy += (wy - vy) / 0.5 * dt
     assertClose(Seq(vehicle.x, vehicle.y, vehicle.vx, vehicle.vy), Seq(x, y, vx, vy), 3e-4)
 
-  test("the default duel is the scenario's"):
+  test("the default duel is that of the scenario"):
     assertEquals(Duel.of(PaperDuel().fleet).evader.policy, PaperEvader())

@@ -2,7 +2,7 @@ package skein.forward
 
 import skein.fusion.{Exposure, SensorModel}
 import skein.lanes.{PairBatch, PairWorlds}
-import skein.policy.{PaperEvader, PaperPursuer, HeadingPolicy}
+import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.signal.{LatencyDistribution, SplitMix64}
 import skein.simd.WorldRandom
 import skein.units.*
@@ -108,11 +108,11 @@ class SensedDuelSuite extends munit.FunSuite:
       val engine = batch.engine(pursuer, evader, shareEpisodes = false, Seq(DelayTable.vpn)).text
       assert(engine.startsWith("SIMD, "), engine)
       val worlds = new PairWorlds:
-        def size: Int                          = 40
-        def key(world: Int): Int               = WorldRandom.key(world, 0, 0)
-        def link(world: Int): Delays           = DelayTable.vpn
-        def pursuer(world: Int): HeadingPolicy = SensedDuelSuite.this.pursuer
-        def evader(world: Int): HeadingPolicy  = SensedDuelSuite.this.evader
+        def size: Int                   = 40
+        def key(world: Int): Int        = WorldRandom.key(world, 0, 0)
+        def link(world: Int): Delays    = DelayTable.vpn
+        def pursuer(world: Int): Policy = SensedDuelSuite.this.pursuer
+        def evader(world: Int): Policy  = SensedDuelSuite.this.evader
       val outcomes = batch.fly(worlds)
       val rollout  = Rollout(beside, timing, DelayTable.vpn, PlantResponse(ReducedModel.AirSimLag))
       for world <- 0 until worlds.size by 7 do

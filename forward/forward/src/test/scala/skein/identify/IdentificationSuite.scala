@@ -54,7 +54,7 @@ class IdentificationSuite extends munit.FunSuite:
     "drag-per-m"  -> model.dragPerM
   )
 
-  test("every structure finds its own parameters again from a flight without noise"):
+  test("every structure finds its parameters again from a flight without noise"):
     for
       structure <- Structure.ours
       expected = structure match
@@ -86,12 +86,12 @@ class IdentificationSuite extends munit.FunSuite:
     for (wide, narrow) <- one.parameters.zip(four.parameters) do
       assert(narrow.most - narrow.least < 0.8 * (wide.most - wide.least), s"$wide $narrow")
 
-  test("a parameter that the flights drive to its bound says so"):
+  test("a parameter at its bound is reported as such"):
     val found = identified(Vector(flown(ReducedModel(0.9, 1, 0, 1, 0), 1, 0)), Structure.Drag)
     val drag  = found.parameters.find(_.name == "drag-per-m")
     assert(drag.exists(fitted => fitted.value < 1e-4 && fitted.atBound), found)
 
-  test("too little flight, or commands that never change, are refused with what was expected"):
+  test("flights that are too short, or that have constant commands, are refused with what was expected"):
     val short = Identification.of(Vector(flown(truth, 1, 0, spanS = 10)), Structure.Lag)
     assert(short.left.exists(_.contains("expected at least")), short)
     val steady = flown(truth, 1, 0)

@@ -5,7 +5,7 @@ import skein.policy.{Axis, SearchSpace}
 import skein.signal.{NormalQuantile, SplitMix64}
 import skein.vehicle.{ObservedPlant, PlaneReading, PlantFlight}
 
-/** A vehicle that must tilt before it accelerates: its readings lack the tilt. */
+/** The state of a vehicle that must tilt before it accelerates; its readings lack the tilt. */
 final case class Tilted(seen: PlaneReading, northMps2: Double, eastMps2: Double)
 
 final case class Tilting(gain: Double, lagS: Double, tiltLagS: Double, override val deadTimeS: Double = 0)
@@ -41,7 +41,7 @@ class OwnStructureSuite extends munit.FunSuite:
   private val truth  = Tilting(gain = 0.9, lagS = 1.4, tiltLagS = 0.5)
   private val values = Vector("gain" -> 0.9, "lag-s" -> 1.4, "tilt-lag-s" -> 0.5)
 
-  /** A minute under commands that turn and change speed, sampled ten times a second with noise. */
+  /** A minute of flight under commands that turn and change speed, sampled ten times a second with noise. */
   private def flown(seed: Long, noiseMps: Double): TimeHistory =
     val source   = SplitMix64(seed)
     def normal() = NormalQuantile(source.nextDouble().max(1e-12).min(1 - 1e-12))
@@ -67,7 +67,7 @@ class OwnStructureSuite extends munit.FunSuite:
   private def identified(seed: Long, noiseMps: Double): Identification =
     Identification.of(Vector(flown(seed, noiseMps)), structure).fold(fail(_), identity)
 
-  test("without noise the fit finds its parameters, also those that readings lack"):
+  test("without noise the fit finds all parameters, also if readings lack a part of the state"):
     val found = identified(seed = 1, noiseMps = 0)
     for (parameter, (name, value)) <- found.parameters.zip(values) do
       assertEquals(parameter.name, name)
@@ -84,7 +84,7 @@ class OwnStructureSuite extends munit.FunSuite:
       // 24 of 30 or fewer happens with less than 1 in 100 if the coverage is 93 %.
       assert(hits.count(identity) >= 24, s"$name: ${hits.count(identity)} of $runs (seeds 1 to $runs)")
 
-  test("a parameter whose truth lies outside its bounds ends at the bound, and says so"):
+  test("a parameter whose true value is outside its bounds ends at the bound, and is reported as such"):
     val narrow = Structure(
       "narrow",
       SearchSpace(Vector(Axis("gain", 1.2, 3, 2), Axis("lag-s", 0.1, 5, 1))),

@@ -21,7 +21,7 @@ class SensorFitSuite extends munit.FunSuite:
       Detected(normal(0.004), range * (1.05 + normal(0.08)), range, 15 + 105 * random.nextDouble())
   )
 
-  test("a sensor is found again from what it did, within its intervals"):
+  test("the parameters of a sensor are found again from its detections, within their intervals"):
     val fit   = SensorFit.of(Vector(seeing(700))).fold(fail(_), identity)
     val truth = Map(
       "detection"      -> 0.875,
@@ -36,7 +36,7 @@ class SensorFitSuite extends munit.FunSuite:
     assertEqualsDouble(fit.model.takes.quantile(0.5).toMillis, 67.5, 6)
     assertEqualsDouble(fit.model.farthestM, 15, 0.2)
 
-  test("too few detections, or several kinds of eyes, are reported"):
+  test("too few detections, or flights with several kinds of cameras, are refused"):
     assertEquals(
       SensorFit.of(Vector(seeing(29))).left.map(identity),
       Left("expected at least 30 detections to identify a sensor, came 29")

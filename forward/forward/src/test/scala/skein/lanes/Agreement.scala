@@ -3,9 +3,9 @@ package skein.lanes
 import scala.collection.mutable.ArrayBuffer
 import skein.formula.{ErrorBound, Node}
 
-/** Compares worlds simulated by SIMD with the scalar engine. Both take equal decisions in each, except where
-  * a compared number is so near to a threshold that rounding decides, as [[ErrorBound]] shows. After that, a
-  * world may differ.
+/** Compares worlds simulated by SIMD with the scalar engine. In every world both must make equal decisions,
+  * until a compared number is so near to a threshold that rounding decides, as [[ErrorBound]] shows; after
+  * that, the world may differ.
   */
 private[skein] final class Agreement:
   import Agreement.*
@@ -15,16 +15,16 @@ private[skein] final class Agreement:
   /** Adds a world.
     *
     * @param first the first decision that differs
-    * @param whereSame compares the flights if there is none
+    * @param whereSame compares the flights if no decision differs
     */
   def add(world: Int, first: Option[Departure])(whereSame: => Unit): Unit = first match
     case None                                   => same += 1; whereSame
     case Some(departure) if departure.isRounded => undecided += world -> departure
     case Some(departure)                        => wrong += world     -> departure
 
-  /** Checks all worlds added.
+  /** Checks all added worlds.
     *
-    * @param atLeast number of worlds that must take equal decisions to the end, lest nothing be compared
+    * @param atLeast minimum number of worlds with equal decisions to the end, so that enough is compared
     */
   def check(what: String, atLeast: Int = 1)(using munit.Location): Unit =
     def told(departures: Iterable[(Int, Departure)]) =
@@ -39,16 +39,16 @@ private[skein] final class Agreement:
 private[skein] object Agreement:
   private val Told = 5
 
-  /** Accumulated rounding of floats in the vehicles' motion until a time, m and m/s: until decisions differ,
-    * vehicles are where they are in doubles. At 500 m a float is rounded by up to 3e-5 m, here a dozen times
-    * a second.
+  /** Limit of the rounding of floats that accumulates in the vehicles' motion until a time, m and m/s. It
+    * applies until decisions differ. At 500 m a float is rounded by up to 3e-5 m, here a dozen times a
+    * second.
     */
   def mostOff(timeS: Double): Double = 1e-3 + 4e-4 * timeS
 
   /** A decision of the SIMD engine that differs from the scalar engine's.
     *
-    * @param apart by output: its error, and the bound on it if each comparison near its threshold went the
-    *   other way
+    * @param apart for each output its error, and the bound on the error if each comparison near its threshold
+    *   had the other result
     * @param near comparisons so near to their thresholds that rounding decides, with their distances
     */
   final case class Departure(
@@ -70,8 +70,8 @@ private[skein] object Agreement:
   /** The outputs that differ by more than floats allow with equal branches.
     *
     * @param off error of each input
-    * @param ours the SIMD results, in the nodes' order
-    * @param between difference of two values of an output, by its number
+    * @param ours the SIMD results, in the order of the nodes
+    * @param between difference of two values of an output, from its number
     */
   def departure(
       agent: Int,

@@ -21,19 +21,19 @@ class AgreementSimulation extends munit.FunSuite, Unhurried:
   private val many = 0 until worlds by 7
   private val some = 0 until worlds by 19
 
-  private def drawn(family: PolicyFamily)(random: SplitMix64): HeadingPolicy =
+  private def drawn(family: PolicyFamily)(random: SplitMix64): Policy =
     family.policy(family.space.at(Vector.fill(family.space.dimension)(random.nextDouble())))
 
-  private val pursuers: Seq[(String, SplitMix64 => HeadingPolicy)] =
+  private val pursuers: Seq[(String, SplitMix64 => Policy)] =
     PolicyFamily.all.filter(_.roles(Role.Pursuer)).map(family =>
       family.name -> drawn(family)
     ) ++ UnseenPolicySuite.Unseen
-  private val evaders: Seq[(String, SplitMix64 => HeadingPolicy)] = Seq(
+  private val evaders: Seq[(String, SplitMix64 => Policy)] = Seq(
     "paper-evader"     -> drawn(PolicyFamily.paperEvader),
     "chauffeur-evader" -> drawn(PolicyFamily.chauffeurEvader)
   )
 
-  private def each(seed: Long, draw: SplitMix64 => HeadingPolicy): Int => HeadingPolicy =
+  private def each(seed: Long, draw: SplitMix64 => Policy): Int => Policy =
     val random = SplitMix64(seed)
     Vector.fill(worlds)(draw(random))
 

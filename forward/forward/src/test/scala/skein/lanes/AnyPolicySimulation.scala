@@ -11,8 +11,8 @@ import skein.testing.{Lengthy, Optimised}
 import skein.units.*
 import skein.vehicle.ReducedModel
 
-/** Policies of every kind, mixed in one team and alone against one another, have equal results by SIMD and by
-  * the scalar engine.
+/** Policies of every kind, mixed in one team and in duels, have equal results by SIMD and by the scalar
+  * engine.
   */
 class AnyPolicySimulation extends munit.FunSuite, Lengthy, Optimised:
   import AnyPolicySimulation.*
@@ -50,7 +50,7 @@ class AnyPolicySimulation extends munit.FunSuite, Lengthy, Optimised:
     ))
   )
 
-  /** One candidate each, with the vehicles' final and mean positions. */
+  /** Candidates with one team each, and the vehicles' final and mean positions as judged numbers. */
   private def candidates(draw: SplitMix64 => Fleet, count: Int, durationS: Double): Vector[TeamCandidate] =
     val random = SplitMix64(11)
     Vector.fill(count):
@@ -93,23 +93,24 @@ class AnyPolicySimulation extends munit.FunSuite, Lengthy, Optimised:
     assert(sorted.init.forall(_ < mostM), s"$sorted")
 
   for (name, draw) <- teams; timing <- loops do
-    test(s"$name, $timing over vpn: candidates that share delays fly as by the scalar engine, 5 s to 4 mm"):
+    test(s"$name, $timing over vpn: candidates with shared delays agree with the scalar engine, 5 s to 4 mm"):
       agree(draw, timing, lag, DelayTable.vpn, share = true)
 
     if !timing.isInstanceOf[LoopTiming.Paused] then
-      test(s"$name, $timing over vpn, own delays: every world flies as by the scalar engine, 5 s to 4 mm"):
+      test(s"$name, $timing over vpn, own delays: every world agrees with the scalar engine, 5 s to 4 mm"):
         agree(draw, timing, lag, DelayTable.vpn, share = false)
 
   for (name, draw) <- teams do
-    test(s"$name, stream over a link that jitters, with drag and own delays: as by the scalar engine"):
+    test(s"$name, stream over a link with jitter, drag, own delays: SIMD agrees with the scalar engine"):
       val wild = DelayTable.of(LatencyBudget.link(110, 60).get)
       agree(draw, LoopTiming.Stream(), PlantResponse(ReducedModel.AirSim), wild, share = false)
 
-    test(s"$name, stream over vpn, quadrotors: as by the scalar engine"):
+    test(s"$name, stream over vpn, quadrotors: SIMD agrees with the scalar engine"):
       agree(draw, LoopTiming.Stream(), VelocityResponses.quadrotor(), DelayTable.vpn, share = true)
 
   test(
-    "a policy that turns its vehicle, or looks up, flies by SIMD with models of motion, not with quadrotors"
+    "policies that turn their vehicle, or read altitudes, use SIMD with models of motion, but not with " +
+      "quadrotors"
   ):
     val quadrotors = TeamBatch(LoopTiming.Stream(), VelocityResponses.quadrotor(), threads = 1)
     val plants     = TeamBatch(LoopTiming.Stream(), lag, threads = 1)
@@ -119,7 +120,7 @@ class AnyPolicySimulation extends munit.FunSuite, Lengthy, Optimised:
       assert(fliesByLanes(plants))
       assert(!fliesByLanes(quadrotors))
 
-  test("a policy that does something else than to fly on at its altitude is refused with its line"):
+  test("a policy that does not fly on at its altitude is refused with its source line"):
     def refusal(policy: Policy) = intercept[IllegalArgumentException]:
       Engagement.of(fleet(SplitMix64(1), Role.Evader -> (_ => policy), Role.Pursuer -> (_ => Chase)))
     assert(clue(refusal(Landing).getMessage).contains("it decides for Action.Land"))
@@ -127,7 +128,7 @@ class AnyPolicySimulation extends munit.FunSuite, Lengthy, Optimised:
     assert(clue(refusal(Halving).getMessage).contains("a loop whose end depends on what is observed"))
     assert(clue(refusal(Higher(-30)).getMessage).contains("it leaves the altitude"))
 
-  test("one that promises to fly in the plane flies by the scalar engine, and fails if it does not"):
+  test("a policy that falsely promises to be planar uses the scalar engine, and fails when it is not"):
     val team = fleet(_, Role.Evader -> (_ => Promising), Role.Pursuer -> (_ => Chase))
     val one  = candidates(team, 1, 5).head
     val told =

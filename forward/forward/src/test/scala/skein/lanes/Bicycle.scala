@@ -2,7 +2,7 @@ package skein.lanes
 
 import skein.vehicle.{PlaneReading, Plant}
 
-/** The state at the middle between the wheels. */
+/** The state of a bicycle at the middle between its wheels. */
 final case class Rolling(
     northM: Double,
     eastM: Double,
@@ -11,8 +11,8 @@ final case class Rolling(
     steeredRad: Double
 )
 
-/** A kinematic bicycle that steers after the commanded velocity, and whose position is read at an antenna
-  * ahead of its middle. The product does not contain it.
+/** A kinematic bicycle that steers towards the commanded velocity. Its position is read at an antenna ahead
+  * of its middle. The product does not contain this plant.
   */
 final case class Bicycle(
     wheelbaseM: Double,

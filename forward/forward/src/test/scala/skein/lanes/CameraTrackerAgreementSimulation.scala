@@ -7,7 +7,7 @@ import skein.lanes.loop.{LaneAgents, LoopEye, LoopLanes}
 import skein.lanes.policy.CameraTrackerLanes
 import skein.lanes.timetable.{TimetableEye, TimetableVehicles}
 import skein.optimise.LatencyBudget
-import skein.policy.{PaperEvader, PaperPursuer, HeadingPolicy}
+import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.simd.WorldRandom
 import skein.testing.Lengthy
 import skein.units.Instant
@@ -69,8 +69,8 @@ abstract class CameraTrackerAgreement(isDaily: Boolean) extends munit.FunSuite:
     "a link that changes"         -> AlternatingDelays(wild(150, 150), DelayTable.direct, 1.0, 0.5)
   )
 
-  private def pursuer(world: Int): HeadingPolicy = PaperPursuer(0.6 + 0.004 * (world % 128))
-  private def evader(world: Int): HeadingPolicy  = PaperEvader(7 + 0.01 * (world % 128))
+  private def pursuer(world: Int): Policy = PaperPursuer(0.6 + 0.004 * (world % 128))
+  private def evader(world: Int): Policy  = PaperEvader(7 + 0.01 * (world % 128))
 
   for
     timing <- Seq(
@@ -108,12 +108,12 @@ abstract class CameraTrackerAgreement(isDaily: Boolean) extends munit.FunSuite:
   /** The batch of forward simulation gives these results, to the bit. */
   private def isFlownByBatch(timing: LoopTiming, episode: Int, kernel: PairKernel): Unit =
     val all = new PairWorlds:
-      def size: Int                          = worlds
-      override def shareEpisodes: Boolean    = true
-      def key(world: Int): Int               = episode
-      def link(world: Int): Delays           = DelayTable.vpn
-      def pursuer(world: Int): HeadingPolicy = CameraTrackerAgreement.this.pursuer(world)
-      def evader(world: Int): HeadingPolicy  = CameraTrackerAgreement.this.evader(world)
+      def size: Int                       = worlds
+      override def shareEpisodes: Boolean = true
+      def key(world: Int): Int            = episode
+      def link(world: Int): Delays        = DelayTable.vpn
+      def pursuer(world: Int): Policy     = CameraTrackerAgreement.this.pursuer(world)
+      def evader(world: Int): Policy      = CameraTrackerAgreement.this.evader(world)
     val batch = PairBatch(duel, timing, model, threads = 1)
     val told  = batch.engine(pursuer(0), evader(0), shareEpisodes = true, Seq(DelayTable.vpn)).text
     assert(told.startsWith("SIMD"), told)

@@ -4,7 +4,7 @@ import skein.forward.*
 import skein.identify.Tilting
 import skein.lanes.score.Judged
 import skein.lanes.timetable.TimetableKernel
-import skein.policy.{PaperEvader, PaperPursuer, HeadingPolicy}
+import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.scenario.{OffRing, Reduction, Surround}
 import skein.simd.WorldRandom
 import skein.testing.Unhurried
@@ -32,12 +32,12 @@ class FewCandidatesSuite extends munit.FunSuite, Unhurried:
     val batch = PairBatch(duel, timing, model, threads = 1)
     val came  = batch.fly(
       new PairWorlds:
-        def size: Int                          = count
-        override def shareEpisodes: Boolean    = true
-        def key(world: Int): Int               = WorldRandom.key(3, 1, 1)
-        def link(world: Int): Delays           = DelayTable.vpn
-        def pursuer(world: Int): HeadingPolicy = PaperPursuer(0.6 + 1e-2 * world)
-        def evader(world: Int): HeadingPolicy  = PaperEvader()
+        def size: Int                       = count
+        override def shareEpisodes: Boolean = true
+        def key(world: Int): Int            = WorldRandom.key(3, 1, 1)
+        def link(world: Int): Delays        = DelayTable.vpn
+        def pursuer(world: Int): Policy     = PaperPursuer(0.6 + 1e-2 * world)
+        def evader(world: Int): Policy      = PaperEvader()
     )
     PairNumber.values.toVector.map(came(_).take(few).toVector)
 

@@ -4,7 +4,7 @@ import java.nio.file.{Files, Path}
 import skein.forward.*
 import skein.identify.Tilting
 import skein.lanes.score.Judged
-import skein.policy.{PaperEvader, PaperPursuer, HeadingPolicy}
+import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.scenario.{OffRing, Reduction, Surround}
 import skein.simd.WorldRandom
 import skein.vehicle.{ReducedModel, TiltModel}
@@ -39,7 +39,7 @@ class FlownByLanesSuite extends munit.FunSuite:
     durationS = 3
   )
 
-  private val policies: Vector[(String, HeadingPolicy)] = Vector(
+  private val policies: Vector[(String, Policy)] = Vector(
     "a formula"                    -> PaperPursuer(),
     "a formula that remembers"     -> TrendPursuer(3, 0.5, 1),
     "a formula that asks for ages" -> AgeAwarePursuer(8, 1, 1),
@@ -117,12 +117,12 @@ class FlownByLanesSuite extends munit.FunSuite:
 
   private def agree(batch: PairBatch, timing: LoopTiming, model: VelocityResponse, shared: Boolean): Unit =
     val all = new PairWorlds:
-      def size: Int                          = 24
-      override def shareEpisodes: Boolean    = shared
-      def key(world: Int): Int               = WorldRandom.key(5, 0, if shared then 1 else world)
-      def link(world: Int): Delays           = DelayTable.vpn
-      def pursuer(world: Int): HeadingPolicy = PaperPursuer(0.6 + 0.004 * world)
-      def evader(world: Int): HeadingPolicy  = PaperEvader(7 + 0.01 * world)
+      def size: Int                       = 24
+      override def shareEpisodes: Boolean = shared
+      def key(world: Int): Int            = WorldRandom.key(5, 0, if shared then 1 else world)
+      def link(world: Int): Delays        = DelayTable.vpn
+      def pursuer(world: Int): Policy     = PaperPursuer(0.6 + 0.004 * world)
+      def evader(world: Int): Policy      = PaperEvader(7 + 0.01 * world)
     val flown = batch.fly(all)
     for world <- 0 until all.size by 5 do
       val own =

@@ -6,7 +6,7 @@ import skein.policy.{HeadingPolicy, PlanarObservation}
 /** The opponent's last bearing, and the mean rate of its change. */
 final case class Bearing(rad: Double, rateRadPerS: Double)
 
-/** Leads the opponent by the mean rate of its bearing, and trusts old readings less. */
+/** Leads the opponent by the mean rate of its bearing, with less weight on old readings. */
 final case class Lead(gain: Double, forgetS: Double, turnRateRadPerS: Double) extends HeadingPolicy:
   type Memory = Bearing
   def start: Bearing = Bearing(0, 0)

@@ -3,7 +3,7 @@ package skein.lanes
 import java.nio.file.{Files, Path}
 import skein.forward.DelayTable
 
-/** The code of the guide on formulas compiles and runs. */
+/** The code in the guide on formulas compiles and runs. */
 class GuideSuite extends munit.FunSuite:
   private val root =
     Iterator.iterate(Path.of("").toAbsolutePath)(_.getParent).find(at => Files.exists(at.resolve("sbtw"))).get
@@ -15,10 +15,10 @@ class GuideSuite extends munit.FunSuite:
       "// guide: (?!end)"
     ).drop(1).map(_.split("// guide: end")(0).linesIterator.drop(1).mkString("\n").stripTrailing.stripIndent)
 
-  test("the guide's code is the example's, word by word"):
+  test("the guide contains the example's code, word by word"):
     for part <- shown do assert(guide.contains(part), part)
 
-  test("a SIMD search of the example's policy finds a better one than the middle"):
+  test("a SIMD search of the example's policy finds one that is better than the default"):
     import GuideExample.*
     val engine =
       TeamBatch(timing, lag).engine(candidate(leads.space.defaults), true, Seq(DelayTable.vpn)).text

@@ -16,7 +16,8 @@ import skein.optimise.LatencyBudget
 import skein.policy.{PaperEvader, PaperPursuer}
 import skein.simd.WorldRandom
 
-/** Two under `stream` with a lag, which has its own implementation ([[skein.lanes.loop.LagVehicles]]).
+/** Duels under `stream` with a first-order lag, which has its own implementation
+  * ([[skein.lanes.loop.LagVehicles]]).
   */
 class LagPairsSuite extends munit.FunSuite:
   private val worlds = PairKernels.WORLDS
@@ -109,10 +110,10 @@ class LagPairsSuite extends munit.FunSuite:
       val captured = scalars.count(_.captureS.isFinite)
       assert(captured > worlds / 10 && captured < worlds, s"$captured captured")
 
-    test(s"over $name kernel and scalar reference decide and capture alike for 60 s, in each world compared"):
+    test(s"over $name compared worlds have the decisions and captures of the scalar reference for 60 s"):
       agreement(link, 60).check(s"over $name", some)
 
-  test("a period that does not divide 10 s: the last scores' mean is that of the scalar reference"):
+  test("with a period that does not divide 10 s, the mean of the last scores is the scalar reference's"):
     agreement(DelayTable.direct, 12, periodS = 0.3).check("every 0.3 s", some)
 
   private val badLinks = Seq((110.0, 60.0), (215.0, 36.0), (150.0, 150.0), (200.0, 300.0), (300.0, 300.0))
@@ -141,7 +142,7 @@ class LagPairsSuite extends munit.FunSuite:
     val reversed = flown(over(DelayTable.vpn), order = Array.range(0, worlds).reverse)
     assertEquals(reversed(PairNumber.MeanLast10s).reverse.toSeq, before.toSeq)
 
-  test("worlds of different links fly side by side as each would alone"):
+  test("worlds with different links have the results that they have alone"):
     val links  = Vector(DelayTable.none, DelayTable.direct, DelayTable.vpn)
     val kernel = flown(Array.tabulate[TabledDelays](worlds)(i => links(i / 5 % 3)))
     val alone  = links.map(link => fly(link, 60))

@@ -5,7 +5,7 @@ import scala.collection.mutable.ArrayBuffer
 import skein.forward.*
 import skein.lanes.score.Judged
 import skein.planning.*
-import skein.policy.{PaperEvader, PaperPursuer, HeadingPolicy}
+import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.scenario.{Formation, OffRing, Reduction, Scenario, Surround}
 import skein.signal.LatencyDistribution
 import skein.simd.{LaneMath, WorldRandom}
@@ -40,7 +40,7 @@ object LaneDigests:
     DelayTable.direct
   )
 
-  private val pursuers = Vector[(String, Int => HeadingPolicy)](
+  private val pursuers = Vector[(String, Int => Policy)](
     "paper" -> (world => PaperPursuer(0.6 + 0.004 * world)),
     "trend" -> (world => TrendPursuer(2 + 0.01 * world, 0.5, 1)),
     "aware" -> (world => AgeAwarePursuer(8, 0.01 * world, 1))
@@ -59,7 +59,7 @@ object LaneDigests:
   private def duels(
       timing: LoopTiming,
       model: VelocityResponse,
-      pursuing: Int => HeadingPolicy,
+      pursuing: Int => Policy,
       evaderAsideM: Double,
       shared: Boolean,
       count: Int
@@ -67,12 +67,12 @@ object LaneDigests:
     val duel = Duel.paper.copy(evader = Duel.paper.evader.copy(startY = evaderAsideM), durationS = 4)
     val out  = PairBatch(duel, timing, model, threads = 1).fly(
       new PairWorlds:
-        def size: Int                          = count
-        override def shareEpisodes: Boolean    = shared
-        def key(world: Int): Int               = WorldRandom.key(5, 0, if shared then 1 else world)
-        def link(world: Int): Delays           = if shared then links(1) else links(world % links.size)
-        def pursuer(world: Int): HeadingPolicy = pursuing(world)
-        def evader(world: Int): HeadingPolicy  = PaperEvader(7 + 0.01 * world)
+        def size: Int                       = count
+        override def shareEpisodes: Boolean = shared
+        def key(world: Int): Int            = WorldRandom.key(5, 0, if shared then 1 else world)
+        def link(world: Int): Delays        = if shared then links(1) else links(world % links.size)
+        def pursuer(world: Int): Policy     = pursuing(world)
+        def evader(world: Int): Policy      = PaperEvader(7 + 0.01 * world)
       ,
       captureRadiusM = 3.9
     )

@@ -4,7 +4,8 @@ import java.nio.file.{Files, Path}
 import scala.jdk.CollectionConverters.*
 import skein.testing.{Lengthy, TemporaryFolders}
 
-/** Processes with vectors of 16, 32 and 64 bytes, as far as this machine has them, run all SIMD code. */
+/** Runs all SIMD code in processes with vectors of 16, 32 and 64 bytes, as far as this machine supports them.
+  */
 class LaneDigestsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
 
   private def started(bytes: Int): (Process, Path, Path) =

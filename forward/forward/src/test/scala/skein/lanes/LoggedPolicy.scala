@@ -3,10 +3,10 @@ package skein.lanes
 import java.util.Arrays
 import scala.collection.mutable.ArrayBuffer
 import skein.lanes.policy.{Directions, LaneObservation, LanePolicy, PolicyLanes}
-import skein.policy.HeadingPolicy
+import skein.policy.Policy
 
 /** Records the inputs and results of many worlds' decisions. */
-private[skein] final class LoggedPolicy(of: HeadingPolicy) extends LanePolicy(PolicyLanes.get(of)):
+private[skein] final class LoggedPolicy(of: Policy) extends LanePolicy(PolicyLanes.get(of)):
   import LoggedPolicy.*
   private val form   = PolicyLanes.get(of)
   private val worlds = LanePolicy.WORLDS

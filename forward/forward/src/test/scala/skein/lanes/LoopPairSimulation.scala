@@ -16,7 +16,7 @@ import skein.forward.{
 import skein.identify.Tilting
 import skein.lanes.policy.LanePolicy
 import skein.optimise.LatencyBudget
-import skein.policy.{HeadingPolicy, PaperEvader, PaperPursuer}
+import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.port.Moves
 import skein.signal.Impairment
 import skein.simd.WorldRandom
@@ -112,14 +112,14 @@ abstract class LoopPairAgreement(isDaily: Boolean) extends munit.FunSuite:
       durationS: Double,
       model: VelocityResponse
   ) =
-    unseen(timing, link, durationS, model)(duel(_, durationS).pursuer.policy.asInstanceOf[HeadingPolicy])
+    unseen(timing, link, durationS, model)(duel(_, durationS).pursuer.policy.asInstanceOf[Policy])
 
   protected def unseen(timing: LoopTiming, link: TabledDelays, durationS: Double, model: VelocityResponse)(
-      pursuer: Int => HeadingPolicy
+      pursuer: Int => Policy
   ) =
     PairAgreement.alone(duel(0, durationS), timing, model, _ => link, keys(_), captureM)(
       pursuer,
-      duel(_, durationS).evader.policy.asInstanceOf[HeadingPolicy]
+      duel(_, durationS).evader.policy.asInstanceOf[Policy]
     )
 
   for
@@ -166,7 +166,7 @@ abstract class LoopPairAgreement(isDaily: Boolean) extends munit.FunSuite:
 
 /** Each vehicle over one link, one vehicle over most, and what is not a combination. */
 class LoopPairSimulation extends LoopPairAgreement(isDaily = true):
-  private val unseenPursuers = Seq[(String, Int => HeadingPolicy)](
+  private val unseenPursuers = Seq[(String, Int => Policy)](
     "remembers"                    -> (world => TrendPursuer(2 + 0.02 * world, 0.5, 1)),
     "asks for velocities and ages" -> (world => AgeAwarePursuer(8, 0.01 * world, 1))
   )

@@ -5,7 +5,7 @@ import skein.forward.*
 import skein.fusion.Exposure
 import skein.lanes.loop.LoopEye
 import skein.lanes.policy.{LaneObservation, PolicyLanes}
-import skein.policy.{PlanarObservation, HeadingPolicy}
+import skein.policy.{Action, Observation, PlanarObservation, Policy}
 
 /** Compares duels by SIMD with the scalar engine, decision by decision, by [[Agreement]]. All but the
   * vehicles' motion is compared to the bit: a decision starts from the heading and memory of the SIMD
@@ -21,7 +21,7 @@ private[skein] class PairAgreement(
     link: Int => Delays,
     key: Int => Int,
     captureM: Float,
-    policies: Vector[Int => HeadingPolicy],
+    policies: Vector[Int => Policy],
     lanes: Vector[LoggedPolicy],
     val flown: PairKernel
 ):
@@ -160,7 +160,7 @@ private[skein] object PairAgreement:
       agent: Int,
       k: Int,
       timeS: Double,
-      policy: HeadingPolicy,
+      policy: Policy,
       seen: PlanarObservation,
       memory: Any,
       ours: LoggedPolicy.Made,
@@ -199,7 +199,7 @@ private[skein] object PairAgreement:
       link: Delays,
       key: Int,
       captureM: Float = 0
-  )(pursuer: Int => HeadingPolicy, evader: Int => HeadingPolicy): PairAgreement =
+  )(pursuer: Int => Policy, evader: Int => Policy): PairAgreement =
     val lanes  = taken(pursuer, evader)
     val kernel = PairKernels.shared(duel, timing, model, lanes, link, key, captureM)
     PairAgreement(duel, timing, model, _ => link, _ => key, captureM, Vector(evader, pursuer), lanes, kernel)
@@ -212,7 +212,7 @@ private[skein] object PairAgreement:
       link: Int => TabledDelays,
       key: Int => Int,
       captureM: Float = 0
-  )(pursuer: Int => HeadingPolicy, evader: Int => HeadingPolicy): PairAgreement =
+  )(pursuer: Int => Policy, evader: Int => Policy): PairAgreement =
     val lanes  = taken(pursuer, evader)
     val kernel = flownAlone(duel, timing, model, link, key, captureM, lanes)
     PairAgreement(duel, timing, model, link, key, captureM, Vector(evader, pursuer), lanes, kernel)
@@ -235,7 +235,7 @@ private[skein] object PairAgreement:
     PairKernels.alone(duel, timing, model, lanes, worlds.map(link), worlds.map(key), captureM, newEye)
 
   /** Lanes that fly these, the evader's first. */
-  def taken(pursuer: Int => HeadingPolicy, evader: Int => HeadingPolicy): Vector[LoggedPolicy] =
+  def taken(pursuer: Int => Policy, evader: Int => Policy): Vector[LoggedPolicy] =
     Vector(evader, pursuer).map: of =>
       val lanes = LoggedPolicy(of(0))
       for world <- 0 until PairKernels.WORLDS do lanes.take(world, of(world))
@@ -270,7 +270,7 @@ private[skein] object PairAgreement:
       else distances += timeS -> math.hypot(x - x0, y - y0)
 
   /** Notes what a policy sees, and answers as it does. */
-  final class Log(val policy: HeadingPolicy) extends HeadingPolicy:
+  final class Log(val policy: Policy) extends Policy:
     type Memory = policy.Memory
     val seen: ArrayBuffer[PlanarObservation] = ArrayBuffer.empty
     val before: ArrayBuffer[Any]             = ArrayBuffer.empty
@@ -280,9 +280,9 @@ private[skein] object PairAgreement:
       before.clear()
       decided.clear()
       policy.start
-    def decide(observed: PlanarObservation, memory: Memory): (Double, Memory) =
-      seen += observed
+    def choose(observed: Observation, memory: Memory): (Action, Memory) =
+      seen += PlanarObservation.of(observed)
       before += memory
-      val answer = policy.decide(observed, memory)
-      decided += answer._1
+      val answer = policy.choose(observed, memory)
+      decided += answer._1.headingRad(observed.headingRad)
       answer

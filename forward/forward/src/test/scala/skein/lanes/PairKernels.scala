@@ -6,7 +6,7 @@ import skein.lanes.policy.{CameraTrackerLanes, LanePolicy}
 import skein.lanes.score.{Judged, Scoreboard, ScoreLanes}
 import skein.lanes.timetable.{Timetable, TimetableEye, TimetableKernel}
 
-/** What a kernel of two flew last, in each of its worlds. */
+/** Numbers of the last flight of a kernel for duels, in each of its worlds. */
 final class PairKernel(
     duel: Duel,
     timing: LoopTiming,
@@ -22,7 +22,7 @@ final class PairKernel(
     case PairNumber.PursuerEffort => members(1).effortRad
     case _                        => scores.values(judged.indexOf(number))
 
-/** Kernels of two with policies of their own, by vehicle: the evader is the first. */
+/** Kernels for duels with a separate policy for each vehicle; the evader is the first. */
 object PairKernels:
   val WORLDS: Int = LanePolicy.WORLDS
 
@@ -33,7 +33,7 @@ object PairKernels:
     }
     Scoreboard(ScoreLanes.of(judged, 2).fold(throw _, identity), Vector(0, 0))
 
-  /** Candidates of one episode. */
+  /** Candidates that share one episode. */
   def shared(
       duel: Duel,
       timing: LoopTiming,
@@ -55,7 +55,7 @@ object PairKernels:
     TimetableKernel(members.map(identity), scores).fly(timetable, WORLDS)
     PairKernel(duel, timing, captureM, members, scores)
 
-  /** Worlds with delays of their own. */
+  /** Worlds with separate delays. */
   def alone(
       duel: Duel,
       timing: LoopTiming,

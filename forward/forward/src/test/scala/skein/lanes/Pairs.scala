@@ -3,14 +3,14 @@ package skein.lanes
 import scala.collection.mutable
 import skein.forward.{Delays, Duel, DuelOutcome, Engagement, LoopTiming, Rollout, VelocityResponse}
 import skein.lanes.score.{Effort, Judged, OfMoment}
-import skein.policy.HeadingPolicy
+import skein.policy.Policy
 import skein.scenario.{Reduction, Separation}
 
 /** Worlds of a pursuer and an evader, for tests that differ in these two alone. */
 trait PairWorlds extends Worlds:
   def asked: Set[PairNumber] = PairNumber.all
-  def pursuer(world: Int): HeadingPolicy
-  def evader(world: Int): HeadingPolicy
+  def pursuer(world: Int): Policy
+  def evader(world: Int): Policy
 
 /** The numbers of a [[DuelOutcome]]. */
 enum PairNumber(val of: DuelOutcome => Double):
@@ -59,8 +59,8 @@ final class PairBatch(
   private val batch = TeamBatch(timing, model, threads, accelerator, isReference)
 
   private def candidate(
-      pursuer: HeadingPolicy,
-      evader: HeadingPolicy,
+      pursuer: Policy,
+      evader: Policy,
       asked: Set[PairNumber],
       radiusM: Double
   ) =
@@ -70,8 +70,8 @@ final class PairBatch(
     )
 
   def engine(
-      pursuer: HeadingPolicy,
-      evader: HeadingPolicy,
+      pursuer: Policy,
+      evader: Policy,
       shareEpisodes: Boolean,
       links: Seq[Delays]
   ): Engine =
@@ -83,7 +83,7 @@ final class PairBatch(
       onProgress: Int => Unit = _ => (),
       isCancelled: () => Boolean = () => false
   ): PairOutcomes =
-    val known = mutable.HashMap.empty[(HeadingPolicy, HeadingPolicy), TeamCandidate]
+    val known = mutable.HashMap.empty[(Policy, Policy), TeamCandidate]
     val teams = Array.tabulate(worlds.size): world =>
       val (pursuer, evader) = (worlds.pursuer(world), worlds.evader(world))
       known.getOrElseUpdate((pursuer, evader), candidate(pursuer, evader, worlds.asked, captureRadiusM))

@@ -73,10 +73,13 @@ class PythonTwinSuite extends munit.FunSuite:
             other.policy.choose(seen, other.policy.start)._1
           )
 
-    for timing <- loops if !name.contains("wider"); share <- Seq(true, false); isReference <- Seq(false, true)
+    for
+      timing     <- loops if !name.contains("wider")
+      share      <- Seq(true, false)
+      (by, pace) <- Seq("the scalar engine" -> true, "SIMD" -> true, "SIMD, at paces of their own" -> false)
     do
-      val by = if isReference then "by the scalar engine" else "by SIMD"
-      test(s"$name, $timing, shared episodes: $share, $by: the same results, to the bit"):
+      val isReference = by.startsWith("the scalar")
+      test(s"$name, $timing, shared episodes: $share, by $by: the same results, to the bit"):
         val batch               = TeamBatch(timing, lag, threads = 1, isReference = isReference)
         def flown(of: Scenario) =
           val judged =
@@ -86,8 +89,7 @@ class PythonTwinSuite extends munit.FunSuite:
               ).map(each =>
                 Judged(each.quantity, each.reduction, 3)
               )
-          // Else two of our own policies would decide by headings alone, and Python's as teams do.
-          val team   = TeamCandidate(Engagement.of(of.fleet, durationS = 6), judged, areAtOnePace = false)
+          val team   = TeamCandidate(Engagement.of(of.fleet, durationS = 6), judged, areAtOnePace = pace)
           val worlds = new TeamWorlds:
             def size: Int                            = 8
             override def shareEpisodes: Boolean      = share

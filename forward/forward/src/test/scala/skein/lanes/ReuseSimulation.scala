@@ -11,7 +11,7 @@ import skein.testing.Optimised
 import skein.units.*
 import skein.vehicle.TiltModel
 
-/** Arrays are reused from batch to batch: worlds leave nothing behind that changes the next ones. */
+/** Arrays are reused from batch to batch, and worlds leave nothing in them that changes the next worlds. */
 class ReuseSimulation extends munit.FunSuite, Optimised:
   import ReuseSimulation.*
 
@@ -27,7 +27,7 @@ class ReuseSimulation extends munit.FunSuite, Optimised:
       ))
     TeamCandidate(Engagement.of(fleet, 4), Vector(Judged(Nearest, Reduction.Mean, 0)))
 
-  /** Where readings are predicted, slower than a window of questions, so that some wait. */
+  /** For loops that predict, a link so slow that requests exceed the window and some wait. */
   private def link(timing: LoopTiming) = timing match
     case _: LoopTiming.Predictive => DelayTable.of(LatencyBudget.link(300, 300).get)
     case _                        => DelayTable.vpn
@@ -48,7 +48,7 @@ class ReuseSimulation extends munit.FunSuite, Optimised:
     share <- if timing.isInstanceOf[LoopTiming.Paused] then Seq(true) else Seq(true, false)
   do
     val delays = if share then "shared" else "own"
-    test(s"$name, $timing, $delays delays: after others, worlds fly as they did before"):
+    test(s"$name, $timing, $delays delays: worlds have their earlier results again after other worlds"):
       val over           = link(timing)
       val batch          = TeamBatch(timing, model, threads = 1)
       val (these, those) = (candidates(9), candidates(3).reverse)
@@ -63,7 +63,7 @@ object ReuseSimulation:
   private def policies(rate: Double): Vector[Policy] =
     Vector(Weaving(rate), Ages, Mirror, Trailing, Surrounding(0, 7, 8))
 
-  /** The least distance of another vehicle from the first. */
+  /** Smallest distance of another vehicle from the first, m. */
   private case object Nearest extends Quantity:
     def of(at: skein.scenario.Positions): Double =
       (1 until at.count).map(i =>

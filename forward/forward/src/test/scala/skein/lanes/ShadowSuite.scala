@@ -8,7 +8,7 @@ import skein.testing.Optimised
 import skein.vehicle.TiltModel
 
 class ShadowSuite extends munit.FunSuite, Optimised:
-  test("a leader that weaves and its follower: SIMD flies them as the scalar engine does"):
+  test("SIMD simulates a weaving leader and its follower as the scalar engine does"):
     val candidates = Vector.tabulate(8): number =>
       TeamCandidate(
         Engagement.inSpace(Shadow(course = number + 1, leaderMps = 5 + 0.2 * number).fleet, 10),

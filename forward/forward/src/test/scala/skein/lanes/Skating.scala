@@ -4,8 +4,8 @@ import skein.vehicle.{ObservedPlant, PlaneReading}
 
 final case class Sliding(headingRad: Double, speedMps: Double, eastM: Double, northM: Double)
 
-/** Turns after the commanded velocity and slides where it heads. Readings contain its whole state, in other
-  * numbers. The product does not contain it.
+/** A vehicle that turns towards the commanded velocity and slides along its heading. Readings contain its
+  * whole state, in other coordinates. The product does not contain this plant.
   */
 final case class Skating(lagS: Double, turnPerS: Double, stepS: Double = 0.04)
     extends ObservedPlant[Sliding]:

@@ -9,7 +9,7 @@ import skein.testing.Optimised
 import skein.units.*
 import skein.vehicle.TiltModel
 
-/** Teams in three dimensions by SIMD beside the scalar reference. */
+/** Compares teams in three dimensions by SIMD with the scalar reference. */
 class SpaceLanesSuite extends munit.FunSuite, Optimised:
   import SpaceLanesSuite.*
 
@@ -55,16 +55,16 @@ class SpaceLanesSuite extends munit.FunSuite, Optimised:
       // Vehicles do climb, and differently in each world.
       assert(slow(0).max < -12 && slow(0).distinct.length > 4, slow(0).mkString(", "))
 
-  test("a policy that chooses between a velocity and an altitude by what it sees is one formula"):
+  test("a policy that chooses between a velocity and an altitude by its observation is one formula"):
     val engine = TeamBatch(LoopTiming.Stream(), model).engine(candidates.head, true, Seq(DelayTable.vpn))
     assert(engine.fliesByLanes, engine.text)
 
-  test("models of level flight refuse who climbs, and say so"):
+  test("models of level flight refuse policies that climb, and give the reason"):
     val level  = TeamBatch(LoopTiming.Stream(), VelocityResponses.lag(1, 1, 0))
     val engine = level.engine(candidates.head, true, Seq(DelayTable.vpn))
     assert(engine.text.contains("it leaves the altitude of its vehicle's start"), engine.text)
 
-  test("a predicted climb flies scalar, and is told"):
+  test("a climb under a loop that predicts uses the scalar engine, and the reason is given"):
     val timing = LoopTiming.Predictive(predictor = skein.vehicle.ConstantVelocity)
     val engine = TeamBatch(timing, model).engine(candidates.head, true, Seq(DelayTable.vpn))
     assert(engine.text.contains("SIMD does not predict climbs"), engine.text)
@@ -100,7 +100,7 @@ object SpaceLanesSuite:
 
   private final case class Phase(angle: Double, timeS: Double)
 
-  /** Flies to the place above another vehicle, by its height and its sink rate too. */
+  /** Flies to the place above another vehicle, according to that vehicle's altitude and sink rate. */
   private final case class Above(other: Int, aboveM: Double) extends Policy:
     type Memory = Unit
     def start: Unit                                             = ()
@@ -111,7 +111,7 @@ object SpaceLanesSuite:
       val along         = way * (speed / way.norm.max(1e-3))
       (Action.Velocity(along + Vector3(0, 0, 0.3 * there.velocityNed.z)), ())
 
-  /** Holds one altitude after the other; near its start's, it flies by a velocity instead. */
+  /** Holds several altitudes in turn; near the altitude of its start it commands a velocity instead. */
   private final case class Stairs(climbMps: Double) extends Policy:
     type Memory = Double
     def start: Double                                               = 0
@@ -126,7 +126,6 @@ object SpaceLanesSuite:
   private case object Height extends Quantity:
     def of(at: Positions): Double = (0 until at.count).map(at.downM(_)).min
 
-  /** Least distance in space. */
   private case object Apart extends Quantity:
     def of(at: Positions): Double =
       val distances =

@@ -19,8 +19,8 @@ import skein.signal.SplitMix64
 import skein.simd.{BoundFunction, WorldRandom}
 import skein.testing.Unhurried
 
-/** A team's SIMD and scalar engines take equal decisions in every world, except where a number that a policy
-  * compares is so near to another that rounding decides: [[ErrorBound]] reports how near.
+/** A team's SIMD and scalar engines make equal decisions in every world, except where a number that a policy
+  * compares is so near to another that rounding decides; [[ErrorBound]] computes how near.
   */
 class TeamAgreementSimulation extends munit.FunSuite, Unhurried:
   import TeamAgreementSimulation.*
@@ -45,7 +45,7 @@ class TeamAgreementSimulation extends munit.FunSuite, Unhurried:
     (name, draw) <- scenarios
     timing       <- Seq(LoopTiming.Stream(), LoopTiming.Sequential())
   do
-    test(s"$name, ${timing.productPrefix}: equal decisions in each world compared, 6 s"):
+    test(s"$name, ${timing.productPrefix}: all compared worlds have equal decisions for 6 s"):
       val seed   = 23L
       val random = SplitMix64(seed)
       val drawn  = Vector.fill(worlds)(Engagement.of(draw(random).fleet, 6))
@@ -99,7 +99,7 @@ object TeamAgreementSimulation:
       nextSin: Array[Float]
   )
 
-  /** How a vehicle's decision is computed, with its inputs. */
+  /** The computation of a vehicle's decision, with its inputs. */
   final class Form(lanes: TeamLanes, self: Int):
     import TeamLanes.Source
     private val bound = BoundFunction.of(lanes.outputs(self))
@@ -122,9 +122,9 @@ object TeamAgreementSimulation:
               case Source.Parameter(number) => own(number)
               case other                    => throw IllegalStateException(s"$other is not asked for here")
 
-    /** The difference of a decision beyond the error bound of the branches taken in doubles.
+    /** The difference of a decision beyond the error bound for the branches taken in doubles.
       *
-      * @param made the SIMD engine's previous decision, if there was one, and this one
+      * @param made the SIMD engine's previous decision, if there was one, and its present decision
       */
     def difference(
         k: Int,
@@ -203,7 +203,7 @@ object TeamAgreementSimulation:
         direction._2.clone
       )
 
-  /** Records the observations of a policy, and returns its answers. */
+  /** Records the observations of a policy, and passes on its decisions. */
   final class Log(val policy: Policy) extends Policy:
     val seen: ArrayBuffer[Observation] = ArrayBuffer.empty
     type Memory = policy.Memory

@@ -38,8 +38,8 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
     )
   )
 
-  /** The engagement without a symmetry in which two pursuers are equally near, and rounding decides who is
-    * the nearest.
+  /** The engagement of a scenario without symmetries, in which rounding would decide which of two equally
+    * near pursuers is the nearest.
     */
   private def engagement(scenario: Scenario, durationS: Double) =
     val all = Engagement.of(scenario.fleet, durationS)
@@ -78,7 +78,7 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
     timing         <- loops
     (linked, link) <- links
   do
-    test(s"$name, $timing over $linked: every world flies as by the scalar reference, 6 s to 2 mm"):
+    test(s"$name, $timing over $linked: every world agrees with the scalar reference, 6 s to 2 mm"):
       agree(draw, timing, link, lag, 2e-3, 6)
 
   private val manyMoves = Steering(mostOutstanding = 6)
@@ -90,7 +90,7 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
   )
 
   for (name, draw) <- scenarios; timing <- loopsOfManyMoves do
-    test(s"$name, $timing over vpn: every world flies as by the scalar reference, 6 s to 2 mm"):
+    test(s"$name, $timing over vpn: every world agrees with the scalar reference, 6 s to 2 mm"):
       agree(draw, timing, DelayTable.vpn, lag, 2e-3, 6)
 
   for
@@ -101,12 +101,12 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
       "quadrotor"     -> VelocityResponses.quadrotor()
     )
   do
-    test(s"$name, $model, stream over vpn: every world flies as by the scalar reference, 3 s to 4 mm"):
+    test(s"$name, $model, stream over vpn: every world agrees with the scalar reference, 3 s to 4 mm"):
       agree(draw, LoopTiming.Stream(), DelayTable.vpn, plant, 4e-3, 3, 50)
 
   for (name, draw) <- scenarios do
     test(
-      s"$name, predictive by a plant that tilts: every world flies as by the scalar reference, 3 s to 4 mm"
+      s"$name, predictive by a plant that tilts: every world agrees with the scalar reference, 3 s to 4 mm"
     ):
       val tilting = PlantResponse(Tilting(0.95, 0.9, 0.2))
       agree(draw, LoopTiming.Predictive(predictor = tilting.predictor), DelayTable.vpn, tilting, 4e-3, 3, 50)
@@ -156,14 +156,14 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
       )
   do
     test(
-      s"$name, $timing, own delays over $linked: every world flies as by the scalar reference, 6 s to 2 mm"
+      s"$name, $timing, own delays over $linked: every world agrees with the scalar reference, 6 s to 2 mm"
     ):
       // Vehicles that avoid one another amplify rounding: over links that jitter, up to three flights of 168 end 2 to
       // 14 mm off, other ones with each way to compute a lag.
       agreeAlone(draw, timing, link, lag, 2e-3, 6, farthestM = if name == "crossing" then 2e-2 else 2e-3)
 
   for (name, draw) <- scenarios; timing <- loopsOfManyMoves do
-    test(s"$name, $timing, own delays over vpn: every world flies as by the scalar reference, 6 s to 2 mm"):
+    test(s"$name, $timing, own delays over vpn: every world agrees with the scalar reference, 6 s to 2 mm"):
       agreeAlone(
         draw,
         timing,
@@ -185,7 +185,7 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
       Seq(LoopTiming.Stream(), LoopTiming.Futures(), LoopTiming.Predictive(predictor = plant.predictor))
   do
     test(
-      s"$name, $model, $timing, own delays over vpn: every world flies as by the scalar reference, 3 s to 4 mm"
+      s"$name, $model, $timing, own delays over vpn: all worlds agree with the scalar reference, 3 s to 4 mm"
     ):
       agreeAlone(draw, timing, DelayTable.vpn, plant, 4e-3, 3)
 
@@ -207,12 +207,12 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
   for timing <-
       Seq(LoopTiming.Futures(), LoopTiming.Predictive(predictor = VelocityResponses.quadrotor().predictor))
   do
-    test(s"quadrotors, $timing, own delays over vpn: side by side as by the scalar reference, 2 s to 4 mm"):
+    test(s"quadrotors, $timing, own delays over vpn: all agree with the scalar reference, 2 s to 4 mm"):
       val draw = scenarios(0)._2
       agreeAlone(draw, timing, DelayTable.vpn, VelocityResponses.quadrotor(), 4e-3, 2)
 
   for timing <- Seq(LoopTiming.Sequential(), LoopTiming.Futures()) do
-    test(s"fifteen, $timing, own delays over vpn: every world flies as by the scalar reference, 6 s to 2 mm"):
+    test(s"fifteen vehicles, $timing, own delays over vpn: all agree with the scalar reference, 6 s to 2 mm"):
       agreeAlone(random => Surround(15, within(random, 6, 12)), timing, DelayTable.vpn, lag, 2e-3, 6)
 
   private def wild(meanMs: Double, jitterMs: Double) = DelayTable.of(LatencyBudget.link(meanMs, jitterMs).get)
@@ -275,7 +275,7 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
     (name, draw, judging) <- quantities
     reduction             <- Reduction.values ++ Seq(OfMoment.Newest)
   do
-    test(s"$name, $reduction: candidates agree with the scalar reference, to 1e-3 of it"):
+    test(s"$name, $reduction: candidates agree with the scalar reference, within a relative 1e-3"):
       val random     = SplitMix64(9)
       val candidates = Vector.tabulate(150): i =>
         TeamCandidate(engagement(draw(random), 10), judging(i).map(Judged(_, reduction, 2)))
@@ -300,7 +300,10 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
             s"world $world, $number"
           )
 
-  test("numbers from different times on equal those of each alone, and are found at the scalar's moment"):
+  test(
+    "numbers that are judged from different times have the results that they have alone, and the scalar " +
+      "engine's"
+  ):
     val random = SplitMix64(9)
     val judged = Vector(
       Judged(Separation, Reduction.Least, 0),
@@ -336,7 +339,7 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
   private def avoiding(scenario: Crossing, durationS: Double) =
     TeamCandidate(Engagement.of(scenario.fleet, durationS), Vector(Judged(Separation, Reduction.Least, 0)))
 
-  test("twenty, more than there are rounds, avoid one another by SIMD like in the scalar reference"):
+  test("twenty vehicles, more than there are rounds, avoid one another by SIMD as by the scalar reference"):
     val crossing = avoiding(Crossing(20, entryM = 8, spacingM = 4), 1.5)
     val batch    = TeamBatch(LoopTiming.Stream(), lag, 1)
     val engine   = batch.engine(crossing, shareEpisodes = true, Seq(DelayTable.vpn)).text
@@ -350,7 +353,7 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
     val scalar = ScalarTeam(LoopTiming.Stream(), lag).fly(crossing, DelayTable.direct, 4)(0)
     assertEqualsDouble(batch.fly(one).values(0)(0), scalar, 2e-3)
 
-  test("what SIMD does not support is reported, and uses the scalar reference"):
+  test("a team that SIMD does not support uses the scalar reference, and the reason is given"):
     val surround = Engagement.of(Surround(4).fleet, 5)
     val team     = surround.copy(agents = surround.agents.map(_.copy(policy = Zigzag)))
     val crossing = TeamCandidate(team, Vector(Judged(Separation, Reduction.Least, 0)))
@@ -368,7 +371,7 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
       ScalarTeam(LoopTiming.Stream(), lag).fly(crossing, DelayTable.vpn, 4)(0).toFloat
     )
 
-  test("an exception in a user's own quantity is reported by its name"):
+  test("an exception in a user's own quantity is reported with the quantity's name"):
     val broken =
       TeamCandidate(Engagement.of(Surround(4).fleet, 5), Vector(Judged(Broken, Reduction.Least, 0)))
     val told = intercept[OwnFailure](ScalarTeam(LoopTiming.Stream(), lag).fly(broken, DelayTable.vpn, 4))

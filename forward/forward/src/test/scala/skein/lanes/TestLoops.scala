@@ -3,7 +3,7 @@ package skein.lanes
 import skein.forward.LoopTiming
 
 object TestLoops:
-  /** The loops without prediction, with default settings, and `stream` with all others. */
+  /** The loops without predictions: each with default settings, and `stream` also with other settings. */
   val unpredicted: Seq[LoopTiming] = Seq(
     LoopTiming.Paused(),
     LoopTiming.Sequential(),

@@ -32,8 +32,8 @@ class TimetableKernelSimulation extends munit.FunSuite:
 
   private def evader(world: Int): PaperEvader = PaperEvader(radii(world))
 
-  /** The paper's duel, with the evader's start moved from straight ahead: there the sign of a rounding error
-    * decides which way the quadrotors' pursuer turns.
+  /** The paper's duel with the evader's start moved from straight ahead, where the sign of a rounding error
+    * would decide the direction in which the quadrotors' pursuer turns.
     */
   private val paper = Duel.paper.copy(evader = Duel.paper.evader.copy(startY = 2))
 
@@ -97,8 +97,7 @@ class TimetableKernelSimulation extends munit.FunSuite:
   do
     // None of these worlds meets a threshold within 5 s: PairAgreement would name it.
     test(
-      s"$vehicles, $timing over $name: candidates fly by the " +
-        "timetable as by the scalar reference, 5 s to 2 mm"
+      s"$vehicles, $timing over $name: candidates agree with the scalar reference, 5 s to 2 mm"
     ):
       var close, all, captures = 0
       for episode <- 0 until 2 do
@@ -118,7 +117,7 @@ class TimetableKernelSimulation extends munit.FunSuite:
 
     // Long flights of one loop: the others differ in their timetables alone.
     if timing == LoopTiming.Stream() then
-      test(s"$vehicles, $timing over $name: equal decisions and captures for 60 s in each world compared"):
+      test(s"$vehicles, $timing over $name: compared worlds have equal decisions and captures for 60 s"):
         agreement(timing, link, WorldRandom.key(4, 1, 0), 60, model).check(name, 0 until worlds by 6)
 
   for timing <- Seq(
@@ -128,12 +127,12 @@ class TimetableKernelSimulation extends munit.FunSuite:
     )
   do
     test(
-      s"$timing over a round trip of 400 ms: equal decisions and captures for 10 s in each world compared"
+      s"$timing over a round trip of 400 ms: compared worlds have equal decisions and captures for 10 s"
     ):
       val far = DelayTable.of(LatencyDistribution.Constant(Span.ofMillis(400)))
       agreement(timing, far, WorldRandom.key(6, 1, 0), 10, lag).check("far", 0 until worlds by 6)
 
-  test("a period that does not divide 10 s: as the scalar reference"):
+  test("with a period that does not divide 10 s, results are those of the scalar reference"):
     agreement(LoopTiming.stream(0.3), DelayTable.direct, WorldRandom.key(5, 1, 0), 12, lag)
       .check("every 0.3 s", 0 until worlds by 4)
 

@@ -6,7 +6,7 @@ import skein.units.*
 
 /** Four drones inspect a tower on a helix, and a fifth keeps its distance from the nearest of them.
   *
-  * @param keepM the distance that the fifth keeps
+  * @param keepM distance that the fifth keeps
   */
 final case class Tower(
     radiusM: Double = 8,
@@ -50,8 +50,8 @@ final case class Tower(
 object Tower:
   private val LowestM = 6.0
 
-  /** Follows a point that moves along the helix, and turns around at the top and at the bottom. Its memory is
-    * that point; its height says by which way it goes.
+  /** Follows a point that moves along the helix, and turns around at the top and at the bottom. The memory is
+    * that point, whose altitude encodes the direction.
     */
   final case class Inspect(
       radiusM: Double,
@@ -96,7 +96,7 @@ object Tower:
       for other <- 0 until keeper do least = least.min(distance(at, keeper, other))
       least
 
-  /** Least distance of two vehicles in space, m. */
+  /** Smallest distance between two vehicles in space, m. */
   case object ApartInSpace extends Quantity:
     def of(at: Positions): Double =
       var least = 1e9

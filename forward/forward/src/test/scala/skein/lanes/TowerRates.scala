@@ -7,9 +7,9 @@ import skein.scenario.Reduction
 import skein.simd.WorldRandom
 import skein.vehicle.TiltModel
 
-/** How fast is a team in three dimensions? [[Tower]], `stream` over `vpn`, 60 s: 200 candidates × 200
-  * episodes on all cores, and processor time by SIMD beside the scalar engine, with a witness of both. Run:
-  * `forward/Test/runMain skein.lanes.towerRates`.
+/** Measures the speed of a team in three dimensions: [[Tower]], `stream` over `vpn`, 60 s. Simulates 200
+  * candidates × 200 episodes on all cores, and measures processor time by SIMD and by the scalar engine, with
+  * a witness of both. Run: `forward/Test/runMain skein.lanes.towerRates`.
   */
 @main def towerRates(): Unit =
   val system =

@@ -8,7 +8,7 @@ import skein.testing.Optimised
 import skein.vehicle.TiltModel
 
 class TowerSuite extends munit.FunSuite, Optimised:
-  test("five drones around a tower, with a memory of a vector: SIMD flies them as the scalar engine does"):
+  test("SIMD simulates five drones around a tower, with a vector as memory, as the scalar engine does"):
     val model      = SpatialResponse(TiltModel.AirSim)
     val candidates = Vector.tabulate(8): number =>
       TeamCandidate(

@@ -4,7 +4,8 @@ import skein.vehicle.{ObservedPlant, PlaneReading}
 
 final case class OnRails(northM: Double, northMps: Double)
 
-/** Moves north and south only, whatever the command. The product does not contain it. */
+/** A vehicle that moves north and south only, whatever the command. The product does not contain this plant.
+  */
 final case class Train(lagS: Double) extends ObservedPlant[OnRails]:
   def initial: OnRails                   = OnRails(0, 0)
   def stepS: Double                      = 0.04

@@ -1,6 +1,6 @@
 package skein.lanes
 
-import skein.policy.{PlanarObservation, HeadingPolicy}
+import skein.policy.{HeadingPolicy, PlanarObservation}
 
 /** The memory of [[TrendPursuer]]: the opponent's last bearing, and the mean rate of its change. */
 final case class Trend(bearingRad: Double, rateRadPerS: Double)

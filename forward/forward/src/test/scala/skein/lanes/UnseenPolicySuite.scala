@@ -1,7 +1,7 @@
 package skein.lanes
 
 import skein.forward.{DelayTable, Delays, Duel, LoopTiming, Rollout, VelocityResponses}
-import skein.policy.{ChauffeurEvader, HeadingPolicy}
+import skein.policy.{ChauffeurEvader, Policy}
 import skein.signal.SplitMix64
 import skein.simd.WorldRandom
 
@@ -28,12 +28,12 @@ class UnseenPolicySuite extends munit.FunSuite:
       val pursuers = Vector.fill(128)(draw(random))
       val evader   = ChauffeurEvader()
       val worlds   = new PairWorlds:
-        def size: Int                          = pursuers.size
-        override def shareEpisodes: Boolean    = shared
-        def key(world: Int): Int               = WorldRandom.key(1, 0, if shared then 0 else world)
-        def link(world: Int): Delays           = DelayTable.vpn
-        def pursuer(world: Int): HeadingPolicy = pursuers(world)
-        def evader(world: Int): HeadingPolicy  = UnseenPolicySuite.Evader
+        def size: Int                       = pursuers.size
+        override def shareEpisodes: Boolean = shared
+        def key(world: Int): Int            = WorldRandom.key(1, 0, if shared then 0 else world)
+        def link(world: Int): Delays        = DelayTable.vpn
+        def pursuer(world: Int): Policy     = pursuers(world)
+        def evader(world: Int): Policy      = UnseenPolicySuite.Evader
       val batch = PairBatch(short, timing, model, 1)
       assert(
         batch.engine(pursuers.head, evader, shared, Seq(DelayTable.vpn)).isFast,
@@ -55,7 +55,7 @@ class UnseenPolicySuite extends munit.FunSuite:
 object UnseenPolicySuite:
   val Evader: ChauffeurEvader = ChauffeurEvader()
 
-  val Unseen: Seq[(String, SplitMix64 => HeadingPolicy)] = Seq(
+  val Unseen: Seq[(String, SplitMix64 => Policy)] = Seq(
     "memory" -> (random =>
       TrendPursuer(random.nextDouble(), 0.2 + random.nextDouble(), 0.5 + random.nextDouble())
     ),

@@ -8,10 +8,10 @@ import skein.policy.PolicyFamily
 import skein.scenario.Reduction
 import skein.signal.SplitMix64
 
-/** Measures the speed of a search of policies that the product does not contain: `forward/Test/runMain
-  * skein.lanes.unseenRates`: on one thread, 1,024 candidates of one episode of 60 s of `stream` over `vpn`,
-  * beside the paper's pursuer, and by the scalar engine; processor time. Agent-steps of 0.1 s; the number of
-  * operations in the compiled expression is printed.
+/** Measures the speed of a search over policies that the product does not contain. Run: `forward/Test/runMain
+  * skein.lanes.unseenRates`. Simulates on one thread 1,024 candidates of one episode, 60 s of `stream` over
+  * `vpn`, and for comparison the paper's pursuer and the scalar engine. Prints millions of agent-steps of 0.1
+  * s per second of processor time, and the number of operations in the compiled expression.
   */
 @main def unseenRates(rounds: Int*): Unit =
   val model  = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)

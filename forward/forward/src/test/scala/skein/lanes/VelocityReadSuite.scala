@@ -5,7 +5,7 @@ import skein.policy.*
 import skein.signal.Kinematics
 import skein.units.*
 
-/** Kernels compute velocities only where a policy reads one. */
+/** Kernels compute velocities only if a policy reads one. */
 class VelocityReadSuite extends munit.FunSuite:
   import VelocityReadSuite.*
 
@@ -18,11 +18,11 @@ class VelocityReadSuite extends munit.FunSuite:
     assert(needsVelocity(North))
     assert(needsVelocity(East))
 
-  test("one that reads positions alone does not"):
+  test("a policy that reads positions alone needs no velocities"):
     assert(!needsVelocity(Place))
 
 object VelocityReadSuite:
-  /** Flies along a number that it reads of its opponent, as a heading. */
+  /** Flies along a heading that is a number read of its opponent. */
   abstract class Reads extends Policy:
     type Memory = Unit
     def read(rival: Kinematics): Double

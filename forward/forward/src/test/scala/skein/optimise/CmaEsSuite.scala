@@ -25,14 +25,14 @@ class CmaEsSuite extends munit.FunSuite:
     x.zip(x.tail).map((a, b) => 100 * math.pow(b - a * a, 2) + math.pow(1 - a, 2)).sum
 
   for seed <- 1 to 3 do
-    test(s"it reaches the middle of the 8-dimensional sphere to 1e-8 in 1,500 evaluations, seed $seed"):
+    test(s"the search reaches the minimum of an 8-dimensional sphere in 1,500 evaluations, seed $seed"):
       assert(sphere(minimised(sphere, Vector.fill(8)(1.0), 10, 150, seed).last.mean) < 1e-8)
 
-    test(s"an ellipsoid with a condition of a million costs it 6,000 evaluations at most, seed $seed"):
+    test(s"an ellipsoid with a condition of a million takes at most 6,000 evaluations, seed $seed"):
       val states = minimised(ellipsoid, Vector.fill(8)(1.0), 10, 600, seed)
       assert(ellipsoid(states.last.mean) < 1e-8, ellipsoid(states.last.mean))
 
-    test(s"it follows the valley of Rosenbrock's function in 5 dimensions, seed $seed"):
+    test(s"the search follows the valley of Rosenbrock's function in 5 dimensions, seed $seed"):
       val last = minimised(rosenbrock, Vector.fill(5)(0.0), 12, 500, seed).last.mean
       assert(rosenbrock(last) < 1e-8, rosenbrock(last))
 
@@ -41,12 +41,12 @@ class CmaEsSuite extends munit.FunSuite:
     val ratios = (0 until 4).map(i => c(i)(i) * math.pow(1e6, i / 3.0))
     assert(ratios.max / ratios.min < 10, ratios)
 
-  test("nothing depends on a function's scale, only on the order of its values"):
+  test("the search depends only on the order of a function's values, not on their scale"):
     val plain  = minimised(sphere, Vector.fill(3)(1.0), 8, 30).last
     val scaled = minimised(x => math.exp(sphere(x)) * 1e9, Vector.fill(3)(1.0), 8, 30).last
     assertEquals(scaled, plain)
 
-  test("the eigenvectors of a symmetric matrix rebuild it"):
+  test("a symmetric matrix is the product of its eigenvectors and eigenvalues"):
     val source = SplitMix64(11)
     for n <- Seq(1, 2, 7, 20) do
       val half   = Array.fill(n, n)(source.nextDouble() - 0.5)

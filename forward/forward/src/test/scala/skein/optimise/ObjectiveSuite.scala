@@ -18,7 +18,7 @@ class ObjectiveSuite extends munit.FunSuite:
     assertEquals(objective.direction, Direction.Minimise)
     assertEquals(read(objective.text), objective)
 
-  test("a measure alone goes where the role wants it, unless it is said"):
+  test("a single term has the role's direction unless another is stated"):
     assertEquals(read("last10s").direction, Direction.Minimise)
     assertEquals(read("last10s", Role.Evader).direction, Direction.Maximise)
     assertEquals(read("capture(4, 20)").direction, Direction.Maximise)
@@ -40,11 +40,11 @@ class ObjectiveSuite extends munit.FunSuite:
       ("captureTime(-1)", "character 1", "captureTime(RADIUS_M)")
     )
   do
-    test(s"'$text' is refused with place and expectation"):
+    test(s"'$text' is refused, with the place and what was expected"):
       val mistake = Objective.ofRole(text, Role.Pursuer).left.getOrElse("accepted")
       assert(mistake.contains(place) && mistake.contains(expected), mistake)
 
-  test("captures, their times and efforts are those of the scalar reference"):
+  test("captures, their times and efforts equal those of the scalar reference"):
     val duel     = Duel.paper.copy(durationS = 20)
     val model    = VelocityResponses.lag(0.9, 0.8, 0.05)
     val pursuers = Vector(PaperPursuer(0.4), PaperPursuer(1.0), PaperPursuer(1.8))
@@ -75,7 +75,7 @@ class ObjectiveSuite extends munit.FunSuite:
         1e-4
       )
 
-  test("tallies of parts make the tally of the whole"):
+  test("the tallies of parts combine to the tally of the whole"):
     val values = Vector.tabulate(20)(i => math.sin(i) * i)
     val whole  = RunningStats.of(20)(values)
     val parts  = RunningStats.of(7)(values) + RunningStats.of(13)(i => values(i + 7))
@@ -85,7 +85,7 @@ class ObjectiveSuite extends munit.FunSuite:
     val mean = values.sum / 20
     assertEqualsDouble(whole.sd, math.sqrt(values.map(v => (v - mean) * (v - mean)).sum / 19), 1e-12)
 
-  test("the interval of few values is Student's, that of many the normal distribution's"):
+  test("the interval of few values is by Student's distribution, that of many by the normal distribution"):
     def width(count: Int) =
       val stats = RunningStats.of(count)(_ % 2)
       stats.studentHalfWidth95 / stats.halfWidth95
@@ -94,7 +94,7 @@ class ObjectiveSuite extends munit.FunSuite:
     assertEqualsDouble(width(31), 2.042 / 1.959964, 1e-9)
     assertEqualsDouble(width(32), 1, 1e-9)
 
-  test("a capture at the last moment that counts is one, and one a score later is none"):
+  test("a capture within the limit counts, and one a period later does not"):
     val capture = DistanceTerm.Capture(4, 7.3)
     for (captureS, expected) <- Seq(7.2 -> 1.0, 7.3 -> 1.0, 73 * 0.1 -> 1.0, 7.4 -> 0.0) do
       assertEquals(capture.value(captureS.toFloat, 20), expected, s"$captureS s")

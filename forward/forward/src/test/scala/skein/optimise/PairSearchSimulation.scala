@@ -25,7 +25,9 @@ class PairSearchSimulation extends munit.FunSuite, Unhurried:
     usual = PolicyFamily.paperPursuer.space.defaults
   )
 
-  test("the value of a turn rate is the scalar reference's mean, and does not depend on the threads"):
+  test(
+    "the value of a turn rate is the scalar reference's mean, and does not depend on the number of threads"
+  ):
     val candidates = Vector(Vector(0.7), Vector(1.0), Vector(1.4))
     val tallies    = game(1).tallies(candidates, 0 until 30)
     assertEquals(game(2).tallies(candidates, 0 until 30), tallies)
@@ -35,7 +37,9 @@ class PairSearchSimulation extends munit.FunSuite, Unhurried:
       val reference = (0 until 30).map(episode => rollout.fly(WorldRandom.key(1, 0, episode)).meanLast10sM)
       assertEqualsDouble(tally.mean, reference.sum / 30, 0.03)
 
-  test("the paper's pursuer over vpn: the search finds a turn rate at least as good as any of a fine grid"):
+  test(
+    "over vpn, the search finds a turn rate for the paper's pursuer at least as good as any of a fine grid"
+  ):
     val turnRate  = PolicyFamily.paperPursuer.space
     val evaluator = game(1)
     val grid      = Search.run(turnRate, SearchMethod.Grid(29, 20), Direction.Minimise, 1, evaluator).head

@@ -3,7 +3,7 @@ package skein.optimise
 import skein.scenario.Scenarios
 
 class ScenarioObjectiveSuite extends munit.FunSuite:
-  test("every measure of every scenario can be named as an objective, alone and in a sum"):
+  test("every measure of every scenario may be an objective, alone and in a sum"):
     for
       kind    <- Scenarios.ours.kinds
       measure <- kind.standard.measures
@@ -13,7 +13,7 @@ class ScenarioObjectiveSuite extends munit.FunSuite:
       val read = Objective.ofScenario(text, kind.standard)
       assert(read.exists(_.measures.forall(_._2.name == measure.name)), s"${kind.name}: $read")
 
-  test("a weight that is out of all proportion is refused"):
+  test("an extreme weight is refused"):
     val kind = Scenarios.ours.kinds.find(_.name == "surround").get
     for weight <- Seq("1e300", "2000000000") do
       assert(

@@ -8,7 +8,9 @@ class SearchSuite extends munit.FunSuite:
 
   private def depth(c: Vector[Double]): Double = math.pow(c(0) - 1, 2) + 2 * math.pow(c(1) + 0.5, 2)
 
-  /** A bowl around (1, -0.5) with noisy episodes, whose noise is nearly equal for all candidates. */
+  /** A bowl with its minimum at (1, −0.5). Its episodes are noisy, and the noise is nearly equal for all
+    * candidates.
+    */
   private val bowl: Evaluator = (candidates, episodes) =>
     candidates.map: c =>
       RunningStats.of(episodes.size): i =>
@@ -41,13 +43,13 @@ class SearchSuite extends munit.FunSuite:
     assertEquals(space.random(500, 7), drawn)
     assertNotEquals(space.random(500, 8), drawn)
 
-  test("shares of the space are mirrored at its bounds"):
+  test("shares outside 0 to 1 are mirrored at the bounds"):
     assertEquals(space.at(Vector(0, 1)), Vector(-2.0, 3.0))
     assertEquals(space.at(Vector(-0.25, 1.5)), space.at(Vector(0.25, 0.5)))
     assertEquals(space.shares(space.at(Vector(0.25, 0.75))), Vector(0.25, 0.75))
 
   for method <- methods do
-    test(s"$method finds the minimum of a noisy bowl, the same for equal seeds"):
+    test(s"$method finds the minimum of a noisy bowl, and equal seeds give equal results"):
       val found = search(method).head
       assert(depth(found.candidate) < 0.05, s"seed 3: $found")
       assertEquals(search(method).head, found)
@@ -56,7 +58,7 @@ class SearchSuite extends munit.FunSuite:
       val found = Search.run(space, method, Direction.Maximise, 3, hill).head
       assert(depth(found.candidate) < 0.05, s"seed 3: $found")
 
-    test(s"$method ends equally however it is divided into steps"):
+    test(s"the result of $method does not depend on its division into steps"):
       val machine                 = Search(space, method, Direction.Minimise, 5)
       def run(atMost: Int => Int) =
         Iterator
@@ -74,7 +76,7 @@ class SearchSuite extends munit.FunSuite:
       assertEquals(Iterator.iterate(machine.start)(cutAndGoneOnWith).find(_.isDone).get, whole)
       assert(whole.flown <= machine.expected, s"flew ${whole.flown}, expected at most ${machine.expected}")
 
-  test("the play-off's winner is measured on episodes on which no one was chosen"):
+  test("the play-off uses fresh episodes, on which no candidate was chosen"):
     val seen      = Set.newBuilder[Int]
     val evaluator = new Evaluator:
       def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[RunningStats] =
@@ -83,7 +85,7 @@ class SearchSuite extends munit.FunSuite:
     val found = Search.run(space, SearchMethod.Random(200, 4), Direction.Minimise, 1, evaluator).head
     assertEquals(found.tally.count, seen.result().size)
 
-  test("a race spends most episodes on the good candidates"):
+  test("a race spends most of its episodes on the good candidates"):
     var flown     = Map.empty[Vector[Double], Int].withDefaultValue(0)
     val evaluator = new Evaluator:
       def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[RunningStats] =
@@ -97,7 +99,7 @@ class SearchSuite extends munit.FunSuite:
     )
     assertEquals(flown.values.map(_.toLong).sum, SearchMethod.Racing(64, 2).evaluations(2))
 
-  test("what is no number is worse than everything"):
+  test("a candidate whose value is NaN is worse than all others"):
     val holes: Evaluator = (candidates, episodes) =>
       bowl.tallies(candidates, episodes).zip(candidates).map: (tally, c) =>
         if c(0) > 0.5 then tally.copy(mean = Double.NaN) else tally

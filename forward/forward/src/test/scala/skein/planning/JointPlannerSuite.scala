@@ -35,13 +35,13 @@ class JointPlannerSuite extends munit.FunSuite:
 
   private def bearing(self: Int): Double = self * 2 * math.Pi / count
 
-  /** Start of a vehicle on a circle, heading for the middle; all goals are on the opposite side. */
+  /** Start of a vehicle on a circle, heading for the centre; its goal is on the opposite side. */
   private def start(self: Int): PlaneReading =
     val (cos, sin) = (math.cos(bearing(self)), math.sin(bearing(self)))
     PlaneReading(-25 * cos, -25 * sin, 8 * cos, 8 * sin)
 
-  /** Simulates all under their plans, which are made anew each step by this number of slices; returns the
-    * least separation and the greatest final distance to a goal, m.
+  /** Simulates all vehicles under their plans, which are renewed in each step with this number of slices.
+    * Returns the smallest separation and the largest final distance to a goal, m.
     */
   private def fly(slices: Int, seconds: Int): (Double, Double) =
     val planner                           = JointPlanner()
@@ -73,16 +73,16 @@ class JointPlannerSuite extends munit.FunSuite:
       ).max
     )
 
-  test("six that meet in one point keep apart and come through"):
+  test("six vehicles whose straight tracks meet in one point keep apart and reach their goals"):
     val (least, left) = fly(slices = count, seconds = 11)
     assert(least >= minimumM, s"$least m apart")
     assert(left < 3, s"$left m from the goal")
 
-  test("they keep apart even where a tick has time for a third of them"):
+  test("vehicles keep apart even if a tick has slices for only a third of them"):
     val (least, _) = fly(slices = count / 3, seconds = 7)
     assert(least >= minimumM, s"$least m apart")
 
-  test("vehicles take turns, and the next search begins where the last has ended"):
+  test("vehicles take turns, and the next search begins with the vehicle after the last"):
     val planner = JointPlanner()
     val problem = PlanProblem(
       settings,
@@ -93,7 +93,7 @@ class JointPlannerSuite extends munit.FunSuite:
     val next = planner.searched(problem, planner.resumed(problem, Some(found)), 0, slices = 1)
     assertEquals(next.plans.map(_.slices), Vector(0, 1, 0))
 
-  test("each keeps apart from the others' plans; a plan without separation considers no others"):
+  test("each vehicle keeps apart from the others' plans; one without separation ignores them"):
     val planner = JointPlanner()
     val careful = part(start(0), bearing(0), 25, 0, stepsFlown = 0, self = 0)
     val blind   = careful.copy(objective = objective.copy(separation = SeparationCost(0)))
@@ -102,9 +102,7 @@ class JointPlannerSuite extends munit.FunSuite:
     assertEquals(plan.situation(0, careful).others, Vector(plan.tracks(1)))
     assertEquals(plan.situation(1, blind).others, Vector.empty)
 
-  test(
-    "of several searches the one is kept that is cheapest for all together, and all candidates are counted"
-  ):
+  test("the best of several searches is the one with the lowest total cost, and all candidates are counted"):
     val planner = JointPlanner()
     val problem = PlanProblem(
       settings,
@@ -117,7 +115,7 @@ class JointPlannerSuite extends munit.FunSuite:
     assertEquals(best.cost(problem.parts, settings.dtS), costs.min)
     assertEquals(best.plans.map(_.candidates).sum, 13L * settings.sliceCandidates)
 
-  test("equal problems and slices give equal plans, to the last bit"):
+  test("equal problems and numbers of slices give equal plans, to the last bit"):
     val problem = PlanProblem(
       settings,
       Vector.tabulate(4)(self => part(start(self), bearing(self), 5, 5, stepsFlown = 0, self))

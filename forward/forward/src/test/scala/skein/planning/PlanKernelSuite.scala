@@ -3,7 +3,7 @@ package skein.planning
 import skein.formula.ErrorBound
 import skein.lanes.{Bicycle, PairAgreement, Rolling, UnseenPolicySuite}
 import skein.lanes.policy.PolicyLanes
-import skein.policy.{PaperEvader, HeadingPolicy}
+import skein.policy.{PaperEvader, Policy}
 import skein.scenario.Fence
 import skein.signal.SplitMix64
 import skein.vehicle.{PlaneReading, Plant, PlantFlight, ReducedModel}
@@ -16,7 +16,7 @@ class PlanKernelSuite extends munit.FunSuite:
   private val track  = new Target.Along(PredictedTrack.turning(PlaneReading(3, -5, 4, 1), 0.4, steps, dtS))
   private def vehicle(at: PlaneReading) = PredictedVehicle(ReducedModel.AirSim, at)
 
-  private def opponent(policy: HeadingPolicy): Target.Opponent =
+  private def opponent(policy: Policy): Target.Opponent =
     new Target.Opponent(vehicle(PlaneReading(9, 4, -2, 3)), 5, 2.1, policy)
 
   private val objective = PlanCost(

@@ -36,14 +36,14 @@ class PlannerSuite extends munit.FunSuite:
       assertEquals(one.cost, other.cost)
       assertEquals(one.candidates, 5L * settings.sliceCandidates)
 
-    test(s"$name: another stream meets other candidates"):
+    test(s"$name: another random stream draws other candidates"):
       val planner = Planner(settings, objective)
       assertNotEquals(
         improved(planner, pursuit, 1, stream = 1).manoeuvre.turnRates.toSeq,
         improved(planner, pursuit, 1, stream = 2).manoeuvre.turnRates.toSeq
       )
 
-    test(s"$name: slices never make a plan worse, and what it costs is what its manoeuvre costs"):
+    test(s"$name: slices never make a plan worse, and its cost is that of its manoeuvre"):
       val planner = Planner(settings, objective)
       val plans   = Iterator.iterate(planner.start)(planner.improve(_, pursuit, 3)).slice(1, 8).toVector
       for (before, after) <- plans.zip(plans.drop(1)) do assert(after.cost <= before.cost)
@@ -57,14 +57,14 @@ class PlannerSuite extends munit.FunSuite:
       val stumbled = improved(blind, pursuit, 1)
       assert(found.cost <= stumbled.cost + 1e-3f, s"${found.cost} against ${stumbled.cost}")
 
-    test(s"$name: a plan resumed after a tick starts the next search better than a new one"):
+    test(s"$name: a plan resumed after a tick starts with a lower cost than a new plan"):
       val planner = Planner(settings, objective)
       val plan    = improved(planner, pursuit, 10)
       val flown   = pursuit.copy(own = vehicle(0.8, 0, 8, 0))
       val warm    = costs(planner.resumed(plan, 0.1).manoeuvre, flown, planner)
       assert(warm < costs(planner.start.manoeuvre, flown, planner))
 
-  test("a plan keeps the turning circle and flies round what it must keep apart from"):
+  test("a plan respects the turning radius and keeps apart from other vehicles"):
     val separation = SeparationCost(minimum = 2, margin = 1)
     val settings   = PlannerSettings(steps = 40)
     val objective  = PlanCost(CommandLimits(3, 6, 1, 4), cruiseSpeed = 6, separation = separation)
@@ -87,7 +87,7 @@ class PlannerSuite extends munit.FunSuite:
       val limit = objective.limits.turnRateAt(plan.manoeuvre.speeds(step))
       assert(plan.manoeuvre.turnRates(step).abs <= limit * (1 + 1e-6))
 
-  test("a plan turns back from the geofence"):
+  test("a plan turns back before the geofence"):
     val fenced    = objective.copy(geofences = Vector(Geofence(Fence.rectangle(-50, 20, -50, 50))))
     val settings  = PlannerSettings(steps = 40)
     val planner   = Planner(settings, fenced)
@@ -97,20 +97,20 @@ class PlannerSuite extends munit.FunSuite:
     val plan = improved(planner, situation, 10)
     assertEquals(ManoeuvreRollout(situation, fenced, settings.dtS).fly(plan.manoeuvre).breaches, Vector.empty)
 
-  test("without the vector module equal candidates are simulated one by one"):
+  test("without the vector module the scalar block simulates equal candidates"):
     val settings = PlannerSettings(blocksPerSlice = 2)
     val scalar   = new Planner(settings, objective, ScalarBlock(settings.steps))
     val lanes    = new Planner(settings, objective, PlanKernel(settings.steps))
     assertEqualsDouble(improved(scalar, pursuit, 3).cost, improved(lanes, pursuit, 3).cost, 1e-3)
 
-  test("a manoeuvre that is suggested is tried, and found where it is the best"):
+  test("a suggested manoeuvre is among the candidates, and is found if it is the best"):
     val planner = Planner(PlannerSettings(), objective)
     val good    = improved(planner, pursuit, 20, stream = 5).manoeuvre
     val told    = improved(planner, pursuit.copy(suggested = Vector(good)), 1)
     assert(told.cost <= costs(good, pursuit, planner) + 1e-3)
     assert(told.cost < improved(planner, pursuit, 1).cost)
 
-  test("a manoeuvre shifted by a part of a step is met in between"):
+  test("a manoeuvre shifted by a part of a step is interpolated"):
     val manoeuvre = Manoeuvre(IArray(0f, 1f, 2f), IArray(5f, 5f, 5f))
     assertEquals(manoeuvre.shifted(0.05, 0.1).turnRates.toSeq, Seq(0.5f, 1.5f, 2f))
     assertEquals(manoeuvre.shifted(0.1, 0.1).turnRates.toSeq, Seq(1f, 2f, 2f))

@@ -23,7 +23,7 @@ class PolicyManoeuvreSuite extends munit.FunSuite:
   )
   private val limits = CommandLimits(0, 6, 4)
 
-  /** Repeats a given answer; remembers the number of its decisions. */
+  /** Returns a given answer, and counts its decisions. */
   private final class Answering(answer: (Observation, Int) => Action) extends Policy:
     type Memory = Int
     def start: Int                                            = 0
@@ -32,14 +32,12 @@ class PolicyManoeuvreSuite extends munit.FunSuite:
   private def flown(answer: (Observation, Int) => Action): Manoeuvre =
     PolicyManoeuvre.of(Answering(answer), 0, observation, situation, limits, steps = 30, dtS = 0.1)
 
-  test(
-    "a course is turned to as fast as the limits allow, by the shorter way, and no faster than they allow"
-  ):
+  test("a vehicle turns towards a course by the shorter way, exactly as fast as the limits allow"):
     val manoeuvre = flown((seen, _) => seen.along(-0.6, 9))
     assertEquals(manoeuvre.turnRates.take(3).toSeq, Seq(-4f, -2f, 0f))
     assertEquals(manoeuvre.speeds.toSeq.distinct, Seq(6f))
 
-  test("the policy sees itself where it will be and the others straight on"):
+  test("the policy observes its own future position, and the others on straight tracks"):
     var seen      = Vector.empty[Observation]
     val manoeuvre = flown: (at, asked) =>
       assertEquals(asked, seen.size)

@@ -27,7 +27,7 @@ class PredictedVehicleSuite extends munit.FunSuite:
         )
       Headed(state.northM + north * dtS, state.eastM + east * dtS, north, east, state.heading)
 
-  test("a vehicle is at its reading; what readings lack is taken from the known state, or from rest"):
+  test("a vehicle is at its reading; missing parts of the state come from the known state, or from rest"):
     val at     = PlaneReading(100, -50, 3, 4)
     val known  = PredictedVehicle.of(Lagging(1), at, 1, Vector(9, 9, 9, 9, 0.7))
     val anyhow = PredictedVehicle.of(Lagging(1), at, 1)

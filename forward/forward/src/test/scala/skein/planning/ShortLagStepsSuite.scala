@@ -3,7 +3,7 @@ package skein.planning
 import skein.vehicle.{PlaneReading, ReducedModel}
 
 class ShortLagStepsSuite extends munit.FunSuite:
-  test("a short step agrees with the reduced model's own, within the truncated terms of the series"):
+  test("a short step agrees with the reduced model's step, within the truncated terms of the series"):
     for
       lagS     <- Seq(0.3, 1.0, 2.967)
       dragPerM <- Seq(0.0, 0.0067)
@@ -20,6 +20,6 @@ class ShortLagStepsSuite extends munit.FunSuite:
         val off = 7e-6 * (15 + speed) * (if i < 2 then dtS else 1)
         assertEqualsDouble(one.asInstanceOf[Double], other.asInstanceOf[Double], off, s"$model $dtS $speed")
 
-  test("neither steps that are long beside the lag nor two lags fit"):
+  test("short-lag steps do not fit steps that are long relative to the lag, nor models with two lags"):
     assert(!ShortLagSteps.fits(ReducedModel.lag(1, 0.2, 0), 0.1))
     assert(!ShortLagSteps.fits(ReducedModel(1, 1, 0, 1.5, 0), 0.1))

@@ -33,4 +33,4 @@ class NeuralPolicySuite extends munit.FunSuite:
     val family = PolicyFamily.parse("neural:8x8").fold(fail(_), identity)
     assertEquals(family.name, "neural:8x8")
     assertEquals(family.space.dimension, NeuralShape(Vector(8, 8)).parameters + 1)
-    assertEquals(family.defaultPolicy.heading(5, 5, 0, 0, 0.3, 0, 0.1), 0.3)
+    assertEquals(family.defaultPolicy.asInstanceOf[NeuralPolicy].heading(5, 5, 0, 0, 0.3, 0, 0.1), 0.3)

@@ -2,12 +2,12 @@ package skein.scenario
 
 import skein.testing.Lengthy
 
-/** A million mutated scenario files do no harm. */
+/** Reads a million mutated scenario files; none may cause an exception. */
 class ScenarioMutantsSuite extends munit.FunSuite, Lengthy:
   override val munitTimeout: scala.concurrent.duration.Duration =
     scala.concurrent.duration.Duration(1, "hour")
 
-  test("a million mutated files are read or refused in one line each (seed 11)"):
+  test("a million mutated files are read, or refused with one line each (seed 11)"):
     val whole = ScenarioMutants.check(ScenarioFileSuite.Patrol, seed = 11, count = 1_000_000)((text, why) =>
       fail(why + "\n" + text)
     )

@@ -10,7 +10,7 @@ class FormsSuite extends munit.FunSuite:
       if accepts(of) then Right(of) else Left(Untraceable(s"$of is odd"))
     (forms, () => compiled)
 
-  test("what was refused is not compiled again, and something else of its kind may be a formula"):
+  test("a refused object is not compiled again, and another object of its class may still be a formula"):
     val (forms, compiled) = counted(mostRefused = 2, _ % 2 == 0)
     val one: Integer      = 1001
     assert(forms(one).isLeft && forms(one).isLeft)
@@ -18,7 +18,7 @@ class FormsSuite extends munit.FunSuite:
     assertEquals(forms(1002), Right(1002))
     for odd <- Seq(1003, 1005, 1007) do assertEquals(forms(odd).left.map(_.getMessage), Left(s"$odd is odd"))
 
-  test("after a number of refusals and no form, nothing more is compiled"):
+  test("after the limit of refusals without any form, nothing more is compiled"):
     val (forms, compiled) = counted(mostRefused = 3, _ => false)
     for number <- 1001 to 1020 do assert(forms(number).isLeft)
     assertEquals(compiled(), 3)

@@ -39,12 +39,12 @@ class LaneMathSuite extends munit.FunSuite:
       (Op.Tanh, math.tanh, 12, 1e-6)
     )
   do
-    test(s"$op, compiled, errs by less than $bound up to ±$limit"):
+    test(s"compiled $op has an error below $bound up to ±$limit"):
       val xs    = spread(-limit, limit)
       val error = largestError(compiled(op, xs), i => exact(xs(i)))
       assert(error < bound, error)
 
-  test("conditions are compiled once, however many others are made of them, and pass from pass to pass"):
+  test("a condition is compiled once, however many others contain it, and may be used in several passes"):
     val trace         = Trace()
     def input(i: Int) = trace.input(i)
     var inside        = trace.lt(input(0), trace.const(0))
@@ -69,7 +69,7 @@ class LaneMathSuite extends munit.FunSuite:
       for k <- 1 to 40 do holds = if holds then x < 2 * k else x < 2 * k + 1
       assertEquals(into(i) > 0, holds, s"$x")
 
-  test("the exponential, compiled, errs by less than 2.5e-7 of its value"):
+  test("the compiled exponential has a relative error below 2.5e-7"):
     val xs    = spread(-20, 20)
     val out   = compiled(Op.Exp, xs)
     val error = (0 until count).map(i => math.abs(out(i) / math.exp(xs(i)) - 1)).max
@@ -91,7 +91,7 @@ class LaneMathSuite extends munit.FunSuite:
       assert(two(op, x, y).isNaN, s"$op($x, $y)")
     assertEquals((two(Op.Min, 2, 1), two(Op.Max, 2, 1)), (1f, 2f))
 
-  test("the angle of a point errs by less than 3e-7 in all directions and at all distances"):
+  test("the angle of a point has an error below 3e-7 in all directions and at all distances"):
     val angles = spread(-math.Pi, math.Pi)
     for distance <- Seq(1e-3, 1.0, 1e5) do
       val ys    = angles.map(a => (distance * math.sin(a)).toFloat)
@@ -107,7 +107,7 @@ class LaneMathSuite extends munit.FunSuite:
     assertEquals(one(-3, 0), -math.Pi.toFloat / 2)
     assertEquals(one(0, -2), math.Pi.toFloat)
 
-  test("the exponential errs by less than 2e-7 of its value, and is exactly 1 at 0"):
+  test("the exponential has a relative error below 2e-7, and is exactly 1 at 0"):
     val xs  = spread(-20, 20)
     val out = xs.clone
     LaneMath.exp(out, 0, count)

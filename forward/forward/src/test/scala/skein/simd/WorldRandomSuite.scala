@@ -9,7 +9,7 @@ class WorldRandomSuite extends munit.FunSuite:
       LaneRandom.bits(keys, place, bits, 256)
       for i <- keys.indices do assertEquals(bits(i), WorldRandom.bits(keys(i), place))
 
-  test("each of 64 bins of a world's sequence is filled evenly"):
+  test("a world's sequence fills 64 bins evenly"):
     val draws  = 64 * 1000
     val counts = Array.ofDim[Int](64)
     val key    = WorldRandom.key(42, 7, 3)

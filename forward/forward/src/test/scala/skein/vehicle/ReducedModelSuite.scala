@@ -13,7 +13,7 @@ class ReducedModelSuite extends munit.FunSuite:
     flight.start(0, PlaneReading(1, 2, 3, -4), 6, 2)
     flight
 
-  test("how a flight is cut into calls does not change it"):
+  test("the division of a flight into calls does not change it"):
     val (whole, cut) = (moving(model), moving(model))
     val source       = SplitMix64(1)
     whole.advance(0.83)
@@ -47,7 +47,7 @@ class ReducedModelSuite extends munit.FunSuite:
     assertEqualsDouble(flight.reading.northMps, vx, 1e-5)
     assertEqualsDouble(flight.reading.eastMps, vy, 1e-5)
 
-  test("drag settles where the pull balances c v²"):
+  test("the final speed balances the drag c v² and the pull of the lag"):
     val flight = moving(model)
     flight.act(0, 10, 0)
     flight.advance(60)
@@ -57,7 +57,7 @@ class ReducedModelSuite extends munit.FunSuite:
       1e-6
     )
 
-  test("without drag and with one lag it is a first-order lag of each axis"):
+  test("without drag and with one lag, each axis has a first-order lag"):
     val lag     = FirstOrderLag(0.8)
     val vehicle = VelocityResponses.lag(0.9, lag.lagS, 0.05).create()
     vehicle.start(3, 4, -20)
@@ -76,7 +76,7 @@ class ReducedModelSuite extends munit.FunSuite:
     assertEqualsDouble(vehicle.y, 4 + place, 1e-9)
     assertEqualsDouble(vehicle.vy, velocity, 1e-9)
 
-  test("as a predictor it holds a command back for the dead time, whatever the requested spans"):
+  test("the predictor delays a command by the dead time, whatever the requested spans"):
     val predictor       = PlantModel(model)
     val seen            = Kinematics(Vector3(0, 0, -20), Vector3.Zero, Quaternion.Identity, Vector3.Zero)
     val told            = Setpoint.velocityZ(10, 0, -20)

@@ -4,10 +4,10 @@ import java.lang.foreign.ValueLayout.{ADDRESS, JAVA_INT, JAVA_LONG}
 import java.lang.foreign.{Arena, FunctionDescriptor, Linker, MemoryLayout, SymbolLookup}
 import java.lang.invoke.MethodHandle
 
-/** NVIDIA's driver (CUDA driver API 10.2 and later), which every machine with such a GPU has; no toolkit is
-  * needed. Names are those of the API.
+/** Calls NVIDIA's driver (CUDA driver API 10.2 or later), which every machine with such a GPU has; no toolkit
+  * is needed. Names are those of the API.
   *
-  * @throws GpuFailure where the driver rejects a call, with the driver's message
+  * @throws GpuFailure if the driver rejects a call, with the driver's message
   */
 private[gpu] final class Cuda private (library: SymbolLookup):
   private val linker = Linker.nativeLinker
@@ -58,7 +58,7 @@ private[gpu] final class Cuda private (library: SymbolLookup):
 private[gpu] object Cuda:
   private val MostChars = 4096L
 
-  /** Loads the driver; Left states why there is none. */
+  /** Loads the driver. Left states why that is impossible. */
   def load(): Either[String, Cuda] =
     val names = if scala.util.Properties.isWin then Seq("nvcuda.dll") else Seq("libcuda.so.1", "libcuda.so")
     names.iterator

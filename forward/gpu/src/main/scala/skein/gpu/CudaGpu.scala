@@ -5,7 +5,7 @@ import java.lang.foreign.{Arena, MemorySegment}
 import java.lang.invoke.MethodHandle
 import java.lang.ref.Cleaner
 
-/** An NVIDIA GPU, by its driver. Memory is freed when its holder becomes unreachable.
+/** An NVIDIA GPU, used through its driver. GPU memory is freed when its owner becomes unreachable.
   *
   * @param name as reported by the driver
   */
@@ -83,12 +83,14 @@ private final class CudaGpu private (cuda: Cuda, context: MemorySegment, val nam
       cuda.call(cuda.eventElapsedTime, tookMs, begins, ends)
       ran += (tookMs.get(JAVA_FLOAT, 0) * 1e6).toLong
 
-  /** Frees a driver's resource when it is closed, or when its holder becomes unreachable. */
+  /** Registers a driver's resource, which is released when it is closed or when its owner becomes
+    * unreachable.
+    */
   private def givenBack(holder: AnyRef)(by: MethodHandle, what: Any): Cleaner.Cleanable =
     cleaner.register(
       holder,
       () =>
-        // After a fault the driver refuses this as well, and holds nothing.
+        // After a fault the driver refuses this too; then nothing is left to free.
         try within(_ => cuda.call(by, what))
         catch case _: GpuFailure => ()
     )
@@ -100,7 +102,7 @@ private final class CudaGpu private (cuda: Cuda, context: MemorySegment, val nam
       body(arena)
     finally arena.close()
 
-/** Finds NVIDIA's GPUs of this machine through the driver. */
+/** Finds the NVIDIA GPUs of this machine through the driver. */
 object CudaGpu:
   private val MostLog          = 8192L
   private val JitErrorLog      = 5
@@ -108,11 +110,11 @@ object CudaGpu:
   private val MostName         = 256
   private val cleaner          = Cleaner.create()
 
-  // CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MAJOR and _MINOR; those that PTX is written for (Turing).
+  // CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MAJOR and _MINOR, and the least ones that the PTX needs (Turing).
   private val Capability      = (75, 76)
   private val LeastCapability = (7, 5)
 
-  /** The first GPU of this machine; one object for all calls.
+  /** The first GPU of this machine; every call returns one object.
     *
     * @return Left states why there is none
     */

@@ -1,7 +1,7 @@
 package skein.gpu
 
-/** A processor that runs one program in thousands of threads in parallel, for simulated flights. Kernels are
-  * texts in PTX ([[Ptx]]). Callers take turns.
+/** A processor that runs a program in thousands of parallel threads, for simulated flights. Kernels are PTX
+  * texts ([[Ptx]]). Several threads may use it; they take turns.
   */
 trait Gpu:
   def name: String
@@ -10,34 +10,34 @@ trait Gpu:
 
   /** Translates a kernel for this GPU.
     *
-    * @throws GpuFailure with the translator's complaint
+    * @throws GpuFailure with the message of the translator, if it rejects the kernel
     */
   private[skein] def kernel(module: String, name: String): GpuKernel
 
-  /** Allocates memory for numbers of 4 bytes, until it is closed or unreachable.
+  /** Allocates memory for numbers of 4 bytes. It is freed when the buffer is closed or unreachable.
     *
-    * @throws GpuFailure if there is not enough
+    * @throws GpuFailure if there is not enough memory
     */
   private[skein] def buffer(words: Long): GpuBuffer
   private[skein] def buffer(numbers: Array[Float]): GpuBuffer
   private[skein] def buffer(numbers: Array[Int]): GpuBuffer
 
-/** An array of numbers in a GPU's memory, freed when closed. */
+/** An array of numbers in the memory of a GPU; freed when closed. */
 private[skein] trait GpuBuffer extends AutoCloseable:
   def address: Long
 
-  /** Copies its contents.
+  /** Copies its numbers from the GPU.
     *
-    * @throws GpuFailure if it cannot be copied
+    * @throws GpuFailure if that fails
     */
   def floats(): Array[Float]
   def close(): Unit
 
-/** A kernel, translated by the driver for its GPU. */
+/** A kernel that the driver has translated for its GPU. */
 private[skein] trait GpuKernel:
-  /** Runs it to its end.
+  /** Runs the kernel to its end.
     *
-    * @param arguments in the kernel's order: a [[GpuBuffer]], an Int or a Float each
-    * @throws GpuFailure if it does not finish
+    * @param arguments in the kernel's order, each a [[GpuBuffer]], an Int or a Float
+    * @throws GpuFailure if the kernel does not finish
     */
   def apply(blocks: Int, threadsOfBlock: Int, arguments: Any*): Unit

@@ -1,7 +1,7 @@
 package skein.gpu
 
-/** A GPU's driver has rejected a call.
+/** Thrown when a GPU's driver rejects a call.
   *
-  * @param reason in the driver's words
+  * @param reason the driver's message
   */
 final class GpuFailure(val reason: String) extends RuntimeException(s"the GPU: $reason")

@@ -2,13 +2,13 @@ package skein.gpu
 
 import java.util.HexFormat
 
-/** The text of one kernel in PTX, the instructions that NVIDIA's driver translates for whatever GPU is there
-  * (PTX ISA 6.4). Each operation takes registers by number and returns its result in a new one, unless it
-  * assigns a variable. Floats are rounded to nearest and never flushed to zero or fused implicitly, so that
-  * they equal a CPU's to the bit. Mutable.
+/** Generates the text of one kernel in PTX, the instructions that NVIDIA's driver translates for the GPU of
+  * the machine (PTX ISA 6.4). Each operation takes registers by number and returns its result in a new
+  * register, unless it assigns a variable. Floats are rounded to nearest and never flushed to zero or
+  * implicitly fused, so that they equal a CPU's to the bit. Mutable.
   *
   * @param parameters of the kernel, by name
-  * @param localBytes memory of each thread's own
+  * @param localBytes size of each thread's own memory
   */
 final class Ptx(name: String, parameters: Seq[(String, Ptx.Kind)], localBytes: Int = 0):
   import Ptx.*
@@ -47,7 +47,7 @@ final class Ptx(name: String, parameters: Seq[(String, Ptx.Kind)], localBytes: I
   def conditions(how: String, a: Int, b: Int): Int = result()(r => s"$how.pred %p$r, %p$a, %p$b")
   def not(a: Int): Int                             = result()(r => s"not.pred %p$r, %p$a")
 
-  // Whole numbers and bits.
+  // Integers and bits.
 
   def whole(value: Int, into: Int = fresh()): Int     = result(into)(r => s"mov.b32 %r$r, $value")
   def wholes(how: String, a: Int, b: Int): Int        = result()(r => s"$how %r$r, %r$a, %r$b")
@@ -64,11 +64,11 @@ final class Ptx(name: String, parameters: Seq[(String, Ptx.Kind)], localBytes: I
 
   // Addresses.
 
-  /** Address of an element in an array of words of 4 bytes. */
+  /** Address of an element of an array whose elements have this number of 4-byte words. */
   def address(base: Int, index: Int, words: Int = 1): Int =
     result()(r => s"mad.wide.s32 %rd$r, %r$index, ${4 * words}, %rd$base")
 
-  /** Product of a whole number and a factor, as wide as an address. */
+  /** Product of an integer and a factor, as wide as an address. */
   def wide(a: Int, factor: Int): Int = result()(r => s"mul.wide.s32 %rd$r, %r$a, $factor")
   def sum(a: Int, b: Int): Int       = result()(r => s"add.s64 %rd$r, %rd$a, %rd$b")
 
@@ -92,7 +92,7 @@ final class Ptx(name: String, parameters: Seq[(String, Ptx.Kind)], localBytes: I
   def store(value: Int, base: Int, word: Int = 0): Unit =
     this(s"st.global.f32 [%rd$base+${4 * word}], %f$value")
 
-  // This thread's own memory, from a place on that is told in bytes.
+  // The thread's own memory, at offsets in bytes.
 
   def own(bytes: Int): Int =
     val wide = result()(r => s"cvt.u64.u32 %rd$r, %r$bytes")
@@ -100,7 +100,7 @@ final class Ptx(name: String, parameters: Seq[(String, Ptx.Kind)], localBytes: I
 
   private var base = None: Option[Int]
 
-  /** Address of the thread's own memory; must be called before any branch. */
+  /** Address of the thread's own memory; must be called before the first branch. */
   def ownBase(): Int =
     if base.isEmpty then base = Some(result()(r => s"mov.u64 %rd$r, own"))
     base.get
@@ -114,13 +114,13 @@ final class Ptx(name: String, parameters: Seq[(String, Ptx.Kind)], localBytes: I
   def goIf(condition: Int, to: String, holds: Boolean = true): Unit =
     this(s"@${if holds then "" else "!"}%p$condition bra $to")
 
-  /** Jumps to the label of this number, which must be equal in all threads of a block. */
+  /** Jumps to the label with this number, which must be equal in all threads of a block. */
   def goTo(number: Int, labels: Seq[String]): Unit =
     val table = label()
     text.append(s"$table:\t.branchtargets ${labels.mkString(", ")};\n")
     this(s"brx.idx.uni %r$number, $table")
 
-  /** Repeats a body this number of times. */
+  /** Repeats the code that `body` generates as often as the register `times` says. */
   def repeat(times: Int)(body: => Unit): Unit =
     val (again, over) = (label(), label())
     val left          = wholes("add.s32", times, "0")
@@ -146,7 +146,6 @@ final class Ptx(name: String, parameters: Seq[(String, Ptx.Kind)], localBytes: I
   private def hex(bits: Int) = HexFormat.of.withUpperCase.toHexDigits(bits)
 
 object Ptx:
-  /** The type of a kernel's parameter. */
   enum Kind:
     case Address, Whole, Float
 

@@ -3,11 +3,11 @@ package skein.gpu
 import skein.formula.{Node, Op}
 import skein.simd.{ExpressionCompiler, Products}
 
-/** Expressions in a kernel: each thread computes them for itself. The bits equal those of
+/** Generates code for expressions in a kernel; each thread computes its own values. The bits equal those of
   * `skein.simd.LaneCompiler`.
   *
-  * @param inputOf the register of an input; may generate its load
-  * @param parameterOf the register of a parameter
+  * @param inputOf register of an input; may generate the code that loads it
+  * @param parameterOf register of a parameter
   */
 private[skein] final class PtxExpressions private (code: Ptx, inputOf: Int => Int, parameterOf: Int => Int)
     extends ExpressionCompiler:
@@ -50,6 +50,6 @@ private[skein] final class PtxExpressions private (code: Ptx, inputOf: Int => In
   protected def isHighest(a: Int): Int          = code.compareWhole("lt", a, 0)
 
 private[skein] object PtxExpressions:
-  /** Generates code for expressions at this point, and returns their registers. */
+  /** Generates code for expressions at this point, and returns the registers of their values. */
   def write(code: Ptx, outputs: Vector[Node])(input: Int => Int, parameter: Int => Int): Vector[Int] =
     new PtxExpressions(code, input, parameter).write(outputs)

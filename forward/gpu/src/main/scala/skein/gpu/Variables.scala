@@ -2,7 +2,7 @@ package skein.gpu
 
 /** Floats of each thread that change while a kernel runs.
   *
-  * @param initial values after [[start]]
+  * @param initial values that [[start]] sets
   */
 private[skein] final class Variables(code: Ptx, initial: Seq[Float]):
   private val registers = initial.map(_ => code.fresh()).toArray
@@ -11,7 +11,9 @@ private[skein] final class Variables(code: Ptx, initial: Seq[Float]):
 
   def start(): Unit = for (value, i) <- initial.zipWithIndex do code.constant(value, registers(i))
 
-  /** Assigns the first variables simultaneously: a new value may be another variable's old one. */
+  /** Assigns values to the first variables, all simultaneously: a new value may be the old value of another
+    * variable.
+    */
   def take(values: Seq[Int]): Unit =
     val kept = values.map: value =>
       if registers.contains(value) then

@@ -4,8 +4,7 @@ import skein.formula.{Node, Op, Trace}
 import skein.signal.SplitMix64
 import skein.simd.{LaneCompiler, LaneFunction}
 
-/** Every operation of formulas has bit-identical results on a GPU and by SIMD, for ordinary numbers and for
-  * extreme ones.
+/** Compares every operation of formulas on a GPU with SIMD, bit by bit, for ordinary and for extreme numbers.
   */
 class GpuExpressionSuite extends munit.FunSuite, TestGpus:
   private val count  = LaneFunction.COUNT

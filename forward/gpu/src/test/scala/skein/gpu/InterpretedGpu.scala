@@ -3,8 +3,8 @@ package skein.gpu
 import java.nio.{ByteBuffer, ByteOrder}
 import scala.collection.mutable
 
-/** A GPU that interprets kernels thread by thread: slow, and according to the PTX specification, so that
-  * kernels are tested where there is no GPU. It knows the instructions that [[Ptx]] writes, and refuses
+/** A GPU that interprets kernels thread by thread, according to the PTX specification, so that kernels are
+  * tested on machines without a GPU. It is slow, supports the instructions that [[Ptx]] writes, and refuses
   * others.
   */
 final class InterpretedGpu extends Gpu:
@@ -46,8 +46,8 @@ final class InterpretedGpu extends Gpu:
 /** A parsed kernel.
   *
   * @param parameters by name, in their order
-  * @param labels by name, the index of the instruction after each
-  * @param tables of branches
+  * @param labels index of the instruction after each label, by name
+  * @param tables targets of each table of branches
   */
 private final case class PtxProgram(
     parameters: Vector[String],

@@ -2,7 +2,7 @@ package skein.gpu
 
 import munit.FunSuite
 
-/** Tests on an interpreter of a GPU's instructions, and on this machine's GPU, where there is one. */
+/** Runs tests on an interpreter of a GPU's instructions, and on this machine's GPU if it has one. */
 trait TestGpus:
   self: FunSuite =>
 

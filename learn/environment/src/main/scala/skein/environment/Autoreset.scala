@@ -1,6 +1,6 @@
 package skein.environment
 
-/** What follows the end of an episode, in Gymnasium's terms. */
+/** An environment's behaviour at the end of an episode, in Gymnasium's terms. */
 enum Autoreset:
   /** The next step ignores its action and returns the next episode's first observation. */
   case NextStep
@@ -10,5 +10,5 @@ enum Autoreset:
     */
   case SameStep
 
-  /** Nothing, until the environment is reset explicitly. */
+  /** Nothing happens until the environment is reset explicitly. */
   case Disabled

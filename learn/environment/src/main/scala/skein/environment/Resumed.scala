@@ -4,9 +4,9 @@ import java.util.concurrent.Semaphore
 import scala.util.control.ControlThrowable
 
 /** A computation that can be suspended and continued. It has a virtual thread of its own, which waits in
-  * between; only one of the two threads runs at a time.
+  * between; this thread and the caller's never run at one time.
   *
-  * @param body receives the function that suspends it; need not end
+  * @param body the computation, which need not end; receives the function that suspends it
   */
 private final class Resumed(body: (() => Unit) => Unit) extends AutoCloseable:
   import Resumed.GivenUp
@@ -16,14 +16,14 @@ private final class Resumed(body: (() => Unit) => Unit) extends AutoCloseable:
   @volatile private var isGivenUp    = false
   private var thread: Option[Thread] = None
 
-  /** Continues it. Nothing that it writes may be read until [[await]] has returned. */
+  /** Continues the computation. Nothing that it writes may be read until [[await]] has returned. */
   def goOn(): Unit = thread match
     case None    => thread = Some(Thread.ofVirtual.name("episode").start(() => run()))
     case Some(_) => goesOn.release()
 
-  /** Blocks until it is suspended, or has ended.
+  /** Blocks until the computation is suspended or has ended.
     *
-    * @throws Throwable that it threw
+    * @throws Throwable that the computation threw
     */
   def await(): Unit =
     waits.acquireUninterruptibly()
@@ -41,7 +41,7 @@ private final class Resumed(body: (() => Unit) => Unit) extends AutoCloseable:
     goesOn.acquireUninterruptibly()
     if isGivenUp then throw GivenUp
 
-  /** Abandons it; it will not be continued. */
+  /** Abandons the computation; it will not be continued. */
   def close(): Unit =
     isGivenUp = true
     goesOn.release()

@@ -59,7 +59,7 @@ final class DenseKernel {
     }
   }
 
-  /** Two rows of four vectors each: what the registers hold. */
+  /** Computes two rows of four vectors each, which fill the registers. */
   private static void two(
       int inner, int columns, float[] a, int aAt, int aRow, int aStep, float[] b, int bAt, float[] c, int cAt) {
     int second = cAt + columns;
@@ -108,7 +108,7 @@ final class DenseKernel {
     sum.intoArray(c, cAt);
   }
 
-  /** Four rows of one vector each: four independent sums hide the latency of one. */
+  /** Computes four rows of one vector each: four independent sums hide the latency of one. */
   private static void four(
       int inner, int columns, float[] a, int aAt, int aRow, int aStep, float[] b, int bAt, float[] c, int cAt) {
     FloatVector c0 = FloatVector.fromArray(SPECIES, c, cAt),
@@ -129,7 +129,7 @@ final class DenseKernel {
     c3.intoArray(c, cAt + 3 * columns);
   }
 
-  /** Four rows of one column, in scalar arithmetic. */
+  /** Computes four rows of one column, in scalar arithmetic. */
   private static void column(
       int inner, int columns, float[] a, int aAt, int aRow, int aStep, float[] b, int bAt, float[] c, int cAt) {
     float c0 = c[cAt], c1 = c[cAt + columns], c2 = c[cAt + 2 * columns], c3 = c[cAt + 3 * columns];

@@ -27,7 +27,7 @@ final class BatchThreads(threads: Int) extends AutoCloseable:
   def close(): Unit = pool.foreach(_.shutdownNow())
 
 object BatchThreads:
-  /** Rows of a part, a fixed number. */
+  /** The fixed number of rows in a part of a batch. */
   private val Rows = 64
 
   def parts(rows: Int): Int = (rows + Rows - 1) / Rows
@@ -40,7 +40,7 @@ private[learn] final class Gradient(size: Int, rows: Int):
 
   def clear(): Unit = parts.foreach(java.util.Arrays.fill(_, 0f))
 
-  /** The sum of all parts, added in order. */
+  /** Adds all parts in order and returns their sum. */
   def sum(): Array[Float] =
     val total = parts(0)
     var part  = 1

@@ -3,8 +3,8 @@ package skein.learn
 import java.io.{DataInput, DataOutput}
 import skein.signal.SplitMix64
 
-/** The value of an action in a state: one network or several, of which the least value counts, and slowly
-  * following copies of them that give the target values.
+/** The value of an action in a state, by one network or the least value of several. Copies of the networks
+  * follow them slowly and give the target values.
   */
 private[learn] final class Critics(
     count: Int,

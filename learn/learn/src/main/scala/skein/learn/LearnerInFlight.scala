@@ -5,12 +5,12 @@ import skein.policy.{LearnedPolicy, Role}
 import skein.signal.SplitMix64
 
 /** Continues learning from the transitions of one flight, with a replay learner. Rewards are those of
-  * [[SideTask]]: a small distance is the pursuer's, a great one the evader's. Equal transitions in equal
-  * lessons give equal weights.
+  * [[SideTask]]: the pursuer is rewarded for a small distance, the evader for a great one. Equal transitions
+  * in equal lessons give equal weights.
   *
-  * @param bounds greatest turns of its policies, as a [[LearnedPolicy]]'s last parameters
+  * @param bounds greatest turns of its policies: the last parameters of a [[LearnedPolicy]]
   * @param updates for each transition
-  * @param transitionsPerVersion after which the newest policy is used
+  * @param transitionsPerVersion number of transitions after which the newest policy is used
   */
 final class LearnerInFlight private (
     learner: OffPolicy,
@@ -50,7 +50,8 @@ final class LearnerInFlight private (
 
 object LearnerInFlight:
 
-  /** The result of one decision, as a task's step. A flight is one episode, which its end does not terminate.
+  /** The result of one decision, as a task's step. A flight is one episode; its end counts as truncation, not
+    * as termination.
     */
   private final class OneStep(val reached: Array[Float], reward: Float) extends Task:
     def count: Int                               = 1

@@ -6,7 +6,7 @@ package skein.learn
   * @param discount of a reward, for each step of delay
   * @param rate of Adam
   * @param batch transitions of an update
-  * @param replay most transitions that SAC and DDPG remember
+  * @param replay limit of the transitions that SAC and DDPG remember
   * @param updatesPerStep of SAC and DDPG, for each step of one environment
   * @param randomSteps of all environments together, before SAC and DDPG use their policy
   * @param horizon steps of each environment between two of PPO's lessons

@@ -66,7 +66,7 @@ object SideTask:
   /** The reward of a metre of distance, which environments give once a period. */
   private[learn] val RewardPerM: Double = RewardScale / EnvironmentSettings.RewardM
 
-  /** @param opponent of the other role; without one, as the settings name it
+  /** @param opponent of the other role; None: the one in the settings
     * @return Left states what was expected and what was given
     */
   def of(

@@ -22,7 +22,7 @@ class LearnerInFlightSuite extends munit.FunSuite:
 
   for algorithm <- Seq(Algorithm.Sac, Algorithm.Ddpg) do
     test(
-      s"${algorithm.label}: a version follows a number of transitions; equal lessons give equal bits " +
+      s"${algorithm.label}: a version follows enough transitions, and equal lessons give equal bits " +
         s"(seed $seed)"
     ):
       def versions =
@@ -34,7 +34,7 @@ class LearnerInFlightSuite extends munit.FunSuite:
       assert(made.forall(_.takeRight(2) == bounds))
       assertEquals(versions, made)
 
-    test(s"${algorithm.label}: it learns actions with higher rewards, for either side (seed $seed)"):
+    test(s"${algorithm.label}: a learner learns actions with higher rewards, for either side (seed $seed)"):
       for (role, sign) <- Seq(Role.Pursuer -> 1, Role.Evader -> -1) do
         val (first, learner) = begun(algorithm, updates = 4, role).fold(fail(_), identity)
         val last = transitions(400, nearer = 1000).grouped(20).flatMap(learner.learn(_)).toVector.last

@@ -91,7 +91,7 @@ class LearnerSimulation extends munit.FunSuite, Unhurried:
       assertEquals(weights(threads = 3, seed = 8), one)
       assertNotEquals(weights(threads = 1, seed = 9), one)
 
-    test(s"${algorithm.label}: saved between rounds it continues as if uninterrupted"):
+    test(s"${algorithm.label}: training saved between rounds continues as if uninterrupted"):
       val workers       = BatchThreads(1)
       def fresh()       = algorithm.learner(1, 1, 16, small, 4, workers)
       val (task, whole) = (Integrator(16, 4), fresh())

@@ -18,7 +18,7 @@ class NetworkSuite extends munit.FunSuite:
     Array.fill(count)((2 * random.nextDouble() - 1).toFloat)
 
   for widths <- Seq(Vector(3, 2), Vector(5, 7, 3, 2), Vector(9, 64, 70, 1), Vector(2, 130, 5)) do
-    test(s"$widths: outputs are those of the definition, in every row"):
+    test(s"$widths: outputs equal those of the definition, in every row"):
       val random  = SplitMix64(4)
       val network = Network(widths).draw(random)
       val pass    = Pass(widths, 5)
@@ -32,7 +32,7 @@ class NetworkSuite extends munit.FunSuite:
         for (value, output) <- expected.zipWithIndex do
           assertEqualsDouble(pass.output(row * widths.last + output).toDouble, value, 1e-5, s"row $row")
 
-    test(s"$widths: gradients by parameters and inputs are finite differences"):
+    test(s"$widths: gradients by parameters and inputs equal finite differences"):
       val random   = SplitMix64(7)
       val network  = Network(widths).draw(random)
       val pass     = Pass(widths, 3)
@@ -77,7 +77,7 @@ class NetworkSuite extends munit.FunSuite:
     for row <- 0 until 33 do pass.forward(network, row, row + 1)
     assertEquals(pass.output.toVector, together.toVector)
 
-  test("an input that is ignored changes nothing until it is learned"):
+  test("an ignored input changes nothing until it is learned"):
     val network = Network(Vector(2, 4, 1)).draw(SplitMix64(3))
     network.ignore(1)
     assertEquals(byHand(network, Seq(0.3, 5)), byHand(network, Seq(0.3, -7)))

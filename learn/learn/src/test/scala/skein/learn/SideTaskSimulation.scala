@@ -28,7 +28,7 @@ class SideTaskSimulation extends munit.FunSuite:
     assertEqualsDouble(policy.heading(seen), 0.7 + 0.1 * math.tanh(pass.output(0)), 1e-6)
 
   for side <- Seq("pursuer", "evader") do
-    test(s"the $side's episode is that of its policy in forward simulation"):
+    test(s"the $side's episode equals that of its policy in forward simulation"):
       val actor      = drawn(8)
       val (rate, at) = if side == "pursuer" then (1.0, 0.0) else (0.0, math.Pi)
       val policy     = LearnedPolicy(LearnedPolicy.shape(Vector(8)), SideTask.parameters(actor), rate, at)

@@ -89,7 +89,7 @@ class UpdateSuite extends munit.FunSuite:
     temperature.step(Array(-9f, -9f), actions = 1)
     assert(temperature.log < before)
 
-  test("the logarithm of squashing is right where tanh is near its bounds"):
+  test("the logarithm of squashing is accurate where tanh is near its bounds"):
     for raw <- Seq(-3.0, -0.5, 0.0, 1.0, 4.0) do
       assertEqualsDouble(Sac.logSquash(raw), math.log(1 - math.pow(math.tanh(raw), 2)), 1e-9)
     assertEqualsDouble(Sac.logSquash(-40), 2 * math.log(2) - 80, 1e-9)

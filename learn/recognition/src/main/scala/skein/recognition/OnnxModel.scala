@@ -37,7 +37,7 @@ final class OnnxModel private (session: OrtSession, inputName: String, val input
                   entry.getKey -> OnnxModel.outputOf(entry.getValue.asInstanceOf[OnnxTensor])
               .toMap
 
-  /** Runs it on an image, converted to the form that the model was trained on. */
+  /** Runs the model on an image, converted to the form that it was trained on. */
   def run(image: Image, form: InputForm): Either[String, Outputs] =
     form.tensor(image).flatMap(run(_, Vector(1, 3, form.height, form.width)))
 

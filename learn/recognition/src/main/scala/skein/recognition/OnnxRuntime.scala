@@ -1,7 +1,7 @@
 package skein.recognition
 
-/** Whether onnxruntime is available: it is larger than all other libraries, so users of models add it
-  * themselves.
+/** Finds out whether onnxruntime is available. It is larger than all other libraries, so users of models add
+  * it themselves.
   */
 private[recognition] object OnnxRuntime:
   /** Commands that download and use it; equal to those in docs/guides/onnx.md. */

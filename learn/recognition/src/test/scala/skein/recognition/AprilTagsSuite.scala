@@ -15,8 +15,7 @@ class AprilTagsSuite extends munit.FunSuite, Optimised:
     tags.find(TagImage(camera, id, size, positionFrd, turned)).fold(fail(_), identity)
 
   test(
-    "every tag at 2 to 8 m is found, its position within 2 % at the median and within its stated " +
-      "deviation"
+    "every tag at 2 to 8 m is found, its position within 2 % at the median and within its stated deviation"
   ):
     val random = SplitMix64(1)
     val runs   = Vector.tabulate(36): i =>

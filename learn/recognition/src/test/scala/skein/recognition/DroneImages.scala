@@ -7,7 +7,7 @@ import skein.simulator.MultirotorBody
 import skein.units.*
 import skein.vehicle.Airframe
 
-/** A camera's image of a quadrotor, and the truth about it.
+/** A camera's image of a quadrotor, with the quadrotor's true position.
   *
   * @param positionFrd of the quadrotor in the camera's frame, m; None without one
   * @param box of all its pixels, without occlusion

@@ -13,7 +13,7 @@ class OnnxDetectorSuite extends munit.FunSuite:
     assertEqualsDouble(box(0, 10, 1).overlap(box(5, 10, 1)), 1.0 / 3, 1e-12)
     assertEqualsDouble(box(0, 10, 1).overlap(box(10, 10, 1)), 0, 0)
 
-  test("boxes are read as columns and as rows, the weak ones left out"):
+  test("boxes are read as columns and as rows, and the weak ones are left out"):
     val columns = OnnxModel.Output(Vector(1, 6, 2), Array(20f, 5, 10, 5, 8, 2, 4, 2, 0.1f, 0.2f, 0.9f, 0.3f))
     assertEquals(
       OnnxDetector.read(columns, BoxForm.Columns, 0.5),

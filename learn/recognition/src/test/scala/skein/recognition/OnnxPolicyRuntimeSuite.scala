@@ -15,7 +15,7 @@ import skein.units.*
 /** Policies of ONNX files compared with onnxruntime's own evaluation, and those that only it can run. */
 class OnnxPolicyRuntimeSuite extends munit.FunSuite, OnnxFiles, Unhurried:
   for name <- Seq("learned:64x64", "learned:32tanhx32tanh:clip") do
-    folder.test(s"$name: onnxruntime's results equal our network's, within 2e-6"): folder =>
+    folder.test(s"$name: onnxruntime's results equal those of Skein's network, within 2e-6"): folder =>
       val random = SplitMix64(seed)
       val family = PolicyFamily.parse(name).fold(fail(_), identity)
       val policy = family

@@ -4,8 +4,8 @@ import java.nio.ByteBuffer
 import java.nio.file.Path
 import skein.testing.Optimised
 
-/** The shipped detector on images of a seed that its training did not use. `measureDetector` uses more of
-  * them.
+/** Tests the shipped detector on images of a seed that its training did not use; `measureDetector` uses more
+  * images.
   */
 class VehicleDetectorSuite extends munit.FunSuite, Optimised:
   private val camera = DetectorAccuracy.Camera

@@ -53,14 +53,14 @@ private[mcap] final class ByteBuilder(initial: Int):
     u32(encoded.length)
     raw(encoded, 0, encoded.length)
 
-  /** Writes `body`'s output after its length in bytes, a number of 4 bytes. */
+  /** Writes the length of `body`'s output in bytes, as a number of 4 bytes, and then the output. */
   inline def counted(inline body: Unit): Unit =
     val at = size
     u32(0)
     body
     patchU32(at, size - at - 4)
 
-  /** A record around the content that `body` writes. */
+  /** Writes a record; `body` writes its content. */
   inline def record(opcode: Int)(inline body: Unit): Unit =
     val at = size
     u8(opcode)

@@ -32,8 +32,8 @@ object Compression:
   /** Greatest expansion of Zstandard: four bytes, a block of one value, represent no more than 128 KiB. */
   private val ZstdRatio = 32768L
 
-  /** Decompresses the records of a chunk, which states their size; of a truncated chunk, as many as are
-    * complete.
+  /** Decompresses a chunk's records to the size that the chunk states; of a truncated chunk (`cut`), the
+    * bytes that are left.
     */
   private[mcap] def decompress(
       chunk: Record.Chunk,

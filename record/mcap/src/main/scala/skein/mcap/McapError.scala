@@ -12,19 +12,21 @@ final case class Place(offset: Long, inChunk: Int = -1):
   override def toString: String =
     if inChunk < 0 then s"byte $offset" else s"byte $inChunk of the records of the chunk at byte $offset"
 
-/** Why a file, or its end, cannot be read: the position, what was expected and what was found. */
+/** The reasons why a file, or its end, cannot be read, with the position, what was expected and what was
+  * found.
+  */
 enum McapError:
 
-  /** It does not begin with MCAP's magic bytes, or with those of an unknown version. */
+  /** The file does not begin with MCAP's magic bytes, or begins with those of an unknown version. */
   case NotMcap(came: Bytes)
 
-  /** It ends too early, like the file of a killed writer. Everything before has been read. */
+  /** The file ends too early, like that of a killed writer. Everything before its end has been read. */
   case CutOff(at: Place, expected: String, came: Long)
 
-  /** It states a size beyond the reader's limit. */
+  /** The file states a size beyond the reader's limit. */
   case TooLarge(at: Place, what: String, claimed: Long, limit: Long)
 
-  /** It does not have the structure of an MCAP file. */
+  /** The file does not have the structure of an MCAP file. */
   case Malformed(at: Place, expected: String, came: String)
 
   /** A CRC does not match: bytes have changed since they were written. */
@@ -33,7 +35,7 @@ enum McapError:
   /** The bytes of a chunk are no valid output of its compression. */
   case NotDecompressed(at: Place, compression: String, why: String)
 
-  /** A compression other than `zstd`, `lz4` and none. */
+  /** The chunk's compression is neither `zstd` nor `lz4` nor none. */
   case UnknownCompression(at: Place, name: String)
 
   def message: String = this match

@@ -38,7 +38,7 @@ object Opcode:
 
   def name(opcode: Int): String = names.lift(opcode - 1).getOrElse(s"record of kind 0x${Hex.ofByte(opcode)}")
 
-  /** Whether the specification defines it; readers skip all others except 0x00, which is invalid. */
+  /** Whether the specification defines the opcode; readers skip all others except 0x00, which is invalid. */
   def isKnown(opcode: Int): Boolean = opcode >= Header && opcode <= DataEnd
 
   def isOfData(opcode: Int): Boolean    = dataSection(opcode) || !isKnown(opcode)

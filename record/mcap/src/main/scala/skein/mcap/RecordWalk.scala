@@ -4,9 +4,8 @@ import java.nio.{ByteBuffer, ByteOrder}
 
 /** Iterates over consecutive records.
   *
-  * @param offset of their start in the file
-  * @param inChunk whether that is the start of the chunk that contains them
-  * @param cut whether they may end within a record, which then does not count
+  * @param offset of the records' start in the file; with `inChunk`, of the start of their chunk
+  * @param cut whether the records may end within one, which is then left out
   */
 private[mcap] final class RecordWalk(records: Bytes, offset: Long, inChunk: Boolean, cut: Boolean = false):
   private val array = records.array

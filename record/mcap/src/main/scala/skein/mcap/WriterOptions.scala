@@ -5,15 +5,16 @@ package skein.mcap
   *
   * @param profile of the header: a convention for the file's fields, such as `ros2`; empty for none
   * @param library of the header: the writing program
-  * @param chunked whether messages are gathered in chunks; without, nothing is compressed, and nothing can be
-  *   found by index
+  * @param chunked whether messages are gathered in chunks; otherwise nothing is compressed or indexed
   * @param chunkBytes a chunk ends with the message that makes it this long, uncompressed
-  * @param messageIndex after each chunk, the positions of each channel's messages in it
-  * @param chunkIndex in the summary, the positions of the chunks
-  * @param statistics in the summary, the numbers of everything, and the range of times
-  * @param repeatSchemas in the summary; as `repeatChannels`, without which an index is of little use
-  * @param attachmentIndex in the summary, the positions of attachments; as `metadataIndex` for metadata
-  * @param summaryOffsets after the summary, the positions of its parts
+  * @param messageIndex whether each chunk is followed by the positions of each channel's messages in it
+  * @param chunkIndex whether the summary lists the positions of the chunks
+  * @param statistics whether the summary states the numbers of all kinds of records, and the range of times
+  * @param repeatSchemas whether the summary repeats the schemas; likewise `repeatChannels` the channels,
+  *   without which an index is of little use
+  * @param attachmentIndex whether the summary lists the positions of attachments; likewise `metadataIndex`
+  *   those of metadata
+  * @param summaryOffsets whether the summary is followed by the positions of its parts
   */
 final case class WriterOptions(
     profile: String = "",

@@ -32,7 +32,7 @@ class ConformanceGolden extends munit.FunSuite:
       assertEquals(read.end, Parsed.Ended, pair.name)
       assertEquals(read.records.filterNot(isHidden), pair.records, pair.name)
 
-  test("every file that is not padded is written byte for byte"):
+  test("every file without padding is written byte for byte"):
     val written = pairs.filterNot(_.features("pad"))
     written.foreach(pair => assertEquals(hex(write(pair)), hex(pair.file), pair.name))
     assertEquals(written.size, 153)

@@ -23,7 +23,7 @@ class DamageLaws extends munit.FunSuite:
         assertEquals(came.take(before.size), before, what)
         assertEquals(came.drop(before.size), rest(whole, before.size, came.size - before.size), what)
 
-  test("of a truncated uncompressed chunk, every complete message is read"):
+  test("every complete message of a truncated uncompressed chunk is read"):
     for seed <- 1L to 6 do
       val file =
         RandomFile.draw(
@@ -57,7 +57,7 @@ class DamageLaws extends munit.FunSuite:
           case Parsed.Failed(error) => assert(error.message.startsWith("byte "), s"$what: $error")
           case other                => fail(s"$what: $other")
 
-  test("for any bytes, a reader returns records or the reason why not"):
+  test("for any bytes, a reader returns records or the reason why it cannot"):
     for seed <- 1L to 400 do
       val random  = SplittableRandom(seed)
       val file    = RandomFile.draw(seed % 50, most = 30)

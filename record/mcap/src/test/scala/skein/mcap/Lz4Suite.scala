@@ -24,7 +24,7 @@ class Lz4Suite extends munit.FunSuite:
       out.write(part)
     out.toByteArray
 
-  test("lz4-java's own reader of frames reads what is written"):
+  test("lz4-java's own reader reads the written frames"):
     for seed <- 1L to 100 do
       val source = draw(seed, 200_000)
       val frame  = Lz4Frame.compress(source, 0, source.length).toArray
@@ -79,7 +79,7 @@ class Lz4Suite extends munit.FunSuite:
     out.u32(0)
     Bytes.of(out.array, 0, out.size)
 
-  test("a block may refer to fewer bytes than a match's length, and as far back as 65,535"):
+  test("a block may refer to fewer bytes than a match is long, and up to 65,535 bytes back"):
     // A match ends some bytes before its block, as LZ4 asks for.
     val last  = Array.tabulate[Byte](9)(at => (4 + at).toByte)
     val short = linked(Array[Byte](0x30, 1, 2, 3), Array[Byte](0, 3, 0, -0x70) ++ last)
@@ -94,7 +94,7 @@ class Lz4Suite extends munit.FunSuite:
     val read   = Lz4Frame.decompress(far, first.length + 13, cut = false).toArray
     assertEquals(read.drop(first.length).toVector, first.slice(1, 5).toVector ++ last)
 
-  test("of a truncated frame, the blocks before the cut are read"):
+  test("the blocks before the cut of a truncated frame are read"):
     val source = draw(3, 1) ++ Array.tabulate(300_000)(at => (at * at >>> 9).toByte)
     val frame  = Lz4Frame.compress(source, 0, source.length)
     for length <- 0 until frame.size by 997 do

@@ -1,6 +1,6 @@
 package skein.mcap
 
-/** A file's content as text, a line for each thing, in the format of `telling.py`. */
+/** A file's content as text, a line for each item, in the format of `telling.py`. */
 object Told:
   private def hex(bytes: Bytes)   = if bytes.size == 0 then "-" else ConformanceGolden.hex(bytes)
   private def text(value: String) = hex(Bytes.utf8(value))

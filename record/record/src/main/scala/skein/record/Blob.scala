@@ -15,8 +15,8 @@ final class Blob private (kept: Array[Byte], isPacked: Boolean, val size: Int):
   // Opening a frame checks that it is complete, and its bytes are usually read immediately afterwards.
   private var open = WeakReference[Array[Byte]](null)
 
-  /** The bytes; decompressed if they are kept compressed, and again once they were garbage-collected. They
-    * must not be changed.
+  /** The bytes, which must not be changed. If they are kept compressed, they are decompressed here, and once
+    * more after the result was garbage-collected.
     */
   def bytes: Array[Byte] =
     if !isPacked then kept
@@ -40,7 +40,7 @@ final class Blob private (kept: Array[Byte], isPacked: Boolean, val size: Int):
   override def toString(): String = s"$size bytes"
 
 object Blob:
-  /** Most bytes of one, more than any image of 8192 × 8192 pixels has. */
+  /** Limit of one content's bytes, more than any image of 8192 × 8192 pixels has. */
   val MostBytes: Int = 256 * 1024 * 1024
 
   private val Level = 1

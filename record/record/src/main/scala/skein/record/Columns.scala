@@ -16,7 +16,7 @@ private[record] trait Columns[A]:
 
 /** One column of a table.
   *
-  * @param older SQL expression of its value where a file of an older format lacks the column or has it with
+  * @param older SQL expression of the value, for files of older formats that lack the column or give it
   *   another type
   */
 private[record] final case class Column(
@@ -121,12 +121,14 @@ private[record] object FieldColumns:
 
   given FieldColumns[Simulator] = summon[FieldColumns[String]](_).as(Simulator.ofLabel, _.label)
 
-  /** Up to format 6, the text of the error stood in the place of `failed`. */
+  /** In formats up to 6, the error's text stands in place of `failed`. */
   given FieldColumns[CommandOutcome] = name =>
     given FieldColumns[Option[String]] = error => added(optional(summon[FieldColumns[String]](error)))
     columns[OutcomeCells](name, "error").as(_.outcome, OutcomeCells.of)
 
-  /** Directions stand in the place of the frame that ends the name. */
+  /** Three columns, whose names have a direction in place of the frame at the end of the field's name:
+    * `velocityNed` becomes `velocityNorthMps`, `velocityEastMps` and `velocityDownMps`.
+    */
   given FieldColumns[Vector3] = name =>
     val unit =
       if name.startsWith("angularVelocity") then "RadPerS"
@@ -167,10 +169,10 @@ private[record] object FieldColumns:
 
   given FieldColumns[SolverClock] = _ => columns[SolverClock]("solverClockOffset", "solverClockUncertainty")
 
-  /** An action by its name and numbers: `actionX` to `actionZ` are north, east and down of a velocity, m/s,
-    * or of a place, m; of [[Action.VelocityAt]] the third is an altitude, m; of [[Action.Attitude]] they are
-    * roll, pitch and yaw, rad, and `actionAmount` is the thrust; else that is a speed, m/s. `actionYaw` is
-    * rad, or rad/s where it is `Turning`.
+  /** An action, by its name and numbers. `actionX` to `actionZ` are a velocity (north, east, down; m/s) or a
+    * place (north, east, down; m); the third is an altitude (m) for [[Action.VelocityAt]]. For
+    * [[Action.Attitude]] they are roll, pitch and yaw (rad), and `actionAmount` is the thrust; for other
+    * actions `actionAmount` is a speed (m/s). `actionYaw` is in rad, or in rad/s for `Turning`.
     */
   given FieldColumns[Action] = _ =>
     columns[ActionCells](
@@ -188,7 +190,6 @@ private[record] object FieldColumns:
   private def listed(list: java.sql.Array): Vector[Object] =
     list.getArray.asInstanceOf[Array[Object]].toVector
 
-  /** A case by its name. */
   private def oneOf[A](name: String, cases: Array[A]): Columns[A] = summon[FieldColumns[String]](name).as(
     read =>
       cases
@@ -244,8 +245,8 @@ private[record] object Columns:
       case None          => definitions.foreach(_ => to.nothing())
     def read(cells: Cells): Option[A] = cells.nextOption(definitions.size)(columns.read(cells))
 
-  /** Optional columns of later formats. Absent values are left out of the [[Digest]], so that it equals that
-    * of the formats before.
+  /** Optional columns that earlier formats lack. Absent values are left out of the [[Digest]], so that it
+    * equals the digest in an earlier format.
     */
   def added[A](columns: Columns[Option[A]]): Columns[Option[A]] = new Columns[Option[A]]:
     val definitions: Vector[Column]                   = columns.definitions

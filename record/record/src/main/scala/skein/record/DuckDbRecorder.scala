@@ -30,7 +30,8 @@ final class DuckDbRecorder private (
     case large: (CameraImage | Cloud) => offerLarge(large)
     case _                            => enqueue(record)
 
-  /** Drops images and clouds, and reports it, if the disk is slower than their arrival: the flight continues.
+  /** Offers an image or a cloud. If the disk is slower than their arrival, it is dropped and this is
+    * reported, so that the flight continues.
     */
   private def offerLarge(record: CameraImage | Cloud): Unit =
     val (vehicle, name, at) = record match
@@ -58,27 +59,28 @@ final class DuckDbRecorder private (
 
 object DuckDbRecorder:
 
-  /** Records that may wait to be written: at 20 vehicles and 10 Hz about a minute. */
+  /** Limit of the records that wait to be written: about a minute at 20 vehicles and 10 Hz. */
   val defaultCapacity = 65536
 
-  /** Bytes of waiting images and clouds: two seconds of four cameras of 640 × 480 pixels at 10 Hz. Later ones
-    * are dropped, and an event recorded.
+  /** Limit of the bytes of waiting images and clouds: two seconds of four cameras of 640 × 480 pixels at 10
+    * Hz. Later ones are dropped, and an event is recorded.
     */
   val mostWaitingBytes: Long = 96L * 1024 * 1024
 
-  /** Time from the begin of one commit to that of the next. A kill of the process loses this and the time of
-    * a commit: with real-time priority 35 to 52 ms at a load of 17 to 19 on two cores, without it 95 and 202.
+  /** Time from the start of one commit to the start of the next. A kill of the process loses the rows of this
+    * time and of one commit, which takes 35 to 52 ms with real-time priority at a load of 17 to 19 on two
+    * cores, and 95 and 202 ms without.
     */
   val commitInterval: FiniteDuration = 25.millis
 
   val batchSize = 4096
 
-  /** Whether a recording can be created at this path, judged by its name; Left states why not. */
+  /** Checks by its name whether a recording can be created at this path; Left states why it cannot. */
   def free(file: Path): Either[RecordError, Unit] = RecordingFile.free(file)
 
   /** Creates the file and begins to record. Fails if the file exists, or cannot be created.
     *
-    * @param beside sinks that receive every committed row, and are closed with this
+    * @param beside sinks that receive every committed row, and are closed with this recorder
     * @param threads makes the writing thread
     */
   def open(

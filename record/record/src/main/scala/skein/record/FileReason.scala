@@ -4,7 +4,7 @@ import java.io.IOException
 import java.nio.file.{FileSystemException, Path}
 import java.util.Locale
 
-/** Why a file could not be read or written, for a person. */
+/** Converts an exception of a file to a reason that a person understands. */
 private[skein] object FileReason:
   /** The reason without names of Java's classes. */
   def of(failed: IOException): String = failed match

@@ -22,8 +22,7 @@ final case class Topic(
   *
   * @param key older messages of the topic with this key are replaced: those about one vehicle
   * @param known when the controller knew the fact, on its own clock
-  * @param published equals `known`, except for a prediction, when it was made, and for a round trip, when it
-  *   began
+  * @param published when a prediction was made or a round trip began; for any other message equal to `known`
   */
 final class FlightMessage(
     val topic: String,
@@ -41,9 +40,9 @@ object FlightMessage:
 /** Converts the rows of a flight to messages: every row on the topic `/skein/TABLE`, by the names of its
   * columns, and views of the rows by Foxglove's schemas ([[FoxgloveViews]]). Rows must be given in order.
   *
-  * @param from the time of rows without a time that precede all others
-  * @param offset from the simulator's clock to the controller's until a decision estimates it; without one,
-  *   as if the first reading had no latency
+  * @param from the time of the first rows, which have none
+  * @param offset from the simulator's clock to the controller's until a decision estimates it; None: the
+  *   first reading is assumed to have no latency
   * @param scene of the flight's world
   * @param form encoding of images and clouds
   */
@@ -59,7 +58,7 @@ final class FlightTopics(
   private val views = FoxgloveViews(vehicles, offset, scene, form)
   private var known = from
 
-  /** The messages before the first row. */
+  /** The messages that precede those of the first row. */
   def opening: Vector[FlightMessage] = views.opening(from).map(message(_, "", from, from))
 
   /** @param number index of the row in the recording */
@@ -93,7 +92,7 @@ object FlightTopics:
         binary(FoxgloveViews.imageOf(sensor), form.imageSchema)
       )
 
-  /** When it was known to the controller, if it says so. */
+  /** The time at which the controller knew the record's fact; None if the record does not state it. */
   def knownAt(record: Record): Option[Instant] = record match
     case reading: ReadingRow      => Some(reading.state.receivedAt)
     case measured: MeasurementRow => Some(measured.receivedAt)

@@ -98,7 +98,9 @@ private[record] final class FoxgloveViews(
       Vector(drawn(name))
     case _ => Vector.empty
 
-  /** The controller's clock minus the simulator's: as estimated, or as if this row had no latency. */
+  /** The controller's clock minus the simulator's: the newest estimate; before the first, this row is assumed
+    * to have no latency.
+    */
   private def aheadOf(validAt: Instant, receivedAt: Instant): Span =
     offset.getOrElse(receivedAt.since(validAt))
 
@@ -166,8 +168,8 @@ private[record] final class FoxgloveViews(
     "color" -> colour
   )
 
-  /** The recent track of a vehicle: complete, once a second, so that a viewer that seeks to a time has it
-    * immediately.
+  /** The recent track of a vehicle. It is sent whole once a second, so that a viewer has it immediately after
+    * a seek.
     */
   private def trail(name: String, at: Instant, position: Vector3): Option[View] =
     val trail = trails.getOrElseUpdate(name, Trail(at))
@@ -179,8 +181,8 @@ private[record] final class FoxgloveViews(
       def drawn  = entity(at, "world_ned", s"$name trail", lines = Vector(line(name, points, thickness = 2)))
       View.text(trailOf(name))(scene(drawn))
 
-  /** A line from a vehicle's reading to its predicted position when the command acts; around that, the newest
-    * prediction's error.
+  /** A line from a vehicle's reading to its predicted position when the command acts, with a sphere around
+    * that position, of the size of the newest prediction's error.
     */
   private def carried(name: String, at: Instant, from: Vector3, to: Vector3, off: Option[Metres]) =
     val there = block(Placement(to), Vector3(0.5, 0.5, 0.5), colours(name))

@@ -6,7 +6,8 @@ import skein.units.*
 
 /** A camera or a lidar whose images or clouds are shown.
   *
-  * @param name the lidar's; the camera's, with a slash and the kind of image if that is not `Scene`
+  * @param name of the lidar, or of the camera; for another kind of image than `Scene`, a slash and the kind
+  *   follow
   */
 final case class ImagingSensor(vehicle: String, name: String, isLidar: Boolean)
 

@@ -14,15 +14,15 @@ import skein.units.*
 
 /** A recording as an MCAP file, for Foxglove, Lichtblick, PlotJuggler and Rerun, and back.
   *
-  * Every row is a message of the topic `/skein/TABLE`, a JSON object by the names of the columns; these are
-  * the complete recording, which `read` reads; except that the pixels of an image and the points of a cloud
-  * are in the message after its row, a `foxglove.RawImage` or a `foxglove.PointCloud`. Additional messages
-  * are views of the rows by Foxglove's schemas ([[FoxgloveViews]]).
+  * Every row is a message of the topic `/skein/TABLE`, a JSON object by the names of the columns. These
+  * messages are the complete recording, and `read` reads them. Only the pixels of an image and the points of
+  * a cloud are in the message after the row, a `foxglove.RawImage` or a `foxglove.PointCloud`. Additional
+  * messages are views of the rows by Foxglove's schemas ([[FoxgloveViews]]).
   *
   * Times of messages are on the controller's clock, ns. The log time is when the row's fact was known there:
-  * a reading was received, a decision made, a command sent or answered; of a row without such a time, that of
-  * the row before. The publish time equals it, except for a prediction, when it was made, and for a round
-  * trip, when it began. When physics was sampled is in the message.
+  * a reading was received, a decision made, a command sent or answered. A row without such a time takes that
+  * of the row before. The publish time equals it, except for a prediction, when it was made, and for a round
+  * trip, when it began. The sampling time of physics is in the message.
   */
 object McapRecording:
   private val About  = "skein"
@@ -43,7 +43,7 @@ object McapRecording:
         if Files.exists(file) && !Files.isRegularFile(file) then
           McapFile.write(file, options)(write(rows, scene, _))
         else
-          // What was there stays until all of the new file is.
+          // An existing file stays until the new one is complete.
           val folder = Files.createTempDirectory(file.toAbsolutePath.getParent, ".skein")
           val made   = folder.resolve("made.mcap")
           try
@@ -69,7 +69,7 @@ object McapRecording:
     val flight = Rows(mcap, names, from, Some(firstOffset(rows.map(_._2))), sceneOf(rows, scene))
     rows.foreach(flight.put)
 
-  /** The scene of a recorded flight, if its simulator was ours.
+  /** The scene of a flight that was recorded in the built-in simulator; an empty scene for other simulators.
     *
     * @param scene by the recording's parameters
     */
@@ -80,8 +80,8 @@ object McapRecording:
     if isOurs then scene(rows.collect { case (_, ParameterRow(name, value)) => name -> value }.toMap)
     else Scene.Empty
 
-  /** The offset from the simulator's clock to the controller's: the first estimate, or as if the first
-    * reading had no latency.
+  /** The offset from the simulator's clock to the controller's: the first estimate; without any estimate, the
+    * first reading is assumed to have no latency.
     */
   private[skein] def firstOffset(rows: Vector[Record]): Span =
     val estimated =
@@ -91,9 +91,7 @@ object McapRecording:
     }
     (estimated ++ assumed).nextOption().getOrElse(Span.Zero)
 
-  /** Writes a flight to a file: its topics and the messages before the first row immediately; then row by
-    * row.
-    */
+  /** Writes a flight to a file: immediately its topics and opening messages, then row by row. */
   private[record] final class Rows(
       mcap: McapWriter,
       vehicles: Vector[String],
@@ -174,7 +172,7 @@ object McapRecording:
   private def gather(file: Path, folder: Path): Either[RecordError, Vector[Gathered]] =
     McapFile.stream(file): records =>
       val outs = mutable.LinkedHashMap.empty[String, RowsFile]
-      // A row whose bytes have not come yet.
+      // A row whose bytes have not been read yet.
       var waiting              = Option.empty[(table: String, row: String)]
       var format               = RecordingFormat.version
       def refused(why: String) = Some(RecordError.NotAnExport(file, why))

@@ -52,7 +52,7 @@ final class McapRowSink private (channel: FileChannel, file: Path, heading: Reco
   private def why(error: Throwable) = s"cannot write $file: $error"
 
 object McapRowSink:
-  /** Commits between two flushes: a second. */
+  /** Number of commits between two flushes: a second's. */
   private val FlushEvery = 20
 
   /** Creates the file, which must not exist yet.

@@ -6,7 +6,7 @@ import scala.concurrent.{Future, Promise}
 
 /** Keeps a flight in memory: for virtual time, where writing would be the slowest part, and for tests.
   *
-  * @param capacity most records; one more is a failure
+  * @param capacity limit of the records; one more is a failure
   */
 final class MemoryRecorder(heading: RecordingHeader, capacity: Int = MemoryRecorder.defaultCapacity)
     extends Recorder:
@@ -14,7 +14,9 @@ final class MemoryRecorder(heading: RecordingHeader, capacity: Int = MemoryRecor
   private var closed = false
   private val failed = Promise[RecordError]()
 
-  /** Makes the row now: it is smaller than the decision, and in virtual time no command waits for it. */
+  /** Makes the row immediately, because it is smaller than the decision. In virtual time no command waits for
+    * it.
+    */
   def offer(record: Recordable): Unit = keep(record.row match
     // Many would not fit otherwise.
     case image: CameraImage => image.copy(pixels = image.pixels.compressed)
@@ -60,5 +62,5 @@ final class MemoryRecorder(heading: RecordingHeader, capacity: Int = MemoryRecor
 
 object MemoryRecorder:
 
-  /** About 1 GB of records; 20 vehicles at 10 Hz for an hour. */
+  /** About 1 GB of records, which 20 vehicles at 10 Hz produce in an hour. */
   val defaultCapacity = 4_000_000

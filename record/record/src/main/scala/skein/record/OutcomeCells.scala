@@ -1,6 +1,6 @@
 package skein.record
 
-/** How a command ended, as it lies in a recording. */
+/** The outcome of a command in the form in which a recording stores it. */
 private[record] final case class OutcomeCells(name: String, error: Option[String]):
   def outcome: CommandOutcome = name match
     case OutcomeCells.Done       => CommandOutcome.Done

@@ -82,10 +82,10 @@ final class PostgresRowSink private (connection: Connection, schema: String, tar
     s"""INSERT INTO "$schema".${table.name} VALUES (${Vector.fill(width)("?").mkString(", ")})"""
 
 object PostgresRowSink:
-  /** Rows that may wait: at 20 vehicles and 10 Hz about a minute. */
+  /** Limit of the rows that wait: about a minute at 20 vehicles and 10 Hz. */
   val Capacity = 65536
 
-  /** Most bytes of waiting images and clouds. */
+  /** Limit of the bytes of waiting images and clouds. */
   val MostWaitingBytes: Long = 64L * 1024 * 1024
 
   private val BatchSize   = 1024
@@ -95,7 +95,7 @@ object PostgresRowSink:
   /** Connects, and creates the tables. Blocks.
     *
     * @param url `postgres://USER:PASSWORD@HOST:PORT/DATABASE`
-    * @return Left states why not, without the password
+    * @return Left states why this failed, without the password
     */
   def open(url: String, heading: RecordingHeader): Either[String, PostgresRowSink] =
     for

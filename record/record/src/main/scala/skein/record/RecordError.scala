@@ -2,7 +2,7 @@ package skein.record
 
 import java.nio.file.Path
 
-/** Why a recording could not be written or read. */
+/** The reasons why a recording could not be written or read. */
 enum RecordError(val message: String):
 
   /** There is a file at this path; recordings are never overwritten. */

@@ -7,12 +7,12 @@ import scala.annotation.tailrec
 import scala.concurrent.{Future, Promise}
 import scala.util.control.NonFatal
 
-/** Writes records in batches, on a thread of its own: all records since the last batch, `interval` after that
-  * began at the earliest. Offering a record never waits, not even for a lock that this thread holds while
-  * other threads run.
+/** Writes records in batches, on a thread of its own. A batch contains all records since the last one, and
+  * begins at least `interval` after that one began. Offering a record never waits, not even for a lock that
+  * this thread holds while other threads run.
   *
-  * @param capacity records that may wait
-  * @param batchSize most records of a batch
+  * @param capacity limit of the records that wait
+  * @param batchSize limit of a batch's records
   * @param write a batch; returns false to end
   */
 private[record] final class RecordWriter(

@@ -6,8 +6,8 @@ import scala.concurrent.Future
 trait Recorder:
 
   /** Takes one record; never blocks, and makes no [[LaterRow]], from any thread. A record that cannot be kept
-    * makes [[failure]] complete; after a failure or [[close]], records are ignored, but for the [[Ending]]:
-    * it is the last row, and after a failure it is written as far as that is possible.
+    * makes [[failure]] complete; after a failure or [[close]], records are ignored, except for the
+    * [[Ending]], which is the last row and is written even after a failure if that is possible.
     */
   def offer(record: Recordable): Unit
 
@@ -17,6 +17,6 @@ trait Recorder:
   def failure: Future[RecordError]
 
   /** Writes all waiting records and closes. Completes with the number of rows written, or with the failure.
-    * Every call has one result.
+    * Repeated calls return the result of the first.
     */
   def close(): Future[Either[RecordError, Written]]

@@ -45,7 +45,8 @@ private[record] final class RecordingFile private (val path: Path, connection: D
       val _ = RecordingFile.attempt(RecordError.WriteFailed(path, _))(execute("ROLLBACK"))
     write(Seq(record))
 
-  /** Moves the write-ahead log into the file, waits until the disk has it, and closes it, even if that fails.
+  /** Moves the write-ahead log into the file, waits until the disk has stored it, and closes the file, even
+    * if the log could not be moved.
     */
   def close(): Either[RecordError, Written] =
     RecordingFile.attempt(RecordError.WriteFailed(path, _)):
@@ -77,7 +78,7 @@ private[record] object RecordingFile:
           val _ = opened.close()
         begun.map(_ => opened)
 
-  /** Whether a recording can have this name; Left states why not. */
+  /** Checks whether a recording can have this name; Left states why it cannot. */
   def free(file: Path): Either[RecordError, Unit] =
     if isUnnameable(file) then Left(RecordError.CannotCreate(file, Unnameable))
     else Expect.that(!Files.exists(file))(RecordError.AlreadyExists(file))
@@ -100,7 +101,7 @@ private[record] object RecordingFile:
     execute(connection, s"INSERT INTO format VALUES (${RecordingFormat.version})")
     Table.all.foreach(table => execute(connection, table.create))
 
-  /** A connection to this file only: with one thread, and without extensions from the network. */
+  /** Opens a connection to this file only, with one thread, and without extensions from the network. */
   def connect(file: Path, readOnly: Boolean): DuckDBConnection =
     if isUnnameable(file) then throw SQLException(Unnameable)
     val properties = Properties()

@@ -81,7 +81,7 @@ private[record] final case class Table[A <: Record](
       )
 
 private[record] object Table:
-  // What came with a later format than its table.
+  // Columns of a later format than their table.
   private given action: FieldColumns[Option[Action]] =
     name => added(optional(summon[FieldColumns[Action]](name)))
   private given course: FieldColumns[Option[PlannedPath]] =
@@ -116,8 +116,8 @@ private[record] object Table:
       added(migrated(optional(summon[FieldColumns[String]](name)), "split_part(scenario, ',', 1)"))
     table("flight")
 
-  /** Up to format 4, only the text of an event said which decision a fallback had made; up to format 6, also
-    * what it was about, and how many.
+  /** In formats up to 4, only an event's text states which decision a fallback made; in formats up to 6, only
+    * the text states the event's subject and count.
     */
   val event: Table[Event] =
     val numbers = Map(

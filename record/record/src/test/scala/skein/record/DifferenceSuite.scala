@@ -5,7 +5,9 @@ import skein.units.*
 class DifferenceSuite extends munit.FunSuite:
   private val one = Samples.reading(1)
 
-  test("equal recordings do not differ, and of different ones the first row and column is named"):
+  test(
+    "equal recordings do not differ, and of different ones the first differing row and column are reported"
+  ):
     assertEquals(Difference.first(Samples.oneOfEach, Samples.oneOfEach), None)
     val later = one.copy(state = one.state.copy(sentAt = one.state.sentAt + Span.ofNanos(1)))
     val found = Difference.first(Seq(Samples.decision(1), one), Seq(Samples.decision(1), later))
@@ -15,7 +17,7 @@ class DifferenceSuite extends munit.FunSuite:
       Some(("sentAtNs", one.state.sentAt.toNanos.toString, later.state.sentAt.toNanos.toString))
     )
 
-  test("a missing row, or an additional one, is named"):
+  test("a missing or additional row is reported"):
     val two = Samples.reading(2)
     assertEquals(
       Difference.first(Seq(one, two), Seq(one)),
@@ -30,7 +32,7 @@ class DifferenceSuite extends munit.FunSuite:
     val event = Event(Instant.Epoch, EventKind.Dropped, None, "x")
     assertEquals(Difference.between(one, event).map(_.column), Some("the table"))
 
-  test("a recorder counts what it was offered, by table, beside what the recording begins with"):
+  test("a recorder counts the records that it was offered by table, in addition to the heading's"):
     val recorder = MemoryRecorder(Samples.heading)
     for number <- 1 to 5 do recorder.offer(Samples.reading(number))
     recorder.offer(Samples.decision(1))

@@ -37,7 +37,7 @@ class DigestSuite extends munit.FunSuite, TemporaryFolders:
       out.writeByte(3)
       out.writeDouble(value)
     whole(99)
-    // What formats before 5 had not got is not there where it is absent, and a list is as text.
+    // Absent values of columns that formats before 5 lack are left out, and a list counts as text.
     text("event")
     whole(2)
     whole(5)
@@ -86,7 +86,7 @@ class DigestSuite extends munit.FunSuite, TemporaryFolders:
       Files.delete(file)
       Files.delete(folder)
 
-  test("another value, another order or a missing record changes the digest"):
+  test("a different value, another order or a missing record changes the digest"):
     val all    = Samples.oneOfEach
     val whole  = digest(all*)
     val others = Seq(

@@ -39,7 +39,7 @@ class DuckDbRecorderLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolder
     assertEquals(Await.result(recorder.close(), 60.seconds).map(_.rows("reading")), Right(offered.toLong))
     assertEquals(read(file).readings.map(_.sequence), Vector.range(1L, offered + 1L))
 
-  folder.test("records beyond the queue's bound fail the recording, and what was queued is written"):
+  folder.test("records beyond the queue's bound fail the recording, and the queued ones are written"):
     folder =>
       val file     = folder.resolve("flight.duckdb")
       val recorder = open(file, capacity = 16)
@@ -68,7 +68,7 @@ class DuckDbRecorderLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolder
       case other                                => fail(s"expected WriteFailed, got $other")
     assertEquals(Await.result(recorder.close(), 10.seconds), Left(failed))
 
-  folder.test("no commit waits for the disk, which may take longer than a kill may cost"): folder =>
+  folder.test("no commit waits for the disk"): folder =>
     val file     = folder.resolve("flight.duckdb")
     val recorder = open(file, capacity = 1024)
     Using.resource(RecordingFile.connect(file, readOnly = false)): beside =>
@@ -77,9 +77,7 @@ class DuckDbRecorderLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolder
       assertEquals(mode.getString(1), "NONE")
     assert(Await.result(recorder.close(), 10.seconds).isRight)
 
-  folder.test(
-    "a deleted file fails the recording immediately, which would otherwise end without a file"
-  ): folder =>
+  folder.test("a deleted file fails the recording immediately, not only at its end"): folder =>
     val file     = folder.resolve("flight.duckdb")
     val recorder = open(file, capacity = 1024)
     recorder.offer(Samples.reading(1))
@@ -102,7 +100,7 @@ class DuckDbRecorderLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolder
     Files.move(folder.resolve("flight.duckdb"), file)
     assert(clue(RecordingReader.read(file)).left.exists(_.message.contains("expected a path without ';'")))
 
-  folder.test("an actor system that ends before the recording is closed leaves it whole"): folder =>
+  folder.test("a recording is complete even if its actor system ends before it is closed"): folder =>
     val file     = folder.resolve("flight.duckdb")
     val early    = ActorSystem("early")
     val opened   = Await.result(DuckDbRecorder.open(file, Samples.heading)(using early), 30.seconds)

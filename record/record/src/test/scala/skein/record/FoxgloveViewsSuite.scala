@@ -48,7 +48,7 @@ class FoxgloveViewsSuite extends munit.FunSuite:
     do
       assertEquals(seen.of(other).size, 0)
 
-  test("five vehicles have different colours, and the sixth has the first one's again"):
+  test("five vehicles have different colours, and the sixth has the colour of the first"):
     val colours = drawn.tail.take(6).map(entity(_)("cubes")(0)("color"))
     assertEquals(colours.distinct.size, 5)
     assertEquals(colours(5), colours(0))
@@ -57,7 +57,7 @@ class FoxgloveViewsSuite extends munit.FunSuite:
       for part <- Seq("r", "g", "b") do
         assert(colour(part).num >= 0 && colour(part).num <= 1, colour.toString)
 
-  test("a prediction is a line from where the vehicle was read to a body where it is expected"):
+  test("a prediction is a line from a vehicle's reading to a body at its predicted position"):
     val decision = Samples.decision(1)
     val expected = decision.predicted.get.ownPositionNed
     val from     = decision.own.state.value.positionNed
@@ -79,7 +79,7 @@ class FoxgloveViewsSuite extends munit.FunSuite:
       ujson.Obj("sec" -> (acts / 1_000_000_000L).toInt, "nsec" -> (acts % 1_000_000_000L).toInt)
     )
 
-  test("the world's frame of north, east, down is drawn in one of east, north, up"):
+  test("the frame of north, east, down is drawn in a frame of east, north, up"):
     val turn            = read(drawn.head)("transforms")(0)
     val rotation        = turn("rotation")
     val Seq(x, y, z, w) = Seq("x", "y", "z", "w").map(rotation(_).num): @unchecked
@@ -95,7 +95,7 @@ class FoxgloveViewsSuite extends munit.FunSuite:
     do assertEqualsDouble(value, wanted.toDouble, 1e-15)
     assertEquals(turn("translation"), place(0, 0, 0))
 
-  test("times of messages are when physics was sampled, by the offset known; a log message is a warning"):
+  test("message times are physics' sampling times by the known clock offset, and a log message is a warning"):
     val reading = Samples.reading(1)
     val offset  = Span.ofSeconds(2.5)
     val pose    = read(FoxgloveViews(names, Some(offset)).of(reading)(1))
@@ -143,7 +143,7 @@ class FoxgloveViewsSuite extends munit.FunSuite:
       Vector[ujson.Value](place(1.5, -0.5, -20.3), place(2.5, 0.25, -20.3))
     )
 
-  test("at a vehicle's predicted position, a ball has the size of its newest prediction error"):
+  test("a ball at a vehicle's predicted position has the size of its newest prediction error"):
     val seen  = FoxgloveViews(names, Some(Span.Zero))
     val guess = Samples.oneOfEach.collectFirst { case one: Prediction => one }.get
     seen.of(guess.copy(vehicle = "Pursuer", error = Metres(0.75))): Unit
@@ -151,7 +151,7 @@ class FoxgloveViewsSuite extends munit.FunSuite:
     assertEquals(drawn("spheres")(0)("size"), place(1.5, 1.5, 1.5))
     assertEquals(drawn("spheres")(0)("pose"), drawn("cubes")(0)("pose"))
 
-  test("a camera's image is raw, its frame right, down, front, and its lens is sent once"):
+  test("a camera's image is raw, in a frame of right, down, front, and its lens is sent once"):
     val seen                             = FoxgloveViews(names, Some(Span.Zero))
     val Vector(image, frame, calibrated) = seen.of(Samples.image(1)): @unchecked
     val bytes                            = Protobuf.bytesOf(Bytes.of(image.make()), 6).get
@@ -167,12 +167,12 @@ class FoxgloveViewsSuite extends munit.FunSuite:
     assertEquals(lens("frame_id"), moved("child_frame_id"))
     assertEquals(seen.of(Samples.image(2)).size, 2)
 
-  test("a camera that looks north has its right in the east and its front in the north"):
+  test("a camera that looks north has its frame's right to the east and its front to the north"):
     val level = Samples.image(1).copy(orientation = Quaternion(1, 0, 0, 0))
     val turn  = ujson.read(FoxgloveViews(names, None).of(level)(1).json)("transforms")(0)("rotation")
     assertEquals(turn, ujson.Obj("x" -> 0.5, "y" -> 0.5, "z" -> 0.5, "w" -> 0.5))
 
-  test("a cloud has its points unchanged, in the lidar's frame; too many are thinned"):
+  test("a cloud has its points unchanged, in the lidar's frame, and is thinned if there are too many"):
     val topics = FoxgloveViews(names, Some(Span.Zero)).of(Samples.cloud(1))
     assertEquals(topics.map(_.topic), Vector("/vehicles/Evader/Lidar/cloud"))
     def points(most: Int) =

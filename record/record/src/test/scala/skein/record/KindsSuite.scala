@@ -7,7 +7,7 @@ class KindsSuite extends munit.FunSuite:
     for kind <- ClockKind.values do assertEquals(ClockKind.parse(kind.label), Right(kind))
     for kind <- LoopKind.values do assertEquals(LoopKind.parse(kind.label), Right(kind))
 
-  test("an unknown name is refused with the known ones"):
+  test("an unknown name is refused with the list of the known ones"):
     assertEquals(ClockKind.parse("Real"), Left("expected real or virtual, came 'Real'"))
     assertEquals(
       LoopKind.parse("streams"),

@@ -27,7 +27,7 @@ class McapRecordingSuite extends munit.FunSuite, TemporaryFolders:
   private def records(mcap: Path): Vector[McapRecord] =
     McapFile.stream(mcap)(_.map(_.fold(e => fail(e.message), _.record)).toVector)
 
-  folder.test("what is exported and imported is the same recording, with the same digest"): folder =>
+  folder.test("an exported and imported recording is unchanged, with an equal digest"): folder =>
     val again = folder.resolve("again.duckdb")
     assertEquals(McapRecording.read(exported(folder), again), Right(()))
     assertEquals(RecordingReader.read(again), Right(Recording(Samples.heading, Samples.oneOfEach)))
@@ -38,7 +38,7 @@ class McapRecordingSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(Digest.ofFile(again), Digest.ofFile(folder.resolve("flight.duckdb")))
     assertEquals(Files.list(folder).count(), 3L)
 
-  folder.test("an export of format 6 is imported with what its words told"): folder =>
+  folder.test("an export of format 6 is imported with the values that its texts contain"): folder =>
     val today = exported(folder)
     val older = folder.resolve("older.mcap")
     McapFile.write(older, McapRecording.options): mcap =>
@@ -61,7 +61,7 @@ class McapRecordingSuite extends munit.FunSuite, TemporaryFolders:
     )
     assertEquals(again.map(told), Right(told(known)))
 
-  folder.test("every table is a topic, with a schema that names its columns"): folder =>
+  folder.test("every table is a topic whose schema lists its columns"): folder =>
     val mcap   = exported(folder)
     val topics = records(mcap).collect { case channel: McapRecord.Channel => channel.topic }.toSet
     assertEquals(Table.all.map(table => s"/skein/${table.name}").toSet.diff(topics), Set.empty[String])
@@ -71,7 +71,7 @@ class McapRecordingSuite extends munit.FunSuite, TemporaryFolders:
     assert(decision.message.data.utf8.startsWith("""{"row":"""), decision.message.data.utf8)
 
   folder.test(
-    "every schema is one that viewers can read: one known type a field, and properties of every object"
+    "viewers can read every schema: a field has one known type, and an object has its properties"
   ): folder =>
     def refused(at: String, schema: ujson.Value): Vector[String] = schema("type") match
       case ujson.Str("object") =>
@@ -89,7 +89,9 @@ class McapRecordingSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(binary.map(_.name).toSet, Set("foxglove.RawImage", "foxglove.PointCloud"))
     assertEquals(schemas.flatMap(one => refused(one.name, ujson.read(one.data.utf8))), Vector.empty)
 
-  folder.test("log times are when the controller knew, publish times when it was made or sent"): folder =>
+  folder.test(
+    "log times are when the controller knew a fact, and publish times when it was made or sent"
+  ): folder =>
     val mcap                 = exported(folder)
     def times(table: String) =
       messages(mcap, s"/skein/$table").map(found => (found.message.logTime, found.message.publishTime)).head
@@ -118,7 +120,7 @@ class McapRecordingSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(messages(mcap, "/vehicles/Evader/body").size, 1)
     assert(messages(mcap, "/log").head.message.data.utf8.contains(""""level":3"""))
 
-  folder.test("pixels and points are in the message behind their row, and a row without them is refused"):
+  folder.test("pixels and points are in the message after their row, and a row without them is refused"):
     folder =>
       val mcap  = exported(folder)
       val found = messages(mcap, "/vehicles/Pursuer/front_center/image")
@@ -135,7 +137,7 @@ class McapRecordingSuite extends munit.FunSuite, TemporaryFolders:
       val error = McapRecording.read(cut, folder.resolve("again.duckdb")).left.map(_.message)
       assert(error.left.exists(_.contains("""no bytes behind its row: {"row":1}""")), error)
 
-  folder.test("a trail is shown once a second, and is that of the last twenty"): folder =>
+  folder.test("a trail of the last twenty seconds is shown once a second"): folder =>
     val file     = folder.resolve("long.duckdb")
     val mcap     = folder.resolve("long.mcap")
     val recorder = MemoryRecorder(Samples.heading)
@@ -148,7 +150,7 @@ class McapRecordingSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(points.map(_.size), (1 to 29).map(second => (second * 10 + 1).min(201)).toVector)
     assertEquals((points.last.head, points.last.last), (91.1, 291.1))
 
-  folder.test("what is no exported recording is refused, and nothing is left behind"): folder =>
+  folder.test("a file that is no exported recording is refused, and leaves no output behind"): folder =>
     val mcap                                        = exported(folder)
     val again                                       = folder.resolve("again.duckdb")
     def refused(change: McapWriter => Unit): String =
@@ -165,7 +167,7 @@ class McapRecordingSuite extends munit.FunSuite, TemporaryFolders:
       refused(out => out.message(out.channel("/skein/event", "json"), 0, 0, 0, Bytes.utf8("""{"row": 1}""")))
     assert(half.contains("is not an exported recording: "), half)
 
-  folder.test("an export that is cut off says so"): folder =>
+  folder.test("the error for a truncated export states the truncation"): folder =>
     val mcap = exported(folder)
     Files.write(mcap, Files.readAllBytes(mcap).dropRight(100))
     val error = McapRecording.read(mcap, folder.resolve("again.duckdb")).left.map(_.message)
@@ -176,5 +178,5 @@ class McapRecordingSuite extends munit.FunSuite, TemporaryFolders:
     val there = folder.resolve("flight.duckdb")
     assertEquals(McapRecording.read(mcap, there), Left(RecordError.AlreadyExists(there)))
 
-  test("texts are written as JSON has them"):
+  test("texts are written by the rules of JSON"):
     assertEquals(Json.string("a\"b\\c\n\u0001é🛸"), "\"a\\\"b\\\\c\\u000a\\u0001é\\ud83d\\udef8\"")

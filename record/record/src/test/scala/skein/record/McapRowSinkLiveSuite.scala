@@ -24,7 +24,7 @@ class McapRowSinkLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders:
   private def sink(file: Path) =
     McapRowSink.open(file, Samples.heading).fold(error => fail(error.message), identity)
 
-  folder.test("import of a file that was written in flight gives the recording's own digest"): folder =>
+  folder.test("importing a file that was written in flight gives the recording's own digest"): folder =>
     val (file, mcap, again) =
       (folder.resolve("a.duckdb"), folder.resolve("a.mcap"), folder.resolve("b.duckdb"))
     val written = sink(mcap)
@@ -36,7 +36,7 @@ class McapRowSinkLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders:
     assertEquals(Digest.ofFile(again), Digest.ofFile(file))
     assertEquals(RecordingReader.records(again), RecordingReader.records(file))
 
-  folder.test("after a second of commits the written rows can be read, though the file was never finished"):
+  folder.test("rows can be read after a second of commits, even if the file was never finished"):
     folder =>
       val mcap    = folder.resolve("cut.mcap")
       val written = sink(mcap)

@@ -68,7 +68,7 @@ class PostgresRowSinkLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurri
           assert(own.nonEmpty, table.name)
           assertEquals(rowsOf(postgres, table, s"\"${schemas.head}\".${table.name}"), own, table.name)
 
-  test("a blocked database delays nothing: rows beyond the queue are counted, and reported"):
+  test("a blocked database delays nothing, and rows beyond the queue are counted and reported"):
     val named = heading("standing-still")
     val sink  = opened(named)
     Using.resource(server.get.getPostgresDatabase.getConnection()): other =>
@@ -100,7 +100,7 @@ class PostgresRowSinkLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurri
       found.next(): Unit
       assertEquals(found.getInt(1), 0)
 
-  test("an IPv6 address stands in brackets"):
+  test("an IPv6 address is written in brackets"):
     def shown(host: String) = PostgresAddress.parse(s"postgres://me:secret@$host/flights").map(_.shown)
     assertEquals(shown("[::1]"), Right("[::1]:5432/flights"))
     assertEquals(shown("[::1]:7000"), Right("[::1]:7000/flights"))

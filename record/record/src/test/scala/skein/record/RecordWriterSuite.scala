@@ -6,7 +6,7 @@ import scala.concurrent.duration.*
 
 class RecordWriterSuite extends munit.FunSuite:
 
-  test("a row that is made later is made by the thread that writes, in its turn"):
+  test("a later row is made in its turn, by the thread that writes"):
     val batches       = Vector.newBuilder[Record]
     @volatile var who = Option.empty[Thread]
     val writer        = RecordWriter(8, 0, 8, Thread.ofPlatform().daemon().factory())(rows => {
@@ -21,7 +21,7 @@ class RecordWriterSuite extends munit.FunSuite:
     assertEquals(batches.result(), rows)
     assert(who.exists(_ != Thread.currentThread), "it was made by the thread that offered it")
 
-  test("rows offered while a batch is written are all in the next one"):
+  test("all rows offered while a batch is written are in the next batch"):
     val (begun, goesOn) = (CountDownLatch(1), CountDownLatch(1))
     val batches         = Vector.newBuilder[Vector[Record]]
     val writer          = RecordWriter(8, 0, 8, Thread.ofPlatform().daemon().factory()): rows =>

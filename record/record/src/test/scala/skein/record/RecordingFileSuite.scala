@@ -7,7 +7,7 @@ class RecordingFileSuite extends munit.FunSuite:
   private def told(failure: Throwable) =
     RecordingFile.attempt(RecordError.WriteFailed(Path.of("x.duckdb"), _))(throw failure).left.map(_.message)
 
-  test("of a database's exception the first line is reported"):
+  test("the first line of a database's exception is reported"):
     assert(told(SQLException("no room left\nat the third page")).left.exists(_.endsWith("no room left")))
 
   test("if the database's library cannot be loaded, the deepest cause is reported"):

@@ -3,7 +3,7 @@ package skein.record
 /** The tables of a recording as a page of the documentation. */
 object RecordingSchema:
 
-  /** Every table with its columns, types, and whether they may be absent. */
+  /** Lists every table with its columns, their types, and whether they may be absent. */
   def markdown: String =
     val tables = Table.all.map: table =>
       val columns = table.numbered.map: column =>

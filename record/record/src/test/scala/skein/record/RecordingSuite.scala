@@ -17,12 +17,12 @@ class RecordingSuite extends munit.FunSuite, TemporaryFolders:
     Using.resource(DriverManager.getConnection(s"jdbc:duckdb:$file")): connection =>
       val _ = connection.createStatement().execute(sql)
 
-  folder.test("every record comes back from the file as it was offered"): folder =>
+  folder.test("every record is read from the file as it was offered"): folder =>
     val file = folder.resolve("flight.duckdb")
     record(file, Samples.oneOfEach*)
     assertEquals(RecordingReader.read(file), Right(Recording(Samples.heading, Samples.oneOfEach)))
 
-  folder.test("a file of the format before is read: what it does not have is absent"): folder =>
+  folder.test("a file of the previous format is read, and values that it lacks are absent"): folder =>
     val file = folder.resolve("flight.duckdb")
     record(file, Samples.oneOfEach*)
     execute(file, "DROP TABLE sighting")
@@ -34,7 +34,7 @@ class RecordingSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(RecordingReader.read(file), Right(Recording(Samples.heading, older)))
     assert(Export.parquet(file, folder.resolve("parquet")).isRight)
 
-  folder.test("up to format 4 slices were text, and a fallback's decision was in the event's text alone"):
+  folder.test("slices as text, and fallback decisions in events' texts, are read from files of format 4"):
     folder =>
       val file = folder.resolve("flight.duckdb")
       record(file, Samples.oneOfEach*)
@@ -45,7 +45,7 @@ class RecordingSuite extends munit.FunSuite, TemporaryFolders:
       assertEquals(RecordingReader.read(file), Right(Recording(Samples.heading, Samples.oneOfEach)))
       assertEquals(Digest.ofFile(file), today)
 
-  folder.test("up to format 6, words told how commands ended, and what events and flights were about"):
+  folder.test("outcomes, event subjects and simulators are read from the texts in files of format 6"):
     folder =>
       val file = folder.resolve("flight.duckdb")
       record(file, Samples.oneOfEach*)
@@ -62,7 +62,7 @@ class RecordingSuite extends munit.FunSuite, TemporaryFolders:
       execute(file, "UPDATE flight SET scenario = 'duel, as published, pursuer pure-pursuit'")
       assertEquals(RecordingReader.read(file).map(_.flight.nameOfScenario), Right("duel"))
 
-  folder.test("a table that came with a later format may be missing, one of the file's own format may not"):
+  folder.test("a table of a later format may be missing, but no table of the file's own format"):
     folder =>
       val file = folder.resolve("flight.duckdb")
       record(file, Samples.oneOfEach*)
@@ -81,9 +81,7 @@ class RecordingSuite extends munit.FunSuite, TemporaryFolders:
             assert(why.contains(table), why)
           case other => fail(s"expected a recording or NotARecording, got $other")
 
-  folder.test(
-    "a number that every row has is neither left out nor empty, and its column is not missed silently"
-  ): folder =>
+  folder.test("a required number cannot be null, and its missing column is reported"): folder =>
     val file = folder.resolve("flight.duckdb")
     record(file, Samples.oneOfEach*)
     for column <- Seq("positionNorthM", "sequence", "vehicle") do
@@ -95,7 +93,7 @@ class RecordingSuite extends munit.FunSuite, TemporaryFolders:
       case Left(RecordError.NotARecording(`file`, why)) => assert(why.contains("positionNorthM"), why)
       case other                                        => fail(s"expected NotARecording, got $other")
 
-  folder.test("rows are numbered through all tables in the order of their records"): folder =>
+  folder.test("rows are numbered across all tables, in the order of their records"): folder =>
     val file = folder.resolve("flight.duckdb")
     record(file, Samples.reading(1), Samples.decision(1), Samples.reading(2))
     Using.resource(DriverManager.getConnection(s"jdbc:duckdb:$file")): connection =>
@@ -108,7 +106,7 @@ class RecordingSuite extends munit.FunSuite, TemporaryFolders:
       )
 
   folder.test(
-    "a recording is written, exported and imported whatever its folder is called, or refused at once"
+    "a recording in a folder of any name is written, exported and imported, or refused immediately"
   ): folder =>
     val odd  = Files.createDirectories(folder.resolve("-md:a=b 'c' \"d\" #e%20~f*[g]$h "))
     val file = odd.resolve("flight.duckdb")
@@ -137,7 +135,7 @@ class RecordingSuite extends munit.FunSuite, TemporaryFolders:
       case Left(RecordError.CannotCreate(`file`, _)) => ()
       case other                                     => fail(s"expected CannotCreate, got $other")
 
-  folder.test("what is not a recording is told apart by its reason"): folder =>
+  folder.test("a file that is no recording is refused with the reason"): folder =>
     val missing = folder.resolve("missing.duckdb")
     assertEquals(RecordingReader.read(missing), Left(RecordError.NoSuchFile(missing)))
     val text = Files.writeString(folder.resolve("text.duckdb"), "position,velocity\n1,2\n")
@@ -149,7 +147,7 @@ class RecordingSuite extends munit.FunSuite, TemporaryFolders:
       Left(RecordError.NotARecording(other, "it has no table 'format'"))
     )
 
-  folder.test("a recording of another format names both formats"): folder =>
+  folder.test("the error for a recording of another format states both formats"): folder =>
     val file = folder.resolve("flight.duckdb")
     record(file)
     execute(file, "UPDATE format SET version = 99")
@@ -176,7 +174,7 @@ class RecordingSuite extends munit.FunSuite, TemporaryFolders:
       )
     )
   do
-    folder.test(s"$what in a recording is told with its place, in one line"): folder =>
+    folder.test(s"$what in a recording is reported with its place, in one line"): folder =>
       val file = folder.resolve("flight.duckdb")
       record(
         file,
@@ -204,7 +202,7 @@ class RecordingSuite extends munit.FunSuite, TemporaryFolders:
       assertEquals(rows.getInt(1), 2)
       assertEqualsDouble(rows.getDouble(2), 2 * 0.9776, 1e-12)
 
-  folder.test("an export that fails names the recording and where it was to go"): folder =>
+  folder.test("the error of a failed export states the recording and the target"): folder =>
     val file  = folder.resolve("flight.duckdb")
     val taken = java.nio.file.Files.writeString(folder.resolve("taken"), "")
     record(file, Samples.oneOfEach*)
@@ -224,7 +222,7 @@ class RecordingSuite extends munit.FunSuite, TemporaryFolders:
     recorder.offer(ending)
     assertEquals(recorder.records, Samples.oneOfEach.take(2) :+ ending)
 
-  test("what is offered behind the end of a flight is not in its recording"):
+  test("records offered after the end of a flight are not in its recording"):
     val recorder = MemoryRecorder(Samples.heading)
     recorder.offer(Samples.reading(1))
     assertEquals(

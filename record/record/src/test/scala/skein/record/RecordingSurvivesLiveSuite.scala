@@ -38,12 +38,12 @@ class RecordingSurvivesLiveSuite extends munit.FunSuite, TemporaryFolders, Unhur
     println(f"kill -9: ${events.size} of ${offered + 1} rows kept, the last $lostMs%.0f ms old")
     lostMs
 
-  folder.test("a kill -9 leaves a readable file without at most the last 200 ms"): folder =>
+  folder.test("after a kill -9 the file is readable and lacks at most the last 200 ms"): folder =>
     // A busy disk may delay a commit, but not every time.
     val lostMs = Iterator.range(0, 3).map(attempt => killed(folder.resolve(s"flight$attempt.duckdb")))
     assert(lostMs.exists(_ <= 200), "more than 200 ms were lost three times in a row")
 
-  folder.test("a full disk ends the recording with a clear error and leaves what was committed"): folder =>
+  folder.test("a full disk ends the recording with a clear error and leaves the committed rows"): folder =>
     val file     = folder.resolve("flight.duckdb")
     val process  = child(file)
     val reported = lines(process)

@@ -1,20 +1,21 @@
 package skein.view
 
-/** Who may ask an HTTP server of ours: programs, and the pages that it serves itself. A browser's page of
-  * another site may not, not even under a name that it has led to this machine (DNS rebinding).
+/** The clients that an HTTP server of Skein's answers: programs, and the pages that it serves itself. A
+  * browser's page of another site gets no answer, not even under a name that it has made resolve to this
+  * machine (DNS rebinding).
   *
-  * Headers are compared as texts. So an invalid header counts as foreign, like one that names another site,
+  * Headers are compared as texts. So an invalid header counts as foreign, like one with another site's name,
   * and never as absent.
   *
   * @param port on loopback
-  * @param origins pages of other sites that may look all the same, for example `https://app.foxglove.dev`
+  * @param origins other sites whose pages are answered, too, for example `https://app.foxglove.dev`
   */
 final case class Access(port: Int, origins: Set[String] = Set.empty):
   import Access.*
 
-  /** Why a request is refused, if it is.
+  /** The reason why a request is refused; None if it is accepted.
     *
-    * @param headers all names in lower case, and values, as received
+    * @param headers names in lower case, and values as received
     */
   def refusal(headers: Iterable[(String, String)]): Option[String] =
     def said(name: String) = headers.collect { case (`name`, value) => value }.toVector
@@ -37,5 +38,5 @@ object Access:
   private val Own    = Set("127.0.0.1", "localhost", "[::1]")
   private val Scheme = "http://"
 
-  /** The port that browsers leave out. */
+  /** HTTP's default port, which browsers leave out. */
   private val DefaultPort = 80

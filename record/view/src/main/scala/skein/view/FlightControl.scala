@@ -1,6 +1,6 @@
 package skein.view
 
-/** What the page can do to a flight. */
+/** Ways in which the page can control a flight. */
 enum FlightControl:
   /** Its vehicles hover and no decisions are made, until it continues or ends. */
   case Pause

@@ -10,15 +10,15 @@ import org.apache.pekko.stream.scaladsl.{Flow, Sink, Source}
 import scala.concurrent.{ExecutionContext, Future}
 import skein.link.Seats
 
-/** A port that speaks HTTP, with a limited number of connections, of which silent ones make room for others.
-  * It answers no page of another site, and makes browsers give its answers only to its own pages.
+/** A port that speaks HTTP. The number of connections is limited, and silent ones make room for others. Pages
+  * of other sites get no answer, and browsers give answers only to the server's own pages.
   */
 object HttpPort:
 
   /** Listens on loopback.
     *
     * @param port 0 for any that is free
-    * @param access by the port that it listens on
+    * @param access the access rules for the port on which it listens
     * @param refused called with each request that `access` refuses
     * @param answer must not block; an answer that is no error counts as activity
     * @return fails if it cannot listen

@@ -7,8 +7,8 @@ import scala.concurrent.ExecutionContext
 /** An actor system for a small HTTP server, with bounds for its clients. */
 object HttpSystem:
 
-  /** @param threads all that it uses
-    * @param more settings of `pekko.http.server`
+  /** @param threads the only threads that it uses
+    * @param more further settings of `pekko.http.server`
     */
   def apply(name: String, threads: ExecutionContext, more: String): ActorSystem =
     val bounds = ConfigFactory.parseString(more).atPath("pekko.http.server")

@@ -10,7 +10,7 @@ import skein.record.{CameraImage, ImageEncoding}
 import skein.units.Instant
 
 /** Previews of images and clouds for viewers during a flight: JPEGs of up to [[ImagePreviews.MostWide]]
-  * pixels a side, and a part of the points. Exact ones are in the recording.
+  * pixels a side, and a part of the points. The recording has the exact images and clouds.
   */
 private[view] object ImagePreviews extends ImageEncoding:
   val MostWide    = 480

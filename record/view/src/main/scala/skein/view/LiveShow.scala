@@ -13,10 +13,10 @@ import skein.record.{
 import skein.scene.Scene
 import skein.units.{Instant, Span}
 
-/** Additional data of a flight for viewers, computed from time to time.
+/** Additional data of a flight for viewers, computed at regular intervals.
   *
-  * @param json by the topic's schema; None without news
-  * @param see called with every record before, on the same thread
+  * @param json the data in the topic's schema; None if nothing is new
+  * @param see called with every record that precedes `json`, on the thread that calls `json`
   */
 final case class Gauge(topic: Topic, every: Span, json: () => Option[String], see: Record => Unit = _ => ())
 
@@ -111,5 +111,5 @@ object LiveShow:
 
   private val LookEvery = Span.ofMillis(100)
 
-  /** Most records of one turn, so that no turn lasts long. */
+  /** Limit of one turn's records, so that no turn lasts long. */
   private val MostAtOnce = 8192

@@ -10,7 +10,7 @@ final class RefusalCounts private[view] (seats: Seats):
   private[view] def refusedRequest(): Unit = requests.incrementAndGet(): Unit
   private[view] def refusedMessage(): Unit = messages.incrementAndGet(): Unit
 
-  /** Connections refused since too many were open. */
+  /** Connections refused because too many were open. */
   def refusedConnections: Long = seats.refusedConnections
 
   /** Silent connections that were closed to make room for others. */

@@ -8,7 +8,7 @@ import skein.record.{FlightMessage, Topic}
 import skein.units.Instant
 
 /** One flight for viewers: its channels, the newest messages, and the viewers. The newest message of each
-  * topic and vehicle is kept, so that a viewer that connects later, or sees a stopped time, has the whole
+  * topic and vehicle is kept, so that a viewer that connects later, or while time is stopped, has the whole
   * picture.
   *
   * All methods may be called from any thread; they only wait for each other.

@@ -10,7 +10,7 @@ private[view] final case class ServerBytes(bytes: ByteString) extends ServerMess
 
 /** A viewer: its subscriptions, and its waiting messages. From any thread.
   *
-  * @param wake called when something waits again, after [[take]] has found nothing
+  * @param wake called when a message waits again after [[take]] has found none
   */
 private[view] final class Viewer(limits: ViewerLimits, channels: Set[Long], wake: () => Unit):
   @volatile private var subscriptions = Subscriptions.none(limits, channels)

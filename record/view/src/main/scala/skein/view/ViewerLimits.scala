@@ -6,8 +6,8 @@ package skein.view
   * @param messageBytes of one message of a viewer
   * @param subscriptions of one viewer
   * @param refusals invalid messages of one viewer, before it is disconnected
-  * @param waiting messages that wait for one viewer, of each of its subscriptions
-  * @param waitingBytes of all that waits for one viewer
+  * @param waiting messages of each subscription that wait for one viewer
+  * @param waitingBytes of all messages that wait for one viewer
   */
 final case class ViewerLimits(
     connections: Int = 32,
@@ -19,7 +19,7 @@ final case class ViewerLimits(
 )
 
 object ViewerLimits:
-  /** Limits for recordings: a seek shows everything before it in one go: 40 s of twenty vehicles. Viewers
-    * share the bytes.
+  /** Limits for recordings. A seek shows everything before it in one go, which may be 40 s of twenty
+    * vehicles. Viewers share the bytes.
     */
   val OfRecording: ViewerLimits = ViewerLimits(waiting = 65_536, waitingBytes = 64L * 1024 * 1024)

@@ -6,26 +6,22 @@ class AccessSuite extends munit.FunSuite:
 
   private val foreign = AccessSuite.foreign(8765)
 
-  test("an origin that is not exactly ours is refused, also an unparsable one"):
+  test("an origin that is not exactly the server's own is refused, also an invalid one"):
     for from <- foreign do assert(access.refusal(Seq(here, "origin" -> from)).isDefined, from)
 
-  test("two origins are refused, even two of ours"):
+  test("two origins are refused, even if both are the server's own"):
     val own = "origin" -> "http://127.0.0.1:8765"
     assertEquals(access.refusal(Seq(here, own)), None)
     assert(access.refusal(Seq(here, own, own)).isDefined)
 
   test(
-    "programs, which send no origin, and the server's own pages are accepted, by each name of this " +
-      "machine"
+    "programs, which send no origin, and the server's own pages are accepted by each name of this machine"
   ):
     for name <- Seq("127.0.0.1:8765", "localhost:8765", "[::1]:8765") do
       assertEquals(access.refusal(Seq("host" -> name)), None)
       assertEquals(access.refusal(Seq(here, "origin" -> s"http://$name")), None)
 
-  test(
-    "a name that another site has directed to this machine is refused, and so are a missing and a " +
-      "second one"
-  ):
+  test("a name that another site has directed to this machine is refused, as are a missing and a second one"):
     for name <- Seq(
         "elsewhere.example:8765",
         "127.0.0.1.elsewhere.example:8765",
@@ -40,14 +36,14 @@ class AccessSuite extends munit.FunSuite:
     assert(access.refusal(Nil).isDefined)
     assert(access.refusal(Seq(here, here)).isDefined)
 
-  test("a site that the user names is accepted, and no similar one"):
+  test("a site that the user allows is accepted, and similar ones are refused"):
     val open = access.copy(origins = Set("https://app.foxglove.dev"))
     assertEquals(open.refusal(Seq(here, "origin" -> "https://app.foxglove.dev")), None)
     for from <- foreign ++ Seq("https://app.foxglove.dev.elsewhere.example", "https://app.foxglove.dev:443")
     do
       assert(open.refusal(Seq(here, "origin" -> from)).isDefined, from)
 
-  test("at the web's own port, browsers leave the port out"):
+  test("on the web's own port, names without a port are accepted"):
     val web = Access(80)
     assertEquals(web.refusal(Seq("host" -> "localhost", "origin" -> "http://localhost")), None)
     assert(web.refusal(Seq("host" -> "elsewhere.example")).isDefined)

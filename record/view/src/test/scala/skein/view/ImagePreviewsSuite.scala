@@ -20,7 +20,7 @@ class ImagePreviewsSuite extends munit.FunSuite:
     val off = Seq(16 -> r, 8 -> g, 0 -> b).map((shift, wanted) => ((rgb >> shift & 0xff) - wanted).abs).max
     assert(off < 12, f"$rgb%x, expected $r $g $b")
 
-  test("a large image is shrunk by a whole number, and has its colours where they were"):
+  test("a large image is shrunk by a whole factor, and its colours keep their places"):
     val (width, height) = (1280, 720)
     // Blue on the left, red on the right.
     val bytes = Array.tabulate(width * height * 3): at =>
@@ -31,7 +31,7 @@ class ImagePreviewsSuite extends munit.FunSuite:
     near(small.getRGB(20, 100), 0, 0, 255)
     near(small.getRGB(400, 100), 255, 0, 0)
 
-  test("depths are grey: white for near, black for far or infinite ones"):
+  test("depths are grey: white for near, black for far or infinite depths"):
     val depths = ByteBuffer.allocate(64 * 32 * 4).order(ByteOrder.LITTLE_ENDIAN)
     for at <- 0 until 64 * 32 do
       depths.putFloat(if at % 64 < 16 then 0 else if at % 64 < 32 then 25 else Float.PositiveInfinity): Unit

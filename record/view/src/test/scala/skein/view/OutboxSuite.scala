@@ -12,19 +12,19 @@ class OutboxSuite extends munit.FunSuite:
     val outbox = Outbox.empty[String](limits).offered(1, "a", 1).offered(2, "b", 1).offered(1, "c", 1)
     assertEquals(drained(outbox), Vector("a", "b", "c"))
 
-  test("of a subscription beyond its limit the oldest is dropped, and only of that"):
+  test("beyond a subscription's limit its oldest message is dropped, and none of other subscriptions"):
     val outbox = (1 to 5).foldLeft(Outbox.empty[String](limits).offered(2, "quiet", 1))((all, at) =>
       all.offered(1, at.toString, 1)
     )
     assertEquals(drained(outbox), Vector("quiet", "3", "4", "5"))
     assertEquals(outbox.lost, 2L)
 
-  test("beyond the total limit the oldest of all is dropped, but the newest is kept, however large"):
+  test("beyond the total limit the oldest of all messages is dropped, but the newest is kept, however large"):
     val outbox = Outbox.empty[String](limits).offered(1, "old", 60).offered(2, "newer", 50)
     assertEquals((drained(outbox), outbox.lost, outbox.bytes), (Vector("newer"), 1L, 50L))
     assertEquals(drained(outbox.offered(3, "huge", 1000)), Vector("huge"))
 
-  test("of messages that are useful only while newest, only the newest waits, and others are dropped"):
+  test("of messages that are useful only while newest, only the newest waits"):
     val outbox = (1 to 4).foldLeft(Outbox.empty[String](limits).offered(2, "row", 1))((all, at) =>
       all.offered(1, s"image $at", 10, most = 1)
     )
@@ -38,14 +38,14 @@ class OutboxSuite extends munit.FunSuite:
       ).noticed("info", "i").noticed("time", "6")
     assertEquals(drained(outbox), Vector("i", "6", "row"))
 
-  test("it is empty once neither a notice nor a row waits"):
+  test("an outbox is empty once neither a notice nor a row waits"):
     val empty = Outbox.empty[String](limits)
     assert(empty.isEmpty)
     for one <- Seq(empty.offered(1, "row", 1), empty.noticed("time", "5")) do
       assert(!one.isEmpty)
       assert(one.taken.exists(_._2.isEmpty))
 
-  test("nothing of a subscription that has ended is sent, and it is not counted as lost"):
+  test("messages of a subscription that has ended are neither sent nor counted as lost"):
     val outbox = Outbox.empty[String](limits).offered(1, "a", 1).offered(2, "b", 1).unsubscribed(1)
     assertEquals((drained(outbox), outbox.lost, outbox.bytes), (Vector("b"), 0L, 1L))
 

@@ -9,7 +9,7 @@ class ProtocolLaws extends munit.FunSuite:
 
   private def hex(bytes: ByteString): String = bytes.map(byte => f"$byte%02x").mkString(" ")
 
-  test("a message of data is its op, the subscription, the time and the payload, little-endian"):
+  test("a data message is its op, the subscription, the time and the payload, little-endian"):
     assertEquals(
       hex(Protocol.messageData(0x01020304, Instant.ofNanos(0x1122334455667788L), ByteString("{}"))),
       "01 04 03 02 01 88 77 66 55 44 33 22 11 7b 7d"
@@ -85,7 +85,7 @@ class ProtocolLaws extends munit.FunSuite:
       )
     do assert(Protocol.read(message).left.exists(_.contains(expected)), hex(message))
 
-  test("for any bytes of a viewer, the result is a message or a refusal"):
+  test("any bytes of a viewer are read as a message or refused"):
     val random = Random(11)
     val words  = Vector(
       "{",

@@ -49,7 +49,7 @@ class ShowSuite extends munit.FunSuite:
     assertEquals(told.map(_.topic), Vector("/skein/reading", "/vehicles/Pursuer/pose"))
     assertEquals(told.head.row("sequence").num, 7.0)
 
-  test("a late viewer sees the newest of every vehicle"):
+  test("a late viewer sees the newest record of every vehicle"):
     val feed = Feed()
     val show = LiveShow(heading, feed)
     for step <- 1 to 3; name <- Seq("Pursuer", "Evader") do feed.offer(Samples.reading(step, name))
@@ -76,7 +76,7 @@ class ShowSuite extends munit.FunSuite:
   private val image  = "/vehicles/Pursuer/front_center/image"
   private val sensor = ImagingSensor.camera("Pursuer", "front_center", "Scene")
 
-  test("of a camera's images the newest is shown, as a JPEG, ten times a second at most"):
+  test("the newest of a camera's images is shown, as a JPEG, at most ten times a second"):
     val feed   = Feed()
     val show   = LiveShow(heading, feed, sensors = Vector(sensor))
     val viewer = watching(show, image, "/skein/image")
@@ -112,7 +112,7 @@ class ShowSuite extends munit.FunSuite:
     show.control(ClientMessage.Playback(playing = false, 1, Some(a + Span.ofMillis(1000)), ""), at(1)): Unit
     assertEquals(seen(show, viewer).map(_.row("sequence").num), Vector(33.0))
 
-  /** The times that the server has sent, s, in order. */
+  /** The times that the server has sent to the viewer, s, in order. */
   private def clock(viewer: Viewer): Vector[Double] = Vector
     .unfold(())(_ => viewer.take().map((_, ())))
     .collect {
@@ -133,7 +133,7 @@ class ShowSuite extends munit.FunSuite:
     for viewer <- Seq(early, watching(show, "/skein/clock")) do
       assertEquals(seen(show, viewer).map(_.row("startedAtNs").str), Vector(begun))
 
-  test("when a flight has ended its time stands still, and nothing more of it is shown"):
+  test("when a flight has ended its time stops, and nothing more of it is shown"):
     val feed  = Feed()
     var asked = 0
     val gauge =
@@ -228,7 +228,7 @@ class ShowSuite extends munit.FunSuite:
     show.control(ClientMessage.Playback(playing = false, 1, Some(a), ""), at(1)): Unit
     assertEquals(seen(show, viewer).size, 1)
 
-  test("a running flight of which every record was shown says nothing of lost ones"):
+  test("no loss is reported for a running flight whose records were all shown"):
     val show   = LiveShow(heading, Feed())
     val viewer = watching(show)
     show.turn(at(1))
@@ -270,8 +270,7 @@ class ShowSuite extends munit.FunSuite:
     assertEquals(told.size, 5, "and two readings")
 
   test(
-    "a viewer that takes nothing loses the oldest messages, and receives their number when it reads " +
-      "again"
+    "a viewer that takes nothing loses the oldest messages, and receives their number when it reads again"
   ):
     val feed   = Feed()
     val show   = LiveShow(heading, feed, limits = ViewerLimits(waiting = 10))

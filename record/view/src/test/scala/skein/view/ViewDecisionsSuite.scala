@@ -17,7 +17,7 @@ class ViewDecisionsSuite extends munit.FunSuite:
     assertEquals(two.removed(12).map(_ => ()), Left("there is no subscription 12"))
     assertEquals(two.removed(10).map(_.of(1).toSet), Right(Set(11L)))
 
-  test("a feed without a reader keeps the newest, and counts the others"):
+  test("a feed without a reader keeps the newest records, and counts the others"):
     val feed           = Feed(capacity = 3)
     def event(at: Int) = Event(Instant.ofNanos(at), EventKind.Dropped, None, "")
     (1 to 5).foreach(at => feed.offer(event(at)))
@@ -28,7 +28,7 @@ class ViewDecisionsSuite extends munit.FunSuite:
     assertEquals(made, 0)
     assertEquals((feed.poll(), made), (Some(event(6)), 1))
 
-  test("a token is its own word alone, and each drawn one differs"):
+  test("a token accepts only its own word, and every drawn token differs"):
     val token = Token("right")
     for (said, isRight) <-
         Seq("right" -> true, "wrong" -> false, "righ" -> false, "right " -> false, "" -> false)

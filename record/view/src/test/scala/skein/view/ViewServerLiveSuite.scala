@@ -109,7 +109,7 @@ class ViewServerLiveSuite extends munit.FunSuite:
     client.close()
 
   serving().test(
-    "without a supported protocol, from a foreign page, or by a foreign name connections are refused"
+    "connections without a supported protocol, from a foreign page or by a foreign name are refused"
   ): served =>
     val port     = served.server.port
     val accepted = Seq(
@@ -169,11 +169,11 @@ class ViewServerLiveSuite extends munit.FunSuite:
   serving(
     ViewerLimits(connections = 5),
     SetClock()
-  ).test("of two hundred silent connections each takes the place of the oldest, which is closed at once"):
+  ).test("of two hundred silent connections each takes the place of the oldest, which is closed"):
     served =>
       val port    = served.server.port
       val sockets = Vector.fill(200)(Socket("127.0.0.1", port))
-      // They are accepted in their order; the end of a stream, or a reset, is what one sees that was closed.
+      // Sockets are accepted in order; a closed one sees the end of its stream, or a reset.
       for socket <- sockets.dropRight(5) do assertEquals(Try(socket.getInputStream.read()).getOrElse(-1), -1)
       sockets.foreach(_.close())
       assertEquals(served.server.counts.displacedConnections, 195L)
@@ -215,7 +215,7 @@ class ViewServerLiveSuite extends munit.FunSuite:
     viewer.until(text.andThen { case said if said("op").str == "status" => () })
     assertEquals(served.server.counts.displacedConnections, 3L)
 
-  serving().test("a page of another site gets no flight, whatever it calls itself"): served =>
+  serving().test("a page of another site gets no flight, under any name"): served =>
     val port                                                              = served.server.port
     def status(origin: String, host: String = s"127.0.0.1:$port"): String =
       scala.util.Using.resource(Socket("127.0.0.1", port)): socket =>

@@ -1,6 +1,6 @@
 package skein.flow
 
-/** What to do when a policy has not decided in time. */
+/** The fallback when a policy has not decided in time. */
 enum OnOverrun[M, -O, +D]:
   /** Send no command: the vehicle continues its last command. */
   case Hold[M]() extends OnOverrun[M, Any, Nothing]
@@ -11,18 +11,20 @@ enum OnOverrun[M, -O, +D]:
   /** Use another policy, which answers immediately and shares the memory. */
   case Ask[M, O, D](policy: (M, O) => (M, D)) extends OnOverrun[M, O, D]
 
-/** A decision with its origin: the policy in time, or the fallback. */
+/** A decision and its origin: the policy, if it decided in time, or else the fallback. */
 enum DeadlineResult[+D]:
   case Decided(decision: D)
 
-  /** The policy did not, for this reason; the fallback decided instead, or nothing. */
+  /** The policy did not decide in time, for this reason; `instead` is the fallback's decision, if there is
+    * one.
+    */
   case Missed(reason: Overrun, instead: Option[D])
 
-/** Why a policy made no decision. */
+/** The reasons why a policy made no decision. */
 enum Overrun:
   case Late
 
-  /** It was not called: it still works on an earlier observation. */
+  /** The policy was not called, because it still works on an earlier observation. */
   case Busy
 
   case Failed(cause: Throwable)

@@ -28,8 +28,8 @@ object Decide:
     * progress, or downstream backpressures. '''Completes when''' upstream completes and the last decision was
     * emitted. '''Cancels when''' downstream cancels.
     *
-    * @param asksAgain calls a late policy again at every observation, for one that abandons an older
-    *   observation for a newer one
+    * @param asksAgain whether a late policy is called again at every observation, as suits a policy that
+    *   abandons an older observation for a newer one
     */
   def within[M, O, D](deadline: Span, otherwise: OnOverrun[M, O, D], start: M, asksAgain: Boolean = false)(
       policy: (M, O) => Future[(M, D)]

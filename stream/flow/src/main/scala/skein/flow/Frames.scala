@@ -9,7 +9,7 @@ object Frames:
 
   /** The reasons why a frame was not emitted. */
   enum Skipped[+E, +A]:
-    /** This many were due while `inFlight` frames had not arrived. */
+    /** This many frames were due while `inFlight` requested frames had not arrived. */
     case Missed(frames: Int)
 
     case Failed(error: E)
@@ -20,19 +20,19 @@ object Frames:
     /** The sensor returned its previous exposure again. */
     case Repeated(frame: Stamped[A])
 
-    /** A newer one arrived before downstream demanded. */
+    /** A newer frame arrived before downstream demanded this one. */
     case Replaced(frame: Stamped[A])
 
-  /** Requests a frame at each element of `ticks`, the number of frames due since the last one, as
-    * [[Metronome]] emits it. A frame's `validAt` is its exposure; every emitted frame is newer than the one
-    * before. One that fails never stops the source.
+  /** Requests a frame at each element of `ticks`, which is the number of frames due since the last element,
+    * as [[Metronome]] emits it. A frame's `validAt` is its exposure; every emitted frame is newer than the
+    * one before. A request that fails never stops the source.
     *
-    *   - '''Emits when''' a frame has arrived that is newer than all before and downstream demands.
-    *   - '''Backpressures when''' never: while downstream is slow, the newest frame replaces the waiting one.
-    *   - '''Completes when''' `ticks` has completed and all requested frames have arrived.
-    *   - '''Cancels when''' downstream cancels.
+    * - '''Emits when''' a frame has arrived that is newer than all before and downstream demands.
+    * - '''Backpressures when''' never: while downstream is slow, the newest frame replaces the waiting one.
+    * - '''Completes when''' `ticks` has completed and all requested frames have arrived.
+    * - '''Cancels when''' downstream cancels.
     *
-    * @param inFlight most frames requested that have not arrived
+    * @param inFlight limit of the requested frames that have not arrived
     * @param isNewer whether one frame was exposed later than another: over a restart of the simulator
     *   [[skein.signal.ClockAlignment.isNewer]] knows better than two frames alone
     * @param ask requests one frame; must complete within its own timeout

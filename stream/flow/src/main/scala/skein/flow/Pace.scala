@@ -4,18 +4,19 @@ import org.apache.pekko.stream.stage.*
 import org.apache.pekko.stream.{Attributes, FlowShape, Inlet, Outlet}
 import skein.units.*
 
-/** Elements at least an interval apart; the newest wins. Unlike `buffer(1, dropHead)` before `throttle`,
-  * which fetches an element and then lets it grow old for an interval, it chooses at the moment of emission.
+/** Emits elements at least an interval apart, each the newest at its emission. Unlike `buffer(1, dropHead)`
+  * before `throttle`, which fetches an element and then lets it grow old for an interval, this stage chooses
+  * only when it emits.
   *
   * Where something else keeps the period, such as the ticks of [[Sense]], half of the period is a good
   * interval: jitter of the arrivals then costs neither a turn nor freshness, and the delay of one turn is not
   * passed on to the next.
   *
-  *   - '''Emits when''' an element is held, downstream demands, and the interval since the last emission has
-  *     passed.
-  *   - '''Backpressures when''' never; a newer element replaces the held one, which is reported.
-  *   - '''Completes when''' upstream completes; an element still held is reported as replaced.
-  *   - '''Cancels when''' downstream cancels.
+  * - '''Emits when''' an element is held, downstream demands, and the interval since the last emission has
+  *   passed.
+  * - '''Backpressures when''' never; a newer element replaces the held one, which is reported.
+  * - '''Completes when''' upstream completes; an element still held is reported as replaced.
+  * - '''Cancels when''' downstream cancels.
   *
   * @param onReplaced called for every element that was never emitted
   */

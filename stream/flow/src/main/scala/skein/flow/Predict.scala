@@ -40,11 +40,11 @@ object Predict:
 /** A prediction and its error, in three dimensions. */
 final case class Verified(vehicle: Int, madeAt: Instant, estimate: Estimate, error: Metres)
 
-/** Predictions that no reading has verified yet; those that no longer can be are dropped. */
+/** Predictions that no reading has verified yet, without those that no later reading can verify. */
 final case class Unverified private (made: Vector[Unverified.Made]):
   import Unverified.*
 
-  /** @param of vehicles, by their index among the estimates */
+  /** @param of selects vehicles by their index among the estimates */
   def withMade(at: Instant, estimates: Vector[Estimate], of: Int => Boolean): Unverified =
     val more =
       for (estimate, vehicle) <- estimates.zipWithIndex if of(vehicle)
@@ -67,7 +67,7 @@ final case class Unverified private (made: Vector[Unverified.Made]):
 object Unverified:
   val none: Unverified = Unverified(Vector.empty)
 
-  /** Most unverified predictions of one vehicle. */
+  /** Limit of one vehicle's unverified predictions. */
   val Limit = 32
 
   final case class Made private[Unverified] (vehicle: Int, at: Instant, estimate: Estimate)

@@ -11,7 +11,7 @@ import skein.units.*
 
 /** The result of recognition in a frame.
   *
-  * @param found with the frame's times: valid at its exposure
+  * @param found the result with the frame's times: valid at the frame's exposure
   * @param startedAt when recognition began, on the controller's clock
   * @param took its duration
   */
@@ -32,14 +32,14 @@ enum Unrecognised[+A]:
   * A late worker continues and gets no new frame until it has ended, so at most `workers` frames are in
   * progress. A worker that never ends is lost.
   *
-  *   - '''Emits when''' a frame's recognition has ended in time and downstream demands: in the order of
-  *     exposure, once all frames before it have ended or are late; or, with `newestFirst`, immediately, and
-  *     frames with earlier exposures are not emitted.
-  *   - '''Backpressures when''' all workers are busy, or twice as many frames wait to be emitted.
-  *   - '''Completes when''' upstream has completed and every frame has been emitted or skipped.
-  *   - '''Cancels when''' downstream cancels.
+  * - '''Emits when''' a frame's recognition has ended in time and downstream demands: in the order of
+  *   exposure, once all frames before it have ended or are late; or, with `newestFirst`, immediately, and
+  *   frames with earlier exposures are not emitted.
+  * - '''Backpressures when''' all workers are busy, or twice as many frames wait to be emitted.
+  * - '''Completes when''' upstream has completed and every frame has been emitted or skipped.
+  * - '''Cancels when''' downstream cancels.
   *
-  * @param workers most frames in progress at a time
+  * @param workers limit of the frames in progress at a time
   * @param isNewer whether one frame was exposed later than another; where the simulator may restart, use
   *   [[skein.signal.ClockAlignment.isNewer]]
   * @param deadline for each frame, from its begin

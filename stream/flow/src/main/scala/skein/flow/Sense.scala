@@ -8,14 +8,14 @@ import skein.units.Span
 /** Sends requests periodically and emits the answers in the order of the requests. */
 object Sense:
 
-  /** What to do with an answer that arrives before the answer to an older request. */
+  /** The treatment of an answer that arrives before the answer to an older request. */
   enum Early:
-    /** Emit it immediately; the older one is skipped as overtaken when it arrives, unless it is valid at a
-      * later time.
+    /** Emit it immediately. The older request's answer is skipped as overtaken when it arrives, unless it is
+      * valid at a later time.
       */
     case Overtakes
 
-    /** Keep it until the older one has arrived or failed, as the paper's `ask` does. */
+    /** Keep it until the older request is answered or has failed, as the paper's `ask` does. */
     case Waits
 
   /** Sends one request per `period`, the first after `offset`; up to `window` may be unanswered at a time. An
@@ -42,8 +42,8 @@ object Sense:
       early
     )(ask)(onSkip, onMissed)
 
-  /** Sends a request at each element of `ticks`, the number of requests due since the last one, as
-    * [[Metronome]] emits it. Completes when `ticks` has completed and all requests are answered.
+  /** Sends a request at each element of `ticks`, which is the number of requests due since the last element,
+    * as [[Metronome]] emits it. Completes when `ticks` has completed and all requests are answered.
     *
     * @param isNewer whether the answer to an older request is valid at a later time than the last emitted
     *   answer: requests may overtake each other, too

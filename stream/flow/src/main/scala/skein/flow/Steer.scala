@@ -9,7 +9,7 @@ import scala.util.control.NonFatal
 import skein.port.Moves
 import skein.units.*
 
-/** The fate of a command: each is `Sent` and later `Ended`, once each. */
+/** The events of a command: each command is `Sent` once and later `Ended` once. */
 enum Steered[+C, +R]:
   case Sent(command: C, at: Instant)
 
@@ -28,22 +28,22 @@ enum Steered[+C, +R]:
   * it would make three at the simulator. So the vehicle is parked first, repeatedly until it confirms; then
   * the executing command is known. A command that upstream emits meanwhile is sent first.
   *
-  * While it is held, the vehicle is parked and upstream's commands are not sent.
+  * While the vehicle is held ([[Hold]]), it is parked and upstream's commands are not sent.
   *
-  *   - '''Emits when''' a command is sent or has ended, and downstream demands.
-  *   - '''Backpressures when''' `mostOutstanding` commands are, within `minInterval` of the last one, while
-  *     an answer is lost and the vehicle not parked, or while [[Steer.EventLimit]] events wait for
-  *     downstream.
-  *   - '''Completes when''' upstream has completed, the vehicle was parked or [[Steer.LastAttempts]] at it
-  *     failed, and every call has ended.
-  *   - '''Cancels when''' downstream cancels.
+  * - '''Emits when''' a command is sent or has ended, and downstream demands.
+  * - '''Backpressures when''' `mostOutstanding` commands are outstanding, within `minInterval` of the last
+  *   one, while an answer is lost and the vehicle not parked, or while [[Steer.EventLimit]] events wait for
+  *   downstream.
+  * - '''Completes when''' upstream has completed, the vehicle was parked or [[Steer.LastAttempts]] at it
+  *   failed, and every call has ended.
+  * - '''Cancels when''' downstream cancels.
   *
   * @param minInterval between two commands sent: the rate cap
   * @param mostOutstanding commands that may be unanswered. More than [[Moves.InFlight]] let a link of a long
   *   round trip carry more commands than one a round trip; only for links that never deliver several in a
   *   burst
-  * @param parksInDoubt whether the vehicle is parked after a lost answer; not where commands bear numbers, so
-  *   that one that arrives late changes nothing
+  * @param parksInDoubt whether the vehicle is parked after a lost answer; needless where commands are
+  *   numbered, so that a late command changes nothing
   * @param send one command; the future ends when the move ends
   * @param park makes the vehicle hover, so that the outstanding moves are answered; sent as the last command,
   *   and after a lost answer
@@ -143,7 +143,7 @@ final class Steer[C, R](
           else if held.isDefined then held.foreach(sendNow)
           else if !hasBeenPulled(in) && events.size < Steer.EventLimit then from(nextAt)(pull(in))
 
-      /** Acts now, or schedules another attempt for this time. */
+      /** Acts if `time` has passed; else schedules another attempt for `time`. */
       private def from(time: Instant)(act: => Unit): Unit =
         val now = clock.now()
         if now >= time then act
@@ -172,13 +172,13 @@ final class Steer[C, R](
       setHandlers(in, out, this)
 
 object Steer:
-  /** Most events that wait for downstream; beyond it no more commands are taken. */
+  /** Limit of the events that wait for downstream; at the limit no more commands are taken. */
   val EventLimit = 64
 
   /** Pause before parking a vehicle is attempted again. */
   val ParkAgain: Span = Span.ofMillis(100)
 
-  /** Most attempts to park a vehicle at the end. */
+  /** Limit of the attempts to park a vehicle at the end. */
   val LastAttempts = 10
 
   private case object Later

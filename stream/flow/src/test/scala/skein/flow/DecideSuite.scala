@@ -11,8 +11,8 @@ import skein.vtime.VirtualTime
 class DecideSuite extends munit.FunSuite:
   private val failure = RuntimeException("no plan")
 
-  /** Decisions with their times in ms, of a policy that answers observation n with 10 n and the number of
-    * decisions before it, after a delay; a negative delay makes it throw.
+  /** Decisions with their times in ms. The policy answers observation n with 10 n and the number of earlier
+    * decisions, after a delay; a negative delay makes it throw.
     */
   private def decided(otherwise: OnOverrun[Int, Int, Int], delaysMs: Int*): Seq[(Long, DeadlineResult[Int])] =
     decidedBy(otherwise, asksAgain = false, delaysMs)
@@ -41,8 +41,7 @@ class DecideSuite extends munit.FunSuite:
     assertEquals(decided(OnOverrun.Hold(), 0, 39), Seq(0L -> Decided(0), 139L -> Decided(11)))
 
   test(
-    "a late policy is not waited for, nor called again until it has answered; its late answer is " +
-      "discarded"
+    "a late policy is neither waited for nor called again until it has answered, and its answer is discarded"
   ):
     assertEquals(
       decided(OnOverrun.Hold(), 10, 250, 10, 10, 10),

@@ -51,7 +51,7 @@ class FramesSuite extends munit.FunSuite:
         .runWith(Sink.seq)
     (came.value, skipped)
 
-  test("frames are stamped with their exposure, and emitted in its order"):
+  test("frames are stamped with their exposure, and emitted in the order of exposure"):
     assertEquals(taken()(Right(1, 5), Right(11, 5), Right(21, 5)), (Seq(1L, 11L, 21L), Vector.empty))
 
   test("a lost frame is reported and stops nothing"):
@@ -60,7 +60,7 @@ class FramesSuite extends munit.FunSuite:
   test("a frame that arrives after a newer one is overtaken"):
     assertEquals(taken()(Right(1, 15), Right(11, 1), Right(21, 1)), (Seq(11L, 21L), Vector("overtaken 1")))
 
-  test("an exposure received twice is one frame: a LIDAR returns its last scan until the next"):
+  test("an exposure received twice is emitted once, as when a lidar returns its last scan again"):
     assertEquals(taken()(Right(1, 1), Right(1, 1), Right(21, 1)), (Seq(1L, 21L), Vector("repeated 1")))
 
   test("the number of open requests is bounded, and missed ticks are counted"):
@@ -68,7 +68,7 @@ class FramesSuite extends munit.FunSuite:
     assertEquals(came, Seq(1L, 11L, 41L))
     assertEquals(skipped, Vector("missed 1"))
 
-  test("a slow consumer gets the newest, and the replaced ones are reported"):
+  test("a slow consumer gets the newest frame, and the replaced ones are reported"):
     val (came, skipped) = taken(slow = 33.millis)((0 until 10).map(i => Right((10 * i, 1)))*)
     assertEquals(came, Seq(0L, 30L, 60L, 90L))
     assertEquals(skipped, Vector(10, 20, 40, 50, 70, 80).map(i => s"replaced $i"))

@@ -36,7 +36,7 @@ class FuseSuite extends munit.FunSuite:
     assert(offM(seen) < 0.01, offM(seen))
     assert(offM(seen.copy(validAt = at(500))) > 0.5, offM(seen.copy(validAt = at(500))))
 
-  test("each vehicle has its own estimate, and too old measurements are reported and stop nothing"):
+  test("each vehicle has its own estimate, and measurements that are too old are reported and stop nothing"):
     val (beliefs, tooOld) =
       fused("a" -> measured(1000), "b" -> measured(100), "a" -> measured(200), "b" -> measured(300))
     assertEquals(

@@ -28,12 +28,12 @@ class JoinLatestSuite extends munit.FunSuite:
         .runWith(Sink.seq)
     (run.value, stale)
 
-  test("with patience it waits for the renewal of every key"):
+  test("with patience, a join waits until every key is renewed"):
     val (emitted, _) =
       joined(patienceMs = 50)(0 -> ("a", 1), 10 -> ("b", 1), 100 -> ("a", 2), 130 -> ("b", 2))
     assertEquals(emitted, Seq(10L -> Map("a" -> 1, "b" -> 1), 130L -> Map("a" -> 2, "b" -> 2)))
 
-  test("when its patience is over it emits the values received"):
+  test("when its patience is over, a join emits the values received so far"):
     val (emitted, _) =
       joined(patienceMs = 50)(0 -> ("a", 1), 10 -> ("b", 1), 100 -> ("a", 2), 170 -> ("b", 2))
     assertEquals(
@@ -41,7 +41,7 @@ class JoinLatestSuite extends munit.FunSuite:
       Seq(10L -> Map("a" -> 1, "b" -> 1), 150L -> Map("a" -> 2, "b" -> 1), 220L -> Map("a" -> 2, "b" -> 2))
     )
 
-  test("without patience it emits at every newer value once all keys were seen"):
+  test("without patience, a join emits at every newer value once it has seen all keys"):
     val (emitted, _) = joined(patienceMs = 0)(0 -> ("a", 1), 10 -> ("a", 2), 20 -> ("b", 5), 30 -> ("a", 3))
     assertEquals(emitted, Seq(20L -> Map("a" -> 2, "b" -> 5), 30L -> Map("a" -> 3, "b" -> 5)))
 
@@ -51,7 +51,7 @@ class JoinLatestSuite extends munit.FunSuite:
     assertEquals(emitted, Seq(10L -> Map("a" -> 2, "b" -> 5), 30L -> Map("a" -> 3, "b" -> 5)))
     assertEquals(stale, Vector("b" -> 4))
 
-  test("without patience it does not wait for simultaneous values either"):
+  test("without patience, a join does not wait for simultaneous values either"):
     val (emitted, _) = joined(patienceMs = 0)(0 -> ("a", 1), 0 -> ("b", 1), 10 -> ("a", 2), 10 -> ("b", 2))
     assertEquals(
       emitted,

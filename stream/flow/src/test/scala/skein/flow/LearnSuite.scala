@@ -10,8 +10,7 @@ import skein.vtime.VirtualTime
 class LearnSuite extends munit.FunSuite:
 
   test(
-    "each lesson has the elements received during the previous one; beyond the bound the oldest are " +
-      "dropped and reported"
+    "a lesson has the elements received during the last one, and the oldest beyond the bound are reported"
   ):
     var dropped = Vector.empty[Int]
     val lessons = VirtualTime.run(seed = 1): system =>
@@ -26,7 +25,7 @@ class LearnSuite extends munit.FunSuite:
     assertEquals(dropped.head, 2)
     assertEquals((lessons.value.flatten ++ dropped).sorted, (2 to 12).toVector)
 
-  test("it never backpressures, even if a lesson hangs"):
+  test("learning never backpressures, even if a lesson hangs"):
     val passed = VirtualTime.run(seed = 1): system =>
       given ActorSystem = system
       val passed        = Source(1 to 50)

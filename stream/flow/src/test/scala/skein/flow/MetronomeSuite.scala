@@ -35,7 +35,7 @@ class MetronomeSuite extends munit.FunSuite:
     assertEquals(ticked(200.millis, Duration.Zero), Seq(200L -> 1, 300L -> 1, 400L -> 1, 500L -> 1))
     assertEquals(ticked(200.millis + 1.nano, Duration.Zero), Seq(300L -> 1, 400L -> 1, 500L -> 1, 600L -> 1))
 
-  test("ticks that find downstream slow add up"):
+  test("ticks add up while downstream is slow"):
     assertEquals(ticked(0.millis, 260.millis), Seq(0L -> 1, 260L -> 2, 520L -> 3, 780L -> 2))
 
   test("an invalid period is refused"):

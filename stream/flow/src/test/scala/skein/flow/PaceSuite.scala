@@ -10,8 +10,8 @@ import skein.vtime.VirtualTime
 
 class PaceSuite extends munit.FunSuite:
 
-  /** Times of emission and elements, which are the times of arrival in ms; and the replaced elements.
-    * Interval 100 ms.
+  /** Times of emission with the elements, which are times of arrival in ms, and the replaced elements. The
+    * interval is 100 ms.
     */
   private def paced(arrivalsMs: Long*) =
     var replaced = Vector.empty[Long]

@@ -22,7 +22,7 @@ class PredictSuite extends munit.FunSuite:
       Vector3.Zero
     )
 
-  /** Estimates from readings every 100 ms, and their verified errors. */
+  /** Returns the estimates from readings every 100 ms, and their verified errors. */
   private def predicted(lead: Span = Span.Zero): (Seq[Vector[Estimate]], Seq[Verified]) =
     var verified = Vector.empty[Verified]
     val run      = VirtualTime.run(seed = 1): system =>
@@ -50,12 +50,12 @@ class PredictSuite extends munit.FunSuite:
         .runWith(Sink.seq)
     (run.value, verified)
 
-  test("every vehicle is predicted over the round trip of the link, once all were read"):
+  test("every vehicle is predicted over the link's round trip, once readings of all have arrived"):
     val (estimates, _) = predicted()
     assertEquals(estimates.size, 10)
     for vehicles <- estimates do assertEquals(vehicles.map(_.age), Vector(oneWay * 2, oneWay * 2))
 
-  test("commands sent later are predicted for a later time"):
+  test("the states for commands that are sent later are predicted for a later time"):
     val (estimates, _) = predicted(lead = Span.ofMillis(25))
     for vehicles <- estimates do
       assertEquals(vehicles.map(_.age), Vector.fill(2)(oneWay * 2 + Span.ofMillis(25)))

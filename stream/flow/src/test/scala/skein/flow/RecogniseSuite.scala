@@ -66,13 +66,13 @@ class RecogniseSuite extends munit.FunSuite:
     .value
     Run(emitted, skipped, replaced, most)
 
-  test("recognition of 20 ms on two workers keeps 90 frames a second, all of them, in order, 20 ms old"):
+  test("two workers that need 20 ms each keep all of 90 frames a second, in order and 20 ms old"):
     val two = run(perSecond = 90, count = 900, workers = 2)(_ => 20)
     assertEquals(two.emitted.map(_.frame), 0 until 900)
     assert(two.emitted.forall(_.ageMs < 20.001), two.emitted.map(_.ageMs).max)
     assertEquals((two.skipped, two.replaced, two.mostAtOnce), (Vector.empty, 0, 2))
 
-  test("on one worker half of them are kept, the newest each time, and the rest is counted"):
+  test("one worker keeps half of the frames, always the newest, and the rest is counted"):
     val one = run(perSecond = 90, count = 900, workers = 1)(_ => 20)
     assertEquals(one.emitted.size + one.replaced, 900)
     assertEqualsDouble(one.emitted.size, 500, 2)
@@ -86,12 +86,12 @@ class RecogniseSuite extends munit.FunSuite:
     assertEquals(mixed.emitted.size + mixed.replaced, 300)
     assertEquals(mixed.mostAtOnce, 3)
 
-  test("twice as many frames as workers wait for one before them; then no more are begun until it has ended"):
+  test("twice as many frames as workers wait behind an unfinished one, and then none is begun until it ends"):
     val held = run(perSecond = 100, count = 80, workers = 2)(frame => if frame == 0 then 505 else 5)
     assertEquals(held.emitted.map(_.frame), Seq(0, 1, 2, 3) ++ (50 until 80))
     assertEquals((held.replaced, held.skipped), (46, Vector.empty))
 
-  test("newest first: a result is emitted immediately, and older ones no more"):
+  test("with newestFirst, a result is emitted immediately, and older ones are not"):
     val newest = run(perSecond = 100, count = 4, workers = 4, newestFirst = true)(Vector(50, 5, 45, 5))
     assertEquals(newest.emitted.map(_.frame), Seq(1, 3))
     assertEquals(newest.skipped.toSet, Set("overtaken 0", "overtaken 2"))
@@ -100,17 +100,14 @@ class RecogniseSuite extends munit.FunSuite:
     val both = run(perSecond = 100, count = 2, workers = 2, newestFirst = true)(Vector(15, 50))
     assertEquals((both.emitted.map(_.frame), both.skipped), (Seq(0, 1), Vector.empty))
 
-  test(
-    "late and failed frames are reported immediately and stop nothing, and a late worker gets no frame " +
-      "until it ends"
-  ):
+  test("late and failed frames are reported and stop nothing, and a late worker gets no frame until it ends"):
     val tookMs = Vector(10.0, 500.0, -10.0) ++ Vector.fill(20)(10.0)
     val faulty = run(perSecond = 50, count = 20, workers = 2, deadlineMs = 60)(tookMs)
     assertEquals(faulty.emitted.map(_.frame), 0 +: (3 until 20))
     assertEquals(faulty.skipped, Vector("blurred 2", "late 1"))
     assertEquals(faulty.mostAtOnce, 2)
 
-  test("without demand, no more than twice as many frames as workers wait; each one taken admits one more"):
+  test("without demand at most twice as many frames as workers wait, and each frame taken admits one more"):
     val begun = VirtualTime.run(seed = 1): system =>
       given ActorSystem = system
       import system.dispatcher
@@ -136,7 +133,7 @@ class RecogniseSuite extends munit.FunSuite:
     // One is held for downstream, four wait behind it.
     assertEquals(begun.value, (5, 6))
 
-  test("frames are compared by the given function: a restarted simulator with an earlier clock is newer"):
+  test("frames are compared by the given function, by which a restarted simulator's frames are newer"):
     val emitted = VirtualTime.run(seed = 1): system =>
       given ActorSystem                  = system
       val clock                          = Clock.ofNanos(VirtualTime.clock(system))

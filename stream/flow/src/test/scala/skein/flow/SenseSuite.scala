@@ -43,10 +43,7 @@ class SenseSuite extends munit.FunSuite:
         .runWith(Sink.seq)
     (emitted.value, skipped, missed)
 
-  test(
-    "with Waits, answers are emitted in the order of the requests, each when it and all before it have " +
-      "arrived"
-  ):
+  test("with Waits, an answer is emitted once all answers to older requests have arrived"):
     val (emitted, skipped, missed) = sensed(4, Sense.Early.Waits)(10, 250, 10, 10)
     assertEquals(emitted, Seq(60L -> 0, 400L -> 1, 400L -> 2, 400L -> 3, 460L -> 4, 560L -> 5))
     assertEquals((skipped, missed), (Vector.empty, 0))
@@ -64,8 +61,7 @@ class SenseSuite extends munit.FunSuite:
     assertEquals(missed, 2)
 
   test(
-    "with Overtakes, an answer is emitted immediately, and the older one it overtook is skipped and " +
-      "counted"
+    "with Overtakes, an answer is emitted immediately, and an answer that it overtook is skipped and counted"
   ):
     val (emitted, skipped, _) = sensed(4, Sense.Early.Overtakes)(10, 250, 10, 10)
     assertEquals(emitted.map(_._2), Seq(0, 2, 3, 4, 5, 6))
@@ -78,7 +74,7 @@ class SenseSuite extends munit.FunSuite:
     assertEquals(emitted.map(_._2), Seq(0, 2, 1, 4, 5, 6))
     assertEquals(skipped, Vector(Right(3)))
 
-  test("a newer answer to an older request does not admit answers overtaken before"):
+  test("a newer answer to an older request does not admit answers that were overtaken before"):
     val later                 = (one: Int, other: Int) => one == 1 && other == 3
     val (emitted, skipped, _) = sensed(4, Sense.Early.Overtakes, Some(later))(10, 250, 200, 10, 10)
     assertEquals(emitted.map(_._2), Seq(0, 3, 1, 4, 5, 6))

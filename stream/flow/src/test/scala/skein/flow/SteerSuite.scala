@@ -79,7 +79,7 @@ class SteerSuite extends munit.FunSuite:
     assertEquals(most, 2)
     endsOnce(events, replaced)
 
-  test("over a slow link never more than two are outstanding, and the newest waiting command wins"):
+  test("over a slow link at most two commands are outstanding, and the newest waiting command wins"):
     val (events, most, replaced) = steered(oneWay = 190.millis, every = 100.millis, minInterval = Span.Zero)
     assertEquals(most, 2)
     assertEquals(
@@ -135,7 +135,7 @@ class SteerSuite extends munit.FunSuite:
       .value
     assertEquals(sent, Seq(0L, 10_000L, 20_000L))
 
-  test("without demand for events, no more commands are pulled once the bound of waiting events is reached"):
+  test("no commands are pulled while as many events as allowed wait for downstream"):
     val sent = VirtualTime
       .run(seed = 1): system =>
         given ActorSystem      = system
@@ -246,7 +246,7 @@ class SteerSuite extends munit.FunSuite:
       )
     )
 
-  test("where commands bear numbers a lost answer parks nothing; the last parking still needs an answer"):
+  test("with numbered commands a lost answer parks nothing, but the last parking needs an answer"):
     assertEquals(
       afterLoss(failures = 2, parksInDoubt = false),
       Vector(
@@ -283,7 +283,7 @@ class SteerSuite extends munit.FunSuite:
       Vector(0L -> "move 0", 100_000L -> "move 1", 150_500L -> "hover", 200_000L -> "move 2")
     )
 
-  test("while it is held the vehicle is parked until it confirms, and commands are not sent"):
+  test("a held vehicle is parked until it confirms, and no commands are sent"):
     val heard = VirtualTime
       .run(seed = 1): system =>
         given ActorSystem      = system

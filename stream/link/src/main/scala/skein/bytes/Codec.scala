@@ -21,10 +21,10 @@ import skein.units.*
 trait Codec[A]:
   def write(value: A, out: DataOutputStream): Unit
 
-  /** @throws IOException if the bytes are something else; a length beyond the bytes left is refused */
+  /** @throws IOException if the bytes encode no such value, or contain a length beyond the bytes left */
   def read(in: DataInputStream): A
 
-  /** A codec of another type with these bytes. */
+  /** A codec of another type with an equal encoding. */
   final def imap[B](to: A => B)(from: B => A): Codec[B] =
     Codec.of[B]((value, out) => write(from(value), out))(in => to(read(in)))
 

@@ -3,8 +3,8 @@ package skein.link
 import java.util.concurrent.{ConcurrentLinkedQueue, Executor, ThreadFactory}
 import skein.units.Span
 
-/** Runs tasks in order on a [[BackgroundThread]]: each is a slice of it, so it should take milliseconds.
-  * Callers bound how many wait.
+/** Runs tasks in order on a [[BackgroundThread]]. A task is one slice of the thread's work, so it should take
+  * only milliseconds. Callers limit the tasks that wait.
   */
 final class BackgroundExecutor(
     factory: ThreadFactory,

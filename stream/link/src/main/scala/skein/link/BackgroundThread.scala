@@ -55,7 +55,7 @@ final class BackgroundThread(
       thread.start()
 
 object BackgroundThread:
-  /** Shorter than the silence after which a simulator is reported as silent. */
+  /** Shorter than the silence that a simulator may keep before it is reported as silent. */
   val Patience: Span = Span.ofMillis(300)
 
   private val meter = ManagementFactory.getThreadMXBean

@@ -5,9 +5,9 @@ import skein.units.*
 
 /** One direction of a line that all connections of a link share: it transmits its queue, first in, first out,
   * at its rate. Nothing is dropped. A connection with more to send than the queue accepts keeps the rest at
-  * its sender, and hands over piece after piece as there is room, in turns with the others. So data on
-  * another connection waits for at most a full queue and a piece of every waiting connection; data on one
-  * connection waits for everything sent before on it, as behind the head of one TCP connection.
+  * its sender, and hands over piece by piece as there is room, in turn with the others. So data on another
+  * connection waits for at most a full queue and a piece of every waiting connection; data on one connection
+  * waits for everything sent before on it, as behind the head of one TCP connection.
   *
   * Times count from the link's start. Any thread.
   */
@@ -16,12 +16,12 @@ private[link] final class Bottleneck(bandwidth: Bandwidth):
   private val queueTime = bandwidth.timeOf(bandwidth.queueBytes)
   private var freeAt    = Span.Zero
 
-  /** Most bytes that a connection hands over in one piece: an eighth of the queue, and at least an Ethernet
-    * frame.
+  /** Limit of the bytes that a connection hands over in one piece: an eighth of the queue, and at least an
+    * Ethernet frame.
     */
   val pieceBytes: Int = (bandwidth.queueBytes / 8).max(FrameBytes)
 
-  /** When the line will have transmitted everything handed over so far. */
+  /** The time at which the line will have transmitted everything handed over so far. */
   def free(now: Span): Span = synchronized(freeAt.max(now))
 
   /** Takes a piece.

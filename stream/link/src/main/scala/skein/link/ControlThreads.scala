@@ -10,11 +10,12 @@ object ControlThreads:
   private val alive                 = ConcurrentHashMap.newKeySet[Int]()
   @volatile private var haveTheLead = false
 
-  /** From now on they precede all other threads of the machine, where the system allows it, as do the garbage
-    * collector's threads, for which they wait. Call it after a warm-up: before, the compilers would hardly
-    * run. Live objects are collected once, for some 20 ms, so that later collections do not copy them again.
+  /** Gives the control threads precedence over all other threads of the machine, where the system allows it,
+    * and likewise the garbage collector's threads, for which control threads wait. Call it after a warm-up:
+    * earlier, the compilers would hardly run. Collects garbage once, for some 20 ms, so that later
+    * collections do not copy the live objects again.
     *
-    * @return the number of these threads
+    * @return the number of threads to which the system granted it
     */
   def lead(): Int =
     haveTheLead = true

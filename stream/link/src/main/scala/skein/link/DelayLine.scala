@@ -11,20 +11,19 @@ import skein.units.*
   * order, with the delay of a [[Delivery]]. Bytes that are due together come out as one segment, as from a
   * socket. Datagrams are not joined, and come out when each is due, in any order.
   *
-  *   - '''Emits when''' downstream pulls and the oldest bytes are due.
-  *   - '''Backpressures when''' `maxBytes` or more are in transit.
-  *   - '''Completes when''' upstream has completed, everything has come out and the end of sending is due,
-  *     too.
-  *   - '''Fails when''' upstream has failed and that is due, or with `broken` when the link breaks.
-  *   - '''Cancels when''' the link breaks, or a delay after downstream has failed. A downstream that merely
-  *     cancels is not reported to the sender, as with a socket: further bytes are discarded until upstream
-  *     ends.
+  * - '''Emits when''' downstream pulls and the oldest bytes are due.
+  * - '''Backpressures when''' `maxBytes` or more are in transit.
+  * - '''Completes when''' upstream has completed, everything has come out and the end of sending is due, too.
+  * - '''Fails when''' upstream has failed and that is due, or with `broken` when the link breaks.
+  * - '''Cancels when''' the link breaks, or a delay after downstream has failed. A downstream that merely
+  *   cancels is not reported to the sender, as with a socket: further bytes are discarded until upstream
+  *   ends.
   *
   * With a bottleneck before it, bytes enter piece by piece, as the bottleneck has room, and have its delay in
   * addition.
   *
-  * Lost bytes of a stream are sent again, and later ones wait for them ([[Packets.Tcp]]). The rate does not
-  * fall by losses, as a congestion window would let it.
+  * Lost bytes of a stream are sent again, and later ones wait for them ([[Packets.Tcp]]). Losses do not lower
+  * the rate, as they would with a congestion window.
   *
   * Bytes sent into a silence count as lost; neither side learns of it before the link breaks.
   *
@@ -120,7 +119,7 @@ private[link] final class DelayLine(
         bytesUnderWay -= bytes.size
         counts.bytesLost.add(bytes.size)
 
-      /** Learns by the acknowledgement of a packet what was lost before it. */
+      /** Marks the packets whose loss the sender detects by the acknowledgement of a later packet. */
       private def passed(leave: Span, delay: Span, tcp: Packets.Tcp): Unit =
         missing.foreach(_.missed(leave, leave + delay * 2, tcp))
 
@@ -169,7 +168,7 @@ private[link] final class DelayLine(
             ending = None
             end = dueWithLine().map(End(failure, _))
 
-      /** When bytes that enter now would come out, with no time on the line. */
+      /** The time at which bytes that enter now would come out if the line took no time. */
       private def dueWithLine(): Option[Span] =
         val now = sinceStart()
         delivery.due(bottleneck.fold(now)(_.free(now)), delivery.delay(now))
@@ -242,7 +241,7 @@ private[link] final class DelayLine(
       private def pullIfIdle(): Unit = if !isClosed(in) && !hasBeenPulled(in) then pull(in)
 
 private object DelayLine:
-  /** Bytes sent at a time that have not left yet, with their delay once they leave. */
+  /** Bytes sent at `since` that have not left yet; `delay` applies once they leave. */
   private final case class Waiting(bytes: ByteString, since: Span, delay: Span)
 
   /** The end of sending, with its failure if there was one. */

@@ -31,14 +31,16 @@ private[link] final class Delivery(
     */
   def delay(now: Span): Span = sampler.oneWay(now)
 
-  /** When bytes that leave at a time come out: a delay later, and never within a stall. None if they are
-    * lost.
+  /** The time at which bytes that leave at `leave` come out: `delay` later, and never within a stall. None if
+    * they are lost.
     */
   def due(leave: Span, delay: Span): Option[Span] =
     met = met.filter(_.until > leave)
     after(if isInOrder then lastDue.max(leave + delay) else leave + delay)
 
-  /** When bytes come out that were sent before, and now leave once more: later ones are not in their way. */
+  /** The time at which bytes that are sent again and leave at `leave` come out; later bytes do not delay
+    * them.
+    */
   def dueAgain(leave: Span, delay: Span): Option[Span] = after(leave + delay)
 
   private def after(earliest: Span): Option[Span] =
@@ -46,10 +48,10 @@ private[link] final class Delivery(
     lastDue = lastDue.max(due)
     Option.unless(lossBegins.exists(_ <= due))(due)
 
-  /** When bytes that enter and leave now come out. */
+  /** The time at which bytes that enter and leave now come out. */
   def due(now: Span): Option[Span] = due(now, delay(now))
 
-  /** When the connection breaks, with an error on both sides. */
+  /** The time at which the connection breaks, with an error on both sides. */
   val breaksAt: Option[Span] = break.map:
     case TimedFault(at, Fault.Silence(lasts)) => at + lasts
     case TimedFault(at, _)                    => at

@@ -45,7 +45,7 @@ final class EmulatedLink(
     val loss: PacketLoss               = PacketLoss(latency, outageSeed, lossSeed)
     private val duplicateSeed          = SplitMix64.seedOf(lossSeed, 1)
 
-    /** What happens to the packets of a connection.
+    /** The losses, repetitions and duplicates of a connection's packets.
       *
       * @param index of the direction and connection
       */

@@ -6,7 +6,7 @@ import skein.units.*
 /** A failure of a link. It affects all connections of the link and both directions. */
 enum Fault:
 
-  /** For this long nothing arrives; then everything that was sent meanwhile does, in order. */
+  /** Nothing arrives for this long; then everything sent meanwhile arrives, in order. */
   case Stall(lasts: Span)
 
   /** Every open connection breaks immediately, with an error on both sides. New ones may be opened. */

@@ -8,8 +8,8 @@ import scala.util.Try
 /** Threads that take precedence over all others except [[ControlThreads]], where the system allows it: for
   * work that takes milliseconds and must not wait for a busy machine, such as writing a recording. They have
   * the policy [[SchedulingPolicy.Favoured]]. Where it is refused, they have the largest share of a processor
-  * that Linux grants by niceness, see setpriority(2), which needs a limit of `ulimit -e 40`; it counts among
-  * the threads of the user's session alone.
+  * that Linux grants by niceness, see setpriority(2), which needs a limit of `ulimit -e 40`; niceness matters
+  * only among the threads of the user's session.
   */
 object FavouredThread:
 

@@ -41,13 +41,13 @@ object FirstBytes:
           Foreign(s"a first byte of 0x${Integer.toHexString(first & 0xff | 0x100).drop(1)}")
         case _ => Own
 
-  /** Passes a connection's bytes on once its first ones are its own protocol's.
+  /** Passes a connection's bytes on once the first ones fit the port's own protocol.
     *
-    *   - '''Emits when''' bytes arrive and the protocol is decided.
-    *   - '''Backpressures when''' downstream does.
-    *   - '''Completes when''' upstream has completed.
-    *   - '''Fails when''' the first bytes are foreign, with [[TransportError.Foreign]].
-    *   - '''Cancels when''' downstream cancels, or it fails.
+    * - '''Emits when''' bytes arrive and the protocol is decided.
+    * - '''Backpressures when''' downstream does.
+    * - '''Completes when''' upstream has completed.
+    * - '''Fails when''' the first bytes are foreign, with [[TransportError.Foreign]].
+    * - '''Cancels when''' downstream cancels, or it fails.
     */
   def guard(from: Address, own: Set[Int] = Set.empty): Flow[ByteString, ByteString, NotUsed] =
     // None: decided.
@@ -65,7 +65,9 @@ object FirstBytes:
       _ => None
     ).filter(_.nonEmpty)
 
-  /** The methods that a page may send without a permission by OPTIONS, and those that programs send. */
+  /** HTTP methods that a page may send without permission by an OPTIONS request, and methods that programs
+    * send.
+    */
   private val Methods =
     Vector("GET", "POST", "HEAD", "PUT", "DELETE", "OPTIONS", "CONNECT", "TRACE", "PATCH", "PRI")
       .map(word => ByteString(s"$word ".getBytes(US_ASCII)))

@@ -12,8 +12,8 @@ object LatencyProbe:
   /** Sends a request each `period`, whether or not the one before has been answered, and emits the round
     * trips in the order of sending; for a failed request its failure.
     *
-    * @param request sends one and completes with its answer; it has a timeout of its own
-    * @param maxUnanswered most requests in progress; at this number none is sent
+    * @param request sends a request and completes with its answer; it has a timeout of its own
+    * @param maxUnanswered limit of the requests in progress; at the limit none is sent
     */
   def roundTrips(
       request: () => Future[?],

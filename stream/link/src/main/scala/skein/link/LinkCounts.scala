@@ -11,9 +11,9 @@ import skein.units.*
   * @param bytesLost lost in a silence, or in transit when the link broke
   * @param stalls a stall counts once for each direction of each connection that it held up
   * @param disconnects connections that the link broke
-  * @param bytesHeldBack that waited at their senders because the queue of a line with a rate was full
+  * @param bytesHeldBack bytes that waited at their senders because the queue of a line with a rate was full
   * @param longestWait of any bytes, from their sending until a line with a rate had sent them
-  * @param packetsLost that the profile lost; of datagrams, or of TCP's packets, the repeated ones included
+  * @param packetsLost datagrams that the profile lost, or TCP's packets, repeated ones included
   * @param packetsSentAgain by TCP, because they were lost
   * @param duplicates of datagrams
   */

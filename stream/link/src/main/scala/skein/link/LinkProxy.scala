@@ -31,13 +31,15 @@ object LinkProxy:
 
   /** Starts listening. Fails with a [[TransportError]] where that is not possible.
     *
-    * @param maxConnections open at a time. One more takes the place of the first without any data yet, or of
-    *   the one that has been silent for longest, if that is at least 5 s; else it is closed
+    * @param maxConnections limit of the open connections. A further one takes the place of the first without
+    *   any data yet, or of the one that has been silent for longest, if that is at least 5 s; else it is
+    *   closed
     * @param unreachable called with the reason when the server of an accepted connection cannot be reached
     * @param isDatagrams whether the transport carries datagrams: see [[EmulatedLink.connection]]
-    * @param watching sees what passes each connection, and the link's delay with it
-    * @param beside makes what stands at the server's side of the link, for each connection: unlike `watching`
-    *   it may take bytes out and add others
+    * @param watching observes each connection's bytes at the client's side of the link, so with the link's
+    *   delay
+    * @param beside makes a stage at the server's side of the link for each connection; unlike `watching`, the
+    *   stage may remove bytes and add others
     */
   def start(
       listenAt: Address,
@@ -92,12 +94,13 @@ object LinkProxy:
       .run()
       .map(LinkProxy(_, link, switch))
 
-  /** What stands in a connection: its first side is the client's. */
+  /** A stage that both directions of a connection pass through; its first side is the client's. */
   type Passing = BidiFlow[ByteString, ByteString, ByteString, ByteString, NotUsed]
 
-  /** Sees the connections of a proxy. Thread-safe. */
+  /** Observes the connections of a proxy. Thread-safe. */
   trait Watching:
-    /** A connection was accepted: its bytes to the server and back pass through this, unchanged. */
+    /** Called for each accepted connection. Returns a stage that its bytes in both directions pass unchanged.
+      */
     def opened(connection: Long): Passing
 
     /** Called once, when nothing more passes in either direction. */

@@ -4,19 +4,21 @@ import org.apache.pekko.util.ByteString
 import skein.signal.{PacketLoss, Retransmission, SplitMix64}
 import skein.units.Span
 
-/** What happens to the packets of one direction of one connection. */
+/** The losses, repetitions and duplicates of the packets in one direction of one connection. */
 private[link] enum Packets:
-  /** None is lost, so a stream of bytes need not be cut into packets. */
+  /** No packet is lost, so a stream of bytes need not be cut into packets. */
   case Whole
 
-  /** Each piece is a datagram, which may be lost, and may come twice. */
+  /** Each piece is a datagram, which may be lost, and may arrive twice. */
   case Datagrams(loss: PacketLoss, duplicates: Double, random: SplitMix64)
 
-  /** TCP's: a lost one is sent again after a time-out, which doubles each time, or sooner if a later packet
-    * passes: once its acknowledgement is back, but no earlier than an overtaken packet's might be (RFC 8985).
+  /** TCP's packets. A lost packet is sent again after a timeout, which doubles each time. It is sent again
+    * sooner once a later packet is acknowledged, but only when it can no longer be a merely overtaken packet
+    * (RFC 8985).
     *
     * @param timeout the first ([[skein.signal.Retransmission.timeout]])
-    * @param overtaken how long after its sending that is ([[skein.signal.Retransmission.overtaken]])
+    * @param overtaken time from its sending until it counts as lost and not as overtaken
+    *   ([[skein.signal.Retransmission.overtaken]])
     */
   case Tcp(loss: PacketLoss, timeout: Span, overtaken: Span)
 
@@ -49,7 +51,9 @@ private[link] final class Segment(val bytes: ByteString, var due: Span):
     timeout = by.timeout
     waits(at)
 
-  /** Loses them when they are sent again. After a time-out TCP sends nothing else that would reveal it. */
+  /** Loses the bytes again, when they are sent again. After a timeout TCP sends nothing else that would
+    * reveal the loss.
+    */
   def lostAgain(at: Span): Unit =
     if at >= sentAt + timeout then
       timedOut = true
@@ -60,7 +64,9 @@ private[link] final class Segment(val bytes: ByteString, var due: Span):
     sentAt = at
     againAt = at + timeout
 
-  /** Learns that a packet behind it, or one that was sent again no earlier, is acknowledged at a time. */
+  /** Handles an acknowledgement, at `acknowledged`, of a packet sent or sent again at `sent`: bytes lost
+    * before then are sent again sooner.
+    */
   def missed(sent: Span, acknowledged: Span, by: Packets.Tcp): Unit =
     if isLost && !timedOut && sentAt <= sent then
       againAt = againAt.min(acknowledged.max(sentAt + by.overtaken))

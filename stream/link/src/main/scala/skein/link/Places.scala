@@ -14,7 +14,9 @@ private[skein] class Places(most: Int, silence: Span):
   private val guests = ConcurrentHashMap[Long, Places.Guest]()
   private val taken  = AtomicInteger()
 
-  /** Whether one more guest is admitted; it has a place then, until it has [[left]]. */
+  /** Admits one more guest if there is a place, which the guest keeps until it has [[left]]; returns whether
+    * it is admitted.
+    */
   def admit(): Boolean = synchronized:
     val free = taken.incrementAndGet() <= most || vacate()
     if !free then
@@ -43,11 +45,11 @@ private[skein] class Places(most: Int, silence: Span):
 private[skein] object Places:
   /** A holder of a place; called from any thread. */
   trait Guest:
-    /** Whether it has sent a message of the port's protocol. */
+    /** Whether the guest has sent a message of the port's protocol. */
     def hasSpoken: Boolean
 
-    /** How long it has neither sent a request nor waited for an answer. */
+    /** Time since the guest last sent a request or waited for an answer. */
     def silentFor: Span
 
-    /** Closes it: another guest gets its place. */
+    /** Closes the guest's connection: another guest gets its place. */
     def leave(): Unit

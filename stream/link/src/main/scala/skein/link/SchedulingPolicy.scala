@@ -16,7 +16,7 @@ import scala.util.{Try, Using}
 enum SchedulingPolicy(private val number: Int, priority: Int):
 
   /** Runs when no other thread of the user's session needs the processor, and yields it immediately. Any
-    * process may choose it, and may not leave it.
+    * process may choose this policy but cannot leave it.
     */
   case Idle extends SchedulingPolicy(5, 0)
 
@@ -32,7 +32,7 @@ enum SchedulingPolicy(private val number: Int, priority: Int):
   /** Applies this policy to one of this process's threads.
     *
     * @param thread as the system numbers them
-    * @return whether the system did so
+    * @return whether the system applied it
     */
   def schedule(thread: Int): Boolean = SchedulingPolicy.isLinux && Try:
     Using.resource(Arena.ofConfined()): arena =>
@@ -49,7 +49,9 @@ object SchedulingPolicy:
   /** The flag `SCHED_RESET_ON_FORK` in linux/sched.h. */
   private val ResetOnFork = 0x40000000
 
-  /** sched_setscheduler(2); linking it takes milliseconds, which no control thread should spend twice. */
+  /** The function sched_setscheduler(2), linked once: linking takes milliseconds, too long for a control
+    * thread.
+    */
   private lazy val setScheduler: MethodHandle =
     val linker = Linker.nativeLinker()
     linker.downcallHandle(

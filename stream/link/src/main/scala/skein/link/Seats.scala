@@ -6,7 +6,7 @@ import skein.units.{Clock, Instant, Span}
 /** A port's [[Places]], shared by its connections, for protocols in which every peer sends from time to time.
   * From any thread.
   *
-  * @param most open connections
+  * @param most limit of the open connections
   */
 private[skein] final class Seats(most: Int, private val clock: Clock):
   private val places             = Places(most, Seats.Silent)

@@ -3,9 +3,9 @@ package skein.link
 import java.nio.ByteBuffer
 import javax.net.ssl.{SSLEngine, SSLEngineResult, SSLException, SSLParameters, SSLSession}
 
-/** A TLS engine that checks each record's header before the JDK's engine reads it. The JDK's waits for a
-  * whole record of any stated length, in a format older than TLS up to 32 KiB; Pekko has room for 18, and so
-  * retries for ever.
+/** A TLS engine that checks each record's header before the JDK's engine reads it. The JDK's engine waits for
+  * a whole record of any stated length, up to 32 KiB in a format older than TLS. Pekko has room for 18 KiB,
+  * and so would retry for ever.
   *
   * @param failed called with the reason why a connection is not trusted
   */
@@ -13,7 +13,7 @@ private[skein] final class TlsEngine(own: SSLEngine, failed: SSLException => Uni
     extends SSLEngine:
   import TlsEngine.*
 
-  /** @param source begins with a record, since a call consumes whole ones */
+  /** @param source begins with a record, since a call consumes whole records */
   def unwrap(source: ByteBuffer, into: Array[ByteBuffer], from: Int, count: Int): SSLEngineResult =
     // The JDK's engine refuses anything but a record by itself, once, and is closed then.
     telling(own.unwrap(if isRecord(source) then source else NoRecord.duplicate(), into, from, count))

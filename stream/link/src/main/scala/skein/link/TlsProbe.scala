@@ -14,7 +14,7 @@ private[skein] object TlsProbe:
   private val Handshake = 22
   private val Version   = 3
 
-  /** Bound on connecting, and again on the answer, while a person waits for the diagnosis. */
+  /** Time limit of connecting, and of waiting for the answer: short, since a person waits for the result. */
   val Within: Span = Span.ofSeconds(2)
 
   /** Sends a TLS ClientHello, and returns whether the answer is TLS, whatever its content. Blocks for
@@ -24,9 +24,9 @@ private[skein] object TlsProbe:
     tried(at, within)(greeted).exists: answer =>
       answer.length == 2 && (answer(0) == Alert || answer(0) == Handshake) && answer(1) == Version
 
-  /** Whether the listener closes a connection that begins with TLS, but not one that sends nothing: so does a
-    * server of another protocol. A link whose far side is down closes both, or none. Blocks for at most three
-    * times `within`.
+  /** Whether the listener closes a connection that begins with TLS, but not one that sends nothing, as a
+    * server of another protocol does. A link whose far side is down closes both, or none. Blocks for at most
+    * three times `within`.
     */
   def isRefused(at: Address, within: Span = Within): Boolean =
     tried(at, within)(greeted).exists(_.isEmpty) && tried(at, within): socket =>

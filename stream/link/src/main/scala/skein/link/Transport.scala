@@ -36,8 +36,8 @@ object Address:
 
   private val MostPort = 65535
 
-/** Opens connections: TCP in live flight, the in-memory network in virtual time. Everything above it works on
-  * byte streams and does not depend on which.
+/** Opens connections: TCP in live flight, the in-memory network in virtual time. The code above works on byte
+  * streams and does not depend on the transport.
   */
 trait Transport:
 

@@ -3,8 +3,8 @@ package skein.link
 import skein.units.Decimals.fixed
 import skein.units.Span
 
-/** Why there is no connection, or no listener. Futures and streams of a [[Transport]] fail with one of these;
-  * the message states what was attempted, where, and what to do.
+/** The reasons why there is no connection or no listener. Futures and streams of a [[Transport]] fail with
+  * one of these; the message states what was attempted, where, and what to do.
   */
 enum TransportError(message: String, cause: Throwable | Null = null) extends RuntimeException(message, cause):
 
@@ -48,7 +48,7 @@ enum TransportError(message: String, cause: Throwable | Null = null) extends Run
       extends TransportError(s"connection to $to failed: ${reason.getMessage}", reason)
 
 object TransportError:
-  /** Which side refuses, by the wording of the JDK's TLS. */
+  /** The side that refuses, by the wording of the JDK's TLS. */
   private def whoRefuses(reason: Throwable): String =
     def says(words: String) = s"${reason.getMessage}".contains(words)
     if says("Received fatal alert") then "which refuses what this side shows"

@@ -22,12 +22,12 @@ import scala.jdk.CollectionConverters.*
 import scala.util.Try
 import skein.units.Span
 
-/** Datagrams as connections: every sender at a port is one, until it was silent for `idle`. The other side's
-  * end is not reported, lost datagrams stay lost, and a message too large for a datagram is split. For
-  * protocols that find the beginning of a message by themselves, such as MAVLink.
+/** Treats datagrams as connections: each sender to a port is one connection, until it has been silent for
+  * `idle`. The end of the other side is not reported, lost datagrams stay lost, and a message too large for a
+  * datagram is split. For protocols that find the beginning of a message by themselves, such as MAVLink.
   *
-  * @param mostPeers at one port. One more takes the place of the one that has been silent for longest, if
-  *   that is at least [[UdpSocket.Silence]]; else its datagrams are dropped
+  * @param mostPeers limit of the peers at one port. A further one takes the place of the one that has been
+  *   silent for longest, if that is at least [[UdpSocket.Silence]]; else its datagrams are dropped
   */
 final class UdpTransport(mostPeers: Int = 64, idle: Span = Span.ofSeconds(30))(using ActorSystem)
     extends Transport:
@@ -101,7 +101,7 @@ final class UdpSocket private (
       Source.queue[ByteString](Waiting).preMaterialize()
     @volatile private var heardNs = System.nanoTime()
 
-    /** How long nothing was received from it; zero for a lasting peer. */
+    /** Time since the peer's last datagram; zero for a lasting peer. */
     def silentFor: Span = if isLasting then Span.Zero else Span.ofNanos(System.nanoTime() - heardNs)
 
     def heard(bytes: ByteString): Unit =
@@ -154,7 +154,9 @@ final class UdpSocket private (
   private def forgetIdle(): Unit = peers.forEach: (at, peer) =>
     if peer.silentFor > idle then forget(at, peer)
 
-  /** Whether a peer that was silent for long has made room. */
+  /** Removes the peer that has been silent for longest, if that is long enough; returns whether there was
+    * one.
+    */
   private def vacated(): Boolean =
     val silent = peers.asScala.maxByOption(_._2.silentFor).filter(_._2.silentFor >= Silence)
     silent.foreach(forget)
@@ -189,8 +191,8 @@ object UdpSocket:
   /** A peer that was silent for this long makes room for others. */
   val Silence: Span = Span.ofSeconds(2)
 
-  /** Most bytes of a sent datagram: fits into an Ethernet frame. */
+  /** Limit of a sent datagram's bytes, which fits into an Ethernet frame. */
   private val MostBytes = 1400
 
-  /** Most received datagrams of one peer that wait. */
+  /** Limit of one peer's received datagrams that wait. */
   private val Waiting = 256

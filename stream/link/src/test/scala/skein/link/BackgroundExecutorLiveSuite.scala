@@ -35,14 +35,14 @@ class BackgroundExecutorLiveSuite extends munit.FunSuite, Unhurried:
       on.asScala.map(_._2).toVector
     finally executor.close()
 
-  test("a thread that did not get the processor in a slice is replaced by an ordinary one, which continues"):
+  test("a thread that did not get the processor in a slice is replaced by an ordinary one"):
     val on = ran(Span.ofSeconds(-1))
     background.forEach(_.join(60_000))
     assert(!background.asScala.exists(_.isAlive))
     assertEquals((background.size, usual.size), (1, 1))
     assertEquals(on, background.peek +: Vector.fill(99)(usual.peek))
 
-  test("a thread that had the processor stays"):
+  test("a thread that got the processor stays"):
     assertEquals(ran(Span.ofSeconds(3600)), Vector.fill(100)(background.peek))
     assertEquals((background.size, usual.size), (1, 0))
 

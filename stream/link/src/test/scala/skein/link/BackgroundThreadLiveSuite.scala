@@ -11,7 +11,7 @@ class BackgroundThreadLiveSuite extends munit.FunSuite, Lengthy, Optimised:
       assume(System.getProperty("os.name") == "Linux", "other systems know no such threads")
       body
 
-  onLinux("a background thread is scheduled when nobody else wants the processor"):
+  onLinux("a background thread has Linux's idle policy"):
     var policy = -1
     val thread =
       BackgroundThread.factory("background").newThread(() =>
@@ -22,9 +22,9 @@ class BackgroundThreadLiveSuite extends munit.FunSuite, Lengthy, Optimised:
     thread.join()
     assertEquals(policy, 5)
 
-  onLinux("other threads are left alone"):
+  onLinux("other threads keep their policy"):
     assertEquals(ThreadPolicy.of(Path.of("/proc/thread-self")), 0)
 
-  onLinux("compilers are made to give way, and nobody else is"):
+  onLinux("the compilers' threads get the idle policy, and no others"):
     assert(BackgroundThread.compilersGiveWay() >= 1)
     assertEquals(ThreadPolicy.of(Path.of("/proc/thread-self")), 0)

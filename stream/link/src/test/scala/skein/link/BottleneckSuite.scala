@@ -9,20 +9,19 @@ class BottleneckSuite extends munit.FunSuite:
 
   private def ms(value: Double): Span = Span.ofMillis(value)
 
-  test("an idle line sends immediately, a busy one after earlier data"):
+  test("an idle line sends immediately, and a busy line after earlier data"):
     val busy = line()
     assertEquals(busy.send(ms(10), 1000).sentAt, ms(11))
     assertEquals(busy.send(ms(10), 500).sentAt, ms(11.5))
     assertEquals(busy.send(ms(20), 1000).sentAt, ms(21))
 
-  test("there is room immediately until the queue is full, then one piece each time the line has sent one"):
+  test("there is room until the queue is full, then for one piece each time the line has sent one"):
     val full  = line()
     val rooms = List.fill(10)(full.send(ms(0), full.pieceBytes).roomAt)
     assertEquals(rooms, List.fill(8)(ms(0)) ++ List(ms(5), ms(10)))
 
   test(
-    "a connection with little to send waits for a full queue and a piece of each waiting one, not for " +
-      "all their data"
+    "a connection with few bytes waits for a full queue and a piece of each other one, not for all their data"
   ):
     val shared = line()
     var greedy = List.fill(3)(ms(0))

@@ -23,8 +23,8 @@ class ControlThreadsLiveSuite extends munit.FunSuite, Unhurried:
   private val (usual, roundRobin) = (0, 2)
 
   test(
-    "control threads get the real-time policy, also later ones; blocking threads and their children do " +
-      "not"
+    "control threads, also later ones, get the real-time policy, and blocking threads and their children " +
+      "do not"
   ):
     val before  = policyOnControl(using system.dispatcher)
     val mayLead =

@@ -128,7 +128,7 @@ class DelayLineSuite extends munit.FunSuite:
         .runWith(Sink.seq)
     assertEquals(sentAt, Seq(6 -> 250.0, 6 -> 500.0, 6 -> 750.0))
 
-  test("a receiver without demand delays its bytes, and loses none"):
+  test("a receiver without demand delays its bytes, and no byte is lost"):
     val came = over(constant(20)): line =>
       every(10, 50)
         .via(line.flow)
@@ -161,7 +161,7 @@ class DelayLineSuite extends munit.FunSuite:
   private def ended(done: Future[Done], line: Line): Future[(Try[Done], Double)] =
     done.transform(result => util.Success((result, line.ms())))
 
-  test("in a silence bytes and the end are lost without a report until it is over"):
+  test("bytes and the end are lost without a report until a silence is over"):
     val faults              = Faults(List(TimedFault(Span.ofMillis(300), Fault.Silence(Span.ofSeconds(9)))))
     val (came, failure, at) = over(quarterSecond, faults): line =>
       val came = StringBuilder()
@@ -236,16 +236,13 @@ class DelayLineSuite extends munit.FunSuite:
       times.map(_.zipWithIndex.map((at, i) => at - 10 * i).max)
     .value
 
-  test(
-    "over a line with a rate, a command waits for an image on its own connection, and little for one on " +
-      "another"
-  ):
+  test("over a line with a rate, a command waits for images on its own connection, and little for others"):
     val image = 1280 * 720 * 3 // 442 ms at 50 Mbit/s
     assertEqualsDouble(longestDelayMs(0, apart = false), 10, 0.01)
     assert(longestDelayMs(image, apart = false) > 400)
     assert(longestDelayMs(image, apart = true) < 10 + 5 + 1)
 
-  test("with a rate no byte is lost or reordered, and the end is last"):
+  test("over a line with a rate no byte is lost or reordered, and the end is last"):
     val text = (0 until 2000).map(i => s"$i;").mkString
     val came = VirtualTime.run(1): system =>
       given ActorSystem = system
@@ -279,7 +276,7 @@ class DelayLineSuite extends munit.FunSuite:
     assertEquals(counts.lost.sum, counts.sentAgain.sum)
     assert(counts.lost.sum > 70 && counts.lost.sum < 150, s"${counts.lost.sum}")
 
-  test("a packet that is followed by none is sent again after the time-out, and then twice that"):
+  test("a lost packet that none follows is sent again after the timeout, and then after twice that"):
     // One packet every 30 s, so that each is alone: 50 ms under way, time-outs of 300 ms.
     val came   = over(profile("loss:15%,constant:100ms"))(line => arrivals(every(30_000, 500), line))
     val delays = came.map((text, ms) => (ms - 30_000 * text.stripSuffix(";").toInt).round)
@@ -287,7 +284,7 @@ class DelayLineSuite extends munit.FunSuite:
     assertEqualsDouble(delays.count(_ == 50) / 500.0, 0.85, 0.05)
 
   test(
-    "a packet that others follow is sent again a round trip and a quarter later, or once one is acknowledged"
+    "a lost packet that others follow is sent again after 1.25 round trips, or once one is acknowledged"
   ):
     val came  = over(lossy)(line => arrivals(every(20, 1000), line))
     val ms    = came.flatMap((text, at) => text.split(';').map(_.toInt -> at)).toMap
@@ -299,7 +296,7 @@ class DelayLineSuite extends munit.FunSuite:
     // The next one waits behind.
     assert(waits.contains(155L), waits.distinct.sorted.toString)
 
-  test("a large write is cut into packets, of which the lost ones are sent again"):
+  test("a large write is cut into packets, and the lost ones are sent again"):
     val bytes          = ByteString.fromArray(Array.tabulate(1_000_000)(_.toByte))
     val (came, counts) = over(lossy, maxBytes = 10_000_000): line =>
       for all <- Source.single(bytes).via(line.flow).runFold(ByteString.empty)(_ ++ _)
@@ -307,7 +304,7 @@ class DelayLineSuite extends munit.FunSuite:
     assertEquals(came, bytes)
     assert(counts.lost.sum > 40, s"${counts.lost.sum}")
 
-  test("an outage holds TCP's bytes until a repetition after its end"):
+  test("bytes of TCP that an outage loses arrive with a repetition after its end"):
     val came = over(profile("outage:1s/10s,constant:100ms"))(line => arrivals(every(50, 2000), line))
     val gaps = came.map(_._2).sliding(2).map(pair => pair(1) - pair(0)).toVector
     assertEquals(came.map(_._1).mkString, (0 until 2000).map(i => s"$i;").mkString)
@@ -315,7 +312,7 @@ class DelayLineSuite extends munit.FunSuite:
     assert(gaps.max > 900 && gaps.max < 4600, s"${gaps.max}")
     assert(gaps.count(_ > 800) >= 5, s"${gaps.count(_ > 800)}")
 
-  test("a lost datagram is gone, others are unaffected; some come twice"):
+  test("a lost datagram is gone, others are unaffected, and some arrive twice"):
     val (came, counts) = over(profile("loss:10%/3,constant:100ms"), isDatagrams = true, duplicates = 0.05):
       line =>
         for came <- arrivals(every(5, 2000), line) yield (came, line.counts)
@@ -328,6 +325,6 @@ class DelayLineSuite extends munit.FunSuite:
     assertEquals(counts.packets.sentAgain.sum, 0L)
     assert(counts.bytesLost.sum > 0)
 
-  test("with losses, too, equal seeds give equal times, to the nanosecond"):
+  test("also with losses, equal seeds give equal times, to the nanosecond"):
     def once = over(profile("loss:10%/3,outage:200ms/2s,vpn"))(line => arrivals(every(7, 1000), line))
     assertEquals(once, once)

@@ -66,7 +66,7 @@ class DeliverySuite extends munit.FunSuite:
     assertEquals(delivery(faults = faults, opened = ms(1000)).breaksAt, Some(ms(2000)))
     assertEquals(delivery(faults = faults, opened = ms(2000)).breaksAt, None)
 
-  test("a connection opened within a silence is lost until it ends"):
+  test("a connection opened within a silence is lost until the silence ends"):
     val faults = Faults(List(TimedFault(ms(1000), Fault.Silence(ms(300))), TimedFault(ms(2000), Fault.Reset)))
     val line   = delivery(faults = faults, opened = ms(1100))
     assertEquals(line.due(ms(1100)), None)

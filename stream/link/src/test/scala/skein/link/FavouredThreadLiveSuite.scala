@@ -23,7 +23,7 @@ class FavouredThreadLiveSuite extends munit.FunSuite, Unhurried:
     }.start()
     found.take()
 
-  test("a favoured thread precedes all others but control's, where the system allows it"):
+  test("a favoured thread precedes all others except control threads, where the system allows it"):
     val favoured = on(FavouredThread.factory("favoured"))()
     assume(favoured.policy == roundRobin, "this user may not take real-time priority")
     val control = on(Thread.ofPlatform().daemon().factory()):

@@ -34,13 +34,13 @@ class FirstBytesSuite extends munit.FunSuite:
       for length <- method to request.length do
         assert(verdict(ByteString(request.take(length))).isInstanceOf[Foreign], request.take(length))
 
-  test("TLS's first byte is foreign, and 'GETTING', 'AKKA' and a length of four bytes are not"):
+  test("TLS's first byte is foreign, and 'GETTING', 'AKKA' and a length of four bytes are not foreign"):
     assertEquals(verdict(hello), Foreign("a greeting of TLS"))
     assertEquals(verdict(hello.take(1)), Foreign("a greeting of TLS"))
     for own <- Seq(ByteString("GETTING"), ByteString("AKKA"), ByteString(0, 0, 0, 10)) do
       assertEquals(verdict(own), Own)
 
-  test("a port that knows its protocol's first bytes accepts nothing else, not even one byte"):
+  test("a port that knows its protocol's first bytes accepts no others, not even a single byte"):
     val own = Set(0xfd, 0xfe)
     assertEquals(verdict(ByteString(0xfd), own), Own)
     assertEquals(verdict(ByteString(0x00), own), Foreign("a first byte of 0x00"))
@@ -55,7 +55,7 @@ class FirstBytesSuite extends munit.FunSuite:
     20.seconds
   )
 
-  test("the guard passes on its own protocol from the first byte, and nothing of foreign ones"):
+  test("the guard passes all bytes of its own protocol, and none of foreign ones"):
     assertEquals(through(ByteString("G"), ByteString("ET"), ByteString("S on")), ByteString("GETS on"))
     val error = intercept[TransportError.Foreign](through(ByteString("GE"), ByteString("T / HTTP")))
     assertEquals(

@@ -105,8 +105,8 @@ class LinkFidelityLiveSuite extends munit.FunSuite, Lengthy, Timing:
                 ) - distribution.quantile(percent / 100.0).toMillis / 2
           Run(differences, late)
 
-  /** Measures repeatedly, a few times, until the result matches: the link's delays are equal each time, those
-    * of a busy machine or a cold virtual machine are not.
+  /** Measures a few times, until the result matches. The link's delays are equal each time; delays of a busy
+    * machine or of a cold virtual machine are not.
     */
   private def runs(left: Int)(measure: => Future[Run]): Future[Vector[Run]] =
     measure.flatMap: run =>

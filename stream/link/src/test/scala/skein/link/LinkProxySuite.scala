@@ -13,7 +13,7 @@ import skein.vtime.VirtualTime
 class LinkProxySuite extends munit.FunSuite:
   private val (proxyAt, serverAt) = (Address("proxy", 1), Address("server", 1))
 
-  /** A client: which of its bytes came back, and when its connection ended, s. */
+  /** A client that records which of its bytes returned, and when its connection ended, s. */
   private final class Client(says: Source[ByteString, Any], world: World)(using ActorSystem):
     private var came                             = 0
     private var ended                            = Option.empty[Double]
@@ -56,7 +56,7 @@ class LinkProxySuite extends munit.FunSuite:
   private def always(until: Double) =
     Source.tick(1.milli, 1.second, ByteString("x")).takeWithin(until.seconds)
 
-  test("a connection without any data makes room for the next, also in the first second"):
+  test("a connection without any data makes room for the next, also in its first second"):
     val (first, second) = through: (world, _) =>
       given ExecutionContext = ExecutionContext.parasitic
       val first              = Client(silent, world)
@@ -68,7 +68,7 @@ class LinkProxySuite extends munit.FunSuite:
     assertEquals(first.ended.map(_ < 0.6), Some(true))
     assertEquals(second, (came = 1, ended = None))
 
-  test("a connection whose data have crossed keeps its place for 5 s, and each further byte prolongs that"):
+  test("a connection with data keeps its place for 5 s, and each further byte prolongs that"):
     for (says, lasts) <- Seq((once, 5.0), (always(until = 9.5), 14.0)) do
       val (first, second, third, counts) = through: (world, counts) =>
         given ExecutionContext = ExecutionContext.parasitic
@@ -85,7 +85,7 @@ class LinkProxySuite extends munit.FunSuite:
       assertEquals(third, (came = 1, ended = None))
       assertEquals((counts.connections, counts.disconnects), (2L, 0L))
 
-  test("the place of a connection that has ended is free"):
+  test("a connection that has ended frees its place"):
     val came = through: (world, _) =>
       given ExecutionContext = ExecutionContext.parasitic
       (0 until 4).foldLeft(Future.successful(0)): (before, number) =>

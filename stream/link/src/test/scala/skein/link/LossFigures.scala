@@ -11,8 +11,8 @@ import skein.signal.LatencyProfile
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** Prints what messages over links with losses meet, in virtual time, as `bench/netem/run.py` does over
-  * Linux's netem: `link/Test/runMain skein.link.lossFigures`.
+/** Prints the delays and losses of messages over lossy links, in virtual time, as `bench/netem/run.py` does
+  * over Linux's netem: `link/Test/runMain skein.link.lossFigures`.
   */
 @main def lossFigures(): Unit =
   def profile(text: String) = LatencyProfile.parse(text, Left(_)).fold(e => sys.error(e.message), identity)

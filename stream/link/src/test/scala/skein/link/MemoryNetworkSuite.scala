@@ -92,7 +92,7 @@ class MemoryNetworkSuite extends munit.FunSuite:
     val outcome = in(over(slow))(world => world.ended(world.ask(ByteString("x"), nowhere)))
     assertEquals(outcome._1, Failure(TransportError.UnknownHost(nowhere)))
 
-  test("a port is taken until its listener closes, and a closed listener's port refuses"):
+  test("a port is taken until its listener closes, and then refuses connections"):
     val (second, third, refused) = in(over(slow)): world =>
       for
         first   <- world.serve(Flow[ByteString])
@@ -294,7 +294,7 @@ class MemoryNetworkSuite extends munit.FunSuite:
     assertEquals(traffic(1), first)
     assertNotEquals(traffic(2), first)
 
-  test("connections that have ended, each in its way, leave no stream running"):
+  test("connections that have ended in any way leave no stream running"):
     val (busy, left) = in(over(slow).copy(faults =
       List(at(5_000, Fault.Reset), at(10_000, Fault.Silence(Span.ofSeconds(9))))
     )): world =>

@@ -15,7 +15,7 @@ class PlacesSuite extends munit.FunSuite:
       places.entered(i, guest)
     (places, guests)
 
-  test("256 silent connections exclude no other: a new one takes the place of the one silent for longest"):
+  test("256 silent connections do not exclude a new one, which takes the place of the longest silent"):
     val (places, guests) = full(10 to 265*)
     for i <- 1 to 256 do
       assert(places.admit(), s"newcomer $i")
@@ -36,7 +36,7 @@ class PlacesSuite extends munit.FunSuite:
       assert(places.admit())
       assert(!places.admit())
 
-  test("of guests without a message the earliest makes room, however short it has been there"):
+  test("of guests without a message the earliest makes room, however short its stay"):
     val places = Places(3, Span.ofSeconds(5))
     val spoken = Guest(Span.ofSeconds(100))
     val mute   = Seq.fill(3)(Guest(Span.Zero, hasSpoken = false))

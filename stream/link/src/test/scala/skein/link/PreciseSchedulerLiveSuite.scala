@@ -62,7 +62,7 @@ class PreciseSchedulerLiveSuite extends munit.FunSuite, Timing:
       assert(atRate >= 100 && atRate < 138, s"20 runs of 2 ms every 5 ms took $atRate ms")
       assert(withDelay >= 138, s"20 runs of 2 ms, 5 ms apart, took $withDelay ms")
 
-  test("a cancelled task never runs, its cancellation is reported, and a second one is refused"):
+  test("a cancelled task never runs, its cancellation is reported, and a second cancellation is refused"):
     final class Task extends SchedulerTask:
       @volatile var (ran, told)      = (false, false)
       def run(): Unit                = ran = true
@@ -79,7 +79,7 @@ class PreciseSchedulerLiveSuite extends munit.FunSuite, Timing:
     assert(handle.isCancelled)
     after(40.millis)(assert(!task.ran))
 
-  test("a task that has run is not cancelled, and cannot be any more"):
+  test("a task that has run can no longer be cancelled"):
     val done = Promise[Unit]()
     val task = scheduler.scheduleOnce(1.milli)(done.success(()): Unit)
     for _ <- done.future yield
@@ -113,7 +113,7 @@ class PreciseSchedulerLiveSuite extends munit.FunSuite, Timing:
   test("a period of zero is refused"):
     intercept[IllegalArgumentException](scheduler.scheduleAtFixedRate(1.milli, Duration.Zero)(() => ())): Unit
 
-  test("when it closes, only tasks marked for it run, and new ones are refused"):
+  test("a closing scheduler runs only tasks marked for it, and refuses new ones"):
     val closing = ActorSystem("closing", PreciseScheduler.config)
     val ran     = CountDownLatch(1)
     val other   = AtomicInteger()

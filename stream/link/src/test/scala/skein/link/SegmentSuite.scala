@@ -16,7 +16,7 @@ class SegmentSuite extends munit.FunSuite:
     segment.lost(ms(100), tcp)
     segment
 
-  test("a lost packet is sent again after the time-out, and each further time-out is twice as long"):
+  test("a lost packet is sent again after the timeout, and each further timeout is twice as long"):
     val segment = lost()
     assertEquals((segment.isLost, segment.againAt), (true, ms(300)))
     segment.lostAgain(ms(300))
@@ -24,7 +24,9 @@ class SegmentSuite extends munit.FunSuite:
     segment.lostAgain(ms(700))
     assertEquals(segment.againAt, ms(1500))
 
-  test("an acknowledged packet that was sent no earlier reveals it, but not before it might be overtaken"):
+  test(
+    "the acknowledgement of a packet sent no earlier reveals a loss once overtaking is ruled out"
+  ):
     for (acknowledged, again) <- Seq(120.0 -> 150.0, 150.0 -> 150.0, 180.0 -> 180.0, 400.0 -> 300.0) do
       for sent <- Seq(100.0, 110.0) do
         val segment = lost()
@@ -34,7 +36,7 @@ class SegmentSuite extends munit.FunSuite:
     segment.missed(ms(99), ms(120), tcp)
     assertEquals(segment.againAt, ms(300), "one that was sent before it reveals nothing")
 
-  test("the time-out does not grow by a loss that another packet revealed"):
+  test("the timeout does not grow by a loss that another packet revealed"):
     val segment = lost()
     segment.missed(ms(110), ms(180), tcp)
     segment.lostAgain(ms(180))
@@ -42,7 +44,7 @@ class SegmentSuite extends munit.FunSuite:
     segment.missed(ms(190), ms(240), tcp)
     assertEquals(segment.againAt, ms(240))
 
-  test("after a time-out no other packet reveals it, nor once it is on its way"):
+  test("after a timeout, and after it is sent again, no other packet reveals a loss"):
     val segment = lost()
     segment.lostAgain(ms(300))
     segment.missed(ms(310), ms(320), tcp)

@@ -53,7 +53,7 @@ class TcpTransportLiveSuite extends munit.FunSuite, Unhurried:
       assertEquals(heard.utf8String, "hello")
       assertEquals(got.utf8String, "after your end")
 
-  test("without a listener the error states that and names the address, in the future and in the stream"):
+  test("without a listener, the future and the stream fail with an error that states that and the address"):
     val socket = ServerSocket(0, 1, InetAddress.getLoopbackAddress)
     val free   = Address("127.0.0.1", socket.getLocalPort)
     socket.close()
@@ -111,7 +111,7 @@ class TcpTransportLiveSuite extends munit.FunSuite, Unhurried:
       case TransportError.Lost(to, _) => assertEquals(to, server.address)
       case other                      => fail(s"expected Lost, got $other")
 
-  test("a connection that is reset before this side has seen it made is lost too"):
+  test("a connection that is reset before this side has seen it open is lost, too"):
     val to    = Address("127.0.0.1", 41451)
     val reset = StreamTcpException("").initCause(java.io.IOException("Connection reset by peer"))
     assertEquals(

@@ -50,7 +50,7 @@ class TlsEngineSuite extends munit.FunSuite:
     assertEquals(own.getSSLParameters.getEndpointIdentificationAlgorithm, "HTTPS")
     assertEquals((engine.getPeerHost, engine.getPeerPort), ("lab", 1))
 
-  test("every other setting is the JDK's engine's, too"):
+  test("all other settings are those of the JDK's engine"):
     val own    = SSLContext.getDefault.createSSLEngine("lab", 1)
     val engine = TlsEngine(own)
     def told   = (of: SSLEngine) =>

@@ -23,7 +23,7 @@ class TlsProbeLiveSuite extends munit.FunSuite, Unhurried:
       assertEquals(heard.get(), 22, "a handshake is begun")
       told
 
-  test("a peer that continues the handshake speaks TLS, and so does one that refuses it"):
+  test("a peer that continues the handshake, or refuses it, speaks TLS"):
     assert(asked(22, 3, 3, 0, 2, 0, 0))
     assert(asked(21, 3, 3, 0, 2, 2, 70))
 
@@ -44,7 +44,7 @@ class TlsProbeLiveSuite extends munit.FunSuite, Unhurried:
     val free = Using.resource(ServerSocket(0))(_.getLocalPort)
     assert(!TlsProbe.isRefused(Address("127.0.0.1", free), Span.ofSeconds(1)))
 
-  test("a silent peer, one of another protocol, and a missing one do not speak TLS"):
+  test("a silent peer, a peer of another protocol and a missing peer do not speak TLS"):
     assert(!asked())
     assert(!asked(22))
     assert(!asked(0, 0, 0, 4, 1))

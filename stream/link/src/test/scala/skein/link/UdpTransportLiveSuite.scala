@@ -13,7 +13,7 @@ import skein.units.Span
 
 class UdpTransportLiveSuite extends munit.FunSuite, Unhurried:
 
-  test("a peer that sends again after having been idle is one new connection, and stays it"):
+  test("a peer that sends again after having been idle becomes one new connection and keeps it"):
     given system: ActorSystem = ActorSystem("udp")
     import system.dispatcher
     val idle   = Span.ofMillis(200)

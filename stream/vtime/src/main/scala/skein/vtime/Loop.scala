@@ -134,8 +134,8 @@ private final class Loop(seed: Long, limits: RunLimits) extends Environment with
     else if tasksThisTime % Loop.tasksPerLook == 0 then lookAtProcessor()
     task.run()
 
-  /** Reads the processor time; not at every task, since it takes as long as a short one, and relative to the
-    * first reading, so that one long task does not count.
+  /** Reads the processor time, relative to the first reading so that one long task does not count. Not called
+    * at every task, since a reading takes as long as a short task.
     */
   private def lookAtProcessor(): Unit =
     val taken = Loop.processorNanos()
@@ -158,7 +158,7 @@ private final class Loop(seed: Long, limits: RunLimits) extends Environment with
         fired += 1
         queue.add(timer.task): Unit
 
-  /** Beyond the limit, counts which tasks run for a while longer, and then reports them. */
+  /** Counts, beyond the limit, which tasks run for a while longer, and then reports them. */
   private def sample(task: Runnable): Unit =
     sampled = sampled.updatedWith(TaskName.of(task))(times => Some(times.getOrElse(0) + 1))
     if sampled.values.sum >= Loop.sampleSize then

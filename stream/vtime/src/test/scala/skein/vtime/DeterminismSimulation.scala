@@ -10,12 +10,12 @@ import skein.testing.Unhurried
 /** Equal seeds give equal runs: in one JVM, in several, and in parallel. */
 class DeterminismSimulation extends munit.FunSuite, Unhurried:
 
-  test("a graph has equal logs over repeats, and another one for another seed"):
+  test("a graph has equal logs for equal seeds, and another log for another seed"):
     val first = SampleGraph.digest(3)
     (1 to 5).foreach(_ => assertEquals(SampleGraph.digest(3), first))
     assertNotEquals(SampleGraph.digest(4), first)
 
-  test("two loops in parallel threads have the results of each alone"):
+  test("two loops on parallel threads have the results that each has alone"):
     val alone   = Seq(3L, 4L).map(SampleGraph.digest(_))
     val threads = Executors.newFixedThreadPool(2)
     try
@@ -24,7 +24,7 @@ class DeterminismSimulation extends munit.FunSuite, Unhurried:
       assertEquals(together.map(_.get()), Seq.fill(3)(alone).flatten)
     finally threads.shutdown()
 
-  test("actors have equal names and numbers in every run, those of streams, too"):
+  test("actors, also those of streams, have equal names and numbers in every run"):
     def names() = VirtualTime.run(1): system =>
       given ActorSystem = system
       val actor         = system.actorOf(Props(Silent()))
@@ -36,7 +36,7 @@ class DeterminismSimulation extends munit.FunSuite, Unhurried:
     assert(clue(first)._2.contains("StreamSupervisor-1/"))
     assertEquals(names().value, first)
 
-  test("a shared kill switch ends its streams in one order in every run"):
+  test("a shared kill switch ends its streams in an equal order in every run"):
     def ended() = VirtualTime.run(1): system =>
       given ActorSystem = system
       import system.dispatcher
@@ -83,7 +83,7 @@ class DeterminismSimulation extends munit.FunSuite, Unhurried:
     do
       assert(clue(sleep).startsWith(s"Blocked($call"))
 
-  test("another JVM has an equal log"):
+  test("another JVM gives an equal log"):
     assertEquals(OtherJvm.run("skein.vtime.sampleGraphDigest", Seq("3")), SampleGraph.digest(3))
 
   test("without the agent, a run is refused immediately, and the option to add is shown"):

@@ -92,7 +92,7 @@ class EscapesSimulation extends munit.FunSuite, Unhurried:
       Source.empty.via(Tcp(system).outgoingConnection("127.0.0.1", 1)).runWith(Sink.ignore)
     assertEquals(error.problem, Problem.Sockets)
 
-  test("two actors that talk for ever without time advancing are a livelock and are named"):
+  test("two actors that talk for ever at one instant are a livelock, whose report names them"):
     val error = stopped(RunLimits(tasksPerInstant = 10_000)): system =>
       val echo = system.actorOf(Props(Echo()), "echo")
       system.actorOf(Props(Echo()), "reply").tell("ball", echo)
@@ -124,7 +124,7 @@ class EscapesSimulation extends munit.FunSuite, Unhurried:
     assertEquals(run.value, 4_500_001_500_000L)
 
   test(
-    "a future that nothing can complete is a deadlock, at the time of the last event, with the actors alive"
+    "a future that nothing can complete is a deadlock, with the time of the last event and the live actors"
   ):
     val error = stopped(): system =>
       system.actorOf(Props(Silent()), "silent"): Unit

@@ -46,7 +46,7 @@ class OperatorsSuite extends munit.FunSuite:
     assertEquals(times(_ => ticks.takeWithin(250.millis)).map(_._1), Seq(1, 2, 3))
     assertEquals(times(_ => ticks.dropWithin(250.millis).take(2)), Seq(4 -> 300.0, 5 -> 400.0))
 
-  test("groupedWithin emits the elements received when its time is over"):
+  test("groupedWithin emits the elements received so far when its time is over"):
     val grouped = times(_ => ticks.groupedWithin(100, 250.millis).take(2))
     assertEquals(grouped, Seq(Seq(1, 2, 3) -> 250.0, Seq(4, 5) -> 500.0))
 
@@ -55,7 +55,7 @@ class OperatorsSuite extends munit.FunSuite:
     assertEquals(kept.map(_._1), Seq("real", "kept", "kept", "real", "kept"))
     assertEquals(kept.map(_._2), Seq(0.0, 400.0, 800.0, 1000.0, 1400.0))
 
-  test("idleTimeout fails at its first check, an eighth of the timeout apart, after the silence"):
+  test("idleTimeout fails at its first check after the silence, and checks every eighth of the timeout"):
     val failedAt = VirtualTime.run(1): system =>
       given ActorSystem = system
       import system.dispatcher

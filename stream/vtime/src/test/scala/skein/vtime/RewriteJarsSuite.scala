@@ -53,7 +53,7 @@ class RewriteJarsSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(Files.readAllBytes(other).toSeq, before.toSeq)
     assertEquals(Files.list(folder).toList.size, 3)
 
-  test("lambdas of rewritten jars are linked as an ahead-of-time cache can hold them"):
+  test("lambdas of rewritten jars are linked in a way that an ahead-of-time cache can store"):
     val name    = s"${classOf[Lambdas].getName.replace('.', '/')}.class"
     val folder  = temporaryFolder()
     val classes = jar(folder.resolve("classes.jar"), name)

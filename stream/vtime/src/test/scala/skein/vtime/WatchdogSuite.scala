@@ -13,7 +13,7 @@ class WatchdogSuite extends munit.FunSuite:
   test("two observations are not enough"):
     assert(!standsStill(Seq(still, still)))
 
-  test("a thread observed waiting each time that has worked in between does not stand still"):
+  test("a thread that has worked between observations does not stand still, even if each finds it waiting"):
     assert(!standsStill(Seq(still, still.copy(processorNanos = 1_001), still.copy(processorNanos = 1_002))))
     assert(!standsStill(Seq(still, still, still.copy(processorNanos = 1_001))))
 
@@ -22,8 +22,7 @@ class WatchdogSuite extends munit.FunSuite:
     assert(!standsStill(Seq(still, still.copy(waits = false), still)))
 
   test(
-    "a thread that computes in one task all the time is endless; one that computes from time to time is " +
-      "not"
+    "a thread that computes in one task all the time is endless, but not one that computes from time to time"
   ):
     def looks(processorMs: Long*) =
       processorMs.map(ms => Look(waits = false, begun = 7, processorNanos = ms * 1_000_000))

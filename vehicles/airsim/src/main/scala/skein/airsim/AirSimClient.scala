@@ -24,7 +24,7 @@ final class AirSimClient(val rpc: RpcClient, val timeout: Span = Span.ofSeconds(
 
   def ping(): Future[Either[RpcError, Boolean]] = get("ping")
 
-  /** AirSim's protocol version: 1; of the built-in simulator and of Cosys-AirSim 3, 4. */
+  /** The protocol version: 1 in AirSim, 4 in the built-in simulator and in Cosys-AirSim 3. */
   def serverVersion(): Future[Either[RpcError, Int]] = get("getServerVersion")
 
   /** The oldest client version that the simulator supports: 1. */

@@ -5,16 +5,16 @@ import skein.rpc.RpcError
 import skein.units.Decimals.brief
 import skein.units.Span
 
-/** Why a simulator's vehicle is not available: an expected failure, returned as a value. */
+/** The reasons why a simulator's vehicle is not available: an expected failure, returned as a value. */
 enum AirSimError:
 
   /** The simulator did not answer, or refused the call. */
   case Call(error: RpcError)
 
-  /** It has no vehicle of this name; `existing` lists those it has. */
+  /** The simulator has no vehicle of this name; `existing` lists its vehicles. */
   case UnknownVehicle(name: String, existing: Seq[String])
 
-  /** The settings that it sent cannot be read. */
+  /** The settings that the simulator sent cannot be read. */
   case Settings(error: SettingsError)
 
   def message: String = this match
@@ -23,7 +23,7 @@ enum AirSimError:
     case Settings(error)                => s"the simulator's settings: ${error.message}"
 
 object AirSimError:
-  /** One line: the simulator lacks these vehicles, and which ones it has. */
+  /** One line that lists the missing vehicles and the vehicles that the simulator has. */
   def unknown(names: Seq[String], existing: Seq[String]): String =
     def listed(all: Seq[String]) = all.map(name => s"'$name'").mkString(", ")
     val has                      = if existing.isEmpty then "it has none" else s"it has ${listed(existing)}"

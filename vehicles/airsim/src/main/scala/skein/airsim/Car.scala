@@ -40,7 +40,7 @@ final class Car(
 
   /** Sets pedals and steering. Has no effect without API control.
     *
-    * @param gear chosen by hand: −1 is reverse; without it, AirSim's gearbox chooses
+    * @param gear chosen by hand: −1 is reverse; None: AirSim's gearbox chooses
     */
   def setControls(
       controls: CarControls,

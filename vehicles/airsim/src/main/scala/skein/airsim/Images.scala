@@ -3,7 +3,7 @@ package skein.airsim
 import skein.rpc.{Bytes, MessageReader}
 import skein.units.*
 
-/** What an image shows, by AirSim's numbers. Cosys-AirSim has further kinds. */
+/** The kinds of images, with AirSim's numbers. Cosys-AirSim has further kinds. */
 enum ImageKind(val number: Int):
   case Scene               extends ImageKind(0)
   case DepthPlanar         extends ImageKind(1)
@@ -16,7 +16,7 @@ enum ImageKind(val number: Int):
   case OpticalFlow         extends ImageKind(8)
   case OpticalFlowVis      extends ImageKind(9)
 
-/** How an image's pixels are encoded on the wire. */
+/** The encodings of an image's pixels on the wire. */
 enum Encoding:
   case Raw
 
@@ -56,8 +56,8 @@ final case class Image(
 
 /** A lidar's scan.
   *
-  * @param points x, y, z of each, m, in the frame that the lidar's settings name: its own, or the vehicle's
-  *   start's
+  * @param points x, y, z of each, m, in the frame that the lidar's settings choose: the lidar's own, or that
+  *   of its vehicle's start
   * @param segmentation id of the object that each point is on; empty where the simulator does not send it
   * @param positionNed of the lidar, world, m
   */
@@ -95,7 +95,7 @@ final case class Scan(
     found
 
 /** Reads images and scans as AirSim, Colosseum and Cosys-AirSim send them: keys in any order, unknown keys
-  * skipped, missing keys as empty. What cannot be read ends with [[MessageReader]]'s error.
+  * skipped, missing keys as empty. An answer that cannot be read ends with [[MessageReader]]'s error.
   */
 private[airsim] object Images:
 

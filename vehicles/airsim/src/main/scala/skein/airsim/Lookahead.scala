@@ -3,9 +3,10 @@ package skein.airsim
 import skein.units.Metres
 import upack.{Float32, Msg}
 
-/** How far ahead on its path a vehicle aims. */
+/** The distance on its path at which a vehicle aims. */
 enum Lookahead:
-  /** In proportion to its speed, and farther while the vehicle is off the path. AirSim's default. */
+  /** A distance in proportion to the speed, and farther while the vehicle is off the path: AirSim's default.
+    */
   case Automatic
 
   case Fixed(distance: Metres)

@@ -179,12 +179,13 @@ final class Multirotor(
   def rotateByYawRate(radiansPerSecond: Double, duration: Span): Future[Either[RpcError, Boolean]] =
     move("rotateByYawRate", duration, degrees(radiansPerSecond), seconds(duration))
 
-  /** Gives the vehicle's buffer a plan of velocities; it is answered as soon as the buffer has it, and
-    * awaited as long as the plan lasts. Plans may overtake one another, since each takes the connection on
-    * which least is on its way. The built-in simulator supports this, and `link --buffer` before another one.
+  /** Gives the vehicle's buffer a plan of velocities. The buffer answers as soon as it has the plan; the
+    * call's timeout includes the plan's duration. Plans may overtake one another, since each takes the
+    * connection with the fewest calls in flight. The built-in simulator supports this, and `link --buffer` in
+    * front of another one.
     *
     * @param number greater than that of all plans before
-    * @return None if an action of the plan is none by velocity
+    * @return None if an action of the plan is not a velocity
     */
   def followPlan(number: Long, plan: CommandPlan): Option[Future[Either[RpcError, Boolean]]] =
     val last  = plan.actions.lastOption.fold(Instant.Epoch)(_.at + CommandPlan.Hold)

@@ -9,10 +9,10 @@ final case class VehiclePose(positionNed: Vector3, orientation: Quaternion)
 /** A multirotor's state as it estimates it itself, which for AirSim's default vehicle is the truth. */
 final case class MultirotorStatus(kinematics: Kinematics, flying: Boolean)
 
-/** What a vehicle last touched.
+/** The last contact of a vehicle with another object.
   *
   * @param at on the simulator's clock
-  * @param positionNed of the vehicle when it touched, world, m
+  * @param positionNed of the vehicle at the contact, world, m
   * @param normalNed of the surface
   */
 final case class Collision(at: Instant, positionNed: Vector3, normalNed: Vector3, objectName: String)

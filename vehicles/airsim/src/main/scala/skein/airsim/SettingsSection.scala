@@ -5,7 +5,7 @@ import scala.util.control.NonFatal
 import skein.units.Vector3
 import ujson.{Num, Obj, Value}
 
-/** Why a `settings.json` cannot be used: `path` names the key. */
+/** The reasons why a `settings.json` cannot be used; `path` states the key. */
 enum SettingsError:
   case NotJson(reason: String)
   case Unexpected(path: String, expected: String, found: String)
@@ -24,9 +24,9 @@ object SettingsError:
 
   private val MostShown = 120
 
-/** An object of a `settings.json` and its path. A missing key reads as its default; the first value that does
-  * not fit ends all reading. Keys that are read are remembered: [[unread]] lists the others, so that nothing
-  * in a file is ignored silently.
+/** An object of a `settings.json` and its path. A missing key reads as its default; the first invalid value
+  * ends all reading. Keys that are read are remembered: [[unread]] lists the others, so that nothing in a
+  * file is ignored silently.
   */
 final private[skein] class SettingsSection private (fields: Obj, path: String, read: SettingsSection.Read):
   import SettingsSection.*
@@ -132,9 +132,9 @@ private[skein] object SettingsSection:
   final private class Misfit(val error: SettingsError)
       extends RuntimeException(error.message, null, false, false)
 
-  /** Where a text ceases to be JSON, and what is wrong there.
+  /** The position at which a text ceases to be JSON, and the mistake there.
     *
-    * @param mistake of `ujson`, which states the mistake in its cause, and before it the whole path to it
+    * @param mistake of `ujson`, whose cause states the mistake after the whole path to it
     */
   private def notJson(text: String, mistake: Throwable): SettingsError =
     Iterator.iterate(mistake)(_.getCause).takeWhile(_ != null).take(MostCauses).collectFirst {

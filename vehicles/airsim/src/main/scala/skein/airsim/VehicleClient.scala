@@ -25,7 +25,7 @@ abstract class VehicleClient private[airsim] (
   protected val getter: CallOptions = once.copy(idempotent = true)
   private val sensor                = getter.copy(channel = Channel.Sensors)
 
-  /** Options of calls that keep their order with every command sent before, on their connection. */
+  /** Options of calls that keep their order behind every command sent before on the connection. */
   protected val inOrder: CallOptions = once.copy(key = Some(connectionKey))
 
   val eyes: Eyes = Eyes(client, name, originNed)

@@ -24,7 +24,7 @@ final case class VehicleSettings(
 ):
   def isCar: Boolean = vehicleType.equalsIgnoreCase(WorldSettings.PhysXCar)
 
-  /** Whether it is not a vehicle but a fixed camera. */
+  /** Whether this is a fixed camera and not a vehicle. */
   def isCamera: Boolean = vehicleType.equalsIgnoreCase(WorldSettings.ComputerVision)
 
 /** The part of an AirSim `settings.json` that is read: vehicles with their sensors, origin, wind and clock
@@ -75,7 +75,7 @@ object WorldSettings:
   /** Reads a `settings.json`. A file without vehicles gives one, named after its type, as in AirSim. */
   def parse(text: String): Either[SettingsError, WorldSettings] = SettingsSection.read(text)(read(_, text))
 
-  /** The world of these vehicles with their cameras and lidars, and the `settings.json` that says so. */
+  /** The world of these vehicles with their cameras and lidars; its `text` is their `settings.json`. */
   def of(vehicles: Vector[VehicleSettings], equipment: Seq[Equipment] = Nil): WorldSettings =
     WorldSettings(vehicles, text = render(vehicles, equipment))
 

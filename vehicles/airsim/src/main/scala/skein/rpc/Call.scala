@@ -29,7 +29,7 @@ private[rpc] final class Call(
   var connection: Int = -1
   var id: Long        = -1
 
-  /** Whether its bytes were handed to the transport of the current connection. */
+  /** Whether the call's bytes were handed to the transport of the current connection. */
   var written: Boolean = false
   var sends: Int       = 0
   var sentAt: Instant  = Instant.Epoch

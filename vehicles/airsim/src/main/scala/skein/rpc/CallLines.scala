@@ -8,10 +8,10 @@ import scala.jdk.CollectionConverters.*
 /** Calls that wait to be run: one queue for each connection, served in rounds. Calls of one connection keep
   * their order.
   *
-  * A call that enters an empty queue goes ahead of all that wait, as long as its connection has had less than
-  * `share` calls in the round: so a client that calls rarely hardly waits for clients that call without a
-  * pause. From a longer queue, `batch` calls are taken in a row: waking a connection for an answer costs more
-  * than running most calls, so it is woken once for several. The first call of a queue waits for at most
+  * A call that enters an empty queue goes ahead of all waiting calls, as long as its connection has had less
+  * than `share` calls in the round: so a client that calls rarely hardly waits for clients that call without
+  * a pause. From a longer queue, `batch` calls are taken in a row: waking a connection for an answer costs
+  * more than running most calls, so it is woken once for several. The first call of a queue waits for at most
   * `share` calls of every other connection.
   *
   * While nothing else can be run, [[takeUrgent]] returns calls that need not wait for the others.
@@ -38,7 +38,7 @@ final class CallLines[Call](share: Int = 16, batch: Int = 4, isUrgent: Call => B
   private val urgent = ConcurrentLinkedQueue[Place]()
   private val gone   = LongAdder()
 
-  // The taker's: of this round, first those that had been empty; of the next one.
+  // Lines of the taking thread: in this round those that had been empty, then the others; and the next round.
   private val first = ArrayDeque[Line]()
   private var turns = ArrayDeque[Line]()
   private var later = ArrayDeque[Line]()

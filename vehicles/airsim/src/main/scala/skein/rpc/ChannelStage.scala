@@ -124,8 +124,8 @@ private[rpc] final class ChannelStage(
     override protected def onTimer(key: Any): Unit = key match
       case connection: Connection => connection.open()
       case attempt: Attempt       => attempt.messageDue()
-      // What else happens at this moment comes first, whenever its timer was set: an answer counts, and a
-      // loop's tick finds the call unanswered. Else virtual flights would depend on what is called besides.
+      // Other events of this instant are handled first, whenever their timers were set: an answer counts, and
+      // a loop's tick finds the call unanswered. Else virtual flights would depend on what else is called.
       case Deadline => scheduleOnce(Expire, Duration.Zero)
       case _        =>
         armedFor = None

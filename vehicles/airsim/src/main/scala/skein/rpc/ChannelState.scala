@@ -48,7 +48,7 @@ private[rpc] final class ChannelState(
   private var sequence    = 0L
   private var rotation    = 0
 
-  /** When [[expire]] has something to do next. */
+  /** The time at which [[expire]] next has something to do. */
   def nextDeadline: Option[Instant] = if deadlines.isEmpty then None else Some(deadlines.first.deadline)
 
   def submit(call: Call, now: Instant): Unit =
@@ -200,7 +200,7 @@ private[rpc] final class ChannelState(
 
   private def connectionOf(key: Int): Int = Math.floorMod(key, connections.length)
 
-  /** Why a call that has no place may not wait. */
+  /** The error of a call that has no place and may not wait for one; None if it may wait. */
   private def refusal(call: Call): Option[RpcError] =
     val candidates = call.options.key match
       case Some(key) => IndexedSeq(connections(connectionOf(key)))

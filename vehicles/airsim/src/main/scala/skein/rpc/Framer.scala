@@ -6,11 +6,11 @@ import org.apache.pekko.util.ByteString
   *
   * @param frameBytes longest encoded message, bytes
   * @param depth deepest nesting of arrays and maps; the message's own array counts as one
-  * @param elements most values in one message, counting every key, value and array element
-  * @param keys most keys in one map. A peer can choose keys whose hashes are equal; then each key added to a
-  *   map is compared with all before it, so this bounds the comparisons a key costs
-  * @param maps most maps in one message: even an empty one, a single byte, becomes an object of some 150
-  *   bytes
+  * @param elements limit of the values in one message, counting every key, value and array element
+  * @param keys limit of the keys in one map. A peer can choose keys whose hashes are equal; then each key
+  *   added to a map is compared with all before it, so this bounds the comparisons a key costs
+  * @param maps limit of the maps in one message: even an empty one, a single byte, becomes an object of some
+  *   150 bytes
   */
 final case class FrameLimits(
     frameBytes: Int = 64 << 20,
@@ -25,7 +25,7 @@ final case class FrameLimits(
   )
 
 object FrameLimits:
-  /** Of one who listens and keeps only the beginning of a message, however long it is: see [[Framer]]. */
+  /** Limits of a listener that keeps only the beginning of a message, however long it is: see [[Framer]]. */
   val Listening: FrameLimits = FrameLimits(frameBytes = Int.MaxValue, elements = Int.MaxValue)
 
 /** The result of reading on from a [[Framer]]. */

@@ -2,11 +2,11 @@ package skein.rpc
 
 import java.util.concurrent.atomic.AtomicLong
 
-/** Bounds what peers can make us hold, over all connections of one server or client: bytes of memory
-  * (incomplete messages, messages decoded and not yet answered, answers not yet taken), or requests in
+/** Limits what peers can make this process hold, over all connections of one server or client: bytes of
+  * memory (incomplete messages, messages decoded and not yet answered, answers not yet taken), or requests in
   * progress; here all are called bytes.
   *
-  * Every connection may hold `each` bytes whatever the others do; more comes out of `common`, first come,
+  * Every connection may hold `each` bytes whatever the others do; more is taken out of `common`, first come,
   * first served. So a peer that requests little is never refused because of one that requests much, and the
   * total is at most `common` and `each` for every connection. Safe from any thread.
   *
@@ -38,7 +38,7 @@ private[rpc] final class Holdings(each: Long, common: Long):
         account(to)
       granted
 
-    /** Changes the bytes held to `to`, which exist already, granted or not. */
+    /** Changes the bytes held to `to`, granted or not, because they exist already. */
     def force(to: Long): Unit =
       if !resize(to) then
         val change = beyondOwn(to) - beyondOwn(held)
@@ -46,7 +46,7 @@ private[rpc] final class Holdings(each: Long, common: Long):
         forced += change
         account(to)
 
-    /** Whether the common part now covers all that is held. */
+    /** Whether the common part now covers all bytes held beyond the connection's own part. */
     def isGranted: Boolean =
       if forced > 0 && beyond.get <= common then forced = 0
       forced == 0

@@ -67,13 +67,13 @@ final class MessageWriter:
       used = 0
       if buffer.length > KeptCapacity then buffer = new Array[Byte](InitialCapacity)
 
-  /** The header of a map; its keys and values follow. */
+  /** Writes the header of a map; its keys and values must follow. */
   def map(size: Int): Unit = sized(size, 0x80, 16, -1, 0xde, 0xdf)
 
-  /** The header of an array; its elements follow. */
+  /** Writes the header of an array; its elements must follow. */
   def array(length: Int): Unit = sized(length, 0x90, 16, -1, 0xdc, 0xdd)
 
-  /** An array of 32-bit floats, five bytes each. */
+  /** Writes an array of 32-bit floats, five bytes each. */
   def floats(values: Array[Float]): Unit =
     array(values.length)
     numbers(values.length, 5): (encoded, i) =>

@@ -2,8 +2,8 @@ package skein.rpc
 
 import skein.units.*
 
-/** How long one connection has kept its server waiting, counted in steps of [[ServerLimits.Watch]]. Knows no
-  * clock.
+/** The time for which one connection has kept its server waiting, counted in steps of [[ServerLimits.Watch]].
+  * Knows no clock.
   */
 private[rpc] final class Patience(limits: ServerLimits):
   private var midway           = 0
@@ -11,8 +11,8 @@ private[rpc] final class Patience(limits: ServerLimits):
   private var quiet            = 0
   @volatile private var silent = 0
 
-  /** How long nothing has been received and nothing was in progress. A peer that awaits an answer and sends
-    * nothing for more than [[ServerLimits.waiting]] counts as silent from then on. From any thread.
+  /** Time without anything received or in progress. A peer that awaits an answer and sends nothing for more
+    * than [[ServerLimits.waiting]] counts as silent from then on. From any thread.
     */
   def silentFor: Span = ServerLimits.Watch * silent.toLong
 

@@ -4,7 +4,7 @@ import skein.link.Address
 import skein.units.*
 import skein.units.Decimals.fixed
 
-/** Why a call has no result: an expected failure, so a value and never an exception. */
+/** The reasons why a call has no result: an expected failure, so a value and never an exception. */
 enum RpcError:
 
   /** No answer within the call's timeout. It may still run at the peer; a late answer is counted and dropped.

@@ -16,13 +16,13 @@ enum RpcEvent:
 
   case Failed(method: String, channel: Channel, error: RpcError)
 
-  /** An idempotent call goes out again after its connection was lost. */
+  /** An idempotent call is sent again after its connection was lost. */
   case SentAgain(method: String, channel: Channel)
 
-  /** An answer to a call that had timed out, `after` its sending; dropped. */
+  /** An answer to a call that had timed out was received `after` the call was sent, and dropped. */
   case LateReply(method: String, channel: Channel, connection: Int, after: Span)
 
   case UnexpectedReply(id: Long, channel: Channel, connection: Int)
 
-  /** A value that is no reply; dropped. */
+  /** A value that is no reply was received and dropped. */
   case Ignored(what: String, channel: Channel, connection: Int)

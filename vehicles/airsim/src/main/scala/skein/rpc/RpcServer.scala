@@ -102,5 +102,5 @@ object RpcServer:
     s"rpclib: function '${request.method}' (called with ${request.params.length} " +
       s"arg(s)) threw an exception. The exception contained this information: $text."
 
-  /** Closed and refused connections that are logged one by one; later ones are only counted. */
+  /** Limit of the closed and refused connections that are logged one by one; later ones are only counted. */
   private val MostTold = 20

@@ -16,20 +16,21 @@ enum Channel:
   /** Large messages that may wait: images, point clouds. */
   case Bulk
 
-/** What happens to a call that finds no free place in the window. */
+/** The treatment of a call that finds no free place in the window. */
 enum WhenFull:
-  /** It fails immediately with [[RpcError.Overloaded]]. */
+  /** The call fails immediately with [[RpcError.Overloaded]]. */
   case Refuse
 
-  /** It waits in the channel's bounded queue; when that is full too, it fails with [[RpcError.Overloaded]].
+  /** The call waits in the channel's bounded queue; when that is full too, it fails with
+    * [[RpcError.Overloaded]].
     */
   case Wait
 
-/** How one call is made.
+/** Options of one call.
   *
   * @param timeout from the call to its answer, waiting included; then [[RpcError.Timeout]]
-  * @param idempotent may run twice without harm: sent again, a bounded number of times, when its connection
-  *   is lost
+  * @param idempotent whether the call may run twice without harm: then it is sent again, a bounded number of
+  *   times, when its connection is lost
   * @param key calls with equal keys use one connection and are sent in the order of the calls
   * @param withdrawn when it completes, the answer is no longer awaited: [[RpcError.Timeout]] before the
   *   timeout is over
@@ -49,17 +50,17 @@ final case class CallOptions(
   *   has 5
   * @param sensorConnections connections of [[Channel.Sensors]], opened with its first call
   * @param bulkConnections connections of [[Channel.Bulk]], opened with its first call
-  * @param windowPerConnection most calls sent and not yet ended on one connection
-  * @param windowInAll most calls sent and not yet ended on all connections of a channel
-  * @param queue most calls of a channel that wait, for a place or for a connection being opened
-  * @param resends how often one idempotent call is sent again at most
+  * @param windowPerConnection limit of the calls sent and not yet ended on one connection
+  * @param windowInAll limit of the calls sent and not yet ended on all connections of a channel
+  * @param queue limit of a channel's calls that wait, for a place or for a connection being opened
+  * @param resends limit of the times that one idempotent call is sent again
   * @param rememberedIds how many timed-out calls a connection remembers, to recognise their late replies
-  * @param strays most values on a connection, since the last expected reply, that answer no call of ours;
-  *   then it is closed as malformed
+  * @param strays limit of the values on a connection, since the last expected reply, that answer no call of
+  *   ours; then it is closed as malformed
   * @param messageTime longest time from a message's first byte to its last; then its connection is closed as
   *   malformed
-  * @param openBytes most bytes of unfinished messages on all connections together, beyond 1 MiB on each; a
-  *   connection whose message finds no room is closed as malformed
+  * @param openBytes limit of the bytes of unfinished messages on all connections together, beyond 1 MiB on
+  *   each; a connection whose message finds no room is closed as malformed
   * @param limits of one message on [[Channel.Control]] and [[Channel.Sensors]]
   * @param bulkLimits of one message on [[Channel.Bulk]]
   */

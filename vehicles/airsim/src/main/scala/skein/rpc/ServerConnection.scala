@@ -12,16 +12,17 @@ import skein.link.{FirstBytes, Places}
 import skein.units.*
 import upack.Msg
 
-/** Serves one connection: requests' bytes in, replies' bytes out, replies in the order of completion.
+/** Serves one connection: takes the bytes of requests and emits the bytes of replies, in the order of their
+  * completion.
   *
-  *   - '''Emits when''' replies are ready; those ready together leave together.
-  *   - '''Backpressures when''' its limit of requests in progress, of reply bytes not yet taken, or of memory
-  *     held is reached. A request too large for the memory left waits for its connection's requests in
-  *     progress; then, or after the longest time for a message, it is answered with an error, and so is one
-  *     whose reply is too large.
-  *   - '''Completes when''' upstream has completed and every request is answered, or immediately on malformed
-  *     input or a limit that waiting cannot relieve.
-  *   - '''Cancels when''' downstream cancels, or on malformed input or such a limit.
+  * - '''Emits when''' replies are ready; those ready together leave together.
+  * - '''Backpressures when''' its limit of requests in progress, of reply bytes not yet taken, or of memory
+  *   held is reached. A request too large for the memory left waits for its connection's requests in
+  *   progress; then, or after the longest time for a message, it is answered with an error, and so is one
+  *   whose reply is too large.
+  * - '''Completes when''' upstream has completed and every request is answered, or immediately on malformed
+  *   input or a limit that waiting cannot relieve.
+  * - '''Cancels when''' downstream cancels, or on malformed input or such a limit.
   */
 private[rpc] final class ServerConnection(
     connection: Long,
@@ -176,7 +177,7 @@ private[rpc] final class ServerConnection(
               consumed = true
               segment = 0
             case Framed.Malformed(problem) => refuse(ServerLimit.Malformed, problem)
-        // The rest of it may never arrive: it is worth waiting only for its own requests.
+        // The rest of the message may never arrive: only the connection's own requests are worth waiting for.
         if consumed && reason.isEmpty && !mayRead && !underWay then tooMuch()
         turn.force(inFlight)
         holding.force(held)
@@ -188,12 +189,12 @@ private[rpc] final class ServerConnection(
 
       private def underWay: Boolean = inFlight > 0 || sending > 0 || writer.length > 0
 
-      /** Whether its memory is granted: if not, it waits until some of its requests are answered and their
-        * replies taken.
+      /** Whether the connection may take a request: its memory is granted, or nothing is under way whose end
+        * would free some.
         */
       private def hasRoom: Boolean = isGranted || !underWay
 
-      /** Whether it may read the rest of the incomplete message. */
+      /** Whether the connection may read the rest of the incomplete message. */
       private def mayRead: Boolean = isGranted || framer.heldBytes <= limits.heldBytesPerConnection
 
       private def tooMuch(): Unit = refuse(ServerLimit.Held, s"$held bytes of it are held, and $noMore")

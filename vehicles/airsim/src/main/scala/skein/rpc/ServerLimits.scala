@@ -2,9 +2,9 @@ package skein.rpc
 
 import skein.units.*
 
-/** What one server grants its peers. Times are exact to one [[ServerLimits.Watch]].
+/** Limits of one server for its peers. Times are exact to one [[ServerLimits.Watch]].
   *
-  * @param inFlightPerConnection most requests of one connection in progress; beyond that its socket is not
+  * @param inFlightPerConnection limit of one connection's requests in progress; beyond that its socket is not
   *   read
   * @param inFlightAssured requests that each connection may have in progress whatever the others do
   * @param inFlightInCommon beyond those, for all connections together, first come, first served. Requests in
@@ -12,16 +12,16 @@ import skein.units.*
   *   times as long
   * @param unsentBytesPerConnection a connection that has this many bytes of replies to take is not read until
   *   it has taken them
-  * @param connections most connections open. One more takes the place of the first that has requested nothing
-  *   yet, or of the one that has been silent for the longest time, if that is at least `silence`; else it is
-  *   closed on arrival
+  * @param connections limit of the open connections. A further one takes the place of the first that has
+  *   requested nothing yet, or of the one that has been silent for the longest time, if that is at least
+  *   `silence`; else it is closed on arrival
   * @param heldBytesPerConnection memory that one connection may always make the server hold: messages under
   *   way, requests in progress, replies not taken
   * @param heldBytesInCommon memory beyond that, for all connections together. A connection whose requests and
   *   replies hold it is not read until some are answered and taken. One without requests in progress whose
   *   unfinished message exceeds it is closed; a whole request, or a reply, that exceeds it becomes an error
-  * @param strays most values that are no messages between two requests; then the connection is closed, and
-  *   before the first request at the first of them
+  * @param strays limit of the values between two requests that are no messages; beyond it the connection is
+  *   closed. Before the first request, the first such value closes it
   * @param messageTime longest time from a message's first byte to its last, while the server waits for it
   * @param replyTime longest time without a peer taking any of its waiting replies
   * @param silence how long a connection must be silent, with nothing in progress, before a new one may take
@@ -58,11 +58,11 @@ final case class ServerLimits(
     s"times must be at least ${ServerLimits.Watch.toSeconds} s: $this"
   )
 
-  /** The most memory that peers can make the server hold, bytes. A connection over its own part may still
-    * finish what is small: hence twice that part.
+  /** Greatest memory that peers can make the server hold, bytes. A connection that exceeds its own part may
+    * still finish a small message: hence twice that part.
     */
   def heldBytes: Long = heldBytesInCommon + 2L * connections * heldBytesPerConnection
 
 object ServerLimits:
-  /** How often a connection's times are checked. */
+  /** Interval at which a connection's time limits are checked. */
   val Watch: Span = Span.ofSeconds(1)

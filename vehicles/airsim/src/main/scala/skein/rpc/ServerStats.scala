@@ -9,14 +9,15 @@ import java.util.concurrent.atomic.{AtomicLong, LongAdder}
   * @param turnedAway connections beyond the limit
   * @param closedWithReason connections that ended because of malformed input, a cut message, a limit or a
   *   failure
-  * @param malformed of those: for a value that is no message, or one beyond [[FrameLimits]]
-  * @param overHeld of those: because the memory limit was reached
-  * @param tooSlow of those: because a message, or taking replies, took too long
-  * @param idle of those: for silence, when their place was needed or after [[ServerLimits.idle]]
+  * @param malformed connections among `closedWithReason` that sent a value that is no message, or exceeds
+  *   [[FrameLimits]]
+  * @param overHeld connections among `closedWithReason` that reached the memory limit
+  * @param tooSlow connections among `closedWithReason` that took too long for a message, or to take replies
+  * @param idle connections among `closedWithReason` that were silent when their place was needed, or for
+  *   [[ServerLimits.idle]]
   * @param answered replies with a result
   * @param refused replies with an error
-  * @param lacking of those: requests, replies and dropped notifications that were too large for the memory
-  *   left
+  * @param lacking requests, replies and dropped notifications that were too large for the memory left
   * @param ignored values that were no messages
   * @param dropped requests taken and not run, because their connection had closed before their turn
   * @param heldBytes bytes held for peers now; see [[ServerLimits.heldBytes]]

@@ -32,7 +32,7 @@ class ImagesSuite extends munit.FunSuite:
 
   private def sent(images: ImageResponse*): Array[Byte] = ImageResponse.encode(images).bytes.toArray
 
-  test("an image is read as it was sent, its camera in the world"):
+  test("a received image has the sent pixels, and its camera's pose in the world"):
     val (read, exposed) = images(sent(image), raw).fold(fail(_), identity)
     assertEquals(exposed, at)
     assertEquals((read.head.width, read.head.height), (4, 2))
@@ -42,7 +42,7 @@ class ImagesSuite extends munit.FunSuite:
       case Pixels.Bgr(bytes) => assertEquals(bytes.toArray.toSeq, image.image_data_uint8.toSeq)
       case other             => fail(s"$other")
 
-  test("several images of one instant are in the order of the shots"):
+  test("the images of one call are returned in the order of the shots"):
     val far = image.copy(
       image_data_uint8 = Array.emptyByteArray,
       image_data_float = Array.tabulate(8)(_ * 0.5f),
@@ -54,10 +54,7 @@ class ImagesSuite extends munit.FunSuite:
       case Pixels.Numbers(values) => assertEquals(values.toSeq, far.image_data_float.toSeq)
       case other                  => fail(s"$other")
 
-  test(
-    "Cosys-AirSim's additional keys, other orders and missing keys are accepted, and binary sent as a " +
-      "string"
-  ):
+  test("images are read with additional keys, in other orders, with missing keys, and from strings"):
     val cosys = Obj(
       Str("annotation_name")  -> Str(""),
       Str("height")           -> Int32(2),
@@ -83,7 +80,7 @@ class ImagesSuite extends munit.FunSuite:
     assert(images(sent(image.copy(width = -4, height = -2)), raw).isLeft)
     assertEquals(images(sent(image), raw, raw), Left("expected 2 images, came 1"))
 
-  test("a scan is read as it was sent; one number is an empty cloud; mismatched ids are reported"):
+  test("a scan is read as sent, one number as an empty cloud, and mismatched ids are reported"):
     val cloud = LidarData(
       at,
       Array(1, 2, 3, 4, 5, 6),

@@ -7,10 +7,10 @@ class WorldSettingsSuite extends munit.FunSuite:
   private def problem(text: String): String =
     WorldSettings.parse(text).left.map(_.message).left.getOrElse("none")
 
-  test("settings without vehicles have AirSim's default one"):
+  test("settings without vehicles get AirSim's default vehicle"):
     assertEquals(WorldSettings.parse("{}").map(_.vehicles), Right(Vector(VehicleSettings("SimpleFlight"))))
 
-  test("SimMode is the type of vehicles that name none; a world may have both types"):
+  test("SimMode sets the type of vehicles without one, and a world may have vehicles of both types"):
     assertEquals(
       WorldSettings.parse("""{"SimMode": "Car"}""").map(_.vehicles),
       Right(Vector(VehicleSettings("PhysXCar", vehicleType = "PhysXCar")))
@@ -52,14 +52,14 @@ class WorldSettingsSuite extends munit.FunSuite:
       )
     )
 
-  test("vehicles with AutoCreate false do not exist; ComputerVision is a type that SimMode names, too"):
+  test("vehicles with AutoCreate false do not exist, and SimMode may be ComputerVision, too"):
     val text  = """{"SimMode": "ComputerVision", "ApiServerPort": 42, "Vehicles":
       {"A": {"AutoCreate": true}, "B": {"VehicleType": "PX4Multirotor", "AutoCreate": false}}}"""
     val world = WorldSettings.parse(text).fold(error => fail(error.message), identity)
     assertEquals(world.vehicles.map(vehicle => (vehicle.name, vehicle.isCamera)), Vector(("A", true)))
     assertEquals(world.apiPort, Some(42))
 
-  test("without vehicles the default one carries DefaultSensors"):
+  test("the default vehicle carries DefaultSensors if the settings list no vehicles"):
     val world = WorldSettings.parse("""{"DefaultSensors": {"G": {"SensorType": 3, "Enabled": true}}}""")
     assertEquals(
       world.map(_.vehicles.head.sensors),
@@ -70,7 +70,7 @@ class WorldSettingsSuite extends munit.FunSuite:
     val vehicles = Vector(VehicleSettings("A", Vector3(1, 2, -3)), VehicleSettings("B"))
     assertEquals(WorldSettings.parse(WorldSettings.render(vehicles)).map(_.vehicles), Right(vehicles))
 
-  test("a value that does not fit is named with its path, what was expected and what was found"):
+  test("an error about a value states its path, what was expected and what was found"):
     assertEquals(
       problem("""{"Vehicles": {"A": {"X": "1"}}}"""),
       "Vehicles.A.X: expected a number, found a string"
@@ -89,7 +89,7 @@ class WorldSettingsSuite extends munit.FunSuite:
       _.vehicles.head
     )
 
-  test("the default vehicle is the one with IsFpvVehicle, else the first by the alphabet"):
+  test("the default vehicle is the one with IsFpvVehicle, else the alphabetically first"):
     def default(text: String) = WorldSettings.parse(text).map(_.defaultVehicle.name)
     assertEquals(default("""{"Vehicles": {"B": {}, "A": {}}}"""), Right("A"))
     assertEquals(default("""{"Vehicles": {"B": {"IsFpvVehicle": true}, "A": {}}}"""), Right("B"))

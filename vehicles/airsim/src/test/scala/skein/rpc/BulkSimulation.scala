@@ -62,7 +62,7 @@ class BulkSimulation extends munit.FunSuite:
   private def p99(sorted: Vector[Double]): Double = sorted((0.99 * sorted.size).toInt)
 
   test(
-    "over 50 Mbit/s, control waits for images on its own connection, and less than 6 ms for those on theirs"
+    "over 50 Mbit/s, images delay control by less than 6 ms on their own connection, by far more on control's"
   ):
     val (alone, _)     = fly(Images.None)
     val (beside, came) = fly(Images.OwnLane)
@@ -72,7 +72,7 @@ class BulkSimulation extends munit.FunSuite:
     assert(p99(beside) < 26, p99(beside))
     assert(p99(behind) > 300, p99(behind))
 
-  test("a result of another form than requested is reported, and the connection survives"):
+  test("a result of another type than requested is reported, and the connection survives"):
     val answers = VirtualTime
       .run(1): system =>
         given ActorSystem = system

@@ -7,14 +7,14 @@ class CallLinesSuite extends munit.FunSuite:
   private def drain[A](lines: CallLines[A]): Seq[A] =
     Iterator.continually(lines.take()).takeWhile(_.nonEmpty).flatten.toSeq
 
-  test("the first call of each connection is taken in turn, then the waiting ones in order"):
+  test("the first call of each connection is taken in turn, then its further calls in order"):
     val lines = CallLines[String]()
     for (connection, call) <- Seq(1 -> "a1", 1 -> "a2", 1 -> "a3", 2 -> "b1", 3 -> "c1", 3 -> "c2") do
       lines.put(connection, call)
     assertEquals(drain(lines), Seq("a1", "b1", "c1", "a2", "a3", "c2"))
     assert(lines.isEmpty)
 
-  test("for any number of calls of 200 others, a call waits for at most one of each"):
+  test("a call waits for at most one call of each of 200 other connections, however many they make"):
     for seed <- 1 to 20 do
       val random  = Random(seed)
       val lines   = CallLines[Long]()
@@ -26,8 +26,8 @@ class CallLinesSuite extends munit.FunSuite:
       assert(ahead <= 200, s"$ahead calls went ahead, seed $seed")
 
   test(
-    "a client that calls rarely goes ahead of 200 that call without a pause, which are woken once for " +
-      "several answers"
+    "a client that calls rarely goes ahead of 200 constantly calling ones, which wake once for several " +
+      "answers"
   ):
     for pause <- Seq(60, 200, 1000) do
       val lines = CallLines[Long]()
@@ -49,7 +49,7 @@ class CallLinesSuite extends munit.FunSuite:
       assert(others.max - others.min <= 6, s"from ${others.min} to ${others.max}, pause $pause")
       assert(wakes < served.sum * 0.31, s"$wakes wakes for ${served.sum} calls, pause $pause")
 
-  test("a client that calls as fast as it can has its share and no more"):
+  test("a client that calls as fast as it can gets its share and no more"):
     val lines = CallLines[Long]()
     for connection <- 1L to 20L; _ <- 1 to 256 do lines.put(connection, connection)
     val served = new Array[Int](21)
@@ -61,7 +61,7 @@ class CallLinesSuite extends munit.FunSuite:
     assert(served(0) <= 4.1 * served.drop(1).min, served.toSeq)
     assert(served.drop(1).min > 800, served.toSeq)
 
-  test("calls of a connection that has closed are dropped and counted, the others' stay"):
+  test("the calls of a closed connection are dropped and counted, and those of others stay"):
     val lines = CallLines[String]()
     for connection <- 1L to 2L; i <- 1 to 3 do lines.put(connection, s"$connection-$i")
     assertEquals(lines.take(), Some("1-1"))
@@ -72,7 +72,7 @@ class CallLinesSuite extends munit.FunSuite:
     lines.put(1, "again")
     assertEquals(drain(lines), Seq("again"))
 
-  test("calls added by several threads are all taken, each connection's in order"):
+  test("calls added by several threads are all taken, in order for each connection"):
     val lines   = CallLines[(Long, Int)]()
     val each    = 20_000
     val threads =
@@ -88,7 +88,7 @@ class CallLinesSuite extends munit.FunSuite:
     for (connection, calls) <- taken.result().groupMap(_._1)(_._2) do
       assertEquals(calls, 1 to each, s"connection $connection")
 
-  test("urgent calls are taken before all others, with what they supersede of their own connection"):
+  test("an urgent call is taken first, with the calls of its connection that it supersedes"):
     val lines = CallLines[String](isUrgent = _.startsWith("!"))
     for call <- Seq("move a", "read", "!hover a", "move b") do lines.put(1, call)
     for call <- Seq("move a", "!ping") do lines.put(2, call)

@@ -73,7 +73,7 @@ class ChannelStateSuite extends munit.FunSuite:
     l.open(1)
     assertEquals(l.sentNames, Seq("a", "b"))
 
-  test("an answer has the times of its request's sending and of its receipt"):
+  test("an answer has the times at which its request was sent and the answer was received"):
     val l = channel()
     l.open(1)
     l.submit("a")
@@ -81,7 +81,7 @@ class ChannelStateSuite extends munit.FunSuite:
     l.reply("a", at = 8)
     assertEquals(l.times("a"), (ms(3), ms(8)))
 
-  test("a call without a key goes where the fewest are in flight, in rotation among equals"):
+  test("a call without a key goes to the connection with the fewest in flight, in rotation among equals"):
     val l = channel(connections = 3, inAll = 9)
     l.open(0, 1, 2)
     Seq("a", "b", "c", "d").foreach(l.submit(_))
@@ -90,7 +90,7 @@ class ChannelStateSuite extends munit.FunSuite:
     l.submit("e")
     assertEquals(l.connectionOf("e"), 1)
 
-  test("replies in any order reach their own calls"):
+  test("replies reach their own calls in any order"):
     val l = channel()
     l.open(0, 1)
     Seq("a", "b", "c").foreach(l.submit(_))
@@ -99,13 +99,13 @@ class ChannelStateSuite extends munit.FunSuite:
     l.reply("b", Int32(2))
     assertEquals(l.ends.toMap, Map("a" -> Right(Int32(1)), "b" -> Right(Int32(2)), "c" -> Right(Int32(3))))
 
-  test("ids count per connection from 0"):
+  test("each connection numbers its calls from 0"):
     val l = channel(connections = 1, perConnection = 9, inAll = 9)
     l.open(0)
     Seq("a", "b", "c").foreach(l.submit(_))
     assertEquals(l.sent.map(_.id).toSeq, Seq(0L, 1L, 2L))
 
-  test("the window of all connections refuses what exceeds it, or lets it wait, and frees with each answer"):
+  test("a full window of all connections refuses calls or lets them wait, until an answer frees a place"):
     val l = channel(perConnection = 9)
     l.open(0, 1)
     Seq("a", "b", "c").foreach(l.submit(_))
@@ -119,7 +119,7 @@ class ChannelStateSuite extends munit.FunSuite:
     l.reply("b")
     assertEquals(l.sentNames, Seq("a", "b", "c", "d"))
 
-  test("the window of a connection holds a key's calls back while other keys go on"):
+  test("a full window of one connection delays the calls of its keys, but not those of other keys"):
     val l = channel(perConnection = 1, inAll = 9)
     l.open(0, 1)
     l.submit("a", wait.copy(key = Some(0)))
@@ -145,10 +145,7 @@ class ChannelStateSuite extends munit.FunSuite:
     assertEquals(l.sentNames, Seq("a", "b", "c", "d"))
     assertEquals(Seq("b", "c").map(l.connectionOf), Seq(1, 1))
 
-  test(
-    "a call times out at its deadline, its place is free immediately, and its late reply is reported " +
-      "and dropped"
-  ):
+  test("a call times out at its deadline and frees its place, and its late reply is reported and dropped"):
     val l = channel(connections = 1, perConnection = 1)
     l.open(0)
     l.submit("a", CallOptions(timeout = Span.ofMillis(500)))
@@ -184,7 +181,7 @@ class ChannelStateSuite extends munit.FunSuite:
     assertEquals(l.counters.snapshot.late, 2L)
     assertEquals(l.counters.snapshot.unexpected, 1L)
 
-  test("when a connection is lost its calls may have run, and only idempotent ones go out again"):
+  test("after the loss of a connection its calls may have run, and only idempotent ones are sent again"):
     val l = channel(inAll = 9)
     l.open(0, 1)
     l.submit("move", CallOptions(key = Some(0)))
@@ -216,14 +213,14 @@ class ChannelStateSuite extends munit.FunSuite:
     l.state.lost(l.connectionOf("read"), "reset", malformed = false)
     assertEquals(l.usedInTurn.toSeq, Seq(0, 1))
 
-  test("calls on a connection closed for malformed bytes report that"):
+  test("calls on a connection that is closed for malformed bytes fail with that reason"):
     val l = channel()
     l.open(0)
     l.submit("a")
     l.state.lost(0, "byte 0xc1", malformed = true)
     assertEquals(l.error("a"), RpcError.Malformed("a", "byte 0xc1"))
 
-  test("without an answer, waiting calls and later ones fail immediately until a connection opens"):
+  test("while no connection opens, waiting and later calls fail immediately"):
     val l = channel()
     l.submit("waiting")
     l.submit("keyed", CallOptions(key = Some(0)))
@@ -242,7 +239,7 @@ class ChannelStateSuite extends munit.FunSuite:
     assertEquals(l.sentNames, Seq("after", "second"))
     assertEquals(l.ends.keySet, Set("waiting", "keyed", "later", "fifth"))
 
-  test("attempts to connect back off, doubling up to the longest, and start anew after an answer"):
+  test("pauses between attempts to connect double up to the longest, and start anew after an answer"):
     val l = channel(connections = 1)
     for _ <- 1 to 8 do l.state.openFailed(0, "refused")
     l.open(0)
@@ -272,7 +269,7 @@ class ChannelStateSuite extends munit.FunSuite:
     assertEquals(l.error("flying"), RpcError.Cancelled("flying"))
     assertEquals(l.error("waiting"), RpcError.Cancelled("waiting"))
 
-  test("a refusal carries the peer's own text, a reply to no call changes nothing"):
+  test("a refusal contains the peer's text, and a reply to no call changes nothing"):
     val l = channel()
     l.open(0)
     l.submit("a")
@@ -331,7 +328,7 @@ class ChannelStateSuite extends munit.FunSuite:
     channel.state.replied(0, RpcMessage.Reply(first.id, Null, Null), ms(800))
     assertEquals(channel.counters.snapshot.late, 1L)
 
-  test("a call that has ended, or waits, can be withdrawn as well"):
+  test("a call can also be withdrawn while it waits, or after it has ended"):
     val channel = this.channel(connections = 1, perConnection = 1)
     channel.open(0)
     channel.submit("first", at = 0)

@@ -6,7 +6,7 @@ import upack.*
 
 class FramerLaws extends munit.FunSuite:
 
-  test("any segmentation of a stream gives the same values as the oracle wrote"):
+  test("the framer returns the oracle's values for any segmentation of the stream"):
     for seed <- 1 to 100 do
       val random = Random(seed)
       val frames = Seq.fill(1 + random.nextInt(8))(Wire.pack(Wire.randomMsg(random)))
@@ -15,7 +15,7 @@ class FramerLaws extends munit.FunSuite:
       assertEquals(texts(found), frames.map(hex), s"seed $seed")
       assert(!framer.midway, s"seed $seed")
 
-  test("single bytes are enough, and a value's end is known without the byte after it"):
+  test("a value is complete with its last byte, even if the bytes arrive one at a time"):
     val frames =
       Seq(Arr(Int32(0), Binary(new Array[Byte](9000))), Obj(Str("x") -> Float64(1)), Null).map(Wire.pack)
     val framer = Framer()
@@ -28,14 +28,14 @@ class FramerLaws extends munit.FunSuite:
     assertEquals(framer.next(), Framed.NeedsMore)
     assert(framer.midway)
 
-  test("every prefix of a message needs more, none is mistaken for a value"):
+  test("no prefix of a message is mistaken for a value"):
     val frame = Wire.pack(Arr(Int32(300), Str("x" * 300), Arr(Float32(1), Ext(1, new Array[Byte](3))), Obj()))
     for cut <- 0 until frame.length do
       val framer = Framer()
       framer.offer(ByteString(frame.take(cut)))
       assertEquals(framer.next(), Framed.NeedsMore, s"cut at $cut")
 
-  test("the byte 0xc1 is refused, wherever it stands, and nothing is read after it"):
+  test("the byte 0xc1 is refused at any position, and nothing is read after it"):
     val framer = Framer()
     framer.offer(ByteString(0x01, 0x92, 0xc1, 0x01))
     assert(framer.next().isInstanceOf[Framed.Complete])
@@ -62,12 +62,12 @@ class FramerLaws extends munit.FunSuite:
     val bytes  = Seq(0x9f) ++ Seq.fill(15)(Seq(0xcb) ++ Seq.fill(8)(0)).flatten
     assertRefused(limits, "a message of at least 109 bytes; at most 100 are accepted")(bytes*)
 
-  test("nesting deeper than the limit is refused, at the limit accepted"):
+  test("nesting is accepted up to the limit and refused beyond it"):
     def nested(levels: Int) = (1 until levels).foldLeft(Arr(Null))((inner, _) => Arr(inner))
     assertAccepted(FrameLimits(depth = 10), nested(10))
     assertRefused(FrameLimits(depth = 10), "nested deeper than 10 levels")(Seq.fill(11)(0x91)*)
 
-  test("more elements than the limit are refused at the header, map entries counting twice"):
+  test("a header with more elements than the limit is refused, and map entries count twice"):
     assertAccepted(FrameLimits(elements = 6), Arr(Null, Obj(Null -> Null), Null, Null))
     assertRefused(FrameLimits(elements = 6), "a message of at least 7 values; at most 6 are accepted")(
       0x91,
@@ -79,7 +79,7 @@ class FramerLaws extends munit.FunSuite:
       0xdd, 0xff, 0xff, 0xff, 0xff
     )
 
-  test("a map of too many keys is refused at its header, before any key: so equal hashes cost little"):
+  test("a map with too many keys is refused at its header, so that keys with equal hashes cost little"):
     assertAccepted(FrameLimits(keys = 2), Obj(Str("a") -> Null, Str("b") -> Obj(Null -> Null)))
     assertRefused(FrameLimits(keys = 2), "a map of 3 keys; at most 2 are accepted")(0x83)
     assertRefused(FrameLimits(), "a map of 40000 keys; at most 128 are accepted")(
@@ -87,7 +87,7 @@ class FramerLaws extends munit.FunSuite:
     )
     assertRefused(FrameLimits(), "a map of 65536 keys; at most 128 are accepted")(0xdf, 0, 1, 0, 0)
 
-  test("empty maps are a byte each on the wire and an object each in memory: they are counted"):
+  test("empty maps count towards a limit, because each is one byte but becomes an object"):
     assertAccepted(FrameLimits(maps = 2), Arr(Obj(), Obj()))
     assertRefused(FrameLimits(maps = 2), "a message of at least 3 maps; at most 2 are accepted")(
       0x93,

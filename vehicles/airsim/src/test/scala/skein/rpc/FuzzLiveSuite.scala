@@ -11,12 +11,12 @@ class FuzzLiveSuite extends munit.FunSuite:
     val _ = system.terminate()
 
   test(
-    "300 mutated sequences: the server closes each connection with its reason and serves others meanwhile"
+    "the server closes 300 connections with mutated bytes for the right reasons, and serves others meanwhile"
   ):
     val figures = PairFuzz.server(300, seed = 1)
     assertEquals(figures.healthy, 300L)
     assert(figures.closedWithReason > 50, s"$figures")
 
-  test("300 mutated answers: each call ends, with a result only if it was sent for that call"):
+  test("each call with one of 300 mutated answers ends, with a result only if it was sent for that call"):
     val figures = PairFuzz.client(300, seed = 1)
     assert(figures.right > 30 && figures.refused > 3 && figures.failed > 50, s"$figures")

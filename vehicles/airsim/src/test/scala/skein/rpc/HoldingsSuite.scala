@@ -4,7 +4,7 @@ import scala.util.Random
 
 class HoldingsSuite extends munit.FunSuite:
 
-  test("each may hold its own part whatever the others do, and more while the common part suffices"):
+  test("a connection may always hold its own part, and more while the common part suffices"):
     val holdings = Holdings(each = 10, common = 100)
     val greedy   = holdings.Holding()
     val modest   = holdings.Holding()
@@ -18,7 +18,7 @@ class HoldingsSuite extends munit.FunSuite:
     assert(greedy.resize(0) && modest.resize(0))
     assertEquals((holdings.bytes, holdings.mostBytes), (0L, 120L))
 
-  test("existing bytes are held, granted or not, and given back"):
+  test("forced bytes are held even if not granted, and are given back"):
     val holdings = Holdings(each = 10, common = 5)
     val one      = holdings.Holding()
     one.force(50)
@@ -33,7 +33,7 @@ class HoldingsSuite extends munit.FunSuite:
     one.force(0)
     assert(holdings.Holding().resize(15))
 
-  test("over any requests the whole stays below the common part and every own one"):
+  test("for any requests the total never exceeds the common part and all own parts"):
     for seed <- 1 to 100 do
       val random   = Random(seed)
       val holdings = Holdings(each = 10, common = 50)
@@ -44,7 +44,7 @@ class HoldingsSuite extends munit.FunSuite:
       all.foreach(_.force(0))
       assertEquals(holdings.bytes, 0L, s"seed $seed")
 
-  test("what was forced is granted once all together hold exactly the common part"):
+  test("forced bytes are granted once all connections together hold exactly the common part"):
     val holdings   = Holdings(each = 10, common = 5)
     val (one, two) = (holdings.Holding(), holdings.Holding())
     assert(two.resize(12))

@@ -50,12 +50,12 @@ class HostileServerSuite extends munit.FunSuite:
 
   private def malformed(reason: String) = Left(RpcError.Malformed("read", reason))
 
-  rig("an answer with 40,000 keys of equal hashes is refused at the map's header"): r =>
+  rig("a map of 40,000 keys with equal hashes in an answer is refused at its header"): r =>
     val (peer, id) = r.call()
     peer.send(ByteString(0x94, 0x01, id.toInt, 0xc0, 0xde, 0x9c, 0x40))
     assertEquals(r.outcome(), malformed("a map of 40000 keys; at most 128 are accepted"))
 
-  rig("answers nobody waits for end the connection, however many come"): r =>
+  rig("a flood of answers to no call ends the connection"): r =>
     val (peer, _) = r.call()
     val writer    = MessageWriter()
     for id <- 1 to 5000 do writer.reply(1_000_000L + id, Right(Null))
@@ -71,7 +71,7 @@ class HostileServerSuite extends munit.FunSuite:
     assertEquals(r.closed(), "more than 1000 values in a row that answer no call")
     assertEquals(r.client.stats.ignored, 1001L)
 
-  rig("strays between answers are borne"): r =>
+  rig("a limited number of other messages between answers is tolerated"): r =>
     val writer     = MessageWriter()
     val (peer, id) = r.call()
     for _ <- 1 to 900 do writer.notification("look", Seq.empty)
@@ -94,7 +94,7 @@ class HostileServerSuite extends munit.FunSuite:
       assert(System.nanoTime() < patience, "the connection was not closed")
     assertEquals(r.closed(), "a message under way for more than 60 s")
 
-  rig("unfinished messages share one store", RpcSettings(controlConnections = 1, openBytes = 1 << 20)): r =>
+  rig("unfinished messages share one limit", RpcSettings(controlConnections = 1, openBytes = 1 << 20)): r =>
     val (peer, id) = r.call()
     val answer = ByteString(Wire.pack(Arr(Int32(1), Int32(id.toInt), Null, Binary(new Array[Byte](3 << 20)))))
     peer.send(answer.take((2 << 20) + 1))
@@ -103,14 +103,14 @@ class HostileServerSuite extends munit.FunSuite:
       malformed("2097153 bytes of an unfinished message are held, and no more than 1048576 in all")
     )
 
-  rig("an endless text of an error is cut"): r =>
+  rig("an error text of any length is shortened"): r =>
     val (peer, id) = r.call()
     peer.refuse(id, "no" * 1_000_000)
     r.outcome() match
       case Left(RpcError.Refused("read", text)) => assertEquals(text, "no" * 2000 + "… (2000000 characters)")
       case other                                => fail(s"$other")
 
-  rig("a peer that never answers costs a window of calls, and each says so"): r =>
+  rig("if a peer never answers, a window of calls times out and the others are refused"): r =>
     val calls = Seq.fill(2000)(r.client.call("read", Seq.empty, CallOptions(timeout = Span.ofSeconds(1))))
     val peer  = r.transport.peer()
     val _     = peer.request()
@@ -144,7 +144,7 @@ class HostileServerSuite extends munit.FunSuite:
       ("in the place of a number", outer(one(Null), Arr()), "expected a value in inner.x, came nil")
     )
   do
-    rig(s"nil $where is a malformed answer, told in one line"): r =>
+    rig(s"an answer with nil $where is malformed, and is reported in one line"): r =>
       val message = asked(r, answer)
       assertEquals(message, s"read: malformed answer: $reason")
 
@@ -158,10 +158,10 @@ class HostileServerSuite extends munit.FunSuite:
       )
     )
   do
-    rig(s"what is of another type $where is told without the names of classes"): r =>
+    rig(s"a value of another type $where is reported without class names"): r =>
       assertEquals(asked(r, answer), s"read: malformed answer: $reason")
 
-  rig("a state that is no number is a malformed answer"): r =>
+  rig("a vehicle state with NaN is a malformed answer"): r =>
     val state                              = Multirotor(AirSimClient(r.client), "A").status()
     val peer                               = r.transport.peer()
     def all(number: Float, names: String*) =

@@ -18,7 +18,7 @@ class MessageReaderSuite extends munit.FunSuite:
         in.int()
       assertEquals(after, Right(77), s"seed $seed")
 
-  test("integers are read from every form, floats from integers and doubles too"):
+  test("integers are read from every encoding, and floats also from integers and doubles"):
     val edges = (0 to 62).flatMap(bit => Seq(1L << bit, -(1L << bit), (1L << bit) - 1))
     for edge <- edges do assertEquals(read(Wire.pack(Int64(edge)))(_.long()), Right(edge))
     val numbers = Arr(Float32(1.5f), Float64(-2.25), Int32(3), Int32(-4000))
@@ -32,13 +32,13 @@ class MessageReaderSuite extends munit.FunSuite:
     assert(binary.buffer.isReadOnly)
     intercept[IndexOutOfBoundsException](binary(3))
 
-  test("binary and strings of every form are read whole, up to the last byte of a message"):
+  test("binary and strings of every encoding are read whole, up to the last byte of a message"):
     for length <- Seq(0, 1, 31, 32, 255, 256, 65535, 65536) do
       val bytes = Array.fill[Byte](length)('a')
       for value <- Seq(Binary(bytes), Str("a" * length)) do
         assertEquals(read(Wire.pack(value))(_.binary().toArray.sameElements(bytes)), Right(true), s"$length")
 
-  test("a map of more fields than bytes are left for is refused before any is read"):
+  test("a map with more fields than the remaining bytes can hold is refused before any field is read"):
     for head <- Seq(Array(0xde, 0, 5), Array(0xdf, 0, 0, 0, 5)) do
       val map = (head ++ Array.fill(9)(0xc0)).map(_.toByte)
       assertEquals(

@@ -18,7 +18,7 @@ class PatienceSuite extends munit.FunSuite:
       .collectFirst { case Some(end) => end }
       .get
 
-  test("a message may take its time limit, whether bytes trickle in or not"):
+  test("a message may take its whole time limit, whether its bytes trickle in or not"):
     for trickles <- Seq(true, false) do
       val patience = Patience(limits)
       val end      = lasts: _ =>
@@ -26,7 +26,7 @@ class PatienceSuite extends munit.FunSuite:
         patience.watch(forMessage = true, forTaking = false, forNothing = false)
       assertEquals(end, (11, ServerLimit.Time, "a message under way for more than 10 s"))
 
-  test("many consecutive messages may take any time together"):
+  test("consecutive messages may together take longer than the time limit of one"):
     val patience = Patience(limits)
     for i <- 1 to 1000 do
       if i % 9 == 0 then patience.completed()
@@ -37,19 +37,19 @@ class PatienceSuite extends munit.FunSuite:
     for i <- 1 to 1000 do
       assertEquals(patience.watch(forMessage = i % 9 != 0, forTaking = false, forNothing = false), None)
 
-  test("replies may wait for their time limit, which restarts whenever some are taken"):
+  test("replies may wait for as long as their time limit, which restarts whenever some are taken"):
     val patience = Patience(limits)
     for _ <- 1 to 25 do patience.watch(forMessage = false, forTaking = true, forNothing = false)
     patience.taken()
     val end = lasts(_ => patience.watch(forMessage = false, forTaking = true, forNothing = false))
     assertEquals(end, (31, ServerLimit.Time, "replies not taken for more than 30 s"))
 
-  test("replies that are all taken once within their time limit are not late"):
+  test("replies are not late if all are taken at least once within their time limit"):
     val patience = Patience(limits)
     for i <- 1 to 1000 do
       assertEquals(patience.watch(forMessage = false, forTaking = i % 31 != 0, forNothing = false), None)
 
-  test("limits of one are allowed, and none of nothing"):
+  test("limits may have their smallest values, and no smaller ones"):
     val least = ServerLimits(
       inFlightPerConnection = 1,
       inFlightAssured = 1,

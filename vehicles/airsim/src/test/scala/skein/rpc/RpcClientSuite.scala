@@ -43,7 +43,7 @@ class RpcClientSuite extends munit.FunSuite:
       val r = Rig(connections)
       body(r).transformWith(result => r.client.close().transform(_ => result))
 
-  rig("answers that come out of order, or in one segment, reach their own calls"): r =>
+  rig("answers out of order, or in one segment, reach their own calls"): r =>
     val calls  = Seq("a", "b", "c").map(r.call(_))
     val peer   = r.transport.peer()
     val ids    = Seq.fill(3)(peer.request()).map(request => request.method -> request.id).toMap
@@ -52,13 +52,13 @@ class RpcClientSuite extends munit.FunSuite:
     peer.send(writer.take())
     Future.sequence(calls).map(assertEquals(_, Seq(1, 2, 3).map(n => Right(Int32(n)))))
 
-  rig("a refusal carries the peer's text"): r =>
+  rig("a refusal contains the peer's text"): r =>
     val call = r.call("takeoff")
     val peer = r.transport.peer()
     peer.refuse(peer.request().id, "std::bad_cast")
     call.map(assertEquals(_, Left(RpcError.Refused("takeoff", "std::bad_cast"))))
 
-  rig("a late answer is dropped and counted, the calls after it get their own"): r =>
+  rig("a late answer is dropped and counted, and later calls get their own answers"): r =>
     val late = r.call("late", CallOptions(timeout = Span.ofMillis(5)))
     val peer = r.transport.peer()
     val id   = peer.request().id
@@ -76,7 +76,7 @@ class RpcClientSuite extends munit.FunSuite:
       assertEquals(r.client.stats.timedOut, 1L)
       assertEquals(r.client.stats.pending, 0L)
 
-  rig("when the connection is lost a call may have run; the client connects again by itself"): r =>
+  rig("after the loss of its connection a call may have run, and the client connects again by itself"): r =>
     val lost = r.call("move")
     val peer = r.transport.peer()
     val _    = peer.request()
@@ -105,7 +105,7 @@ class RpcClientSuite extends munit.FunSuite:
       assertEquals(result, Right(Int32(7)))
       assertEquals(r.client.stats.sentAgain, 1L)
 
-  rig("malformed bytes close that one connection, with the reason; the other goes on", connections = 2): r =>
+  rig("malformed bytes close only their own connection, with the reason", connections = 2): r =>
     val calls          = Seq(r.call("a", CallOptions(key = Some(0))), r.call("b", CallOptions(key = Some(1))))
     val peers          = Seq.fill(2)(r.transport.peer()).map(peer => peer -> peer.request())
     val Seq(bad, good) = peers.sortBy(_._2.method): @unchecked
@@ -120,7 +120,7 @@ class RpcClientSuite extends munit.FunSuite:
           Seq(Left(RpcError.Malformed("a", "byte 0xc1, which MessagePack never uses")), Right(Int32(2)))
         )
 
-  rig("values that are no replies are counted and the connection lives"): r =>
+  rig("values that are no replies are counted, and the connection stays open"): r =>
     val call = r.call("a")
     val peer = r.transport.peer()
     val id   = peer.request().id
@@ -141,7 +141,7 @@ class RpcClientSuite extends munit.FunSuite:
       _      <- client.close()
     yield assertEquals(result, Left(RpcError.Unreachable(address, "connection refused")))
 
-  rig("calls with one key share a connection, in order; other keys have others", connections = 3): r =>
+  rig("calls with equal keys share a connection, in order, and others use other ones", connections = 3): r =>
     val keyed = (1 to 4).map(i => r.call(s"$i", CallOptions(key = Some(7))))
     val other = (5 to 6).map(i => r.call(s"$i", CallOptions(key = Some(3 + i))))
     val peers = Seq.fill(3)(r.transport.peer())
@@ -153,7 +153,7 @@ class RpcClientSuite extends munit.FunSuite:
     for _ <- Future.sequence(keyed ++ other)
     yield assertEquals(seen.toSet, Set(Seq("1", "2", "3", "4"), Seq("5"), Seq("6")))
 
-  rig("a result of another type is malformed, and says so"): r =>
+  rig("a result of another type is reported as malformed"): r =>
     val call = r.client.callAs[Double]("x", Seq.empty)
     val peer = r.transport.peer()
     peer.answer(peer.request().id, Str("no number"))
@@ -161,7 +161,7 @@ class RpcClientSuite extends munit.FunSuite:
       case Left(RpcError.Malformed("x", _)) => ()
       case other                            => fail(s"$other")
 
-  rig("closing ends calls under way and later ones, and closes the connections"): r =>
+  rig("closing ends current and later calls, and closes the connections"): r =>
     val call = r.call("a")
     val peer = r.transport.peer()
     val _    = peer.request()

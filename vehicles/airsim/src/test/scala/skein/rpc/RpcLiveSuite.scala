@@ -31,7 +31,7 @@ class RpcLiveSuite extends munit.FunSuite:
       _      <- server.close()
     yield result
 
-  test("a call gets its result, an unknown function the peer's text, a throwing one rpclib's"):
+  test("a call gets its result, the peer's text if the function is unknown, or rpclib's if it throws"):
     withPair: (_, client) =>
       for
         sum     <- client.callAs[Double]("add", Seq(Float64(1.5), Float64(2)))
@@ -54,7 +54,7 @@ class RpcLiveSuite extends munit.FunSuite:
           )
         )
 
-  test("ten thousand pipelined calls each get their own answer, and a flow keeps their order"):
+  test("ten thousand pipelined calls each get their own answer, and a flow emits them in order"):
     withPair: (_, client) =>
       Source(1 to 10_000)
         .mapAsync(200)(i =>
@@ -82,10 +82,7 @@ class RpcLiveSuite extends munit.FunSuite:
       case other                                  => fail(s"$other")
     }
 
-  test(
-    "a connection beyond the limit is refused and counted; when the server closes, calls fail and none " +
-      "hangs"
-  ):
+  test("a connection beyond the limit is refused and counted, and all calls fail when the server closes"):
     val one = RpcSettings(controlConnections = 1)
     for
       server <- RpcServer.bind(transport, Address("127.0.0.1", 0), ServerLimits(connections = 1))(handler)

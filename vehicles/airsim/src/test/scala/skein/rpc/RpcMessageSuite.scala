@@ -5,7 +5,7 @@ import upack.*
 
 class RpcMessageSuite extends munit.FunSuite:
 
-  test("what the writer encodes is what the oracle reads"):
+  test("the oracle reads what the writer encodes"):
     for seed <- 1 to 100 do
       val random = Random(seed)
       val params = Seq.fill(random.nextInt(20))(Wire.randomMsg(random))
@@ -15,7 +15,7 @@ class RpcMessageSuite extends munit.FunSuite:
       assertEquals(read.size, 4, s"seed $seed")
       assertEquals(read.get(3), Wire.toValue(Arr(params*)), s"seed $seed")
 
-  test("what the oracle encodes is what a reply's result reads as"):
+  test("a reply's result is read as the oracle encoded it"):
     for seed <- 1 to 100 do
       val random = Random(seed)
       val result = Wire.randomMsg(random)
@@ -24,7 +24,7 @@ class RpcMessageSuite extends munit.FunSuite:
           assertEquals(Wire.toValue(read), Wire.toValue(result), s"seed $seed")
         case other => fail(s"$other, seed $seed")
 
-  test("id and method of a call are read from its beginning"):
+  test("the id and method of a call are read from its first bytes"):
     val call = Wire.pack(Arr(Int32(0), Int32(70_000), Str("simSetMesh"), Arr(Binary(new Array[Byte](100)))))
     assertEquals(RpcMessage.headOf(call.take(30)), Some((id = Some(70_000L), method = "simSetMesh")))
     assertEquals(RpcMessage.headOf(call.take(8)), None)
@@ -49,7 +49,7 @@ class RpcMessageSuite extends munit.FunSuite:
         writer.reply(0, Right(value))
         assertEquals(writer.take().toArray.drop(4).toSeq, Wire.pack(value).toSeq, s"$length")
 
-  test("messages written together are taken together, once"):
+  test("all messages written since the last take are taken together, once"):
     val writer = MessageWriter()
     writer.request(1, "a", Seq(Binary(new Array[Byte](100_000))))
     writer.notification("b", Seq(Null))

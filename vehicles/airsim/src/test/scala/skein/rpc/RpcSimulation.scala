@@ -85,7 +85,7 @@ class RpcSimulation extends munit.FunSuite:
     assertEquals(fly(7), fly(7))
     assertNotEquals(fly(7), fly(8))
 
-  test("calls that wait for a place are all answered, where more are in progress than the windows hold"):
+  test("all calls are answered, even if more are made than the windows hold"):
     val (answers, stats) = VirtualTime
       .run(seed = 3): system =>
         given ActorSystem = system

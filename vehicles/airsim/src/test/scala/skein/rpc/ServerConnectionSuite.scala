@@ -78,7 +78,7 @@ class ServerConnectionSuite extends munit.FunSuite:
     slow._2.success(Left("no"))
     assertEquals(r.reply(), RpcMessage.Reply(1, Str("no"), Null))
 
-  test("a handler that throws or fails answers in rpclib's words and the connection survives"):
+  test("the error of a handler that throws or fails has rpclib's text, and the connection survives"):
     val r     = Rig()
     val words =
       "rpclib: function 'throw' (called with 0 arg(s)) threw an exception. " +
@@ -177,7 +177,7 @@ class ServerConnectionSuite extends munit.FunSuite:
     val _ = r.next()
     assertEquals(r.counters.snapshot.requests, 3L)
 
-  test("from a peer that takes no replies nothing more is read"):
+  test("nothing more is read from a peer that takes no replies"):
     val r       = Rig(ServerLimits(unsentBytesPerConnection = 1000))
     val request = ByteString(Wire.pack(Arr(Int32(0), Int32(1), Str("slow"), Arr())))
     r.send(request ++ request ++ request)
@@ -189,7 +189,7 @@ class ServerConnectionSuite extends munit.FunSuite:
     val _ = r.next()
     assertEquals(r.counters.snapshot.requests, 4L)
 
-  test("after the peer has finished sending, its requests are still answered"):
+  test("the requests of a peer that has finished sending are still answered"):
     val r = Rig()
     r.ask(1, "slow")
     r.requests.sendComplete()
@@ -199,7 +199,7 @@ class ServerConnectionSuite extends munit.FunSuite:
     val _ = r.replies.expectComplete()
     assertEquals(r.event(), ServerEvent.Closed(1, None))
 
-  test("a message cut by the end of the stream is the reason of the closing"):
+  test("a stream that ends within a message is closed for that reason"):
     val r = Rig()
     r.send(ByteString(0x94, 0x00))
     r.requests.sendComplete()

@@ -60,7 +60,7 @@ class ServerLimitsSuite extends munit.FunSuite:
       def ask(method: String): Unit =
         send(ByteString(Wire.pack(Arr(Int32(0), Int32(1), Str(method), Arr()))))
 
-      /** Sends a request and awaits its answer: everything sent before has then been handled, too. */
+      /** Sends a request and awaits its answer, by which everything sent before has been handled. */
       def ping(): Unit =
         ask("ping")
         val _ = replies.expectNext()
@@ -88,13 +88,13 @@ class ServerLimitsSuite extends munit.FunSuite:
     finally
       val _ = system.terminate()
 
-  /** The head of a request that is `size` bytes long, with `sent` of them. */
+  /** The first `sent` bytes of a request that is `size` bytes long. */
   private def begun(size: Int, sent: Int): ByteString =
     ByteString(Wire.pack(Arr(Int32(0), Int32(1), Str("f"), Arr(Binary(new Array[Byte](size)))))).take(sent)
 
   private val small = ServerLimits(heldBytesPerConnection = 10_000, heldBytesInCommon = 50_000)
 
-  rig("unfinished messages of all connections share one store; who finds none left is closed", small): r =>
+  rig("unfinished messages share one limit, and a connection that exceeds it is closed", small): r =>
     val greedy = Seq.fill(2)(r.Connection())
     greedy.foreach(_.send(begun(60_000, 30_000)))
     r.until(r.holdings.bytes == 60_000)
@@ -130,7 +130,7 @@ class ServerLimitsSuite extends munit.FunSuite:
   private def replies(bytes: Seq[ByteString]): Seq[RpcMessage] =
     Wire.framed(Framer(), bytes).collect { case Framed.Complete(frame) => RpcMessage.fromServer(frame) }
 
-  rig("a request counts until it is answered, and a lone one too large for what is left is refused", three):
+  rig("a request holds memory until it is answered, and one too large for the rest is refused", three):
     r =>
       val waiting = Seq.fill(2)(waits(r))
       val third   = r.Connection()
@@ -147,7 +147,7 @@ class ServerLimitsSuite extends munit.FunSuite:
         c.ping()
       r.until(r.holdings.bytes == 0)
 
-  rig("a pipeline of large requests is held back, and all of it answered", three): r =>
+  rig("a pipeline of large requests is held back, and all of them are answered", three): r =>
     val honest = r.Connection()
     honest.send(large(1) ++ large(2))
     r.until(r.counters.snapshot.requests == 1 && r.holdings.bytes > 155_000) // the second is held back
@@ -161,7 +161,7 @@ class ServerLimitsSuite extends munit.FunSuite:
     assertEquals((r.counters.snapshot.lacking, r.events.size), (0L, 0))
     assert(r.holdings.mostBytes <= three.heldBytes)
 
-  rig("one that waits behind requests that do not end is refused after the time for a message", three): r =>
+  rig("a request that waits behind endless ones is refused after the time limit of a message", three): r =>
     val honest = waits(r)
     val _      = waits(r)
     honest.send(large(2))
@@ -171,7 +171,7 @@ class ServerLimitsSuite extends munit.FunSuite:
     assertEquals(replies(Seq(honest.replies.expectNext())).map(_.productPrefix), Seq("Reply"))
     assertEquals(r.events.size, 0)
 
-  rig("a reply too large for what is left becomes an error, and what others may hold stays", three): r =>
+  rig("a reply too large for the memory left becomes an error and takes none of it", three): r =>
     val image = r.Connection()
     image.ask("image")
     val text =
@@ -184,9 +184,7 @@ class ServerLimitsSuite extends munit.FunSuite:
 
   private val six = ServerLimits(inFlightAssured = 2, inFlightInCommon = 4)
 
-  rig(
-    "one that asks without a pause leaves the others their " +
-      "requests in flight, and all of its own are answered",
+  rig("a client with many endless requests leaves others their share, and all of its own are taken",
     six
   ): r =>
     val greedy = r.Connection()
@@ -207,7 +205,7 @@ class ServerLimitsSuite extends munit.FunSuite:
     r.until(r.counters.snapshot.answered == 4)
     r.until(r.turns.bytes == 0)
 
-  rig("what waits for its turn is taken as those before it are answered", six): r =>
+  rig("requests beyond the limit are taken as earlier ones are answered", six): r =>
     val greedy = r.Connection()
     greedy.send((1 to 20).map(never).reduce(_ ++ _))
     r.until(r.counters.snapshot.requests == 6)
@@ -220,7 +218,7 @@ class ServerLimitsSuite extends munit.FunSuite:
     )
     assertEquals(r.turns.mostBytes, 6L)
 
-  rig("a message under way too long is the reason to close, and gives back what was held", ServerLimits()):
+  rig("a message that takes too long closes its connection and gives back its memory", ServerLimits()):
     r =>
       val slow = r.Connection()
       slow.ping()
@@ -238,14 +236,14 @@ class ServerLimitsSuite extends munit.FunSuite:
     r.passUntilClosed()
     deaf.expectClosed("replies not taken for more than 30 s")
 
-  rig("one asked to leave leaves", ServerLimits()): r =>
+  rig("a connection whose place is needed is closed", ServerLimits()): r =>
     val guest = r.Connection()
     guest.ping()
     r.guests.forEach(_.leave())
     guest.expectClosed("its place was needed")
     assertEquals(r.counters.snapshot.idle, 1L)
 
-  rig("values that are no messages are borne for a while", ServerLimits(strays = 3)): r =>
+  rig("a limited number of values that are no messages is tolerated", ServerLimits(strays = 3)): r =>
     val c     = r.Connection()
     val stray = ByteString(0x05)
     c.ping()

@@ -34,15 +34,15 @@ object Wire:
     packer.close()
     out.toByteArray
 
-  /** The oracle's reading of exactly one value. */
+  /** Reads exactly one value with the oracle. */
   def unpack(bytes: Array[Byte]): Value =
     val unpacker = MessagePack.newDefaultUnpacker(bytes)
     val value    = unpacker.unpackValue()
     assert(!unpacker.hasNext, "bytes after the value")
     value
 
-  /** Depth at most `depth`; strings and binaries of about `longest` bytes at most, often at the edge of an
-    * encoding.
+  /** A random value of at most `depth` levels; strings and binaries have at most about `longest` bytes, often
+    * at the edge of an encoding.
     */
   def randomMsg(random: Random, depth: Int = 4, longest: Int = 71_000): Msg =
     def length = math.min(edgeLength(random), longest)

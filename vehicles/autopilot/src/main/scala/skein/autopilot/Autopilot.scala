@@ -74,15 +74,15 @@ final case class Autopilot(
             case Some(Right(target)) => Heard(copy(target = Some(target), heardAt = Some(motion.sinceBoot)))
             case Some(Left(why))     => refused(why)
 
-  /** What the vehicle is to do now; to be called every 20 ms, after all received messages. None where it was
-    * never armed.
+  /** Advances the autopilot to the motion's time and returns the vehicle's setpoint, which is None if it was
+    * never armed. To be called every 20 ms, after all received messages.
     */
   def steer(motion: VehicleMotion): (heard: Heard, setpoint: Option[Setpoint]) =
     val asked         = transferred(transfer.passed(motion.sinceBoot))
     val (after, told) = asked.next.onItsOwn(motion)
     (Heard(after, news = asked.news ++ told), after.goal(motion))
 
-  /** Whether setpoints arrive often enough, by its own clock. */
+  /** Whether setpoints arrive often enough, by the autopilot's clock. */
   def isCommanded(motion: VehicleMotion): Boolean =
     heardAt.exists(at => (motion.sinceBoot - at).toSeconds <= parameters(Parameters.OffboardLoss))
 
@@ -231,7 +231,7 @@ final case class Autopilot(
           )
         ))
 
-  /** Changes that the autopilot makes without a command. */
+  /** Applies the changes that the autopilot makes without a command. */
   private def onItsOwn(motion: VehicleMotion): (Autopilot, Vector[Message]) =
     val now = motion.sinceBoot
     if !isArmed then (this, Vector.empty)
@@ -246,7 +246,7 @@ final case class Autopilot(
         (off.next, off.news)
       else noted.proceed(motion)
 
-  /** Whether it stays on the ground only until the rotors have spun up. */
+  /** Whether the mode makes the vehicle rise from the ground as soon as its rotors have spun up. */
   private def isRising: Boolean = mode == FlightMode.Takeoff || mode == FlightMode.Mission
 
   private def proceed(motion: VehicleMotion): (Autopilot, Vector[Message]) =
@@ -378,7 +378,7 @@ object Autopilot:
     def whole(index: Int): Int     = if numbers(index).isFinite then numbers(index).toInt else 0
     def isOne(index: Int): Boolean = numbers(index) == 1
 
-  /** Why a command is refused.
+  /** The refusal of a command, with its reason.
     *
     * @param more further lines of the reason
     */
@@ -387,10 +387,10 @@ object Autopilot:
   /** A status text for a person, in one piece. */
   private[autopilot] def text(severity: Int, line: String): Message = Statustext(severity, line.take(50))
 
-  /** Position tolerances, m, and the speed below which it stands, m/s. */
+  /** Position tolerances, m, and the speed below which the vehicle stands, m/s. */
   private val NearM     = 0.3
   private val NearHomeM = 3.0
   private val StillMps  = 0.05
 
-  /** After standing still for this long while it lands, it is on the ground. */
+  /** Time of standing still after which a landing vehicle is on the ground. */
   private val TouchedAfter = Span.ofMillis(500)

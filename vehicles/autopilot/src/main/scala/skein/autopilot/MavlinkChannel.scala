@@ -4,7 +4,7 @@ import scala.collection.mutable
 import skein.mavlink.*
 import skein.units.*
 
-/** What one peer receives from some vehicles, and how often: bytes for it, cut into datagrams. Not
+/** The messages of some vehicles to one peer, sent at intervals, encoded and cut into datagrams. Not
   * thread-safe.
   *
   * @param systems the vehicles that it sees
@@ -87,5 +87,5 @@ final class MavlinkChannel(
     piece = Array.emptyByteArray
 
 object MavlinkChannel:
-  /** Datagrams that may wait; they take some 10 ms to encode. */
+  /** Limit of the datagrams that wait; they take some 10 ms to encode. */
   private val MostWaiting = 64

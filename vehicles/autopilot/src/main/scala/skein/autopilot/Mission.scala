@@ -43,7 +43,9 @@ object Mission:
     */
   val FarthestM = 20_000.0
 
-  /** Why an item is refused: the acknowledgement's result, and lines of at most 50 characters. */
+  /** The refusal of an item: the acknowledgement's result, and lines of at most 50 characters. None if the
+    * item is accepted.
+    */
   def mistake(item: MissionItemInt, home: GeoLocation): Option[(Int, Vector[String])] =
     import CommonDialect.Command.*
     import CommonDialect.Frame

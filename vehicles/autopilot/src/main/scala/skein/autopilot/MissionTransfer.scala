@@ -35,7 +35,7 @@ private[autopilot] final case class MissionTransfer(
         Some(Told(cleared, Vector(ack(from, Mission.Ack.Accepted, kind))))
       case _ => None
 
-  /** Advances time: requests an item again that has not been received. */
+  /** Advances time, and requests again an item that has not been received. */
   def passed(sinceBoot: Span): Told = upload match
     case Some(going) if sinceBoot - going.askedAt >= Upload.AskAgain =>
       if going.tries >= Upload.MostTries then

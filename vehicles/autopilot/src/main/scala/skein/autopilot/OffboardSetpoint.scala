@@ -7,8 +7,8 @@ import skein.vehicle.{GoTo, Setpoint}
 
 /** A setpoint from outside the autopilot, for offboard mode. */
 enum OffboardSetpoint:
-  /** Per axis a position, a velocity, or nothing; in the vehicle's own frame. With both, the vehicle flies to
-    * the position with the velocity added.
+  /** For each axis a position, a velocity, both or neither, in the vehicle's own frame. With both, the
+    * vehicle flies to the position with the velocity added.
     *
     * @param inBody whether the velocity is front, right and down
     */

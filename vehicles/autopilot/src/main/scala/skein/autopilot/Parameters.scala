@@ -15,7 +15,7 @@ final case class Parameters(values: Map[String, Double] = Parameters.defaults):
     (if index >= 0 then known.lift(index) else known.find(_.name == name)).map(message)
 
   /** @param value as encoded in a message: the bits of an integer
-    * @return the changed parameters and the answer; Left states why not
+    * @return the changed parameters and the answer; Left states why it is refused
     */
   def set(name: String, value: Float): Either[String, (Parameters, Message)] =
     known.find(_.name == name) match
@@ -65,7 +65,7 @@ object Parameters:
   val TakeoffSpeed = Parameter("MPC_TKO_SPEED", 1.5, 0.3, 5)
   val LandSpeed    = Parameter("MPC_LAND_SPEED", 0.7, 0.2, 2)
 
-  /** Height at which it returns, m above home. */
+  /** Height at which the vehicle returns, m above home. */
   val ReturnAltitude = Parameter("RTL_RETURN_ALT", 30, 0, 500)
 
   /** A waypoint is reached within this distance, m. */
@@ -74,7 +74,9 @@ object Parameters:
   /** Offboard ends this long after the last setpoint, s. */
   val OffboardLoss = Parameter("COM_OF_LOSS_T", 1, 0.1, 60)
 
-  /** It disarms this long after landing, or after arming without a takeoff, s; never below 0. */
+  /** Time after which the vehicle disarms when it has landed, or was armed and did not take off, s; negative:
+    * never.
+    */
   val DisarmLanded    = Parameter("COM_DISARM_LAND", 2, -1, 20)
   val DisarmPreflight = Parameter("COM_DISARM_PRFLT", 10, -1, 600)
 

@@ -50,7 +50,7 @@ class AutopilotSuite extends munit.FunSuite:
     val armed = fresh.told(arm, at(1)).next
     armed.told(takeoff, at(2)).next.flown(at(5, Vector3(0, 0, -2.5), flying = true))
 
-  test("it arms, climbs to the height of its parameter, and holds there"):
+  test("a vehicle arms, climbs to the height of its parameter, and holds it"):
     val armed = fresh.told(arm, at(1))
     assertEquals((results(armed), armed.next.isArmed), (Vector(0), true))
     val rising = armed.next.told(takeoff, at(2)).next
@@ -60,7 +60,7 @@ class AutopilotSuite extends munit.FunSuite:
     assertEquals(rising.flown(at(4, Vector3(0, 0, -1.5), flying = true)).mode, FlightMode.Takeoff)
     assertEquals(inAir.mode, FlightMode.Hold)
 
-  test("refusals have a reason: takeoff unarmed, disarming in the air, a mission that does not exist"):
+  test("takeoff unarmed, disarming in the air and a missing mission are refused with a reason"):
     for (autopilot, message, motion, why) <- Seq(
         (fresh, takeoff, at(1), "Switching to Takeoff denied: vehicle is disarmed"),
         (inAir, command(400, 0), at(6, flying = true), "Disarming denied: not landed"),
@@ -103,7 +103,7 @@ class AutopilotSuite extends munit.FunSuite:
     assertEquals((heard.next.mode, heard.next.anchor), (FlightMode.Hold, Vector3(9, 0, -5)))
     assertEquals(texts(heard.news), Vector("Offboard control lost: switching to Hold"))
 
-  test("a velocity in the plane at an altitude is what AirSim's moveByVelocityZ is"):
+  test("a horizontal velocity at an altitude becomes the setpoint of AirSim's moveByVelocityZ"):
     val message = SetPositionTargetLocalNed(0, 1, 1, 1, 0xde3, 0, 0, -20, 4, 1, 0, 0, 0, 0, 0, 0)
     val flying  = inAir.told(message, at(6, flying = true)).next.told(offboard, at(6, flying = true)).next
     assertEquals(flying.steer(at(6.02, flying = true)).setpoint, Some(Setpoint.velocityZ(4, 1, -20)))
@@ -166,7 +166,7 @@ class AutopilotSuite extends munit.FunSuite:
       (FlightMode.Hold, Vector("Mission finished, loitering"))
     )
 
-  test("a missing item is requested again, ten times; one that cannot be flown is refused"):
+  test("a missing item is requested again ten times, and an item that cannot be flown is refused"):
     val counted    = inAir.told(MissionCount(1, 1, 2), at(6, flying = true)).next
     val (heard, _) = counted.steer(at(6.3, flying = true))
     assertEquals(heard.news, Vector(MissionRequestInt(245, 190, 0)))
@@ -180,7 +180,7 @@ class AutopilotSuite extends munit.FunSuite:
       Vector(MissionAck(245, 190, 4))
     )
 
-  test("a position far from home is refused, with home and the setting that changes it"):
+  test("a position far from home is refused with the home position and the setting that changes it"):
     val zurich  = (latitude = 473_977_420, longitude = 85_455_940)
     val item    = this.item(0, 16, 20, 5).copy(x = zurich.latitude, y = zurich.longitude)
     val mission =
@@ -200,11 +200,11 @@ class AutopilotSuite extends munit.FunSuite:
     val held = inAir.told(MissionCount(1, 1, 1), at(6, flying = true)).next.told(here, at(6, flying = true))
     assertEquals(held.answers, Vector(MissionAck(245, 190, 0)))
 
-  test("it answers TIMESYNC by its own clock, and sends no unrequested time"):
+  test("TIMESYNC is answered by the autopilot's own clock, and no unrequested time is sent"):
     assertEquals(fresh.told(Timesync(0, 77), at(2)).answers, Vector(Timesync(2_000_000_000L, 77)))
     assertEquals(fresh.told(Timesync(5, 77), at(2)).answers, Vector.empty)
 
-  test("parameters are listed, set within their limits, and integers are encoded in a number's bits"):
+  test("parameters are listed and set within their limits, and integers are encoded in a float's bits"):
     assertEquals(fresh.told(ParamRequestList(1, 1), at(1)).answers.size, Parameters.known.size)
     val set = fresh.told(ParamSet(1, 1, "MIS_TAKEOFF_ALT", 7, 9), at(1)).next
     assertEquals(set.parameters(Parameters.TakeoffAltitude), 7.0)
@@ -214,7 +214,7 @@ class AutopilotSuite extends munit.FunSuite:
         assertEquals(java.lang.Float.floatToRawIntBits(value.paramValue), 4001)
       case other => fail(s"$other")
 
-  test("it returns home: up, across, down"):
+  test("a returning vehicle flies up, across and down to its home"):
     val back                 = inAir.told(command(20), at(6, Vector3(50, 0, -5), flying = true)).next
     def sets(place: Vector3) = back.steer(at(7, place, flying = true)).setpoint.get
     val up                   = sets(Vector3(50, 0, -5))

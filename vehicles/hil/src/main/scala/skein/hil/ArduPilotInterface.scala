@@ -7,7 +7,8 @@ import skein.vehicle.Setpoint
 
 /** ArduPilot's JSON interface to simulators (its `SIM_JSON`): a datagram with the servos' pulses arrives,
   * physics advances by one frame, and a line with the state is returned. So ArduPilot sets the pace. It
-  * receives the truth and adds its sensors' errors itself; the inertial sensors have ours as well.
+  * receives the truth and adds its sensors' errors itself; the inertial sensors also have those of
+  * [[Sensors]].
   *
   * A frame lasts as long as ArduPilot states, in whole milliseconds. A repeated frame, whose answer was lost,
   * gets the same bytes again. While ArduPilot is given up, physics follows the clock, and every request is

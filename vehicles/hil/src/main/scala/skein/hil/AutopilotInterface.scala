@@ -34,8 +34,9 @@ trait AutopilotInterface:
     */
   def sense(truth: SensorTruth): Vector[Array[Byte]]
 
-  /** The autopilot has not answered for too long: physics continues without it, until it has answered in time
-    * for a while, unless it shows that it is about to answer.
+  /** Is called when the autopilot has not answered for too long. Physics then continues without it, until it
+    * has answered in time for a while. If the autopilot shows that it is about to answer, physics keeps
+    * waiting.
     */
   def giveUp(): Unit
 

@@ -10,9 +10,9 @@ import skein.vehicle.Setpoint
   *
   * Betaflight estimates its clock rate as the difference of two states' times over that of their arrivals,
   * which for two that arrive close together is a hundredfold too large (`updateState` in its `sitl.c`). Where
-  * their times are equal it keeps its rate, at first the real clock's. So all states carry one constant time.
-  * At another speed than the real clock's, the rate is conveyed once, by two states far apart, as soon as
-  * Betaflight has sent a message.
+  * their times are equal, Betaflight keeps its rate, at first the real clock's. So all states carry one
+  * constant time. At another speed than the real clock's, the rate is conveyed once, by two states far apart,
+  * as soon as Betaflight has sent a message.
   *
   * Gyroscope, accelerometer and barometer have their errors; the attitude, which Betaflight takes from the
   * simulator, is the truth.
@@ -73,7 +73,7 @@ final class BetaflightInterface(sensors: Sensors, from: Span, speed: Double = 1)
     put(packet, sensors.pressurePa(truth))
     Vector(packet.array)
 
-  /** When the next state after `up` is due, including states that convey the clock rate. */
+  /** The time after `up` at which the next state is due, including states that convey the clock rate. */
   private def nextAfter(up: Span): Span =
     for first <- rateFrom do
       rateFrom = None
@@ -88,15 +88,15 @@ final class BetaflightInterface(sensors: Sensors, from: Span, speed: Double = 1)
   private def put(to: ByteBuffer, values: Double*): Unit = values.foreach(to.putDouble)
 
 object BetaflightInterface:
-  /** The port on the simulator's machine to which it sends the rotors' controls. */
+  /** The port on the simulator's machine to which Betaflight sends the rotors' controls. */
   val Port = 9002
 
-  /** The port on which it receives the state. */
+  /** The port on which Betaflight receives the state. */
   val StatePort = 9003
 
   private val Period = Span.ofMillis(2)
 
-  /** Silence after which it counts as gone, s of real time. */
+  /** Silence after which Betaflight counts as gone, s of real time. */
   private val SilenceS = 0.25
 
   /** Distance of the two states that convey the clock rate: the farther apart, the less their delay matters.
@@ -106,7 +106,8 @@ object BetaflightInterface:
   /** Betaflight derives no rate from states this far apart. */
   private val TooFarApart = Span.ofMillis(20)
 
-  /** Nor from a state that arrives half a second of real time after the last. */
+  /** Limit of the real time between these two states, ms: Betaflight derives no rate from half a second on.
+    */
   private val MostApartRealMs = 400
 
   private[hil] def isPacket(bytes: Array[Byte]): Boolean = bytes.length == ServoLength

@@ -77,7 +77,9 @@ final class Px4Interface(system: Int, sensors: Sensors, from: Span, before: Int 
   def isByClock: Boolean      = true
   def stop(until: Span): Span = due
 
-  /** An autopilot that catches up is waited for, a bounded number of times. */
+  /** Stops waiting for the autopilot. For one that is catching up it keeps waiting, a limited number of
+    * times.
+    */
   def giveUp(): Unit =
     if catchesUp && postponed < MostPostponed then postponed += 1
     else
@@ -207,12 +209,12 @@ object Px4Interface:
   private val PeriodUsec    = Period.toNanos / 1000
   private val MostLateUsec  = MostLateTicks * PeriodUsec
 
-  /** How often an autopilot that catches up is waited for again. */
+  /** Limit of the times that an autopilot that is catching up is waited for again. */
   private val MostPostponed = 10
 
   private val StateId = 115
 
-  /** Magnetometer and barometer at 50 Hz, as in AirSim. */
+  /** Number of sensor messages for each reading of magnetometer and barometer: 50 Hz, as in AirSim. */
   private val TicksPerSlowReading = 5
 
   /** Interval of satellite fixes, as in PX4's simulated receiver. */

@@ -12,8 +12,8 @@ package skein.hil
   *   800 s
   * @param magneticGauss white noise of each reading of the magnetometer, gauss
   * @param pressurePa white noise of each reading of the barometer, Pa: 0.22 m
-  * @param pressureDriftPa of the weather, Pa: a first-order Gauss-Markov process with a time constant of an
-  *   hour. Ours: it moves the altitude by 0.3 m in a minute
+  * @param pressureDriftPa drift by the weather, Pa: a first-order Gauss-Markov process with a time constant
+  *   of an hour. This value is Skein's own: it moves the altitude by 0.3 m in a minute
   * @param positionM of each satellite fix, horizontally, m: a first-order process with 0.76 of the fix
   *   before; 1.5 times that vertically
   * @param velocityMps likewise, m/s, with 0.54 of the fix before; 1.2 times that vertically

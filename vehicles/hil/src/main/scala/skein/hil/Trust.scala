@@ -1,8 +1,9 @@
 package skein.hil
 
-/** Whether time may wait for an autopilot. It does until a wait was in vain; then the autopilot must first
-  * give a number of answers in a row while time continues without it. The number doubles each time: an
-  * autopilot that answers just often enough to be waited for again slows the others little in the long run.
+/** Decides whether time may wait for an autopilot. Time waits until a wait was in vain; then the autopilot
+  * must first give a number of answers in a row while time continues without it. The number doubles each
+  * time: an autopilot that answers just often enough to be waited for again slows the others little in the
+  * long run.
   *
   * @param before how often a wait for it was in vain before it connected
   */
@@ -17,18 +18,18 @@ private[hil] final class Trust(before: Int = 0):
 
   def losses: Int = times
 
-  /** A wait for it was in vain: stops waiting. */
+  /** Handles a wait that was in vain: time waits no longer. */
   def lose(): Unit =
     if isGivenNow then times += 1
     isGivenNow = false
     inARow = 0
 
-  /** It has answered in time: after enough of these, waiting resumes. */
+  /** Handles an answer in time: after enough of these in a row, time waits again. */
   def answered(): Unit = if !isGivenNow then
     inARow += 1
     if inARow >= (First << (times - 1).min(10)).min(Most) then isGivenNow = true
 
-  /** It has not answered in time: counting starts again. */
+  /** Handles an answer that is not in time: counting starts again. */
   def missed(): Unit = inARow = 0
 
 private object Trust:

@@ -22,7 +22,7 @@ class ArduPilotInterfaceSuite extends munit.FunSuite:
 
   private val hover = Seq(1500, 1250, 2300, 900)
 
-  test("physics waits for the servos, advances by a frame in whole milliseconds, and answers in a line"):
+  test("physics waits for the servos, advances by a frame of whole milliseconds, and answers in one line"):
     for (rate, millis) <- Seq(1200 -> 1, 400 -> 3, 250 -> 4, 50 -> 20, 1 -> 20, 0 -> 20, 65535 -> 1) do
       val one = interface
       assert(one.isWaiting)
@@ -51,7 +51,7 @@ class ArduPilotInterfaceSuite extends munit.FunSuite:
     one.hear(servos(0, 1000, hover), Span.ofMillis(1))
     assert(!one.isWaiting, "ArduPilot has started again")
 
-  test("packets of 32 servos are read, invalid ones are counted and move nothing"):
+  test("packets of 32 servos are read, and invalid packets are counted and move nothing"):
     val one = interface
     one.hear(servos(0, 1000, hover, magic = 29569, count = 32), Span.Zero)
     assert(!one.isWaiting)

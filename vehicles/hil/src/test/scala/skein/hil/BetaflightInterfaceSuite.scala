@@ -16,7 +16,7 @@ class BetaflightInterfaceSuite extends munit.FunSuite:
     controls.foreach(packet.putFloat)
     packet.array
 
-  test("the state is due every 2 ms; missed ones are left out"):
+  test("the state is due every 2 ms, and missed states are left out"):
     val one = interface
     assertEquals(one.stop(Span.Zero), Span.ofMillis(5))
     assertEquals(one.stop(Span.ofMillis(20.4)), Span.ofMillis(20))
@@ -79,7 +79,7 @@ class BetaflightInterfaceSuite extends munit.FunSuite:
     one.hear(servos(0, 0, 0, 0), Span.ofMillis(3))
     assertEquals(states(one, 4, 100).map(_.toldMs).distinct, Vector(0L))
 
-  test("at another speed two states convey the clock's rate, each time that Betaflight starts to send"):
+  test("at another speed, two states convey the clock's rate each time that Betaflight starts to send"):
     val one   = BetaflightInterface(Sensors(1, SensorNoise.None), Span.Zero, 0.5)
     val heard = servos(0, 0, 0, 0)
     assertEquals(states(one, 1, 50).map(_.toldMs).distinct, Vector(0L), "it may not be there")
@@ -92,7 +92,7 @@ class BetaflightInterfaceSuite extends munit.FunSuite:
     one.hear(heard, Span.ofMillis(540))
     assertEquals(states(one, 541, 600).map(_.toldMs).distinct, Vector(15L, 30L))
 
-  test("two states too far apart convey no rate, and the next two do"):
+  test("if two states are too far apart to convey the rate, the next two convey it"):
     val one = BetaflightInterface(Sensors(1, SensorNoise.None), Span.Zero, 0.5)
     one.hear(servos(0, 0, 0, 0), Span.ofMillis(3))
     assertEquals(states(one, 4, 4).map(_.toldMs), Vector(0L))

@@ -33,10 +33,7 @@ class Px4InterfaceSuite extends munit.FunSuite:
   private def answer(toUsec: Long, mode: Int, flags: Long, values: Float*): Message =
     HilActuatorControls(toUsec, values.toVector, mode, flags)
 
-  test(
-    "sensors are sent every 4 ms of its time, each with accelerometer and gyroscope, a fifth with the " +
-      "slow ones"
-  ):
+  test("inertial sensors are sent every 4 ms of PX4's time, and magnetometer and barometer every fifth time"):
     val sensors = Peer(Span.ofMillis(7)).ticks(1).collect { case one: HilSensor => one }
     assertEquals(sensors.map(_.timeUsec), Vector.tabulate(250)(tick => 8000L + 4000 * tick))
     assert(sensors.forall(one => (one.fieldsUpdated & 0x3f) == 0x3f))
@@ -46,7 +43,7 @@ class Px4InterfaceSuite extends munit.FunSuite:
     assertEqualsFloat(sensors.last.absPressure, 998.63f, 0.5f)
     assertEqualsFloat(sensors.last.pressureAlt, 122f, 5f)
 
-  test("satellite fixes are sent eight times a second, from a second on, 110 ms old"):
+  test("satellite fixes are sent eight times a second from the first second on, and are 110 ms old"):
     val gps = Peer().ticks(3).collect { case one: HilGps => one }
     assertEquals(gps.size, 16)
     assertEquals((gps.head.fixType, gps.head.vel, gps.head.satellitesVisible), (3, gps.head.vel, 10))
@@ -68,7 +65,9 @@ class Px4InterfaceSuite extends munit.FunSuite:
     ask(-1)
     assertEquals(states(1).size, 0)
 
-  test("it waits for no answer before the first, then for each, until answers state that lockstep has ended"):
+  test(
+    "physics waits for no answer before the first, then for each, until answers state the end of lockstep"
+  ):
     val peer = Peer()
     peer.ticks(2)
     assert(!peer.interface.isWaiting)
@@ -87,7 +86,7 @@ class Px4InterfaceSuite extends munit.FunSuite:
     peer.tick()
     assert(!peer.interface.isWaiting)
 
-  test("it waits for the answer to the newest sensors, not for earlier ones"):
+  test("physics waits for the answer to the newest sensors, not for earlier answers"):
     val peer   = Peer()
     val sensed = peer.ticks(1).collect { case one: HilSensor => one.timeUsec }
     for (at, count) <- sensed.init.zipWithIndex do
@@ -123,10 +122,7 @@ class Px4InterfaceSuite extends munit.FunSuite:
       assert(!peer.interface.isWaiting, s"tick $tick")
     assertEquals(peer.interface.losses, 1)
 
-  test(
-    "a PX4 that was given up is waited for again once it has answered for a second, then for two, in " +
-      "time"
-  ):
+  test("a PX4 that was given up is waited for again after a second of answers in time, then after two"):
     val peer = Peer()
     peer.say(controls(1, 1))
     for (seconds, loss) <- Seq(1, 2, 4).zipWithIndex do
@@ -159,7 +155,7 @@ class Px4InterfaceSuite extends munit.FunSuite:
     assert(!again.isWaiting)
 
   for (name, absurd) <- Seq("0" -> 0L, "2^63 - 1" -> Long.MaxValue) do
-    test(s"answers with times of $name delay physics at most once, and then silence gives up the autopilot"):
+    test(s"answers with times of $name delay physics at most once, and then silence ends the waiting"):
       val peer = Peer()
       peer.ticks(1)
       var waits = 0
@@ -175,14 +171,14 @@ class Px4InterfaceSuite extends munit.FunSuite:
       peer.tick()
       assert(!peer.interface.isWaiting)
 
-  test("rotors turn while it is armed, each between 0 and 1, and stop for NaN"):
+  test("rotors turn only while PX4 is armed, each between 0 and 1, and stop for NaN"):
     val peer = Peer()
     peer.say(controls(1, 1, 0.5f, 0.5f, 0.5f, 0.5f))
     assertEquals(peer.interface.rotors, AutopilotInterface.MotorsOff)
     peer.say(controls(129, 1, 0.25f, Float.NaN, 7f, -1f))
     assertEquals(peer.interface.rotors, Setpoint.rotors(0.25, 0, 1, 0))
 
-  test("a thousand damaged frames of each kind, and a thousand of any content, harm nothing"):
+  test("a thousand damaged frames of each kind, and a thousand with any content, do no harm"):
     val random = Random(560)
     val peer   = Peer()
     val writer = FrameWriter(3, 3)

@@ -24,7 +24,7 @@ class SensorsSuite extends munit.FunSuite:
     val mean = values.sum / values.size
     (mean, math.sqrt(values.map(value => (value - mean) * (value - mean)).sum / values.size))
 
-  test("a sensor without noise shows the truth"):
+  test("a sensor without noise measures the truth"):
     val sensors = Sensors(1, SensorNoise.None)
     val truth   = atRest(Span.ofSeconds(1))
     val shown   = sensors.inertial(truth, 0.004)

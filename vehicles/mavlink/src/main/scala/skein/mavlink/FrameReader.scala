@@ -5,7 +5,7 @@ import scala.collection.mutable
 /** Counts of a reader.
   *
   * @param frames valid frames of known messages
-  * @param lost frames missing by the sequence numbers of those received
+  * @param lost frames that are missing according to the sequence numbers
   * @param unknown frames of unknown messages, which cannot be verified
   * @param badChecksum damaged frames, or other bytes that looked like one
   * @param badSignature frames without a signature, with a wrong one, or replayed

@@ -2,8 +2,8 @@ package skein.mavlink
 
 /** A message of the common dialect. Fields have the published order and names; units are those of the
   * definitions (mavlink.io, `common.xml`), which vary from message to message. Unsigned numbers of up to 32
-  * bits are positive; of 64 bits they are the bits. Fields with a default are extensions, which older peers
-  * do not know.
+  * bits are not negative here; unsigned numbers of 64 bits keep their bits, so the largest ones are negative.
+  * Fields with a default are extensions, which older peers do not know.
   */
 sealed trait Message extends Product
 
@@ -47,7 +47,7 @@ final case class ParamRequestRead(targetSystem: Int, targetComponent: Int, param
 /** Requests all parameters, one `ParamValue` each. */
 final case class ParamRequestList(targetSystem: Int, targetComponent: Int) extends Message
 
-/** A parameter. An integer stands in the bits of the value (PX4) or as a number (ArduPilot). */
+/** A parameter. The value of an integer is sent by its bits (PX4) or as a number (ArduPilot). */
 final case class ParamValue(
     paramId: String,
     paramValue: Float,

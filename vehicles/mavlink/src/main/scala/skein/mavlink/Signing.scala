@@ -51,7 +51,7 @@ final class Signing(key: Array[Byte], link: Int, now: () => Long):
     sha.digest().take(6)
 
 object Signing:
-  /** Most streams (system, component and link) whose times are remembered. */
+  /** Limit of the streams (system, component and link) whose times are remembered. */
   val MostStreams = 1024
 
   private val Tolerance = 6_000_000L

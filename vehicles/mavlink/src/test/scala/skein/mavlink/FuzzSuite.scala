@@ -49,7 +49,7 @@ class FuzzSuite extends munit.FunSuite:
     assertEquals(reader.read(version1 ++ Array(sum.toByte, (sum >> 8).toByte)), Vector.empty)
     assertEquals(reader.counts, ReaderCounts(version1 = 1))
 
-  test("the rest of a datagram does not continue in the next"):
+  test("an unfinished frame of a datagram does not continue in the next datagram"):
     val frame  = FrameWriter(1, 1).write(MissionItemReached(1))
     val reader = FrameReader()
     assertEquals(reader.readDatagram(frame.dropRight(3)), Vector.empty)

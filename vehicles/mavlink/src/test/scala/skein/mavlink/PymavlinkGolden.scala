@@ -25,7 +25,7 @@ class PymavlinkGolden extends munit.FunSuite:
 
   private def signing = Signing(key, 7, () => 1234567890123L)
 
-  test("every message has the published number, and its name and fields give the published checksum"):
+  test("every message has the published number, and the published checksum follows from its name and fields"):
     assertEquals(made.map(_.name).toSet, Dialect.all.map(_.name).toSet)
     for one <- made if !one.isSigned do
       assertEquals(

@@ -22,7 +22,7 @@ class RoundTripLaws extends munit.FunSuite:
     assertEquals(writer.write(Timesync(0, 5)).length, 10 + 9 + 2)
     assertEquals(writer.write(MissionItemReached(0)).length, 10 + 1 + 2)
 
-  test("a payload longer than its known fields is read up to these"):
+  test("a payload longer than the known fields is read up to their end"):
     val heartbeat = Heartbeat(2, 12, 81, 1, 4, 3)
     val longer    = Dialect.of(heartbeat).encode(heartbeat) ++ Array[Byte](1, 2, 3)
     assertEquals(Dialect.of(heartbeat).decode(longer), heartbeat)

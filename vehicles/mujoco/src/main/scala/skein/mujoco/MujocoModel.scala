@@ -16,8 +16,8 @@ final class MujocoModel private (
 ):
   def stepS: Double = body.stepS
 
-  /** Whether its actuators are exactly four rotors, one at each corner, so that rotors can be controlled
-    * directly.
+  /** Whether the model's actuators are exactly four rotors, one at each corner, so that rotors can be
+    * controlled directly.
     */
   def hasRotors: Boolean = body.actuators.rotors.isDefined
 

@@ -15,7 +15,7 @@ class MujocoRotorcraftLiveSuite extends MujocoHere, Waiting:
     assumeMujoco()
     body
 
-  flying("AirSim's quadrotor as a model hovers, and turns as the built-in one does, within 0.8 m over 100 m"):
+  flying("a model of AirSim's quadrotor hovers, and turns within 0.8 m of the built-in one over 100 m"):
     val rotorcraft     = MujocoRotorcraft(example("quadrotor"))
     val (theirs, ours) = (QuadrotorState(), QuadrotorState())
     val quadrotor      = Quadrotor.AirSim
@@ -30,7 +30,7 @@ class MujocoRotorcraftLiveSuite extends MujocoHere, Waiting:
     // The air of both drags, each by its own formula.
     assert(apart < 0.8, s"$apart m apart")
 
-  flying("a vehicle that has long held its place stays there"):
+  flying("a vehicle that has hovered for a long time keeps its position"):
     for (name, steps) <- Seq("quadrotor" -> 3000, "slung-load" -> 4000) do
       val rotorcraft = MujocoRotorcraft(example(name))
       val state      = QuadrotorState()
@@ -39,7 +39,7 @@ class MujocoRotorcraftLiveSuite extends MujocoHere, Waiting:
       val off = (state.positionNed - Vector3(3, -4, -20 + rotorcraft.hoverSagM(-20))).norm
       assert(off < 0.002, s"$name: $off m off")
 
-  flying("a load below a vehicle that brakes swings, and the vehicle with it"):
+  flying("a load that hangs from a vehicle swings when it brakes, and moves the vehicle"):
     val rotorcraft = MujocoRotorcraft(example("slung-load"))
     val state      = QuadrotorState()
     rotorcraft.hover(state, Vector3(0, 0, -20), 0, Environment.Calm)
@@ -52,7 +52,7 @@ class MujocoRotorcraftLiveSuite extends MujocoHere, Waiting:
     // When the controller alone would be at rest, the load still pulls to both sides.
     assert(braking.max > 0.05 && braking.min < -0.05, s"${braking.min} to ${braking.max} m/s²")
 
-  flying("it stands on the ground, takes off, lands and stands again, and an object's place is not MuJoCo's"):
+  flying("a vehicle stands, takes off, lands and stands again on the world's ground, not the model's"):
     val rotorcraft  = MujocoRotorcraft(example("quadrotor"))
     val state       = QuadrotorState()
     val environment = Environment(groundDownM = 2)
@@ -69,7 +69,7 @@ class MujocoRotorcraftLiveSuite extends MujocoHere, Waiting:
     assert(state.grounded && state.contacts > 0, s"$state, ${state.positionNed}")
     assertEquals(state.z, 2.0)
 
-  flying("wind blows it by the density that the model states"):
+  flying("wind drags a vehicle by the air density that its model states"):
     def drift(model: MujocoModel) =
       val rotorcraft = MujocoRotorcraft(model)
       val state      = QuadrotorState()
@@ -81,7 +81,7 @@ class MujocoRotorcraftLiveSuite extends MujocoHere, Waiting:
     assert(blown > 0.5, blown)
     assertEqualsDouble(still, 0, 1e-6)
 
-  flying("many side by side fly as one alone does, to the bit"):
+  flying("the vehicles of a batch fly as a single one does, to the bit"):
     val response = MujocoResponse(example("quadrotor"))
     val together = response.together(6)
     val alone    = Vector.tabulate(6)(_ => response.create())
@@ -100,7 +100,7 @@ class MujocoRotorcraftLiveSuite extends MujocoHere, Waiting:
       assertEquals((together.x(place), together.y(place)), (alone(place).x, alone(place).y))
       assert(together.x(place).abs > 1, together.x(place))
 
-  flying("a rotor's own control is a share of its actuator's range"):
+  flying("a direct rotor control is a fraction of its actuator's range"):
     val rotorcraft = MujocoRotorcraft(example("slung-load"))
     val state      = QuadrotorState()
     rotorcraft.hover(state, Vector3(0, 0, -20), 0, Environment.Calm)
@@ -109,7 +109,7 @@ class MujocoRotorcraftLiveSuite extends MujocoHere, Waiting:
     assert(state.wx < -0.3, state.angularVelocityFrd)
     assertEqualsDouble(state.wy, 0, 0.05)
 
-  flying("MuJoCo's memory of models that nobody has any more is freed"):
+  flying("MuJoCo's memory is freed once its models are unreachable"):
     val before = NativeMemory.freed
     for _ <- 1 to 3 do
       val rotorcraft = MujocoRotorcraft(read(path("quadrotor")))
@@ -123,7 +123,7 @@ class MujocoRotorcraftLiveSuite extends MujocoHere, Waiting:
       Thread.sleep(100)
     assert(NativeMemory.freed >= before + 9, s"${NativeMemory.freed - before} are freed")
 
-  flying("a body whose moments are too weak is refused by the axis, one a little stronger than needed flies"):
+  flying("a body with too weak a moment is refused by its axis, and a slightly stronger one flies"):
     for (axis, weak) <- Seq("front" -> 1, "right" -> 2, "down" -> 3) do
       val refused =
         MujocoModel.read(write(crazyflie(Seq.tabulate(3)(i => if i + 1 == weak then 0.05 else 12))))
@@ -148,7 +148,7 @@ class MujocoRotorcraftLiveSuite extends MujocoHere, Waiting:
       lowest = lowest.max(state.z)
     assert(lowest < -3.5, s"came down to $lowest m")
 
-  flying("what cannot be flown is refused with its reason"):
+  flying("a model that cannot fly is refused with the reason"):
     assert(MujocoModel.read(Path.of("nowhere.xml")).left.exists(_.contains("there is no nowhere.xml")))
     val last = "<general site=\"rear right\" gear=\"0 0 4.179 0 0 0.0556\"/>"
     for (from, to, reason) <- Seq(

@@ -66,11 +66,12 @@ final case class Control(
 ):
   import Control.*
 
-  /** Whether it is ready to fly: it has sent messages, and its clock and the origin of its frame are known.
+  /** Whether the vehicle is ready to fly: it has sent messages, and its clock and the origin of its frame are
+    * known.
     */
   def isReady: Boolean = missing.isEmpty
 
-  /** The information still missing before it is ready to fly. */
+  /** The information still missing before the vehicle is ready to fly. */
   def missing: Vector[String] =
     if heardAt.isEmpty then Vector("any message")
     else
@@ -80,7 +81,9 @@ final case class Control(
         Option.when(estimate.newest.isEmpty)("ODOMETRY, or LOCAL_POSITION_NED and ATTITUDE_QUATERNION")
       ).flatten
 
-  /** Why it follows no setpoints, if it does not: it is disarmed, or in a mode that somebody else chose. */
+  /** The reason why the vehicle follows no setpoints: it is disarmed, or in a mode that somebody else chose.
+    * None if it follows them.
+    */
   def taken: Option[String] = firmware.toOption.flatMap: own =>
     if !isArmed then Some(s"$name is disarmed")
     else
@@ -93,7 +96,7 @@ final case class Control(
 
   /** Requests the next sample.
     *
-    * @return an answer of the next sample to `token`
+    * @return a step after which the next sample is the answer to `token`
     */
   def read(token: Long, now: Instant): Step =
     if readers.size >= MostReaders then
@@ -125,7 +128,7 @@ final case class Control(
   def hover(token: Long, now: Instant): Step =
     known(token)(own => givenUp(enter(token, own, own.holding, now)))
 
-  /** Starts the motors. ArduPilot does so in Guided for a vehicle that is to take off from there. */
+  /** Starts the motors. ArduPilot must be in Guided to take off, so it enters that mode first. */
   def arm(token: Long, now: Instant): Step =
     known(token)(own =>
       guided(own, now).andThen(_.order(token, Command.Arm, now, Vector(1f, 0, 0, 0, 0, 0, 0)))
@@ -378,7 +381,7 @@ object Control:
 
   val Tick: Span = Span.ofMillis(10)
 
-  /** Most times that a command is sent within its timeout. */
+  /** Limit of the times that a command is sent within its timeout. */
   val MostTries = 8
 
   private val MostReaders = 8

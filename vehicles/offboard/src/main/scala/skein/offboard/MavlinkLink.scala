@@ -144,7 +144,7 @@ object MavlinkLink:
     */
   private val Unneeded = Vector(24, 30, 33)
 
-  /** Most datagrams that wait for the connection. */
+  /** Limit of the datagrams that wait for the connection. */
   private val Waiting = 256
 
   /** Opens a link and waits for all vehicles.
@@ -152,7 +152,7 @@ object MavlinkLink:
     * @param connection takes bytes for the vehicles and emits theirs
     * @param within the time for all vehicles to become ready
     * @param isDatagrams whether it emits datagrams, each of which ends its frames, and not pieces of a stream
-    * @return Left names the vehicles that did not become ready
+    * @return Left lists the vehicles that did not become ready
     */
   def open(
       connection: Flow[ByteString, ByteString, ?],

@@ -31,7 +31,7 @@ final class MavlinkVehicle(link: MavlinkLink, number: Int)(using system: ActorSy
 
   def arm(): Future[Either[VehicleError, Boolean]] = done((control, token, now) => control.arm(token, now))
 
-  /** Stops the motors in any state, immediately, because the link is ready. */
+  /** Stops the motors immediately, in any state of the vehicle; the link is ready for it. */
   def kill(): Future[Either[VehicleError, Boolean]] = done((control, token, now) => control.kill(token, now))
 
   /** Takes off to the autopilot's own height, or 2.5 m; answers when takeoff begins. */
@@ -41,7 +41,7 @@ final class MavlinkVehicle(link: MavlinkLink, number: Int)(using system: ActorSy
   def isArmed: Boolean    = link.control(number).isArmed
   def isOnGround: Boolean = link.control(number).isOnGround
 
-  /** Why it follows no setpoints, if it does not. */
+  /** The reason why the vehicle follows no setpoints; None if it follows them. */
   def taken: Option[String] = link.control(number).taken
 
   private def done(what: (Control, Long, Instant) => Control.Step): Future[Either[VehicleError, Boolean]] =

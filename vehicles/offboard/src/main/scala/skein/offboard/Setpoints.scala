@@ -9,7 +9,8 @@ import skein.vehicle.GoTo
 /** Converts actions to MAVLink setpoint messages. */
 private[offboard] object Setpoints:
 
-  /** None for actions that are a mode and no setpoint: hovering, landing.
+  /** The setpoint message of an action; None for actions that are modes of the autopilot: hovering and
+    * landing.
     *
     * @param state of the vehicle, in its own frame
     * @param originNed of that frame, in the flight's

@@ -51,10 +51,7 @@ class ControlSuite extends munit.FunSuite:
   private def velocities(step: Control.Step): Vector[(Float, Float)] =
     step.messages.collect { case one: SetPositionTargetLocalNed => (one.vx, one.vy) }
 
-  test(
-    "a setpoint is sent immediately with a TIMESYNC after it, and repeated every 100 ms until its time " +
-      "is over"
-  ):
+  test("a setpoint and a TIMESYNC are sent immediately, then every 100 ms until the action's time is over"):
     val sent = known().act(7, forward, Span.ofMillis(250), at(100))
     assertEquals(velocities(sent), Vector((5f, 0f)))
     assertEquals(syncs(sent).size, 1)
@@ -66,7 +63,7 @@ class ControlSuite extends munit.FunSuite:
     assertEquals(sends, Vector.fill(2)((5f, 0f)) ++ Vector.fill(2)((0f, 0f)))
     assertEquals(answers, Vector((7L, Right(true))))
 
-  test("an action is replaced when the receipt of its successor arrives, not before"):
+  test("an action is replaced when the receipt of its successor is confirmed, not before"):
     val first  = known().act(1, forward, Span.ofSeconds(10), at(100))
     val second = first.next.act(2, aside, Span.ofSeconds(10), at(200))
     assertEquals(second.answers, Vector.empty)
@@ -75,7 +72,7 @@ class ControlSuite extends munit.FunSuite:
     val late = early.next.heard(Timesync(theirs(220).toNanos, syncs(second).head), at(240))
     assertEquals(late.answers, Vector(1L -> Right(false)))
 
-  test("the receipt of a repetition replaces a lost one; without any, the action is not certain"):
+  test("the receipt of a repetition replaces a lost one, and without any the action is uncertain"):
     val two = known().act(
       1,
       forward,
@@ -120,8 +117,7 @@ class ControlSuite extends munit.FunSuite:
       assert(step.messages.isEmpty && step.answers.exists(_._2.left.exists(_.isCertain)), step.toString)
 
   test(
-    "ArduPilot's copter is controlled in Guided, held in Brake, and takes off in Guided, by its own " +
-      "numbers"
+    "ArduPilot's copter is controlled in Guided, held in Brake, and takes off in Guided, by its mode numbers"
   ):
     def at100(mode: Long, armed: Boolean = true) =
       known().heard(heartbeat(mode, armed, autopilot = 3), at(50)).next
@@ -169,7 +165,7 @@ class ControlSuite extends munit.FunSuite:
       got.toString
     )
 
-  test("kill stops the motors in the air, whatever autopilot and mode it is"):
+  test("kill stops the motors in the air, for any autopilot and in any mode"):
     val loiter = known(4L << 16 | 3L << 24).heard(heartbeat(3, armed = true, autopilot = 0), at(50)).next
     for control <- Seq(known(), loiter) do
       val killed = control.kill(5, at(100))
@@ -181,7 +177,7 @@ class ControlSuite extends munit.FunSuite:
       assertEquals(done.answers, Vector(5L -> Right(true)))
       assert(!done.next.isArmed)
 
-  test("clocks are aligned by TIMESYNCs every 10 ms before it is ready, and by one in 100 ms afterwards"):
+  test("clocks are aligned every 10 ms before a vehicle is ready, and every 100 ms afterwards"):
     val begun             = known().copy(settings = OffboardSettings(exchanges = 5))
     val (aligned, counts) =
       (1 to 50).foldLeft((begun, Vector.empty[Int])): (before, tick) =>
@@ -196,7 +192,7 @@ class ControlSuite extends munit.FunSuite:
     assertEquals(counts.take(7).sum, 6)
     assert((4 to 5).contains(counts.drop(7).sum), counts.toString)
 
-  test("information that a vehicle has not sent yet is named"):
+  test("the information that a vehicle has not sent yet is listed"):
     val unheard = Control(1, OffboardSettings(exchanges = 5))
     assertEquals(unheard.missing, Vector("any message"))
     val heard = unheard.heard(heartbeat(offboard, true), at(10)).next
@@ -209,7 +205,7 @@ class ControlSuite extends munit.FunSuite:
       )
     )
 
-  test("a sample answers all waiting readings, in the flight's frame, with the bounds that TIMESYNC gives"):
+  test("a sample answers all waiting readings, in the flight's frame, with TIMESYNC's bounds on its time"):
     val synced =
       known().copy(originNed = Vector3(10, 0, 0)).heard(Timesync(theirs(30).toNanos, at(15).toNanos), at(50))
     // Its request was sent at 20 ms at the earliest.
@@ -234,7 +230,7 @@ class ControlSuite extends munit.FunSuite:
     })
     assert(out.next.act(2, forward, Span.ofSeconds(1), at(140)).answers.head._2.isLeft)
 
-  test("stamps of samples keep the bounds of the clocks' offset valid, for any delays"):
+  test("the bounds of the clocks' offset that follow from samples' stamps are valid for any delays"):
     val random  = scala.util.Random(3)
     var clock   = VehicleClock.of(at(0), theirs(20), at(40))
     var aligned = Option.empty[ClockAlignment]
@@ -249,7 +245,7 @@ class ControlSuite extends munit.FunSuite:
     assertEquals(found.restarts, 0)
     assert(found.lower <= Span.ofSeconds(1000) && Span.ofSeconds(1000) <= found.upper, found.toString)
 
-  test("times of vehicles with one clock are in it; with two clocks, in the first one's"):
+  test("times are in the clock that the vehicles share, and with two clocks in the first vehicle's"):
     val one   = VehicleClock.of(at(0), theirs(20), at(40))
     val same  = VehicleClock.of(at(5), theirs(15), at(35))
     val other = VehicleClock.of(at(0), theirs(520), at(40))

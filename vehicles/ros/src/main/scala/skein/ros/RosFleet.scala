@@ -8,7 +8,7 @@ import skein.units.{Clock, Expect}
 
 /** Vehicles behind the topics of one node, in the order of their names.
   *
-  * @param node its counts and notes are about what was refused
+  * @param node counts refused messages, and notes the reasons
   */
 final class RosFleet private (val node: RosNode, val vehicles: Vector[RosVehicle]):
 
@@ -24,7 +24,7 @@ object RosFleet:
     * known.
     *
     * @param remappings such as `/a/odom:=/uav1/odometry`
-    * @return Left if ROS 2 is not installed, or names the vehicles of which nothing arrived
+    * @return Left if ROS 2 is not installed, or lists the vehicles without odometry
     */
   def open(names: Vector[String], remappings: Seq[String], clock: Clock)(using
       system: ActorSystem

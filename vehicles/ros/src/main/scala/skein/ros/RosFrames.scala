@@ -2,27 +2,27 @@ package skein.ros
 
 import skein.units.{Quaternion, Vector3}
 
-/** Between Skein's frames, those of AirSim and MAVLink (world: north, east, down; body: front, right, down),
-  * and those of ROS (REP 103; world: east, north, up; body: front, left, up).
+/** Converts between Skein's frames, which are those of AirSim and MAVLink (world: north, east, down; body:
+  * front, right, down), and those of ROS (REP 103; world: east, north, up; body: front, left, up).
   */
 object RosFrames:
 
-  /** A position or velocity in ENU, from NED; also the other way round. */
+  /** Converts a position or velocity from NED to ENU, or from ENU to NED. */
   def swapWorld(ned: Vector3): Vector3 = Vector3(ned.y, ned.x, -ned.z)
 
-  /** A vector in FLU, from FRD; also the other way round. */
+  /** Converts a vector from FRD to FLU, or from FLU to FRD. */
   def swapBody(frd: Vector3): Vector3 = Vector3(frd.x, -frd.y, -frd.z)
 
-  /** The rotation from body FLU to ENU, from that of body FRD to NED; w is not negative. */
+  /** Converts the rotation from body FRD to NED to that from body FLU to ENU; w is not negative. */
   def toEnu(nedFromFrd: Quaternion): Quaternion = upright(WorldSwap * nedFromFrd * BodySwap)
 
-  /** The rotation from body FRD to NED, from that of body FLU to ENU; w is not negative. */
+  /** Converts the rotation from body FLU to ENU to that from body FRD to NED; w is not negative. */
   def toNed(enuFromFlu: Quaternion): Quaternion = upright(WorldSwap * enuFromFlu * BodySwap)
 
   /** The heading, rad from north towards east, of a rotation from body FLU to ENU. */
   def heading(enuFromFlu: Quaternion): Double = toNed(enuFromFlu).yawRad
 
-  /** A velocity in NED, from one in FLU of the level frame that turns with the heading. */
+  /** Converts a velocity in the level FLU frame, which turns with the heading, to NED. */
   def fromLevel(flu: Vector3, headingRad: Double): Vector3 =
     val (cos, sin) = (StrictMath.cos(headingRad), StrictMath.sin(headingRad))
     Vector3(flu.x * cos + flu.y * sin, flu.x * sin - flu.y * cos, -flu.z)

@@ -8,9 +8,9 @@ trait RosGraph extends AutoCloseable:
   /** Subscribes to a topic of any type, as serialized messages.
     *
     * @param kind such as `nav_msgs/msg/Odometry`; its package must be installed
-    * @param most bytes of a message that are handed over; the rest is not copied
-    * @param receive called for each message on the node's thread with its first bytes, and when it arrived by
-    *   the system's clock: as the middleware says, or else when it was taken from it
+    * @param most limit of the bytes of a message that are handed over; the rest is not copied
+    * @param receive called for each message on the node's thread with its first bytes and its arrival time by
+    *   the system's clock: the middleware's, or else the time at which it was read
     * @return Left if the package is not installed, or ROS 2 rejects the topic, with the reason
     */
   def subscribeRaw(topic: String, kind: String, qos: Qos, most: Int)(
@@ -26,8 +26,8 @@ trait RosGraph extends AutoCloseable:
   /** Messages that were published and did not arrive, as far as middleware numbers them. */
   def lost: Long
 
-  /** What went wrong so far, each kind once: the first malformed message of a topic, and topics that others
-    * use with another type, so that nothing is received from them. At most 16 lines.
+  /** The problems so far, each kind once: the first malformed message of a topic, and topics that others use
+    * with another type, so that nothing is received from them. At most 16 lines.
     */
   def notes: Vector[String]
 
@@ -37,5 +37,6 @@ trait RosWatcher:
   /** Receives all topics of the graph with their types, twice a second. */
   def topics(found: Vector[(String, Vector[String])]): Unit
 
-  /** Whatever had arrived by then has been handed over, but what exceeds 64 messages of a topic. */
+  /** Is called once all messages that had arrived by `at` are handed over, except those beyond 64 of a topic.
+    */
   def upTo(at: Instant): Unit

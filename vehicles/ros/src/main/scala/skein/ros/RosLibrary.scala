@@ -20,8 +20,8 @@ import scala.util.Try
 /** ROS 2's C client library `librcl` of an installed ROS 2, called without a build and without generated
   * code. Skein contains no part of it. It stays loaded until the process ends.
   *
-  * Only what the headers of all distributions since Foxy declare alike is used. Structs that come back by
-  * value are received in larger memory than they need, so that their sizes may differ.
+  * It uses only declarations that are equal in the headers of all distributions since Foxy. Structs returned
+  * by value are received in larger memory than they need, so that their sizes may differ.
   */
 private[ros] final class RosLibrary private (folders: Vector[Path], rcl: SymbolLookup):
   import RosLibrary.*
@@ -95,7 +95,7 @@ private[ros] final class RosLibrary private (folders: Vector[Path], rcl: SymbolL
     try
       val text = errorText(arena).getString(0)
       resetError.invokeWithArguments(): Unit
-      // Behind it stands the place in the library's source.
+      // The place in the library's source follows.
       s"${text.split(", at /").head} (status $status)"
     finally arena.close()
 
@@ -127,7 +127,8 @@ private[ros] final class RosLibrary private (folders: Vector[Path], rcl: SymbolL
       .invokeWithArguments()
       .asInstanceOf[MemorySegment]
 
-  /** The text of a type's `.msg` file, which stands in the folder `share` beside `lib`; empty without one. */
+  /** The text of a type's `.msg` file, which is in the folder `share` beside `lib`; empty if there is none.
+    */
   def definition(kind: String): String = kind match
     case Kind(packageName, name) =>
       folders
@@ -165,7 +166,7 @@ private[ros] object RosLibrary:
 
   private val RclName = System.mapLibraryName("rcl")
 
-  /** Folders that may hold ROS 2's libraries, those of overlays first, if one of them has `librcl`. */
+  /** Folders with ROS 2's libraries, overlays first. Left states why there is no `librcl` in any of them. */
   private[ros] def folders(environment: Map[String, String]): Either[String, Vector[Path]] =
     def listed(variable: String) =
       environment.get(

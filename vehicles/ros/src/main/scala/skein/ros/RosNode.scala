@@ -159,13 +159,13 @@ final class RosNode private (
           left = 0
           if other != RosLibrary.NothingToTake then refuse(one.topic, library.reason(other))
 
-  /** Counts a message that was refused; the first one's reason stands for those of its topic. */
+  /** Counts a refused message; only the reason of a topic's first one is noted. */
   private[ros] def refuse(topic: String, why: String): Unit =
     val begin = s"$topic: refused a message: "
     if !noted.get.exists(_.startsWith(begin)) then note(begin + why)
     malformed.incrementAndGet(): Unit
 
-  /** When a message was received: as the middleware says, or else now. */
+  /** The time at which a message was received, by the middleware, or else the present time. */
   private def arrivedAt(info: MemorySegment): Instant =
     val now      = clock.now()
     val received = Instant.ofNanos(info.get(JAVA_LONG, ReceivedAt))
@@ -184,15 +184,15 @@ final class RosNode private (
       library.status(library.endTypes, found): Unit
       topics
 
-  /** Notes topics of ours that others publish, or read, as another type: ROS 2 does not connect them and says
-    * nothing.
+  /** Notes this node's topics that others publish, or read, as another type: ROS 2 does not connect them and
+    * reports nothing.
     */
   private def noteOtherTypes(all: Vector[Reader], topics: Vector[(String, Vector[String])]): Unit =
     val types = topics.toMap
     for reader <- all; other <- types.getOrElse(reader.topic, Vector.empty) if other != reader.kind do
       note(s"${reader.topic}: expected ${reader.kind}, a node uses $other, which is not received")
 
-  /** An `rcutils_string_array_t`: how many texts, and where they are. */
+  /** Reads an `rcutils_string_array_t`, which is a number of texts and their address. */
   private def texts(array: MemorySegment): Vector[String] =
     val count = array.get(JAVA_LONG, 0)
     if count == 0 then Vector.empty
@@ -239,15 +239,17 @@ object RosNode:
   /** Bytes for `rcl_wait_set_t`: six arrays with their sizes, and a pointer; some reserve. */
   private val WaitSetRoom = 256L
 
-  /** Bytes for `rmw_message_info_t`, with reserve; where the time of reception stands in it, the message's
-    * number, and the publisher's identifier. In Foxy constants stand in these two places.
+  /** Size of the memory for `rmw_message_info_t`, with reserve, and the offsets in it of the time of
+    * reception, the message's number and the publisher's identifier. In Foxy the latter two read constants.
     */
   private val InfoRoom    = 512L
   private val ReceivedAt  = 8L
   private val NumberAt    = 16L
   private val PublisherAt = 40L
 
-  /** How far the middleware's clock may be from ours; some middleware fills in nothing. */
+  /** Limit of the difference between the middleware's clock and this process's; some middleware states no
+    * time.
+    */
   private val MostApart = Span.ofSeconds(10)
 
   /** Bytes of `rcutils_string_array_t`: size, address, allocator. */
@@ -261,14 +263,16 @@ object RosNode:
   private val MostChars  = 4096L
   private val MostNotes  = 16
 
-  /** Messages of one topic that are received before another's turn. */
+  /** Limit of one topic's messages that are received before another topic's turn. */
   private val MostAtOnce = 64
 
   private val Patience   = Span.ofMillis(100)
   private val LookEvery  = Span.ofMillis(500)
   private val JoinMillis = 2_000L
 
-  /** Why no node can be opened here, if none can: ROS 2 is not installed, or not in the environment. */
+  /** The reason why no node can be opened here: ROS 2 is not installed, or not in the environment. None if
+    * one can be opened.
+    */
   def missing: Option[String] = RosLibrary.here.left.toOption
 
   /** Opens a node.

@@ -21,9 +21,7 @@ final class RosPublisher[A] private[ros] (
   private var isOpen  = true
   private val readers = Arena.ofAuto().allocate(8, 8)
 
-  /** An `rcutils_uint8_array_t` with its bytes: their address, how many there are, how many there is room
-    * for, and an allocator.
-    */
+  /** An `rcutils_uint8_array_t` with its bytes: address, size, capacity, and an allocator. */
   private def envelope(bytes: Long): MemorySegment =
     val made = room.allocate(24 + RosLibrary.AllocatorLayout.byteSize, 8)
     made.set(ADDRESS, 0, room.allocate(bytes, 8))

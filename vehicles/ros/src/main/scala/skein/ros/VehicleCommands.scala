@@ -7,12 +7,12 @@ import skein.signal.Kinematics
 import skein.units.{Expect, MetresPerSecond, Quaternion, Radians, Span, Vector3}
 import skein.vehicle.GoTo
 
-/** Commands of ROS as actions. Left states what was expected, and what was received. */
+/** Converts ROS commands to actions. Left states what was expected, and what was received. */
 private[ros] object VehicleCommands:
-  /** How long a velocity lasts after it has arrived, by the simulator's clock. */
+  /** Duration of a velocity after its arrival, by the simulator's clock. */
   val VelocityLasts: Span = Span.ofSeconds(0.5)
 
-  /** The most that a vehicle flies to a pose with. */
+  /** Greatest speed of a vehicle's flight to a pose. */
   val Cruise: MetresPerSecond = MetresPerSecond(5)
 
   /** Flies with a velocity and turns at a rate. In the vehicle's frame, front and left are level and turn
@@ -39,8 +39,8 @@ private[ros] object VehicleCommands:
   private def inBody(flu: Vector3, turn: Yaw)(now: Kinematics): Action =
     Action.Velocity(RosFrames.fromLevel(flu, now.orientation.yawRad), turn)
 
-  /** Flies to a position, turns to the pose's heading, and stays there. An orientation of zeros asks for
-    * none.
+  /** Flies to a position, turns to the pose's heading, and stays there. An orientation of zeros sets no
+    * heading.
     */
   def position(pose: PoseStamped): Either[String, Kinematics => Action] =
     val (at, q)  = (pose.pose.position, pose.pose.orientation)

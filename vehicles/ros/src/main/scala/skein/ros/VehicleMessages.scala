@@ -23,11 +23,11 @@ object VehicleMessages:
     )
   )
 
-  /** Where the frame of a vehicle's body is in the world. */
+  /** The pose of a vehicle's body frame in the world. */
   def transform(at: Instant, vehicle: String, motion: Kinematics): TransformStamped =
     transform(at, body(vehicle), motion.positionNed, RosFrames.toEnu(motion.orientation))
 
-  /** Where a frame is in the world.
+  /** The pose of a frame in the world.
     *
     * @param toEnu the rotation from the frame to the world
     */
@@ -42,7 +42,7 @@ object VehicleMessages:
     Transform(vector(RosFrames.swapWorld(positionNed)), quaternion(toEnu))
   )
 
-  /** The acceleration is what an accelerometer feels: without motion, gravity's reaction upwards. */
+  /** The acceleration is what an accelerometer measures: without motion, gravity's reaction upwards. */
   private[ros] def imu(at: Instant, vehicle: SeenVehicle): Imu =
     val felt = vehicle.accelerationNed - skein.units.Vector3(0, 0, Airframe.Gravity)
     Imu(
@@ -55,7 +55,7 @@ object VehicleMessages:
       Doubles.zero
     )
 
-  /** The altitude is above the simulator's sphere, at whose surface sea level is. */
+  /** The altitude is above the simulator's sphere, whose surface is at sea level. */
   private[ros] def fix(at: Instant, vehicle: SeenVehicle): NavSatFix = NavSatFix(
     Header(Time.of(at), body(vehicle.name)),
     NavSatStatus(0, Gps),

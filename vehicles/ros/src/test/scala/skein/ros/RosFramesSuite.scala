@@ -20,17 +20,17 @@ class RosFramesSuite extends munit.FunSuite:
     assertEquals(RosFrames.swapWorld(Vector3(1, 2, -3)), Vector3(2, 1, 3))
     assertEquals(RosFrames.swapBody(Vector3(1, 2, -3)), Vector3(1, -2, 3))
 
-  test("a level vehicle that heads north has a yaw of 90 degrees in ROS, one that heads east of zero"):
+  test("in ROS a level vehicle has a yaw of 90 degrees when it heads north, and of 0 when it heads east"):
     val north = RosFrames.toEnu(Quaternion.Identity)
     assertEqualsDouble(2 * math.atan2(north.z, north.w), math.Pi / 2, 1e-12)
     val east = RosFrames.toEnu(Quaternion.ofYaw(math.Pi / 2))
     assertEqualsDouble(2 * math.atan2(east.z, east.w), 0, 1e-12)
 
-  test("a vector of the body comes to the same place by either convention"):
+  test("a body vector has equal world coordinates by either convention"):
     for q <- turns; frd <- Seq(Vector3(1, 0, 0), Vector3(0, 1, 0), Vector3(0.2, -3, 5)) do
       near(RosFrames.toEnu(q).toWorld(RosFrames.swapBody(frd)), RosFrames.swapWorld(q.toWorld(frd)))
 
-  test("there and back is the same rotation, with w not negative"):
+  test("a rotation that is converted there and back is unchanged, with w not negative"):
     for q <- turns do
       val enu  = RosFrames.toEnu(q)
       val back = RosFrames.toNed(enu)
@@ -38,7 +38,9 @@ class RosFramesSuite extends munit.FunSuite:
       near(back.toWorld(Vector3(1, 2, 3)), q.toWorld(Vector3(1, 2, 3)))
       assertEqualsDouble(RosFrames.heading(enu), q.yawRad, 1e-12)
 
-  test("front of the level frame is along the heading, left is west of north"):
+  test(
+    "a velocity in the level frame is turned by the heading into north, east and down"
+  ):
     near(RosFrames.fromLevel(Vector3(2, 0, 1), 0), Vector3(2, 0, -1))
     near(RosFrames.fromLevel(Vector3(0, 2, 0), 0), Vector3(0, -2, 0))
     near(RosFrames.fromLevel(Vector3(2, 0, 0), math.Pi / 2), Vector3(0, 2, 0))

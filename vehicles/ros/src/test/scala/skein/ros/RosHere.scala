@@ -22,8 +22,8 @@ private[ros] object RosHere:
   /** A domain of the test's own: other programs of this machine may use ROS 2. */
   val Domain: String = (100 + ProcessHandle.current.pid % 100).toString
 
-  /** Variables of a JVM whose node uses that library. PyPI's libraries need symbols of Python's, which those
-    * of an installed ROS 2 do not.
+  /** Environment variables of a JVM whose node uses this library. PyPI's libraries need symbols of Python's,
+    * unlike those of an installed ROS 2.
     */
   def variables(): Map[String, String] =
     val prefix  = python.python().getParent.getParent

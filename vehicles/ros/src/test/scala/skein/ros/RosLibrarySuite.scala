@@ -14,7 +14,7 @@ class RosLibrarySuite extends munit.FunSuite:
 
   private def folders(variables: (String, String)*) = RosLibrary.folders(variables.toMap)
 
-  test("without ROS 2 one line says what was expected, and what to do"):
+  test("without ROS 2, one line states what was expected and what to do"):
     assertEquals(
       folders(),
       Left(
@@ -23,12 +23,12 @@ class RosLibrarySuite extends munit.FunSuite:
       )
     )
 
-  test("variables that name no ROS 2 are not said to be unset"):
+  test("environment variables that are set but have no ROS 2 are not reported as unset"):
     val empty = prefix(withRcl = false).toString
     val line  = folders("AMENT_PREFIX_PATH" -> empty, "LD_LIBRARY_PATH" -> "").swap.getOrElse("")
     assert(line.contains("of AMENT_PREFIX_PATH or in") && line.contains("LD_LIBRARY_PATH (not set)"), line)
 
-  test("an overlay's folder comes before the one below it, and libraries' own folders last"):
+  test("an overlay's folder precedes the folder below it, and the libraries' own folders come last"):
     val (overlay, below, own) = (prefix(withRcl = false), prefix(withRcl = true), prefix(withRcl = false))
     assertEquals(
       folders(
@@ -38,7 +38,7 @@ class RosLibrarySuite extends munit.FunSuite:
       Right(Vector(overlay.resolve("lib"), below.resolve("lib"), own))
     )
 
-  test("a vehicle's name must be able to stand in a topic's"):
+  test("a vehicle's name must be valid as a part of a topic's name"):
     assertEquals(SimulatedTopics.mistake(Vector("Drone_1", "b2")), None)
     for name <- Seq("", "1st", "a b", "a/b", "a__b", "ä") do
       assert(SimulatedTopics.mistake(Vector("a", name)).exists(_.endsWith(s"came '$name'")), name)

@@ -15,7 +15,7 @@ class TwistCommandSuite extends munit.FunSuite:
   private def of(action: Action): (RosVector, Double) =
     TwistCommand.of(action, now).fold(error => fail(error.message), twist => (twist.linear, twist.angular.z))
 
-  test("odometry that the simulator publishes is the motion that it is of"):
+  test("the odometry that the simulator publishes is read as the motion that it was made from"):
     val message = VehicleMessages.odometry(Instant.ofNanos(7), "a", now)
     val back    = TwistCommand.kinematics(message).fold(fail(_), identity)
     near(back.positionNed, now.positionNed)
@@ -32,7 +32,7 @@ class TwistCommandSuite extends munit.FunSuite:
     )
     assert(TwistCommand.kinematics(broken).left.exists(_.startsWith("expected finite numbers")))
 
-  test("velocities come in ENU, and a turn to the right is negative"):
+  test("velocities are in ENU, and a turn to the right is negative"):
     assertEquals(of(Action.Velocity(Vector3(1, 2, -3), Yaw.Turning(0.4))), (RosVector(2, 1, 3), -0.4))
 
   test("an altitude and a heading are reached by feedback, within limits"):
@@ -43,10 +43,10 @@ class TwistCommandSuite extends munit.FunSuite:
     assertEqualsDouble(far.z, 3, 1e-9)
     assertEqualsDouble(turned, -1.5, 1e-9)
 
-  test("the shorter way round is taken"):
+  test("a vehicle turns the shorter way round"):
     assert(of(Action.Turn(Yaw.Towards(Radians(0.5 + 1.9 * math.Pi))))._2 > 0)
 
-  test("hovering is no velocity, and landing leads down"):
+  test("hovering is a velocity of zero, and landing is a velocity downwards"):
     assertEquals(of(Action.Hover), (RosVector(0, 0, -0.0), -0.0))
     assert(of(Action.Land)._1.z < 0)
 

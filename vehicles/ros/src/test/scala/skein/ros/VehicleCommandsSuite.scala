@@ -30,7 +30,7 @@ class VehicleCommandsSuite extends munit.FunSuite:
   test("a turn to the left is positive in ROS"):
     assertEquals(velocity("map", 0)._2, Yaw.Turning(-0.25))
 
-  test("other frames, and numbers that are none, are refused"):
+  test("other frames, and numbers that are not finite, are refused"):
     assertEquals(
       VehicleCommands.velocity("a", "b/base_link", twist),
       Left("expected the frame a/base_link or map, came 'b/base_link'")
@@ -48,7 +48,7 @@ class VehicleCommandsSuite extends munit.FunSuite:
     case Right(Action.Velocity(_, yaw)) => yaw
     case other                          => fail(s"$other")
 
-  test("a pose is a position in ENU, to which it flies at the cruising speed, and a heading"):
+  test("a pose is a position in ENU, approached at the cruising speed, and a heading"):
     flown(pose("map", Quaternion(0, 0, 0, 1)), Ned(1006, 5, -7)) match
       case Right(Action.Velocity(ned, Yaw.Towards(heading))) =>
         assertEqualsDouble(ned.x, -1.5 * VehicleCommands.Cruise.value, 1e-9)
@@ -56,13 +56,13 @@ class VehicleCommandsSuite extends munit.FunSuite:
         assertEqualsDouble(heading.value, math.Pi / 2, 1e-12)
       case other => fail(s"$other")
 
-  test("it stays at the pose"):
+  test("a vehicle stays at its pose"):
     assertEquals(
       flown(pose("", Quaternion(0, 0, 0, 0)), Ned(6, 5, -7)),
       Right(Action.Velocity(Ned.Zero, Yaw.Still))
     )
 
-  test("an orientation of zeros asks for no heading, one of another length for the same heading"):
+  test("an orientation of zeros sets no heading, and one of any other length sets its heading"):
     assertEquals(yaw(Quaternion(0, 0, 0, 0)), Yaw.Still)
     yaw(Quaternion(0, 0, 2, 2)) match
       case Yaw.Towards(heading) => assertEqualsDouble(heading.value, 0, 1e-12)

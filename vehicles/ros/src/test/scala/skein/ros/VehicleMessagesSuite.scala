@@ -27,14 +27,14 @@ class VehicleMessagesSuite extends munit.FunSuite:
     near(odometry.twist.twist.linear, 4, 0, 1)
     near(odometry.twist.twist.angular, 0, 0, -0.5)
 
-  test("the frame in the tree is the odometry's"):
+  test("the transform in the tree has the odometry's pose"):
     val frame    = VehicleMessages.transform(at, vehicle.name, vehicle.kinematics)
     val odometry = VehicleMessages.odometry(at, vehicle.name, vehicle.kinematics)
     assertEquals((frame.header, frame.childFrameId), (odometry.header, odometry.childFrameId))
     near(frame.transform.translation, 20, 10, 30)
     assertEquals(frame.transform.rotation, odometry.pose.pose.orientation)
 
-  test("an inertial unit feels the acceleration, and gravity's reaction upwards"):
+  test("an inertial unit measures the acceleration and gravity's reaction upwards"):
     val imu = VehicleMessages.imu(at, vehicle)
     assertEquals(imu.header.frameId, "a/base_link")
     near(imu.linearAcceleration, 2, 0, 9.80665)

@@ -6,8 +6,8 @@ import scala.concurrent.{Await, Future}
 import skein.policy.Action
 import skein.units.*
 
-/** Lets the vehicle `a` climb for 3 s, under another name, and prints by how much, and how old the last
-  * reading was; before, it looks for a vehicle that is not there.
+/** Lets the vehicle `a` climb for 3 s under another name, and prints the climb and the age of the last
+  * reading. First it looks for a vehicle that does not exist.
   */
 @main def flyOnRos(): Unit =
   given system: ActorSystem       = ActorSystem("fly")

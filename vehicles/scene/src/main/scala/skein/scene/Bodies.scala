@@ -2,8 +2,9 @@ package skein.scene
 
 import skein.units.{Quaternion, Vector3}
 
-/** Vehicles at their places at one instant, as objects. It holds [[Bodies.Numbers]] numbers a vehicle and
-  * makes an object when one is looked at: images that wait to be drawn hold one of these each.
+/** Vehicles at their places at one instant, as objects. It stores [[Bodies.Numbers]] numbers for each vehicle
+  * and makes an object only when one is read, because every image that waits to be drawn holds such a
+  * sequence.
   *
   * @param shapes by vehicle
   * @param places of each: north, east, down, m, then the orientation's w, x, y, z
@@ -29,7 +30,7 @@ final class Bodies(shapes: IndexedSeq[Bodies.Shaped], places: Array[Double]) ext
     )
 
 object Bodies:
-  /** What all bodies of one vehicle share: its name, and its parts in its own frame. */
+  /** The common part of all bodies of one vehicle: its name, and its parts in its own frame. */
   final case class Shaped(name: String, parts: Vector[SceneObject.Part])
 
   val Numbers = 7

@@ -1,6 +1,6 @@
 package skein.scene
 
-/** How a [[Moment]] numbers its items: the ground, then the scene's objects, then vehicles. */
+/** Numbers of a [[Moment]]'s items: the ground, then the scene's objects, then vehicles. */
 object Item:
   val Nothing: Int = -1
 

@@ -93,7 +93,7 @@ final case class Lidar(
     Lidar.Points(java.util.Arrays.copyOf(xyz, 3 * found), java.util.Arrays.copyOf(items, found))
 
 object Lidar:
-  /** Most rays in one scan, as in AirSim. */
+  /** Limit of the rays in one scan, as in AirSim. */
   val MostRays = 100_000
 
   /** @param xyz three numbers a point, m

@@ -42,7 +42,7 @@ final class Moment(val scene: Scene, val vehicles: IndexedSeq[SceneObject]):
     )
 
 object Moment:
-  /** Points less deep than this lie on the ground, m: positions received as latitude and 32-bit altitude are
-    * no more exact.
+  /** Depth up to which a point counts as on the ground, m: positions received as latitude and 32-bit altitude
+    * are no more exact.
     */
   val GroundToleranceM = 0.001

@@ -7,7 +7,7 @@ import scala.jdk.CollectionConverters.*
 import skein.signal.SplitMix64
 import skein.units.Vector3
 
-/** Why a scene cannot be used.
+/** The reason why a scene cannot be used.
   *
   * @param place file and line, if known
   */

@@ -16,8 +16,8 @@ enum Shape:
 
   /** A plate of 2 mm thickness whose front shows an AprilTag of family 36h11.
     *
-    * @param sideM of its black square, which detectors call its width; a white margin of an eighth of it
-    *   surrounds it
+    * @param sideM side of the tag's black square, which detectors call its width; a white margin of an eighth
+    *   of it surrounds the square
     */
   case Tag(number: Int, sideM: Double)
 

@@ -15,7 +15,9 @@ final private[skein] class Solid private (
     val reachM: Double
 ):
 
-  /** Where a ray enters it: in lengths of the direction, 0 from inside, infinite if not within `limit`. */
+  /** The distance at which a ray enters the body, in lengths of the direction: 0 from inside, infinite if not
+    * within `limit`.
+    */
   def hit(ox: Double, oy: Double, oz: Double, dx: Double, dy: Double, dz: Double, limit: Double): Double =
     var enter = 0.0
     var leave = limit
@@ -51,8 +53,8 @@ private[skein] object Solid:
   /** Cells painted on a face.
     *
     * @param origin of the upper left cell's upper left corner
-    * @param across from it to the next column's, over the squared length of a cell: a position's column is
-    *   its product with this; `down` likewise
+    * @param across vector to the next column's corner, divided by the squared length of a cell, so that its
+    *   product with a position is the position's column; `down` likewise for rows
     */
   final class Pattern(val white: Array[Boolean], val origin: Vector3, val across: Vector3, val down: Vector3)
 

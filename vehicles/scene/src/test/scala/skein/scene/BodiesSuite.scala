@@ -19,11 +19,11 @@ class BodiesSuite extends munit.FunSuite:
     assertEquals(bodies(1).place.position, Vector3.Zero)
     intercept[IllegalArgumentException](Bodies(shapes, Array.fill(13)(0.0)))
 
-  test("what waits to be drawn holds seven numbers a vehicle, and shares its shapes"):
+  test("bodies that wait to be drawn store seven numbers a vehicle, and share their shapes"):
     val waiting = Vector.fill(3)(bodies(0).parts)
     assert(waiting.forall(_ eq box))
 
-  test("a moment of bodies is that of the same objects"):
+  test("a moment with bodies equals a moment with their objects"):
     val here  = Moment(Scene.Empty, bodies)
     val there = Moment(
       Scene.Empty,

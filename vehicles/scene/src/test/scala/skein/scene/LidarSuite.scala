@@ -8,7 +8,7 @@ class LidarSuite extends munit.FunSuite:
   private def scan(lidar: Lidar, at: Placement, moment: Moment = sixty, count: Long = 0) =
     lidar.scan(moment, at, Item.Nothing, Vector3.Zero, count)
 
-  test("AirSim's default sees flat ground in 16 circles, 10,000 points a turn less the last degree"):
+  test("AirSim's default lidar sees flat ground in 16 circles, 10,000 points a turn less the last degree"):
     val points = scan(Lidar(), Placement(Vector3(0, 0, -10)), Moment(Scene.Empty, Vector.empty))
     assertEquals(points.items.toSet, Set(Item.Ground))
     val radii = points.xyz.grouped(3).map(p => math.hypot(p(0), p(1))).toSeq
@@ -39,7 +39,7 @@ class LidarSuite extends munit.FunSuite:
         val ground = if unit.z > 0 then -place.position.z / unit.z else Double.PositiveInfinity
         assertEqualsDouble(way.norm, math.min(met.min, ground), 1e-3)
 
-  test("points in the sensor's frame are the world's, transformed"):
+  test("points in the sensor's frame are the world's points, transformed"):
     val place = Placement.turned(Vector3(3, -2, -4), 5, 10, 120)
     val world = scan(Lidar(place = Placement(Vector3(0, 0, 0.1))), place)
     val own   = scan(Lidar(place = Placement(Vector3(0, 0, 0.1)), sensorFrame = true), place)
@@ -60,7 +60,7 @@ class LidarSuite extends munit.FunSuite:
     assert(scan(noisy, place).xyz.sameElements(scan(noisy, place).xyz))
     assert(!scan(noisy, place).xyz.sameElements(scan(noisy, place, count = 1).xyz))
 
-  test("a narrow field of view gives its points in every scan"):
+  test("a narrow field of view has points in every scan"):
     val narrow = scan(Lidar(horizontalFovDeg = (-20, 20)), Placement(Vector3(0, 0, -10)))
     assert(narrow.items.length > 1000)
     for p <- narrow.xyz.grouped(3) do assert(math.abs(math.toDegrees(math.atan2(p(1), p(0)))) < 20.01)

@@ -17,7 +17,7 @@ class SceneSuite extends munit.FunSuite:
     assert(SceneFile.named("street").get.objects.exists(_.name == "Tag2"))
     assertEquals(SceneFile.named("moon"), None)
 
-  test("objects on the ground have their foot there, walls and plates are at their stated positions"):
+  test("objects stand with their foot on the ground, and walls and plates are at their stated positions"):
     val scene = SceneFile.parse(
       """objects = [
         |  { box = [2, 4, 6], at = [10, 0] }
@@ -62,7 +62,7 @@ class SceneSuite extends munit.FunSuite:
   private val scene = Scene(Vector(house, pole))
   private val half  = Vector3(0.3, 0.3, 0.1)
 
-  test("a box that overlaps another gives the depth, and the direction out"):
+  test("the contact of two overlapping boxes states the depth and the direction out"):
     val contact = Contact.of(scene, Placement(Vector3(7.8, 1, -2)), half).get
     assertEquals(contact.item, 1)
     assertEqualsDouble(contact.depthM, 0.1, 1e-9)

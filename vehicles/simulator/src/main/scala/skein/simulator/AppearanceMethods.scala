@@ -2,9 +2,9 @@ package skein.simulator
 
 import skein.airsim.wire.{Pose, Vector3r}
 
-/** Functions whose effect is visible only, and which no function can read back: their arguments are checked
-  * as AirSim's are, and they have no effect. A function that would change things that do not exist here
-  * (lights, textures, materials) answers as AirSim does for an unknown name.
+/** Functions that only change how things look, which no function can read back. They check their arguments as
+  * AirSim does and have no effect. A function that would change things that do not exist here (lights,
+  * textures, materials) answers as AirSim does for an unknown name.
   */
 private[simulator] object AppearanceMethods:
   import ServerMethod.*

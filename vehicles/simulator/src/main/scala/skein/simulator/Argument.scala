@@ -7,17 +7,18 @@ import skein.airsim.wire.*
 import skein.units.Instant
 import upack.*
 
-/** How AirSim's server reads an argument of this type: the conversions of msgpack-c, which its rpclib uses.
+/** Reads an argument of this type as AirSim's server does, with the conversions of msgpack-c, which its
+  * rpclib uses.
   *
-  *   - A float may be sent as an integer, never as a boolean, a string or nil; a float is no integer, and an
-  *     integer out of its type's range is none.
-  *   - A string may be sent as str or as bin, which old clients send.
-  *   - A map's missing keys keep their defaults and unknown keys are skipped, at any depth; a map with a key
-  *     that is no string, or another kind of value in its place, is refused.
-  *   - A refusal is reported as `std::bad_cast`, without its place.
+  * - A float may be sent as an integer, never as a boolean, a string or nil; a float is not accepted as an
+  *   integer, nor is an integer out of its type's range.
+  * - A string may be sent as str or as bin, which old clients send.
+  * - A map's missing keys keep their defaults and unknown keys are skipped, at any depth; a map with a key
+  *   that is no string, or another kind of value in its place, is refused.
+  * - A refusal is reported as `std::bad_cast`, without its place.
   *
-  * Unlike AirSim it refuses numbers that are not finite, or too large for a 32-bit float argument, or vectors
-  * and positions beyond a limit: they would corrupt physics for good.
+  * Unlike AirSim's server, this refuses numbers that are not finite, or too large for a 32-bit float
+  * argument, or vectors and positions beyond a limit: they would corrupt physics for good.
   */
 private[simulator] trait Argument[A]:
   def read(value: Msg): A
@@ -26,7 +27,7 @@ private[simulator] trait Argument[A]:
 private[simulator] sealed class BadArgument(text: String)
     extends RuntimeException(text, null, /* enableSuppression = */ false, /* writableStackTrace = */ false)
 
-/** A number that is not finite, or not as a 32-bit float. */
+/** A number that is not finite, or becomes infinite as a 32-bit float. */
 final private[simulator] class NotFinite extends BadArgument("parameters must be finite numbers")
 
 private[simulator] object Argument:
@@ -41,7 +42,7 @@ private[simulator] object Argument:
 
   given Argument[Unsigned32] = integer(_, 0, 0xffffffffL)
 
-  /** A time stamp, nanoseconds: unsigned, up to the greatest signed 64-bit number. */
+  /** Reads a time stamp in nanoseconds: unsigned, up to the greatest signed 64-bit number. */
   given Argument[Instant] = value => Instant.ofNanos(integer(value, 0, Long.MaxValue))
 
   given Argument[Double] = value => finite(number(value))
@@ -57,7 +58,7 @@ private[simulator] object Argument:
     case Arr(values) => values.iterator.map(element.read).toVector
     case _           => badCast
 
-  /** A vector's numbers are metres, metres per second or radians: beyond it they lose their ones. */
+  /** Greatest magnitude of a vector's components, in m, m/s or rad: there a 32-bit float has steps of 64. */
   private val Greatest = 1e9f
 
   given Argument[Vector3r] = checked(record(Vector3r.Zero)): vector =>
@@ -67,7 +68,7 @@ private[simulator] object Argument:
   given Argument[Quaternionr] = record(Quaternionr(1, 0, 0, 0))
   given Argument[Pose]        = record(Pose(Vector3r.Zero, Quaternionr(1, 0, 0, 0)))
 
-  /** None for a value of the right type whose numbers are not finite. */
+  /** Reads None from a value of the right type whose numbers are not finite. */
   given [A](using argument: Argument[A]): Argument[Option[A]] = value =>
     try Some(argument.read(value))
     catch case _: NotFinite => None
@@ -78,7 +79,7 @@ private[simulator] object Argument:
   given Argument[GeoPoint]    = checked(record(GeoPoint(0, 0, 0))): point =>
     misplaced(point.latitude, point.longitude, point.altitude)
 
-  /** Why this is no geographic position; None if it is one. */
+  /** The reason why this is no geographic position; None if it is one. */
   def misplaced(latitudeDeg: Double, longitudeDeg: Double, altitudeM: Float): Option[String] =
     Option.unless(
       math.abs(latitudeDeg) <= 90 && math.abs(longitudeDeg) <= 360 && math.abs(altitudeM) <= 1e6f

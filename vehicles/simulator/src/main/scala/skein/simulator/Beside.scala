@@ -4,8 +4,8 @@ import java.util.concurrent.Executor
 import java.util.concurrent.atomic.AtomicInteger
 import skein.rpc.CallLines
 
-/** Runs long work, such as drawing, outside the simulation and on other threads than control's: at most one
-  * task less than the machine has processors at a time, in rounds over the clients, so that no client waits
+/** Runs long work, such as drawing, on threads of its own, outside the simulation. It runs at most one task
+  * less than the machine has processors at a time, and serves the clients in turn, so that no client waits
   * for another's whole queue. The queue is bounded by the calls that a client may have unanswered.
   *
   * @param threads that may block

@@ -32,8 +32,8 @@ private[simulator] object CameraSet:
     )
   )
 
-  /** The cameras of AirSim's car (`CarPawn`), moved half a metre up and outwards: our car is longer and
-    * higher than AirSim's buggy, so that the original positions would be inside it.
+  /** The cameras of AirSim's car (`CarPawn`), moved half a metre up and outwards. The simulator's car is
+    * longer and higher than AirSim's buggy, and the original positions would be inside it.
     */
   val OfCar: CameraSet = CameraSet(
     Map(

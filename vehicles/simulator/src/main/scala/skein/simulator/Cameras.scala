@@ -41,7 +41,7 @@ final private[simulator] class Cameras(equipment: SensorSettings):
   def setDetection(vehicle: Int, name: String, imageType: Int, detection: DetectionFilter): Unit =
     detected((vehicle, name, imageType)) = detection
 
-/** Which objects a camera detects.
+/** Selects the objects that a camera detects.
   *
   * @param meshes names, which may contain wild cards
   */

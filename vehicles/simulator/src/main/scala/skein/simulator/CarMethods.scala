@@ -2,7 +2,7 @@ package skein.simulator
 
 import skein.airsim.wire.{CarControls, CarState}
 
-/** Functions of cars: those that AirSim's `CarClient` has beside those of all vehicles. */
+/** Functions of cars that AirSim's `CarClient` has in addition to the functions of all vehicles. */
 private[simulator] object CarMethods:
   import ServerMethod.*
 

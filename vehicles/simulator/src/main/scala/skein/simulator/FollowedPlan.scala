@@ -4,22 +4,22 @@ import skein.port.PlanBuffer
 import skein.units.*
 import skein.vehicle.PathFollowing
 
-/** A multirotor's buffer of plans, and the move that it makes of the action in effect: as if a client had
-  * called that move at the very moment.
+/** A multirotor's buffer of plans. It flies the action in effect as a move, as if a client had called that
+  * move at the action's time.
   */
 private[simulator] final class FollowedPlan:
   private var buffer  = PlanBuffer.empty[Move.Order]
   private var running = Option.empty[FollowedPlan.Running]
   private var due     = Option.empty[Instant]
 
-  /** When its turn comes; None: not before the next plan. */
+  /** Time of the next turn; None if there is none before a new plan arrives. */
   def dueAt: Option[Instant] = due
 
   def receive(sequence: Long, plan: Vector[(at: Instant, action: Move.Order)], now: Instant): Unit =
     buffer = buffer.received(sequence, plan, now)
     if due.forall(_ > now) then due = buffer.due(now).map(_ => now).orElse(buffer.nextAfter(now))
 
-  /** Ends all plans. Those that are older than the newest received stay without effect when they come. */
+  /** Ends all plans. A plan that arrives later but is older than the newest one received has no effect. */
   def stop(now: Instant): Unit =
     val none = PlanBuffer.empty[Move.Order]
     buffer = buffer.newest.fold(none)(none.received(_, Vector.empty, now))
@@ -46,6 +46,6 @@ private object FollowedPlan:
   /** The action in effect.
     *
     * @param move absent once it has ended, or if it could not be made
-    * @param startedAt the action's moment, so that one that arrives late does not last longer
+    * @param startedAt the planned time of the action, so that an action that arrives late ends no later
     */
   private final case class Running(order: Move.Order, move: Option[Move], startedAt: Instant)

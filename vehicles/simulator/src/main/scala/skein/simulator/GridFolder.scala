@@ -27,8 +27,8 @@ private[simulator] final class GridFolder(folder: Path):
       else Right(home.resolve(name))
     catch case _: InvalidPathException => Left(s"expected a name that ends in $Ending")
 
-  /** Makes a grid and writes it, but never over a file that is anything else; whether it succeeded. Throws
-    * [[BadArgument]] while another is being made.
+  /** Makes a grid and writes it to `file`, replacing nothing but another grid. Returns whether it succeeded.
+    * Throws [[BadArgument]] while another grid is being made.
     */
   def save(file: Path)(render: => Array[Byte]): Boolean =
     if !isBusy.compareAndSet(false, true) then
@@ -59,7 +59,7 @@ private[simulator] final class GridFolder(folder: Path):
         files.filter(_.toString.endsWith(Ending)).limit(Most.toLong).count < Most
 
 private[simulator] object GridFolder:
-  /** Most files in the folder, each of some MB at most. */
+  /** Limit of the grids in the folder; a grid has a few MB at most. */
   val Most = 100
 
   private val Ending = ".binvox"

@@ -6,8 +6,8 @@ import skein.link.Address
 /** External autopilots that fly the vehicles: the simulator sends them sensor readings and applies their
   * rotor controls.
   *
-  * @param ports one for each vehicle, in order; PX4's use the simulator's own transport, which is TCP outside
-  *   tests, the others' UDP. Vehicles without a port have no autopilot
+  * @param ports one for each vehicle, in order. PX4's ports use the simulator's own transport, which is TCP
+  *   outside tests, the others use UDP. Vehicles without a port have no autopilot
   * @param stateTo address at which Betaflight receives the state
   * @param seed of the sensors' noise; each vehicle has its own
   */

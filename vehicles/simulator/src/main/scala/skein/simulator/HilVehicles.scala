@@ -121,14 +121,14 @@ private[simulator] object HilVehicles:
   ):
     private var jumps = vehicle.jumps
 
-    /** Whether the vehicle has been moved by other means than flight since the last call. */
+    /** Whether a reset or a new position has displaced the vehicle since the last call. */
     def jumped(): Boolean =
       val before = jumps
       jumps = vehicle.jumps
       jumps != before
 
-  /** Real time after which an unanswering autopilot is no longer waited for, as in PX4's plugin for Gazebo;
-    * and the greatest slowdown of the clock by an autopilot for as long.
+  /** Real time for which the clock waits for an autopilot's answer, as in PX4's plugin for Gazebo. An
+    * autopilot that slows the clock by at most `MostSlowdown` never exceeds it.
     */
   private val Patience     = Span.ofSeconds(1)
   private val MostSlowdown = 150L

@@ -6,13 +6,13 @@ import skein.units.Instant
 private[simulator] trait Lockstep:
   def isWaiting: Boolean
 
-  /** The next stop at or before this time; None: no stop. */
+  /** The next stop no later than `until`; None if there is none. */
   def stop(until: Instant): Option[Instant]
 
-  /** Physics has reached such a stop. */
+  /** Is called when physics has reached such a stop. */
   def reached(): Unit
 
-  /** The time to which physics must advance now, whatever the clock says; None: follow the clock. */
+  /** The time to which physics must advance now, whatever the clock shows; None: follow the clock. */
   def goal: Option[Instant]
 
   /** Receives the current time, by the clock of the simulation's caller. */

@@ -8,7 +8,7 @@ import skein.vehicle.{PathFollowing, Setpoint}
   * renew its goal, and end when done or when their time is over (`MultirotorApiBase`).
   */
 private[simulator] trait Move:
-  /** One iteration of that loop.
+  /** Runs one iteration of AirSim's loop.
     *
     * @param elapsed since the move began; zero in the first iteration
     */
@@ -23,12 +23,12 @@ private[simulator] enum MoveProgress:
   /** The move continues and keeps the goal as it is. */
   case Idle
 
-  /** The call answers `result`; a goal that is still set holds for 60 ms. */
+  /** The move has ended and its call answers `result`; a `goal` holds for another 60 ms. */
   case Ended(result: Boolean, goal: Option[Setpoint])
 
 private[simulator] object Move:
-  /** A requested move: made when its turn comes, from the vehicle's state at that time. `Left` is the text of
-    * the exception that AirSim throws.
+  /** A requested move, which is made from the vehicle's state when its turn comes. `Left` is the text of the
+    * exception that AirSim throws.
     */
   type Order = SimulatedMultirotor => Either[String, Move]
 

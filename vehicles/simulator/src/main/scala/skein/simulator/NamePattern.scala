@@ -25,13 +25,13 @@ final private[simulator] class NamePattern private (pattern: Pattern):
 private[simulator] object NamePattern:
   private val LongestPattern = 1000
 
-  /** Most letters of an expression after RE2/J has written out its counted repetitions. */
+  /** Limit of an expression's letters after RE2/J has written out its counted repetitions. */
   private val MostWrittenOut = 20_000
 
   /** Greatest nesting of an expression's groups. */
   private val Deepest = 50
 
-  /** Most instructions executed for one request. */
+  /** Limit of the instructions executed for one request. */
   private val MostEffort = 1_000_000L
 
   private val CodePoint = """(?<!\\)((?:\\\\)*)\\u([0-9A-Fa-f]{4})""".r
@@ -65,11 +65,11 @@ private[simulator] object NamePattern:
   private def wrong(why: String, text: String): Nothing =
     throw BadArgument(s"no regular expression: $why in '$text'")
 
-  /** How many groups are open before each letter. */
+  /** Number of groups that are open before each letter. */
   private def depths(groups: String): IndexedSeq[Int] = groups.scanLeft(0): (depth, letter) =>
     if letter == '(' then depth + 1 else if letter == ')' then depth - 1 else depth
 
-  /** A bound on the letters once counts are written out: the greatest count at each depth, multiplied. */
+  /** Upper bound of the letters with counts written out: the product of each depth's greatest count. */
   private def writtenOut(groups: String): Double =
     val depth  = depths(groups)
     val counts =

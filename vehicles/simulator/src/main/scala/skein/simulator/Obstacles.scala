@@ -9,7 +9,7 @@ import skein.units.{Instant, Quaternion, Vector3}
   * @param startNed origin of the vehicle's own frame in the world
   */
 final private[simulator] class Obstacles(startNed: Vector3):
-  // In this scene it can touch nothing within this distance from there.
+  // In this scene the vehicle can touch nothing within this distance from this place.
   private var freeOf = Scene.Empty
   private var freeAt = Vector3.Zero
   private var freeM  = 0.0

@@ -3,11 +3,11 @@ package skein.simulator
 import skein.signal.Kinematics
 import skein.units.*
 
-/** A part of this process that watches a simulator's vehicles without asking: see [[SimulatorServer.start]].
+/** A part of this process that receives the motion of a simulator's vehicles: see [[SimulatorServer.start]].
   */
 trait Onlooker:
-  /** Takes the vehicles' true motions every 20 ms of simulated time, at exactly that time, on the
-    * simulation's own thread, so it must return soon. Nothing is taken while the simulator is paused.
+  /** Receives the vehicles' true motions every 20 ms of simulated time, at exactly that time. Runs on the
+    * simulation's own thread, so it must return soon. It is not called while the simulator is paused.
     *
     * @param at on the simulator's clock
     */

@@ -5,10 +5,10 @@ import skein.units.*
 import skein.units.Decimals.fixed
 import skein.vehicle.{PathFollowing, Setpoint}
 
-/** How to fly along a path.
+/** Options of a flight along a path.
   *
-  * @param lookaheadM how far ahead on the path to aim; negative: in proportion to the speed
-  * @param adaptive fraction of the distance from the path that is added to it
+  * @param lookaheadM distance ahead on the path at which to aim; negative: in proportion to the speed
+  * @param adaptive fraction of the distance from the path that is added to the lookahead
   */
 final private[simulator] case class Travel(
     drivetrain: Int,
@@ -39,7 +39,7 @@ final private[simulator] class PathMove private (
   private val lengths = points.zip(points.tail).map((from, to) => (to - from).norm) :+ 0.0
   private val before  = lengths.scanLeft(0.0)(_ + _)
 
-  /** For each segment the next one, from it on, that has a length. */
+  /** For each segment, the first segment of nonzero length from there on. */
   private val solid = lengths.indices.scanRight(last)((segment, next) =>
     if segment >= last then last else if lengths(segment) > 0 then segment else next
   )
@@ -55,7 +55,7 @@ final private[simulator] class PathMove private (
     if elapsed >= timeout || (aim.segment >= last && progress <= 0) then MoveProgress.Ended(complete, None)
     else MoveProgress.Going(towardsAim(position))
 
-  /** Progress towards the current aim, and the next aim. */
+  /** Updates the progress towards the current aim, and moves the aim. */
   private def follow(position: Vector3): Unit =
     val wanted = aim.point - reached.point
     val length = wanted.norm
@@ -83,7 +83,7 @@ final private[simulator] class PathMove private (
       Move.facing(travel.drivetrain, travel.yaw, way)
     )
 
-  /** The position `distanceM` ahead on the path. Cost: nearby segments are walked, farther ones searched, so
+  /** The position `distanceM` ahead on the path. Nearby segments are walked and farther ones searched, so
     * that thousands of coinciding points cost no more.
     */
   private def ahead(from: Place, distanceM: Double): Place =
@@ -111,7 +111,7 @@ final private[simulator] class PathMove private (
 private[simulator] object PathMove:
   private val MostWalked = 64
 
-  /** A position on the path: the segment that starts at that point, and the distance along it. */
+  /** A position on the path: the segment that starts at path point `segment`, and the distance along it. */
   private case class Place(segment: Int, offsetM: Double, point: Vector3)
 
   def order(path: Seq[Vector3], speedMps: Float, timeoutS: Float, travel: Travel): Move.Order = vehicle =>

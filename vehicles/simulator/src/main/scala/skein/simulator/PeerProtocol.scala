@@ -19,11 +19,11 @@ private[simulator] trait PeerProtocol:
   /** Takes the datagrams that are due for each peer. */
   def take(): Vector[(channel: Long, datagrams: Vector[Array[Byte]])]
 
-  /** When the next message is due, on the simulator's clock. */
+  /** The time at which the next message is due, on the simulator's clock. */
   def nextDue: Option[Instant]
 
   /** Messages of all peers since the start that could not be read. */
   def damaged: Long
 
-  /** How often an autopilot did not answer, and physics continued without it. */
+  /** Number of times that an autopilot did not answer, and physics continued without it. */
   def unanswered: Long

@@ -13,7 +13,7 @@ import skein.link.{Address, FirstBytes, Listening, Places, Transport, TransportE
 import skein.mavlink.FrameReader
 import skein.units.Span
 
-/** The ports of vehicles behind another protocol than AirSim's.
+/** The ports of vehicles that speak another protocol than AirSim's.
   *
   * @param streams by the simulator's own transport, which is TCP outside tests
   * @param datagrams by datagrams, whatever the transport
@@ -94,25 +94,25 @@ private[simulator] final class PeerServer(
   def close(): Future[Done] = closing()
 
 private[simulator] object PeerServer:
-  /** Most peers at a time, over all ports; others are refused. */
+  /** Limit of the peers at a time, over all ports; further ones are refused. */
   val MostPeers = 128
 
-  /** Most peers of one datagram port at a time. */
+  /** Limit of one datagram port's peers at a time. */
   val MostDatagramPeers = 64
 
-  /** Most pieces that wait for one peer; later ones are dropped. */
+  /** Limit of the pieces that wait for one peer; further ones are dropped. */
   private val Waiting = 256
 
-  /** A peer that is the only one of its port makes room after this long without a message. */
+  /** Time without a message after which the only peer that its port allows makes room for another. */
   private val AloneIdle = Span.ofSeconds(5)
 
-  /** A peer makes room for others after this long without a message. */
+  /** Time without a message after which a peer makes room for another. */
   private val Silence = Span.ofSeconds(5)
 
-  /** Bytes of a stream within which a message must be recognised. The longest has 280. */
+  /** A stream's first message must be recognised within this many bytes; the longest has 280. */
   private val MostBefore = 1024
 
-  /** Most bytes of a stream that are handled in one go: other clients' calls are run between them. */
+  /** Limit of the bytes of a stream that are handled in one go. Other clients' calls run in between. */
   private val MostAtOnce = 2048
 
   /** First bytes of MAVLink 2 and MAVLink 1, the only protocol over streams. */
@@ -132,7 +132,9 @@ private[simulator] object PeerServer:
     val numbers            = AtomicLong()
     val present            = Places(MostPeers, Silence)
 
-    /** @param isKnown whether it has sent a message already, or receives messages without having sent one */
+    /** @param isKnown whether the peer has sent a message already, or receives messages without having sent
+      *   one
+      */
     def serve(port: PeerPort, isDatagrams: Boolean, presentHere: Places, isKnown: Boolean)(
         flow: Flow[ByteString, ByteString, ?]
     ): Unit =
@@ -246,7 +248,7 @@ private[simulator] object PeerServer:
     def silentFor: Span    = if isTold then Span.Zero else Span.ofNanos(System.nanoTime() - heardNs)
     def leave(): Unit      = switch.shutdown()
 
-    /** Makes it a peer without a message of its own. */
+    /** Makes the guest a peer although it has sent no message. */
     def join(): Unit =
       spoken = true
       isTold = true

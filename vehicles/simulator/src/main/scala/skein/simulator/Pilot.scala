@@ -3,7 +3,7 @@ package skein.simulator
 import skein.units.Instant
 import skein.vehicle.Setpoint
 
-/** An onboard pilot: its turn comes every 20 ms of simulated time, as the iterations of AirSim's moves.
+/** An onboard pilot. It is called every 20 ms of simulated time, like an iteration of AirSim's moves.
   *
   * @return None where it leaves control to others
   */

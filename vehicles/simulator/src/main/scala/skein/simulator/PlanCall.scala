@@ -4,17 +4,17 @@ import skein.port.CommandPlan
 import skein.units.*
 import upack.{Arr, Float32, Msg, Str}
 
-/** A function of AirSim's that moves a vehicle, and the moment from which it acts.
+/** A call of one of AirSim's functions that move a vehicle, and the time from which it acts.
   *
   * @param at on the simulator's clock
   * @param params of the function, without the vehicle
   */
 private[skein] final case class PlannedMove(at: Instant, method: String, params: Vector[Msg]):
 
-  /** The longest time that it moves the vehicle for; of a hover, none. */
+  /** Upper bound of the move's duration; zero for a hover. */
   def lasts: Span = limit.fold(Span.Zero)((_, seconds) => Move.span(seconds))
 
-  /** This move, begun so much after its moment and ended at its own end; None if that has passed. */
+  /** The rest of this move if it begins `late` after its time and ends when planned; None if none is left. */
   def begun(late: Span): Option[PlannedMove] = limit match
     case None                     => Some(this)
     case Some(_) if late >= lasts => None
@@ -22,7 +22,7 @@ private[skein] final case class PlannedMove(at: Instant, method: String, params:
       val left = Float32((seconds - late.max(Span.Zero).toSeconds).toFloat)
       Some(copy(params = params.updated(place, left)))
 
-  /** Where its duration, or its time limit, stands among the parameters, and what it is. */
+  /** Index and value, in seconds, of the parameter that is the move's duration or time limit. */
   private def limit: Option[(Int, Float)] =
     for
       place   <- PlannedMove.limits.get(method)
@@ -31,7 +31,7 @@ private[skein] final case class PlannedMove(at: Instant, method: String, params:
     yield (place, seconds)
 
 private[skein] object PlannedMove:
-  /** An end to every plan: the vehicle holds its position. */
+  /** The end of a plan: the vehicle holds its position. */
   def hover(at: Instant): PlannedMove = PlannedMove(at, "hover", Vector.empty)
 
   private[simulator] val limits: Map[String, Int] =
@@ -53,12 +53,12 @@ private[skein] object PlannedMove:
       )
     case _ => throw BadArgument("expected a moment, a function's name and its parameters")
 
-/** A call that gives a vehicle a plan, as far as it is read without knowing the vehicle. The built-in
-  * simulator and a buffer beside another simulator take it.
+/** A call that gives a vehicle a plan, read as far as possible without knowing the vehicle. The built-in
+  * simulator accepts it, and so does a buffer beside another simulator.
   */
 private[skein] final case class PlanCall(sequence: Long, moves: Vector[PlannedMove], vehicle: String):
 
-  /** Why these moves are not a plan's, if they are not. */
+  /** The reason why these moves do not form a plan; None if they do. */
   private[simulator] def mistake: Option[String] =
     CommandPlan.mistake(moves.map(_.at)).orElse(moves.flatMap(wrong).headOption)
 
@@ -68,7 +68,7 @@ private[skein] final case class PlanCall(sequence: Long, moves: Vector[PlannedMo
       Option.unless(function.takes(move.params :+ Str(vehicle)))(s"wrong parameters of ${move.method}")
 
 private[skein] object PlanCall:
-  /** The function's name. It is not one of AirSim's. */
+  /** The function's name, which is not one of AirSim's. */
   val Function = "skeinFollowPlan"
 
   /** The functions that move a multirotor, by their names. */
@@ -94,7 +94,7 @@ private[skein] object PlanCall:
   /** The error's text for a plan that is refused. */
   def refusal(reason: String): String = Rpclib.threw(Function, Arity, reason)
 
-  /** What AirSim's server says in an error's text; the text itself if it has another form. */
+  /** The reason that AirSim's server states in an error's text; the whole text if it has another form. */
   def reasonIn(error: String): String = Rpclib.information(error).getOrElse(error)
 
   private[simulator] def read[A](param: Msg)(using argument: Argument[A]): Option[A] =

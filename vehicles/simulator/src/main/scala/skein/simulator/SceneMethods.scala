@@ -91,7 +91,7 @@ private[simulator] object SceneMethods:
   private val NoGrids =
     "this simulator writes no files; ./skein serve --grids FOLDER lets it write voxel grids"
 
-  /** The extent that is answered, from the origin and upwards, m; the world has no edge. */
+  /** The world's extent as reported to clients, from the origin and upwards, m; the world has no edge. */
   private val ExtentM = 10_000.0
 
   private def addVehicle(simulation: Simulated, name: String, kind: String, pose: Pose): CallOutcome =

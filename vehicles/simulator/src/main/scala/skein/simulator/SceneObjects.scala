@@ -5,8 +5,8 @@ import skein.airsim.wire.{Pose, Quaternionr, Vector3r}
 import skein.scene.{Bodies, Moment, Placement, Scene, SceneObject, Shape}
 import skein.units.Vector3
 
-/** The scene's objects, vehicles and `Ground` by name, and what clients have set for them: scales and
-  * segmentation ids.
+/** The scene's objects, vehicles and `Ground` by name, with the scales and segmentation ids that clients have
+  * set.
   */
 final private[simulator] class SceneObjects(world: World):
   import SceneObjects.*
@@ -53,8 +53,8 @@ final private[simulator] class SceneObjects(world: World):
     thing(name).flatMap(world.scene.objects(_).id).getOrElse(defaultId(name))
   )
 
-  /** Gives the selected objects this id, at most 255; whether there was one. A negative id only hides an
-    * object from AirSim's segmentation image, and changes nothing here.
+  /** Gives the selected objects this segmentation id, at most 255. Returns whether any was selected. A
+    * negative id changes nothing here; in AirSim it hides an object from the segmentation image.
     */
   def setId(which: String => Boolean, id: Int): Boolean =
     val found = names.filter(which)
@@ -63,8 +63,8 @@ final private[simulator] class SceneObjects(world: World):
 
   def moment: Moment = Moment(world.scene, world.bodies(world.now))
 
-  /** Everything as it is now, each vehicle as its bounding box, a camera rig as nothing: to test whether a
-    * line between two points is free.
+  /** The scene at present, for tests whether a line between two points is free: each vehicle is its bounding
+    * box, and camera rigs are left out.
     */
   def boxes: Moment =
     if boxed.vehicles ne world.vehicles then boxed = (world.vehicles, world.vehicles.map(box))

@@ -7,7 +7,7 @@ import skein.units.Span
 import upack.Msg
 import upickle.default.{Writer, writeMsg}
 
-/** How a call is answered, or what must happen before it is. */
+/** The outcome of a call: its answer, or what must happen before it can be answered. */
 private[simulator] enum CallOutcome:
   case Answered(result: Msg | Encoded)
 
@@ -16,7 +16,7 @@ private[simulator] enum CallOutcome:
 
   case Flies(vehicle: Int, order: Move.Order)
 
-  /** A long computation that needs the simulation no more: `work` may run on another thread. */
+  /** A long computation that no longer needs the simulation: `work` may run on another thread. */
   case Draws(work: () => Msg | Encoded)
 
   /** Physics must advance by this span and then stop; then the call is answered. */
@@ -34,7 +34,7 @@ final private[simulator] class ServerMethod(
 ):
   def arity: Int = arguments.size
 
-  /** Whether these parameters can be read as its arguments. */
+  /** Whether these parameters can be read as the function's arguments. */
   def takes(params: IndexedSeq[Msg]): Boolean =
     arity == params.size &&
       (try

@@ -26,8 +26,8 @@ object SettingsFile:
     val _ = SensorSettings.of(root)
     SettingsFile(world, root.unread ++ local)
 
-  /** A line where a file names a network address, which is not obeyed: a file may come from anyone, and
-    * whether other machines may connect is decided on the command line.
+  /** The notice for a file that contains a network address. The address has no effect: a file may come from
+    * anyone, and whether other machines may connect is decided on the command line.
     */
   private def localOnly(root: SettingsSection): Option[String] =
     Option.when(!Loopback(root.text("LocalHostIp", "")))(

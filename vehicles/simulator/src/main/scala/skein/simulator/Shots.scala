@@ -4,8 +4,8 @@ import skein.airsim.wire.*
 import skein.scene.render.{Kind, Raster, PngEncoder, Renderer, View}
 import skein.scene.{Moment, Placement}
 
-/** Images requested together: all of one instant, and, for one camera and size, from one pass. Drawn once, on
-  * any thread.
+/** Images requested together. All show one instant, and images of one camera and size are from one pass. They
+  * are drawn once, on any thread.
   */
 final private[simulator] class Shots private (
     moment: Moment,
@@ -46,7 +46,7 @@ private[simulator] object Shots:
 
   val MostImages = 64
 
-  /** Most bytes of one answer: what our own client accepts. */
+  /** Limit of one answer's bytes, which Skein's own client accepts. */
   val MostBytes: Long = 60L << 20
 
   def noCamera(name: String): String = s"No camera with name $name exist on vehicle"
@@ -74,7 +74,8 @@ private[simulator] object Shots:
       fovDeg(seen)
     )
 
-  /** The camera's field of view, clamped to what an image can have: films and lenses can be set to anything.
+  /** The camera's field of view, clamped to the range of an image, because films and lenses can be set to
+    * anything.
     */
   private def fovDeg(camera: Camera): Double = math.max(0.01, math.min(179.9, camera.fovDeg.toDouble))
 

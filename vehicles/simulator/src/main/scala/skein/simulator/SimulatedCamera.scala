@@ -35,7 +35,7 @@ final private[simulator] class SimulatedCamera(settings: VehicleSettings, worldO
     position = positionNed
     attitude = orientation.normalized
 
-  /** Moves it to the position; the motion is ignored. */
+  /** Moves the rig to the position; the motion is ignored. */
   def setKinematics(kinematics: KinematicsState, at: Instant): Unit =
     place(kinematics.position.toVector, kinematics.orientation.toQuaternion, at)
 

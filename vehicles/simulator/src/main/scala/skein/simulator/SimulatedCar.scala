@@ -66,7 +66,7 @@ final private[simulator] class SimulatedCar(settings: VehicleSettings, worldOrig
     sampledAt = at
     if scene.objects.nonEmpty then meet(scene, at)
 
-  /** Pushes it out of an object that it has driven into, and stops it. */
+  /** Pushes the car out of an object that it has driven into, and stops it. */
   private def meet(scene: Scene, at: Instant): Unit =
     val centre = worldPosition(at) + middleFrd
     for contact <- obstacles.touched(scene, centre, halfLengths)(orientation) do
@@ -80,7 +80,7 @@ final private[simulator] class SimulatedCar(settings: VehicleSettings, worldOrig
   private def hits(contact: Contact, velocity: Vector3) =
     velocity.x * contact.normal.x + velocity.y * contact.normal.y <= 0
 
-  /** Places it on the ground, level, without lateral and vertical motion. */
+  /** Places the car on the ground, level, without lateral and vertical motion. */
   def place(positionNed: Vector3, orientation: Quaternion, at: Instant): Unit =
     put(positionNed, orientation, state.frontMps, at)
 
@@ -126,8 +126,8 @@ final private[simulator] class SimulatedCar(settings: VehicleSettings, worldOrig
 
   private def velocityOf(state: CarState) = Vector3(state.northMps, state.eastMps, 0)
 
-  /** The controls in effect: in a gear chosen by hand the pedal drives in its direction; else a negative
-    * throttle drives in reverse.
+  /** The controls in effect: in a gear chosen by hand the throttle drives in the gear's direction; else a
+    * negative throttle drives in reverse.
     */
   private def acting: CarControls =
     if !controlled then CarControls.Neutral

@@ -33,7 +33,7 @@ final private[simulator] class SimulatedMultirotor(
 
   def flying: Boolean = flown
 
-  /** How often it was moved by other means than flight. */
+  /** Number of resets and of positions set so far, which displace it without flight. */
   def jumps: Long = jumped
 
   def airframe: Airframe = rotorcraft.airframe
@@ -42,7 +42,7 @@ final private[simulator] class SimulatedMultirotor(
 
   def kind: String = "multirotor"
 
-  /** Returns it to its start, without API control; armed if the settings say so. */
+  /** Returns the vehicle to its start, without API control; armed if the settings say so. */
   def reset(at: Instant): Unit =
     rotorcraft.land(state, settings.yaw.value)
     jumped += 1
@@ -105,8 +105,8 @@ final private[simulator] class SimulatedMultirotor(
       goalSetAt = at
       goalExpired = false
 
-  /** Lets an external autopilot fly it, whose setpoint holds until the next; None: returns control to
-    * AirSim's firmware.
+  /** Lets an external autopilot fly the vehicle by a setpoint that holds until the next; None returns control
+    * to AirSim's firmware.
     */
   def flyBy(autopilot: Option[Setpoint]): Unit = outside = autopilot
 
@@ -136,7 +136,8 @@ final private[simulator] class SimulatedMultirotor(
       goal = if on then Setpoint.Armed else Setpoint.Disarmed
     may
 
-  /** Moves it to a position in its own frame; velocity, goal and rotors stay unchanged, and it is in the air.
+  /** Moves the vehicle to a position in its own frame; velocity, goal and rotors stay unchanged, and it is in
+    * the air.
     */
   def place(positionNed: Vector3, orientation: Quaternion, at: Instant): Unit =
     val sinceSample = positionAt(at) - state.positionNed
@@ -144,8 +145,8 @@ final private[simulator] class SimulatedMultirotor(
     state.grounded = false
     jumped += 1
 
-  /** Lets it hover at this position, level and at rest, with its controllers settled. It must be above the
-    * ground and under API control.
+  /** Lets the vehicle hover at this position, level and at rest, with its controllers settled. It must be
+    * above the ground and under API control.
     */
   def hoverAt(positionNed: Vector3, yawRad: Double, at: Instant): Unit =
     require(controlled && isAboveGround(positionNed), s"cannot hover at $positionNed")
@@ -156,7 +157,7 @@ final private[simulator] class SimulatedMultirotor(
     flown = true
     jumped += 1
     command(Setpoint.hold(hold), at)
-    // This goal is already what an expired one becomes.
+    // An expired goal becomes this one, too.
     goalExpired = true
     sampledAt = at
 
@@ -168,7 +169,8 @@ final private[simulator] class SimulatedMultirotor(
     tuned = rotorcraft.tuned(gains)
     state.restartController()
 
-  /** Sets its state of motion, in its own frame, bypassing its flight controller. It is in the air. */
+  /** Sets the vehicle's state of motion, in its own frame, bypassing its flight controller. It is in the air.
+    */
   def setKinematics(kinematics: KinematicsState, at: Instant): Unit =
     val acceleration        = kinematics.linear_acceleration.toVector
     val angularVelocity     = kinematics.angular_velocity.toVector
@@ -215,7 +217,7 @@ final private[simulator] class SimulatedMultirotor(
   /** Velocity at `at`, extrapolated at constant acceleration. */
   def velocityAt(at: Instant): Vector3 = state.velocityNed + state.accelerationNed * sinceSample(at)
 
-  /** The setpoint of the remote control's sticks; those of an absent one are at zero. */
+  /** The setpoint of the remote control's sticks; the sticks of an absent remote control are at zero. */
   private def remoteGoal: Setpoint =
     if !armed then Setpoint.Disarmed
     else

@@ -34,7 +34,7 @@ private[simulator] abstract class SimulatedVehicle(val settings: VehicleSettings
   /** Arms or disarms; returns whether it succeeded. */
   def arm(on: Boolean): Boolean
 
-  /** Returns it to its start, without API control. */
+  /** Returns the vehicle to its start, without API control. */
   def reset(at: Instant): Unit
 
   def setWind(windNed: Vector3): Unit
@@ -42,16 +42,16 @@ private[simulator] abstract class SimulatedVehicle(val settings: VehicleSettings
   /** Advances physics and everything on board by one step, which ends at `at`. */
   def step(at: Instant, scene: Scene): Unit
 
-  /** Moves it to a position in its own frame; its velocity is kept. */
+  /** Moves the vehicle to a position in its own frame; its velocity is kept. */
   def place(positionNed: Vector3, orientation: Quaternion, at: Instant): Unit
 
-  /** Sets its state of motion, in its own frame. */
+  /** Sets the vehicle's state of motion, in its own frame. */
   def setKinematics(kinematics: KinematicsState, at: Instant): Unit
 
-  /** Whether it has taken off and not landed since. */
+  /** Whether the vehicle has taken off and not landed since. */
   def flying: Boolean
 
-  /** Whether it stands on the ground, so that physics does not move it. */
+  /** Whether the vehicle stands on the ground, so that physics does not move it. */
   def isGrounded: Boolean
 
   /** Position at `at`, up to one step after the last. */
@@ -106,17 +106,17 @@ private[simulator] abstract class SimulatedVehicle(val settings: VehicleSettings
 
   def upFor(at: Instant): Span = at.since(resetAt)
 
-  /** Whether its GPS reports: from a second after the start on. A reset restarts that second only while it is
-    * not over.
+  /** Whether the vehicle's GPS reports: from a second after the start on. A reset restarts that second only
+    * while it is not over.
     */
   def hasGps(at: Instant): Boolean = at >= gpsFrom
 
-  /** Starts its clocks: it exists from this time on. */
+  /** Starts the vehicle's clocks: it exists from this time on. */
   def start(at: Instant): Unit =
     gpsFrom = at + SimulatedVehicle.GpsStartup
     reset(at)
 
-  /** The part of a reset that all kinds share. */
+  /** Resets the state that all kinds of vehicles share. */
   protected def begin(at: Instant): Unit =
     if !hasGps(at) then gpsFrom = at + SimulatedVehicle.GpsStartup
     sampledAt = at

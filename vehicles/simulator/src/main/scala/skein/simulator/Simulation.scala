@@ -16,8 +16,8 @@ final case class SimulatorCall(token: Long, method: String, params: IndexedSeq[M
 /** The answer to a call: its result, a deferred result, or the text of its error. */
 final case class SimulatorAnswer(token: Long, result: Either[String, Msg | Encoded | DeferredResult])
 
-/** A result that takes long to compute, such as an image: of the instant of its request, whenever and on
-  * whatever thread it is computed.
+/** A result that takes long to compute, such as an image. It shows the instant of its request, whenever and
+  * on whatever thread it is computed.
   */
 final class DeferredResult(work: () => Msg | Encoded):
   def result(): Msg | Encoded = work()
@@ -74,7 +74,8 @@ final class Simulation(
     */
   private def isOpen = isPaused || hasHeldUp
 
-  /** Whether moves have held all workers for so long that they no longer do. */
+  /** Whether moves have held all workers for longer than the settings allow, so that they hold none any more.
+    */
   def hasHeldUp: Boolean = settings.patience.exists(heldUp >= _)
 
   /** Receives a call at `at`, no earlier than any time given before. */
@@ -90,17 +91,17 @@ final class Simulation(
   private def supersedes(method: String, params: IndexedSeq[Msg], other: SimulatorCall): Boolean =
     Simulation.supersedes(method, params, other.method, other.params)
 
-  /** Handles a client that sends no more: its calls no longer hold workers. Its vehicles continue its last
-    * commands.
+  /** Handles a client that sends no further calls. Its calls no longer hold workers; its vehicles continue
+    * its last commands.
     *
-    * @param isForgotten whether nothing that it sent still arrives
+    * @param isForgotten whether everything that it sent has arrived
     */
   def depart(client: Long, isForgotten: Boolean, at: Instant): Unit =
     if isForgotten then departed -= client else departed += client
     workers.leave(client).foreach(flight => giveUp(flight.call))
     settle(at)
 
-  /** Answers a call that is no longer run like a cancelled move. */
+  /** Answers a call that will not be run, as a cancelled move is answered. */
   private def giveUp(call: SimulatorCall): Unit = answers += SimulatorAnswer(call.token, Right(Bool(false)))
 
   /** Advances time to `at`. Its work is bounded: while the clock is paused, the rest is done by later calls;
@@ -196,7 +197,7 @@ final class Simulation(
     continuing.foreach(token => answers += SimulatorAnswer(token, Right(upack.Null)))
     continuing.clear()
 
-  /** Answers what has ended and runs what has become possible, until nothing is left to do. */
+  /** Answers calls whose moves have ended and runs calls that have become possible, until none is left. */
   private def settle(at: Instant): Unit =
     var again = true
     while again do
@@ -294,7 +295,7 @@ object Simulation:
   /** A running simulator is advanced at least this often, so that a call never finds much to compute. */
   private val KeepUp = Span.ofMillis(50)
 
-  /** Most real time that is made up after an autopilot in lockstep was slower than real time. */
+  /** Limit of the real time that is made up after an autopilot in lockstep was slower than real time. */
   private val MostMadeUpFor = Span.ofMillis(20)
 
   /** Holding all workers for less than this does not count. */
@@ -303,7 +304,7 @@ object Simulation:
   /** Steps of one vehicle that one call may compute: some 30 ms. */
   private val LongestRunSteps = 200_000
 
-  /** Checking this many of a scene's objects near a vehicle costs as much as its step. */
+  /** Number of a scene's objects near a vehicle whose check costs as much as the vehicle's step. */
   private val ObjectsOfAStep = 16
 
   /** Steps computed in one go of a stepped advance: some 4 ms, between which other calls are answered. */
@@ -330,7 +331,7 @@ object Simulation:
 
   private val Moves = MoveMethods.all.map(_.name).toSet
 
-  /** Whether a call makes an earlier one that has not been run needless: a move before a hover of its
+  /** Whether a call makes an earlier one, which has not been run, needless: a move before a hover of its
     * vehicle, or before a reset.
     */
   private[simulator] def supersedes(

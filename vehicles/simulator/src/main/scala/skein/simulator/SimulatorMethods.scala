@@ -9,7 +9,7 @@ private[simulator] object SimulatorMethods:
 
   val all: Seq[ServerMethod] = Seq(
     none("ping")(_ => answer(true)),
-    // Cosys-AirSim 3's client wants this one, AirSim's anything from 1 on.
+    // Cosys-AirSim 3's client requires this version, AirSim's any from 1 on.
     none("getServerVersion")(_ => answer(4)),
     none("getMinRequiredClientVersion")(_ => answer(1)),
     one[Boolean]("simPause")((simulation, on) => done(simulation.setPaused(on))),
@@ -27,7 +27,7 @@ private[simulator] object SimulatorMethods:
       else CallOutcome.Threw(s"a wind of at most ${FastestWindMps.round} m/s is wanted")
   )
 
-  /** Rate of a renderer that keeps up with a usual screen, as AirSim's. */
+  /** Rate at which frames are converted to time: that of a renderer that keeps up with a usual screen. */
   private val FramesPerS = 60.0
 
   /** Longest stepped advance, s: a day, far beyond use and far below what would overflow a clock. */

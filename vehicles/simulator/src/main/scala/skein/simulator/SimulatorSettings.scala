@@ -10,23 +10,24 @@ import skein.scene.Scene
 import skein.units.*
 import skein.vehicle.RotorcraftKind
 
-/** How the simulator handles moves that arrive faster than they end; see [[Workers]]. */
+/** The treatment of moves that arrive faster than they end; see [[Workers]]. */
 enum Overload:
-  /** As AirSim does, with this number of workers. */
+  /** Moves wait as in AirSim, with this number of workers. */
   case Workers(count: Int)
 
-  /** As AirSim does, with its number of workers: one for each vehicle and four more. */
+  /** Moves wait as in AirSim, with its number of workers: one for each vehicle and four more. */
   case AirSim
 
-  /** Without a limit: the newest move replaces the older immediately, and nothing waits. */
+  /** The number of workers is unlimited: the newest move replaces the older immediately, and nothing waits.
+    */
   case Never
 
 /** Settings of a built-in simulator.
   *
   * @param address listening address; port 0 takes a free one
-  * @param speed of its clock against the machine's, on top of the settings' `ClockSpeed`
-  * @param patience for how long moves may hold all workers, taken together, beyond moments of 100 ms; then no
-  *   call waits behind moves any more. None: unlimited, as in AirSim
+  * @param speed ratio of its clock to the machine's, multiplied by the settings' `ClockSpeed`
+  * @param patience total time for which moves may hold all workers, without moments of up to 100 ms; after
+  *   that no call waits behind moves any more. None: unlimited, as in AirSim
   * @param losesCancel called whenever a move replaces another, for tests of clients: if true, the other one
   *   is not cancelled. AirSim loses a cancel that arrives while a move is about to begin
   * @param scene objects of the world
@@ -52,7 +53,7 @@ final case class SimulatorSettings(
   require(mavlink.isEmpty || hil.isEmpty, "vehicles have one autopilot each: MAVLink's or one outside")
   require(speed > 0 && world.clockSpeed > 0, s"speeds must be positive: $speed, ${world.clockSpeed}")
 
-  /** The vehicles' sensors; none, where the file's text cannot be read: [[SettingsFile]] reports it. */
+  /** The vehicles' sensors; none if the file's text cannot be read, which [[SettingsFile]] reports. */
   private[simulator] def equipment: SensorSettings =
     SensorSettings.read(world.text).getOrElse(SensorSettings.None)
 
@@ -70,8 +71,8 @@ final case class SimulatorSettings(
 object SimulatorSettings:
   val UsualPort = 41451
 
-  /** Limits of its server. Requests are small: the largest, a path, has 14 values a point. At most 384 MiB
-    * are held for all clients: images.
+  /** Limits of its server. Requests are small: the largest, a path, has 14 values a point. At most 384 MiB,
+    * mainly images, are held for all clients.
     */
   val Limits: ServerLimits = ServerLimits(
     frame = FrameLimits(frameBytes = 4 << 20, elements = 1 << 17, maps = 1 << 14),

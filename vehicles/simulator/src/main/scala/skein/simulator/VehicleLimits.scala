@@ -4,7 +4,7 @@ import skein.airsim.{VehicleSettings, WorldSettings}
 
 /** Limits on the simulator's vehicles, from its settings and from clients that add some. */
 private[simulator] object VehicleLimits:
-  /** Most vehicles; clients cannot add more. */
+  /** Limit of the vehicles; clients cannot add more. */
   val MostVehicles = 256
 
   val LongestName = 100
@@ -15,5 +15,5 @@ private[simulator] object VehicleLimits:
   val Types: Vector[String] =
     Vector(WorldSettings.SimpleFlight, WorldSettings.PhysXCar, WorldSettings.ComputerVision)
 
-  /** Whether its type is supported, ignoring case. */
+  /** Whether the vehicle's type is supported, ignoring case. */
   def flies(vehicle: VehicleSettings): Boolean = Types.exists(_.equalsIgnoreCase(vehicle.vehicleType))

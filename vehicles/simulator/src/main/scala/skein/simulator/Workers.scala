@@ -3,7 +3,8 @@ package skein.simulator
 import scala.collection.mutable.{ArrayBuffer, Queue}
 import skein.units.*
 
-/** Which request runs when, as in AirSim's server: a fixed number of worker threads, one lock per vehicle.
+/** Decides when each request runs, as AirSim's server does with a fixed number of worker threads and one lock
+  * per vehicle.
   *
   * A request waits until a worker is free. A move holds its worker until it ends, and its vehicle's lock. A
   * move that finds the lock taken cancels the one that holds it, and receives the lock a little later. That
@@ -92,7 +93,7 @@ final class Workers[Job, Flight](limit: Int, vehicles: Int, handover: Span):
 
   /** Removes moves that wait for the vehicle's lock.
     *
-    * @param all false: only those of clients that have left
+    * @param all whether to remove all of them; else only the moves of clients that have left
     */
   def dismiss(vehicle: Int, all: Boolean): Vector[Flight] =
     val lock = locks(vehicle)
@@ -119,13 +120,13 @@ final class Workers[Job, Flight](limit: Int, vehicles: Int, handover: Span):
     race = (race + 5) % 8
     race < 5
 
-  /** When the next lock arrives at its waiting move. */
+  /** The time at which the next lock arrives at its waiting move. */
   def nextHandover: Option[Instant] =
     var next = Option.empty[Instant]
     for lock <- locks; at <- lock.handoverAt do if next.forall(at < _) then next = lock.handoverAt
     next
 
-  /** When the last lock in transit arrives. */
+  /** The time at which the last lock in transit arrives. */
   def lastHandover: Option[Instant] = locks.flatMap(_.handoverAt).maxOption
 
   /** Takes a move whose lock has arrived by `at`; it starts. */

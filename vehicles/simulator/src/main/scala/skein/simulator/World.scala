@@ -86,7 +86,7 @@ final class World(
     pilots += ((vehicle, pilot))
     pilotAt = clock
 
-  /** Lets a lockstep decide from now on how time advances. */
+  /** From now on, lets a lockstep decide how time advances. */
   private[simulator] def holdTo(lockstep: Lockstep): Unit = this.lockstep = Some(lockstep)
 
   /** The lockstep that time depends on, if any. */
@@ -138,7 +138,7 @@ final class World(
   /** Forgets the vehicle's plans and their numbers: whoever sends the next may count from anywhere. */
   private[simulator] def forgetPlans(vehicle: Int): Unit = followed.remove(vehicle): Unit
 
-  /** Ends the vehicle's move, if there is one, with false, and its plans. */
+  /** Ends the vehicle's plans, and its move, if there is one, with false. */
   def cancelMove(vehicle: Int): Unit =
     followed.get(vehicle).foreach(_.stop(clock))
     end(vehicle, result = false)
@@ -154,7 +154,7 @@ final class World(
   /** Whether [[takeEnded]] would return anything. */
   def hasEnded: Boolean = ended.nonEmpty
 
-  /** When, at the earliest, the next move can end. */
+  /** The earliest time at which the next move can end. */
   def nextEndAt: Option[Instant] =
     var next = Option.empty[Instant]
     for move <- moves; running <- move do
@@ -179,7 +179,7 @@ final class World(
       shaped = (vehicles, scene.vehicleTagM, shapes)
     Bodies(shaped.shapes, places(at))
 
-  /** The vehicles' places, as [[Bodies]] wants them. */
+  /** The vehicles' places, in the form that [[Bodies]] requires. */
   private[simulator] def places(at: Instant): Array[Double] =
     Bodies.places(vehicles.iterator.map(vehicle => (vehicle.worldPosition(at), vehicle.orientation)))
 
@@ -201,7 +201,7 @@ final class World(
       bodies(at)
     )
 
-  /** Velocity of the air, NED, m/s. */
+  /** Sets the velocity of the air in the world, NED, m/s. */
   def setWind(windNed: Vector3): Unit =
     wind = windNed
     vehicles.foreach(_.setWind(windNed))
@@ -251,7 +251,7 @@ object World:
   /** A move that has ended, and the result that its call answers. */
   final case class Ended(vehicle: Int, token: Long, result: Boolean)
 
-  /** Stands for all pilots in place of a vehicle's number. */
+  /** The number of all pilots, in place of a vehicle's. */
   private val AllPilots = -1
 
   private case class Running(token: Long, move: Move, startedAt: Instant, dueAt: Instant)

@@ -47,7 +47,7 @@ class AirSimCarSuite extends munit.FunSuite:
 
   private val ahead = Action.VelocityAt(6, 0, Metres(0))
 
-  test("an action ends when the next has arrived, and is answered a round trip after that was sent"):
+  test("an action ends when the next one arrives, and is answered a round trip after that one was sent"):
     val ended = driven: drive =>
       import drive.given
       val first = drive.car.act(ahead, Span.ofSeconds(10))
@@ -59,7 +59,7 @@ class AirSimCarSuite extends munit.FunSuite:
       yield (answer, drive.nowMs - sentAt)
     assertEquals(ended, (Right(false), 40L))
 
-  test("it follows a repeated velocity command, heading where it drives"):
+  test("a car follows a repeated velocity command, and heads in the direction in which it drives"):
     val seen = driven: drive =>
       import drive.given
       def go(times: Int): Future[Unit] =
@@ -75,7 +75,7 @@ class AirSimCarSuite extends munit.FunSuite:
     assert((seen.velocityNed - Vector3(3, 5, 0)).norm < 0.1, seen)
     assertEqualsDouble(seen.orientation.yawRad, math.atan2(5, 3), 0.02)
 
-  test("it reaches a position and stops when the action's time is over"):
+  test("a car reaches a position, and stops when the action's time is over"):
     val (answer, rolling, stood) = driven: drive =>
       import drive.given
       val action = drive.car.act(ahead, Span.ofSeconds(2))
@@ -90,7 +90,7 @@ class AirSimCarSuite extends munit.FunSuite:
     assert(rolling.velocityNed.x > 5, rolling)
     assertEquals(stood.velocityNed, Vector3.Zero)
 
-  test("hovering and landing brake and end the action before; actions impossible for a car are refused"):
+  test("hovering and landing brake and end the current action, and actions impossible for a car are refused"):
     val (moving, hovering, landing, turning, tilting) = driven: drive =>
       import drive.given
       val moving = drive.car.act(ahead, Span.ofSeconds(10))
@@ -110,7 +110,7 @@ class AirSimCarSuite extends munit.FunSuite:
     for refused <- Seq(turning, tilting) do
       assert(refused.left.exists(_.isInstanceOf[VehicleError.Unsupported]), refused)
 
-  test("when the simulator is gone, an action and the one before end with the error"):
+  test("if the simulator is gone, an action and the one before it end with the error"):
     val (first, second) = driven: drive =>
       import drive.given
       for

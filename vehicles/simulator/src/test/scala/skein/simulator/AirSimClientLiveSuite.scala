@@ -95,7 +95,7 @@ class AirSimClientLiveSuite extends munit.FunSuite, Unhurried:
     val newer  = evader.moveByVelocity(Vector3(0, 2, 0), Span.ofSeconds(1), Yaw.Forward)
     assertEquals((done(older), done(newer)), (false, true))
 
-  flown.test("every move is understood"): (_, client) =>
+  flown.test("the simulator accepts every move of the client"): (_, client) =>
     val evader = airborne(client, "Evader", Vector3(0, 0, -10))
     val second = Span.ofSeconds(1)
     assert(done(evader.moveToPosition(Vector3(5, 0, -10), MetresPerSecond(3))))

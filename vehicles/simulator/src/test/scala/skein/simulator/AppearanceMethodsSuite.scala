@@ -28,7 +28,7 @@ class AppearanceMethodsSuite extends munit.FunSuite:
     assert(bench.error("simSetTraceLine", Arr(Float32(1)), Float32(1), Str("")).contains("RGBA"))
     assert(bench.error("simPrintLogMessage", Str("a" * 20_000), Str(""), Int32(0)).contains("at most 10000"))
 
-  test("functions with a visible effect only are accepted as by AirSim"):
+  test("functions with only a visible effect are accepted as AirSim accepts them"):
     val bench = Bench()
     bench.tell("simPlotPoints", points(2), red, Float32(10), Float32(5), Bool(false))
     bench.tell("simPlotArrows", points(1), points(1), red, Float32(5), Float32(2), Float32(-1), Bool(true))
@@ -49,7 +49,7 @@ class AppearanceMethodsSuite extends munit.FunSuite:
     assertEquals(bench.now[Boolean]("simRunConsoleCommand", Str("stat fps")), true)
     assert(bench.error("simSetWeatherParameter", Int32(9), Float32(1)).contains("0 to 8"))
 
-  test("recording is on or off, as last set"):
+  test("recording is on or off, as a client last set it"):
     val bench = Bench()
     assertEquals(bench.now[Boolean]("isRecording"), false)
     bench.tell("startRecording")

@@ -24,7 +24,7 @@ class ArgumentSuite extends munit.FunSuite:
     refusedAs[Double]("a double", Null, Bool(true), Str("2"), Binary(Array(2)), Arr(Int32(2)), map)
     assertEquals(read[Double](UInt64(-1L)), Right(18446744073709551616.0))
 
-  test("an integer is no float, and lies in its type's range"):
+  test("an integer is read neither from a float nor from outside its type's range"):
     assertEquals(read[Int](Int32(-3)), Right(-3))
     refusedAs[Int](
       "an integer",
@@ -41,7 +41,7 @@ class ArgumentSuite extends munit.FunSuite:
     assertEquals(read[Instant](UInt64(7)), Right(Instant.ofNanos(7)))
     refusedAs[Instant]("a time stamp", Int32(-1), UInt64(-1L), Float64(7), Null)
 
-  test("a boolean is a boolean only, a string str or bin"):
+  test("a boolean is read only from a boolean, and a string only from str or bin"):
     assertEquals(read[Boolean](Bool(true)), Right(true))
     refusedAs[Boolean]("a boolean", Int32(1), Null, Str("true"), Float32(1))
     assertEquals(read[String](Str("é")), Right("é"))
@@ -91,7 +91,7 @@ class ArgumentSuite extends munit.FunSuite:
     Obj(Str("x_val") -> Null, Str("position") -> Null, Str("is_rate") -> Null)
   )
 
-  test("no value in any place of any function stops the simulator"):
+  test("no value of any parameter of any function stops the simulator"):
     val bench = Bench()
     for method <- Simulation.methods; place <- 0 until method.arity; value <- samples do
       for others <- Seq[Msg](Null, Str(""), Int32(0), Float32(1), Obj(), Bool(false)) do

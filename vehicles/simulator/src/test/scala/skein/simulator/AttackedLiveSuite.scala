@@ -75,7 +75,7 @@ class AttackedLiveSuite extends munit.FunSuite, Waiting, Unhurried:
 
   private val hello = Array[Byte](22, 3, 1, 2, 0, 1, 0, 1)
 
-  test("a page's requests to the RPC port are closed, and none is obeyed"):
+  test("a page's connections to the RPC port are closed, and no request in them is obeyed"):
     serving(): server =>
       val body = request("simPause" -> Seq(Bool(true)), "enableApiControl" -> Seq(Bool(true), Str("")))
       for sent <- posts(body) :+ (hello ++ body) :+ (Array[Byte](5) ++ body) do
@@ -141,7 +141,7 @@ class AttackedLiveSuite extends munit.FunSuite, Waiting, Unhurried:
       (silent :+ dripping).foreach(_.close())
 
   for isPaused <- Seq(true, false) do
-    test(s"twelve long moves of a client that has left hold nobody up${
+    test(s"twelve long moves of a client that has left delay no other client${
         if isPaused then ", in paused time" else ""
       }"):
       serving(): server =>

@@ -9,7 +9,7 @@ class BesideSuite extends munit.FunSuite:
     val done                                  = mutable.ArrayBuffer.empty[String]
     def put(client: Long, what: String): Unit = beside.put(client)(done += what: Unit)
 
-  test("work is done in rounds over the clients, by as many threads as there may be"):
+  test("work is done for the clients in turn, on as many threads as allowed"):
     val table = Table(most = 2)
     for i <- 1 to 3 do table.put(1, s"a$i")
     for i <- 1 to 2 do table.put(2, s"b$i")
@@ -21,7 +21,7 @@ class BesideSuite extends munit.FunSuite:
     table.put(1, "later")
     assertEquals(table.begun.size, 1)
 
-  test("work of a client that has left is not begun, and a failure does not keep the rest from being done"):
+  test("the work of a client that has left is not begun, and a failure does not stop other work"):
     val table = Table(most = 1)
     table.put(1, "gone")
     table.beside.forget(1)

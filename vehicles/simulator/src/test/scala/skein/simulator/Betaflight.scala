@@ -37,7 +37,8 @@ private object Betaflight:
       Try(DatagramSocket(port, loopback).close()).isSuccess
     ) && Try(Socket(loopback, Cli).close()).isFailure
 
-  /** Starts it, and waits for its serial port. It occasionally hangs at the start: then it is started again.
+  /** Starts Betaflight, and waits for its serial port. It occasionally hangs at the start; then it is started
+    * again.
     */
   def start(firmware: Path, folder: Path, tries: Int = 5): Process =
     val process = ProcessBuilder(firmware.toString)
@@ -58,8 +59,8 @@ private object Betaflight:
 
   private def log(folder: Path): String = Files.readString(folder.resolve("log"))
 
-  /** Configures it by its command line, which restarts it, so that it ends. It occasionally does not answer:
-    * then it is started again.
+  /** Configures Betaflight by its command line, which restarts it, so that it ends. It occasionally does not
+    * answer; then it is started again.
     */
   def configure(firmware: Path, folder: Path, tries: Int = 3): Unit =
     try configureOnce(firmware, folder)

@@ -19,7 +19,7 @@ class CameraMethodsSuite extends munit.FunSuite:
 
   private def near(a: Vector3, b: Vector3): Unit = assert((a - b).norm < 1e-5, s"$a, expected $b")
 
-  test("cameras look in the direction of their names, under AirSim's other names, too"):
+  test("cameras look in the direction of their names, also under AirSim's other names"):
     val bench = Bench()
     for (name, direction) <- Seq(
         "front_center"  -> Vector3(1, 0, 0),
@@ -37,7 +37,7 @@ class CameraMethodsSuite extends munit.FunSuite:
     assertEqualsDouble(apart, 0.25, 1e-6)
     assertEqualsDouble(info(bench, "0").fov, 90, 1e-4)
 
-  test("a camera's pose is kept and carried by its vehicle"):
+  test("a camera keeps the pose that was set, and moves with its vehicle"):
     val bench = Bench()
     val pose  = writeMsg(Pose(Vector3r(1, 0, 0), Quaternionr(turned(0, pitchDeg = -90))))
     bench.tell("simPause", Bool(true))
@@ -49,7 +49,7 @@ class CameraMethodsSuite extends munit.FunSuite:
     near(forward(seen), Vector3(0, 0, 1))
     near(forward(info(bench, "front_left").pose), Vector3(0, 1, 0))
 
-  test("field of view and focal length follow each other, within the lens"):
+  test("field of view and focal length determine each other, within the lens's range"):
     val bench                             = Bench()
     def number(method: String)            = bench.now[Float](method, Str("0"), Str(""), Bool(false)).toDouble
     def set(method: String, params: Msg*) = bench.tell(method, params ++ Seq(Str("0"), Str(""), Bool(false))*)
@@ -83,7 +83,7 @@ class CameraMethodsSuite extends munit.FunSuite:
     assertEqualsFloat(x / w, 1f, 1e-5f)
     assertEqualsFloat(y / w, 1f, 1e-5f)
 
-  test("distortion is kept by its parameters' names"):
+  test("distortion parameters are kept by their names"):
     val bench = Bench()
     bench.tell("simSetDistortionParam", Str("0"), Str("K2"), Float32(0.5f), Str(""), Bool(false))
     assertEquals(
@@ -93,7 +93,7 @@ class CameraMethodsSuite extends munit.FunSuite:
     val refusal = bench.error("simSetDistortionParam", Str("0"), Str("K9"), Float32(1), Str(""), Bool(false))
     assert(refusal.contains("K1, K2, K3, P1, P2"), refusal)
 
-  test("cameras that are not there are refused by name"):
+  test("missing cameras are refused by name"):
     val bench = Bench()
     assert(bench.error(
       "simGetCameraInfo",
@@ -103,7 +103,7 @@ class CameraMethodsSuite extends munit.FunSuite:
     ).contains("No camera with name nose"))
     assert(bench.error("simGetCameraInfo", Str("0"), Str(""), Bool(true)).contains("No external camera"))
 
-  test("detection filters are kept"):
+  test("a camera keeps its detection filters"):
     val bench = Bench()
     for mesh <- Seq("Car*", "Tree*") do
       bench.tell("simAddDetectionFilterMeshName", Str("0"), Int32(0), Str(mesh), Str(""), Bool(false))

@@ -27,7 +27,7 @@ class CarSuite extends munit.FunSuite:
     bench.tell("setCarControls", writeMsg(controls), car)
   private def state(bench: Bench): CarState = bench.now[CarState]("getCarState", car)
 
-  test("the car drives where it is steered, by the simulator's clock"):
+  test("a car drives where it is steered, by the simulator's clock"):
     val world = bench()
     assertEquals(state(world).gear, 0)
     drive(world, CarControls(throttle = 0.5f))
@@ -54,7 +54,7 @@ class CarSuite extends munit.FunSuite:
     val way   = (after.position.toVector - before.position.toVector).norm
     assertEqualsDouble(way, before.linear_velocity.toVector.norm * 0.001, 1e-5)
 
-  test("the reverse gear drives backwards, whatever sign the throttle has; the handbrake stops"):
+  test("the reverse gear drives backwards for any sign of the throttle, and the handbrake stops the car"):
     for throttle <- Seq(0.5f, -0.5f) do
       val world = bench()
       drive(world, CarControls(throttle, is_manual_gear = true, manual_gear = -1))
@@ -64,7 +64,7 @@ class CarSuite extends munit.FunSuite:
       world.pass(2)
       assertEquals((state(world).speed, state(world).handbrake), (0f, true))
 
-  test("without API control nothing drives it, and its controls are reset"):
+  test("without API control a car does not drive, and its controls are reset"):
     val world = bench()
     drive(world, CarControls(throttle = 1))
     assertEquals(world.now[CarControls]("getCarControls", car), CarControls(throttle = 1))
@@ -83,7 +83,7 @@ class CarSuite extends munit.FunSuite:
       world.error("setCarControls", Obj(Str("throttle") -> upack.Float64(Double.NaN)), car).contains("finite")
     )
 
-  test("a reset and a pose move it; while paused it stands still"):
+  test("a reset and a pose move a car, and it stands still while paused"):
     val world = bench()
     drive(world, CarControls(throttle = 1, steering = 0.2f))
     world.pass(2)
@@ -107,7 +107,7 @@ class CarSuite extends munit.FunSuite:
     assertEquals(world.position("Car"), Vector3.Zero)
     assertEquals((state(world).speed, world.now[Boolean]("isApiControlEnabled", car)), (0f, false))
 
-  test("it stops at an obstacle, and reports the contact"):
+  test("a car stops at an obstacle, and reports the contact"):
     val wall = SceneObject(
       "Wall",
       Shape.Box(Vector3(0.5, 5, 1)),
@@ -125,13 +125,13 @@ class CarSuite extends munit.FunSuite:
     world.pass(1)
     assert(state(world).speed < -3, "it drives out again")
 
-  test("a function of the other kind of vehicle is refused as such"):
+  test("a function of the other kind of vehicle is refused"):
     val world = bench()
     assert(world.error("getMultirotorState", car).contains("expected a multirotor, 'Car' is a car"))
     assert(world.error("takeoff", upack.Float32(20), car).contains("expected a multirotor"))
     assert(world.error("getCarState", Str("Drone")).contains("expected a car, 'Drone' is a multirotor"))
 
-  test("sensors, cameras and line of sight know it"):
+  test("sensors, cameras and lines of sight include a car"):
     val world = bench()
     world.pass(1)
     val imu = world.now[ImuData]("getImuData", Str(""), car)
@@ -143,7 +143,7 @@ class CarSuite extends munit.FunSuite:
       world.now[Array[Byte]]("simGetImage", Str("0"), upack.Int32(0), car, Bool(false))
     assert(image.length > 100)
 
-  test("one can be added while it runs"):
+  test("a car can be added while the simulator runs"):
     val world = bench()
     val pose  = writeMsg(Pose(Vector3r(0, 20, 0), Quaternionr(Quaternion.Identity)))
     assert(world.now[Boolean]("simAddVehicle", Str("Late"), Str("PhysXCar"), pose, Str("")))

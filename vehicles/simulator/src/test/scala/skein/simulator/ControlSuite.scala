@@ -131,7 +131,7 @@ class ControlSuite extends munit.FunSuite:
     left.pass(4.5)
     assert((moved.position() - left.position() - Vector3(0, 100, 0)).norm < 1e-3)
 
-  test("after setting a pose, a vehicle that held a position flies back, one that stood on the ground falls"):
+  test("after setting a pose, a vehicle that held a position flies back, and one that stood falls"):
     val held = Bench().hovering(-20)
     held.pass(1)
     place(held, Vector3(3, 0, -20))
@@ -154,8 +154,7 @@ class ControlSuite extends munit.FunSuite:
     assert(hoverAt(Bench().ready(), 0).contains("expected a place above the ground, came z = 0.0 m"))
 
   test(
-    "position hold drifts when the yaw is not 0, as AirSim's does: at 99 degrees it does not come to " +
-      "rest near"
+    "position hold drifts when the yaw is not 0, as in AirSim: at 99 degrees it does not come to rest nearby"
   ):
     def wandering(yawDeg: Double) =
       val bench = Bench().ready()

@@ -22,7 +22,7 @@ class CosysMethodsSuite extends munit.FunSuite:
     for (name, arity) <- called do
       assert(Simulation.named.get(name).exists(_.exists(_.arity == arity)), s"$name $arity")
 
-  test("cameras' functions take no `external`, and those of an image type an annotation's name instead"):
+  test("camera functions take no `external`, and an annotation's name after an image type"):
     val bench = Bench(Seq("A"))
     val image = writeMsg(ImageRequest("0", 0, pixels_as_float = false, compress = true))
     assertEquals(bench.now[Seq[ImageResponse]]("simGetImages", Arr(image), none).size, 1)
@@ -65,7 +65,7 @@ class CosysMethodsSuite extends munit.FunSuite:
 
   private def bench0 = Bench(Seq("A"))
 
-  test("setting the pose of a missing object to its NaN pose answers false"):
+  test("setting a missing object's pose to NaN answers false"):
     val bench   = Bench(Seq("A"))
     val nowhere = upickle.default.readBinary[Pose](
       bench.answerOf(bench.call("simGetObjectPose", Str("Nothing"))).toOption.get

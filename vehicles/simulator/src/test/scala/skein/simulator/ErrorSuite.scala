@@ -4,13 +4,13 @@ import upack.{Arr, Binary, Bool, Float32, Float64, Int32, Obj, Str}
 
 class ErrorSuite extends munit.FunSuite:
 
-  test("an unknown function is answered with rpclib's words"):
+  test("the error for an unknown function has rpclib's text"):
     assertEquals(
       Bench().error("nosuch", Int32(1)),
       "rpclib: server could not find function 'nosuch' with argument count 1."
     )
 
-  test("a wrong number of arguments is answered with rpclib's words, numbers swapped as there"):
+  test("the error for a wrong number of arguments has rpclib's text, with its swapped numbers"):
     assertEquals(
       Bench().error("ping", Int32(1)),
       "rpclib: client error C0002: Function 'ping' was called with " +
@@ -42,7 +42,7 @@ class ErrorSuite extends munit.FunSuite:
     bench.pass(1.1)
     assertEquals(bench.result(move), Some(true))
 
-  test("a vehicle that does not exist is named, with the words of either kind of function"):
+  test("the error for a missing vehicle names it, with the text of either kind of function"):
     assert(
       Bench()
         .error("getMultirotorState", Str("Nope"))
@@ -70,7 +70,7 @@ class ErrorSuite extends munit.FunSuite:
         .contains("Cannot perform takeoff because vehicle is already moving with velocity ")
     )
 
-  test("paths that cannot be flown are refused as AirSim refuses them"):
+  test("paths that cannot be flown are refused as in AirSim"):
     val bench                                           = Bench().hovering(-20)
     def fly(drivetrain: Int, lookahead: Double): String = bench.error(
       "moveToPosition",
@@ -89,7 +89,7 @@ class ErrorSuite extends munit.FunSuite:
     assert(fly(0, 0).contains("lookahead distance cannot be 0"))
     assertEquals(bench.now[Boolean]("ping"), true)
 
-  test("sensors that a vehicle does not have are named"):
+  test("the error for a missing sensor names it"):
     assert(Bench().error("getLidarData", Str(""), Str("")).contains("No lidar with name  exist on vehicle"))
 
   test("NaN is refused and changes nothing"):

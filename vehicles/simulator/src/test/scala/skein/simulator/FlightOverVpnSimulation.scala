@@ -67,8 +67,8 @@ class FlightOverVpnSimulation extends munit.FunSuite, Unhurried:
       yield multirotor
 
   test(
-    "a flight over the busy link is smooth, its readings are as " +
-      "old as the link is slow, and it repeats exactly"
+    "a flight over the busy link is smooth, its readings are as old as the link's delay, and it repeats " +
+      "exactly"
   ):
     clue(seed)
     val flown = fly(seed)

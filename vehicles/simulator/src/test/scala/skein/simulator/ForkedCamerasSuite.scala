@@ -14,8 +14,8 @@ import upickle.default.writeMsg
 class ForkedCamerasSuite extends munit.FunSuite:
   private val address = Address("simulator", 41451)
 
-  /** Three images, and then a field of view, of a server whose camera functions take `takes` arguments: the
-    * results, and the numbers of arguments in the calls.
+  /** Requests three images and a field of view from a server whose camera functions take `takes` arguments.
+    * Returns the results, and the numbers of arguments in the calls.
     */
   private def asked(takes: Int): (Vector[Boolean], Option[Double], Vector[Int]) = VirtualTime
     .run(seed = 1): system =>
@@ -64,7 +64,7 @@ class ForkedCamerasSuite extends munit.FunSuite:
       )
     .value
 
-  test("a call refused for its number of arguments is repeated in the other form, once for a client"):
+  test("a call refused for its number of arguments is repeated in the other form, once for each client"):
     val (images, fov, counts) = asked(takes = 2)
     assertEquals(images, Vector(true, true, true))
     assertEqualsDouble(fov.get, 60, 1e-3)

@@ -13,13 +13,13 @@ class GainMethodsSuite extends munit.FunSuite:
 
   private def hovering = Bench().hovering(-20)
 
-  test("gains of the velocity change how fast a vehicle answers"):
+  test("velocity gains change how fast a vehicle responds"):
     val default = speedAfter(hovering, 0.5)
     val tuned   = hovering
     tuned.tell("setVelocityControllerGains", list(0.1, 0.2, 2), list(0, 0, 2), list(0, 0, 0), Str(""))
     assert(speedAfter(tuned, 0.5) < 0.8 * default)
 
-  test("an integral takes away the error that drag leaves"):
+  test("an integral gain removes the error that drag causes"):
     val tuned = hovering
     tuned.tell(
       "setVelocityControllerGains",
@@ -30,7 +30,7 @@ class GainMethodsSuite extends munit.FunSuite:
     )
     assertEqualsDouble(speedAfter(tuned, 30), 5, 0.02)
 
-  test("gains of angle, rate and position change flights, too, and only of their own vehicle"):
+  test("gains of angle, rate and position change flights, too, and only those of their own vehicle"):
     val changes =
       Seq("setAngleLevelControllerGains", "setAngleRateControllerGains", "setPositionControllerGains")
     for change <- changes do

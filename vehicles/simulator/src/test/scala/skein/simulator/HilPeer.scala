@@ -10,7 +10,8 @@ import skein.link.{Address, Transport}
 
 /** A small autopilot at the far end of a connection. */
 private[simulator] object HilPeer:
-  /** Completes when it has received the sensors of this time, µs; then it closes the connection.
+  /** Lets the autopilot fly until it has received the sensors of this time, µs, and then closes the
+    * connection.
     *
     * @param on called with every received piece, before it is answered
     */

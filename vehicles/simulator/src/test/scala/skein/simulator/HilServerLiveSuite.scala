@@ -63,7 +63,7 @@ class HilServerLiveSuite extends munit.FunSuite, Conclusive, Waiting:
         Await.ready(HilPeer.fly(next, 22_000_000, at, TcpTransport())(), 30.seconds)
         assert(next.heard.size > 100, "who comes later is served")
 
-  test("noise by TCP ends its connection, is counted, and the next autopilot is served"):
+  test("noise over TCP ends its connection and is counted, and the next autopilot is served"):
     serving(AutopilotKind.Px4): server =>
       val at     = server.peerAddresses.head
       val random = Random(4560)

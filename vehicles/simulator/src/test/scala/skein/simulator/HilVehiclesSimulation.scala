@@ -66,8 +66,7 @@ class HilVehiclesSimulation extends munit.FunSuite, Unhurried:
     assertEquals(flown.hil.unanswered, 0L)
 
   test(
-    "while an autopilot's answer is due time stands still; after a second it continues, and that is " +
-      "counted"
+    "time stands still while an autopilot's answer is due, and continues after a second, which is counted"
   ):
     val flown     = Flown()
     val autopilot = SmallAutopilot()
@@ -83,10 +82,7 @@ class HilVehiclesSimulation extends munit.FunSuite, Unhurried:
     assert((flown.up - before).toSeconds < 1.2, s"${(flown.up - before).toSeconds} s")
     assert((flown.simulation.behind + flown.up).toSeconds > 3.9)
 
-  test(
-    "one silent autopilot delays the others for a second, then time continues, and it can be waited for " +
-      "again"
-  ):
+  test("a silent autopilot delays the others for a second, and can be waited for again later"):
     val flown  = Flown(vehicles = 2)
     val pilots = Map(0L -> SmallAutopilot(), 1L -> SmallAutopilot(Vector3(0, 0, -3)))
     for (channel, _) <- pilots do flown.hil.join(channel, Vector(channel.toInt + 1), isDatagrams = false)
@@ -121,7 +117,7 @@ class HilVehiclesSimulation extends munit.FunSuite, Unhurried:
       )
     assertEqualsDouble((flown.up - before).toSeconds, 8.5, 0.8)
 
-  test("an autopilot that reconnects repeatedly, answers once and is silent, slows time little"):
+  test("an autopilot that repeatedly connects, answers once and falls silent slows time little"):
     val flown = Flown()
     var comes = 0L
     for _ <- 1 to 20 do
@@ -135,7 +131,7 @@ class HilVehiclesSimulation extends munit.FunSuite, Unhurried:
       comes += 1
     assertEqualsDouble(flown.up.toSeconds, 59, 0.5)
 
-  test("answers that take 3 ms slow nothing down; those that take 6 ms slow the simulator's clock"):
+  test("answers after 3 ms slow nothing down, and answers after 6 ms slow the simulator's clock"):
     for (late, seconds) <- Seq(3.0 -> 2.0, 6.0 -> 2.0 * 4 / 6) do
       val flown     = Flown()
       val autopilot = SmallAutopilot()
@@ -174,7 +170,7 @@ class HilVehiclesSimulation extends munit.FunSuite, Unhurried:
     flown.simulation.world.reset()
     assertEquals((resets(), resets()), (1, 0))
 
-  test("while paused it sends nothing, and a stepped advance continues sensor by sensor"):
+  test("a paused simulator sends nothing, and a stepped advance continues sensor by sensor"):
     val flown     = Flown()
     val autopilot = SmallAutopilot()
     flown.hil.join(0, Vector(1), isDatagrams = false)
@@ -259,7 +255,7 @@ class HilVehiclesSimulation extends munit.FunSuite, Unhurried:
     assertEqualsDouble(flown.up.toSeconds, 24.9, 0.2, "time goes on without one that is silent for a second")
     assertEquals(flown.hil.unanswered, 1L)
 
-  test("Betaflight receives the state every 2 ms, by the clock, and missed ones are left out"):
+  test("Betaflight receives the state every 2 ms, by the clock, and missed states are left out"):
     val flown = Flown(AutopilotKind.Betaflight)
     flown.hil.join(0, Vector(1), isDatagrams = true)
     var told = 0

@@ -66,7 +66,7 @@ class ImageSuite extends munit.FunSuite:
     assertEquals(colour(2) << 16 | colour(1) << 8 | colour(0), Palette.rgb(42))
     assertEquals(rgb.camera_position, Vector3r(0.25f, 0, -3))
 
-  test("a vehicle is visible to another one and not to itself, by its name's id unless another is set"):
+  test("a vehicle is visible to others and not to itself, by its name's id unless another is set"):
     val bench = this.bench()
     place(bench, "A", Vector3(0, 0, -3))
     place(bench, "B", Vector3(-2, 0, -3))
@@ -75,7 +75,7 @@ class ImageSuite extends munit.FunSuite:
     assert(ids.image_data_uint8.contains(200.toByte))
     assert(!ids.image_data_uint8.contains(SceneObjects.defaultId("A").toByte))
 
-  test("a single image is a PNG, and a camera of the settings looks where they say"):
+  test("a single image is a PNG, and a camera looks in the direction that the settings state"):
     val bench = this.bench()
     place(bench, "A", Vector3(0, 0, -20))
     val png   = bench.now[Array[Byte]]("simGetImage", Str("nose"), Int32(0), Str("A"), Bool(false))
@@ -85,7 +85,7 @@ class ImageSuite extends munit.FunSuite:
     val info = bench.now[CameraInfo]("simGetCameraInfo", Str("nose"), Str("A"), Bool(false))
     assertEqualsFloat(info.fov, 60, 1e-3f)
 
-  test("equal poses give equal bytes, whatever was drawn and flown before"):
+  test("equal poses give equal image bytes, whatever was drawn and flown before"):
     def digest(bench: Bench) =
       place(bench, "A", Vector3(1, 2, -3))
       place(bench, "B", Vector3(0, 2, -3))
@@ -138,7 +138,7 @@ class ImageSuite extends munit.FunSuite:
       1e-3f
     )
 
-  test("a lidar's scan is whole, ten times a second by the simulator's clock, of one instant"):
+  test("a lidar takes a whole scan of one instant ten times a second, by the simulator's clock"):
     val bench = this.bench()
     place(bench, "A", Vector3(0, 0, -3))
     def scan(name: String) = bench.now[LidarData]("getLidarData", Str(name), Str("A"))
@@ -189,7 +189,7 @@ class ImageSuite extends munit.FunSuite:
     assertEquals(told.map(_.object_name), Some("House"))
     assertEquals(told.map(_.normal), Some(Vector3r(-1, 0, 0)))
 
-  test("contacts with objects are counted, a bounce as one, and the ground is none"):
+  test("contacts with objects are counted, a bounce as one, and contacts with the ground are not"):
     val bench                             = Bench(scene = scene).hovering(-3)
     def contacts                          = bench.simulation.world.vehicles.head.contacts
     def fly(north: Float, s: Float): Unit =

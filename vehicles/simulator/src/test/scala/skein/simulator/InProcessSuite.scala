@@ -44,7 +44,7 @@ class InProcessSuite extends munit.FunSuite:
       assertEquals(flown.seen.head.vehicles.map(_.name), Vector("v0", "v1"))
       assertEquals(flown.last(1).positionNed, Vector3(0, 10, 0))
 
-  test("nothing is seen while the simulator is paused, and then it goes on at the next 20 ms"):
+  test("an onlooker sees nothing while the simulator is paused, and continues at the next 20 ms"):
     val flown = Flown()
     flown.run(0.1)
     flown.call("simPause", Bool(true))
@@ -79,7 +79,7 @@ class InProcessSuite extends munit.FunSuite:
       assert(at.positionNed.z < -4 * up, s"$side, $up, $yaw: $at")
       assert((at.velocityNed - side + Vector3(0, 0, up)).norm < 0.7, s"$side, $up, $yaw: $at")
 
-  test("an action without an end goes on, in the world's frame, until another replaces it"):
+  test("an action without an end continues, in the world's frame, until another one replaces it"):
     val flown = Flown()
     val there = Vector3(3, 6, -8)
     flown.inProcess.act(1, _ => Action.Position(there, MetresPerSecond(2), Yaw.Towards(Radians(1))), None)
@@ -92,7 +92,7 @@ class InProcessSuite extends munit.FunSuite:
     assertEqualsDouble(flown.last(1).positionNed.z, -5, 0.5)
     assertEqualsDouble(flown.last(1).velocityNed.y, 2, 0.2)
 
-  test("an action is evaluated by the present motion immediately, and then every 20 ms"):
+  test("an action is evaluated immediately and then every 20 ms, by the present motion"):
     val flown = Flown()
     var calls = 0
     flown.inProcess.act(
@@ -106,7 +106,7 @@ class InProcessSuite extends munit.FunSuite:
     flown.run(1.5)
     assertEquals(calls, 1 + 50)
 
-  test("a move of a client replaces an action, and an action ends a move, which then is answered"):
+  test("a client's move replaces an action, and an action ends a move, which is then answered"):
     val flown = Flown()
     flown.inProcess.act(0, climb, None)
     flown.run(4)

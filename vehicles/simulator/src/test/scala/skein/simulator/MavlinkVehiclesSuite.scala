@@ -54,7 +54,7 @@ class MavlinkVehiclesSuite extends munit.FunSuite:
     flown.run(Span.ofSeconds(8))
     flown
 
-  test("a second simulator's vehicles have ports and numbers of their own, as PX4's instances"):
+  test("the vehicles of a second simulator have their own ports and numbers, as PX4's instances do"):
     assertEquals(
       MavlinkSettings.asPx4(2, instance = 3).udp.map(port =>
         (port.at.port, port.tells.map(_.port), port.systems)
@@ -156,7 +156,7 @@ class MavlinkVehiclesSuite extends munit.FunSuite:
     flown.run(Span.ofSeconds(1))
     assert(!flown.simulation.world.vehicles.head.apiControl)
 
-  test("a thousand damaged frames of each kind, and a thousand whole ones of any content, harm nothing"):
+  test("a thousand damaged frames of each kind, and a thousand whole ones of any content, do no harm"):
     val random = Random(18)
     val flown  = takenOff()
     val writer = FrameWriter(245, 190)
@@ -179,7 +179,7 @@ class MavlinkVehiclesSuite extends munit.FunSuite:
     assert(flown.simulation.world.multirotor(0).state.kinematics.isFinite)
 
   for extreme <- Seq(Float.NaN, Float.PositiveInfinity, Float.NegativeInfinity, Float.MaxValue, -1e9f) do
-    test(s"commands whose numbers are all $extreme leave the vehicle's state a number"):
+    test(s"commands whose numbers are all $extreme keep the vehicle's state finite"):
       val flown = takenOff()
       for number <- (0 to 600).toVector :+ 2500 do
         flown.send(command(1, number, Seq.fill(7)(extreme)*))
@@ -189,7 +189,7 @@ class MavlinkVehiclesSuite extends munit.FunSuite:
       flown.run(Span.ofSeconds(5))
       assert(flown.simulation.world.multirotor(0).state.kinematics.isFinite)
 
-  test("a peer that requests all parameters a thousand times is sent no more than it could take"):
+  test("a peer that requests all parameters a thousand times is sent no more than it can take"):
     val flown = Flown(vehicles = 5)
     val frame = FrameWriter(245, 190).write(ParamRequestList(0, 1))
     flown.send(Array.fill(1000)(frame).flatten)

@@ -41,8 +41,7 @@ class MavsdkLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
     finally sockets.foreach(_.close())
 
   test(
-    "MAVSDK arms three vehicles simultaneously, takes off, flies velocities, positions and a mission, " +
-      "and lands"
+    "MAVSDK arms three vehicles together, takes off, flies velocities, positions and a mission, and lands"
   ):
     Mavsdk.python(): Unit
     conclusive:
@@ -56,7 +55,7 @@ class MavsdkLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
         assertEquals(status, 0, output)
         assert(output.linesIterator.exists(_.matches("PASSED [0-9]{2,} checks in .* s")), output)
 
-  test("pymavlink decodes every message of the vehicles, of every kind that they have"):
+  test("pymavlink decodes every message that the vehicles send, of every kind"):
     Pymavlink.python(): Unit
     conclusive:
       val port = freePorts(1).head

@@ -53,11 +53,11 @@ class MethodFuzzSuite extends munit.FunSuite:
   private def short(call: MethodFuzz.FuzzCall): String =
     s"${call.method}(${call.params.map((value: Msg) => value.toString.take(60)).mkString(", ")})"
 
-  test("each parameter of each method nil, of another type, not finite, huge, deep: all are answered"):
+  test("calls with a parameter that is nil, of another type, not finite, huge or deep are all answered"):
     val count = fuzz(calls.each, "each in turn")
     assert(count > 5000, count)
 
-  test("5,000 random calls, with parameters missing and too many: all are answered"):
+  test("5,000 random calls, with missing and surplus parameters, are all answered"):
     val seed   = 1L
     val random = Random(seed)
     assertEquals(fuzz(Iterator.fill(5_000)(calls.random(random)), s"seed $seed"), 5_000)

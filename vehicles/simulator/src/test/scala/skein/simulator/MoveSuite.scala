@@ -59,7 +59,7 @@ class MoveSuite extends munit.FunSuite:
     assert(took > 2.9 && took < 3.9, s"took $took s, AirSim's 3.4 s")
     assert(math.abs(bench.position().z + 1.54) < 0.15, s"z = ${bench.position().z}, AirSim's -1.54")
 
-  test("landing from 5.4 m takes AirSim's 26 s, ends on the ground and is noticed as a collision"):
+  test("landing from 5.4 m takes AirSim's 26 s, ends on the ground and counts as a collision"):
     val bench = Bench().hovering(-5.4)
     val move  = bench.call("land", Float32(60), Str(""))
     bench.pass(60)
@@ -78,7 +78,7 @@ class MoveSuite extends munit.FunSuite:
   for (speed, seconds, from) <-
       Seq((1.0, 25.3, -1.54), (3.0, 7.7, -10.0), (5.0, 5.1, -10.0), (10.0, 3.2, -10.0))
   do
-    test(s"moveToPosition(20, 0, -10) at $speed m/s takes AirSim's $seconds s and ends near"):
+    test(s"moveToPosition(20, 0, -10) at $speed m/s takes AirSim's $seconds s and ends near the goal"):
       val bench = Bench().hovering(from)
       val move  = bench.moveTo(20, 0, -10, speed)
       bench.pass(40)

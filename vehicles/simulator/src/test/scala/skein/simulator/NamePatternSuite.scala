@@ -8,7 +8,7 @@ class NamePatternSuite extends munit.FunSuite:
   private def refusal(text: String): String =
     intercept[BadArgument](NamePattern(text).matches("x")).getMessage
 
-  test("whole names are matched, as by the JDK's expressions, in 5,000 random cases"):
+  test("an expression matches whole names as the JDK's does, in 5,000 random cases"):
     val random = Random(43)
     val pieces =
       Vector("a", "b", "x", ".", "[ab]", "[^a]", "[a-c]", "\\d", "\\w", "\\.", "^", "$", "\\b", "|")
@@ -35,7 +35,7 @@ class NamePatternSuite extends munit.FunSuite:
         s"case $case_: /$text/ on '$name'${if ignoreCase then ", any case" else ""}"
       )
 
-  test("60 nested repetitions, on which backtracking never ends, are rejected in linear time"):
+  test("60 nested repetitions, on which backtracking never ends, are refused in linear time"):
     for nested <-
         Seq("(.*)*" * 60 + "x", "(a*)*" * 60 + "b", "(a|a)*" * 50 + "b", "(.?)*" * 80, "((a+)+)+" * 30)
     do
@@ -78,7 +78,7 @@ class NamePatternSuite extends munit.FunSuite:
     assert(NamePattern("[[:alpha:]_]+\\x41\\u0042[\\d\\-]{2}").matches("ab_AB1-"))
     assert(!NamePattern("[^\\w]").matches("a") && NamePattern("\\S\\s").matches("a "))
 
-  test("a wildcard's star stands for anything, its question mark for a letter, in any case"):
+  test("in a wildcard, a star stands for any text and a question mark for one letter, in any case"):
     for (wildcard, name, is) <- Seq(
         ("Car*", "car_12", true),
         ("*", "", true),

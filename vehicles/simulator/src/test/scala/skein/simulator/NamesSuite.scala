@@ -16,7 +16,7 @@ class NamesSuite extends munit.FunSuite:
     VehicleSettings(name, Vector3(i * 1000.0, 0, 0))
   )
 
-  test("vehicles are listed by the alphabet, and the empty name means the first"):
+  test("vehicles are listed alphabetically, and the empty name means the first"):
     val bench = Bench.of(apart*)
     assertEquals(bench.now[Seq[String]]("listVehicles"), Seq("Evader", "Pursuer", "Zebra"))
     assertEquals(north(bench, ""), north(bench, "Evader"))
@@ -55,10 +55,7 @@ class NamesSuite extends munit.FunSuite:
     assert(bench.answerOf(bench.call("getImuData", Str("Imu1"), Str(""))).isRight)
     assert(bench.error("getImuData", Str("imu"), Str("")).contains("No IMU with name imu exist on vehicle"))
 
-  test(
-    "rotor states have thrust and torque as at sea level, the torque's sign by the turning direction, " +
-      "the speed never negative"
-  ):
+  test("rotor states have thrust and signed torque as at sea level, and a speed that is never negative"):
     val bench  = Bench().hovering(-20)
     val answer = bench.answerOf(bench.call("getRotorStates", Str(""))).toOption.get
     assertEquals(answer.asInstanceOf[Obj].value.keys.toSeq, Seq[upack.Msg](Str("rotors"), Str("timestamp")))
@@ -82,7 +79,9 @@ class NamesSuite extends munit.FunSuite:
     bench.tell("reset")
     assert(gps(bench).is_valid)
 
-  test("the GPS is silent for a second after the start; then and after a reset its dilutions fall to 0.1"):
+  test(
+    "the GPS is silent for a second after the start, and its dilutions fall to 0.1 then and after a reset"
+  ):
     val bench = Bench()
     def gps   = this.gps(bench)
     for isFirst <- Seq(true, false) do

@@ -27,10 +27,7 @@ class OverloadSuite extends munit.FunSuite:
     assertEquals(bench.result(moves.last), Some(true))
 
   for (moves, seconds) <- Seq((5, 0.0), (8, 4.0), (20, 24.0)) do
-    test(
-      s"a burst of $moves four-second moves delays a reading for $seconds s, as with AirSim's six " +
-        "workers"
-    ):
+    test(s"a burst of $moves four-second moves delays a reading for $seconds s, as AirSim's six workers do"):
       val bench = Bench(Seq("Evader", "Pursuer")).hovering(-20)
       val sent  = burst(bench, moves)
       val read  = bench.call("getMultirotorState", upack.Str(""))
@@ -38,7 +35,7 @@ class OverloadSuite extends munit.FunSuite:
       assertEqualsDouble(bench.answeredAt(read).get, seconds, 0.02)
       assert(sent.forall(bench.answeredAt(_).nonEmpty))
 
-  test("after any earlier bursts, one of twenty moves delays a reading for 20 to 28 s"):
+  test("a burst of twenty moves delays a reading for 20 to 28 s, after any earlier bursts"):
     val bench = Bench(Seq("Evader", "Pursuer")).hovering(-20)
     for round <- 1 to 20 do
       burst(bench, 8 + round % 5)
@@ -50,7 +47,7 @@ class OverloadSuite extends munit.FunSuite:
       val took = bench.answeredAt(read).get - sent
       assert(took > 19.9 && took < 28.1, s"round $round: $took s")
 
-  test("without overload the newest move replaces the older immediately and nothing waits"):
+  test("with Overload.Never the newest move replaces the older one immediately and nothing waits"):
     val bench = Bench(overload = Overload.Never).hovering(-20)
     val moves = burst(bench, 20)
     assertEquals(bench.now[Boolean]("ping"), true)

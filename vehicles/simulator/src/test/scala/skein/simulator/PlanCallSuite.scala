@@ -5,7 +5,7 @@ import upack.{Float32, Int32, Msg}
 
 class PlanCallSuite extends munit.FunSuite:
 
-  test("of every function that moves it is known where its duration or time limit stands"):
+  test("the duration or time limit is found among the parameters of every function that moves a vehicle"):
     for function <- MoveMethods.all if function.name != "hover" do
       val place = PlannedMove.limits.get(function.name)
       assert(place.exists(_ < function.arity - 1), s"${function.name}: $place")
@@ -14,7 +14,7 @@ class PlanCallSuite extends munit.FunSuite:
   private def move(method: String, params: Msg*) =
     PlannedMove(Instant.Epoch + Span.ofSeconds(1), method, params.toVector)
 
-  test("a move that begins late ends at its own end, and one that has ended begins no more"):
+  test("a move that begins late ends when planned, and one whose end has passed does not begin"):
     val flight = move("rotateByYawRate", Float32(10), Float32(2))
     assertEquals(flight.begun(Span.Zero), Some(flight))
     assertEquals(flight.begun(Span.ofMillis(500)), Some(move("rotateByYawRate", Float32(10), Float32(1.5f))))

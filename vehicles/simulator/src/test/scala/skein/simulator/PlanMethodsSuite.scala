@@ -20,7 +20,7 @@ class PlanMethodsSuite extends munit.FunSuite:
 
     private def northMps: Double = bench.simulation.world.vehicles(0).velocityAt(bench.simulation.world.now).x
 
-  test("a plan is answered at once, and flies as moves called at its moments do"):
+  test("a plan is answered immediately, and flies as moves called at its times do"):
     val (planned, called) = (Bench().hovering(-20), Bench().hovering(-20))
     val answer            = planned.follow(0, planned.north(0.5, 5), planned.north(1.23, -3, lastsS = 1))
     assertEquals(planned.result(answer), Some(true))
@@ -34,7 +34,7 @@ class PlanMethodsSuite extends munit.FunSuite:
     called.pass(0.7)
     assert((planned.position() - called.position()).norm < 0.01)
 
-  test("the order of arrival does not matter, and neither do duplicates"):
+  test("plans may arrive in any order, and several times"):
     def flown(sequences: Long*) =
       val bench = Bench().hovering(-20)
       for sequence <- sequences do
@@ -45,7 +45,7 @@ class PlanMethodsSuite extends munit.FunSuite:
     assertEquals(flown(0, 1, 0), flown(1))
     assertNotEquals(flown(0), flown(1))
 
-  test("after a plan's end its last action goes on for its time, then the vehicle holds its position"):
+  test("after a plan's end its last action continues for its duration, then the vehicle holds its position"):
     val bench = Bench().hovering(-20)
     bench.follow(0, bench.north(0, 5), bench.north(0.1, 6, lastsS = 1)): Unit
     bench.pass(1.1)
@@ -53,7 +53,7 @@ class PlanMethodsSuite extends munit.FunSuite:
     bench.pass(15)
     assert(math.abs(bench.northMps) < 0.1, s"${bench.northMps} m/s")
 
-  test("a plan that arrives after its end moves the vehicle no more"):
+  test("a plan that arrives after its end does not move the vehicle"):
     val bench = Bench().hovering(-20)
     bench.pass(5)
     bench.follow(0, bench.north(0, 5), bench.north(0.1, 6, lastsS = 1)): Unit
@@ -76,7 +76,7 @@ class PlanMethodsSuite extends munit.FunSuite:
     bench.pass(15)
     assert(math.abs(bench.northMps) < 0.1, s"${bench.northMps} m/s")
 
-  test("after a hover older plans are without effect; a move or a new placement begins the count anew"):
+  test("after a hover older plans have no effect, and a move or a new placement restarts the numbering"):
     val bench = Bench().hovering(-20)
     bench.follow(7, bench.north(0, 5, lastsS = 9)): Unit
     bench.tell("hover", Str("Evader"))
@@ -88,7 +88,7 @@ class PlanMethodsSuite extends munit.FunSuite:
     bench.pass(0.9)
     assert(clue(bench.northMps) > 0.5)
 
-  test("another controller, which begins with a move, counts anew"):
+  test("another controller, which begins with a move, restarts the numbering"):
     val bench = Bench().hovering(-20)
     bench.follow(7, bench.north(0, 5, lastsS = 9)): Unit
     bench.tell("hover", Str("Evader"))
@@ -104,7 +104,7 @@ class PlanMethodsSuite extends munit.FunSuite:
     bench.pass(1)
     assertEquals(bench.result(move), None)
 
-  test("a plan of other functions than moves, with wrong parameters or without order is refused"):
+  test("a plan with functions other than moves, wrong parameters or unordered times is refused"):
     val bench                  = Bench().hovering(-20)
     def refused(actions: Msg*) =
       bench.error("skeinFollowPlan", Int64(0), Arr(actions*), Str("Evader"))

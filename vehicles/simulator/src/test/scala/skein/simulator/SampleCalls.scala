@@ -10,7 +10,9 @@ import upickle.default.writeMsg
 /** One valid call of each function. */
 private[simulator] object SampleCalls:
 
-  /** The answer of a fresh simulator with one vehicle, of a move when it ends. */
+  /** The answer of a fresh simulator with one vehicle to the function's sample call; for a move, when it
+    * ends.
+    */
   def answered(name: String): Either[String, Msg] =
     val bench =
       if name.contains("Car") then Bench.of(VehicleSettings("Evader", vehicleType = "PhysXCar"))

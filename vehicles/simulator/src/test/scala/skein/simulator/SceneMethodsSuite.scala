@@ -39,7 +39,7 @@ class SceneMethodsSuite extends munit.FunSuite:
     assert(bench.position("High").z > 3)
     assert(bench.position("High").x > 0.01)
 
-  test("a used name and an unknown type are answered false; names and numbers have limits"):
+  test("a used name and an unknown type are answered with false, and names and numbers have limits"):
     val bench                           = Bench()
     def add(name: String, kind: String) =
       bench.now[Boolean]("simAddVehicle", Str(name), Str(kind), pose(0, 0, 0), Str(""))
@@ -81,7 +81,7 @@ class SceneMethodsSuite extends munit.FunSuite:
     val far  = KinematicsState(Vector3r(1e30f, 0, 0), Quaternionr(1, 0, 0, 0), zero, zero, zero, zero)
     assert(Bench().error("simSetKinematics", writeMsg(far), Bool(true), Str("")).contains("within"))
 
-  test("objects are listed by whole names, have poses in the world, and can be moved if they are vehicles"):
+  test("objects are listed by whole names, have poses in the world, and only vehicles can be moved"):
     val bench               = Bench(Seq("Evader", "Pursuer"))
     def list(regex: String) = bench.now[Seq[String]]("simListSceneObjects", Str(regex)).toSet
     assertEquals(list(".*"), Set("Ground", "Evader", "Pursuer"))
@@ -108,7 +108,7 @@ class SceneMethodsSuite extends munit.FunSuite:
     assert(bench.error("simListSceneObjects", Str("(" * 2000)).contains("at most 1000"))
     assertEquals(bench.now[Boolean]("ping"), true)
 
-  test("segmentation ids are AirSim's unless set, by name or by expression whatever the case"):
+  test("segmentation ids are AirSim's unless set, by name or by expression in any letter case"):
     val bench            = Bench()
     def id(name: String) = bench.now[Int]("simGetSegmentationObjectID", Str(name))
     // 5 and g + r + o + u + n + d, modulo 256.

@@ -33,7 +33,7 @@ class SettingsFileSuite extends munit.FunSuite:
     "Range1": {"SensorType": 5, "Enabled": true, "Pitch": -90},
     "Gps2": {"SensorType": 3, "Enabled": true}}"""
 
-  test("the default vehicle without Vehicles, and an added one, carry the DefaultSensors"):
+  test("the default vehicle of a file without Vehicles, and an added one, carry the DefaultSensors"):
     val flown = bench(s"{$sensing}")
     flown.tell(
       "simAddVehicle",
@@ -72,7 +72,7 @@ class SettingsFileSuite extends munit.FunSuite:
       "Vehicles: expected at least one without AutoCreate false, found none"
     )
 
-  test("a camera of ComputerVision keeps its position, by SimMode as by its type"):
+  test("a camera of ComputerVision keeps its position, whether SimMode or its type makes it one"):
     for
       text <- Seq(
         """{"SimMode": "ComputerVision"}""",
@@ -154,7 +154,7 @@ class SettingsFileSuite extends munit.FunSuite:
     val crowd = (1 to 257).map(i => s"\"V$i\": {}").mkString("{\"Vehicles\": {", ", ", "}}")
     assertEquals(problem(crowd), "Vehicles: expected at most 256, found 257")
 
-  test("a message is one line, however long and whatever the file's keys and values are"):
+  test("a message is one line of limited length, for any keys and values of the file"):
     val long = "x" * 10_000
     for
       text <- Seq(
@@ -171,7 +171,7 @@ class SettingsFileSuite extends munit.FunSuite:
     val figures = MutatedSettings.run(300, 43)
     assert(figures.refused > 100 && figures.read > 20, figures)
 
-  test("sensors of the default vehicle are those of DefaultSensors and of the kinds that they do not list"):
+  test("the default vehicle has the DefaultSensors, and default sensors of the kinds that they do not list"):
     val sensors = read(s"{$sensing}").world.vehicles.head.sensors
     assertEquals(sensors.get("Gps2"), Some(SensorKind.Gps))
     assert(!sensors.contains("gps") && sensors.contains("imu"))

@@ -33,7 +33,7 @@ class SimulatorServerLiveSuite extends munit.FunSuite, Unhurried:
       assert(System.nanoTime() < patience, s"it never came to hold: $what")
       Thread.`yield`()
 
-  test("waiting calls whose connection closes are not run, but counted; the others' are run"):
+  test("the waiting calls of a closed connection are counted and not run, and those of others are run"):
     val server                             = start(settings.copy(overload = Overload.Workers(1)))
     val honest                             = client(server)
     def call(method: String, params: Msg*) = honest.call(method, params)

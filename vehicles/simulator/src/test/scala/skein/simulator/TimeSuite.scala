@@ -48,20 +48,20 @@ class TimeSuite extends munit.FunSuite:
     assertEquals(tenths, whole)
     assertEquals(ran, whole)
 
-  test("a frame is one of a renderer at 60 Hz"):
+  test("a frame lasts 1/60 s, as of a renderer at 60 Hz"):
     val bench  = Bench().hovering(-20)
     val before = { bench.tell("simPause", Bool(true)); bench.stamp() }
     bench.tell("simContinueForFrames", Int32(10))
     assertEquals(bench.stamp().since(before), Span.ofSeconds(10 / 60.0))
 
-  test("a speed of ten lets the simulator's clock run ten times as fast"):
+  test("at a speed of ten the simulator's clock runs ten times as fast"):
     val bench = Bench(speed = 10).hovering(-20)
     val move  = bench.velocityZ(10, 0, -20, 10)
     bench.pass(1.001)
     assertEquals(bench.result(move), Some(true))
     assertEqualsDouble(bench.simulatedS, 10.01, 1e-6)
 
-  test("time too long to compute in one call is skipped and counted"):
+  test("time that is too long to compute in one call is skipped and counted"):
     val bench = Bench()
     bench.simulation.advance(Instant.ofNanos(1_000_000_000L) + Span.ofSeconds(1000))
     assertEqualsDouble(bench.simulation.behind.toSeconds, 400, 1e-6)

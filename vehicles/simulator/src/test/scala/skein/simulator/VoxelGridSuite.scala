@@ -24,7 +24,7 @@ class VoxelGridSuite extends munit.FunSuite, TemporaryFolders:
       file.drop(start).grouped(2).flatMap(pair => Vector.fill(pair(1) & 0xff)(pair(0) == 1)).toVector
     (header, cells)
 
-  test("the ground fills what lies below it, in the order of the format"):
+  test("the ground fills the cells below it, in the order of the format"):
     val (header, cells) = read(VoxelGrid.render(ground, Vector3(0, 0, 0), (2, 6, 4), 1).toOption.get)
     assertEquals(header.take(2), Seq("#binvox 1", "dim 2 4 6"))
     assertEquals(cells.size, 2 * 4 * 6)
@@ -39,7 +39,7 @@ class VoxelGridSuite extends munit.FunSuite, TemporaryFolders:
     assert(filled.nonEmpty && filled.size < 30, s"${filled.size} cells")
     assert(filled.contains(8 + 10 * (5 + 10 * 5)))
 
-  test("the greatest number of vehicles fills a cell each and little more"):
+  test("at the limit of vehicles each fills one cell and little more"):
     val crowd                 = boxes(Seq.tabulate(256)(i => Vector3(i % 16, i / 16, -500)))
     def cells(moment: Moment) =
       read(VoxelGrid.render(moment, Vector3(0, 0, -500), (128, 128, 128), 1).toOption.get)._2.count(identity)
@@ -76,7 +76,9 @@ class VoxelGridSuite extends munit.FunSuite, TemporaryFolders:
     Files.createSymbolicLink(folder.resolve("link.binvox"), fresh): Unit
     assert(!save("link.binvox"))
 
-  folder.test("no client can write a file elsewhere, of another kind, or beyond the folder's limit"):
+  folder.test(
+    "no client can write a file elsewhere, over a file of another kind, or beyond the folder's limit"
+  ):
     folder =>
       val grids = GridFolder(folder)
       for path <- Seq(
@@ -102,7 +104,7 @@ class VoxelGridSuite extends munit.FunSuite, TemporaryFolders:
     val said = Bench().error("simCreateVoxelGrid", SampleCalls.params("simCreateVoxelGrid")*)
     assert(said.contains("--grids"), said)
 
-  test("the greatest grid within the greatest number of vehicles takes some 0.1 s"):
+  test("the greatest grid with as many vehicles as allowed takes some 0.1 s"):
     val crowd = boxes(Seq.fill(256)(Vector3.Zero))
     val begun = java.lang.management.ManagementFactory.getThreadMXBean.getCurrentThreadCpuTime
     assert(VoxelGrid.render(crowd, Vector3.Zero, (1, 1, 1), 0.004f).isRight)

@@ -19,7 +19,7 @@ final class LearningPolicy(
     seed: Long,
     lessons: Lessons,
     note: (Long, LearnerUpdate) => Unit
-) extends HeadingPolicy:
+) extends Policy:
   import LearningPolicy.*
 
   @volatile private var newest = first
@@ -28,9 +28,14 @@ final class LearningPolicy(
 
   def start: Memory = None
 
-  def decide(seen: PlanarObservation, memory: Memory): (Double, Memory) = (newest.heading(seen), memory)
+  override def isAgainstOne: Boolean = true
 
-  override def choose(seen: Observation, memory: Memory): (Action, Memory) =
+  override def isPlanar: Boolean = true
+
+  /** Without what it explores. */
+  override def guessed(draw: Int => Double): Policy = newest
+
+  def choose(seen: Observation, memory: Memory): (Action, Memory) =
     for news <- lessons.news(seen.decisions) do
       note(seen.decisions, news)
       news.parameters.foreach(parameters => newest = version(parameters))

@@ -60,7 +60,7 @@ final class LessonsBeside(learner: FlownLearner, on: ExecutionContext)(using Act
   )(using ExecutionContext.parasitic)
 
   private def learn(slice: Vector[Transition]): Option[(Vector[Double], Long)] =
-    // A class that cannot be loaded would end the thread, and nobody would be told.
+    // A class that cannot be loaded would end the thread without a report.
     val made =
       try learner.learn(slice)
       catch case error: LinkageError => throw IllegalStateException(error)
@@ -91,11 +91,11 @@ final class LessonsBeside(learner: FlownLearner, on: ExecutionContext)(using Act
 
   def flown(transition: Transition): Unit = queue.offer(transition) match
     case QueueOfferResult.Dropped => dropped.incrementAndGet(): Unit
-    // After learning has failed, which was told.
+    // After learning has failed, which was reported.
     case _ => ()
 
   override def close(): Unit =
-    // Where learning failed, it is complete, which it says by an exception.
+    // After learning has failed, the queue is complete already, and throws.
     val _ = Try(queue.complete())
 
 object LessonsBeside:

@@ -19,7 +19,7 @@ object PlanStage:
     *   infinite where none ever did
     */
   final case class Answer(best: JointPlan, slices: Vector[Int], unsearchedS: Vector[Double]):
-    /** Whether a vehicle has nothing but the remainder of its last plan. */
+    /** Whether no search finished a slice for a vehicle: its plan is then the remainder of its last one. */
     def isMissed(vehicle: Int): Boolean = best.plans(vehicle).slices == 0
 
   object Answer:

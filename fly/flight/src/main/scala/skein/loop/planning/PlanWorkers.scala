@@ -6,8 +6,8 @@ import scala.util.control.NonFatal
 import scala.util.{Failure, Success, Try}
 import skein.planning.{JointPlan, JointPlanner, PlanProblem}
 
-/** Searches plans. A problem is searched by several searches side by side that are independent, so that each
-  * result depends on the number of its slices alone.
+/** Searches plans. Several independent searches work on a problem side by side, so that each result depends
+  * only on its number of slices.
   */
 trait PlanWorkers extends AutoCloseable:
 
@@ -65,7 +65,7 @@ trait PlanThread extends AutoCloseable:
 final class ThreadedPlanWorkers(threads: Int, begun: (() => Boolean) => PlanThread) extends PlanWorkers:
   require(threads > 0 && threads <= PlanProblem.MostSearches, s"1 to ${PlanProblem.MostSearches} threads")
 
-  // Without a lock, which a worker without the processor could keep the stream's thread waiting for.
+  // Without a lock: a worker that holds one without processor time would block the stream's thread.
   private val waiting = ConcurrentLinkedQueue[ThreadedPlanWorkers.Search]()
   private val workers = Vector.fill(threads):
     val planner = JointPlanner()

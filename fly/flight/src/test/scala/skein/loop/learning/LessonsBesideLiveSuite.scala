@@ -35,7 +35,7 @@ class LessonsBesideLiveSuite extends munit.FunSuite:
       thread.shutdownNow(): Unit
       Await.result(system.terminate(), 10.seconds): Unit
 
-  test("a long lesson is learned part by part, in its order, and its last version counts"):
+  test("a long lesson is learned part by part, in order, and its last version counts"):
     given system: ActorSystem = ActorSystem("lessons")
     val thread                = Executors.newSingleThreadExecutor()
     val (began, goOn)         = (CountDownLatch(1), CountDownLatch(1))

@@ -44,7 +44,7 @@ class PlanSuite extends munit.FunSuite, Optimised:
         .runWith(Sink.seq)
     .value
 
-  test("a plan leaves at its deadline, with the slices that were set"):
+  test("a plan is emitted at its deadline, with the configured slices"):
     val answers = planned(CountedPlanWorkers(searches = 2, slices = 3), ticks = 4)
     assertEquals(answers.map(_._1), Seq(60L, 160L, 260L, 360L))
     assertEquals(answers.map(_._2.slices).distinct, Seq(Vector(3, 3)))
@@ -54,7 +54,7 @@ class PlanSuite extends munit.FunSuite, Optimised:
     def turns = planned(CountedPlanWorkers(2, 3), ticks = 3).map(_._2.best.plans(0).manoeuvre.turnRates.toSeq)
     assertEquals(turns, turns)
 
-  test("a plan continues the remainder of the one before: without a slice it is executed to its end"):
+  test("a plan continues the remainder of the previous one: without a slice, that is executed to its end"):
     val workers = new PlanWorkers:
       private val first                                            = CountedPlanWorkers(1, 5)
       private val none                                             = CountedPlanWorkers(1, 0)
@@ -75,18 +75,18 @@ class PlanSuite extends munit.FunSuite, Optimised:
     )
     assertEquals(Seq(best, next, last).map(_.unsearchedS), Seq(Vector(0.0), Vector(0.1), Vector(0.2)))
 
-  test("several vehicles share the slices that are set, and each gets as many as the others"):
+  test("several vehicles share the configured slices, each with an equal number"):
     val problem = PlanProblem(settings, Vector.tabulate(2)(n => Part(objective, situation(n), n)))
     val warm    = JointPlanner().resumed(problem, None)
     for (slices, each) <- Seq(0 -> 0, 1 -> 1, 2 -> 1, 3 -> 2) do
       val found = CountedPlanWorkers(1, slices).begin(problem, warm).finish().head
       assertEquals((found.slices, found.plans.map(_.slices)), (2 * each, Vector(each, each)))
 
-  test("where nothing was ever searched, that is for ever"):
+  test("without any search ever, the time since a search is infinite"):
     val answers = planned(CountedPlanWorkers(1, 0), ticks = 2).map(_._2.unsearchedS)
     assertEquals(answers, Seq.fill(2)(Vector(Double.PositiveInfinity)))
 
-  test("there are as many searches as a problem has room for, and at least one"):
+  test("workers accept from one search to a problem's limit"):
     def made(count: Int): Seq[() => PlanWorkers] =
       Seq(
         () => CountedPlanWorkers(count, slices = 1),

@@ -59,7 +59,7 @@ class PlanWorkersLiveSuite extends munit.FunSuite, Optimised:
     while System.nanoTime() < deadline && !search.found.forall(_.slices > 3) do Thread.sleep(1)
     search.finish()
 
-  workers.test("the result of threads after a number of slices is reproduced by counting them"): workers =>
+  workers.test("the result of threads after a number of slices is reproduced by counted slices"): workers =>
     for stream <- 1 to 3 do
       val found   = finished(workers, problem(stream))
       val planner = JointPlanner()
@@ -86,7 +86,9 @@ class PlanWorkersLiveSuite extends munit.FunSuite, Optimised:
     assert(later.forall(_.slices > 3))
     assertEquals(search.finish().map(_.slices), found.map(_.slices))
 
-  test("a thread that was too long over a slice is replaced by a usual one, and the search continues"):
+  test(
+    "a thread that takes too long for a slice is replaced by one of usual priority, and the search continues"
+  ):
     val usual   = Thread.ofPlatform().daemon().name("usual-", 1).factory()
     val made    = AtomicInteger()
     val gaveWay = ConcurrentLinkedQueue[Thread]()
@@ -109,7 +111,7 @@ class PlanWorkersLiveSuite extends munit.FunSuite, Optimised:
       assertEquals(made.get, 2)
     finally workers.close()
 
-  test("threads end when they are no longer wanted"):
+  test("threads end when the workers are closed"):
     def ours    = Thread.getAllStackTraces.keySet.asScala.filter(_.getName.startsWith("skein-plan")).toSet
     val before  = ours
     val closing = workersOn(named, named)

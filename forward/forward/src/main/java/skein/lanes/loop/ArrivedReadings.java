@@ -15,9 +15,9 @@ import jdk.incubator.vector.IntVector;
 import jdk.incubator.vector.VectorMask;
 import skein.lanes.policy.LanePolicy;
 
-/** Readings of one vehicle that arrived in a period, in many worlds, each with the mean delays known then. A
- * world may have several; one that is not newer than all before is ignored. {@link #next} iterates: over each
- * world's first, then each world's second, and so on.
+/** Readings of one vehicle that arrived within a period, in many worlds, each with the mean delays known at
+ * its arrival. A world may have several readings; a reading that is older than an earlier arrival is ignored.
+ * {@link #next} visits the first reading of every world, then the second of every world, and so on.
  */
 final class ArrivedReadings {
   private static final int WORLDS = LanePolicy.WORLDS;
@@ -27,19 +27,19 @@ final class ArrivedReadings {
     final float[] toS = new float[WORLDS], fromS = new float[WORLDS];
   }
 
-  /** By rank: the first reading of all worlds, the second, and so on. */
+  /** Entry n contains the n-th reading of each world. */
   private final ArrayList<Readings> readings = new ArrayList<>();
 
   /** Number of readings of each world in this period. */
   private final int[] counts = new int[WORLDS];
 
-  /** Number of ranks that {@link #next} has visited. */
+  /** Number of entries of {@link #readings} that {@link #next} has visited. */
   private int gone;
 
-  /** When the newest reading was sampled, from the period's start, in grains. */
+  /** Sampling time of the newest reading, in grains from the period's start. */
   final int[] newestAt = new int[WORLDS];
 
-  /** 1 where a world has a reading of the current rank; and the vectors with one. */
+  /** 1 in worlds for which {@link #next} has found a reading, else 0; and the vectors with such a world. */
   final int[] enters = new int[WORLDS];
 
   final LaneVectors vectors = new LaneVectors();
@@ -51,10 +51,11 @@ final class ArrivedReadings {
 
   /** Adds readings that are newer than the newest, and updates the mean delays by them.
    *
-   * @param whose the vehicle of each reading
-   * @param vehicle this one
-   * @param asked when it was requested, sampled and received, from the period's start, in grains
-   * @param delays the means over all vehicles' readings
+   * @param whose number of the vehicle of each reading
+   * @param vehicle number of this vehicle
+   * @param asked time of each request; {@code made} of each sample, {@code received} of each answer: in
+   *   grains from the period's start
+   * @param delays mean delays over the readings of all vehicles
    */
   void take(
       LaneVectors among,
@@ -108,10 +109,10 @@ final class ArrivedReadings {
     }
   }
 
-  /** Moves to the next reading of each world that has one more; {@link #enters}, {@link #vectors}, {@link
-   * #madeAt} and the others then refer to it.
+  /** Moves to the next reading in each world that has another; {@link #enters}, {@link #vectors}, {@link
+   * #madeAt} and the other methods then refer to it.
    *
-   * @return false if no world has one more; all readings are then discarded
+   * @return false if no world has another reading; all readings are then discarded
    */
   boolean next() {
     vectors.count = 0;
@@ -129,17 +130,17 @@ final class ArrivedReadings {
     return readings.get(gone - 1);
   }
 
-  /** When the current readings were sampled, from the period's start, in grains. */
+  /** Sampling times of the current readings, in grains from the period's start. */
   int[] madeAt() {
     return here().madeAt;
   }
 
-  /** When the current readings were received, likewise. */
+  /** Arrival times of the current readings, in grains from the period's start. */
   int[] receivedAt() {
     return here().receivedAt;
   }
 
-  /** The mean delays at the current readings, to a vehicle and from it, s. */
+  /** Mean delay to a vehicle, known at the current readings, s; {@code fromS} is the mean delay back. */
   float[] toS() {
     return here().toS;
   }

@@ -5,7 +5,7 @@ import static skein.simd.LaneMath.SPECIES;
 import jdk.incubator.vector.FloatVector;
 import skein.lanes.policy.LanePolicy;
 
-/** Predicts constant velocity, as {@code skein.vehicle.ConstantVelocity} does: only the time span matters. */
+/** Predicts constant velocity, as {@code skein.vehicle.ConstantVelocity} does. */
 final class ForecastCoasting implements ForecastVehicles {
   private static final int WORLDS = LanePolicy.WORLDS;
 

@@ -19,19 +19,19 @@ import jdk.incubator.vector.VectorMask;
 import jdk.incubator.vector.VectorOperators;
 import skein.lanes.policy.LanePolicy;
 
-/** Predicts by a first-order lag, which is linear: each change of the commanded velocity contributes itself
- * times the distance factor of the time left, t − lag · (1 − e^(−t / lag)). {@link PredictedLagVehicles} does
- * so where times are equal in all worlds.
+/** Predicts by a first-order lag. The model is linear: each change of the commanded velocity moves the
+ * vehicle by itself times t − lag · (1 − e^(−t / lag)), where t is the time left. {@link
+ * PredictedLagVehicles} is the variant for worlds with equal times.
  */
 final class ForecastLagVehicles implements ForecastVehicles {
   private static final int WORLDS = LanePolicy.WORLDS;
 
-  /** Least lag, s, for numerical reasons: no vehicle moves noticeably within it. */
+  /** Smallest lag that is computed, s; a shorter one is rounded up, which moves no vehicle noticeably. */
   private static final double LEAST_LAG_S = 1e-9;
 
   private final float speedMps, lagS;
 
-  /** @param speedMps speed that a vehicle reaches under a lasting command */
+  /** @param speedMps speed of a vehicle whose command does not change, m/s */
   ForecastLagVehicles(double speedMps, double lagS) {
     this.speedMps = (float) speedMps;
     this.lagS = (float) Math.max(lagS, LEAST_LAG_S);
@@ -56,7 +56,7 @@ final class ForecastLagVehicles implements ForecastVehicles {
     for (int k = 0; k < vectors.count; k++) {
       int i = vectors.first[k];
       FloatVector end = FloatVector.fromArray(SPECIES, endS, i);
-      // The powers are written out: by LaneMath.powerOf2 the loop makes 0.83 of the steps a second.
+      // The powers are written out: with LaneMath.powerOf2 the loop has 0.83 times the speed.
       FloatVector exponent = end.mul(halvings).max(least);
       FloatVector rounded = exponent.add(round);
       FloatVector rest = exponent.sub(rounded.sub(round)), square = rest.mul(rest);
@@ -75,7 +75,7 @@ final class ForecastLagVehicles implements ForecastVehicles {
           vx = seenVx.mul(left),
           vy = seenVy.mul(left);
       FloatVector moved = end.sub(carried).mul(speed), reached = gone.mul(speed);
-      // The direction flown at the reading: that of the last turn until then.
+      // The direction at the reading is that of the last turn before it.
       FloatVector firstX = zero.mul(end), firstY = zero.mul(end), x = zero.mul(end), y = zero.mul(end);
       int turns = way.turnsOf[i / LANES];
       for (int turn = way.heldFrom[i / LANES]; turn < turns; turn++) {

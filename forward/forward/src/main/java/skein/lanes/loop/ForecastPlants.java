@@ -16,10 +16,10 @@ import skein.lanes.policy.LaneObservation;
 import skein.lanes.policy.LanePolicy;
 import skein.simd.FixedFormula;
 
-/** Predicts by a plant: steps begin at a reading, when a command arrives, at each turn, and after {@code
- * stepS}. The part of the state that readings lack is simulated from reading to reading. {@code
- * PredictedPlants} does so where times are equal in all worlds. {@code skein.vehicle.PlantModel} begins an
- * additional step where the command in effect is repeated.
+/** Predicts by a plant. A step begins at a reading, at the arrival of a command, at each turn, and no later
+ * than {@code stepS} after the last. The part of the state that readings lack is simulated from reading to
+ * reading. {@code PredictedPlants} is the variant for worlds with equal times. Unlike here, {@code
+ * skein.vehicle.PlantModel} also begins a step at a command that repeats the one in effect.
  */
 final class ForecastPlants implements ForecastVehicles {
   private static final int WORLDS = LanePolicy.WORLDS;
@@ -28,20 +28,22 @@ final class ForecastPlants implements ForecastVehicles {
   private final PlantLanes lanes;
   private final FixedFormula.Call correct, step, look;
 
-  /** Number of components of a state. */
+  /** Number of floats in a plant's state. */
   private final int count;
 
   private final boolean remembers;
 
-  /** The state at the newest reading, if readings do not contain all of it. */
+  /** The state at the newest reading; used only if a reading lacks a part of the state. */
   private final float[] held;
 
-  /** The state at the start of a step, and at its end. */
+  /** The state at the start and at the end of a step. */
   private final float[] from, to;
 
   private final float[] north = new float[WORLDS], east = new float[WORLDS], forS = new float[WORLDS];
 
-  /** Time simulated so far, end of the command in effect, and latest start of the next step, s. */
+  /** Time simulated so far, end of the command in effect, and latest start of the next step, s from the
+   * reading.
+   */
   private final float[] flownS = new float[WORLDS], untilS = new float[WORLDS], stopS = new float[WORLDS];
 
   private final float[] goes = new float[WORLDS];
@@ -99,14 +101,14 @@ final class ForecastPlants implements ForecastVehicles {
     look.apply();
   }
 
-  /** The simulated state corrected by a reading. */
+  /** Corrects the simulated state by a reading. */
   private void correct(float[] read, float[] into) {
     correct.inputs(count, LaneObservation.READ, read, LaneVehicles.SEEN_X);
     correct.outputs(count, into, 0);
     correct.apply();
   }
 
-  /** Simulates from the start of the track to its end. */
+  /** Simulates the track from its start to its end. */
   private void fly(LaneVectors vectors, ForecastTrack way) {
     Arrays.fill(flownS, 0f);
     Arrays.fill(forS, stepS);
@@ -119,7 +121,7 @@ final class ForecastPlants implements ForecastVehicles {
     }
   }
 
-  /** The command in effect from a turn on, and its end. */
+  /** Makes the command of a turn the one in effect, and computes its end. */
   private void follow(LaneVectors vectors, ForecastTrack way, int turn) {
     float[] turnS = way.turnS, turnX = way.turn.cos, turnY = way.turn.sin;
     for (int k = 0; k < vectors.count; k++) {
@@ -134,7 +136,9 @@ final class ForecastPlants implements ForecastVehicles {
     }
   }
 
-  /** Whether some track continues under the command, and for how long in one step. */
+  /** Whether some world's track has time left under the present command; sets the length of each world's next
+   * step.
+   */
   private boolean goesOn(LaneVectors vectors, ForecastTrack way, int turn) {
     float[] turnS = way.turnS;
     boolean any = false;
@@ -142,7 +146,8 @@ final class ForecastPlants implements ForecastVehicles {
       int i = vectors.first[k];
       FloatVector flown = FloatVector.fromArray(SPECIES, flownS, i),
           until = FloatVector.fromArray(SPECIES, untilS, i);
-      // Of those that turn it later some arrive now, in their order. With no dead time they turn it at once.
+      // Commands of later turns may arrive now, in their order. Without a dead time they take effect
+      // immediately.
       int turns = way.deadS > 0 ? way.turnsOf[i / LANES] : 0;
       for (int later = Math.max(turn + 1, way.held); later < turns; later++) {
         FloatVector told = FloatVector.fromArray(SPECIES, turnS, later * WORLDS + i).sub(way.deadS);
@@ -153,7 +158,7 @@ final class ForecastPlants implements ForecastVehicles {
       FloatVector left = until.sub(flown);
       VectorMask<Float> on = left.compare(GT, 0f);
       any |= on.anyTrue();
-      // A plant is never stepped by no time; what comes of this step is not taken.
+      // A plant's step must not be 0 s; the result of this step is not used.
       FloatVector.broadcast(SPECIES, stepS).blend(left.min(stepS), on).intoArray(forS, i);
       left.intoArray(goes, i);
     }
@@ -168,7 +173,7 @@ final class ForecastPlants implements ForecastVehicles {
         FloatVector.fromArray(SPECIES, to, number).intoArray(from, number, on);
       FloatVector flown = FloatVector.fromArray(SPECIES, flownS, i),
           until = FloatVector.fromArray(SPECIES, stopS, i);
-      // To the end itself: a rest that rounding leaves would be a step of its own.
+      // Exactly to the end: a remainder left by rounding would be a further step.
       FloatVector then = flown.add(FloatVector.fromArray(SPECIES, forS, i));
       flown.blend(until.blend(then, until.sub(then).compare(GT, 1e-6f)), on).intoArray(flownS, i);
     }

@@ -21,14 +21,15 @@ import skein.forecast.VehicleForecast;
 import skein.lanes.policy.Directions;
 import skein.lanes.policy.LanePolicy;
 
-/** The history of one vehicle in many worlds: its last reading, the commands sent since, and which of them
- * are assumed to be in effect. The scalar reference is {@link VehicleForecast} with a {@link
- * skein.vehicle.PlantModel}: the past matters by the commands within the dead time, and by the memory of
- * {@link ForecastVehicles}.
+/** The recent history of one vehicle in many worlds: its last reading, the commands sent since, and which of
+ * these are assumed to be in effect. The scalar reference is {@link VehicleForecast} with a {@link
+ * skein.vehicle.PlantModel}. Of the time before the reading, only the commands of the last dead time and the
+ * state of {@link ForecastVehicles} matter.
  *
- * <p>{@link #lay} computes the track from the reading to a moment: a list of turns, at which the vehicle
- * begins to follow another direction. The first {@link #held} turns were fixed at readings; later ones are
- * estimated anew each time. No time in it depends on positions, so seconds in floats suffice.
+ * <p>{@link #lay} computes the track from the reading to a moment: a list of turns, at each of which the
+ * vehicle begins to follow another direction. The first {@link #held} turns were fixed at readings; later
+ * turns are estimated anew each time. No time here depends on positions, so seconds in floats are exact
+ * enough.
  */
 final class ForecastTrack {
   private static final int WORLDS = LanePolicy.WORLDS, NONE = LaneOffers.NONE;
@@ -40,63 +41,68 @@ final class ForecastTrack {
 
   private static final int FAR = 1 << 30;
 
-  /** Limit of fixed turns: those within a dead time before the reading, and the one before them. */
+  /** Maximum number of fixed turns: those within a dead time before the reading, and the last one before
+   * them.
+   */
   final int held;
 
-  /** From a command's arrival until the vehicle is assumed to follow it, s. */
+  /** Dead time: from the arrival of a command until the vehicle is assumed to follow it, s. */
   final float deadS;
 
   private final int periodGrains, farRows;
   private final float periodS;
 
-  /** The row in which the newest reading became known, -1 before the first; when it was sampled, from that
-   * row's start.
+  /** The row in which the newest reading became known, or -1 before the first reading; and its sampling time,
+   * in grains from that row's start.
    */
   final int[] knownRow = new int[WORLDS], readAt = new int[WORLDS];
 
-  /** 1 where the newest reading became known in this period. */
+  /** 1 in worlds whose newest reading became known in this period, else 0. */
   final int[] fresh = new int[WORLDS];
 
-  // The row of the oldest command held, which was in effect at the reading; the direction of the one before.
+  // The row of the oldest stored command, which was in effect at the reading; and the direction before it.
   private final int[] head = new int[WORLDS];
   private final Directions before = new Directions(WORLDS), prior = new Directions(WORLDS);
 
-  // By row modulo slots: when the command was sent, NONE without one, and when it was known to have arrived;
-  // from the row's begin.
+  // By row modulo slots: time of the command, NONE without one, and time at which its arrival was known; from
+  // the row's start.
   private int slots = 8, oldest;
   private int[] sentAt = new int[slots * WORLDS], answeredAt = new int[slots * WORLDS];
   private Directions sent = new Directions(slots * WORLDS);
 
-  /** The turns of the track: times, s from the reading, ascending, and the directions from then on. */
+  /** Times of the track's turns, s from the reading, ascending; {@link #turn} has the direction from each on.
+   */
   float[] turnS;
 
   Directions turn;
 
-  /** Backing arrays of {@link #turnS} and of the directions. */
+  /** The arrays of {@link #turnS} and {@link #turn}, for copying. */
   private float[][] ofTurns;
 
-  /** By vector: index of the first valid turn (those of {@link #held} before it are unused), and the number
-   * of turns.
+  /** Of each vector: index of the first valid turn (earlier places of {@link #held} are unused), and end of
+   * the valid turns.
    */
   final int[] heldFrom = new int[WORLDS / LANES], turnsOf = new int[WORLDS / LANES];
 
   int turns;
 
-  /** By vector, the row of the first command on the track. */
+  /** The row of the first command on the track, of each vector. */
   private final int[] firstOf = new int[WORLDS / LANES];
 
-  /** Whether a command on the track may be presumed lost within a period. */
+  /** Whether some command on the track may be presumed lost within the next period. */
   private boolean mayLose;
 
-  /** Length of the track, and its part until the command is sent, which is the age of the reading then, s. */
+  /** Length of the track, s; and age of the reading at the time of sending, which is the first part of the
+   * track, s.
+   */
   final float[] endS = new float[WORLDS], ageS = new float[WORLDS];
 
-  /** 1 where a turn belongs to a command of its own. */
+  /** 1 where a command contributes a turn; 0 where the entry repeats the turn before. */
   private int[] counts;
 
   final ArrivedReadings arrived = new ArrivedReadings();
 
-  /** @param deadS from a command's arrival until the vehicle is assumed to follow it */
+  /** @param deadS from the arrival of a command until the vehicle is assumed to follow it, s */
   ForecastTrack(double periodS, double deadS) {
     this.periodS = (float) periodS;
     this.deadS = (float) deadS;
@@ -166,10 +172,11 @@ final class ForecastTrack {
       System.arraycopy(standing[i], 0, ofTurns[i], 0, held * WORLDS);
   }
 
-  /** Records commands.
+  /** Records the commands that were sent in a row.
    *
-   * @param times when each is sent, from the row's start; {@link LaneOffers#NONE} where none is
-   * @param answers when its arrival becomes known, {@link LaneOffers#NONE} where it never does
+   * @param times time of sending, in grains from the row's start; {@link LaneOffers#NONE} in worlds without a
+   *   command
+   * @param answers time at which the answer arrives, likewise; {@link LaneOffers#NONE} if there is none
    */
   void send(int row, LaneVectors vectors, int[] times, int[] answers, Directions directions) {
     int slot = (row & slots - 1) * WORLDS;
@@ -182,10 +189,10 @@ final class ForecastTrack {
     }
   }
 
-  /** Computes the track to the readings that arrived in this period: of each world to the first, then to the
-   * second and so on; {@link #conclude} must follow each.
+  /** Computes the track from the previous reading to the next one that arrived in this period, in each world
+   * that has one. The caller must call {@link #conclude} after each.
    *
-   * @return whether some world has one more
+   * @return false if no world has another reading
    */
   boolean layToReading(int row) {
     if (!arrived.next()) return false;
@@ -194,7 +201,7 @@ final class ForecastTrack {
     return true;
   }
 
-  /** Fixes the turns that took effect before these readings, by what was known then. */
+  /** Fixes the turns that took effect before the present readings, from what was known at their arrival. */
   void conclude(int row) {
     settle(row);
     renew(row, arrived.madeAt());
@@ -214,8 +221,8 @@ final class ForecastTrack {
     }
   }
 
-  /** Sets the track's length to the time between the previous reading and this one, if there was a previous
-   * one.
+  /** Sets the length of the track to the time between the previous and the present reading; 0 at the first
+   * reading.
    */
   private void aimAt(int row, int[] made) {
     FloatVector zero = FloatVector.broadcast(SPECIES, 0f);
@@ -225,7 +232,7 @@ final class ForecastTrack {
     }
   }
 
-  /** From the newest reading until a moment, given from the row's start in grains; s. */
+  /** Time from the newest reading to a moment, s; the moment is in grains from the row's start. */
   private FloatVector sinceReadingS(int row, int i, IntVector moment) {
     return ((FloatVector) moment.sub(IntVector.fromArray(INTS, readAt, i)).convertShape(I2F, SPECIES, 0))
         .mul(LaneViews.GRAIN_S)
@@ -237,7 +244,7 @@ final class ForecastTrack {
                 .mul(periodS));
   }
 
-  /** The worlds in which a reading that is not the first is added. */
+  /** The worlds in which a reading is added that is not the first. */
   private VectorMask<Float> flies(int i) {
     return IntVector.fromArray(INTS, knownRow, i)
         .compare(GE, 0)
@@ -245,7 +252,7 @@ final class ForecastTrack {
         .cast(SPECIES);
   }
 
-  /** Fixes those turns of the track whose commands took effect before the readings. */
+  /** Stores the turns whose commands took effect before the present readings. */
   private void settle(int row) {
     float[] turnS = this.turnS, turnX = turn.cos, turnY = turn.sin;
     float[] beforeX = before.cos, beforeY = before.sin, priorX = prior.cos, priorY = prior.sin;
@@ -273,12 +280,13 @@ final class ForecastTrack {
                 .and(at.compare(LE, until))
                 .and(flies);
         if (stands.anyTrue()) {
-          // What has turned the vehicle by then replaces the last turn; others follow it.
+          // The last turn that took effect by then replaces the stored one; later turns follow it.
           VectorMask<Float> follows = stands.and(at.compare(GT, span));
           if (follows.anyTrue()) {
             int oldestAt = since * WORLDS + i;
             FloatVector oldestS = FloatVector.fromArray(SPECIES, turnS, oldestAt);
-            // Worlds make room by what no longer counts: else all that follow in one would take room in all.
+            // Drop turns that no world needs: otherwise those that follow in one world would take places in
+            // all.
             boolean isNeeded =
                 oldestAt >= last
                     || FloatVector.fromArray(SPECIES, turnS, oldestAt + WORLDS)
@@ -346,13 +354,13 @@ final class ForecastTrack {
 
   /** Computes the track from the newest reading until a command sent at a given moment takes effect.
    *
-   * @param known by world, until when received answers are considered, from the row's start
-   * @param when the moments of sending, from the row's start; {@link LaneOffers#NONE} where no track is
-   *   needed
+   * @param known by world, deadline of the answers to consider, in grains from the row's start
+   * @param when time of sending, in grains from the row's start; {@link LaneOffers#NONE} in worlds without a
+   *   decision
    * @param isFirst whether it is the first track since readings were added
    */
   void lay(int row, LaneVectors vectors, int[] known, int[] when, MeanDelays delays, boolean isFirst) {
-    // But for what is taken for lost meanwhile, the ways to all moments are one.
+    // Except for commands presumed lost meanwhile, the tracks to all moments have equal turns.
     if (isFirst || mayLose) lay(row, vectors, known, when, delays.toS, delays.fromS);
     aim(row, vectors, known, when, delays.toS);
   }
@@ -370,7 +378,9 @@ final class ForecastTrack {
     }
   }
 
-  /** The turns of the track, by what is known at one moment and presumed lost at another. */
+  /** Computes the turns from the answers received by {@code known}; a command without an answer by {@code
+   * when} may be presumed lost.
+   */
   private void lay(int row, LaneVectors vectors, int[] known, int[] when, float[] toS, float[] fromS) {
     float[] turnS = this.turnS, turnX = turn.cos, turnY = turn.sin;
     int mask = slots - 1, standing = (held - 1) * WORLDS;
@@ -439,7 +449,7 @@ final class ForecastTrack {
         VectorMask<Float> count = present.cast(SPECIES).andNot(wait.compare(GT, patience).and(unanswered));
         VectorMask<Float> late = present.andNot(later).cast(SPECIES).and(acts.compare(GT, zero));
         if (late.anyTrue()) {
-          // It acts later than was thought at the reading. The place before it has no turn of its own.
+          // The command acts later than estimated at the reading. The place before it has no turn of its own.
           at.blend(dead, late).intoArray(turnS, place - WORLDS);
           x.blend(FloatVector.fromArray(SPECIES, before.cos, i), late).intoArray(turnX, place - WORLDS);
           y.blend(FloatVector.fromArray(SPECIES, before.sin, i), late).intoArray(turnY, place - WORLDS);
@@ -457,10 +467,10 @@ final class ForecastTrack {
     }
   }
 
-  /** Reports the sampling times of readings that are fresh.
+  /** Reports the sampling time of the newest reading.
    *
-   * @param joined set to {@link LaneOffers#NONE} where the vehicle was never read
-   * @param into from the row's start
+   * @param joined set to {@link LaneOffers#NONE} in worlds that have no reading of the vehicle yet
+   * @param into receives the times, in grains from the row's start
    */
   void tell(int[] joined, int[] into) {
     System.arraycopy(arrived.newestAt, 0, into, 0, WORLDS);

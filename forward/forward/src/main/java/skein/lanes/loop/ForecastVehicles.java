@@ -1,10 +1,12 @@
 package skein.lanes.loop;
 
-/** Predicts one vehicle in many worlds from its readings, each along its own track ({@link
+/** Predicts one vehicle in many worlds from its readings, along a separate track in each world ({@link
  * ForecastTrack#lay}). The scalar reference is a {@code skein.vehicle.VehicleModel}.
  */
 interface ForecastVehicles {
-  /** Whether its state holds more than a reading; then each reading must {@link #enter}. */
+  /** Whether the model's state contains more than a reading; then the caller must {@link #enter} each
+   * reading.
+   */
   default boolean remembers() {
     return false;
   }
@@ -13,15 +15,15 @@ interface ForecastVehicles {
 
   /** Simulates the track from the previous reading, and corrects the state by this one.
    *
-   * @param enters 1 where there is a reading
-   * @param read the reading, by {@link LaneVehicles#SEEN_X} and the following constants
+   * @param enters 1 in worlds with a reading, else 0
+   * @param read the readings, in the order of {@link LaneVehicles#SEEN_X} and the following constants
    */
   default void enter(LaneVectors vectors, ForecastTrack way, int[] enters, float[] read) {}
 
   /** Simulates the track from the newest reading.
    *
-   * @param read the newest reading, by {@link LaneVehicles#SEEN_X} and the following constants
-   * @param into position, m, then velocity, m/s, north and east
+   * @param read the newest readings, in the order of {@link LaneVehicles#SEEN_X} and the following constants
+   * @param into receives position, m, then velocity, m/s, each north, then east
    */
   void predict(LaneVectors vectors, ForecastTrack way, float[] read, float[] into);
 }

@@ -14,9 +14,9 @@ import skein.forward.Delays;
 import skein.forward.LoopTiming;
 import skein.forward.TabledDelays;
 
-/** The tasks of the {@code futures} loop: in each period one for each vehicle, which reads all vehicles in
- * sequence, and then offers the readings to its own vehicle. Tasks overlap and overtake. With the window of n
- * tasks full, a new one waits until a task ends: until the n-th latest of all ends.
+/** The tasks of the {@code futures} loop. Every period has one task for each vehicle: it reads all vehicles
+ * in sequence, and then offers the readings to its own vehicle. Tasks overlap and overtake one another. If n
+ * tasks are unfinished, the window's limit, a new task waits until one of them ends.
  */
 final class FuturesOffers extends LaneOffers {
   private static final int STEP = LaneDelays.placeOf(1);
@@ -29,32 +29,34 @@ final class FuturesOffers extends LaneOffers {
 
   private final int periodGrains, timeoutGrains, ahead, most;
 
-  /** Number of steps kept, always a power of two. */
+  /** Number of periods whose tasks are stored; a power of two. */
   private final int ring;
 
-  // Tasks by agent and slot, from their own step's begin: when they begin, and when they end with an offer.
+  // Of tasks, by agent and slot, from the start of their own step: begin, and end with an offer.
   private final int[][][] beginAt, end;
 
-  /** The latest ends of all earlier tasks, the latest first, from the start of the last known step. */
+  /** The n latest ends of all earlier tasks, the latest first, in grains from the start of the last drawn
+   * period.
+   */
   private final int[][] latest;
 
-  /** When the first task began in the last step that was not missed. */
+  /** Start of the first task in the last period that was not missed, in grains. */
   private final int[] began = new int[WORLDS];
 
-  /** 1 where the last drawn step has no tasks. */
+  /** 1 in worlds in which the last drawn period has no tasks, else 0. */
   private final int[] missed = new int[WORLDS];
 
-  /** By vehicle: the delay of a task's request, then of the answer. */
+  /** For each vehicle, the delay of a task's request, then of its answer. */
   private final int[][] drawn;
 
-  /** The oldest step that may still have offers, and the next step to draw. */
+  /** The oldest period with offers that may be pending, and the next period to draw. */
   private int oldest, next;
 
-  // By agent: the next offer, the one behind it, and of the next its step and when its task began.
+  // By agent: the next offer and the one after it; and the step and the begin of the next one's task.
   private final int[][] soonest, second, stepOf, beginOf;
 
-  // Where random numbers are: of a step drawn, or of the steps of the beat's offers; and when the tasks of
-  // these go on to the next vehicle.
+  // Places of the random numbers, of a drawn step or of this round's offers; and the times at which the
+  // offers' tasks read the next vehicle.
   private final int[] places = new int[WORLDS], goesOn = new int[WORLDS];
 
   private final int[] beatPlaces = new int[WORLDS];
@@ -70,10 +72,10 @@ final class FuturesOffers extends LaneOffers {
         taskS = vehicles * Math.min(timing.asking().timeoutS(), 2 * maxDelayS);
     periodGrains = LaneViews.grains(periodS);
     timeoutGrains = LaneViews.grains(timing.asking().timeoutS());
-    // A decision waits for the answer to the command before at most.
+    // A decision waits at most for the answer to the previous command.
     double waitsS = 2 * maxDelayS + timing.steering().handoverS() + timing.steering().minIntervalS();
     ahead = 1 + rowsAhead + (int) Math.ceil(waitsS / periodS);
-    // A task may wait for one that waits for another.
+    // A task may wait for one that waits for another one.
     ring = Integer.highestOneBit(2 * (ahead + (int) Math.ceil(3 * taskS / periodS) + 4) - 1);
     most = vehicles * timing.asking().window();
     drawn = new int[2 * vehicles][WORLDS];
@@ -115,7 +117,7 @@ final class FuturesOffers extends LaneOffers {
     }
   }
 
-  /** The times at which an agent's tasks begin. */
+  /** Computes the times at which an agent's tasks begin. */
   private void begin(int agent, int[] begins) {
     int[] lastOf = latest[most - 1];
     IntVector zero = IntVector.broadcast(INTS, 0);
@@ -123,8 +125,8 @@ final class FuturesOffers extends LaneOffers {
       IntVector before = IntVector.fromArray(INTS, began, i);
       IntVector begin = IntVector.fromArray(INTS, lastOf, i).max(agent == 0 ? zero : before.max(zero));
       if (agent == 0) {
-        // A step whose predecessor waits still is missed, also where a time-out ends its wait at that moment:
-        // time-outs come last. The other tasks follow the first.
+        // A step is missed if its predecessor still waits, even if a time-out ends that wait at this moment,
+        // because time-outs are last. The other tasks follow the first.
         VectorMask<Integer> goes = before.compare(LT, zero);
         before.blend(begin, goes).intoArray(began, i);
         zero.blend(1, goes.not()).intoArray(missed, i);
@@ -133,7 +135,7 @@ final class FuturesOffers extends LaneOffers {
     }
   }
 
-  /** The times at which an agent's tasks end, if they end with an offer. */
+  /** Computes when an agent's tasks end; {@link LaneOffers#NONE} for a task without an offer. */
   private void end(int[] begins, int[] ends) {
     IntVector none = IntVector.broadcast(INTS, NONE),
         past = IntVector.broadcast(INTS, PAST),
@@ -180,8 +182,8 @@ final class FuturesOffers extends LaneOffers {
     return true;
   }
 
-  /** Takes an agent's next offers in worlds where no other agent has an earlier one; at equal times, the
-   * first agent's is first.
+  /** Takes an agent's next offers in worlds where no other agent's offer is earlier. Of offers at equal
+   * times, that of the agent with the lower number is first.
    */
   private boolean take(int agent) {
     int[] own = soonest[agent];
@@ -211,7 +213,7 @@ final class FuturesOffers extends LaneOffers {
     return true;
   }
 
-  /** The times at which an agent's offering tasks read each vehicle; draws their delays again. */
+  /** Computes when the tasks of an agent's offers have read each vehicle; draws their delays again. */
   private void read(int agent) {
     delays.drawInTurn(taken, places, agent, (long) row * periodGrains, goesOn, drawn);
     for (int v = 0; v < vehicles; v++) {
@@ -225,7 +227,7 @@ final class FuturesOffers extends LaneOffers {
     }
   }
 
-  /** Finds an agent's next offers, in vectors in which it consumed some or may have more. */
+  /** Finds an agent's next offer in each world of the vectors that were taken. */
   private void look(int agent) {
     int[][] begins = beginAt[agent], ends = end[agent];
     IntVector none = IntVector.broadcast(INTS, NONE), zero = IntVector.broadcast(INTS, 0);

@@ -21,83 +21,83 @@ import skein.lanes.policy.Directions;
 import skein.vehicle.FirstOrderLag;
 import skein.vehicle.ReducedModel;
 
-/** The vehicles of one role in many worlds, with first-order lag, and the commands on their way to them,
- * which take effect at different times in each world. Positions are those at a row's start; readings are
- * sampled at different times in each world, and include the commands in effect before.
+/** The vehicles of one role in many worlds, with first-order lag. Commands take effect, and readings are
+ * sampled, at different times in each world. Positions are those at a row's start; a reading includes the
+ * commands that are in effect at its time.
  *
- * <p>The response to commanded velocities is linear: position and velocity are those without the commands
- * under way, plus each such command's change times its step response, s(t) = t − lag·(1 − r(t)) and 1 − r(t),
- * where r(t) = exp(−t / lag), from the time on at which it takes effect. With r(end − at) = exp(−end / lag) ·
- * growth(at) one exponential serves all commands. A world's results depend on its own commands alone, to the
- * bit: those of others only decide whether zeros are added.
+ * <p>The response to commanded velocities is linear. Position and velocity are those without pending
+ * commands, plus, for each pending command from the time it takes effect, its change times its step response:
+ * s(t) = t − lag·(1 − r(t)) for the position and 1 − r(t) for the velocity, where r(t) = exp(−t / lag). Since
+ * r(end − at) = exp(−end / lag) · growth(at), one exponential serves all commands. A world's results depend
+ * on its own commands alone, to the bit: the commands of other worlds only decide whether zeros are added.
  *
- * <p>{@link PlantFlights} simulates an equal vehicle under every loop. This second implementation exists for
- * {@code stream}, where it reaches 100 million agent-steps a second, and pieces 54.
+ * <p>{@link PlantFlights} simulates an equal vehicle for every loop. This second implementation exists for
+ * {@code stream}, where it reaches 100 million agent-steps a second; {@code PlantFlights} reaches 54 million.
  */
 public final class LagVehicles extends LaneVehicles {
   private static final float FUTURE = 1e9f;
 
-  /** No reading is sampled longer than this before its row's start, s. */
+  /** Longest time by which a reading is sampled before its row's start, s. */
   private final float earliestS;
 
   private final double periodS;
   private final FirstOrderLag lag;
   private final float lagS, speedMps, periodGain, periodDecay;
 
-  // Of each world at the row's begin the velocity asked for, and what the velocity lacks of it.
+  // By world, at the row's start: the commanded velocity, and the commanded less the actual velocity.
   private static final int WANTED_X = OWN,
       WANTED_Y = OWN + WORLDS,
       LACK_X = OWN + 2 * WORLDS,
       LACK_Y = OWN + 3 * WORLDS;
 
-  /** When the readings are sampled, and the share of an error that remains then. */
+  /** Sampling times of the readings, s; and the share of a velocity error that remains at them. */
   private static final int END = OWN + 4 * WORLDS, DECAY = OWN + 5 * WORLDS;
 
-  /** The last commanded velocity, in effect or not. */
+  /** The last commanded velocity, whether or not it has taken effect. */
   private static final int SENT_X = OWN + 6 * WORLDS, SENT_Y = OWN + 7 * WORLDS;
 
   private static final int NUMBERS = 8;
 
-  /** The row up to which it was simulated. */
+  /** The row to which the state belongs. */
   private int row;
 
   private static final int[] AT_BEGIN = new int[WORLDS];
   private static final LaneVectors ALL = LaneVectors.all();
 
-  /** By slot: when the command takes effect, from its own row's start, s; e to that time over the lag; and
-   * the change of the commanded velocity.
+  /** Of each pending command: the time at which it takes effect, s from its row's start; e to the power of
+   * that time over the lag; and the change of the commanded velocity.
    */
   private float[] commands;
 
   private static final int AT = 0, GROWTH = WORLDS, CHANGE_X = 2 * WORLDS, CHANGE_Y = 3 * WORLDS;
   private static final int SLOT = 4 * WORLDS;
 
-  // Commands by the beat in which they were decided, modulo slots: the oldest that an early reading
-  // may be without, the first that some world has yet to feel, the next; and of each the row, and the
-  // times between which it acts.
+  // Commands by the round of their decision, modulo slots: the oldest that may act after an early reading,
+  // the first that does not act yet in every world, and the next; with the row of each and the range of times
+  // at which it takes effect.
   private int slots;
   private int oldest, first, next;
   private int[] rowOf;
   private float[] soonest, latest;
 
-  // Those that act before the readings: where they are, how old they are, how old they were when
-  // the vehicles were flown last, and what remains of an error after their age.
+  // Of the commands that act before the readings: places, ages, ages at the last simulation, and the shares
+  // of an error that remain after their age.
   private int near;
   private int[] nearFrom;
   private float[] nearAge, nearYounger, nearAged;
 
-  /** By number of rows: their time in seconds, and the share of an error that remains after them. */
+  /** Of each number of rows: their duration, s, and the share of a velocity error that remains after it. */
   private final float[] rowsS, remains;
 
-  /** Whether powers of e stay within floats for commands on their way for this time. */
+  /** Whether the powers of e fit into floats if commands are pending for up to {@code longestS}. */
   public static boolean canFly(ReducedModel model, double longestS) {
     return longestS <= MOST_LAGS * model.lagS();
   }
 
   private static final double MOST_LAGS = 80;
 
-  /** @param longestS the longest time for which a command is on its way
-   * @param earliestS no reading is sampled longer than this before its row's start
+  /** @param longestS longest time from the decision on a command until it takes effect, s
+   * @param earliestS longest time by which a reading is sampled before its row's start, s
    */
   public LagVehicles(
       RolloutAgent agent, ReducedModel model, double periodS, double longestS, double earliestS) {
@@ -164,7 +164,7 @@ public final class LagVehicles extends LaneVehicles {
       nowX.intoArray(state, SENT_X + i);
       nowY.intoArray(state, SENT_Y + i);
     }
-    // A little wider than floats are exact.
+    // Widened slightly, because of the rounding of floats.
     soonest[number] = soonestOf.reduceLanes(VectorOperators.MIN) * LaneViews.GRAIN_S * 0.999f;
     latest[number] = latestOf.reduceLanes(VectorOperators.MAX) * LaneViews.GRAIN_S * 1.001f;
   }
@@ -199,7 +199,7 @@ public final class LagVehicles extends LaneVehicles {
   void read(
       int row, LaneVectors vectors, int[] joined, int[] at, int[] fresh, boolean withVelocity) {
     if (fresh != null) remember();
-    // Those that are flown on must be so everywhere; where they are already, the others stay.
+    // A simulation must be of all worlds; without one, only the vectors with readings are needed.
     LaneVectors read = this.row < row ? ALL : vectors;
     flyTo(row, read, at);
     if (withVelocity) readVelocities(read);
@@ -212,7 +212,7 @@ public final class LagVehicles extends LaneVehicles {
     if (this.row < row) flyTo(row, ALL, AT_BEGIN);
   }
 
-  /** Simulates from the previous row, unless already done, and reads the vehicles. */
+  /** Simulates to a row, unless the state is already there, and reads the vehicles. */
   private void flyTo(int row, LaneVectors vectors, int[] sampledAt) {
     boolean fliesOn = this.row < row;
     findNear(row, latestS(sampledAt), fliesOn);
@@ -252,7 +252,7 @@ public final class LagVehicles extends LaneVehicles {
     }
   }
 
-  /** Simulates this time span, with the commands that take effect in it, and reads the vehicles. */
+  /** Simulates a time span, with the commands that take effect in it, and reads the vehicles. */
   private void fly(LaneVectors vectors, float dtS, float gainS, float keepShare, int[] sampledAt) {
     float[] state = this.state, commands = this.commands;
     FloatVector dt = FloatVector.broadcast(SPECIES, dtS),
@@ -284,7 +284,7 @@ public final class LagVehicles extends LaneVehicles {
       FloatVector died = lagDecay.sub(lag);
       FloatVector seenX = lackX.fma(died, wantedX.fma(end, x)),
           seenY = lackY.fma(died, wantedY.fma(end, y));
-      // Of commands that begin to act, an earlier reading shows an effect that lookBack takes back.
+      // At an early reading, commands that take effect after it are included; lookBack removes them.
       FloatVector horizon = end.max(zero);
       for (int k = 0; k < near; k++) {
         int from = nearFrom[k] + i;
@@ -327,7 +327,7 @@ public final class LagVehicles extends LaneVehicles {
     }
   }
 
-  /** The vehicles' velocities at the readings. */
+  /** Computes the vehicles' velocities at the readings. */
   void readVelocities(LaneVectors vectors) {
     for (int n = 0; n < vectors.count; n++) {
       int i = vectors.first[n];
@@ -356,7 +356,7 @@ public final class LagVehicles extends LaneVehicles {
     }
   }
 
-  /** Corrects readings that were sampled before the row's start. */
+  /** Corrects the readings that were sampled before the row's start. */
   private void lookBack(int[] at, int[] fresh) {
     for (int i = 0; i < WORLDS; i += LANES) {
       long early = IntVector.fromArray(INTS, at, i).compare(LT, 0).toLong();
@@ -367,7 +367,7 @@ public final class LagVehicles extends LaneVehicles {
     }
   }
 
-  /** Removes commands that were not yet in effect at an early reading of a world. */
+  /** Removes from a world's reading the commands that took effect after its sampling time. */
   private void lookBack(int world, int sampledAt) {
     float end = sampledAt * LaneViews.GRAIN_S;
     for (int number = next - 1; number >= oldest; number--) {

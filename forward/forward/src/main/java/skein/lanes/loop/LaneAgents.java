@@ -22,8 +22,8 @@ import skein.lanes.policy.Directions;
 import skein.lanes.policy.LanePolicy;
 import skein.simd.WorldRandom;
 
-/** One vehicle in many worlds, with its controllers, which follow {@code skein.flow.Pace} and {@code
- * skein.flow.Steer}: when each decides on its offer, and when its command takes effect. Subclasses make the
+/** One vehicle's controller in many worlds. As {@code skein.flow.Pace} and {@code skein.flow.Steer} do, it
+ * computes when the vehicle decides on an offer and when the command takes effect. Subclasses make the
  * decisions. Times are passed in grains of 4 ns from the period's start, and stored from the episode's start,
  * modulo 2³²; a stored time that is long past is moved closer before it could be mistaken for the future.
  */
@@ -34,12 +34,10 @@ public abstract class LaneAgents {
 
   private static final float LONG_S = (1 << LONG) * LaneViews.GRAIN_S;
 
-  /** Stands for the time since the last decision of one that never decided. */
+  /** Marks a controller that has not decided yet, in {@link #decidedLong}. */
   private static final int NEVER = 1 << 20;
 
-  /** A command is answered when the next one replaces it, so the limit of unanswered commands is at least
-   * this.
-   */
+  /** Smallest limit of unanswered commands: a command is answered only when the next one replaces it. */
   public static final int LEAST_UNDER_WAY = 2;
 
   public final int self;
@@ -48,58 +46,67 @@ public abstract class LaneAgents {
   private final int line, periodGrains, intervalGrains, leastGrains, handoverGrains, deadGrains;
   private final boolean decidesFirst;
 
-  /** Whether all vehicles receive equal offers at equal times: then all sent commands were sent before. */
+  /** Whether all vehicles receive their offers at equal times, so that every command was sent before the
+   * offer.
+   */
   public final boolean together;
 
-  // When it may be commanded again, and when the last command reaches it.
+  // Time from which the vehicle may be commanded again, and arrival of the last command.
   private final int[] ready = new int[WORLDS], reaches = new int[WORLDS];
 
-  /** When earlier commands are answered, the latest first: as many as may be unanswered besides the last two.
-   * The one before the last is answered by then, or awaited.
+  /** Times at which earlier commands are answered, the latest first. There are as many as the limit of
+   * unanswered commands, less the last two.
    */
   private final int[][] answered;
 
-  /** When the last command was sent; not maintained if all offers are {@link #together}. */
+  /** Time at which the last command was sent; not maintained if {@link #together}. */
   public final int[] sentAt = new int[WORLDS];
 
-  /** When it decides, from the period's start; {@link LaneOffers#NONE} where it does not. */
+  /** Time of the decision, in grains from the period's start; {@link LaneOffers#NONE} in worlds without a
+   * decision.
+   */
   public final int[] decides = new int[WORLDS];
 
-  /** 1 where it decides before it considers an offer of the moment in which it may send again: with a {@link
-   * #forecast}, offers are scheduled a period before, and the permission was known before that.
+  /** 1 in worlds where a permission to send precedes an offer of equal time. With a {@link #forecast}, offers
+   * are scheduled one period ahead, and such a permission was known before that.
    */
   private final int[] goesFirst = new int[WORLDS];
 
-  // When it sends, or NONE, when the command acts, and when it is known to have arrived: the first never is.
+  // Time of sending, or NONE; time at which the command takes effect; and time at which its arrival is known,
+  // NONE for the first command.
   private final int[] sends = new int[WORLDS], acts = new int[WORLDS], answers = new int[WORLDS];
 
-  /** The forecast by which readings are predicted; null where decisions use the readings themselves. */
+  /** The forecast that predicts the readings; null if decisions use the readings themselves. */
   public final LaneForecast forecast;
 
-  /** Time from the own last decision to this one, s. */
+  /** Time since the vehicle's previous decision, s. */
   public final float[] elapsedS = new float[WORLDS];
 
-  /** When it decided last; and the number of {@link #LONG} spans to add, or {@link #NEVER}. */
+  /** Time of the last decision; and the number of spans of 2^28 grains to add to the time since, or {@link
+   * #NEVER}.
+   */
   private final int[] decidedAt = new int[WORLDS], decidedLong = new int[WORLDS];
 
   public int now;
 
   private final int[] drawn = new int[2 * LANES];
 
-  // Over links whose tables change: places of random numbers, how long commands and their answers are under
-  // way, and when commands arrive.
+  // For links whose tables change or that lose packets: places of random numbers, delays of commands and of
+  // their answers, and arrivals of commands.
   private final int[] drawnAt = new int[WORLDS],
       there = new int[WORLDS],
       back = new int[WORLDS],
       arrives = new int[WORLDS];
 
-  /** Commanded directions, or velocities over the vehicles' speed: the last and the previous command. */
+  /** The last and the previous command: directions, or velocities divided by the vehicles' speed. */
   public final Directions sent, sentBefore = new Directions(WORLDS);
 
-  /** The last decision, which equals the last command unless a decision waits; and the present decision. */
+  /** The last decision, which differs from the last command only while a decision waits; and the present
+   * decision.
+   */
   public final Directions decided, decidedNow;
 
-  /** @param deadTimeS from a command's arrival until the vehicle follows it */
+  /** @param deadTimeS from the arrival of a command until the vehicle follows it, s */
   public LaneAgents(int self, LoopLanes loop, double deadTimeS, LaneVehicles vehicles) {
     this.self = self;
     this.vehicles = vehicles;
@@ -119,7 +126,7 @@ public abstract class LaneAgents {
     deadGrains = LaneViews.grains(deadTimeS);
   }
 
-  /** Resets to the start of an episode; the subclass fills in the commands and decisions before it. */
+  /** Resets to the start of an episode; the subclass sets the commands and decisions that precede it. */
   public void start() {
     now = 0;
     for (int[] zero : new int[][] {ready, reaches, decidedAt}) Arrays.fill(zero, 0);
@@ -139,23 +146,23 @@ public abstract class LaneAgents {
     return false;
   }
 
-  /** Whether it takes images until it decides, which show other vehicles with equal offers: its {@link
-   * #choose} must run after they have commanded.
+  /** Whether the controller takes images up to its decision. Its {@link #choose} must then run after the
+   * other vehicles with equal offers have sent their commands.
    */
   public boolean sees() {
     return false;
   }
 
-  /** Decides, in all worlds: fills {@link #decidedNow}.
+  /** Decides in all worlds; fills {@link #decidedNow}.
    *
-   * @param all by the vehicle's number, with the readings of their vehicles
-   * @param readAt by vehicle, when the held readings were sampled; only if {@link #needsAges}
+   * @param all the controllers by vehicle number, with their vehicles' readings
+   * @param readAt sampling times of the present readings, by vehicle; maintained only if {@link #needsAges}
    */
   public abstract void choose(LaneAgents[] all, LaneOffers offers, LaneVectors vectors, int[][] readAt);
 
-  /** Stores the decisions where {@link #decides} is a time.
+  /** Stores the decisions in worlds where {@link #decides} is not {@link LaneOffers#NONE}.
    *
-   * @param endGrains of the episode
+   * @param endGrains end of the episode, in grains from the period's start
    */
   public abstract void remember(LaneVectors vectors, int endGrains);
 
@@ -164,7 +171,7 @@ public abstract class LaneAgents {
     if (row % Math.max(1, (1 << LONG) / periodGrains) == 0) drawNear();
   }
 
-  /** Moves times that are long past closer to the present. */
+  /** Moves stored times that are long past closer to the present. */
   private void drawNear() {
     IntVector begin = IntVector.broadcast(INTS, now), past = IntVector.broadcast(INTS, -1);
     for (int i = 0; i < WORLDS; i += LANES) {
@@ -181,15 +188,17 @@ public abstract class LaneAgents {
     IntVector.fromArray(INTS, times, i).sub(begin).max(past).add(begin).intoArray(times, i);
   }
 
-  /** Decides by {@link #choose} wherever it is due; agents that {@link #sees} run last. */
+  /** Determines where a decision is due, and decides by {@link #choose}. Controllers that {@link #sees take
+   * images} only do the first part.
+   */
   public final void decide(LaneAgents[] all, LaneOffers offers, LaneVectors vectors, int[][] readAt) {
     look(vectors, offers.joinedAt, offers.nextAt);
     if (forecast != null) forecast.predict(vectors, decides);
     if (!sees()) choose(all, offers, vectors, readAt);
   }
 
-  /** The numbers of this vehicle for decisions: {@code LaneObservation.X} and so on, from {@link #seenFrom}
-   * on. A prediction is valid for the deciding agents only.
+  /** The vehicle's position and velocity for decisions, from index {@link #seenFrom} on: its reading, or its
+   * prediction, which is valid only in worlds where this vehicle decides.
    */
   public final float[] seen() {
     return forecast == null ? vehicles.state : forecast.predicted(self);
@@ -217,7 +226,7 @@ public abstract class LaneAgents {
       IntVector sending = none.blend(when, goes), deciding = decidesFirst ? joined : sending;
       sending.intoArray(sends, i);
       deciding.intoArray(decides, i);
-      // In two parts, of which neither depends on the period in which it is looked at.
+      // In two parts, neither of which depends on the present period.
       IntVector passed = deciding.add(begin).sub(IntVector.fromArray(INTS, decidedAt, i));
       IntVector many =
           IntVector.fromArray(INTS, decidedLong, i).add(passed.lanewise(ASHR, LONG));
@@ -232,7 +241,7 @@ public abstract class LaneAgents {
 
   /** Sends the decisions as commands.
    *
-   * @param endGrains of the episode
+   * @param endGrains end of the episode, in grains from the period's start
    */
   final void command(int row, LaneOffers offers, LaneVectors vectors, int endGrains) {
     int place = LaneDelays.placeOf(row) + LaneDelays.placeOfLine(line);
@@ -244,7 +253,9 @@ public abstract class LaneAgents {
     vehicles.act(row, vectors, acts, sent);
   }
 
-  /** Draws the delays of commands and their answers, over links whose tables change. */
+  /** Draws the delays of commands and their answers, for links whose delay tables change or that lose
+   * packets.
+   */
   private void draw(int row, LaneDelays delays, int[] places, LaneVectors vectors) {
     long begin = (long) row * periodGrains;
     IntVector step = IntVector.broadcast(INTS, LaneDelays.placeOf(row)),
@@ -266,8 +277,8 @@ public abstract class LaneAgents {
     delays.draw(vectors, drawnAt, line + 1, begin, arrives, back);
   }
 
-  /** Sends commands, and draws their delays in that pass: a table look-up takes as long as a dozen other
-   * operations.
+  /** Sends the commands. On steady links the pass also draws their delays: a table look-up takes as long as a
+   * dozen other operations.
    */
   private void send(int place, LaneDelays delays, int[] places, LaneVectors vectors) {
     boolean isSteady = delays.isSteady, manyUnderWay = answered.length > 0;
@@ -312,9 +323,9 @@ public abstract class LaneAgents {
       // Commands to one vehicle keep their order.
       IntVector arrives = when.add(there).max(reachedBefore.sub(begin));
       none.blend(arrives.add(dead), goes).intoArray(acts, i);
-      // The command before is answered when this one has replaced it; the very first replaces none.
+      // A command is answered when its successor has replaced it; the first command replaces none.
       IntVector again = when.add(interval), answer = arrives.add(back);
-      // So do their answers.
+      // Answers keep their order too.
       if (manyUnderWay)
         answer = answer.max(IntVector.fromArray(INTS, answered[0], i).sub(begin));
       VectorMask<Integer> replaces = before.compare(LT, never);
@@ -361,10 +372,10 @@ public abstract class LaneAgents {
     }
   }
 
-  /** Records when a command is answered, no earlier than those before.
+  /** Records when commands are answered; an answer is never earlier than those before it.
    *
-   * @param answer a time that has passed where no command is answered
-   * @return when the next command may be sent: the earliest pending answer
+   * @param answer time of the answer; a past time in worlds without an answer
+   * @return time of the earliest pending answer, before which no command may be sent
    */
   private IntVector keep(int i, IntVector answer, VectorMask<Integer> goes, IntVector begin) {
     IntVector later = answer;
@@ -376,8 +387,8 @@ public abstract class LaneAgents {
     return later;
   }
 
-  /** When the vehicle may be commanded again, without the loop's interval: each earlier answer is followed by
-   * the handover time.
+  /** Time at which the vehicle may be commanded again, apart from the loop's interval: each earlier answer is
+   * followed by the handover time.
    */
   private IntVector whenFree(int i, IntVector sent, IntVector awaited, IntVector begin) {
     IntVector free = sent.add(leastGrains);
@@ -390,7 +401,7 @@ public abstract class LaneAgents {
     return free;
   }
 
-  /** The last commands as cosine and sine, as far as they were known at a joined view. */
+  /** Writes the last command that was known when the view was joined, as cosine and sine. */
   public final void knownAt(
       LaneVectors vectors, int[] joinedAt, Directions told, Directions toldBefore, Directions into) {
     for (int k = 0; k < vectors.count; k++) {
@@ -409,7 +420,7 @@ public abstract class LaneAgents {
     }
   }
 
-  /** Replaces the last command where a new one is sent. */
+  /** Makes the new command the last one, in worlds where one is sent. */
   protected final void tell(
       LaneVectors vectors, float[] cos, float[] sin, Directions told, Directions toldBefore) {
     IntVector none = IntVector.broadcast(INTS, NONE);
@@ -425,7 +436,7 @@ public abstract class LaneAgents {
     }
   }
 
-  /** Age of a vehicle's reading at the decision, s. */
+  /** Computes the age of a vehicle's reading at the decision, s. */
   protected final void age(int vehicle, int[][] readAt, float[] into) {
     if (forecast != null) System.arraycopy(forecast.age(vehicle), 0, into, 0, WORLDS);
     else
@@ -438,7 +449,7 @@ public abstract class LaneAgents {
             .intoArray(into, i);
   }
 
-  /** Clears the decisions in the other vectors. */
+  /** Clears the decisions in all other vectors. */
   private void forget(LaneVectors vectors) {
     int next = 0;
     for (int i = 0; i < WORLDS; i += LANES)

@@ -20,14 +20,17 @@ import skein.forward.TabledDelays;
 import skein.lanes.policy.LanePolicy;
 import skein.simd.WorldRandom;
 
-/** The delays of many worlds' links, as {@link DelayTable} has them, in {@link DelayTable#GrainNs}. Passes
- * draw them by {@link WorldRandom}'s hash: a table look-up takes as long as a dozen other operations, which
- * overlap with it. Where a link's table changes ({@link TabledDelays}), it depends on the time of sending;
- * such worlds are processed one by one, and so are messages that are lost, or may be ({@link LossyDelays}).
+/** Draws the delays of many worlds' links from each link's {@link DelayTable}, in units of {@link
+ * DelayTable#GrainNs}, by {@link WorldRandom}'s hash: a table look-up takes as long as a dozen other
+ * operations, which overlap with it. If a link's table changes over time ({@link TabledDelays}), the time of
+ * sending decides which table applies; such worlds are processed one by one. So are messages that may be lost
+ * ({@link LossyDelays}).
  */
 final class LaneDelays {
   private static final int WORLDS = LanePolicy.WORLDS;
-  /** Bits that are dropped from a hash without its last step, which does not change the upper bits. */
+  /** Number of low bits dropped from a hash. The hash omits its last step, which does not change the upper
+   * bits.
+   */
   static final int DROP = DelayTable.Drop();
 
   private static final int LOW_BITS = (1 << DROP) - 1;
@@ -36,7 +39,9 @@ final class LaneDelays {
 
   private int[] keys;
 
-  /** Keys of further pairs of vehicles, by {@link Delays#Lines}, and the start for which they are valid. */
+  /** Keys of the links to further pairs of vehicles, by line divided by {@link Delays#Lines}; and the number
+   * of the start for which each entry is valid.
+   */
   private int[][] pairKeys = new int[1][];
 
   private int[] madeAt = new int[1];
@@ -48,29 +53,33 @@ final class LaneDelays {
   private DelayTable[] tables = new DelayTable[1];
   private int tableCount = 0;
 
-  /** Whether delays do not depend on the time of sending: no link's table changes, and none loses packets.
+  /** Whether delays are independent of the time of sending: no link's table changes, and no link loses
+   * packets.
    */
   boolean isSteady;
 
-  /** Whether some link's table changes, and whether some link loses packets, at some times more than at
-   * others.
+  /** Whether some link's table changes, whether some link loses packets, and whether losses depend on the
+   * time.
    */
   private boolean changes, loses, losesByTime;
 
-  /** By world: its link's losses, if it has any; and when its link loses everything. */
+  /** The losses of each world's link, null without losses; and the times in which that link loses everything.
+   */
   private final LossyDelays[] lossy = new LossyDelays[WORLDS];
 
   private final LossTimes[] lossTimes = new LossTimes[WORLDS];
 
-  /** By world: low bits of a random number below this mean a loss. */
+  /** A message of a world may be lost if the low bits of its random number are below this. */
   private final int[] lossThreshold = new int[WORLDS];
 
-  /** By direction and world: when the calm around the last message began and ends, in {@link #COARSE} grains
-   * since the flight's start. Within it nothing is lost by the time of sending.
+  /** The loss-free time around the last message, by direction and world: its begin and end, since the
+   * flight's start, in units of 2^{@link #COARSE} grains.
    */
   private final int[][] calmFrom = new int[2][WORLDS], calmUntil = new int[2][WORLDS];
 
-  /** Bits of a time that are dropped to compare it with a calm: flights of hours fit into an integer. */
+  /** Number of low bits dropped from times that are compared with a loss-free time, so that hours fit into an
+   * int.
+   */
   private static final int COARSE = 12;
 
   private final int[] bits = new int[WORLDS];
@@ -78,7 +87,7 @@ final class LaneDelays {
 
   final int[] tableOf = new int[WORLDS];
 
-  /** By world: the sequence of its link's tables, where some change. */
+  /** The sequence of tables of each world's link; only where some link's table changes. */
   private final TableCourse[] courses = new TableCourse[WORLDS];
 
   private final int[] sentAt = new int[WORLDS];
@@ -118,7 +127,7 @@ final class LaneDelays {
     return link instanceof LossyDelays losing ? losing.base() : link;
   }
 
-  /** Where a table begins; adds it at the end if it is new. */
+  /** Offset of a table in {@link #delays}; adds a new table at the end. */
   private int beginOf(DelayTable table) {
     int size = DelayTable.Size();
     for (int known = tableCount - 1; known >= 0; known--) if (tables[known] == table) return known * size;
@@ -132,7 +141,7 @@ final class LaneDelays {
     return begin;
   }
 
-  /** By world, the key of the random sequence of a line's delays, as {@link Delays#keyOf}. */
+  /** The key of the random sequence of a line's delays in each world, as {@link Delays#keyOf} computes it. */
   int[] keysOf(int line) {
     int pair = line / Delays.Lines();
     if (pair == 0) return keys;
@@ -158,10 +167,10 @@ final class LaneDelays {
     return step * Delays.Lines() * WorldRandom.STRIDE;
   }
 
-  /** Draws a line's delays at different places in each world.
+  /** Draws a line's delays in each world, at the world's place in the random sequence.
    *
    * @param begin origin of the times, since the episode's start, in grains
-   * @param sentAt when each message is sent; any time where none is
+   * @param sentAt time of sending, in grains from {@code begin}; arbitrary in worlds without a message
    */
   void draw(LaneVectors vectors, int[] places, int line, long begin, int[] sentAt, int[] into) {
     int[] keys = keysOf(line);
@@ -176,7 +185,7 @@ final class LaneDelays {
     look(vectors, line, begin, sentAt, into);
   }
 
-  /** Draws a line's delays at one place in all worlds. */
+  /** Draws a line's delays in all worlds, at one place in the random sequence. */
   void draw(int place, int line, long begin, int[] sentAt, int[] into) {
     int[] keys = keysOf(line);
     IntVector there = IntVector.broadcast(INTS, place + placeOfLine(line));
@@ -185,11 +194,11 @@ final class LaneDelays {
     look(ALL, line, begin, sentAt, into);
   }
 
-  /** Draws the delays of an agent's requests to all vehicles, each sent when the one before is answered, and
-   * of the answers.
+  /** Draws the delays of an agent's requests to all vehicles and of their answers. Each request is sent when
+   * the previous one is answered.
    *
-   * @param askedAt when the first is sent
-   * @param into the delays of a vehicle's request and of the answer, in turn
+   * @param askedAt time of the first request, in grains from {@code begin}
+   * @param into receives, for each vehicle, the request's delays, then the answer's delays
    */
   void drawInTurn(LaneVectors vectors, int[] places, int asker, long begin, int[] askedAt, int[][] into) {
     if (!isSteady) System.arraycopy(askedAt, 0, sentAt, 0, WORLDS);
@@ -206,7 +215,7 @@ final class LaneDelays {
     }
   }
 
-  /** Hashes the places, and looks up the delays. */
+  /** Replaces places in the random sequence by delays. */
   private void look(LaneVectors vectors, int line, long begin, int[] sentAt, int[] values) {
     if (changes) chooseTables(vectors, begin, sentAt);
     IntVector multiplier1 = IntVector.broadcast(INTS, WorldRandom.MULTIPLIER_1),
@@ -234,7 +243,7 @@ final class LaneDelays {
       VectorMask<Integer> mayLose =
           IntVector.fromArray(INTS, bits, i).and(LOW_BITS).compare(LT, IntVector.fromArray(INTS, lossThreshold, i));
       if (losesByTime) {
-        // The sum of two times without their low bits is the time, or one less.
+        // The sum of two times without their low bits is that of the sum, or one less.
         IntVector at = IntVector.fromArray(INTS, sentAt, i).lanewise(ASHR, COARSE).add(coarse);
         mayLose =
             mayLose
@@ -248,7 +257,7 @@ final class LaneDelays {
 
   private void lose(int world, int line, long begin, int[] sentAt, int[] values) {
     LossyDelays losses = lossy[world];
-    // Where nothing is sent, there is no time.
+    // Without a message there is no time.
     if (losses == null || sentAt[world] == Integer.MAX_VALUE) return;
     LossTimes times = lossTimes[world];
     int grain = DelayTable.GrainNs();
@@ -264,7 +273,7 @@ final class LaneDelays {
     return (int) Math.min(Integer.MAX_VALUE, ns / DelayTable.GrainNs() >> COARSE);
   }
 
-  /** Sets {@link #tableOf} for messages sent at these times. */
+  /** Chooses the table of each world's message, by its time of sending. */
   private void chooseTables(LaneVectors vectors, long begin, int[] sentAt) {
     for (int k = 0; k < vectors.count; k++)
       for (int i = vectors.first[k], end = i + LANES; i < end; i++)

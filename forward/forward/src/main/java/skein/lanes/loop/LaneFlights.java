@@ -15,45 +15,47 @@ import jdk.incubator.vector.VectorOperators;
 import skein.forward.RolloutAgent;
 import skein.lanes.policy.Directions;
 
-/** The vehicles of one role in many worlds, whose commands take effect at different times in each. They move
- * in pieces, each a closed form from its start; recent pieces are kept, so that a vehicle can be read at any
- * recent moment. A piece has a maximum length; if no command ends it before, another begins under that
- * command. A slot holds the piece that was the newest in each world when it was filled. Times are in grains
- * since the episode's start, modulo 2³²; two compared times never differ by half of that.
+/** The vehicles of one role in many worlds, whose commands take effect at different times in each. A vehicle
+ * moves in pieces, each with a closed form; recent pieces are stored, so that the vehicle can be read at any
+ * recent moment. A piece has a maximum length; if no command ends it before, the next piece continues under
+ * its command. A slot stores one piece per world: the newest at the time the slot was filled. Times are in
+ * grains since the episode's start, modulo 2³²; two compared times never differ by half of that.
  */
 public abstract class LaneFlights extends LaneVehicles {
-  /** Offsets of a piece's numbers: the command's direction, north, then east, in space its vertical part; the
-   * subclass adds others.
+  /** Offsets of a piece's numbers: the command's direction north, then east, and in space its vertical part;
+   * further numbers belong to the subclass.
    */
   static final int ALONG_X = 0, ALONG_Y = WORLDS, THIRD = 2 * WORLDS, HOLDS = 3 * WORLDS;
 
-  /** Longest duration of a piece, s: far less than the range in which times are compared. */
+  /** Maximum duration of a piece, s; far less than the range of times that can be compared. */
   public static final double MOST_PIECE_S = 1;
 
   private final int size, keptRows, periodGrains, pieceGrains;
 
-  /** Number of slots for pieces, always a power of two. */
+  /** Number of slots that are allocated, a power of two. */
   private int slots = 16;
 
   private int[] begins, rowOf;
   float[] pieces;
 
-  /** Number of slots filled so far; the newest is one less. */
+  /** Number of slots filled so far; the newest slot is the one before it, modulo their number. */
   private int filled;
 
-  /** The requested times; the pieces in which they lie, and the time from their start, s. */
+  /** Times at which vehicles are to be read; the pieces of these times, and the time since each piece's
+   * start, s.
+   */
   private final int[] until = new int[WORLDS];
 
   final float[] chosen, sinceS = new float[WORLDS];
 
-  // Pieces that end by themselves: where, and when others follow.
+  // Vectors with a piece that ends without a command; the worlds, and the begins of the next pieces.
   private final LaneVectors over = new LaneVectors();
   private final int[] ends = new int[WORLDS], next = new int[WORLDS];
 
   private static final LaneVectors ALL = LaneVectors.all();
 
-  /** @param numbers count per piece
-   * @param pieceS longest duration of a piece, at most {@link #MOST_PIECE_S}
+  /** @param numbers count of numbers per piece
+   * @param pieceS duration of a piece without a command, s, at most {@link #MOST_PIECE_S}
    */
   LaneFlights(RolloutAgent agent, int numbers, double pieceS, LoopLanes loop, boolean inSpace) {
     super(agent, 0, inSpace);
@@ -77,25 +79,26 @@ public abstract class LaneFlights extends LaneVehicles {
     filled = 1;
   }
 
-  /** Fills in a piece at rest at the position in {@link #state}, from index 0 on. */
+  /** Writes a piece in which each vehicle rests at its position in {@link #state}, from index 0 on. */
   abstract void rest(float[] pieces);
 
-  /** Simulates the {@link #chosen} pieces for {@link #sinceS}.
+  /** Computes the position, and if required the velocity, {@link #sinceS} after the start of each {@link
+   * #chosen} piece.
    *
-   * @param at offset of the resulting positions, north, then east, followed by the velocities and, in space,
-   *     by position and velocity down; without velocities {@link #X}
+   * @param at index of the results, {@link #X} or {@link #SEEN_X}: positions north, then east, followed at
+   *   {@link #SEEN_X} by the velocities and, in space, by position and velocity down
    */
   abstract void fly(float[] into, int at, boolean withVelocity);
 
-  /** Simulates the {@link #chosen} pieces of the first vectors to their ends. */
+  /** Simulates the {@link #chosen} pieces of the first {@code count} vectors to their ends. */
   abstract void flyOn(int count);
 
-  /** Begins new pieces where the {@link #chosen} ones end after {@link #flyOn}, in worlds where {@code acts}
-   * is less than {@link LaneOffers#NONE}; elsewhere copies the chosen ones.
+  /** Begins new pieces at the ends computed by {@link #flyOn}, in worlds where {@code acts} is less than
+   * {@link LaneOffers#NONE}; in other worlds copies the {@link #chosen} pieces.
    *
-   * @param vectors the chosen ones, one behind the other
-   * @param at their offset in {@link #pieces}
-   * @param commanded by world; null where the present command goes on
+   * @param vectors the vectors of the chosen pieces, which are stored without gaps
+   * @param at offset of the new pieces in {@link #pieces}
+   * @param commanded the new commands by world; null if each vehicle keeps its command
    */
   abstract void begin(LaneVectors vectors, int at, int[] acts, Directions commanded);
 
@@ -114,7 +117,7 @@ public abstract class LaneFlights extends LaneVehicles {
   @Override
   final void flyToRow(int row, boolean isLookedAt) {
     Arrays.fill(until, row * periodGrains);
-    // No piece lasts longer than times are told apart by.
+    // Times are compared only within a range, so pieces must not become longer.
     goOn(row, ALL);
     if (!isLookedAt) return;
     choose(ALL);
@@ -130,8 +133,8 @@ public abstract class LaneFlights extends LaneVehicles {
     begin(vectors, fill(row, vectors, until), acts, commanded);
   }
 
-  /** Requests times from a row's start where a number is at least {@code least} and below {@link
-   * LaneOffers#NONE}, and elsewhere the start of the newest piece.
+  /** Sets {@link #until} to {@code times}, from the row's start, in worlds whose number is at least {@code
+   * least} and below {@link LaneOffers#NONE}; in other worlds to the start of the newest piece.
    */
   private void ask(int row, LaneVectors vectors, int[] times, int[] numbers, int least) {
     int newest = (filled - 1 & slots - 1) * WORLDS;
@@ -148,7 +151,7 @@ public abstract class LaneFlights extends LaneVehicles {
     }
   }
 
-  /** Appends pieces until none ends before the requested times. */
+  /** Appends pieces until the newest lasts to {@link #until}. */
   private void goOn(int row, LaneVectors vectors) {
     while (findOver(vectors)) {
       copyNewest(over);
@@ -157,7 +160,10 @@ public abstract class LaneFlights extends LaneVehicles {
     }
   }
 
-  /** Finds newest pieces that end before the requested times: where, when, and how long they last. */
+  /** Finds the newest pieces that end before {@link #until}; sets the time of each end and {@link #sinceS}.
+   *
+   * @return whether there is one
+   */
   private boolean findOver(LaneVectors vectors) {
     int newest = (filled - 1 & slots - 1) * WORLDS;
     float pieceS = pieceGrains * LaneViews.GRAIN_S;
@@ -179,7 +185,10 @@ public abstract class LaneFlights extends LaneVehicles {
     return over.count > 0;
   }
 
-  /** Takes a slot for pieces that begin at these times; other vectors copy the newest pieces. */
+  /** Fills the next slot with pieces that begin at these times; other vectors copy the newest pieces.
+   *
+   * @return the slot's offset in {@link #pieces}
+   */
   private int fill(int row, LaneVectors vectors, int[] times) {
     if (filled >= slots && rowOf[filled + 1 & slots - 1] >= row - keptRows) makeRoom();
     int newest = filled - 1 & slots - 1, slot = filled++ & slots - 1;
@@ -211,8 +220,8 @@ public abstract class LaneFlights extends LaneVehicles {
     }
   }
 
-  /** Chooses the newest pieces, one vector behind the other, with the time from their start to the requested
-   * times.
+  /** Chooses the newest piece of each world, stored without gaps between vectors; sets {@link #sinceS} to the
+   * time from its start to {@link #until}.
    */
   private void chooseNewest(LaneVectors vectors) {
     int newest = (filled - 1 & slots - 1) * WORLDS;
@@ -240,7 +249,7 @@ public abstract class LaneFlights extends LaneVehicles {
         .intoArray(sinceS, at);
   }
 
-  /** Chooses the pieces in which the requested times lie, each world's in its own place. */
+  /** Chooses the piece of each world that contains {@link #until}; every world keeps its own index. */
   private void choose(LaneVectors vectors) {
     int[] begins = this.begins, until = this.until;
     float[] pieces = this.pieces, chosen = this.chosen;

@@ -6,8 +6,8 @@ import skein.lanes.policy.Directions;
 import skein.lanes.policy.LaneObservation;
 import skein.lanes.policy.LanePolicy;
 
-/** What is known of vehicles in many worlds from their readings and commands, and predictions of their
- * states. The scalar reference is {@link Forecast}, with a single clock here.
+/** Predicts the states of vehicles in many worlds from their readings and commands. The scalar reference is
+ * {@link Forecast}; here there is a single clock.
  */
 public final class LaneForecast {
   private static final int WORLDS = LanePolicy.WORLDS;
@@ -15,25 +15,23 @@ public final class LaneForecast {
   private final MeanDelays delays = new MeanDelays();
   private final ForecastTrack[] tracks;
 
-  // By vehicle: by what it is carried forward, and what is read of it.
+  // By vehicle: its predictor, and the vehicles that its readings come from.
   private final ForecastVehicles[] vehicles;
   private final LaneVehicles[] read;
 
-  /** By vehicle, predictions for the last requested decision, as {@link ForecastVehicles#predict} lays them
-   * out.
-   */
+  /** The predictions for the last decision, by vehicle, in the layout of {@link ForecastVehicles#predict}. */
   private final float[][] predicted;
 
   private int row, laidRow;
 
   private final int[] predictedFor = new int[WORLDS];
 
-  /** Deadline, from a period's start, of messages that its decisions consider. */
+  /** Time at which decisions are due; later messages are ignored. In grains from the period's start. */
   final int dueGrains;
 
   private final int[] due = new int[WORLDS];
 
-  /** @param deadTimeS from a command's arrival until a vehicle is assumed to follow it */
+  /** @param deadTimeS from the arrival of a command until a vehicle is assumed to follow it, s */
   LaneForecast(double periodS, int count, double deadTimeS) {
     dueGrains = LaneViews.grains(periodS) / 2;
     Arrays.fill(due, dueGrains);
@@ -44,7 +42,7 @@ public final class LaneForecast {
     predicted = new float[count][LaneObservation.READ * WORLDS];
   }
 
-  /** Sets the model that predicts a vehicle, and the source of its readings. */
+  /** Sets the model that predicts a vehicle, and the vehicles that its readings come from. */
   void follow(int vehicle, ForecastVehicles by, LaneVehicles read) {
     vehicles[vehicle] = by;
     this.read[vehicle] = read;
@@ -67,21 +65,22 @@ public final class LaneForecast {
     for (ForecastTrack track : tracks) track.startRow(row);
   }
 
-  /** Adds readings: one per world at most, received no earlier than those before.
+  /** Adds readings, at most one per world. In each world, readings must be added in the order of arrival.
    *
-   * @param whose the number of the vehicle, or -1 for none
-   * @param asked when it was requested, sampled and received, from the row's start
+   * @param whose number of the vehicle that was read, or -1 in worlds without a reading
+   * @param asked time of the request; {@code made} of the sample, {@code received} of the answer: in grains
+   *   from the row's start
    */
   void enter(LaneVectors vectors, int[] whose, int[] asked, int[] made, int[] received) {
     for (int v = 0; v < tracks.length; v++)
       tracks[v].arrived.take(vectors, whose, v, asked, made, received, delays);
   }
 
-  /** Reports the worlds in which all vehicles are known, after adding everything that a period's decisions
-   * consider.
+  /** Updates the forecast by the readings of a period, after the last {@link #enter} of that period.
    *
-   * @param joinedAt set to {@link #dueGrains} in those worlds, elsewhere to {@link LaneOffers#NONE}
-   * @param madeAt by vehicle, when a fresh reading was sampled, from the row's start
+   * @param joinedAt set to {@link #dueGrains} in worlds where all vehicles have been read, else to {@link
+   *   LaneOffers#NONE}
+   * @param madeAt receives the sampling time of each vehicle's newest reading, in grains from the row's start
    */
   void tell(int[] joinedAt, int[][] madeAt) {
     Arrays.fill(joinedAt, dueGrains);
@@ -100,9 +99,10 @@ public final class LaneForecast {
     by.enter(arrived.vectors, track, arrived.enters, read.state);
   }
 
-  /** Predicts the vehicles' states for the time at which a command sent at a moment takes effect.
+  /** Predicts the vehicles' states at the time at which a command takes effect.
    *
-   * @param when by world, from the row's start; {@link LaneOffers#NONE} where there is no decision
+   * @param when time at which the command is sent, in grains from the row's start; {@link LaneOffers#NONE} in
+   *   worlds without a decision
    */
   void predict(LaneVectors vectors, int[] when) {
     boolean isFirst = laidRow < row;
@@ -115,25 +115,27 @@ public final class LaneForecast {
     }
   }
 
-  /** The last prediction of a vehicle: {@link LaneObservation#X} and so on, by world. */
+  /** The last prediction of a vehicle, in the order of {@link LaneObservation#X} and the following constants.
+   */
   float[] predicted(int vehicle) {
     return predicted[vehicle];
   }
 
-  /** Age of its reading at the predicted moment, s. */
+  /** Age of the vehicle's newest reading at the time of the decision, s. */
   public float[] age(int vehicle) {
     return tracks[vehicle].ageS;
   }
 
-  /** Time until a command takes effect, s. */
+  /** Expected time from the sending of a command until it takes effect, without the dead time, s. */
   public float[] actsS() {
     return delays.toS;
   }
 
   /** Records the commands of a period.
    *
-   * @param times when each is sent, from the row's start; {@link LaneOffers#NONE} where none is
-   * @param answers when its arrival becomes known
+   * @param times time of sending, in grains from the row's start; {@link LaneOffers#NONE} in worlds without a
+   *   command
+   * @param answers time at which the answer arrives, likewise
    */
   void send(int vehicle, LaneVectors vectors, int[] times, int[] answers, Directions directions) {
     tracks[vehicle].send(row, vectors, times, answers, directions);

@@ -9,14 +9,15 @@ import skein.forward.DelayTable;
 import skein.forward.TabledDelays;
 import skein.lanes.policy.LanePolicy;
 
-/** The offers to the vehicles' controllers in many worlds: views of the readings, on which they may decide.
- * Each loop has another order of messages. Offers do not depend on decisions, so they are computed ahead. The
- * reference are the loops of {@code Rollout}.
+/** Computes the offers to the vehicles' controllers in many worlds. An offer is a view of the readings, on
+ * which a vehicle may decide. Each loop exchanges messages in another order and has its own subclass. Offers
+ * do not depend on decisions, so they are computed ahead. The scalar references are the loops of {@code
+ * Rollout}.
  *
- * <p>Worlds advance through the flight period by period, together. Each period has rounds ("beats") of
- * offers: of each world and agent at most one, none earlier than one of an earlier round. While some world
- * has an offer in the period, others may already have theirs of {@link #rowsAhead} later periods, so that
- * nearly all worlds have one in every round. Times are in {@link DelayTable#GrainNs} from the period's start.
+ * <p>All worlds advance together, period by period. Each period has rounds ("beats"): a round contains at
+ * most one offer per world and agent, none earlier than the offers of the round before. A round may contain
+ * offers of up to {@link #rowsAhead} later periods, so that nearly every world has an offer in every round.
+ * Times are in {@link DelayTable#GrainNs} from the period's start.
  */
 public abstract class LaneOffers {
   static final int WORLDS = LanePolicy.WORLDS;
@@ -29,7 +30,7 @@ public abstract class LaneOffers {
 
   final int vehicles;
 
-  /** Whether every offer is made to all vehicles. */
+  /** Whether an offer goes to all vehicles, or else to one. */
   final boolean together;
 
   /** Number of later periods whose offers a round may contain. */
@@ -39,16 +40,19 @@ public abstract class LaneOffers {
 
   int whose = ALL;
 
-  /** The offers of the round: when each is made ({@link #NONE} in worlds without), and when the next one is.
-   */
+  /** The times of this round's offers and of the next offers, by world; {@link #NONE} without an offer. */
   public int[] joinedAt, nextAt;
 
   final int[][] sampledAt;
 
-  /** By vehicle: 1 where the reading differs from the one before; null where all do. */
+  /** Of each vehicle, 1 in worlds where the offer has a new reading of it, else 0; null if all readings are
+   * new.
+   */
   final int[][] fresh;
 
-  /** By agent: the step to which its command belongs, as places of the random sequence from the period's. */
+  /** Of each agent, the place of its command's random numbers: that of the step to which the command belongs,
+   * relative to that of the period.
+   */
   final int[][] place;
 
   LaneOffers(int vehicles, LaneDelays delays, boolean together, int rowsAhead) {
@@ -61,9 +65,7 @@ public abstract class LaneOffers {
     this.delays = delays;
   }
 
-  /** Makes arrays for the offers of a round, for loops in which all offers of a world belong to one step.
-   *
-   * @param places for {@link #place}
+  /** Allocates arrays for the offers of a round; for loops in which all offers of a world belong to one step.
    */
   final void keepOffers(int[] places) {
     joinedAt = new int[WORLDS];
@@ -82,18 +84,21 @@ public abstract class LaneOffers {
   /** Moves to the next round of the period, if it has one. */
   abstract boolean nextBeat();
 
-  /** Whether the offers of the round are made to a vehicle's controller. */
+  /** Whether the offers of this round go to a vehicle's controller. */
   final boolean isFor(int vehicle) {
     return whose == ALL || whose == vehicle;
   }
 
-  /** Whether no world has a time in a slot, of times by vehicle and slot. */
+  /** Whether no world has a time in a slot.
+   *
+   * @param times by vehicle, slot and world
+   */
   static boolean isEmpty(int[][][] times, int slot) {
     for (int[][] each : times) if (isBefore(each[slot], NONE)) return false;
     return true;
   }
 
-  /** Whether some world's time comes before another. */
+  /** Whether some world's time is before {@code time}. */
   static boolean isBefore(int[] times, int time) {
     IntVector before = IntVector.broadcast(INTS, time);
     for (int i = 0; i < WORLDS; i += LANES)

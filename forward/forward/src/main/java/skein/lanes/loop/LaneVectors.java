@@ -7,7 +7,9 @@ import static skein.simd.LaneMath.LANES;
 import jdk.incubator.vector.IntVector;
 import skein.lanes.policy.LanePolicy;
 
-/** The vectors of a block of worlds that a pass processes: those in which something happens. Mutable. */
+/** The SIMD vectors of a block that a pass processes: those with an event in at least one of their worlds.
+ * Mutable.
+ */
 public final class LaneVectors {
   private static final int WORLDS = LanePolicy.WORLDS;
 
@@ -26,9 +28,9 @@ public final class LaneVectors {
     for (int i = 0; i < WORLDS; i += LANES) first[count++] = i;
   }
 
-  /** Selects the vectors in which some world has a time.
+  /** Selects the vectors in which at least one world has a time below {@code noneAt}.
    *
-   * @param noneAt stands for no time, above all
+   * @param noneAt the number that means "no time", greater than all times
    */
   public void take(int[] times, int noneAt) {
     IntVector none = IntVector.broadcast(INTS, noneAt);

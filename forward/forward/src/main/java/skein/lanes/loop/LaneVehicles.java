@@ -15,17 +15,16 @@ import skein.lanes.policy.LanePolicy;
 import skein.lanes.policy.VehicleNumbers;
 
 /** The vehicles of one role in many worlds, whose commands take effect at different times in each. Times
- * count from the start of a period; periods are processed in order. {@link LagVehicles} and {@link
- * LaneFlights} are the two representations of commands not yet in effect.
+ * count from the start of a period; periods are processed in order. The subclasses {@link LagVehicles} and
+ * {@link LaneFlights} differ in how they represent pending commands.
  */
 public abstract class LaneVehicles {
   static final int WORLDS = LanePolicy.WORLDS;
 
-  /** Offsets of each world's numbers in {@link #state}: position at the period's start, m; position and
-   * velocity of the last reading, m and m/s; north, then east. Then, in space, position and velocity down of
-   * the last reading, and the position down at the period's start. Subclasses may keep more from {@link #OWN}
-   * on.
-   * A single array, because passes over many arrays spend their time on addresses.
+  /** Offsets in {@link #state}, which is one array because passes over many arrays spend their time on
+   * addresses. Position at the period's start, m; then position and velocity of the last reading, m and m/s;
+   * each north, then east. In space follow position and velocity down of the last reading, and the position
+   * down at the period's start. Numbers of a subclass begin at {@link #OWN}.
    */
   static final int X = 0,
       Y = WORLDS,
@@ -49,7 +48,7 @@ public abstract class LaneVehicles {
   public final boolean inSpace;
 
 
-  /** @param own count of numbers per world that the subclass keeps from {@link #OWN} on */
+  /** @param own count of the subclass's numbers per world, from {@link #OWN} on */
   LaneVehicles(RolloutAgent agent, int own, boolean inSpace) {
     this.inSpace = inSpace;
     kept = new float[(inSpace ? 6 : 4) * WORLDS];
@@ -63,7 +62,7 @@ public abstract class LaneVehicles {
     startZ[world] = (float) agent.altitudeDownM();
   }
 
-  /** Sets where a world's vehicle starts from now on. */
+  /** Sets the start of a world's vehicle for all following episodes. */
   public final void place(int world, VehicleNumbers numbers) {
     startX[world] = numbers.northM();
     startY[world] = numbers.eastM();
@@ -78,33 +77,35 @@ public abstract class LaneVehicles {
     for (int z : new int[] {Z, SEEN_Z}) System.arraycopy(startZ, 0, state, z, WORLDS);
   }
 
-  /** Reads the vehicles where {@code fresh} is 1, or wherever a view was joined.
+  /** Reads the vehicles in worlds where {@code fresh} is 1, or, if that is null, in worlds where a view was
+   * joined.
    *
-   * @param vectors in which some world is read
-   * @param joined less than {@link LaneOffers#NONE} where a view was joined
-   * @param at when they are read, from the row's start, in grains
+   * @param vectors the vectors with such a world
+   * @param joined time of the view; {@link LaneOffers#NONE} in worlds without a view
+   * @param at time of the reading, in grains from the row's start
    */
   abstract void read(
       int row, LaneVectors vectors, int[] joined, int[] at, int[] fresh, boolean withVelocity);
 
   /** Simulates up to a row's start.
    *
-   * @param isLookedAt whether their positions then are used
+   * @param isLookedAt whether the positions at that time are used
    */
   abstract void flyToRow(int row, boolean isLookedAt);
 
-  /** Lets commands take effect, none earlier than the one before.
+  /** Makes commands take effect, in each world no earlier than the previous command.
    *
-   * @param vectors in which some command does
-   * @param acts when, from the row's start, in grains; {@link LaneOffers#NONE} where none does
+   * @param vectors the vectors with a command
+   * @param acts time at which it takes effect, in grains from the row's start; {@link LaneOffers#NONE} in
+   *   worlds without a command
    */
   abstract void act(int row, LaneVectors vectors, int[] acts, Directions commanded);
 
   /** Returns the vehicles' positions at recent moments, without changing the last readings.
    *
-   * @param vectors with a requested moment
-   * @param at when, from the row's start, in grains; {@link LaneOffers#NONE} where none is requested
-   * @param north and {@code east}: positions, m
+   * @param vectors the vectors with a requested moment
+   * @param at the moment, in grains from the row's start; {@link LaneOffers#NONE} in worlds without one
+   * @param north receives positions north, m; {@code east} those east
    */
   final void look(int row, LaneVectors vectors, int[] at, float[] north, float[] east) {
     remember();
@@ -118,7 +119,7 @@ public abstract class LaneVehicles {
     System.arraycopy(state, SEEN_X, kept, 0, kept.length);
   }
 
-  /** Restores the {@link #remember remembered} readings where nothing is fresh. */
+  /** Restores the {@link #remember remembered} readings in worlds where {@code fresh} is 0. */
   final void keep(int[] fresh) {
     for (int i = 0; i < WORLDS; i += LANES) {
       VectorMask<Float> isOld = IntVector.fromArray(INTS, fresh, i).compare(EQ, 0).cast(SPECIES);

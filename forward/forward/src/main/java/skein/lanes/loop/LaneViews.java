@@ -20,10 +20,10 @@ import skein.lanes.policy.LanePolicy;
 import skein.simd.WorldRandom;
 
 /** The views of many worlds under the {@code stream} loop, row by row: row m has the view of request m.
- * Nearly always all its answers arrive before anything of the next row, which SIMD code handles here; where
- * it is otherwise, a {@link ViewSource} computes the world's views one by one until the regular case returns.
- * Then a row may have no view of a world, or several: so a row has one or more rounds, with at most one view
- * each.
+ * Nearly always all its answers arrive before anything of the next row, which SIMD code computes here.
+ * Otherwise a {@link ViewSource} computes the world's views one by one, until the regular case returns; a row
+ * may then have no view of the world, or several. So a row has one or more rounds, each with at most one view
+ * per world.
  *
  * <p>Times are in grains of 4 ns ({@link DelayTable#GrainNs}) from the row's tick, and equal to those of
  * {@link Rollout} to the nanosecond.
@@ -34,39 +34,39 @@ public final class LaneViews {
 
   private static final int GRAIN_NS = DelayTable.GrainNs();
 
-  /** {@link DelayTable#GrainNs} as a time in seconds. */
+  /** Duration of a grain, s; see {@link DelayTable#GrainNs}. */
   public static final float GRAIN_S = GRAIN_NS * 1e-9f;
 
   public static final int NONE = Integer.MAX_VALUE;
 
-  /** Limit of a time, to which later ones are clipped. */
+  /** Maximum of a time; later times are clipped to it. */
   private static final int LATEST = 2_000_000_000;
 
   private static final int[] AT_ONCE = new int[WORLDS];
   private static final LaneVectors ALL = LaneVectors.all();
 
-  /** Number of rows kept: more than are computed ahead. */
+  /** Number of rows that are stored, more than the rows computed ahead. */
   private static final int ROWS = 8;
 
-  /** In the regular case, requests are answered within this number of rows: no request of a later row can be
-   * answered before, and the window is never full.
+  /** Maximum number of rows within which a request is answered in the regular case, so that no later row's
+   * request is answered first and the window is never full.
    */
   private static final int MOST_AHEAD = 4;
 
-  /** A view may be known this number of rows before its own. */
+  /** Number of rows by which a view may be known before its own row. */
   static final int ROWS_EARLY = 1;
 
   private final int ahead;
 
   private final long periodNs;
 
-  /** If false, all views are computed one by one. */
+  /** Whether SIMD computes the regular case; otherwise all views are computed one by one. */
   private final boolean shortCut;
 
   private final int periodGrains;
   private final int patienceGrains, latestGrains;
 
-  /** By world; made when a view must be computed one by one. */
+  /** The source of each world, created when a world's views must first be computed one by one. */
   private final ViewSource[] sources = new ViewSource[WORLDS];
 
   private final Supplier<ViewSource> newSource;
@@ -76,8 +76,8 @@ public final class LaneViews {
 
   final LaneDelays delays = new LaneDelays();
 
-  // By row modulo ROWS: when the questions reach the vehicles, and when the first answer and all
-  // are back; the same of the next row's answers.
+  // By row modulo ROWS: times at which the requests reach the vehicles, of the first and the last answer, and
+  // of the next row's last answer.
   private final int[][][] reached;
   private final int[][] first = new int[ROWS][WORLDS],
       last = new int[ROWS][WORLDS],
@@ -86,35 +86,35 @@ public final class LaneViews {
   private final int[] drawn = new int[4 * LANES];
   private final int[] roundTrip = new int[WORLDS], otherRoundTrip = new int[WORLDS];
 
-  /** The lanes of each vector that {@link #ask} found irregular. */
+  /** Bit mask of the lanes that {@link #ask} found irregular, for each vector. */
   private final long[] irregularLanes = new long[WORLDS / LANES];
 
-  // Worlds whose views come one by one: from which row to which; these worlds.
+  // Worlds whose views are computed one by one: their rows, from and up to; and their numbers.
   private final int[] irregularFrom = new int[WORLDS], irregularUpTo = new int[WORLDS];
   private final int[] irregular = new int[WORLDS];
   private int irregularCount;
 
-  /** Whether a world's source has a view whose round is still to come. */
+  /** Whether a world's source has a view that has not been inserted yet. */
   private final boolean[] hasNext = new boolean[WORLDS];
 
-  // The beat's views: when each is joined, when the world's next one is; what its readings were
-  // asked as, in places from the row's; when they were taken.
+  // The round's views: the time of each and of the world's next; the places of its readings' requests, from
+  // those of the row; and the times of the readings.
   int[] joinedAt, nextAt;
   final int[][] place;
   int[][] sampledAt;
 
-  /** Whether a world has no view in this round, or one with an old reading. */
+  /** Whether some world has no view in this round, or a view with an old reading. */
   boolean hasOld;
 
-  /** Whether some reading was requested in another row than the present one. */
+  /** Whether some reading of the round was requested in another row. */
   private boolean hasOther;
 
-  /** 1 where the round's view has a reading of the vehicle that the view before lacked. */
+  /** Of each vehicle, 1 in worlds where the round's view has a new reading of it, else 0. */
   final int[][] isFresh;
 
   private int row;
 
-  /** Number of steps that were checked for irregularities. */
+  /** The last step that was checked for irregularities. */
   private int lookedAt;
 
   private boolean more;
@@ -138,7 +138,6 @@ public final class LaneViews {
     return (int) (Nanos.of(seconds) / GRAIN_NS);
   }
 
-  /** Whether a time is a whole number of grains. */
   public static boolean isWhole(double seconds) {
     return Nanos.of(seconds) % GRAIN_NS == 0;
   }
@@ -156,9 +155,10 @@ public final class LaneViews {
     for (int step = 0; step < ahead; step++) ask(step);
   }
 
-  /** Computes when request {@code step} reaches the vehicles, and when it is answered. Also finds the worlds
-   * whose view of the step before does not simply consist of that step's answers. An answer of this step may
-   * be received before views of the steps before, but not before the present row's.
+  /** Computes when request {@code step} reaches each vehicle and when it is answered. Then checks whether the
+   * view of the previous step consists exactly of that step's answers; worlds where it does not become
+   * irregular. An answer of this step may precede views of earlier steps, but not the view of the present
+   * row.
    */
   private void ask(int step) {
     for (int vehicle = 0; vehicle < vehicles; vehicle += 2) answer(vehicle, step);
@@ -172,8 +172,9 @@ public final class LaneViews {
     }
   }
 
-  /** Does so for a vehicle and the next one, if there is one: delays of a pair come from one sequence, and a
-   * table look-up takes as long as a dozen other operations, which overlap with it.
+  /** Computes the answers of one vehicle and the next, if there is one. The delays of such a pair come from
+   * one random sequence, and a table look-up takes as long as a dozen other operations, which overlap with
+   * it.
    */
   private void answer(int vehicle, int step) {
     int place = LaneDelays.placeOf(step), slot = step % ROWS, slotBefore = (step + ROWS - 1) % ROWS;
@@ -250,8 +251,8 @@ public final class LaneViews {
     }
   }
 
-  /** Computes when a step's request reaches a vehicle, and when it is answered, over links whose tables
-   * change.
+  /** Computes when a step's request reaches a vehicle and when it is answered, for links whose tables change
+   * or that lose packets.
    */
   private void draw(int vehicle, int step, int[] to, int[] roundTrip) {
     int place = LaneDelays.placeOf(step), line = Delays.question(0, vehicle);
@@ -263,7 +264,7 @@ public final class LaneViews {
 
   private void makeIrregular(int world, int step) {
     if (hasNext[world]) {
-      // It was thought to be regular again behind the view that comes next.
+      // The world was expected to be regular again after the next view.
       stayIrregular(world);
     } else {
       irregular[irregularCount++] = world;
@@ -278,7 +279,7 @@ public final class LaneViews {
     irregularUpTo[world] = Integer.MAX_VALUE;
   }
 
-  /** Moves to the next view of a world whose views are computed one by one. */
+  /** Moves to the next view of an irregular world, and checks whether the world is regular after it. */
   private void goOn(int world) {
     ViewSource source = sources[world];
     source.next();
@@ -290,7 +291,7 @@ public final class LaneViews {
     else stayIrregular(world);
   }
 
-  /** Whether {@link #ask} found nothing irregular in one world. */
+  /** Whether one world is regular in a step, by the criteria of {@link #ask}. */
   private boolean isRegular(int world, int step) {
     int[][] to = reached[step % ROWS], nextTo = reached[(step + 1) % ROWS];
     int end = last[step % ROWS][world];
@@ -301,7 +302,7 @@ public final class LaneViews {
         && end <= latestGrains;
   }
 
-  /** Moves to the first round of a row; rows are taken in turn, from 0. */
+  /** Moves to the first round of a row; rows are processed in order, from 0. */
   void startRow(int number) {
     row = number;
     ask(row + ahead);
@@ -328,8 +329,11 @@ public final class LaneViews {
     return irregularBeat(false);
   }
 
-  /** Inserts the round's views of irregular worlds; returns whether there were any. A world without one in a
-   * row may have several in the next. Then the first is inserted now: an additional round costs all worlds.
+  /** Inserts the views of irregular worlds into the round. A world without a view in this row may have
+   * several in the next; then the first of them is inserted here, because an additional round costs all
+   * worlds.
+   *
+   * @return whether a view was inserted
    */
   private boolean irregularBeat(boolean isFirst) {
     more = false;
@@ -349,7 +353,7 @@ public final class LaneViews {
           nextAt[world] = fromTick(source.joinedAt());
           if (source.row() == row) {
             more = true;
-            // The next row was looked after already.
+            // The next row was already checked.
             stayIrregular(world);
           }
         }

@@ -18,9 +18,9 @@ import skein.lanes.policy.CameraTrackerLanes;
 import skein.lanes.policy.LanePolicy;
 import skein.lanes.timetable.ImageSource;
 
-/** A camera in many worlds, whose images are taken and become known at different times in each, as {@link
- * ImageSource}s compute them. Images are simulated once the vehicles' flight until then is known: with the
- * next decision, or some time later. Until a decision the camera keeps its direction.
+/** A camera in many worlds. Its images are taken and become known at different times in each world, which
+ * {@link ImageSource}s compute. An image is simulated only when the vehicles' flight until then is known: at
+ * the next decision, or some time later. The camera keeps its direction until a decision.
  */
 public class LoopEye extends CameraTrackerLanes {
   private static final int WORLDS = LanePolicy.WORLDS, NONE = LaneOffers.NONE;
@@ -28,36 +28,37 @@ public class LoopEye extends CameraTrackerLanes {
   private static final int RING = ImageTiming.Ring(), GRAIN_NS = DelayTable.GrainNs();
   private static final LaneVectors ALL = LaneVectors.all();
 
-  /** Limit of a world's images taken, and of those becoming known, in one pass. */
+  /** Maximum number of images per world that one pass takes, and that become known in one pass. */
   private static final int MOST = 8;
 
   private final ImageSource[] sources = new ImageSource[WORLDS];
   private final LaneVehicles ours, theirs;
   private final long periodNs;
 
-  /** The start of the period, since the episode's start. */
+  /** Start of the period, ns since the episode's start. */
   private long beginNs;
 
   private int row;
 
-  // Of a go, by world: how many images are taken; in turn, which and when, with what errors, and whether the
-  // opponent is found in view.
+  // The images taken in one pass, by world: their number; and for each the image, its time, its errors, and
+  // whether an opponent in view is detected.
   private final int[] takes = new int[WORLDS];
   private final int[][] taken = new int[MOST][WORLDS];
   public final long[][] takenNs = new long[MOST][WORLDS];
   private final float[][] bearings = new float[MOST][WORLDS], ranges = new float[MOST][WORLDS];
   public final boolean[][] isFound = new boolean[MOST][WORLDS];
 
-  // And how many become known; in turn, which; which is newer and entered before, or -1.
+  // The images that become known in one pass, by world: their number; and for each the image, and the newer
+  // image that was added before it, or -1.
   private final int[] knows = new int[WORLDS];
   private final int[][] known = new int[MOST][WORLDS], newer = new int[MOST][WORLDS];
 
-  /** Results of each world's images, by the image modulo {@link #RING}, and when they were taken, s. */
+  /** Results of each world's images, by image number modulo {@link #RING}, and when each was taken, s. */
   private final float[] images = new float[RING * IMAGE * WORLDS], imagesS = new float[RING * WORLDS];
 
   private final LaneVectors some = new LaneVectors();
 
-  // Images that are taken together: when, where both vehicles are, what is shown.
+  // Images that are taken together: their times, the positions of both vehicles, and the results.
   private final int[] at = new int[WORLDS];
   public final float[] ourX = new float[WORLDS],
       ourY = new float[WORLDS],
@@ -65,19 +66,19 @@ public class LoopEye extends CameraTrackerLanes {
       theirY = new float[WORLDS],
       shown = new float[IMAGE * WORLDS];
 
-  // Images that become known together: 1 where one does, and where it is older than what entered before; that
-  // newer one; the belief that they enter, after the one and after both.
+  // Images that become known together: 1 in worlds with one, and 1 where a newer image was added before it;
+  // that newer image; and the estimate before them, after the first and after both.
   private final int[] enters = new int[WORLDS], isOlder = new int[WORLDS];
   private final float[] newerShown = new float[IMAGE * WORLDS], newerS = new float[WORLDS];
   private final float[] from = new float[BELIEF * WORLDS],
       reached = new float[BELIEF * WORLDS],
       replayed = new float[BELIEF * WORLDS];
 
-  /** All images earlier than this before a period's start have been taken. */
+  /** Time before a period's start up to which all images have been taken, in grains; negative. */
   private final int[] longAgo = new int[WORLDS];
 
   /** @param own the agent with the camera
-   * @param ours the vehicles of that agent, in all worlds
+   * @param ours the controllers of that agent's vehicles, in all worlds
    */
   public LoopEye(
       CameraTrackerLanes.Forms forms,
@@ -103,8 +104,8 @@ public class LoopEye extends CameraTrackerLanes {
     for (int world = 0; world < WORLDS; world++) sources[world].begin(worldKeys[world], links[world]);
   }
 
-  /** Moves to a period; they are processed in order. Images wait for decisions only as long as flights are
-   * kept.
+  /** Moves to a period; periods are processed in order. Takes the images whose vehicles' flight would
+   * otherwise be discarded.
    */
   public void startRow(int number) {
     row = number;
@@ -112,11 +113,12 @@ public class LoopEye extends CameraTrackerLanes {
     see(ALL, longAgo);
   }
 
-  /** Fills the estimates for decisions, and points the camera at them where a decision is made.
+  /** Fills in the estimates for decisions, and points the camera at them in worlds with a decision.
    *
-   * @param decides when, from the period's start; {@link LaneOffers#NONE} where there is none
+   * @param decides time of the decision, in grains from the period's start; {@link LaneOffers#NONE} in worlds
+   *   without one
    * @param own estimated positions of the own vehicles: north from {@code x} on, east from {@code y} on
-   * @param actsS time until the decision takes effect, if {@code own} is for that moment; else null
+   * @param actsS time until the decision takes effect, if {@code own} is predicted for that moment; else null
    */
   public void look(LaneVectors vectors, int[] decides, float[] own, int x, int y, float[] actsS) {
     see(vectors, decides);
@@ -141,10 +143,10 @@ public class LoopEye extends CameraTrackerLanes {
     return (float) (ns * 1e-9);
   }
 
-  /** Takes images, and evaluates them, up to given moments. The camera does not turn between decisions, so
-   * all images are taken before any is evaluated.
+  /** Takes and evaluates all images up to given moments. The camera does not turn between decisions, so all
+   * images are taken before any is evaluated.
    *
-   * @param until from the period's start; {@link LaneOffers#NONE} in worlds that stay unchanged
+   * @param until in grains from the period's start; {@link LaneOffers#NONE} in worlds that stay unchanged
    */
   private void see(LaneVectors vectors, int[] until) {
     boolean more = true;
@@ -155,7 +157,10 @@ public class LoopEye extends CameraTrackerLanes {
     }
   }
 
-  /** Collects the events of images of one pass; returns whether there may be more. */
+  /** Collects the images that are taken and that become known in one pass.
+   *
+   * @return whether there may be more
+   */
   private boolean gather(LaneVectors vectors, int[] until) {
     boolean more = false;
     for (int k = 0; k < vectors.count; k++)
@@ -185,7 +190,10 @@ public class LoopEye extends CameraTrackerLanes {
     return more;
   }
 
-  /** Selects the vectors in which some world's count exceeds a number; returns whether any has one. */
+  /** Selects the vectors in which some world's count exceeds {@code n}.
+   *
+   * @return whether there is one
+   */
   private boolean find(LaneVectors vectors, int[] counts, int n) {
     some.count = 0;
     for (int k = 0; k < vectors.count; k++) {
@@ -245,7 +253,7 @@ public class LoopEye extends CameraTrackerLanes {
     intoS[world] = imagesS[image * WORLDS + world];
   }
 
-  /** Merges one estimate with another where an older image is added. */
+  /** Copies one estimate, but in worlds where an older image is added copies the other. */
   private void blend(float[] belief, float[] whereOlder, float[] into) {
     for (int k = 0; k < some.count; k++) {
       int i = some.first[k];

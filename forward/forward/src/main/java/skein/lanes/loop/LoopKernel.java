@@ -12,11 +12,10 @@ import skein.lanes.policy.LanePolicy;
 import skein.lanes.score.Scoreboard;
 
 /** Simulates many worlds in parallel, each with its own delays, under a loop's full event timing: duels and
- * teams, with vehicles that move in closed-form pieces. A loop computes the offers ({@link LaneOffers}),
- * {@link LaneAgents} decide on them and send commands, {@link LaneVehicles} move. {@code Rollout} is the
- * scalar reference: both draw equal delays from a world's key, and every event happens at an equal nanosecond
- * in both. Allocates nothing after construction, unless links need more room than any before; one instance
- * per thread.
+ * teams, with vehicles that move in closed-form pieces. {@link LaneOffers} are the views on which {@link
+ * LaneAgents} decide and send commands; {@link LaneVehicles} move. {@code Rollout} is the scalar reference:
+ * from a world's key both draw equal delays, and every event happens at the same nanosecond. Allocates
+ * nothing after construction, unless links need larger tables than before. Use one instance per thread.
  */
 public final class LoopKernel {
   public static final int WORLDS = LanePolicy.WORLDS;
@@ -26,22 +25,22 @@ public final class LoopKernel {
   private final LaneOffers offers;
   private final LaneAgents[] agents;
 
-  /** The agents in the order of their decisions: those with cameras are last. */
+  /** The agents in the order of their decisions; agents with cameras are last. */
   private final LaneAgents[] turns;
   private final Scoreboard scores;
   private final boolean withVelocity, withAges;
 
-  /** Whether readings are predicted: then one is added before all vehicles are known. */
+  /** Whether readings are predicted. Then vehicles are also read in worlds without an offer. */
   private final boolean isForecast;
 
   private static final LaneVectors ALL = LaneVectors.all();
   private final int[][] readAt;
 
-  /** Vectors with an offer in the round. */
+  /** Vectors in which some world has an offer in this round. */
   private final LaneVectors vectors = new LaneVectors();
 
-  /** @param agents by the vehicle's number, made with this loop
-   * @param scores receives the distances
+  /** @param agents in the order of the vehicles' numbers; created with this loop
+   * @param scores receives the vehicles' positions
    */
   public LoopKernel(LoopLanes loop, LaneAgents[] agents, Scoreboard scores) {
     this.agents = agents;
@@ -65,10 +64,10 @@ public final class LoopKernel {
     withAges = needsAges;
   }
 
-  /** Simulates one episode in each of {@link #WORLDS} worlds, by the policies' parameters.
+  /** Simulates one episode in each of {@link #WORLDS} worlds.
    *
    * @param worldKeys {@link skein.simd.WorldRandom#key} of each world
-   * @param links of each world; none may be slower than the loop was made for
+   * @param links of each world; their longest delay must not exceed that of the loop
    */
   public void fly(int[] worldKeys, TabledDelays[] links) {
     offers.start(worldKeys, links);
@@ -85,7 +84,7 @@ public final class LoopKernel {
         offers.beat++;
         vectors.take(offers.joinedAt, LaneOffers.NONE);
         for (LaneAgents each : agents) read(row, each);
-        // Reading them has flown the vehicles to the row's begin, if that is their way.
+        // Some kinds of vehicles are simulated to the row's start by the readings.
         if (!isScored) score(row);
         isScored = true;
         for (LaneAgents each : turns) if (offers.isFor(each.self)) each.decide(agents, offers, vectors, readAt);
@@ -125,7 +124,9 @@ public final class LoopKernel {
     if (counts) scores.score(timeS);
   }
 
-  /** From a row's start to the end of the episode, limited to the range of integers. */
+  /** Time from a row's start to the end of the episode, in grains; {@link Integer#MAX_VALUE} from seven
+   * seconds on.
+   */
   private int grainsToEnd(int row) {
     double seconds = (steps - row) * periodS;
     return seconds < 7 ? LaneViews.grains(seconds) : Integer.MAX_VALUE;

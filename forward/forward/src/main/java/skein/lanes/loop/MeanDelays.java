@@ -23,9 +23,9 @@ final class MeanDelays {
     for (float[] each : new float[][] {toS, fromS, readings}) Arrays.fill(each, 0);
   }
 
-  /** Adds readings where {@code enters} is 1.
+  /** Adds readings in worlds where {@code enters} is 1.
    *
-   * @param asked when each was requested, sampled and received, in grains
+   * @param asked time of the request; {@code made} of the sample, {@code received} of the answer: in grains
    */
   void take(LaneVectors vectors, int[] enters, int[] asked, int[] made, int[] received) {
     FloatVector grainS = FloatVector.broadcast(SPECIES, LaneViews.GRAIN_S),

@@ -18,12 +18,12 @@ import skein.forward.LoopTiming;
 import skein.forward.TabledDelays;
 
 /** The {@code predictive} loop: every vehicle is read once a period, and half-way between two requests all
- * vehicles are offered what is known then. Answers enter a {@link LaneForecast} in the order of their
+ * vehicles are offered what is known at that time. Answers enter a {@link LaneForecast} in the order of their
  * arrival.
  *
- * <p>With the window of n requests full, a request waits until one ends: until the n-th latest of all ends. A
- * request that becomes due meanwhile is missed. Of events in one nanosecond, those known first are first, and
- * time-outs last, as in {@code Rollout}.
+ * <p>If n requests are unanswered, the window's limit, a request waits until one of them ends. A request that
+ * becomes due meanwhile is missed. Of events in one nanosecond, the one that was scheduled first is first,
+ * and time-outs are last, as in {@code Rollout}.
  */
 final class PredictiveOffers extends LaneOffers {
   private static final int STEP = LaneDelays.placeOf(1);
@@ -35,31 +35,32 @@ final class PredictiveOffers extends LaneOffers {
   private final LaneForecast forecast;
   private final int periodGrains, timeoutGrains, due, window;
 
-  /** Number of rows kept, a power of two: covers the time for which a request waits and fails. */
+  /** Number of rows that are stored, a power of two: enough for a request that waits and then times out. */
   private final int ring;
 
-  /** Whether requests may have to wait on some link. */
+  /** Whether a request may have to wait, on at least one link. */
   private boolean mayWait;
 
-  // By vehicle: places of the next question's random numbers, when the last one began, and the latest ends
-  // of all, the latest first. Twice the time from the row's begin, and 1 more for what is behind the
-  // question that is due in the same moment: a time-out, and what was not known when that was scheduled, a
-  // period before.
+  // By vehicle: places of the next request's random numbers, begin of the last request, and the latest ends
+  // of all requests, the latest first. Each is twice the time from the row's start, plus 1 for events that
+  // come after a request due at that moment: time-outs, and events that were not known when it was scheduled,
+  // one period before.
   private final int[][] places, began;
   private final int[][][] latest;
 
-  // By vehicle and row modulo ring: when a question is asked, read and answered, from its row's begin; NONE
-  // in the place of the answer where none will come, or it has been taken.
+  // By vehicle and row modulo ring: times of request, reading and answer, from the start of the row. The
+  // answer is NONE if there is none, or if it was taken.
   private final int[][][] asked, read, answered;
 
   private final int[] there = new int[WORLDS], back = new int[WORLDS];
 
-  /** The oldest row whose answers may be pending. */
+  /** The oldest row whose requests may have pending answers. */
   private int oldest;
 
   private int row;
 
-  // The answers taken: which, by row and vehicle; and of which vehicle, asked, made and received when.
+  // The taken answers: their code, from row and vehicle; the vehicle; and the times of request, reading and
+  // answer.
   private final int[] found = new int[WORLDS],
       whose = new int[WORLDS],
       askedAt = new int[WORLDS],
@@ -154,7 +155,7 @@ final class PredictiveOffers extends LaneOffers {
     }
   }
 
-  /** Computes when the request is sent; one that is missed has no answer. */
+  /** Computes when the request is sent. A missed request has no answer. */
   private void await(int vehicle, int[] asked, int[] answers) {
     int[] begun = began[vehicle], lastOf = latest[vehicle][window - 1];
     IntVector none = IntVector.broadcast(INTS, NONE),
@@ -173,7 +174,7 @@ final class PredictiveOffers extends LaneOffers {
     }
   }
 
-  /** Computes the events after the request, where it is sent. */
+  /** Computes when the request ends, in worlds where it is sent. */
   private void goOn(int vehicle, int[] asked, int[] answers) {
     int[] places = this.places[vehicle];
     IntVector none = IntVector.broadcast(INTS, NONE),
@@ -186,7 +187,7 @@ final class PredictiveOffers extends LaneOffers {
       IntVector asks = IntVector.fromArray(INTS, asked, i);
       IntVector to = IntVector.fromArray(INTS, there, i), back = IntVector.fromArray(INTS, this.back, i);
       IntVector roundTrip = to.add(back), lasts = roundTrip.min(timeout);
-      // An answer is known when the request has reached the vehicle.
+      // An answer's time is known from the moment the request reaches the vehicle.
       VectorMask<Integer> isBehind = back.compare(LT, period).or(roundTrip.compare(GT, timeout));
       IntVector ends = asks.add(lasts).lanewise(LSHL, 1).add(1, isBehind);
       IntVector more = past.blend(ends, goes);
@@ -198,7 +199,10 @@ final class PredictiveOffers extends LaneOffers {
     }
   }
 
-  /** Takes each world's next answer that is known at its decision; returns whether there was any. */
+  /** Takes the next answer of each world that arrives before the decision is due.
+   *
+   * @return whether there was one
+   */
   private boolean take() {
     IntVector none = IntVector.broadcast(INTS, NONE),
         known = IntVector.broadcast(INTS, due),
@@ -221,7 +225,7 @@ final class PredictiveOffers extends LaneOffers {
           IntVector answer = IntVector.fromArray(INTS, answers, i);
           answer = answer.blend(none, taken.compare(EQ, code));
           answer.intoArray(answers, i);
-          // No overflow: what is added is not positive.
+          // No overflow, because the shift is not positive.
           answer = answer.add(shift);
           IntVector first = IntVector.fromArray(INTS, receivedAt, i);
           VectorMask<Integer> sooner = answer.compare(LT, first);

@@ -15,28 +15,28 @@ import skein.forward.LoopTiming;
 import skein.forward.TabledDelays;
 
 /** The rounds of the {@code sequential} loop: the vehicles are read in sequence, and at the last answer all
- * are offered the readings. A round with a failed request offers nothing.
+ * vehicles are offered the readings. A round with a failed request offers nothing.
  */
 final class SequentialOffers extends LaneOffers {
   private static final int STEP = LaneDelays.placeOf(1);
 
-  /** By this much, worlds may differ in the progress of their rounds, s. */
+  /** Maximum difference between two worlds in the progress of their rounds, s. */
   private static final double AHEAD_S = 0.5;
 
-  /** Limit of the search for a round that succeeds. */
+  /** Maximum time within which the next successful round is searched, in grains. */
   private static final int HORIZON = LaneViews.grains(4);
 
   private final int periodGrains, timeoutGrains;
 
-  // The next round: when it begins, and the places of its random numbers.
+  // The next round: its begin, and the places of its random numbers.
   private final int[] tick = new int[WORLDS], tickPlace = new int[WORLDS];
 
-  // The next two rounds that succeed, by world: when they end, when the vehicles are read, places.
+  // The next two successful rounds of each world: their ends, the times of the readings, and the places.
   private final int[] end = new int[WORLDS], laterEnd = new int[WORLDS];
   private final int[][] read, laterRead;
   private final int[] places = new int[WORLDS], laterPlaces = new int[WORLDS];
 
-  /** By vehicle: the delay of its request, then of the answer. */
+  /** For each vehicle, the delay of its request, then of its answer. */
   private final int[][] drawn;
 
   private final int[] beatPlaces = new int[WORLDS];
@@ -103,7 +103,7 @@ final class SequentialOffers extends LaneOffers {
     return true;
   }
 
-  /** Computes the next two rounds of each world. */
+  /** Computes the next two successful rounds of each world. */
   private void find() {
     while (shift()) {
       delays.drawInTurn(searching, tickPlace, 0, (long) row * periodGrains, tick, drawn);
@@ -111,7 +111,10 @@ final class SequentialOffers extends LaneOffers {
     }
   }
 
-  /** Makes the later round the next where that is over; returns whether some world needs another. */
+  /** Makes the second round the next one in worlds whose next round is over.
+   *
+   * @return whether some world needs another round
+   */
   private boolean shift() {
     IntVector none = IntVector.broadcast(INTS, NONE), horizon = IntVector.broadcast(INTS, HORIZON);
     searching.count = 0;
@@ -137,7 +140,7 @@ final class SequentialOffers extends LaneOffers {
     return searching.count > 0;
   }
 
-  /** Simulates one more round, in worlds that need one. */
+  /** Simulates one more round in worlds that need one. */
   private void flyRound() {
     IntVector none = IntVector.broadcast(INTS, NONE),
         horizon = IntVector.broadcast(INTS, HORIZON),
@@ -155,7 +158,7 @@ final class SequentialOffers extends LaneOffers {
       for (int v = 0; v < vehicles; v++) {
         IntVector there = IntVector.fromArray(INTS, drawn[2 * v], i),
             back = IntVector.fromArray(INTS, drawn[2 * v + 1], i).add(there);
-        // Once a question has failed, its round is over; what it read is written over by a later one.
+        // A failed request ends its round; a later round overwrites its readings.
         IntVector.fromArray(INTS, laterRead[v], i).blend(over.add(there), found).intoArray(laterRead[v], i);
         over = over.add(back.min(timeout), found);
         found = found.andNot(back.compare(GT, timeout));

@@ -5,22 +5,22 @@ import java.util.function.ToIntFunction;
 import skein.forward.DelayTable;
 import skein.forward.TableStretch;
 
-/** The delay table of a world's link over the time of a flight. Mutable. */
+/** The sequence of delay tables of a world's link during a flight. Mutable. */
 final class TableCourse {
   private final ToIntFunction<DelayTable> beginOf;
 
   private TableStretch stretch;
 
-  // Of each stretch: where its table begins, and until when it holds, since the flight's begin, in grains.
+  // Of each stretch: the offset of its table, and its end, since the flight's start, in grains.
   private int[] tables = new int[4];
 
   private long[] ends = new long[4];
   private int count;
 
-  /** The table of the last requested time: most times lie near one another. */
+  /** Index of the table of the last requested time: successive times lie close together. */
   private int at;
 
-  /** @param beginOf where a table begins in {@link LaneDelays#delays} */
+  /** @param beginOf returns the offset of a table in {@link LaneDelays#delays} */
   TableCourse(ToIntFunction<DelayTable> beginOf) {
     this.beginOf = beginOf;
   }
@@ -32,7 +32,7 @@ final class TableCourse {
     know();
   }
 
-  /** Where the table begins for a message sent at this time, since the flight's start, in grains. */
+  /** Offset of the table for a message sent at this time, in grains since the flight's start. */
   int tableAt(long sentAt) {
     while (sentAt >= ends[at]) {
       if (at + 1 == count) {

@@ -7,7 +7,7 @@ import java.util.Arrays;
 import jdk.incubator.vector.FloatVector;
 import skein.simd.LaneFunction;
 
-/** The observations of many worlds' policies at a decision: see {@code skein.policy.HeadingPolicy}. Refers to
+/** The observations of many worlds' policies at a decision: see {@link OpponentFormula}. Refers to
  * the two vehicles' readings by their offsets; policies subtract one from the other in their own pass.
  */
 public final class LaneObservation {

@@ -8,15 +8,15 @@ import jdk.incubator.vector.FloatVector;
 import skein.lanes.policy.Directions;
 import skein.vehicle.PlantModel;
 
-/** Predicts by a first-order lag, which is linear: a prediction is the reading's position, plus its velocity
- * times a factor of the timetable, plus each command on its way times its own factor. The scalar reference is
- * {@link PlantModel} without drag.
+/** Predicts by a first-order lag. The model is linear: a prediction is the reading's position, plus its
+ * velocity times a factor, plus each pending command times its own factor; the timetable has the factors. The
+ * scalar reference is {@link PlantModel} without drag.
  */
 public final class PredictedLagVehicles extends PredictedVehicles {
   private final float speed;
   private int worlds = WORLDS;
 
-  /** @param speedMps speed that a vehicle reaches under a lasting command */
+  /** @param speedMps speed of a vehicle whose command does not change, m/s */
   public PredictedLagVehicles(double speedMps) {
     speed = (float) speedMps;
   }

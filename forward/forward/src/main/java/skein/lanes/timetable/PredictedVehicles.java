@@ -15,13 +15,14 @@ public abstract class PredictedVehicles {
   /** Sets all readings of one world's vehicle to its start, at rest. */
   void restart(int world, float[] seenX, float[] seenY, float[] seenVx, float[] seenVy) {}
 
-  /** Adds a reading to the forecast, if the state holds more than a reading.
+  /** Adds a reading to the forecast, if the model's state contains more than a reading.
    *
-   * @param seenX positions and velocities that were read, north and east, by place
+   * @param seenX positions north of the readings, by place; the other arrays have positions east and
+   *   velocities
    * @param sent the commands, by place
    * @param from the index, for the first world, of the previous reading; negative if there is none
    * @param reading the index, for the first world, of this reading
-   * @param propagation the steps from the one to the other
+   * @param propagation the steps from the previous reading to this one
    */
   void enter(
       float[] seenX,
@@ -35,8 +36,8 @@ public abstract class PredictedVehicles {
 
   /** Predicts from a reading.
    *
-   * @param seenX positions and velocities that were read, north and east, by place; the prediction is stored
-   *   among them
+   * @param seenX positions north of the readings and predictions, by place; the other arrays have positions
+   *   east and velocities
    * @param sent the commands, by place
    * @param reading the index of the reading, for the first world
    * @param into the index of the prediction, for the first world

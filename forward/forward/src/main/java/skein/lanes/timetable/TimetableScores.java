@@ -4,14 +4,14 @@ package skein.lanes.timetable;
 public interface TimetableScores {
   /** Resets to the start of an episode.
    *
-   * @param worlds number of worlds that count, from the first
+   * @param worlds number of worlds to score, from the first
    */
   void start(int worlds);
 
   /** Scores the present positions of all vehicles.
    *
-   * @param agents by the vehicle's number
-   * @param views of the timetable; the scored one begins at {@code view}
+   * @param agents in the order of the vehicles' numbers
+   * @param views all views of the timetable; the one to score begins at index {@code view}
    */
   void score(TimetableAgents[] agents, int[] views, int view, float timeS);
 }

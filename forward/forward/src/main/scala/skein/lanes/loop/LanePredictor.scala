@@ -14,9 +14,9 @@ import skein.lanes.timetable.{
 }
 import skein.vehicle.{ConstantVelocity, FirstOrderLag, ReducedModel, PlantModel, VehicleModel}
 
-/** A kind of model that SIMD supports for predictions. */
+/** A kind of model whose predictions SIMD supports. */
 private[skein] trait LanePredictor extends TimetablePredictor:
-  /** All worlds' predictions of one vehicle, with separate delays in every world. */
+  /** The predictions of one vehicle in all worlds, with separate delays in every world. */
   def alone(agent: RolloutAgent): ForecastVehicles
 
 private[skein] object LanePredictor:
@@ -31,7 +31,7 @@ private[skein] object LanePredictor:
     case ConstantVelocity => Right(CoastPredictor)
     case _                => Left("the lanes predict by plants and by constant velocity")
 
-/** Predicts by [[PredictedLagVehicles]]: constant velocity. */
+/** Predicts constant velocity, by [[PredictedLagVehicles]]. */
 private[lanes] object CoastPredictor extends LanePredictor, Propagator:
   def vehicles(agent: RolloutAgent): PredictedVehicles     = PredictedLagVehicles(0)
   def alone(agent: RolloutAgent): ForecastVehicles         = ForecastCoasting()
@@ -41,9 +41,9 @@ private[lanes] object CoastPredictor extends LanePredictor, Propagator:
   def predicted(legs: Vector[Propagator.Leg]): Propagation =
     Propagation(Array.empty, Array.empty, legs.iterator.map(_.span.toSeconds).sum.toFloat, 1)
 
-/** Predicts by [[PredictedLagVehicles]], whose factors it computes: for how long a reading's velocity moves
-  * the vehicle, and what remains of it; for each command, for how long it moves the vehicle, and what share
-  * of its velocity is reached.
+/** Predicts a first-order lag, by [[PredictedLagVehicles]] with these factors: for a reading, the time for
+  * which its velocity carries the vehicle, and the share of it that remains; for each command, the time for
+  * which it moves the vehicle, and the share of its velocity that is reached.
   */
 private[lanes] final class LagPredictor(val model: ReducedModel) extends LanePredictor:
   def deadTimeS: Double                                = model.deadTimeS
@@ -60,7 +60,7 @@ private[lanes] final class LagPredictor(val model: ReducedModel) extends LanePre
       into(at) = ((left - carriedLeft) - (after - carriedAfter)).toFloat
       into(at + 1) = (carriedLeft / model.lagS - carriedAfter / model.lagS).toFloat
 
-/** Predicts by [[PredictedPlants]], which compiles the plant's own step. */
+/** Predicts by compiled code of the plant's own step, [[PredictedPlants]]. */
 private[lanes] final class PlantPredictor(val lanes: PlantLanes, val correction: PlantCorrection)
     extends LanePredictor:
   private val tell = lanes.stages.tell(lanes.plant)

@@ -3,12 +3,12 @@ package skein.lanes.loop
 import scala.collection.mutable
 import skein.forward.{Delays, RolloutAgent, LoopTiming, Steering, TabledDelays}
 
-/** A loop for worlds with separate delays: its offers, its pacing of commands, and how long vehicles must
-  * keep their history. Mutable as its offers are: one per kernel.
+/** A loop for worlds with separate delays: it computes the offers, the pacing of commands, and how long the
+  * vehicles' history is needed. Mutable, because its offers are; one per kernel.
   *
   * @param vehicles number of vehicles that are read
   * @param maxDelayS the longest one-way delay of any link
-  * @param sees whether images are taken, which need the vehicles' positions at any time
+  * @param sees whether images are taken, which require the vehicles' positions at any time
   * @param shortCut whether SIMD computes regular stretches of `stream`; if false, each world is computed
   *   separately, with equal results
   */
@@ -20,16 +20,17 @@ private[lanes] final class LoopLanes(
     val sees: Boolean = false,
     shortCut: Boolean = true
 ):
-  /** The model that predicts the vehicles, if the loop predicts. */
   private val predictor: Option[LanePredictor] = timing match
     case predictive: LoopTiming.Predictive => LanePredictor.of(predictive.predictor).toOption
     case _                                 => None
 
-  /** Null where decisions use the readings themselves. */
+  /** The forecast; null if decisions use the readings themselves. */
   val forecast: LaneForecast =
     predictor.fold(null)(by => LaneForecast(timing.periodS, vehicles, by.deadTimeS))
 
-  /** Sets the model and source of readings of a vehicle, if the loop predicts. */
+  /** Sets the model that predicts a vehicle, and the source of its readings; does nothing in loops that do
+    * not predict.
+    */
   def carryForward(vehicle: Int, agent: RolloutAgent, read: LaneVehicles): Unit =
     for by <- predictor do forecast.follow(vehicle, by.alone(agent), read)
 
@@ -43,30 +44,30 @@ private[lanes] final class LoopLanes(
   def periodS: Double    = timing.periodS
   val steering: Steering = LoopTiming.steeringOf(timing)
 
-  /** Least time between two decisions, or between two commands if it decides first, s. */
+  /** Minimum time between two decisions, or between two commands if [[decidesFirst]], s. */
   val intervalS: Double = timing match
     case stream: LoopTiming.Stream => stream.periodS - stream.toleranceS
     case _                         => 0
 
-  /** Whether a vehicle decides at every offer, and decisions wait instead of offers. */
+  /** Whether a vehicle decides on every offer, so that decisions wait instead of offers. */
   val decidesFirst: Boolean = timing match
     case stream: LoopTiming.Stream => stream.decideThenPace
     case _: LoopTiming.Predictive  => false
     case _                         => true
 
-  /** Longest time for which a command is on its way, s. */
+  /** Longest time from a decision until its command takes effect, s. */
   def longestS: Double = LoopLanes.MostS + 1
 
-  /** Number of earlier periods whose flight a reading or an image may need: those from a reading to its
-    * decision, and from the decision before that until its command takes effect.
+  /** Number of past periods whose flight a reading or an image may need: from a reading to its decision, and
+    * from the previous decision until its command takes effect.
     */
   val keptRows: Int =
     val kept = LoopLanes.readingS(timing, vehicles, maxDelayS) + 3 * maxDelayS + 2 * periodS + 0.5
     offers.rowsAhead + 2 + (kept / periodS).ceil.toInt
 
 private[lanes] object LoopLanes:
-  /** Longest time, s, after a period's begin at which a command may act: with the second and a half within
-    * which vehicles are read, it stays within the range of integers in grains.
+  /** Latest time of a command's effect, s after the begin of its period. With up to a second and a half for
+    * reading vehicles, times in grains stay within the range of integers.
     */
   val MostS = 6.0
 
@@ -77,10 +78,10 @@ private[lanes] object LoopLanes:
       case _                                              => vehicles
     inTurn * LoopTiming.askingOf(timing).timeoutS.min(2 * maxDelayS)
 
-/** Caches an object made for links of about equal delay: how far a loop is computed ahead depends on it, and
-  * no result does.
+/** Caches objects that are made for a longest delay, one for all links of about equal delay. The delay
+  * determines how far a loop is computed ahead, and has no effect on results.
   *
-  * @param make makes one for a longest one-way delay, s
+  * @param make creates the object for a longest one-way delay, s
   */
 private[lanes] final class BySlowest[K](make: Double => K):
   private val made = mutable.HashMap.empty[Double, K]

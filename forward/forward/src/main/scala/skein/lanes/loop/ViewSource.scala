@@ -109,6 +109,7 @@ private[lanes] object ViewSource:
       StandingStill.Response(),
       timing.asking,
       keepsAll = false,
+      asksPolicies = false,
       standsStill = false,
       // With a question that takes long, those asked meanwhile, and as many for the one told last, whose
       // answer may have come as it was asked.

@@ -6,9 +6,9 @@ import skein.simd.LaneFunction
 import skein.units.{Quaternion, Vector3}
 import skein.vehicle.Quadrotor
 
-/** Quadrotors with their flight controllers, [[LaneQuadrotors.VEHICLES]] at a time, in floats, under
-  * `moveByVelocityZ`. The compiled code and the reference is the scalar [[Quadrotor]] ([[QuadrotorLanes]]).
-  * Mutable: one per thread.
+/** Simulates quadrotors with their flight controllers, [[LaneQuadrotors.VEHICLES]] at a time, in floats,
+  * under `moveByVelocityZ`. The code is compiled from the scalar [[Quadrotor]], which is also the reference
+  * ([[QuadrotorLanes]]). Mutable; one per thread.
   */
 private[skein] final class LaneQuadrotors private[lanes] (lanes: QuadrotorLanes) extends SteppedVehicles:
   import LaneQuadrotors.VEHICLES
@@ -18,7 +18,7 @@ private[skein] final class LaneQuadrotors private[lanes] (lanes: QuadrotorLanes)
   private val steps   = Array(lanes.step(one, other, goal), lanes.step(other, one, goal))
   private var isOther = false
 
-  // Nearly always all hover at one place: that, and the state's numbers there.
+  // The last position to hover at, and the state there: nearly always it is that of all vehicles.
   private var heldNed                 = Vector3.Zero
   private var holding: Vector[Double] = lanes.numbersOf(lanes.quadrotor.hovering(heldNed))
 
@@ -42,7 +42,7 @@ private[skein] final class LaneQuadrotors private[lanes] (lanes: QuadrotorLanes)
 
   def use(vehicles: Int): Unit = steps.foreach(_.use(vehicles))
 
-  /** Sets a vehicle to hover, settled, under the command to hold this position. */
+  /** Makes a vehicle hover, settled, under the command to hold this position. */
   def hover(place: Int, goalNed: Vector3): Unit =
     if goalNed != heldNed then
       heldNed = goalNed
@@ -52,7 +52,7 @@ private[skein] final class LaneQuadrotors private[lanes] (lanes: QuadrotorLanes)
 
   def hover(place: Int, downM: Double): Unit = hover(place, holdingAt(downM))
 
-  /** The position to hold, for a vehicle above its start, so that it settles at this altitude. */
+  /** The position to command so that a vehicle settles at altitude `downM`, above its start. */
   def holdingAt(downM: Double): Vector3 = lanes.holdingAt(downM)
 
   def command(place: Int, northMps: Float, eastMps: Float, downM: Float): Unit =
@@ -97,9 +97,9 @@ private[skein] final class LaneQuadrotors private[lanes] (lanes: QuadrotorLanes)
     Vector3(front, right, down)
 
 private[skein] object LaneQuadrotors:
-  /** Number of vehicles simulated together. */
+  /** Number of vehicles that are simulated together. */
   val VEHICLES: Int = LaneFunction.COUNT
 
-  /** The lanes of such quadrotors; Left states why SIMD does not support them. */
+  /** Compiles quadrotors. Left states why SIMD does not support them. */
   def of(quadrotor: Quadrotor): Either[String, LaneQuadrotors] =
     QuadrotorLanes.of(quadrotor).map(new LaneQuadrotors(_))

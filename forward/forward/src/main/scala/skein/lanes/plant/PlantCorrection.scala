@@ -5,7 +5,7 @@ import skein.lanes.policy.LaneObservation
 import skein.simd.FixedFormula
 import skein.vehicle.ObservedPlant
 
-/** Corrects a plant's state by readings in many worlds by SIMD, compiled from [[ObservedPlant.corrected]]:
+/** Corrects a plant's state by readings, in many worlds by SIMD. Compiled from [[ObservedPlant.corrected]];
   * inputs are the state's numbers, then position and velocity.
   *
   * @param count of numbers in the state
@@ -13,10 +13,10 @@ import skein.vehicle.ObservedPlant
 private[lanes] final class PlantCorrection private (formula: FixedFormula, count: Int):
   import formula.bound
 
-  /** Whether a reading contains the whole state. */
+  /** Whether a reading determines the whole state. */
   val isTold: Boolean = bound.inputs.forall(_ >= count)
 
-  /** Whether the state is the reading itself, number for number. */
+  /** Whether the state consists of exactly the reading's numbers, in their order. */
   val isReading: Boolean =
     isTold && bound.inputs.toVector == Vector.range(count, count + LaneObservation.READ) &&
       bound.nodes.zipWithIndex.forall((node, i) => node.op == Op.Input && node.index == i)
@@ -24,7 +24,7 @@ private[lanes] final class PlantCorrection private (formula: FixedFormula, count
   def call: FixedFormula.Call = formula.call
 
 private[lanes] object PlantCorrection:
-  /** The compiled correction; Left states why SIMD does not support it. */
+  /** Compiles the correction. Left states why SIMD does not support it. */
   def of(plant: ObservedPlant[?], count: Int): Either[String, PlantCorrection] =
     FixedFormula
       .of(plant, "corrected", alike = 0)

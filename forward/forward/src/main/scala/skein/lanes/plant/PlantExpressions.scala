@@ -6,12 +6,12 @@ import skein.vehicle.PlantTiming
 /** A plant's step, and the reading at its end, as expressions. Their parameters are the speed of a command of
   * length 1, then the plant's own numbers.
   *
-  * @param first the first parameter's number
-  * @param state its numbers at the start of the step
-  * @param north of the command, over the speed
-  * @param vertical the third number of a command in space, and whether it is an altitude
+  * @param first number of the first parameter
+  * @param state the state's numbers at the start of the step
+  * @param north the command's component north, divided by the speed
+  * @param vertical of a command in space, its third number, and whether that is an altitude
   * @param spanS duration of the step
-  * @param taken which numbers of the final state are used
+  * @param taken transforms the numbers of the final state before they are read
   */
 private[lanes] final class PlantExpressions(
     trace: Trace,
@@ -33,10 +33,10 @@ private[lanes] final class PlantExpressions(
 
   private val readOwn = angles(reading, first + 1 + stepOwn.derived.size, stepped)
 
-  /** Position and velocity at the end, north and east, and in space those down. */
+  /** Position and velocity at the end of the step: north and east, and in space also down. */
   val seen: Vector[Node] = reading.outputs.map((_, node) => readOwn.convert(node))
 
-  /** Position and velocity at the end, with the position relative to a start. */
+  /** [[seen]] with the vehicle's start added to the position. */
   def seenFrom(startX: Node, startY: Node): Vector[Node] =
     Vector(trace.add(seen(0), startX), trace.add(seen(1), startY)) ++ seen.drop(2)
 

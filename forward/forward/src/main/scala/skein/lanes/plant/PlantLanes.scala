@@ -6,8 +6,8 @@ import skein.formula.{Formula, Untraceable}
 import skein.simd.{FixedFormula, Forms, LaneFunction}
 import skein.vehicle.{PlaneReading, Plant, PlantState, PlantTiming, SpatialPlant}
 
-/** SIMD simulation of a [[skein.vehicle.Plant]] or a [[skein.vehicle.SpatialPlant]] in many worlds, compiled
-  * from its methods.
+/** Simulates a [[skein.vehicle.Plant]] or a [[skein.vehicle.SpatialPlant]] in many worlds by SIMD. Compiled
+  * from the plant's own methods.
   */
 private[skein] final class PlantLanes private (val plant: PlantTiming, form: PlantForm):
   def count: Int = form.count
@@ -15,7 +15,7 @@ private[skein] final class PlantLanes private (val plant: PlantTiming, form: Pla
   /** Whether commands and readings have a vertical part. */
   val inSpace: Boolean = plant.isInstanceOf[SpatialPlant[?]]
 
-  /** The plant's initial state, number by number; in space, at z = 0. */
+  /** The numbers of the plant's initial state; in space, at z = 0. */
   val initial: Array[Float] = initialAt(0)
   if initial.length != count then throw Untraceable(s"a state of $count doubles was expected")
 
@@ -25,38 +25,36 @@ private[skein] final class PlantLanes private (val plant: PlantTiming, form: Pla
       case level: Plant[?]          => level.initial
     PlantState.numbers(state).map(_.toFloat).toArray
 
-  /** The horizontal reading at rest, relative to its start. */
+  /** The horizontal reading of a vehicle at rest, relative to its start. */
   val resting: PlaneReading = plant match
     case spatial: SpatialPlant[?] => PlantLanes.levelOf(spatial)
     case level: Plant[?]          => readingOf(level)
   private def readingOf[S](plant: Plant[S]) = plant.read(plant.initial)
 
-  /** Fills in the numbers of a state at rest in space, at each world's altitude. */
+  /** Writes states at rest in space, at each world's altitude. */
   def restInSpace(array: Array[Float], from: Int, downM: Array[Float]): Unit =
     var initial = this.initial
     for world <- downM.indices do
       if world == 0 || downM(world) != downM(world - 1) then initial = initialAt(downM(world))
       for i <- 0 until count do array(from + i * downM.length + world) = initial(i)
 
-  /** Fills in the numbers of a state at rest, of all worlds. */
+  /** Writes the numbers of a state at rest, in all worlds. */
   def rest(array: Array[Float], from: Int): Unit =
     val worlds = LaneFunction.COUNT
     for i <- 0 until count do
       Arrays.fill(array, from + i * worlds, from + (i + 1) * worlds, initial(i))
 
-  /** The function for the next state: inputs are the state's numbers, then the commanded velocity and the
-    * time.
-    */
+  /** The compiled step: inputs are the state's numbers, then the commanded velocity and the duration. */
   def step: FixedFormula = form.step.of(plant)
 
-  /** The function for position and velocity: inputs are the state's numbers. */
+  /** The compiled reading, position and velocity: inputs are the state's numbers. */
   def read: FixedFormula = form.read.of(plant)
 
   def steps: PlantSteps = form.steps
 
   def stages: PlantStages = form.stages
 
-  /** Steps that begin at different times in each world. */
+  /** Compiled steps that begin at different times in each world. */
   def pieces: PlantPieces = form.pieces
 
 /** The compiled code that plants of one form share. */
@@ -70,7 +68,7 @@ private final class PlantForm(plant: PlantTiming, stepping: Formula, reading: Fo
 
   val stages: PlantStages = PlantStages(stepping, reading, inSpace)
 
-  /** Compiled lazily, because searches, whose worlds share delays, do not need them. */
+  /** Lazy, because searches do not need these: their worlds share delays. */
   lazy val step: FixedFormula  = FixedFormula(stepping, plant)
   lazy val read: FixedFormula  = FixedFormula(reading, plant)
   lazy val steps: PlantSteps   = PlantSteps(stepping, reading, stages.places)
@@ -83,7 +81,7 @@ private[skein] object PlantLanes:
 
   private val known = ConcurrentHashMap[Class[?], Forms[PlantTiming, PlantForm]]()
 
-  /** The lanes of a plant; plants of one form share compiled code.
+  /** Compiles a plant. Plants of one form share the compiled code.
     *
     * @return Left states why SIMD does not support such plants
     */

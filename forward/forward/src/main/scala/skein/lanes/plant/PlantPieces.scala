@@ -5,12 +5,12 @@ import skein.simd.BoundFunction
 import skein.vehicle.PlantTiming
 
 /** A plant's motion during one step, in worlds whose steps begin at different times. Compiled once for all
-  * plants of a form. Stored for a step are the command, north and east over the speed, in space its vertical
-  * part, then the state at its start, and then, unless the state contains it, the vehicle's start. A vehicle
-  * rests under a command that is NaN.
+  * plants of a form. The stored numbers of a step are: the command north and east, divided by the speed, and
+  * in space its vertical part; the state at the start of the step; and the vehicle's start, unless the state
+  * contains it. A command of NaN makes a vehicle rest.
   *
-  * @param places the state's numbers that initially equal the vehicle's start, north and east, if there are
-  *   such
+  * @param places indices of the state's numbers that initially equal the vehicle's start, north and east;
+  *   None if there are none
   */
 private[lanes] final class PlantPieces(
     stepping: Formula,
@@ -28,7 +28,7 @@ private[lanes] final class PlantPieces(
   private val expressions =
     val (since, stepS) = (trace.input(Since), trace.param(0))
     val north          = trace.input(North)
-    // A plant is never stepped by no time; what comes of this step is not taken.
+    // A plant's step must not be 0 s; the result of this step is not used.
     val flies = trace.and(trace.lt(trace.const(0), since), trace.equal(north, north))
     PlantExpressions(
       trace,
@@ -45,20 +45,22 @@ private[lanes] final class PlantPieces(
 
   val kept: Int = firstOfState + count + (if places.isDefined then 0 else 2)
 
-  /** The rows that initially equal the vehicle's start, north and east. */
+  /** Rows of the stored numbers that initially equal the vehicle's start, north and east. */
   val starts: Array[Int] = places.getOrElse(Vector(count, count + 1)).map(firstOfState + _).toArray
 
   private val seen =
     if places.isDefined then expressions.seen
     else expressions.seenFrom(trace.input(starts(0)), trace.input(starts(1)))
 
-  /** The function for the state at a time after the start of the step, row by row. */
+  /** Computes the state after a time since the start of the step, row by row. */
   val flown: BoundFunction = bound(expressions.stepped)
 
-  /** The function for north and east, and in space also down, each where it is wanted. */
+  /** Computes the position after that time: north and east, in space also down. In space each output has its
+    * own array.
+    */
   val position: BoundFunction = bound(seen.take(2) ++ seen.drop(4).take(1), areRows = !inSpace)
 
-  /** The function for position and velocity at that time, and in space also those down. */
+  /** Computes position and velocity after that time: north and east, in space also down. */
   val look: BoundFunction = bound(seen)
 
   private def bound(of: Vector[Node], areRows: Boolean = true) =

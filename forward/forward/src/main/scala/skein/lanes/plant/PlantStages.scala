@@ -5,13 +5,13 @@ import skein.formula.{Evaluation, Formula, Node, Op, Trace}
 import skein.simd.BoundFunction
 import skein.vehicle.PlantTiming
 
-/** A plant's step, split by when its inputs are known, for worlds whose steps begin and end together. Values
-  * of the state and the command alone are computed at the start of a step and stored; values of the time
-  * alone are equal in all worlds and passed in; only the rest is computed at each moment. Compiled once for
-  * all plants of a form.
+/** A plant's step in stages, for worlds whose steps begin and end together. Values that depend only on the
+  * state and the command are computed at the start of a step and stored. Values that depend only on the time
+  * are equal in all worlds and passed in. Only the remaining values are computed at each moment. Compiled
+  * once for all plants of a form.
   *
-  * Parameters of all functions are the speed of a command of length 1, then the plant's own numbers, then
-  * those of the time.
+  * The parameters of all functions are the speed of a command of length 1, then the plant's own numbers, then
+  * the values of the time.
   */
 private[lanes] final class PlantStages(stepping: Formula, reading: Formula, inSpace: Boolean):
   import PlantStages.*
@@ -32,8 +32,9 @@ private[lanes] final class PlantStages(stepping: Formula, reading: Formula, inSp
   )
   import expressions.{seen, stepped}
 
-  /** Indices of the state's numbers that equal the vehicle's position, north and east, if nothing else
-    * depends on them. Then they begin at the start; otherwise the start is added to the readings.
+  /** Indices of the state's numbers that equal the vehicle's position, north and east, if no other number
+    * depends on them. These numbers then begin at the vehicle's start; otherwise the start is added to the
+    * readings.
     */
   val places: Option[Vector[Int]] =
     val found = Vector(0, 1).flatMap(placeOf)
@@ -63,7 +64,7 @@ private[lanes] final class PlantStages(stepping: Formula, reading: Formula, inSp
   private val (ofTime, late) = cut(timed, _.index == Time, i => trace.param(firstOfTime + i))
   private val timesOf        = Evaluation(ofTime)
 
-  /** Splits expressions into the values that depend on some inputs alone, and the rest. */
+  /** Splits expressions into the subexpressions that depend only on some inputs, and the rest. */
   private def cut(of: Vector[Node], isKnown: Node => Boolean, by: Int => Node): (Vector[Node], Vector[Node]) =
     val early = Trace.earliest(of)(node => node.op == Op.Input && isKnown(node))
     val place = early.zipWithIndex.toMap
@@ -71,9 +72,7 @@ private[lanes] final class PlantStages(stepping: Formula, reading: Formula, inSp
 
   private val command = Vector(trace.input(North), trace.input(East)) ++ vertical
 
-  /** Values that depend on the command alone, by where they are stored: unchanged if the next step follows
-    * without a new command.
-    */
+  /** Stored values that depend only on the command, and so stay valid if the next step has no new command. */
   private val staying: Map[Node, Node] =
     ofState.zipWithIndex
       .filter((node, _) =>
@@ -82,30 +81,26 @@ private[lanes] final class PlantStages(stepping: Formula, reading: Formula, inSp
       .map((node, i) => node -> trace.input(Kept + i))
       .toMap
 
-  /** Stored numbers, including the command itself if anything else depends on it. */
+  /** The stored values, including the command itself if a later step needs it. */
   private val keeps =
     val again = Trace.replaced(ofState, trace)(staying.get)
     ofState ++ (if Trace.needed(again).exists(command.contains) then command else Vector.empty)
 
   val kept: Int = keeps.size
 
-  /** Number of values by which a time is passed in. */
+  /** Number of values that represent a time in a call. */
   val times: Int = ofTime.size
 
-  /** The function for the stored numbers from the state, the command and, if they contain the position, the
-    * start.
-    */
+  /** Computes the stored values from the state, the command and, if they contain the position, the start. */
   val begin: BoundFunction =
     val states = places.toVector.flatten.map(number => trace.input(State + number))
     keeping(Trace.replaced(keeps, trace): node =>
       Option.when(states.contains(node))(trace.add(node, trace.input(StartX + states.indexOf(node)))))
 
-  /** The function for the stored numbers of the next step, from those of this one, its time and a new
-    * command.
-    */
+  /** Computes the next step's stored values from those of this step, its duration and a new command. */
   val act: BoundFunction = next(Map.empty)
 
-  /** [[act]] without a new command: the next step under the present one. */
+  /** Computes the next step's stored values under the present command; see [[act]]. */
   val goOn: BoundFunction =
     next(command.zipWithIndex.map((node, i) => node -> trace.input(Kept + ofState.size + i)).toMap ++ staying)
 
@@ -115,34 +110,34 @@ private[lanes] final class PlantStages(stepping: Formula, reading: Formula, inSp
       .orElse(Option.when(node.op == Op.Input && node.index >= State)(late(node.index - State)))
   ))
 
-  /** Whether the stored numbers of the next step may overwrite those of this one. */
+  /** Whether the next step's stored values may overwrite those of this step. */
   def isKeptInPlace: Boolean = act.function.isOnePass && goOn.function.isOnePass
 
   private def keeping(of: Vector[Node]) = BoundFunction.of(of, rowOf, areRows = true)
 
-  /** The function for the position, from the stored numbers, the time and, unless it is stored, the start. */
+  /** Computes the position from the stored values, the time and, unless they contain it, the start. */
   val position: BoundFunction = BoundFunction.of(late.slice(count, count + 2), rowOf)
 
-  /** The function for position and velocity, with equal inputs. */
+  /** Computes position and velocity, from the inputs of [[position]]. */
   val look: BoundFunction = BoundFunction.of(late.drop(count), rowOf)
 
-  /** The function for the state's numbers, with equal inputs. */
+  /** Computes the state, from the inputs of [[position]]. */
   lazy val end: BoundFunction = BoundFunction.of(late.take(count), rowOf, areRows = true)
 
-  /** The functions' parameters, without those of the time. */
+  /** The parameters of all functions; those of the time are 0. */
   def parametersOf(plant: PlantTiming, speedMps: Double): Array[Float] =
     expressions.parametersOf(plant, speedMps).map(_.toFloat) ++ Array.ofDim[Float](times)
 
   def firstOfTime: Int = expressions.parameters
 
-  /** Converts times to the values by which they are passed in. */
+  /** Converts a time, s, to the values that represent it. */
   def tell(plant: PlantTiming): Double => Array[Double] =
     val own = expressions.parametersOf(plant, 0)
     dtS => timesOf(Array(dtS), own)
 
 private[lanes] object PlantStages:
-  /** Inputs of the expressions: the time, the start, the command over the speed and its vertical part, the
-    * state's numbers, the stored numbers.
+  /** Inputs of the expressions: the time, the start, the command divided by the speed with its vertical part,
+    * the state's numbers, and the stored values.
     */
   val Time: Int   = 0
   val StartX: Int = 1

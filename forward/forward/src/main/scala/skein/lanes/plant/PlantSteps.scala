@@ -4,11 +4,11 @@ import skein.formula.{Formula, Node, Trace}
 import skein.simd.{BoundFunction, LaneCall}
 import skein.vehicle.Plant
 
-/** A plant's steps of equal length, in worlds whose steps begin together, with a reading after each. Compiled
-  * once for all plants of a form.
+/** A plant's steps of equal duration, in worlds whose steps begin together, with a reading after each step.
+  * Compiled once for all plants of a form.
   *
-  * @param places the state's numbers that initially equal the vehicle's start, north and east, if there are
-  *   such
+  * @param places indices of the state's numbers that initially equal the vehicle's start, north and east;
+  *   None if there are none
   */
 private[skein] final class PlantSteps private[lanes] (
     stepping: Formula,
@@ -32,7 +32,7 @@ private[skein] final class PlantSteps private[lanes] (
     if places.isDefined then expressions.seen
     else expressions.seenFrom(trace.input(count + 2), trace.input(count + 3))
 
-  /** Whether the state equals the reading, number for number. */
+  /** Whether the state consists of exactly the reading's numbers, in their order. */
   val isRead: Boolean = seen == expressions.stepped
 
   private lazy val ofState   = bound(expressions.stepped)
@@ -41,10 +41,10 @@ private[skein] final class PlantSteps private[lanes] (
   private def bound(of: Vector[Node]) =
     BoundFunction.of(of, { case number if number < count => number }, areRows = true)
 
-  /** Prepares a call.
+  /** Prepares calls with a plant's numbers.
     *
     * @param spanS duration of each step
-    * @param reads whether position and velocity, north and east, are rows after the state's
+    * @param reads whether outputs include position and velocity, north and east, in rows after the state
     */
   def call(plant: Plant[?], spanS: Double, reads: Boolean): PlantSteps.Call =
     val parameters = (spanS +: expressions.parametersOf(plant, 0)).map(_.toFloat)
@@ -57,21 +57,21 @@ private[skein] object PlantSteps:
     private val north = stepped.place(count)
     private val east  = stepped.place(count + 1)
 
-    /** Sets the rows of the state at the start of a step.
+    /** Sets where the state at the start of a step is read.
       *
-      * @param apart distance between the rows of successive steps; after the last in the array follow the
-      *   first
+      * @param apart distance between the rows of successive steps; after the array's last rows the first rows
+      *   follow
       */
     def rows(array: Array[Float], from: Int, apart: Int): Unit = call.inputIfAny(state, array, from, apart)
 
-    /** Sets the rows of the state at its end. */
+    /** Sets where the state at the end of a step is written. */
     def outputRows(array: Array[Float], from: Int, apart: Int): Unit = call.output(0, array, from, apart)
 
     def starts(north: Array[Float], east: Array[Float]): Unit =
       call.inputIfAny(stepped.place(count + 2), north)
       call.inputIfAny(stepped.place(count + 3), east)
 
-    /** Sets the command in effect from now on, over the speed, m/s. */
+    /** Sets the command for all further steps: components divided by the speed, and the speed, m/s. */
     def command(north: Array[Float], east: Array[Float], speed: Float): Unit =
       parameters(1) = speed
       call.inputIfAny(this.north, north)

@@ -5,8 +5,8 @@ import skein.simd.{FixedFormula, Forms, LaneCall, LaneFunction}
 import skein.units.Vector3
 import skein.vehicle.{Environment, Quadrotor, QuadrotorState, Setpoint, VerticalMode}
 
-/** SIMD simulation of quadrotors of one form: [[Quadrotor.stepInAir]] itself, compiled, for `moveByVelocityZ`
-  * with the yaw held, in calm air.
+/** Simulates quadrotors of one form by SIMD. Compiled from [[Quadrotor.stepInAir]], under `moveByVelocityZ`
+  * with constant yaw, in calm air.
   */
 private[lanes] final class QuadrotorLanes private (
     val quadrotor: Quadrotor,
@@ -14,12 +14,12 @@ private[lanes] final class QuadrotorLanes private (
 ):
   import QuadrotorLanes.*
 
-  /** The rows: the numbers of a vehicle's state, by name. */
+  /** Names of the rows, which are the numbers of a vehicle's state. */
   val rows: Vector[String] = formula.inputs.map(_.stripPrefix(State)).take(formula.bound.outputs)
 
   def row(name: String): Int = rows.indexOf(name)
 
-  /** The numbers of a state in the order of the rows. */
+  /** The numbers of a state, in the order of [[rows]]. */
   def numbersOf(state: QuadrotorState): Vector[Double] = fields.map(_.getDouble(state))
 
   private lazy val fields = rows.map: name =>
@@ -27,15 +27,15 @@ private[lanes] final class QuadrotorLanes private (
     field.setAccessible(true)
     field
 
-  /** The position to hold, for a vehicle above its start, so that it settles at this altitude. */
+  /** The position to command so that a vehicle settles at altitude `downM`, above its start. */
   def holdingAt(downM: Double): Vector3 =
     Vector3(0, 0, downM - quadrotor.hoverSagM(downM, Environment.Calm))
 
-  /** Simulates one step.
+  /** A call that simulates one step.
     *
-    * @param from rows of the states before it
+    * @param from rows of the states before the step
     * @param to rows of the states after it
-    * @param goal rows of the command: velocity north and east, m/s, and down, m
+    * @param goal rows of the command: velocity north and east, m/s, and altitude down, m
     */
   def step(from: Array[Float], to: Array[Float], goal: Array[Float]): LaneCall =
     val call = LaneCall(formula.bound, formula.parameters.map(_.toFloat))
@@ -48,7 +48,7 @@ private[lanes] final class QuadrotorLanes private (
 private[lanes] object QuadrotorLanes:
   private val State = "state."
 
-  /** The compiled quadrotor; Left states why SIMD does not support it. */
+  /** Compiles a quadrotor. Left states why SIMD does not support it. */
   def of(quadrotor: Quadrotor): Either[String, QuadrotorLanes] =
     val airborne = Airborne(quadrotor)
     forms(airborne).map(form => QuadrotorLanes(quadrotor, form.of(airborne))).left.map(_.getMessage)
@@ -58,11 +58,11 @@ private[lanes] object QuadrotorLanes:
   private def compiled(of: Airborne): Either[Untraceable, FixedFormula] =
     for formula <- Formula.of(of, "step", known = known)
     yield
-      // A step's outputs are the next one's inputs.
+      // The outputs of a step are the inputs of the next.
       require(formula.inputs.map(_.stripPrefix(State)).startsWith(formula.outputs.map(_._1)), formula.inputs)
       FixedFormula(formula, of, rows = formula.outputs.size)
 
-  /** Fields of a state in the air under `moveByVelocityZ` that are not numbers. */
+  /** Values of those fields of a flying state that are not numbers, under `moveByVelocityZ`. */
   private def known: Map[String, Any] = Map(
     "grounded"      -> false,
     "contacts"      -> 0,
@@ -70,7 +70,7 @@ private[lanes] object QuadrotorLanes:
     "cascadeMemory" -> null
   ).map((name, value) => (State + name, value))
 
-  /** The method to compile: one step in the air. */
+  /** The object whose method is compiled: one step in the air. */
   private final class Airborne(quadrotor: Quadrotor):
     def step(state: QuadrotorState, northMps: Double, eastMps: Double, downM: Double): QuadrotorState =
       quadrotor.stepInAir(state, Setpoint.velocityZ(northMps, eastMps, downM), Environment.Calm)

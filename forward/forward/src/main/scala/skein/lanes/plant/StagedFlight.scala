@@ -4,10 +4,10 @@ import skein.lanes.policy.Directions
 import skein.simd.{BoundFunction, LaneCall}
 import skein.simd.LaneFunction.COUNT as WORLDS
 
-/** Flights by the [[PlantStages]] of one plant, in many worlds whose steps begin and end together. Mutable.
+/** Flights by one plant's [[PlantStages]], in many worlds whose steps begin and end together. Mutable.
   *
-  * @param speedMps of a command of length 1
-  * @param startX start of each world's vehicle, north and east, m
+  * @param speedMps speed of a command of length 1
+  * @param startX north component of each world's start, m; `startY` is its east component
   */
 private[lanes] final class StagedFlight(
     lanes: PlantLanes,
@@ -21,7 +21,7 @@ private[lanes] final class StagedFlight(
   private val (times, firstOfTime) = (stages.times, stages.firstOfTime)
   private val wholeStep            = stages.tell(lanes.plant)(lanes.plant.stepS).map(_.toFloat)
 
-  /** The state with which it [[begin]]s, number by number. */
+  /** The state from which [[begin]] starts, in rows. */
   val state: Array[Float] = Array.ofDim[Float](lanes.count * WORLDS)
 
   private val still         = Array.ofDim[Float](WORLDS)
@@ -38,12 +38,13 @@ private[lanes] final class StagedFlight(
 
   private var worlds = WORLDS
 
-  /** From now on only the first worlds count. */
+  /** Limits the simulation to the first worlds, until the next call. */
   def use(worlds: Int): Unit =
     this.worlds = worlds
     for call <- Vector(beginning, resting) ++ moving.calls ++ other.calls do call.use(worlds)
 
-  /** Moves from the stored numbers of a step; those of the next step go to another array, or overwrite them.
+  /** The calls that start from one of two arrays of stored values; they write the next step's values to the
+    * other array, or overwrite this one.
     */
   private final class Moving(val kept: Array[Float], to: Array[Float]):
     val position: LaneCall = bound(stages.position, kept)
@@ -64,14 +65,14 @@ private[lanes] final class StagedFlight(
     if to != null then call.output(0, to, 0)
     call
 
-  /** Sets one world's vehicle to its start, at rest; until its next command it stands still. */
+  /** Sets one world's vehicle to its start, at rest, where it stays until the next command. */
   def rest(world: Int): Unit =
     resting()
     for at <- world until atRest.length by WORLDS do moving.kept(at) = atRest(at)
 
   /** Begins the first step, under a command.
     *
-    * @param from the index of the first world's
+    * @param from index of the first world's command
     */
   def begin(commanded: Directions, from: Int): Unit =
     if moving.kept ne begun then turnOver()
@@ -93,8 +94,8 @@ private[lanes] final class StagedFlight(
 
   /** Simulates up to a time.
     *
-    * @param time from `at` on, the number of steps that end until then, and the values of the time after the
-    *   last
+    * @param time array with the time's representation from index `at` on: the number of steps that end until
+    *   then, and the values of the time since the last step
     */
   def flyTo(time: Array[Float], at: Int): Unit =
     var steps = time(at).toInt
@@ -132,7 +133,7 @@ private[lanes] final class StagedFlight(
       look.output(3, vy, into)
     look()
 
-  /** The present position and velocity in space. */
+  /** Writes the present position and velocity in space. */
   def lookInSpace(
       x: Array[Float],
       y: Array[Float],
@@ -151,9 +152,9 @@ private[lanes] final class StagedFlight(
     look.output(5, vz, into)
     look()
 
-  /** Writes the present state, number by number.
+  /** Writes the present state in rows.
     *
-    * @param at where the first one's begins
+    * @param at index of the first row
     */
   def end(into: Array[Float], at: Int): Unit =
     val end = moving.end

@@ -6,10 +6,10 @@ import skein.forward.RolloutAgent
 import skein.fusion.{SensorFormulas, SensorModel}
 import skein.simd.FixedFormula
 
-/** A vehicle's estimate of its opponent by a [[SensorModel]], in many worlds. Compiled from
-  * [[SensorFormulas]]; the scalar reference is `skein.forward.CameraTracker`. When images are taken and when
-  * they update the estimate is decided by [[skein.lanes.timetable.TimetableEye]] where that is equal in all
-  * worlds, and by [[skein.lanes.loop.LoopEye]] where it is not. Mutable.
+/** A vehicle's estimate of its opponent from a camera with this [[SensorModel]], in many worlds. Compiled
+  * from [[SensorFormulas]]; the scalar reference is `skein.forward.CameraTracker`. Subclasses decide when
+  * images are taken and when they update the estimate: [[skein.lanes.timetable.TimetableEye]] at equal times
+  * in all worlds, [[skein.lanes.loop.LoopEye]] at different times. Mutable.
   */
 private[lanes] abstract class CameraTrackerLanes(
     forms: CameraTrackerLanes.Forms,
@@ -28,21 +28,22 @@ private[lanes] abstract class CameraTrackerLanes(
   private val startAxis    =
     StrictMath.atan2(opponent.startY - own.startY, opponent.startX - own.startX).toFloat
 
-  /** The estimate, and the one before the newest image. */
+  /** The present estimate, and the estimate before the newest image. */
   protected var newest, before: Array[Float] = Array.ofDim(Belief * WORLDS)
 
   protected val bearing, range: Array[Float] = Array.ofDim[Float](WORLDS)
 
-  /** When the image was taken that updates the estimate, s since the start. */
+  /** Time at which the image that updates the estimate was taken, s since the start. */
   protected val takenS: Array[Float] = Array.ofDim[Float](WORLDS)
 
-  /** Time of the decision, s since the start; and [[SensorFormulas.decidedUpon]]'s `aheadS`. */
+  /** Time of the decision, s since the start; and the parameter `aheadS` of [[SensorFormulas.decidedUpon]].
+    */
   protected val nowS, aheadS: Array[Float] = Array.ofDim[Float](WORLDS)
 
-  /** Direction of the camera, rad, and its direction after a decision. */
+  /** Direction of the camera now, and after the decision, rad. */
   protected val axis, newAxis: Array[Float] = Array.ofDim[Float](WORLDS)
 
-  /** Inputs of the decision; velocities are the opponent's own. */
+  /** Results for the decision: the opponent's position and velocity, and the age of the estimate. */
   val northM, eastM, northMps, eastMps, ageS: Array[Float] = Array.ofDim[Float](WORLDS)
   val heading: Directions                                  = Directions(WORLDS)
 
@@ -62,19 +63,19 @@ private[lanes] abstract class CameraTrackerLanes(
       Seq(northM, eastM, northMps, eastMps, heading.cos, heading.sin, ageS, newAxis).zipWithIndex
   do decided.output(output, array, 0)
 
-  /** From now on only the first worlds count. */
+  /** Limits the simulation to the first worlds, until the next call. */
   protected def use(worlds: Int): Unit = for call <- Seq(detected, joined, decided) do call.use(worlds)
 
-  /** Resets the estimate to the opponent's start. */
   protected def forget(): Unit =
     for state <- Seq(newest, before) do Arrays.fill(state, 0f)
     Arrays.fill(axis, startAxis)
 
-  /** Results of images taken now, with the given errors, if the opponent is found wherever it is in view.
+  /** Simulates images that are taken now, with the given errors. The opponent is detected wherever it is in
+    * view.
     *
     * @param oursX positions of the own vehicles, from `oursAt` on, m
-    * @param into receives [[CameraTrackerLanes.Detection]] numbers of each world; first whether the opponent
-    *   is found, 1 or 0
+    * @param into receives [[CameraTrackerLanes.Detection]] rows; the first row is whether the opponent is
+    *   detected, 1 or 0
     */
   protected final def detect(
       oursX: Array[Float],
@@ -92,7 +93,7 @@ private[lanes] abstract class CameraTrackerLanes(
     detected.outputs(Detection, into, 0)
     detected()
 
-  /** The estimate after adding images that were taken at [[takenS]]. */
+  /** Computes the estimate after an image of each world that was taken at [[takenS]]. */
   protected final def join(belief: Array[Float], images: Array[Float], into: Array[Float]): Unit =
     joined.inputs(0, Belief, belief, 0)
     joined.inputs(Belief, Detection, images, 0)
@@ -114,11 +115,13 @@ private[lanes] abstract class CameraTrackerLanes(
 private[lanes] object CameraTrackerLanes:
   private val WORLDS = LanePolicy.WORLDS
 
-  /** Sizes of a [[SensorFormulas.Believed]] and of a [[SensorFormulas.Detected]]. */
+  /** Numbers of a [[SensorFormulas.Believed]] and of a [[SensorFormulas.Detected]]. */
   val Belief    = 35
   val Detection = 13
 
-  /** Least standard deviation of a measurement: below it, rounding of floats destroys a covariance. */
+  /** Smallest standard deviation of a measurement; with a smaller one, rounding of floats destroys a
+    * covariance.
+    */
   private val LeastSd = 2e-4
 
   final class Forms(
@@ -127,7 +130,7 @@ private[lanes] object CameraTrackerLanes:
       val decidedUpon: FixedFormula
   )
 
-  /** The compiled formulas of a sensor; Left states why SIMD does not support it. */
+  /** Compiles the formulas of a sensor. Left states why SIMD does not support it. */
   def of(model: SensorModel): Either[String, Forms] =
     val formulas                        = SensorFormulas(model)
     def form(name: String, inputs: Int) = FixedFormula.of(formulas, name, alike = 0).map: formula =>

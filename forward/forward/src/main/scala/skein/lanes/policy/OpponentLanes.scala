@@ -3,13 +3,13 @@ package skein.lanes.policy
 import java.util.concurrent.ConcurrentHashMap
 import skein.forward.{Engagement, RolloutAgent}
 import skein.fusion.SensorModel
-import skein.policy.{HeadingPolicy, Policy}
+import skein.policy.Policy
 import skein.simd.LaneMath
 import skein.units.Expect
 
-/** SIMD decisions of two that play against one another by [[HeadingPolicy]]: each by the difference of the
-  * two readings, compiled from [[HeadingPolicy.decide]] alone, and of directions, not velocities. So they fly
-  * faster than by [[TeamLanes]].
+/** SIMD decisions of two that play against one another by headings: each by the difference of the two
+  * readings ([[OpponentFormula]]), and of directions, not velocities. So they fly faster than by
+  * [[TeamLanes]].
   *
   * @param forms by vehicle
   * @param agents by vehicle: their speeds, first headings and cameras; where somebody sees by a camera, their
@@ -35,39 +35,33 @@ private[lanes] final case class OpponentLanes private (
   def refusedByGpu: Option[String] = Option.when(eyes.nonEmpty)("the GPU flies nobody who sees by a sensor")
 
   def numbersOf(self: Int, policy: Policy): PolicyNumbers =
-    val own = policy.asInstanceOf[HeadingPolicy]
-    PolicyNumbers(forms(self).parametersOf(own), forms(self).initialOf(own))
+    PolicyNumbers(forms(self).parametersOf(policy), forms(self).initialOf(policy))
 
 private[lanes] object OpponentLanes:
   private val cameras = ConcurrentHashMap[SensorModel, Either[String, CameraTrackerLanes.Forms]]()
 
   private def cameraOf(sensor: SensorModel) = cameras.computeIfAbsent(sensor, CameraTrackerLanes.of)
 
-  /** The SIMD code of two opponents, or why there is none; None where they are not two that play against one
-    * another by headings.
+  /** The SIMD code of two opponents; None where they are not two that play against one another by headings.
     *
     * @param efforts of which vehicles are computed
+    * @param isPredicted whether readings are predicted
+    * @return Left states why a camera has none
     */
   def of(
       engagement: Engagement,
       efforts: Int => Boolean,
-      inSpace: Boolean
+      inSpace: Boolean,
+      isPredicted: Boolean
   ): Option[Either[String, OpponentLanes]] =
     val agents = engagement.agents
-    Option.when(areOpponents(engagement)):
-      for
-        _     <- Expect.each(agents.flatMap(_.eye))(cameraOf)
-        forms <- Expect.each(agents)(agent => PolicyLanes.of(agent.policy.asInstanceOf[HeadingPolicy]))
-          .left.map(refused => s"a policy is no formula: ${refused.getMessage}")
-      yield
-        val sees  = agents.exists(_.eye.isDefined)
-        val alike = agents.map: agent =>
-          if sees then agent.copy(policy = null)
-          else agent.copy(startX = 0, startY = 0, altitudeDownM = 0, policy = null)
-        OpponentLanes(forms, alike, Vector(efforts(0), efforts(1)), inSpace)
-
-  private def areOpponents(engagement: Engagement) =
-    engagement.agents.size == 2 && engagement.assignment.rivals == Rivals &&
-      engagement.agents.forall(_.policy.isInstanceOf[HeadingPolicy])
-
-  private val Rivals = Vector(Vector(1), Vector(0))
+    for
+      _     <- Option.when(engagement.assignment == OpponentFormula.Rivals)(())
+      forms <-
+        Expect.each(agents.indices)(self => PolicyLanes.of(agents(self).policy, self, isPredicted)).toOption
+    yield Expect.each(agents.flatMap(_.eye))(cameraOf).map: _ =>
+      val sees  = agents.exists(_.eye.isDefined)
+      val alike = agents.map: agent =>
+        if sees then agent.copy(policy = null)
+        else agent.copy(startX = 0, startY = 0, altitudeDownM = 0, policy = null)
+      OpponentLanes(forms, alike, Vector(efforts(0), efforts(1)), inSpace)

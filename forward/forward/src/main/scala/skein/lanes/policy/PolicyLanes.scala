@@ -1,19 +1,20 @@
 package skein.lanes.policy
 
 import java.util.concurrent.ConcurrentHashMap
-import skein.formula.{Angles, Evaluation, Formula, Node, Op, Trace, Untraceable}
-import skein.policy.{PlanarObservation, HeadingPolicy}
+import skein.formula.{Angles, Evaluation, Node, Op, Trace, Untraceable}
+import skein.lanes.policy.OpponentFormula.In as Seen
+import skein.policy.{GraphPolicy, PlanarObservation, Policy, PolicyFormula}
 import skein.simd.{Forms, LaneCompiler, LaneFunction}
 
-/** The decision of policies of one form in many worlds by SIMD, compiled from the method
-  * [[HeadingPolicy.decide]] itself. Policies of one form differ in numbers alone.
+/** The decision of policies of one form in many worlds by SIMD, compiled from the policy's own method:
+  * [[OpponentFormula]] says of which policies. Those of one form differ in numbers alone.
   */
-private[skein] final class PolicyLanes private (formula: Formula):
+private[skein] final class PolicyLanes private (formula: OpponentFormula):
   import PolicyLanes.*
 
   private val trace  = Trace()
   private val source = formula.trace
-  private val own    = source.input(OwnHeading)
+  private val own    = source.input(Seen.OwnHeading)
 
   /** The turn from the last heading, for a policy that decides by turning; otherwise its result is a
     * direction.
@@ -24,32 +25,32 @@ private[skein] final class PolicyLanes private (formula: Formula):
     source,
     trace,
     {
-      case index if index <= Dvy        => trace.input(index)
-      case OwnHeading if turn.isDefined => trace.input(In.Heading)
-      case OwnHeading      => trace.binary(Op.Atan2, trace.input(In.OwnSin), trace.input(In.OwnCos))
-      case OpponentHeading => trace.binary(Op.Atan2, trace.input(In.KnownSin), trace.input(In.KnownCos))
-      case Elapsed         => trace.input(In.Elapsed)
-      case OwnAge          => trace.input(In.OwnAge)
-      case OpponentAge     => trace.input(In.OpponentAge)
-      case remembered      => trace.input(In.Memory + remembered - Memory)
+      case index if index <= Seen.Dvy        => trace.input(index)
+      case Seen.OwnHeading if turn.isDefined => trace.input(In.Heading)
+      case Seen.OwnHeading      => trace.binary(Op.Atan2, trace.input(In.OwnSin), trace.input(In.OwnCos))
+      case Seen.OpponentHeading => trace.binary(Op.Atan2, trace.input(In.KnownSin), trace.input(In.KnownCos))
+      case Seen.Elapsed         => trace.input(In.Elapsed)
+      case Seen.OwnAge          => trace.input(In.OwnAge)
+      case Seen.OpponentAge     => trace.input(In.OpponentAge)
+      case remembered           => trace.input(In.Memory + remembered - Seen.Memory)
     },
     {
-      case OwnHeading      => Some((trace.input(In.OwnCos), trace.input(In.OwnSin)))
-      case OpponentHeading => Some((trace.input(In.KnownCos), trace.input(In.KnownSin)))
-      case _               => None
+      case Seen.OwnHeading      => Some((trace.input(In.OwnCos), trace.input(In.OwnSin)))
+      case Seen.OpponentHeading => Some((trace.input(In.KnownCos), trace.input(In.KnownSin)))
+      case _                    => None
     },
     trace.param
   )
 
-  private lazy val heading = angles.factored(formula.outputs(0)._2)
+  private lazy val heading = angles.factored(formula.heading)
 
-  val memories: Int = formula.outputs.size - 1
+  val memories: Int = formula.memory.size
 
   /** Cosine and sine of the decided heading, its change, the next memory, and the heading itself if it is
     * kept.
     */
   val outputs: Vector[Node] =
-    val remembered = formula.outputs.tail.map((_, node) => angles.convert(node))
+    val remembered = formula.memory.map(angles.convert)
     turn match
       case Some(by) =>
         val change  = wrapped(angles.convert(by))
@@ -69,7 +70,7 @@ private[skein] final class PolicyLanes private (formula: Formula):
 
   private val needed = Trace.needed(outputs)
 
-  val needsVelocity: Boolean = looksAt(Dvx) || looksAt(Dvy)
+  val needsVelocity: Boolean = looksAt(Seen.Dvx) || looksAt(Seen.Dvy)
 
   val needsAges: Boolean = looksAt(In.OwnAge) || looksAt(In.OpponentAge)
 
@@ -86,10 +87,32 @@ private[skein] final class PolicyLanes private (formula: Formula):
   /** Number of arrays that it reads. */
   def inputs: Int = In.Memory + memories
 
-  /** Computes [[outputs]] from the inputs of [[In]], the first of which are passed as the opponent's readings
-    * and the own ones.
+  /** Number of values in the memory up to the last one that a decision looks at. The others are there to be
+    * seen from outside.
     */
-  lazy val function: LaneFunction = LaneCompiler.compile(inputs, outputs, LaneObservation.READ, parameters)
+  val remembered: Int =
+    needed.iterator.filter(node => node.op == Op.Input && node.index >= In.Memory).map(
+      _.index - In.Memory + 1
+    )
+      .maxOption.getOrElse(0)
+
+  private def deciding(withEffort: Boolean) =
+    val all = nodes(withEffort)
+    all.patch(all.size - (outputs.size - decided) + remembered, Nil, memories - remembered)
+
+  /** Computes [[outputs]] without the memory that is not [[remembered]], from the inputs of [[In]], the first
+    * of which are passed as the opponent's readings and the own ones.
+    */
+  lazy val function: LaneFunction =
+    LaneCompiler.compile(inputs, deciding(withEffort = true), LaneObservation.READ, parameters)
+
+  /** Computes the memory that is not [[remembered]]. */
+  lazy val observing: LaneFunction = LaneCompiler.compile(
+    inputs,
+    outputs.slice(decided + remembered, decided + memories),
+    LaneObservation.READ,
+    parameters
+  )
 
   // But how far the decided heading is from the one before.
   private def course = outputs.patch(2, Nil, 1)
@@ -98,7 +121,7 @@ private[skein] final class PolicyLanes private (formula: Formula):
 
   /** [[function]] without the change of the decided heading. */
   lazy val functionWithoutEffort: LaneFunction =
-    LaneCompiler.compile(inputs, course, LaneObservation.READ, parameters)
+    LaneCompiler.compile(inputs, deciding(withEffort = false), LaneObservation.READ, parameters)
 
   /** [[function]] for worlds that all have one policy. */
   lazy val functionOfOne: LaneFunction = LaneCompiler.compile(inputs, course, LaneObservation.READ)
@@ -109,7 +132,7 @@ private[skein] final class PolicyLanes private (formula: Formula):
   private val indices    = derived.iterator.map(_.index).toArray
   private val evaluation = Evaluation(derived)
 
-  def parametersOf(policy: HeadingPolicy): Array[Double] =
+  def parametersOf(policy: Policy): Array[Double] =
     val own = formula.parametersOf(policy)
     if plain then indices.map(own(_))
     else evaluation(Array.emptyDoubleArray, own)
@@ -133,9 +156,9 @@ private[skein] final class PolicyLanes private (formula: Formula):
     ) ++ numbersOf(memory)
 
   /** A policy's initial memory, as numbers. */
-  def initialOf(policy: HeadingPolicy): Array[Double] = numbersOf(policy.start).toArray
+  def initialOf(policy: Policy): Array[Double] = formula.startOf(policy)
 
-  def fits(policy: HeadingPolicy): Boolean = formula.fits(policy)
+  def fits(policy: Policy): Boolean = formula.fits(policy)
 
   private def turnOf(heading: Node): Option[Node] =
     if heading == own then Some(source.const(0))
@@ -164,16 +187,6 @@ private[skein] final class PolicyLanes private (formula: Formula):
     trace.sub(trace.const(math.Pi), trace.mul(trace.const(2), trace.unary(Op.Acos, half)))
 
 private[skein] object PolicyLanes:
-  // The fields of PlanarObservation, by place.
-  private final val Dvx             = 2
-  private final val Dvy             = 3
-  private final val OwnHeading      = 4
-  private final val OpponentHeading = 5
-  private final val Elapsed         = 6
-  private final val OwnAge          = 7
-  private final val OpponentAge     = 8
-  private final val Memory          = 9
-
   /** Inputs of the compiled function; the first four are those of the policy. */
   object In:
     final val Elapsed  = 4
@@ -194,19 +207,33 @@ private[skein] object PolicyLanes:
     case numbers: Array[Double] => numbers.toVector
     case _                      => Vector.empty
 
-  private val known = ConcurrentHashMap[Class[?], Forms[HeadingPolicy, PolicyLanes]]()
+  /** A policy's formula, and the SIMD code of those that it [[PolicyFormula.fits]], or why there is none. */
+  private final case class Form(formula: PolicyFormula, lanes: Either[Untraceable, PolicyLanes])
+
+  private val known = ConcurrentHashMap[(AnyRef, Int, Boolean), Forms[Policy, Form]]()
 
   /** After this number of refused policies of a class, all of the class count as refused. */
   private val MostRefused = 16
 
-  /** The SIMD code of a policy, or why there is none. Compiled once for each form. */
-  def of(policy: HeadingPolicy): Either[Untraceable, PolicyLanes] =
-    known.computeIfAbsent(
-      policy.getClass,
+  /** The SIMD code of a policy, or why there is none. Compiled once for each form.
+    *
+    * @param self its vehicle's place, 0 or 1
+    * @param isPredicted whether readings are predicted
+    */
+  def of(policy: Policy, self: Int, isPredicted: Boolean): Either[Untraceable, PolicyLanes] =
+    val kind = policy match
+      case graph: GraphPolicy => graph.graph
+      case _                  => policy.getClass
+    val forms = known.computeIfAbsent(
+      (kind, self, isPredicted),
       _ =>
-        Forms[HeadingPolicy, PolicyLanes](_.fits(_), MostRefused):
-          Formula.of(_, "decide").map(PolicyLanes(_))
-    )(policy)
+        Forms[Policy, Form](_.formula.fits(_, OpponentFormula.Rivals), MostRefused): one =>
+          for formula <- PolicyFormula.of(one, self, OpponentFormula.Rivals, isPredicted)
+          yield Form(formula, OpponentFormula.of(formula, self).map(PolicyLanes(_)))
+    )
+    forms(policy).flatMap(_.lanes)
 
-  /** The SIMD code of a policy that is known to be a formula. */
-  def get(policy: HeadingPolicy): PolicyLanes = of(policy).fold(throw _, identity)
+  def of(policy: Policy): Either[Untraceable, PolicyLanes] = of(policy, 0, isPredicted = false)
+
+  /** The SIMD code of a policy that is known to have it. */
+  def get(policy: Policy): PolicyLanes = of(policy).fold(throw _, identity)

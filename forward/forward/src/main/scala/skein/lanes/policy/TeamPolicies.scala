@@ -4,36 +4,36 @@ import skein.forward.RolloutAgent
 import skein.fusion.SensorModel
 import skein.policy.Policy
 
-/** How the vehicles of a team decide by SIMD. Teams of one form differ in numbers alone. */
+/** Decides for the vehicles of a team by SIMD. Teams of one form differ in numbers alone. */
 private[lanes] trait TeamPolicies:
   def count: Int
 
   def inSpace: Boolean
 
-  /** Whether decisions need more than readings and their own times. */
+  /** Whether decisions need more than the readings and the vehicles' own decision times. */
   def needsMore: Boolean
 
-  /** By vehicle, the camera that is its only knowledge of its one opponent. */
+  /** The camera of each vehicle that knows its one opponent by a camera alone. */
   def eyes: Map[Int, SensorModel]
 
-  /** Why no GPU flies such a team; None if one does. */
+  /** The reason why a GPU does not support such a team; None if it does. */
   def refusedByGpu: Option[String]
 
-  /** Number of candidates with shared episodes that take no longer than one. */
+  /** Number of candidates with shared episodes that are simulated in the time of one. */
   def sideBySide: Int
 
-  /** The numbers by which a vehicle's policy differs from others of its form. */
+  /** The numbers that distinguish a vehicle's policy from others of its form. */
   def numbersOf(self: Int, policy: Policy): PolicyNumbers
 
 /** The numbers of one vehicle's policy in a world.
   *
-  * @param parameters of its form
-  * @param memory before its first decision
+  * @param parameters those of its form
+  * @param memory before the first decision
   */
 private[lanes] final case class PolicyNumbers(parameters: Array[Double], memory: Array[Double])
 
-/** The numbers by which a vehicle in one world differs from those of other worlds: few objects, since each
-  * world reads those of its own.
+/** The numbers that distinguish a vehicle from those of other worlds. Few objects, since every world reads
+  * those of its own vehicle.
   *
   * @param policy its parameters, then its memory before the first decision
   */

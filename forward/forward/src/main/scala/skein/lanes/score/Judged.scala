@@ -2,10 +2,10 @@ package skein.lanes.score
 
 import skein.scenario.{Quantity, Reduction}
 
-/** A number that is computed of a flight.
+/** A number computed from a flight.
   *
-  * @param reduction of the quantity's values, one a period
-  * @param fromS time of the first value that counts
+  * @param reduction of the quantity's values, one value per period
+  * @param fromS time of the first value that is used
   */
 final case class Judged(quantity: Quantity, reduction: Reduction | OfMoment, fromS: Double):
   private[lanes] def counts(timeS: Double): Boolean = Judged.counts(timeS, fromS)
@@ -13,20 +13,19 @@ final case class Judged(quantity: Quantity, reduction: Reduction | OfMoment, fro
 object Judged:
   private[lanes] def counts(timeS: Double, fromS: Double): Boolean = timeS > afterS(fromS)
 
-  /** Moves a time to just before itself: times may be stored as floats, and the shortest period is a
+  /** Moves a time slightly earlier, because times may be rounded to floats. The shortest period is a
     * millisecond.
     */
   private[lanes] def afterS(fromS: Double): Double = fromS - 3e-4
 
-/** Control effort, a number of a flight: the sum of all changes of a vehicle's commanded heading, each by the
-  * shorter way, rad. SIMD computes it of two that play against one another, where it costs a twentieth of a
-  * flight.
+/** Control effort of a flight: the sum of all changes of a vehicle's commanded heading, each by the shorter
+  * way, rad. SIMD computes it for duels, at a twentieth of the cost of a flight.
   */
 final case class Effort(vehicle: Int)
 
-/** Reductions of a quantity's values to one moment. */
+/** Reductions that select one moment of a quantity's values. */
 enum OfMoment:
-  /** First time at which the value was at most this, s; infinite if it never was. */
+  /** First time at which the value was at most `limit`, s; infinite if it never was. */
   case FirstWithin(limit: Double)
 
   case Newest

@@ -5,9 +5,9 @@ import skein.scenario.{Positions, Quantity, Reduction, Separation}
 import skein.simd.{BoundFunction, Forms}
 import skein.units.Expect
 
-/** The scores of flights in many worlds by SIMD: the quantities, compiled from their methods [[Quantity.of]],
-  * and their reductions so far, in one function. Some numbers are kept per world; the function computes their
-  * successors from them and from a view. Flights of one form differ in numbers alone.
+/** Scores flights in many worlds by SIMD. The quantities, compiled from [[Quantity.of]], and their reductions
+  * are one function: from the running numbers of each world and a view it computes their next values. Flights
+  * of one form differ in numbers alone.
   */
 private[lanes] final class ScoreLanes private (
     formulas: Vector[Formula],
@@ -27,10 +27,10 @@ private[lanes] final class ScoreLanes private (
       parameter => trace.input(FirstParameter + number * Stride + parameter)
     )
 
-  /** The initial values of the kept numbers, by place. */
+  /** The initial values of the running numbers, by place. */
   val initial: Vector[Float] = judged.flatMap(initially)
 
-  /** By judged number, the offset of its kept numbers; last, their total count. */
+  /** Offset of each judged number's running numbers; the last entry is their total count. */
   val places: Vector[Int] = judged.map(initially(_).size).scanLeft(0)(_ + _)
 
   private val successors: Vector[Vector[Node]] = judged.indices.toVector.map: number =>
@@ -40,10 +40,10 @@ private[lanes] final class ScoreLanes private (
       kept => trace.input(FirstKept + places(number) + kept)
     )
 
-  /** The successors of the kept numbers. Each overwrites the number from which it is computed, which nothing
-    * else reads.
+  /** The next values of the running numbers. Each may overwrite its predecessor, which no other expression
+    * reads.
     *
-    * @param value now
+    * @param value the quantity now
     */
   private def successorsOf(number: Int, value: Node, kept: Int => Node): Vector[Node] =
     val own = trace.param(ownParameter(number))
@@ -64,7 +64,7 @@ private[lanes] final class ScoreLanes private (
   private val derived = angles.map(_.derived)
   private val numbers = derived.map(Evaluation(_))
 
-  /** The functions to compute from each time on, until the next one's. */
+  /** The functions to use, each from a time until that of the next. */
   val stages: Vector[Stage] = judged.map(_.fromS).distinct.sorted.map: fromS =>
     val numbers = judged.indices.filter(judged(_).fromS <= fromS).toVector
     Stage(
@@ -74,7 +74,7 @@ private[lanes] final class ScoreLanes private (
       BoundFunction.of(numbers.flatMap(successors))
     )
 
-  /** The source of an input of the functions: a reading, a parameter or a kept number. */
+  /** The source of a function's input: a reading, an altitude, a parameter or a running number. */
   def source(input: Int): Source =
     if input < 2 * count then Source.Reading(input % count, input / count)
     else if input < FirstParameter then Source.Altitude(input - 2 * count)
@@ -82,16 +82,16 @@ private[lanes] final class ScoreLanes private (
       Source.Parameter((input - FirstParameter) / Stride, (input - FirstParameter) % Stride)
     else Source.Kept(input - FirstKept)
 
-  /** Whether a number needs the weight of each value among all so far. */
+  /** Whether a judged number needs the weight of a new value, 1 over the count so far. */
   def hasShare(number: Int): Boolean = judged(number).reduction == Reduction.Sd
 
-  /** Number of parameters by which a quantity differs from others of its form. */
+  /** Number of parameters that distinguish a quantity from others of its form. */
   def parameters(number: Int): Int = derived(number).size
 
   def parametersOf(number: Int, quantity: Quantity): Array[Double] =
     numbers(number)(Array.emptyDoubleArray, formulas(number).parametersOf(quantity))
 
-  /** Whether this number of vehicles with these judged numbers has this form. */
+  /** Whether these judged numbers of this number of vehicles have this form. */
   def fits(by: Vector[Judged], vehicles: Int): Boolean =
     vehicles == count && by.size == judged.size && by.indices.forall: number =>
       val (own, other) = (judged(number), by(number))
@@ -102,8 +102,8 @@ private[lanes] object ScoreLanes:
   private final val Stride         = 1 << 18
   private final val FirstKept      = 1 << 30
 
-  /** Indices of the parameters that all worlds share: the time, s; then one for each judged number: a limit,
-    * or the weight of the new value among all so far.
+  /** Indices of the parameters that all worlds share: the time, s; then for each judged number a limit, or
+    * the weight of the new value.
     */
   final val Time                     = 0
   def ownParameter(number: Int): Int = 1 + number
@@ -114,10 +114,10 @@ private[lanes] object ScoreLanes:
     case Parameter(number: Int, parameter: Int)
     case Kept(place: Int)
 
-  /** The functions in effect from a time on.
+  /** The function to use from a time on.
     *
-    * @param judged indices of the numbers that count now
-    * @param places of the computed values, by outputs
+    * @param judged indices of the judged numbers that are updated from then on
+    * @param places place of the running number that each output updates
     */
   final case class Stage(fromS: Double, judged: Vector[Int], places: Vector[Int], function: BoundFunction):
     /** Samples later than this are scored (exclusive bound). */
@@ -136,15 +136,13 @@ private[lanes] object ScoreLanes:
     (judged, vehicles) =>
       Expect.each(judged)(each => formulaOf(each.quantity, vehicles)).map(ScoreLanes(_, judged, vehicles))
 
-  /** The compiled scores of this number of vehicles; Left states why SIMD does not support them. Compiled
-    * once for each form.
-    */
+  /** Compiles scores, once for each form. Left states why SIMD does not support them. */
   def of(judged: Vector[Judged], vehicles: Int): Either[Untraceable, ScoreLanes] = known((judged, vehicles))
 
-  /** The final value of a judged number; NaN where nothing counted.
+  /** The final value of a judged number; NaN without values.
     *
-    * @param kept last kept number
-    * @param count of values that counted
+    * @param kept its last running number
+    * @param count number of values
     */
   def value(reduction: Reduction | OfMoment, kept: Float, count: Int): Float = reduction match
     case Reduction.Rms | Reduction.Sd                   => math.sqrt(kept / count).toFloat
@@ -152,15 +150,15 @@ private[lanes] object ScoreLanes:
     case Reduction.Least | Reduction.Most if count == 0 => Float.NaN
     case _                                              => kept
 
-  /** Scores of the distance between two vehicles.
+  /** Scores the distance between two vehicles.
     *
-    * @param by reductions of its values, each from a time on, s
+    * @param by reductions of the distance, each from a time on, s
     */
   def ofDistance(by: (Reduction | OfMoment, Double)*): ScoreLanes =
     of(by.toVector.map(Judged(Separation, _, _)), 2).fold(throw _, identity)
 
   private def formulaOf(quantity: Quantity, vehicles: Int): Either[Untraceable, Formula] =
-    // Who writes a quantity may call its argument as they like.
+    // A user's quantity may have any name for its argument.
     val argument = quantity.getClass.getMethod("of", classOf[Positions]).getParameters.head.getName
     Formula.of(
       quantity,

@@ -7,7 +7,7 @@ import skein.scenario.Reduction
 
 /** Scores the flights of many worlds, once a period. Mutable.
   *
-  * @param altitudesDownM of vehicles that fly level; empty where they climb
+  * @param altitudesDownM altitudes of vehicles that fly level; empty if vehicles climb
   */
 private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[Double])
     extends TimetableScores:
@@ -57,7 +57,7 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
     for number <- numbers.indices; i <- numbers(number).indices do
       parameters(number)(i * worlds + world) = numbers(number)(i).toFloat
 
-  /** Sets the limit of a quantity that is awaited. */
+  /** Sets the limit of a judged number with [[OfMoment.FirstWithin]]. */
   def limit(number: Int, most: Float): Unit = shared(ScoreLanes.ownParameter(number)) = most
 
   def start(worlds: Int): Unit =
@@ -76,19 +76,19 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
       stage.shown.look(agents, views, view)
       add(stage, timeS)
 
-  /** Sets where a vehicle's positions are stored, one of each world: for scores without a view. */
+  /** Sets the arrays of a vehicle's positions, by world, for [[score]] without a view. */
   def place(vehicle: Int, north: Array[Float], northAt: Int, east: Array[Float], eastAt: Int): Unit =
     for stage <- stages do
       stage.shown.show(vehicle, 0, north, northAt)
       stage.shown.show(vehicle, 1, east, eastAt)
 
-  /** Sets where a vehicle's positions down are stored, one of each world. */
+  /** Sets the array of a vehicle's positions down, by world. */
   def placeDown(vehicle: Int, down: Array[Float], at: Int): Unit =
     for stage <- stages do stage.shown.show(vehicle, LaneObservation.DOWN, down, at)
 
   def counts(timeS: Float): Boolean = stageAt(timeS) != null
 
-  /** Scores the [[place placed]] positions of all vehicles, at a time that [[counts]]. */
+  /** Scores the [[place placed]] positions of all vehicles, at a time for which [[counts]] is true. */
   def score(timeS: Float): Unit = add(stageAt(timeS), timeS)
 
   private def stageAt(timeS: Float): Stage =
@@ -109,22 +109,23 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
   /** Time of the last score, since the start, s. */
   def scoredAtS: Float = shared(ScoreLanes.Time)
 
-  def soFar(number: Int, world: Int): Float = kept((ends(number) - 1) * worlds + world)
+  private def soFar(number: Int, world: Int): Float = kept((ends(number) - 1) * worlds + world)
 
-  /** The final values of a judged number, by world. */
+  /** Writes the last kept number by world. */
+  def soFar(number: Int, into: Array[Float]): Unit =
+    System.arraycopy(kept, (ends(number) - 1) * worlds, into, 0, worlds)
+
+  /** The final values of a judged number in all worlds. */
   def values(number: Int): Array[Float] = Array.tabulate(worlds)(value(number, _))
 
-  /** The final value in one world; NaN where nothing counted. */
+  /** The final value of a judged number in one world; NaN without values. */
   def value(number: Int, world: Int): Float =
     ScoreLanes.value(judged(number).reduction, soFar(number, world), counts(number))
 
 private[lanes] object Scoreboard:
   /** Scores the distance between two vehicles.
     *
-    * @param by reductions of its values, each from a time on, s
+    * @param by reductions of the distance, each from a time on, s
     */
   def ofDistance(by: (Reduction | OfMoment, Double)*): Scoreboard =
     Scoreboard(ScoreLanes.ofDistance(by*), Vector(0, 0))
-
-  /** The scores for learners: the newest distance, the sum and the least. */
-  def ofLearners: Scoreboard = ofDistance((OfMoment.Newest, 0), (Reduction.Mean, 0), (Reduction.Least, 0))

@@ -2,10 +2,10 @@ package skein.lanes.timetable
 
 import skein.units.Span
 
-/** Computes which command takes effect when, as in [[PlantModel]]: each a dead time after its arrival. A
-  * command that equals the one before counts as new here, and is ignored there: with drag this adds a piece.
+/** Computes when each command takes effect, as [[PlantModel]] does: a dead time after its arrival. Unlike
+  * there, a command that equals its predecessor counts as a new one; with drag this adds a piece.
   *
-  * @param propagation made from the pieces and their end, s from the reading
+  * @param propagation creates the result from the pieces and the end of the last, s from the reading
   */
 private[lanes] final class CommandPropagator private (
     deadTime: Span,
@@ -41,12 +41,12 @@ private[lanes] object CommandPropagator:
   def apply(deadTimeS: Double, propagation: (Vector[Flown], Double) => Propagation): Propagator =
     new CommandPropagator(Span.ofSeconds(deadTimeS), propagation, Known(0, 0, Vector.empty))
 
-  /** A piece of a prediction under one decision's command, from and until s from the reading. */
+  /** A piece of a prediction under the command of one decision; times are s from the reading. */
   final case class Flown(decision: Int, fromS: Double, untilS: Double)
 
-  /** A propagation of these pieces, with `perPart` numbers each.
+  /** Creates a propagation from pieces, with `perPart` numbers for each.
     *
-    * @param tell writes the numbers of a piece into an array from an index on
+    * @param tell writes the numbers of a piece into an array, from an index on
     */
   def told(flown: Vector[Flown], perPart: Int, first: Double = 0, second: Double = 0)(
       tell: (Flown, Array[Float], Int) => Unit
@@ -55,13 +55,13 @@ private[lanes] object CommandPropagator:
     for (part, i) <- flown.zipWithIndex do tell(part, numbers, i * perPart)
     Propagation(flown.map(_.decision).toArray, numbers, first.toFloat, second.toFloat)
 
-  /** The commands in [[PlantModel.Flying]], by their decisions.
+  /** The commands of [[PlantModel.Flying]], identified by their decisions.
     *
-    * @param coming with the time until each takes effect
+    * @param coming pending commands, with the time until each takes effect
     */
   final case class Known(acting: Int, last: Int, coming: Vector[(Int, Span)]):
-    /** The commands that take effect within a leg, with the time until each does, and the state at its end.
-      * They take effect in the order of arrival.
+    /** Finds the commands that take effect within a leg, in the order of their arrival, with the time until
+      * each does. Also returns the commands at the end of the leg.
       */
     def through(leg: Propagator.Leg, deadTime: Span): (Vector[(Int, Span)], Known) =
       val now            = if leg.decision == last then coming else coming :+ (leg.decision, deadTime)

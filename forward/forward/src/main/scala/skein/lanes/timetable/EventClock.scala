@@ -2,22 +2,22 @@ package skein.lanes.timetable
 
 import skein.lanes.plant.PlantLanes
 
-/** Computes the times of events in the form that one kind of vehicle needs. Mutable. */
+/** Represents the times of events by the numbers that a kind of vehicle needs. Mutable. */
 private[skein] trait EventClock:
-  /** Count of numbers that represent a time. */
+  /** Count of the numbers that represent one time. */
   def numbers: Int
 
-  /** Writes the [[numbers]] that represent this time, s; times must not decrease.
+  /** Writes the [[numbers]] that represent a time, s; times must not decrease.
     *
-    * @param acts whether a command takes effect then
+    * @param acts whether a command takes effect at that time
     */
   def tell(atS: Double, acts: Boolean, into: Array[Float], at: Int): Unit
 
 /** Represents a time by the number of steps that end until then, and by the numbers of the time since the
-  * last. A step begins with a command, or at the end of another.
+  * last step. A step begins at a command, or at the end of the previous step.
   *
   * @param told [[skein.lanes.plant.PlantStages.tell]] of the plant
-  * @param pieceS when the first begins, s
+  * @param pieceS begin of the first step, s
   */
 private[lanes] final class StepClock(
     lanes: PlantLanes,
@@ -38,5 +38,5 @@ private[lanes] final class StepClock(
     if acts then pieceS = atS
 
 private[lanes] object StepClock:
-  /** Count of numbers that represent a time. */
+  /** Count of the numbers that represent one time. */
   def numbers(lanes: PlantLanes): Int = 1 + lanes.stages.times

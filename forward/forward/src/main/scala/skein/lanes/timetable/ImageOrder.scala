@@ -2,15 +2,16 @@ package skein.lanes.timetable
 
 import skein.forward.ImageTiming.Ring
 
-/** The order in which a vehicle's images were taken, as their results become known. Mutable. */
+/** The order in which a vehicle's images were taken. It is updated when their results become known. Mutable.
+  */
 private[lanes] final class ImageOrder:
   private val takenNs          = Array.ofDim[Long](Ring)
   private var newest, runnerUp = -1
 
-  /** The newest image among those known before; −1 if there was none. */
+  /** The image that was taken last among those known before the present one; −1 if there is none. */
   var last = -1
 
-  /** Whether the image that became known now was taken before [[last]]. */
+  /** Whether the present image was taken before [[last]]. */
   var isOlder = false
 
   def start(): Unit =
@@ -21,7 +22,7 @@ private[lanes] final class ImageOrder:
   def known(image: Int): Unit =
     last = newest
     isOlder = whenNs(image) < whenNs(newest)
-    // Two are on the way at most, and whichever is overtaken twice is dropped.
+    // At most two images are being transmitted, and one that is overtaken twice is dropped.
     require(whenNs(image) >= whenNs(runnerUp), s"image $image is older than two others")
     if isOlder then runnerUp = image
     else

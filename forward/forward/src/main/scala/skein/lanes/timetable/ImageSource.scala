@@ -75,6 +75,7 @@ private[lanes] object ImageSource:
       StandingStill.Response(),
       Asking(),
       keepsAll = false,
+      asksPolicies = false,
       standsStill = false,
       // Nobody is asked.
       ring = 1

@@ -1,38 +1,38 @@
 package skein.lanes.timetable
 
-/** An event of an episode, recorded by [[TimetableNotes]]. Each vehicle's readings and decisions are
-  * numbered, and so are the views of all vehicles.
+/** An event of an episode, recorded by [[TimetableNotes]]. Readings and decisions are numbered per vehicle,
+  * views across all vehicles.
   */
 private[lanes] sealed trait Note:
   def atS: Double
 
 private[lanes] object Note:
-  /** A vehicle is read, or its position is taken for a score or an image. */
+  /** A vehicle's position is sampled, for a reading, a score or an image. */
   final case class Look(vehicle: Int, atS: Double, reading: Int) extends Note
 
   /** A reading is predicted.
     *
     * @param reading number of the prediction
-    * @param from the reading it starts from
+    * @param from number of the reading from which it starts
     */
   final case class Predict(vehicle: Int, atS: Double, reading: Int, from: Int, way: Propagation) extends Note
 
-  /** A reading is added to a forecast whose state holds more than readings.
+  /** A reading is added to a forecast whose state contains more than readings.
     *
-    * @param from the reading added before; 0 for none
-    * @param way the steps from the one to the other
+    * @param from number of the previous reading of the forecast; 0 if there is none
+    * @param way the steps from the previous reading to this one
     */
   final case class Enter(vehicle: Int, atS: Double, reading: Int, from: Int, way: Propagation) extends Note
 
   /** A vehicle's controller decides.
     *
-    * @param before number of its previous decision; this one's is one more
-    * @param elapsedS since then
-    * @param opponent in a duel: number of the opponent's last known decision; else 0
-    * @param ownAgeS in a duel: age of the own reading; else 0
-    * @param opponentAgeS in a duel: age of the opponent's reading; else 0
-    * @param aheadS with a camera: time for which an estimate is predicted, or −1 without prediction
-    * @param more for a team that needs it
+    * @param before number of its previous decision; this decision's number is one more
+    * @param elapsedS time since the previous decision
+    * @param opponent in a duel, number of the opponent's last known decision; else 0
+    * @param ownAgeS in a duel, age of the own reading; else 0
+    * @param opponentAgeS in a duel, age of the opponent's reading; else 0
+    * @param aheadS with a camera, time by which its estimate is predicted; −1 in loops without predictions
+    * @param more further inputs, for teams that need them
     */
   final case class Decide(
       vehicle: Int,
@@ -49,9 +49,9 @@ private[lanes] object Note:
 
   /** Further inputs of a decision.
     *
-    * @param known by vehicle, number of the last sent decision
-    * @param agesS by vehicle, age of its reading
-    * @param actsInS until the command takes effect; 0 without prediction
+    * @param known for each vehicle, number of the last decision that was sent to it
+    * @param agesS age of each vehicle's reading
+    * @param actsInS time until the command takes effect; 0 in loops without predictions
     */
   final class More(val known: Array[Int], val agesS: Array[Double], val actsInS: Double)
 
@@ -62,8 +62,8 @@ private[lanes] object Note:
 
   /** A sensor takes an image.
     *
-    * @param bearingError in standard deviations
-    * @param rangeError in standard deviations
+    * @param bearingError in units of the standard deviation
+    * @param rangeError in units of the standard deviation
     * @param isFound whether an opponent in view is detected
     */
   final case class Expose(
@@ -78,7 +78,7 @@ private[lanes] object Note:
 
   /** An image's result becomes known.
     *
-    * @param isOlder whether it was taken before the previous one that joined
-    * @param last the previous image that joined
+    * @param isOlder whether it was taken before image `last`
+    * @param last the image that was taken last among those known before
     */
   final case class Join(vehicle: Int, atS: Double, image: Int, isOlder: Boolean, last: Int) extends Note

@@ -1,7 +1,7 @@
 package skein.lanes.timetable
 
-/** The operations of a [[Timetable]], for code outside this package, which cannot access the constants of
-  * [[TimetableKernel]].
+/** Makes the kinds of a [[Timetable]]'s operations visible outside this package. The constants of
+  * [[TimetableKernel]] are package-private.
   */
 private[lanes] object OperationKind:
   final val Look    = TimetableKernel.LOOK

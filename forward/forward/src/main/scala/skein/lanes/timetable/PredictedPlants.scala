@@ -4,12 +4,13 @@ import java.util.Arrays
 import skein.lanes.plant.{PlantCorrection, PlantLanes, StagedFlight}
 import skein.lanes.policy.Directions
 
-/** Predicts by a plant: for each command, the number of steps that end under it, and the numbers of the time
-  * after the last ([[skein.lanes.plant.PlantStages]]). The part of the state that readings lack is simulated
-  * from reading to reading. The scalar reference is [[skein.vehicle.PlantModel]].
+/** Predicts by a plant. For each command, the propagation has the number of steps that end under it, and the
+  * numbers of the time after the last step ([[skein.lanes.plant.PlantStages]]). If readings lack a part of
+  * the state, that part is simulated from reading to reading. The scalar reference is
+  * [[skein.vehicle.PlantModel]].
   *
   * @param correction of the state by a reading
-  * @param speedMps of a command of length 1
+  * @param speedMps speed of a command of length 1
   */
 private[lanes] final class PredictedPlants(
     lanes: PlantLanes,
@@ -23,7 +24,7 @@ private[lanes] final class PredictedPlants(
   private val correct = correction.call
   private val count   = lanes.count
 
-  /** States by a reading's place, if readings do not contain the whole state. */
+  /** The state at each reading, by the reading's place; used only if readings lack a part of the state. */
   private var states = Array.emptyFloatArray
   private val before = Array.ofDim[Float](count * WORLDS)
   correct.inputs(0, count, before, 0)
@@ -80,7 +81,7 @@ private[lanes] final class PredictedPlants(
     else
       for seen <- Array(seenX, seenY, seenVx, seenVy) do System.arraycopy(seen, reading, seen, into, WORLDS)
 
-  /** The simulated state corrected by a reading. */
+  /** Corrects the simulated state by a reading. */
   private def take(
       seenX: Array[Float],
       seenY: Array[Float],
@@ -97,7 +98,7 @@ private[lanes] final class PredictedPlants(
     correct.outputs(count, into, at)
     correct()
 
-  /** Simulates on from the flight's state; false if no time passes. */
+  /** Simulates from the flight's present state; returns false if no time passes. */
   private def fly(sent: Directions, propagation: Propagation): Boolean =
     val (commands, perPart) = (propagation.commands, propagation.perPart)
     var i                   = 0

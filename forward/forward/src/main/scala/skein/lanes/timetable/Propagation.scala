@@ -1,11 +1,12 @@
 package skein.lanes.timetable
 
-/** The steps of a prediction from a [[Timetable]]'s reading: parts under one command each. The kind of
-  * predicted vehicle defines the numbers. A minute of a large team has hundreds of thousands.
+/** The steps of a prediction from a reading of a [[Timetable]], as parts, each under one command. The kind of
+  * vehicle defines the numbers of a part. One minute of a large team needs hundreds of thousands of
+  * propagations.
   *
-  * @param commands of each part: its decision, 0 before the first; in a timetable its place, or
-  *   [[Propagation.Rest]]
-  * @param numbers of the parts, concatenated, an equal count for each
+  * @param commands for each part its decision, 0 before the first one; in a timetable the place of its
+  *   command, or [[Propagation.Rest]]
+  * @param numbers numbers of all parts, concatenated, equally many for each
   */
 private[skein] final class Propagation(
     val commands: Array[Int],
@@ -15,12 +16,12 @@ private[skein] final class Propagation(
 ):
   private[lanes] def perPart: Int = if commands.isEmpty then 0 else numbers.length / commands.length
 
-  /** The propagation with its decisions replaced by the places of their commands. */
+  /** Replaces the decisions by the places of their commands. */
   private[lanes] def placed(placeOf: Int => Int): Propagation =
     def place(decision: Int) = if decision == 0 then Propagation.Rest else placeOf(decision)
     Propagation(commands.map(place), numbers, first, second)
 
-  /** Approximate size in memory, bytes, for the cache's limit. */
+  /** Approximate size in memory, bytes, for [[Timetables]]. */
   private[lanes] def bytes: Long = 64 + 4L * (commands.length + numbers.length)
 
 private[skein] object Propagation:

@@ -4,11 +4,12 @@ import skein.forward.{DelayTable, Delays, RolloutAgent, Engagement, TabledDelays
 import skein.fusion.SensorModel
 import skein.policy.{Action, Assignment, KeepHeading, Role}
 
-/** Vehicles at rest, to compute a loop's times, which do not depend on positions. */
+/** Vehicles at rest, used to compute the times of a loop, which do not depend on positions. */
 private[lanes] object StandingStill:
-  /** This number of vehicles; roles and rivals do not affect times.
+  /** An engagement of this number of vehicles. Roles and rivals are arbitrary, since they have no effect on
+    * times.
     *
-    * @param eyes of vehicles with cameras, in a duel
+    * @param eyes cameras of vehicles in a duel, by vehicle
     */
   def engagement(vehicles: Int, durationS: Double, eyes: Map[Int, SensorModel] = Map.empty): Engagement =
     Engagement(
@@ -20,7 +21,7 @@ private[lanes] object StandingStill:
 
   /** The response of vehicles at rest.
     *
-    * @param handsOverS see [[VelocityResponse.handoverS]]
+    * @param handsOverS value of [[VelocityResponse.handoverS]]
     */
   final class Response(handsOverS: Double = 0) extends VelocityResponse:
     override def handoverS: Double = handsOverS
@@ -34,7 +35,7 @@ private[lanes] object StandingStill:
       def vx: Double                                   = 0
       def vy: Double                                   = 0
 
-  /** The link of the flight whose times are computed. Mutable. */
+  /** The link of the flight whose times are being computed. Mutable. */
   final class Link extends Delays:
     var delays: TabledDelays = DelayTable.none
 

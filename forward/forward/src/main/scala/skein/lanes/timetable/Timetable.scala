@@ -75,7 +75,8 @@ private[skein] object Timetable:
       StandingStill.engagement(vehicles, durationS, eyes),
       unpredicted(timing),
       link,
-      StandingStill.Response(model.handoverS)
+      StandingStill.Response(model.handoverS),
+      asksPolicies = false
     ).fly(key, observer = notes): Unit
     TimetableCompiler(notes, vehicles, model).result
 

@@ -2,9 +2,9 @@ package skein.lanes.timetable
 
 import skein.forward.RolloutAgent
 
-/** How [[Timetable]]s simulate a kind of vehicle. */
+/** Simulates a kind of vehicle by [[Timetable]]s. */
 private[skein] trait TimetableDynamics:
-  /** From a command's arrival until the vehicle follows it, s. */
+  /** Time from a command's arrival until the vehicle follows it, s. */
   def deadTimeS: Double
 
   /** See [[skein.forward.VelocityResponse.handoverS]]. */
@@ -12,11 +12,11 @@ private[skein] trait TimetableDynamics:
 
   def clock(): EventClock
 
-  /** All worlds' vehicles of one number; differences between worlds are set on them.
+  /** The vehicles with one number in all worlds; the caller sets what differs between worlds.
     *
     * @param agent its speed is that of a direction of length 1
     */
   def vehicles(agent: RolloutAgent): TimetableVehicles
 
-  /** The model that predicts from their readings, in loops that predict. */
+  /** The model that predicts the vehicles from their readings; None in loops that do not predict. */
   def predictor: Option[TimetablePredictor] = None

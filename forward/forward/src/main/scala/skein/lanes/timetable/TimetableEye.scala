@@ -4,7 +4,7 @@ import java.util.Arrays
 import skein.forward.{RolloutAgent, ImageTiming}
 import skein.lanes.policy.CameraTrackerLanes
 
-/** A camera in many worlds with equal images at equal times, which a [[Timetable]] defines. Mutable. */
+/** A camera in many worlds whose images are taken at equal times, which a [[Timetable]] defines. Mutable. */
 private[lanes] class TimetableEye(forms: CameraTrackerLanes.Forms, own: RolloutAgent, opponent: RolloutAgent)
     extends CameraTrackerLanes(forms, own, opponent):
   import CameraTrackerLanes.{Belief, Detection}
@@ -14,18 +14,18 @@ private[lanes] class TimetableEye(forms: CameraTrackerLanes.Forms, own: RolloutA
   private val validS   = Array.ofDim[Float](ImageTiming.Ring)
   private var replayed = Array.ofDim[Float](Belief * WORLDS)
 
-  /** By world, whether an image shows the opponent: 1 or 0. */
+  /** For each world, 1 if an image shows the opponent, else 0. */
   protected def found(image: Int): Array[Float] = Arrays.copyOf(images(image), WORLDS)
 
-  /** Resets to the start of an episode, of which the first worlds count. */
+  /** Resets to the start of an episode with this number of worlds. */
   def start(worlds: Int): Unit =
     use(worlds)
     forget()
 
   /** Takes an image.
     *
-    * @param times from `at` on: its time; the errors of the bearing and of the range; whether an opponent in
-    *   view is found
+    * @param times from index `at` on: the image's time, s; the errors of bearing and range, in standard
+    *   deviations; whether an opponent in view is detected
     */
   def expose(
       image: Int,
@@ -45,7 +45,7 @@ private[lanes] class TimetableEye(forms: CameraTrackerLanes.Forms, own: RolloutA
 
   /** Updates the estimate by an image.
     *
-    * @param isOlder whether it was taken before the previous one
+    * @param isOlder whether it was taken before image `last`, which was added before it
     */
   def join(image: Int, isOlder: Boolean, last: Int): Unit =
     if isOlder then
@@ -64,9 +64,9 @@ private[lanes] class TimetableEye(forms: CameraTrackerLanes.Forms, own: RolloutA
     Arrays.fill(takenS, validS(image))
     join(from, images(image), into)
 
-  /** Fills the estimate for a decision, and points the camera at it.
+  /** Computes the estimate for a decision, and points the camera at it.
     *
-    * @param nowS since the start
+    * @param nowS time of the decision, s since the start
     * @param aheadS see [[skein.fusion.SensorFormulas.decidedUpon]]
     */
   def look(ours: TimetableVehicles, oursAt: Int, nowS: Float, aheadS: Float): Unit =

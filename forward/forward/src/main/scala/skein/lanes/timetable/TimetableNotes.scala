@@ -17,18 +17,18 @@ private[lanes] final class TimetableNotes(
 ) extends LoopObserver:
   val all: mutable.ArrayBuffer[Note] = mutable.ArrayBuffer.empty
 
-  /** By vehicle: the readings that were added to the forecast. */
+  /** For each vehicle, the readings that were added to the forecast. */
   private val entered = Array.fill(vehicles)(mutable.ArrayBuffer.empty[Entered])
 
-  // What was predicted last: of which forecast, for a decision when, in which view.
+  // The last prediction: its forecast, the time of its decision, and its view.
   private var predictedOf: Forecast = null
   private var predictedAtNs         = 0L
   private var predicted             = 0
 
-  /** By vehicle: the number of readings, predictions included, and of decisions. */
+  /** For each vehicle, the number of readings so far, including predictions; and the number of decisions. */
   val looks, decisions: Array[Int] = Array.ofDim[Int](vehicles)
 
-  /** By view, then by vehicle: the numbers of the readings. */
+  /** The readings' numbers, by view, then by vehicle. */
   val views: mutable.ArrayBuffer[Array[Int]] = mutable.ArrayBuffer.empty
 
   private val readingOf  = Array.fill(vehicles)(mutable.ArrayBuffer.empty[Int])
@@ -40,7 +40,7 @@ private[lanes] final class TimetableNotes(
     all += Note.Look(vehicle, timeS, looks(vehicle))
     looks(vehicle)
 
-  /** The view's number: several vehicles may decide on one view in sequence. */
+  /** Number of a view; several vehicles may decide on one view in sequence. */
   private def viewOf(seen: Array[Int]): Int =
     if views.isEmpty || !Arrays.equals(views.last, seen) then views += seen
     views.size - 1
@@ -74,7 +74,7 @@ private[lanes] final class TimetableNotes(
   private def plotted(vehicle: Int, leg: Leg): Propagator.Leg =
     Propagator.Leg(leg.command.fold(0)(sent => decisionOf(vehicle)(sent.sequence.toInt)), leg.span)
 
-  /** The view of all vehicles predicted for the time at which a command sent now takes effect. */
+  /** The view of all vehicles, predicted for the time at which a command that is sent now takes effect. */
   private def predict(forecast: Forecast, atNs: Long): Int =
     if (forecast ne predictedOf) || atNs != predictedAtNs then
       predictedOf = forecast
@@ -144,6 +144,6 @@ private[lanes] final class TimetableNotes(
 
 /** A reading in the forecast.
   *
-  * @param propagator for predictions from it
+  * @param propagator predicts from this reading
   */
 private final case class Entered(reading: Int, validAtNs: Long, propagator: Propagator)

@@ -2,14 +2,14 @@ package skein.lanes.timetable
 
 import skein.forward.RolloutAgent
 
-/** A kind of model that predicts by [[Timetable]]s. */
+/** A kind of model that [[Timetable]]s use for predictions. */
 private[skein] trait TimetablePredictor:
   def propagator: Propagator
 
   def vehicles(agent: RolloutAgent): PredictedVehicles
 
-  /** Whether its state holds more than a reading. */
+  /** Whether the model's state contains more than a reading. */
   def remembers: Boolean = false
 
-  /** From a command's arrival until a vehicle is assumed to follow it, s. */
+  /** Time from a command's arrival until a vehicle is assumed to follow it, s. */
   def deadTimeS: Double

@@ -6,10 +6,11 @@ import skein.lanes.plant.LaneQuadrotors
 import skein.lanes.policy.Directions
 import skein.simd.{BoundFunction, LaneCall}
 
-/** Quadrotors with their flight controllers: they move in whole steps, a command takes effect from the first
-  * step after it on, and between two steps a vehicle is extrapolated with constant acceleration. Their clock
-  * counts the steps until a moment, and the time after the last of them. Positions are relative to the start,
-  * where floats are finest. The scalar reference is `skein.forward.QuadrotorVehicle`.
+/** Quadrotors with their flight controllers. They move in whole steps: a command takes effect at the first
+  * step after its arrival, and between steps a vehicle is extrapolated with constant acceleration. Their
+  * clock represents a time by the number of steps since the last event, and by the time since the last step.
+  * Positions are relative to the start, where floats are finest. The scalar reference is
+  * `skein.forward.QuadrotorVehicle`.
   */
 private[lanes] final class TimetableQuadrotors(agent: RolloutAgent, flown: LaneQuadrotors)
     extends TimetableVehicles(agent):
@@ -61,8 +62,8 @@ private[lanes] object TimetableQuadrotors:
   private val trace = Trace()
   import trace.{add, input, mul, param}
 
-  /** Extrapolated position: of acceleration, velocity, position and start; parameters are the time since the
-    * last step and half its square.
+  /** Computes the extrapolated position from acceleration, velocity, position and start. Parameters are the
+    * time since the last step, and half its square.
     */
   val placed: BoundFunction = BoundFunction.of(
     Vector(add(add(add(mul(input(0), param(1)), mul(input(1), param(0))), input(2)), input(3)))

@@ -3,10 +3,11 @@ package skein.lanes.timetable
 import java.util.SplittableRandom
 import scala.collection.mutable
 
-/** A cache of timetables, for all threads. A search simulates its episodes again and again in order: where
-  * they do not all fit, the oldest would be evicted just before its use, so the evicted one is arbitrary.
+/** A cache of timetables, shared by all threads. A search simulates its episodes repeatedly in one order. If
+  * they do not all fit, evicting the oldest would always evict the next to be used, so a random one is
+  * evicted.
   *
-  * @param mostBytes limit of their size, approximately
+  * @param mostBytes approximate limit of the total size
   */
 private[lanes] final class Timetables(mostBytes: Long = Timetables.MostBytes):
   private val known  = mutable.HashMap.empty[Any, Timetable]
@@ -14,9 +15,9 @@ private[lanes] final class Timetables(mostBytes: Long = Timetables.MostBytes):
   private val random = SplittableRandom(1)
   private var bytes  = 0L
 
-  /** The timetable of a key. Two threads may make it simultaneously, with equal results.
+  /** The timetable of a key. Two threads may create it simultaneously, with equal results.
     *
-    * @param of everything on which it depends
+    * @param of the key: everything on which the timetable depends
     */
   def getOrMake(of: Any)(make: => Timetable): Timetable =
     known.synchronized(known.get(of)).getOrElse:
@@ -35,7 +36,7 @@ private[lanes] final class Timetables(mostBytes: Long = Timetables.MostBytes):
     kept.dropRightInPlace(1)
 
 private[lanes] object Timetables:
-  /** Limit of the cache: a minute of one vehicle is some 100 kB; of a team of twenty that predicts, 40 MB in
-    * all.
+  /** Limit of the cache, bytes: one minute of one vehicle takes some 100 kB, one minute of a team of twenty
+    * that predicts takes 40 MB.
     */
   private val MostBytes = (256L << 20).max(Runtime.getRuntime.maxMemory / 8)

@@ -3,8 +3,9 @@ package skein.lanes.timetable
 import skein.lanes.policy.LaneObservation
 import skein.simd.{BoundFunction, LaneCall, LaneFunction}
 
-/** A call of a function of a view, with other inputs in fixed arrays.
+/** A call of a function whose inputs are fields of a view, or numbers in fixed arrays.
   *
+  * @param lanes for an input from a view, its vehicle and field
   * @param parameters read at each call
   */
 private[lanes] final class ViewCall(
@@ -20,12 +21,12 @@ private[lanes] final class ViewCall(
       .flatMap((input, place) => lanes(input).map((vehicle, field) => (place, vehicle, field)))
       .unzip3
 
-  /** Sets where a vehicle's values of a field are stored from now on. */
+  /** Sets the array and offset of one field of a vehicle, for all further calls. */
   def show(vehicle: Int, field: Int, array: Array[Float], from: Int): Unit =
     for i <- places.indices if vehicles(i) == vehicle && fields(i) == field do
       call.input(places(i), array, from)
 
-  /** Sets where a vehicle's fields are stored, concatenated. */
+  /** Sets the array and offset of all fields of a vehicle, which are stored one after the other. */
   def show(vehicle: Int, array: Array[Float], from: Int): Unit =
     for field <- 0 until LaneObservation.IN_SPACE do
       show(vehicle, field, array, from + field * LaneFunction.COUNT)

@@ -9,7 +9,7 @@ class StreamOffersSuite extends munit.FunSuite:
   private val worlds    = LaneOffers.WORLDS
   private val durationS = 30.0
 
-  /** Times from the flight's start, in grains, and places from its first request's. */
+  /** A view: its times from the flight's start, in grains, and its places from those of the first request. */
   private final case class Told(
       joinedAt: Long,
       nextAt: Option[Long],
@@ -18,7 +18,6 @@ class StreamOffersSuite extends munit.FunSuite:
       place: Vector[Int]
   )
 
-  /** All views of each world, in their order. */
   private def views(
       timing: LoopTiming.Stream,
       vehicles: Int,

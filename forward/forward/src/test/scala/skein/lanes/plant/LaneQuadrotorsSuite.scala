@@ -8,13 +8,13 @@ class LaneQuadrotorsSuite extends munit.FunSuite:
 
   private def downM(vehicle: Int) = -5.0 - vehicle * 0.2
 
-  /** A new velocity every 0.3 s, up to 10 m/s, different for every vehicle. */
+  /** The velocity commanded to a vehicle, up to 10 m/s: new every 0.3 s, and different for every vehicle. */
   private def velocity(vehicle: Int, turn: Int): (Float, Float) =
     val speed = 2 + (vehicle * 7 + turn * 3) % 9
     val angle = 0.9 * vehicle + 0.35 * turn
     ((speed * math.cos(angle)).toFloat, (speed * math.sin(angle)).toFloat)
 
-  test("the kernel flies as the scalar quadrotor does: 10 s of turning, to 5 mm and 5 mm/s"):
+  test("the kernel flies as the scalar quadrotor does, within 5 mm and 5 mm/s after 10 s of turns"):
     val kernel = LaneQuadrotors.of(Quadrotor.AirSim).fold(fail(_), identity)
     val states = Array.tabulate(vehicles)(v => Quadrotor.AirSim.hovering(Vector3(v, -v, downM(v))))
     for v <- 0 until vehicles do kernel.hover(v, Vector3(v, -v, downM(v)))
@@ -31,7 +31,7 @@ class LaneQuadrotorsSuite extends munit.FunSuite:
       assert(position < 5e-3, s"vehicle $v is $position m off")
       assert(speed < 5e-3, s"vehicle $v is $speed m/s off")
 
-  test("another airframe with other gains flies as its scalar quadrotor does: 3 s, to 2 mm"):
+  test("another airframe with other gains flies as its scalar quadrotor does, within 2 mm after 3 s"):
     val heavy  = Quadrotor(Airframe(massKg = 1.3, dragCoefficient = 0.5), ControllerGains(velocityP = 0.3))
     val kernel = LaneQuadrotors.of(heavy).fold(fail(_), identity)
     val states = Array.tabulate(vehicles)(v => heavy.hovering(Vector3(0, 0, downM(v))))
@@ -45,7 +45,7 @@ class LaneQuadrotorsSuite extends munit.FunSuite:
       val off = (kernel.positionNed(v) - states(v).positionNed).norm
       assert(off < 2e-3, s"vehicle $v is $off m off")
 
-  test("fewer vehicles have equal results, to the bit"):
+  test("a kernel that flies only some of its vehicles gives them equal results, to the bit"):
     val Vector(all, some) = Vector.fill(2)(LaneQuadrotors.of(Quadrotor.AirSim).fold(fail(_), identity))
     some.use(3)
     for kernel <- Seq(all, some) do
@@ -55,11 +55,11 @@ class LaneQuadrotorsSuite extends munit.FunSuite:
       kernel.fly(333)
     for v <- 0 until 3 do assertEquals(some.positionNed(v), all.positionNed(v))
 
-  test("gains that a client has set need more memory than SIMD keeps, which is reported"):
+  test("gains that a client has set need more memory than SIMD stores, which is reported"):
     val told = LaneQuadrotors.of(Quadrotor.AirSim.tuned(CascadeGains.Default)).left.getOrElse("none")
     assert(told.contains("cascadeMemory"), told)
 
-  test("hover holds its position to a millimetre over 30 s, in floats too"):
+  test("a hovering vehicle holds its position to a millimetre over 30 s, in floats too"):
     val kernel = LaneQuadrotors.of(Quadrotor.AirSim).fold(fail(_), identity)
     for v <- 0 until vehicles do kernel.hover(v, Vector3(0, 0, -20))
     val start = kernel.positionNed(0)

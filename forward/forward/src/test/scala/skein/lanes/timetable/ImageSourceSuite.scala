@@ -36,7 +36,7 @@ class ImageSourceSuite extends munit.FunSuite:
     (name, link)  <- links
     agent         <- 0 to 1
   do
-    test(s"a camera $what over $name, of vehicle $agent: the scalar engine's images, to the nanosecond"):
+    test(s"a camera $what over $name, vehicle $agent: images are the scalar engine's, to the nanosecond"):
       val source = ImageSource(model, agent, DurationS)
       var older  = 0
       for seed <- 1 to 3 do
@@ -58,7 +58,6 @@ class ImageSourceSuite extends munit.FunSuite:
         if source.isFound then Some((source.bearing, source.range)) else None
     )
 
-  /** The events of a flight's images, in order. */
   private def happens(model: SensorModel, agent: Int, link: TabledDelays, key: Int): Vector[Happens] =
     val all      = ArrayBuffer.empty[Happens]
     val observer = new LoopObserver:
@@ -84,7 +83,7 @@ private object ImageSourceSuite:
 
   /** An event of an image.
     *
-    * @param errors of an image that is taken, if the opponent is found wherever it is in view; None where an
-    *   image's result becomes known
+    * @param errors errors of an image that is taken, if an opponent in view is detected; None if an image's
+    *   result becomes known
     */
   private final case class Happens(image: Int, atNs: Long, errors: Option[Option[(Float, Float)]])

@@ -4,7 +4,7 @@ class TimetablesSuite extends munit.FunSuite:
   private def made(numbers: Int): Timetable =
     Timetable(1, Array.empty, 1, Array.ofDim(numbers), Array.empty, Array.empty, 0, 0)
 
-  test("of episodes that go round, some are found again where not all have room"):
+  test("of episodes that are used in rotation and do not all fit, some are still found in the cache"):
     val timetables = Timetables(mostBytes = 100 * made(10).bytes)
     var times      = 0
     for _ <- 1 to 20; episode <- 1 to 150 do
@@ -14,7 +14,7 @@ class TimetablesSuite extends munit.FunSuite:
     // The oldest first, all would be made 20 times; 100 of 150 have room.
     assert(clue(times) < 1800)
 
-  test("a timetable that fits is made once, and one that does not fit is made each time"):
+  test("a timetable that fits into the cache is made once, and one that does not fit is made each time"):
     val timetables           = Timetables(mostBytes = 3 * made(10).bytes)
     var times                = 0
     def get(of: Int)(n: Int) = timetables.getOrMake(of):

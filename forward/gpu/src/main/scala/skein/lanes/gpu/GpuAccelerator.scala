@@ -4,7 +4,7 @@ import skein.forward.{LoopTiming, VelocityResponse}
 import skein.gpu.Gpu
 import skein.lanes.{AcceleratedTeams, Accelerator, Engine, Episodes}
 
-/** A GPU as an [[skein.lanes.Accelerator]]: each thread simulates one candidate in one episode. */
+/** An [[skein.lanes.Accelerator]] that uses a GPU. Each thread simulates one candidate in one episode. */
 final class GpuAccelerator(gpu: Gpu) extends Accelerator:
   def engine: Engine =
     Engine(Engine.Kind.Gpu, s"GPU, ${gpu.name}: a thread a candidate", sideBySide = 1 << 14)

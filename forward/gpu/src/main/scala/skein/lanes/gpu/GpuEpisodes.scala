@@ -4,11 +4,11 @@ import skein.gpu.{Gpu, GpuBuffer}
 import skein.lanes.{LaneThreads, WorldBatches, Worlds}
 import skein.lanes.timetable.Timetable
 
-/** Episodes for a number of vehicles, on a GPU. Mutable.
+/** A cache of episodes in a GPU's memory, for a number of vehicles. Mutable.
   *
   * @param shows see [[GpuLayout]]
-  * @param threads that make timetables
-  * @param mostBytes limit of what is held, unless one call needs more
+  * @param threads number of threads that make timetables
+  * @param mostBytes limit of the cache, unless one call needs more
   */
 private[lanes] final class GpuEpisodes(
     gpu: Gpu,
@@ -24,11 +24,12 @@ private[lanes] final class GpuEpisodes(
 
   def layout: GpuLayout = now
 
-  /** Uploads episodes to the GPU.
+  /** Uploads those episodes that are not cached.
     *
-    * @param names keys: everything on which they depend
-    * @param timetable of one of them, by its index; called by several threads simultaneously
-    * @return None if it was cancelled
+    * @param names key of each episode: everything on which it depends
+    * @param timetable makes the timetable of an episode, from its index; called by several threads
+    *   simultaneously
+    * @return the episodes in order; None if the upload was cancelled
     */
   def bring(
       names: Vector[Any],
@@ -36,9 +37,9 @@ private[lanes] final class GpuEpisodes(
   )(timetable: Int => Timetable): Option[Vector[Held]] =
     bring(names, isCancelled, timetable, Map.empty)
 
-  /** Uploads episodes.
+  /** Uploads those episodes that are not cached.
     *
-    * @param known timetables that are made already, by their episodes' names
+    * @param known timetables that already exist, by key
     */
   private def bring(
       names: Vector[Any],
@@ -46,7 +47,7 @@ private[lanes] final class GpuEpisodes(
       timetable: Int => Timetable,
       known: Map[Any, Timetable]
   ): Option[Vector[Held]] =
-    // Whoever is used now is forgotten last.
+    // An access makes an episode the most recently used.
     val missing = names.indices.filter(i => held.get(names(i)) == null).distinctBy(names)
     val made    = missing.map(i => known.getOrElse(names(i), null)).toArray
     val ready   = GpuEpisodes.inParallel(missing.length, 1, threads, isCancelled): i =>
@@ -68,8 +69,8 @@ private[lanes] final class GpuEpisodes(
           bytes += told.bytes
         Some(names.iterator.map(held.get).toVector)
 
-  /** Evicts the least recently used episodes, until no more than this number of bytes is held, but none that
-    * is needed now.
+  /** Evicts the least recently used episodes until the cache has at most `most` bytes; never evicts a needed
+    * one.
     */
   private def forget(most: Long, needed: Set[Any]): Unit =
     val eldest = held.entrySet.iterator
@@ -88,20 +89,18 @@ private[lanes] object GpuEpisodes:
     val stride: Int             = timetable.stride
     val scoredAtS: Array[Float] = timetable.scoredAtS
 
-  /** Number of candidates in these worlds. */
   def candidatesOf(worlds: Worlds): Int =
     val each = worlds.episodesOfEach
     require(worlds.size % each == 0, s"${worlds.size} worlds are not $each episodes of every candidate")
     worlds.size / each
 
-  /** All worlds of these candidates, by number. */
   def worldsOf(candidates: Array[Int], each: Int): Array[Int] =
     candidates.flatMap(candidate => Array.range(candidate * each, (candidate + 1) * each))
 
   /** Runs work for each number below a count on several threads.
     *
-    * @param chunk numbers that a thread takes together
-    * @return how many were done: all, unless it was cancelled
+    * @param chunk number of calls of `work` that a thread makes in a row
+    * @return number of calls; `count` unless it was cancelled
     */
   def inParallel(count: Int, chunk: Int, threads: Int, isCancelled: () => Boolean = () => false)(
       work: Int => Unit

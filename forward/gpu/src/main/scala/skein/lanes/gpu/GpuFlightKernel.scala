@@ -6,13 +6,13 @@ import skein.lanes.PreparedTeam
 import skein.lanes.score.{OfMoment, ScoreLanes}
 import skein.lanes.timetable.Timetable
 
-/** [[skein.lanes.timetable.TimetableKernel]] on a GPU: a thread simulates one candidate in one episode, and
-  * the threads of a block simulate candidates in one episode, so threads of a block do not diverge. The
-  * expressions and single operations are those of the CPU, and so are the outcomes, to the bit.
+/** Runs the operations of [[skein.lanes.timetable.TimetableKernel]] on a GPU. A thread simulates one
+  * candidate in one episode; the threads of a block simulate candidates in one episode, so they do not
+  * diverge. Expressions and single operations are those of the CPU, so outcomes are identical, to the bit.
   *
   * @param sides count of numbers that define the policies of each side
   * @param scores of the flights
-  * @param agents of one candidate, for what all have in common
+  * @param agents of one candidate; all candidates share their common properties
   */
 private[lanes] abstract class GpuFlightKernel(
     gpu: Gpu,
@@ -27,7 +27,7 @@ private[lanes] abstract class GpuFlightKernel(
   protected trait Body:
     def vehicles: Vector[GpuVehicle]
 
-    /** The predictions from readings, in loops that predict. */
+    /** The predictions from readings; empty in loops that do not predict. */
     def predictions: Vector[GpuPrediction]
 
     def start(): Unit
@@ -35,15 +35,15 @@ private[lanes] abstract class GpuFlightKernel(
     def show(now: GpuRecord): Unit
     def decide(self: Int, now: GpuRecord): Unit
 
-    /** A parameter of a quantity; see [[ScoreLanes.Source.Parameter]]. */
+    /** Register of a quantity's parameter; see [[ScoreLanes.Source.Parameter]]. */
     def quantity(number: Int, parameter: Int): Int
 
-    /** A world's [[efforts]], in the order of the results. */
+    /** Registers of a world's [[efforts]], in the order of the results. */
     def besides: Vector[Int] = Vector.empty
 
-  /** Makes the part of the kernel.
+  /** Creates the part of the kernel that depends on the kind of flight.
     *
-    * @param numbers of each side, the register of a number
+    * @param numbers for each side, the register of a number
     */
   protected def body(code: Ptx, numbers: Vector[Int => Int]): Body
 
@@ -51,19 +51,19 @@ private[lanes] abstract class GpuFlightKernel(
 
   protected def moreBytes: Int = 0
 
-  /** Count of results in addition to the scores: efforts, by their judged numbers. */
+  /** Count of results in addition to the scores: efforts, in the order of their judged numbers. */
   protected def efforts: Int = 0
 
-  /** The sets of numbers that define the policies of each side of candidates, concatenated, and the index of
-    * each candidate's set.
+  /** For each side, the sets of numbers that define the policies of candidates, concatenated, and the index
+    * of each candidate's set.
     */
   def sidesOf(teams: Array[PreparedTeam]): Vector[(Array[Float], Array[Int])]
 
   private lazy val kernel: GpuKernel = gpu.kernel(text, Name)
 
-  /** Simulates candidates in episodes.
+  /** Simulates all candidates in all episodes.
     *
-    * @return the numbers kept for the scores, then the efforts, each by episode, then by candidate
+    * @return the running numbers of the scores, then the efforts; each by episode, then by candidate
     */
   def fly(episodes: Vector[GpuEpisodes.Held], teams: Array[PreparedTeam]): Array[Float] =
     val candidates            = teams.length
@@ -84,9 +84,9 @@ private[lanes] abstract class GpuFlightKernel(
       into.floats()
     finally buffers.foreach(_.close())
 
-  /** Words for each block: the address of its episode's operations, in two, their count, and the words of
-    * each; the first world, the count of worlds, and the first one's candidate; one is unused, so that
-    * addresses are aligned to eight bytes.
+  /** The words of all blocks. Each block has the address of its episode's operations, in two words; their
+    * count, and the words per operation; the first world, the count of worlds, and the candidate of the first
+    * world; and an unused word that aligns addresses to eight bytes.
     */
   private def blocksOf(episodes: Vector[GpuEpisodes.Held], candidates: Int): Array[Int] =
     val words = Array.newBuilder[Int]
@@ -125,7 +125,7 @@ private[lanes] abstract class GpuFlightKernel(
     private val labels                  = GpuTimetable.Labels(layout.vehicles)
     private val kept                    = Variables(code, scores.initial)
 
-    // How often each stage was computed, for numbers that need their share.
+    // Number of evaluations of each stage, for judged numbers that need the weight of a value.
     private val counted = Variables(code, scores.judged.map(_ => 0f))
 
     def module: String =
@@ -148,7 +148,7 @@ private[lanes] abstract class GpuFlightKernel(
       val nextLabel = code.fresh()
       code.place(loop)
       code.goIf(code.compareWhole("le", left, 0), stored)
-      // Behind the last operation are the views.
+      // The views follow the last operation.
       val following = code.sum(record, bytes)
       code.loadWhole(following, 0, nextLabel): Unit
       val now     = GpuRecord(code, record, views)
@@ -158,7 +158,7 @@ private[lanes] abstract class GpuFlightKernel(
       for self <- 0 until layout.vehicles do
         val vehicle = flying.vehicles(self)
         part(targets(labels.look(self, withVelocity = false)))(look(vehicle, now, withVelocity = false))
-        // Predictions start from velocities, whoever looks at them.
+        // Predictions start from velocities, even if no policy reads them.
         part(targets(labels.look(self, withVelocity = true))):
           look(vehicle, now, withVelocity || flying.predictions.nonEmpty)
         part(targets(labels.act(self))):
@@ -184,7 +184,7 @@ private[lanes] abstract class GpuFlightKernel(
       body
       code.go(next)
 
-    /** The numbers of this thread's candidate. Few of them stay in registers. */
+    /** Register of a number of this thread's candidate. Only few numbers stay in registers. */
     private def numbersOf(side: Int, candidate: Int): Int => Int =
       val set    = code.loadWhole(code.address(code.argument(s"flownBy$side"), candidate))
       val tile   = code.wholes("shr.s32", set, TileBits.toString)
@@ -265,18 +265,18 @@ private[lanes] abstract class GpuFlightKernel(
 private[lanes] object GpuFlightKernel:
   private val Name = "flights"
 
-  /** Number of worlds in a block, all of one episode. */
+  /** Number of worlds in a block, which share one episode. */
   private val BlockWorlds = 128
   private val BlockWords  = 8
   private val Tile        = 32
   private val TileBits    = 5
 
-  /** Limit of a side's numbers in registers; further ones are read where they are needed. */
+  /** Limit of a side's numbers that are kept in registers; the others are loaded at each use. */
   private val MostInRegisters = 16
 
-  /** Index of a judged number among a world's results, and its conversion.
+  /** Place of a judged number among a world's results, and its final conversion.
     *
-    * @param count of values that counted
+    * @param scoredAtS times of the scores, s
     */
   final class Outcome(scores: ScoreLanes, number: Int, scoredAtS: Array[Float]):
     private val of    = scores.judged(number)

@@ -8,10 +8,10 @@ import skein.lanes.{PreparedTeam, TeamForm}
 import skein.lanes.policy.{OpponentLanes, PolicyLanes, VehicleNumbers}
 import skein.lanes.timetable.Timetable
 
-/** Two that play against one another, on a GPU. A side each: the numbers of its policy, its initial memory,
-  * and its start; and one of the quantities' parameters, if they have any.
+/** Simulates duels on a GPU. Each vehicle is a side: the numbers of its policy, its initial memory, and its
+  * start. If quantities have parameters, these are a further side.
   *
-  * @param agents of one candidate; starts of others are numbers
+  * @param agents of one candidate; other candidates' starts are numbers of their sides
   */
 private[lanes] final class GpuOpponentKernel(
     gpu: Gpu,
@@ -38,7 +38,9 @@ private[lanes] final class GpuOpponentKernel(
     Vector(0, 1).map(side(teams, _)) ++ GpuOpponentKernel.ofQuantities(form).map: _ =>
       (teams.flatMap(_.ofQuantities.flatten.map(_.toFloat)), teams.indices.toArray)
 
-  /** Nearly always all of one side are the very same. */
+  /** Numbers of one vehicle's side. Nearly always all candidates share the identical agent, and so one set of
+    * numbers.
+    */
   private def side(teams: Array[PreparedTeam], self: Int): (Array[Float], Array[Int]) =
     val known    = IdentityHashMap[VehicleNumbers, Integer]()
     val numbers  = mutable.ArrayBuilder.ofFloat()
@@ -110,6 +112,6 @@ private[lanes] final class GpuOpponentKernel(
 private object GpuOpponentKernel:
   private def numbers(form: PolicyLanes): Int = form.parameters + form.memories + 2
 
-  /** Count of all quantities' parameters, if they have any. */
+  /** Total count of the quantities' parameters, if they have any. */
   private def ofQuantities(form: TeamForm): Option[Int] =
     Some(form.scores.judged.indices.map(form.scores.parameters).sum).filter(_ > 0)

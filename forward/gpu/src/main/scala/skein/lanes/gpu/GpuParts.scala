@@ -1,10 +1,10 @@
 package skein.lanes.gpu
 
-/** A call's candidates and episodes, in parts that a GPU processes as one, so that a call can be cancelled
-  * and fits in memory.
+/** Divides the candidates and episodes of a call into parts that a GPU processes at a time, so that a call
+  * can be cancelled and fits in memory.
   *
   * @param candidates to simulate
-  * @param each episodes of a candidate
+  * @param each number of episodes per candidate
   */
 private[lanes] final class GpuParts(
     candidates: Array[Int],
@@ -14,11 +14,11 @@ private[lanes] final class GpuParts(
 ):
   import GpuParts.*
 
-  /** Simulates all, unless it is cancelled.
+  /** Simulates all parts, unless it is cancelled.
     *
-    * @param formOf a candidate's
-    * @param decisions of one episode, of all vehicles together, approximately
-    * @param part simulates candidates of a form in some of the episodes; false if it was cancelled
+    * @param formOf the form of a candidate
+    * @param decisions approximate number of decisions in one episode, of all vehicles together
+    * @param part simulates candidates of one form in some of the episodes; false if it was cancelled
     * @return number of simulated worlds
     */
   def fly[F](formOf: Int => F, decisions: F => Double)(part: (F, Array[Int], Array[Int]) => Boolean): Int =
@@ -35,12 +35,13 @@ private[lanes] final class GpuParts(
     done
 
 private[lanes] object GpuParts:
-  /** Limit of decisions in one part: some tenths of a second for a GPU, seconds where vehicles move in steps.
+  /** Maximum number of decisions in one part: some tenths of a second on a GPU, or seconds if vehicles move
+    * in steps.
     */
   private val MostDecisions = 2e9
 
-  /** Bytes per decision; an episode's operations take about half of them. */
+  /** Bytes per decision of an episode, of which its operations take about half. */
   private val BytesOfDecision = 512
 
-  /** Limit of a batch's episodes on the GPU, bytes. */
+  /** Limit of the episodes in a GPU's memory, bytes. */
   val MostBytes: Long = 1L << 30

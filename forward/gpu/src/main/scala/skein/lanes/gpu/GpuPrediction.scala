@@ -7,30 +7,30 @@ import skein.lanes.plant.PlantLanes
 import skein.lanes.timetable.Propagation
 
 /** Predicts one vehicle from its readings in the world of each thread, command by command; see
-  * [[skein.lanes.timetable.PredictedVehicles]]. Position and velocity are in variables meanwhile.
+  * [[skein.lanes.timetable.PredictedVehicles]]. Variables contain the predicted position and velocity.
   */
 private[lanes] trait GpuPrediction:
-  /** Begins at a reading.
+  /** Begins a prediction at a reading.
     *
-    * @param reading position and velocity, north and east
+    * @param reading registers of position and velocity, north and east
     */
   def begin(now: GpuRecord, reading: Vector[Int]): Unit
 
-  /** Predicts under one command.
+  /** Predicts the time under one command.
     *
-    * @param north of the command, over the vehicle's speed
+    * @param north register of the command's component north, divided by the vehicle's speed
     */
   def go(now: GpuRecord, north: Int, east: Int): Unit
 
-  /** Ends the prediction; returns predicted position and velocity. */
+  /** Ends the prediction; returns the registers of predicted position and velocity. */
   def end(now: GpuRecord): Vector[Int]
 
 private[lanes] object GpuPrediction:
   type Kind = (Ptx, RolloutAgent) => GpuPrediction
 
-  /** The predictor of a loop, if it has one.
+  /** The kind of prediction that a loop needs; None if the loop does not predict.
     *
-    * @return Left states why no GPU supports it
+    * @return Left states why the GPU does not support it
     */
   def of(timing: LoopTiming): Either[String, Option[Kind]] = timing match
     case predictive: LoopTiming.Predictive =>
@@ -42,16 +42,17 @@ private[lanes] object GpuPrediction:
         case _ => Left("the GPU does not know what the loop predicts by")
     case _ => Right(None)
 
-  /** Largest count of numbers in one of a propagation's records. */
+  /** Largest count of numbers in a record of this propagation. */
   def mostNumbers(of: Propagation): Int =
     2.max(2 * of.perPart)
 
-  /** Writes the numbers of a propagation's beginning. */
+  /** Writes the numbers of a propagation's first record. */
   def tellBegin(of: Propagation, tell: (Int, Float) => Unit): Unit =
     tell(0, of.first)
     tell(1, of.second)
 
-  /** Writes the numbers of a part, and of the end of the previous part: a plant continues from there. */
+  /** Writes the numbers of a part, and those of the end of the previous part, from which a plant continues.
+    */
   def tellPart(of: Propagation, part: Int, tell: (Int, Float) => Unit): Unit =
     for i <- 0 until of.perPart do tell(i, of.numbers(part * of.perPart + i))
     if part > 0 then tellTime(of, part - 1, of.perPart, tell)
@@ -60,7 +61,7 @@ private[lanes] object GpuPrediction:
   def tellEnd(of: Propagation, tell: (Int, Float) => Unit): Unit =
     if of.commands.nonEmpty then tellTime(of, of.commands.length - 1, 0, tell)
 
-  /** Writes the numbers of a part's end, which follow its number of steps. */
+  /** Writes the numbers that represent the time at a part's end, without its number of steps. */
   private def tellTime(of: Propagation, part: Int, from: Int, tell: (Int, Float) => Unit): Unit =
     for i <- 1 until of.perPart do tell(from + i - 1, of.numbers(part * of.perPart + i))
 
@@ -86,7 +87,7 @@ private final class GpuLagPrediction(code: Ptx, agent: RolloutAgent, gain: Doubl
 
   def end(now: GpuRecord): Vector[Int] = Vector.tabulate(4)(predicted(_))
 
-/** Predicts as [[skein.lanes.timetable.PredictedPlants]], where the state equals the reading. */
+/** Predicts as [[skein.lanes.timetable.PredictedPlants]] does, for plants whose state equals the reading. */
 private final class GpuPlantPrediction(code: Ptx, agent: RolloutAgent, lanes: PlantLanes)
     extends GpuPrediction:
   private val zero    = code.constant(0f)

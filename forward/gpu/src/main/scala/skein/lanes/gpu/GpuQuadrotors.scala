@@ -6,16 +6,16 @@ import skein.units.Vector3
 import skein.vehicle.Quadrotor
 
 /** [[skein.lanes.plant.LaneQuadrotors]] on a GPU: each thread simulates one quadrotor with its flight
-  * controller under `moveByVelocityZ`, with bit-identical results.
+  * controller under `moveByVelocityZ`, with results that are bit-identical to those of the CPU.
   */
 private[skein] final class GpuQuadrotors private (gpu: Gpu, lanes: QuadrotorLanes):
   private lazy val kernel: GpuKernel = gpu.kernel(GpuQuadrotors.text(lanes), GpuQuadrotors.Name)
 
   /** Simulates vehicles that hover, settled, for a number of steps under a command.
     *
-    * @param goalNed the initial hold of each
-    * @param commanded velocity north and east, m/s, and down, m
-    * @return positions, world NED, m
+    * @param goalNed position that each vehicle holds initially
+    * @param commanded velocity north and east, m/s, and position down, m
+    * @return final positions, world NED, m
     */
   def fly(goalNed: Array[Vector3], commanded: Array[Vector3], steps: Int): Array[Vector3] =
     import GpuQuadrotors.BlockVehicles
@@ -42,7 +42,7 @@ private[skein] object GpuQuadrotors:
   private val Name          = "quadrotors"
   private val BlockVehicles = 128
 
-  /** Compiles the kernel; Left states why such quadrotors are not supported. */
+  /** Compiles the kernel. Left states why such quadrotors are not supported. */
   def of(gpu: Gpu, quadrotor: Quadrotor): Either[String, GpuQuadrotors] =
     QuadrotorLanes.of(quadrotor).map(new GpuQuadrotors(gpu, _))
 

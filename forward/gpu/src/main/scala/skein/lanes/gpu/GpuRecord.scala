@@ -3,22 +3,22 @@ package skein.lanes.gpu
 import skein.gpu.Ptx
 import skein.lanes.timetable.Timetable
 
-/** The present operation of a [[GpuTimetable]] in a kernel: words that are equal for all threads of a block.
+/** The present operation of a [[GpuTimetable]] in a kernel. Its words are equal for all threads of a block.
   *
-  * @param base the register of its address
-  * @param views the register of the views' address
+  * @param base register of the operation's address
+  * @param views register of the views' address
   */
 private[lanes] final class GpuRecord(code: Ptx, base: Int, views: Int):
-  /** A field of the operation, from 1 on. */
+  /** Register of a field of the operation, counted from 1. */
   def field(number: Int): Int = code.loadWhole(base, number)
 
-  /** Address in own memory of one of the operation's places. */
+  /** Address, in the thread's own memory, that a field of the operation states. */
   def place(number: Int): Int = code.own(field(number))
 
-  /** One of the operation's times; see [[Timetable.times]]. */
+  /** Register of a time of the operation; see [[Timetable.times]]. */
   def time(number: Int): Int = code.load(base, Timetable.Fields + number)
 
-  /** By vehicle, the address in own memory of its reading in the operation's view. */
+  /** For each vehicle, the address of its reading in the operation's view, in the thread's own memory. */
   def seen(): Int => Int =
     val view  = code.address(views, field(1))
     val known = collection.mutable.HashMap.empty[Int, Int]

@@ -7,8 +7,8 @@ import skein.simd.BoundFunction
 /** A flight by the [[PlantStages]] of one plant in the world of each thread; see
   * [[skein.lanes.plant.StagedFlight]].
   *
-  * @param speedMps of a command of length 1
-  * @param startX the registers of where it begins, north and east, m
+  * @param speedMps speed of a command of length 1
+  * @param startX register of the start's north component, m; `startY` likewise
   */
 private[lanes] final class GpuStages(
     code: Ptx,
@@ -27,12 +27,14 @@ private[lanes] final class GpuStages(
 
   /** Begins the first step, under a command.
     *
-    * @param state the registers of its numbers
+    * @param state register of each number of the state
     */
   def begin(north: Int, east: Int, state: Int => Int): Unit =
     kept.take(write(stages.begin, north, east, constantTime, state))
 
-  /** Begins the next step under a command, after a time since the previous one that these numbers represent.
+  /** Begins the next step under a command.
+    *
+    * @param time register of each number that represents the time since the begin of the present step
     */
   def act(north: Int, east: Int, time: Int => Int): Unit = kept.take(write(stages.act, north, east, time))
 
@@ -40,8 +42,9 @@ private[lanes] final class GpuStages(
   def goOn(steps: Int): Unit =
     code.repeat(steps)(kept.take(write(stages.goOn, Nowhere, Nowhere, constantTime)))
 
-  /** Position and, if requested, velocity, at a time since the start of the step that these numbers
-    * represent.
+  /** Position and, if requested, velocity during the present step.
+    *
+    * @param time register of each number that represents the time since the begin of the step
     */
   def look(withVelocity: Boolean, time: Int => Int): Vector[Int] =
     write(if withVelocity then stages.look else stages.position, Nowhere, Nowhere, time)

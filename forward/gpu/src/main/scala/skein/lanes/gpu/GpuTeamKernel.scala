@@ -7,10 +7,10 @@ import skein.lanes.policy.TeamLanes
 import skein.lanes.score.ScoreLanes
 import skein.simd.BoundFunction
 
-/** Teams on a GPU. One side: of each vehicle the start and initial direction, and the numbers of its policy;
-  * then of each quantity its parameters.
+/** Simulates teams on a GPU. All vehicles are one side: for each vehicle the start, the initial direction and
+  * the numbers of its policy; then the parameters of each quantity.
   *
-  * @param vehicles of one candidate; starts and headings of others are numbers
+  * @param vehicles of one candidate; other candidates' starts and headings are numbers of their sides
   */
 private[lanes] final class GpuTeamKernel(
     gpu: Gpu,
@@ -89,17 +89,16 @@ private[lanes] final class GpuTeamKernel(
       number(firstQuantity + (0 until of).map(scores.parameters).sum + parameter)
 
 private object GpuTeamKernel:
-  /** Count of numbers of a vehicle's start: north and east, m, and cosine and sine of its heading. */
+  /** Count of the numbers of a vehicle's start: north and east, m, and cosine and sine of its heading. */
   private val Starts = 4
 
-  /** Offsets of each vehicle's numbers, and last of the quantities'. */
+  /** Offset of each vehicle's numbers in a side; the last entry is that of the quantities' numbers. */
   private def firstOf(team: TeamLanes): Vector[Int] =
     Vector.range(0, team.count).scanLeft(0)((first, self) => first + Starts + team.parameters(self))
 
   private def numbers(team: TeamLanes, scores: ScoreLanes): Int =
     firstOf(team).last + scores.judged.indices.map(scores.parameters).sum
 
-  /** The numbers of one candidate. */
   private def numbersOf(team: PreparedTeam): Array[Float] =
     team.numbers.flatMap(own => Array(own.northM, own.eastM, own.cos, own.sin) ++ own.policy) ++
       team.ofQuantities.flatten.map(_.toFloat)

@@ -5,10 +5,10 @@ import skein.gpu.Gpu
 import skein.lanes.{Accelerated, AcceleratedTeams, Episodes, PreparedTeam, TeamForm, TeamOutcomes, TeamWorlds}
 import skein.lanes.policy.{OpponentLanes, TeamLanes}
 
-/** Simulates teams' candidates on a GPU, each in all episodes, by [[GpuOpponentKernel]] or [[GpuTeamKernel]].
-  * Mutable; one call at a time.
+/** Simulates teams' candidates on a GPU, each in all episodes, with [[GpuOpponentKernel]] or
+  * [[GpuTeamKernel]]. Mutable; one call at a time.
   *
-  * @param threads that make timetables and read policies
+  * @param threads number of threads that make timetables and read policies
   */
 private[lanes] final class GpuTeams(
     gpu: Gpu,
@@ -55,7 +55,7 @@ private[lanes] final class GpuTeams(
       GpuEpisodes(gpu, form.count, shows, threads, GpuParts.MostBytes)
     )
 
-  /** @param candidates numbers of the teams
+  /** @param candidates indices of the teams
     * @param numbers of the episodes
     */
   private def fly(
@@ -92,5 +92,5 @@ private[lanes] final class GpuTeams(
         GpuTeamKernel(gpu, first.vehicles, vehicle, prediction, team, form.scores, layout)
 
 private object GpuTeams:
-  /** Number of candidates whose policies a thread reads in one piece of work. */
+  /** Number of candidates whose policies a thread reads in a row. */
   private val Chunk = 256

@@ -2,10 +2,10 @@ package skein.lanes.gpu
 
 import skein.lanes.timetable.{OperationKind, Propagation, Timetable}
 
-/** Layout of a GPU thread's own memory for its vehicles' readings and commands, in bytes.
+/** Layout of each GPU thread's own memory, in bytes, with the readings and commands of its vehicles.
   *
-  * @param readings places of one vehicle
-  * @param headings places of one vehicle
+  * @param readings number of places for readings per vehicle
+  * @param headings number of places for commands per vehicle
   * @param shows whether several vehicles share computations on a view
   */
 private[lanes] final case class GpuLayout(
@@ -17,22 +17,22 @@ private[lanes] final case class GpuLayout(
   import Timetable.Read
   private val firstHeading = 4 * Read * vehicles * readings
 
-  /** Size of the layout; the kernel's further data follow it. */
+  /** Size of the layout; further data of a kernel follow it. */
   val bytes: Int = firstHeading + 8 * vehicles * headings
 
   def reading(vehicle: Int, place: Int): Int = 4 * Read * (vehicle * readings + place)
 
-  /** Address of a heading's cosine and sine, or of a commanded velocity. */
+  /** Address of a command: a heading's cosine and sine, or a velocity. */
   def heading(vehicle: Int, place: Int): Int = firstHeading + 8 * (vehicle * headings + place)
 
-  /** A layout that also has room for an episode. */
+  /** This layout, enlarged as needed for an episode. */
   def holding(timetable: Timetable): GpuLayout =
     def doubled(now: Int, needed: Int) = if needed <= now then now else Integer.highestOneBit(needed * 2 - 1)
     copy(readings = doubled(readings, timetable.readings), headings = doubled(headings, timetable.headings))
 
-/** A [[Timetable]] as [[GpuFlightKernel]] reads it: for each operation [[stride]] words, which are the number
-  * of its label, the addresses of its inputs and outputs in own memory, and its times; then the views, each
-  * with the addresses of all vehicles' readings.
+/** A [[Timetable]] in the format of [[GpuFlightKernel]]. Each operation has [[stride]] words: the number of
+  * its label, the addresses of its inputs and outputs in the thread's own memory, and its times. Then follow
+  * the views, each with the addresses of all vehicles' readings.
   */
 private[lanes] final class GpuTimetable(timetable: Timetable, layout: GpuLayout):
   import GpuTimetable.*
@@ -46,7 +46,7 @@ private[lanes] final class GpuTimetable(timetable: Timetable, layout: GpuLayout)
     val most = timetable.propagations.iterator.map(GpuPrediction.mostNumbers).maxOption.getOrElse(0)
     (Fields + timetable.numbers.max(most) + 3) / 4 * 4
 
-  // Of the operation that is written, and of all so far.
+  // Offset of the present operation, all words so far, and their number of operations.
   private var at      = 0
   private var packed  = Array.ofDim[Int](stride * timetable.size)
   private var records = 0
@@ -73,7 +73,7 @@ private[lanes] final class GpuTimetable(timetable: Timetable, layout: GpuLayout)
     while i < timetable.size do
       val kind = timetable.operations(i * Fields)
       val view = timetable.operations(i * Fields + 2)
-      // What several vehicles compute of a view is computed once.
+      // Values that several vehicles compute from a view are computed once.
       if layout.shows && kind == OperationKind.Decide && view != shown then
         shown = view
         record(labels.show)
@@ -135,7 +135,7 @@ private[lanes] final class GpuTimetable(timetable: Timetable, layout: GpuLayout)
 private[lanes] object GpuTimetable:
   private val Nothing = -1
 
-  /** Numbers of the kernel's labels for operations. */
+  /** Numbers of the kernel's labels, at which the code of each kind of operation begins. */
   final class Labels(vehicles: Int):
     def look(vehicle: Int, withVelocity: Boolean): Int = if withVelocity then vehicles + vehicle else vehicle
     def act(vehicle: Int): Int                         = 2 * vehicles + vehicle
@@ -143,7 +143,7 @@ private[lanes] object GpuTimetable:
     def score: Int                                     = 4 * vehicles
     def show: Int                                      = score + 1
 
-    /** Labels for the start of a prediction, its continuation under a command, and its end. */
+    /** Labels of a prediction's start, of its continuation under a command, and of its end. */
     def predict(vehicle: Int): Int   = show + 1 + vehicle
     def carry(vehicle: Int): Int     = predict(vehicles + vehicle)
     def predicted(vehicle: Int): Int = carry(vehicles + vehicle)

@@ -11,27 +11,24 @@ import skein.lanes.plant.{PlantLanes, QuadrotorLanes}
 import skein.lanes.timetable.TimetableQuadrotors
 import skein.simd.BoundFunction
 
-/** One vehicle of a team in the world of each thread. Its state is in variables. */
+/** One vehicle of a team in the world of each thread. Variables contain its state. */
 private[lanes] trait GpuVehicle:
-  /** Begins at the vehicle's start, at rest. */
+  /** Sets the vehicle to rest at its start. */
   def start(): Unit
 
-  /** Reads position north and east, m, and, if requested, velocity, m/s. */
+  /** Registers of position north and east, m, and, if requested, velocity, m/s. */
   def look(record: GpuRecord, withVelocity: Boolean): Vector[Int]
 
-  /** Lets a command take effect, over the vehicle's speed. */
+  /** Makes a command take effect, given as registers of its components divided by the vehicle's speed. */
   def act(record: GpuRecord, north: Int, east: Int): Unit
 
 private[lanes] object GpuVehicle:
-  /** Makes a vehicle in a kernel.
-    *
-    * Takes the registers of its start, north and east, m.
-    */
+  /** Creates a vehicle in a kernel, from the agent and the registers of its start, north and east, m. */
   type Kind = (Ptx, RolloutAgent, Int, Int) => GpuVehicle
 
-  /** The vehicles of a response.
+  /** The kind of vehicle for a response.
     *
-    * @return Left states why no GPU supports them
+    * @return Left states why the GPU does not support it
     */
   def of(response: VelocityResponse): Either[String, Kind] = response match
     case PlantResponse(plant)         => PlantLanes.of(plant).map(lanes => GpuPlant(_, _, _, _, lanes))
@@ -39,7 +36,7 @@ private[lanes] object GpuVehicle:
       QuadrotorLanes.of(quadrotor.quadrotor).map(lanes => GpuQuadrotor(_, _, _, _, lanes))
     case _ => Left("the GPU does not know the vehicle")
 
-/** A vehicle of a plant, which moves by [[PlantStages]]. */
+/** A vehicle that moves by a plant's [[PlantStages]]. */
 private[lanes] final class GpuPlant(
     code: Ptx,
     agent: RolloutAgent,

@@ -3,12 +3,12 @@ package skein.lanes.gpu
 import skein.gpu.{Ptx, PtxExpressions, Variables}
 import skein.lanes.plant.QuadrotorLanes
 
-/** A quadrotor's step in a kernel, equal to that compiled by [[QuadrotorLanes]]. */
+/** Generates a quadrotor's step in a kernel, equal to the step compiled by [[QuadrotorLanes]]. */
 private[gpu] object QuadrotorExpressions:
   /** Generates one step.
     *
-    * @param state the numbers of [[QuadrotorLanes.rows]]
-    * @param goal the command: velocity north and east, m/s, and down, m
+    * @param state variables of the numbers of [[QuadrotorLanes.rows]]
+    * @param goal variables of the command: velocity north and east, m/s, and position down, m
     */
   def step(code: Ptx, lanes: QuadrotorLanes, state: Variables, goal: Variables): Unit =
     import lanes.{formula, rows}

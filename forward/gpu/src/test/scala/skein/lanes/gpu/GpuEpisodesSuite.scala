@@ -17,7 +17,7 @@ class GpuEpisodesSuite extends munit.FunSuite:
   private def episodes(mostBytes: Long) =
     GpuEpisodes(InterpretedGpu(), 2, shows = false, threads = 1, mostBytes)
 
-  test("the episodes of a call stay, however small the limit; unused ones are evicted"):
+  test("the episodes of a call stay cached, however small the limit; unused ones are evicted"):
     val held              = episodes(mostBytes = 1)
     var made              = Vector.empty[Int]
     def bring(keys: Int*) = held.bring(keys.toVector, () => false): i =>
@@ -30,7 +30,7 @@ class GpuEpisodesSuite extends munit.FunSuite:
     bring(2, 1): Unit
     assertEquals(made, Vector(1, 2, 3, 1))
 
-  test("where an episode needs more room, no timetable is made twice"):
+  test("if an episode needs a larger layout, no timetable is made twice"):
     val held = episodes(mostBytes = 1 << 20)
     var made = 0
     val some = held.bring(Vector("small", "large"), () => false): i =>
@@ -51,10 +51,10 @@ class GpuEpisodesSuite extends munit.FunSuite:
     assertEquals(held.layout.readings, 8)
     assert(some.get.forall(_ != null))
 
-  test("a call that is cancelled brings nothing"):
+  test("a cancelled call uploads nothing"):
     assertEquals(episodes(1 << 20).bring(Vector(1), () => true)(timetable(_)), None)
 
-  test("worlds that are no candidates times episodes are refused"):
+  test("a number of worlds that is not a multiple of the episodes is refused"):
     val worlds = new Worlds:
       def size: Int                    = 5
       override def episodesOfEach: Int = 2

@@ -3,7 +3,7 @@ package skein.lanes.gpu
 import skein.forward.*
 import skein.gpu.{Gpu, TestGpus}
 import skein.lanes.*
-import skein.policy.{PaperEvader, PaperPursuer, HeadingPolicy}
+import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
 
@@ -27,7 +27,7 @@ class GpuPairSimulation extends munit.FunSuite, TestGpus:
 
   private val weights = Array.tabulate(RectifiedNetwork.Weights)(i => math.sin(i * 1.7))
 
-  private val pursuers: Vector[(String, Int => HeadingPolicy)] = Vector(
+  private val pursuers: Vector[(String, Int => Policy)] = Vector(
     "the paper's"                -> (world => PaperPursuer(0.6 + 0.1 * world)),
     "one that remembers"         -> (world => TrendPursuer(3, 0.5, 0.5 + 0.2 * world)),
     "one that asks for ages"     -> (world => AgeAwarePursuer(8, 0.3 * world, 1)),
@@ -40,16 +40,16 @@ class GpuPairSimulation extends munit.FunSuite, TestGpus:
     )
   )
 
-  private final class Worlds(val size: Int, episodes: Int, link: Delays, of: Int => HeadingPolicy)
+  private final class Worlds(val size: Int, episodes: Int, link: Delays, of: Int => Policy)
       extends PairWorlds:
-    override def shareEpisodes: Boolean    = true
-    override def episodesOfEach: Int       = episodes
-    private val pursuers                   = Vector.tabulate(size)(world => of(world / episodes))
-    private val evaders                    = Vector(PaperEvader(7), PaperEvader(8))
-    def key(world: Int): Int               = WorldRandom.key(5, 0, world % episodes)
-    def link(world: Int): Delays           = link
-    def pursuer(world: Int): HeadingPolicy = pursuers(world)
-    def evader(world: Int): HeadingPolicy  = evaders(world / episodes % 2)
+    override def shareEpisodes: Boolean = true
+    override def episodesOfEach: Int    = episodes
+    private val pursuers                = Vector.tabulate(size)(world => of(world / episodes))
+    private val evaders                 = Vector(PaperEvader(7), PaperEvader(8))
+    def key(world: Int): Int            = WorldRandom.key(5, 0, world % episodes)
+    def link(world: Int): Delays        = link
+    def pursuer(world: Int): Policy     = pursuers(world)
+    def evader(world: Int): Policy      = evaders(world / episodes % 2)
 
   private def check(
       gpu: Gpu,
@@ -57,7 +57,7 @@ class GpuPairSimulation extends munit.FunSuite, TestGpus:
       timing: LoopTiming,
       link: Delays,
       durationS: Double,
-      pursuer: Int => HeadingPolicy,
+      pursuer: Int => Policy,
       size: Int = 6
   ): Unit =
     val duel   = Duel.paper.copy(evader = Duel.paper.evader.copy(startY = 2), durationS = durationS)

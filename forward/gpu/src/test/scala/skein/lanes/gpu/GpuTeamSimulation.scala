@@ -9,7 +9,7 @@ import skein.scenario.*
 import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
 
-/** As [[GpuPairSimulation]] for duels, results of teams are bit-identical. */
+/** Results of teams are bit-identical to those of the CPU, as [[GpuPairSimulation]] tests for duels. */
 class GpuTeamSimulation extends munit.FunSuite, TestGpus:
   private val lag  = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
   private val drag = PlantResponse(ReducedModel.AirSim)
@@ -70,11 +70,11 @@ class GpuTeamSimulation extends munit.FunSuite, TestGpus:
 
   for (name, gpu) <- gpus; (scenario, of) <- scenarios do
     for timing <- loops do
-      test(s"$name, $scenario, $timing: the CPU's outcomes, to the bit"):
+      test(s"$name, $scenario, $timing: outcomes equal the CPU's, to the bit"):
         check(gpu(), of, lag, timing)
-    test(s"$name, $scenario with drag: the CPU's outcomes, to the bit"):
+    test(s"$name, $scenario with drag: outcomes equal the CPU's, to the bit"):
       check(gpu(), of, drag, LoopTiming.Stream())
 
   for (name, gpu) <- gpus do
-    test(s"$name: candidates that are no formulas fly beside it"):
+    test(s"$name: candidates that are not formulas are simulated by the CPU"):
       check(gpu(), scenarios(0)._2, lag, LoopTiming.Stream(), i => Option.when(i == 1)(Zigzag))

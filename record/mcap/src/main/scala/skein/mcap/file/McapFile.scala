@@ -9,8 +9,8 @@ import skein.mcap.*
 /** Reads and writes MCAP files on a disk. Errors of the disk itself are thrown as `IOException`. */
 object McapFile:
 
-  /** Creates or replaces a file with the records that `body` writes; finished if it returns. If it throws,
-    * the file can be read up to the last chunk.
+  /** Creates or replaces a file with the records that `body` writes. The file is complete once `body` has
+    * returned; if `body` throws, the file can be read up to the last chunk.
     */
   def write[A](path: Path, options: WriterOptions = WriterOptions())(body: McapWriter => A): A =
     Using.resource(FileChannel.open(path, CREATE, TRUNCATE_EXISTING, WRITE)): channel =>

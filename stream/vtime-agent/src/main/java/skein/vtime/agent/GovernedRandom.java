@@ -4,7 +4,7 @@ import java.util.Random;
 import java.util.function.Supplier;
 
 /**
- * Draws from the calling thread's environment; without one, or once a seed was set, like any
+ * Draws from the calling thread's environment; without one, or once a seed was set, draws like any
  * {@code Random}. For generators that outlive runs.
  */
 final class GovernedRandom extends Random {

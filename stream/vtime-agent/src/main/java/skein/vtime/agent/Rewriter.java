@@ -245,7 +245,7 @@ final class Rewriter implements ClassFileTransformer {
                     }));
   }
 
-  /** Makes each delivery to an actor first pass the system's scheduler to {@link Redirect#delivered}. */
+  /** Makes each delivery to an actor first call {@link Redirect#delivered} with the system's scheduler. */
   private static ClassTransform guarded(ClassModel cell) {
     var name = cell.thisClass().asSymbol();
     if (cell.methods().stream().filter(Rewriter::isDelivery).count() != DELIVERIES.size())

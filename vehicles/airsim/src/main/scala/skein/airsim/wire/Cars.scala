@@ -18,11 +18,11 @@ final private[skein] case class CarControls(
     gear_immediate: Boolean = true
 ) derives ReadWriter
 
-/** Speed along the heading in m/s, negative in reverse; the engine's speed in turns a minute. */
 /** The state of a camera rig that is no vehicle; only in Cosys-AirSim. */
 final private[skein] case class ComputerVisionState(kinematics_estimated: KinematicsState, timestamp: Instant)
     derives ReadWriter
 
+/** A car's state: speed along the heading in m/s, negative in reverse; engine speed in turns a minute. */
 final private[skein] case class CarState(
     speed: Float,
     gear: Int,

@@ -13,7 +13,7 @@ final private[skein] case class MultirotorReading(
     landed_state: Int
 ) derives ReadWriter
 
-/** What AirSim's server sends. `landed_state` is 0 landed, 1 flying. */
+/** The state as AirSim's server sends it. `landed_state` is 0 landed, 1 flying. */
 final private[skein] case class MultirotorState(
     collision: CollisionInfo,
     kinematics_estimated: KinematicsState,

@@ -9,7 +9,7 @@ import upack.{Int32, Obj, Str, UInt64}
 import upack.Binary
 import upickle.default.{Writer, readBinary, writeMsg}
 
-/** Our encodings, read by an independent library. */
+/** Reads Skein's encodings with an independent library. */
 class WireSuite extends munit.FunSuite:
 
   /** A value's bytes in the server's encoding, after the reply's header of four bytes. */
@@ -39,7 +39,7 @@ class WireSuite extends munit.FunSuite:
       RcData.Absent
     )
 
-  test("kinematics have AirSim's keys and AirSim's size"):
+  test("kinematics are encoded with AirSim's keys and in AirSim's size"):
     assertEquals(
       read(kinematics).keySet,
       Set(
@@ -64,19 +64,19 @@ class WireSuite extends munit.FunSuite:
     val point = bytes(GeoPoint(1, 2, 3))
     assertEquals((point.count(_ == FLOAT64), point.count(_ == FLOAT32)), (2, 1))
 
-  test("a multirotor state has AirSim's keys"):
+  test("a multirotor state is encoded with AirSim's keys"):
     assertEquals(
       read(state).keySet,
       Set("collision", "kinematics_estimated", "gps_location", "timestamp", "landed_state", "rc_data")
     )
     assertEquals(read(state)("timestamp").asIntegerValue.asLong, at.toNanos)
 
-  test("a client reads the keys it needs of a state and skips additional ones, which forks send"):
+  test("a client skips the additional keys of a state that forks send"):
     val sent = writeMsg(state).obj
     sent(Str("ready")) = upack.True
     assertEquals(readBinary[MultirotorReading](writeMsg(Obj(sent))), MultirotorReading(kinematics, at, 1))
 
-  test("integers are read where floats are wanted, also as time stamps"):
+  test("integers are accepted for floats and for time stamps"):
     assertEquals(
       readBinary[Vector3r](Obj(
         Str("x_val") -> Int32(1),
@@ -115,7 +115,7 @@ class WireSuite extends munit.FunSuite:
     ImageResponse(image_data_float = Array(1.5f, 65504f, 0.1f), pixels_as_float = true, width = 3, height = 1)
   )
 
-  test("images have AirSim's form: bytes are binary, floats an array of 32-bit ones, either is empty"):
+  test("images have AirSim's form: bytes as binary or floats as 32-bit floats, and the other empty"):
     val maps = MessagePack.newDefaultUnpacker(sent(ImageResponse.encode(images))).unpackValue().asArrayValue
     val rgb  = maps.get(0).asMapValue.entrySet.asScala.toSeq
     assertEquals(
@@ -138,7 +138,7 @@ class WireSuite extends munit.FunSuite:
       Seq(1.5f, 65504f, 0.1f)
     )
 
-  test("our client reads images and scans back, also with missing or additional keys"):
+  test("Skein's client reads images and scans back, also with missing or additional keys"):
     val read = readBinary[Seq[ImageResponse]](sent(ImageResponse.encode(images)))
     assertEquals(read.map(_.image_data_uint8.toSeq), images.map(_.image_data_uint8.toSeq))
     assertEquals(read.map(_.image_data_float.toSeq), images.map(_.image_data_float.toSeq))
@@ -147,7 +147,7 @@ class WireSuite extends munit.FunSuite:
     assertEquals(readBinary[LidarData](cosys).point_cloud.toSeq, Seq(1f))
     assertEquals(readBinary[ImageResponse](Obj(Str("image_data_uint8") -> Binary(pixels))).width, 0)
 
-  test("a scan has AirSim's keys, with one id for each point"):
+  test("a scan is encoded with AirSim's keys and one id for each point"):
     val scan = LidarData(at, Array(1f, -2f, 3f), Pose(vector, rotation), Array(42))
     val keys = fields(MessagePack.newDefaultUnpacker(sent(LidarData.encode(scan))).unpackValue())
     assertEquals(keys.keySet, Set("time_stamp", "point_cloud", "pose", "segmentation"))

@@ -4,15 +4,16 @@ import scala.collection.immutable.ArraySeq
 import scala.compiletime.{erasedValue, summonInline}
 import scala.deriving.Mirror
 
-/** How values are written as CDR, the encoding of ROS 2's messages, and read back to the bit. A case class is
-  * its fields in order. `Int` stands for `int32` and `uint32`, `Short` and `Byte` likewise for both signs.
+/** Writes values as CDR, the encoding of ROS 2's messages, and reads them back to the bit. A case class is
+  * written as its fields in order. `Int` stands for `int32` and `uint32`, `Short` and `Byte` likewise for
+  * both signs.
   *
   * Source: OMG DDS-XTypes 1.3, 7.4.3 (XCDR1). `MessageGolden` compares with bytes that `rclpy` writes.
   */
 trait Cdr[A]:
   def write(value: A, to: CdrWriter): Unit
 
-  /** @throws CdrError if the bytes are something else; only [[Cdr.message]] calls it */
+  /** @throws CdrError if the bytes encode no such value; only [[Cdr.message]] calls it */
   def read(from: CdrReader): A
 
 object Cdr:

@@ -27,13 +27,13 @@ final case class TwistStamped(header: Header, twist: Twist) derives Cdr
 /** `geometry_msgs/TwistWithCovariance`: the covariance is of velocities along and about x, y, z. */
 final case class TwistWithCovariance(twist: Twist, covariance: Doubles[36]) derives Cdr
 
-/** `geometry_msgs/Transform`: where a frame is in another, and how it is turned. */
+/** `geometry_msgs/Transform`: the position and rotation of one frame in another. */
 final case class Transform(translation: Vector3, rotation: Quaternion) derives Cdr
 
 /** `geometry_msgs/TransformStamped`: the frame `childFrameId` in the header's frame. */
 final case class TransformStamped(header: Header, childFrameId: String, transform: Transform) derives Cdr
 
-/** `tf2_msgs/TFMessage`: frames in frames, as `/tf` carries them. */
+/** `tf2_msgs/TFMessage`: transforms between frames, as `/tf` carries them. */
 final case class TFMessage(transforms: Vector[TransformStamped]) derives Cdr
 
 /** `nav_msgs/Odometry`: a pose in the header's frame, and velocities in the child's. */

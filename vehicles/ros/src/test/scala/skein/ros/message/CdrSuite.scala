@@ -20,12 +20,12 @@ class CdrSuite extends munit.FunSuite:
     assertEquals(bytes.length, 4 + 8 + 8 + 1 + 1 + 2 + 4 + 3 + 5 + 24)
     assertEquals(Cdr.message[Mixed](bytes), Right(mixed))
 
-  test("an empty text may lack its final zero, any other must have it"):
+  test("an empty text may lack its final zero, and any other text must have it"):
     assertEquals(Cdr.message[String](little(0, 0, 0, 0)), Right(""))
     assertEquals(Cdr.message[String](little(1, 0, 0, 0, 0)), Right(""))
     assertEquals(refused[String](little(1, 0, 0, 0, 65)), "expected a text that ends with 0 at byte 4")
 
-  test("up to three bytes of padding may follow, more are refused"):
+  test("up to three bytes of padding may follow a message, and more are refused"):
     assertEquals(Cdr.message[Int](little(7, 0, 0, 0, 9, 9, 9)), Right(7))
     assertEquals(
       refused[Int](little(7, 0, 0, 0, 9, 9, 9, 9)),
@@ -66,7 +66,7 @@ class CdrSuite extends munit.FunSuite:
     val image = Image(Header(Time(0, 0), ""), 1000, 1000, "rgb8", 0, 3000, ArraySeq.fill[Byte](3_000_000)(5))
     assertEquals(Cdr.message[Image](Cdr.bytes(image)), Right(image))
 
-  test("an array has exactly as many numbers as its type says"):
+  test("an array has exactly the number of elements of its type"):
     assertEquals(Doubles.zero[9].values.size, 9)
     val error = intercept[IllegalArgumentException](Doubles.of[9](Seq(1.0)))
     assert(error.getMessage.contains("expected 9 numbers, came 1"))

@@ -2,9 +2,9 @@ package skein.ros.message
 
 import scala.util.Random
 
-/** Damages sample messages by a seed, and reads them as any type: whatever comes, it is read or refused. */
+/** Damages sample messages by a seed, and reads them as any type. Every message must be read or refused. */
 private object MalformedCdr:
-  /** @return how many were read, and how many refused */
+  /** @return the numbers of messages read and refused */
   def read(count: Int, seed: Long): (read: Int, refused: Int) =
     val random          = Random(seed)
     val (intact, kinds) = (Samples.written.map(_.bytes), Samples.all)

@@ -17,7 +17,7 @@ class MessageDefinitionSuite extends munit.FunSuite:
     assertEquals(samples.map(_.kind.name).toSet, defined)
     for sample <- samples do check(sample.value, s"${sample.kind.packageName}/${sample.kind.name}")
 
-  test("a definition is followed by those of the types in it, each once"):
+  test("a definition is followed by the definitions of the types in it, each once"):
     val whole = MessageDefinition.whole(summon[MessageType[TwistStamped]])
     assertEquals(
       whole,

@@ -3,12 +3,12 @@ package skein.ros.message
 /** Messages against the bytes that `rclpy` and `rosbags` write for them. */
 class MessageGolden extends munit.FunSuite:
 
-  test("every message that rclpy or rosbags has written is read as what it was"):
+  test("every message that rclpy or rosbags has written is read with its original values"):
     for (name, bytes) <- Samples.written do
       val sample = Samples.of(name)
       assertEquals(sample.read(bytes), Right(sample.value), name)
 
-  test("every message is written as they write it, but for the padding, which is zero here"):
+  test("every message is written as rclpy and rosbags write it, with zeros as padding"):
     val little = Samples.written.filter(_.bytes(1) == 1)
     assertEquals(little.map(_.name).toSet, Samples.all.map(_.kind.name).toSet)
     for (name, bytes) <- little do

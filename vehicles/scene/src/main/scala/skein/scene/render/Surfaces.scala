@@ -115,7 +115,9 @@ final private[render] class Surfaces(view: View):
       i += 1
     corners
 
-  /** Records the rows that a polygon on the image covers, and its extent in each; whether it covers any. */
+  /** Records the rows that a polygon on the image covers, and its extent in each; returns whether it covers
+    * any.
+    */
   private def trace(corners: Int): Boolean =
     var area     = 0.0
     var (x0, x1) = (Double.PositiveInfinity, Double.NegativeInfinity)
@@ -181,5 +183,5 @@ private[render] object Surfaces:
   /** The near plane of the ground, m: a camera that stands on the ground must see it. */
   val GroundNearM = 1e-4
 
-  /** Most corners of a face after clipping. */
+  /** Limit of a face's corners after clipping. */
   private val MostCorners = 32

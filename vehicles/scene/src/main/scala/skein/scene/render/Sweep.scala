@@ -2,9 +2,10 @@ package skein.scene.render
 
 import java.util.Arrays
 
-/** Decides which face is visible where. Row by row, it passes the edges of faces from left to right; the
-  * nearest open face is visible until it ends, another one begins, or one behind intersects it. So the cost
-  * depends on the number of edges, not of pixels, and visibility is exact whatever the order of the faces.
+/** Decides which face is visible at each pixel. Row by row, it passes the edges of faces from left to right;
+  * the nearest open face is visible until it ends, another one begins, or one behind intersects it. So the
+  * cost depends on the number of edges, not of pixels, and visibility is exact whatever the order of the
+  * faces.
   */
 final private[render] class Sweep(view: View, surfaces: Surfaces):
   import surfaces.{bottom, first, spans, top}
@@ -97,8 +98,8 @@ final private[render] class Sweep(view: View, surfaces: Surfaces):
 
   private def inverseAt(face: Int, x: Int): Double = inverse(face) + surfaces.a(face) * x
 
-  /** The visible open face at this pixel; closes those that have ended. Of equally near ones the one added
-    * first.
+  /** The visible open face at this pixel; of equally near faces, the one added first. Closes faces that have
+    * ended.
     */
   private def nearestAt(x: Int): Int =
     var best   = Layer.Sky

@@ -66,7 +66,7 @@ class RendererSuite extends munit.FunSuite:
     digest.update(PngEncoder.encode(bgr(images, Kind.Scene), 320, 180))
     assertEquals(digest.digest.map(b => f"$b%02x").mkString.take(16), "31eaba862189aeaf")
 
-  test("a kind of image drawn beside others equals one drawn alone"):
+  test("an image drawn together with other kinds equals one drawn alone"):
     val kinds = Seq(Kind.Scene, Kind.Segmentation, Kind.SurfaceNormals)
     val all   = draw(Scenes.Sixty, eye(3), kinds*)
     for kind <- kinds do
@@ -98,7 +98,7 @@ class RendererSuite extends munit.FunSuite:
         assertEquals(ids(3 * pixel).toInt, 1, s"z = $z, pitch $pitchDeg, pixel $x, $y")
         assert(depth(pixel) >= 0 && depth(pixel) < 3, s"${depth(pixel)}")
 
-  test("a tag is drawn as its family has it, and the right way up"):
+  test("a tag is drawn with its family's pattern, the right way up"):
     val tag =
       SceneObject("T", Shape.Tag(3, 0.8), Placement.turned(Vector3(2, 0, -2), 0, 0, 180), 0xffffff, None)
     val view  = View(Placement(Vector3(0, 0, -2)), 200, 200, 53.130102354) // 2 m across at 2 m
