@@ -460,6 +460,31 @@ def test_a_vector_is_told_what_lists_of_messages_tell(mode, case):
             told, _ = env.reset(options={"reset_mask": ended})
 
 
+def test_what_was_told_stays_as_it_was():
+    env = DelayVectorEnv(SyncVectorEnv([Counter] * 3), STEP_S, link="vpn", pending=2)
+    told = [env.reset(seed=1)[0]]
+    copies = [told[0].copy()]
+    for step in range(1100):
+        told.append(env.step(np.full((3, 1), float(step)))[0])
+        copies.append(told[-1].copy())
+    assert all(np.array_equal(one, other) for one, other in zip(told, copies))
+
+
+def test_observations_may_be_of_another_kind_of_float_than_their_space_says():
+    class Careless(Counter):
+        def step(self, action):
+            seen, *others = super().step(action)
+            return np.float64(seen) + 1e-9, *others
+
+        def reset(self, **options):
+            return np.float32(super().reset(**options)[0]), {}
+
+    env = DelayEnv(Careless(), STEP_S, observation_delay=0.1, action_delay=0)
+    env.reset(seed=1)
+    told = [env.step(np.zeros(1))[0] for _ in range(5)]
+    assert told[-1][1] == 3 + 1e-9 and told[-1][3] == 0.1
+
+
 def test_seeds_repeat_and_are_not_the_environments():
     def ages(reset, **settings):
         env = DelayVectorEnv(SyncVectorEnv([Counter] * 3), STEP_S, link="vpn", **settings)

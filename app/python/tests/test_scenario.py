@@ -16,6 +16,7 @@ from skein_uav.scenario import Action, Known, Moment, Observation, Scenario, Ser
 EXAMPLES = Path(__file__).parents[3] / "examples" / "scenario-in-python"
 sys.path.insert(0, str(EXAMPLES))
 
+import network  # noqa: E402
 import pursuit  # noqa: E402
 import ring  # noqa: E402
 import tower  # noqa: E402
@@ -113,10 +114,9 @@ def test_what_is_written_down_computes_what_the_function_computes(made):
                 assert numbers == [after.angle_rad, float(after.is_up)]
 
 
-@pytest.mark.parametrize("name", ["ring", "pursuit"])
-def test_the_files_beside_the_examples_are_what_the_examples_write(name):
-    made = {"ring": ring.Ring(), "pursuit": pursuit.Pursuit()}[name]
-    assert (EXAMPLES / f"{name}.scenario").read_text(encoding="utf-8") == made.text()
+@pytest.mark.parametrize("made", [ring.Ring(), pursuit.Pursuit(), network.Network()], ids=lambda one: one.title)
+def test_the_files_beside_the_examples_are_what_the_examples_write(made):
+    assert (EXAMPLES / f"{made.title}.scenario").read_text(encoding="utf-8") == made.text()
 
 
 def test_settings_are_fields_that_are_floats_and_others_are_fixed():
@@ -146,6 +146,17 @@ def test_numpy_and_its_arrays_are_written_down_too():
     does = next(line for line in text.splitlines() if line.startswith("does"))
     values = interpreted(text)(inputs_of(seen, None))
     assert [values[int(word)] for word in does.split()[2:]] == pytest.approx(list(network(seen).numbers), abs=1e-12)
+
+
+def test_a_layer_of_relu_is_written_down():
+    weights = np.array([[1.0, -2.0], [0.5, 0.25]])
+
+    def policy(seen):
+        return seen.along(0.0, np.sum(f.maximum(weights @ np.array([seen.own.north_m, seen.own.east_m]), 0.0)))
+
+    seen, text = Observation(0, drawn(random.Random(1), 2)), scenario(policy).text()
+    does = next(line for line in text.splitlines() if line.startswith("does"))
+    assert interpreted(text)(inputs_of(seen, None))[int(does.split()[3])] == policy(seen).numbers[1]
 
 
 def test_a_choice_between_actions_is_a_line_for_each():
@@ -186,6 +197,9 @@ WRONG = [
     ("x = {1.0: 2}[seen.own.north_m]", "looks something up .* write pick\\(index, values\\)"),
     ("x = math.dist((seen.own.north_m, 0.0), (1.0, 0.0))", "write hypot\\(x, y\\) of skein_uav.formula"),
     ("x = np.cumsum(seen.own.north_m)", "there is no cumsum in formulas"),
+    ("x = np.maximum(0, np.array([seen.own.north_m, 1.0]))", "branches .* write maximum\\(a, b\\) of skein_uav.formula"),
+    ("x = np.array([seen.own.north_m]); x = f.where(x > 0, x, 0.0)", "branches .* write maximum or minimum of"),
+    ("x = np.sin(np.array([seen.own.north_m, 1.0]))", "NumPy has no sin for this array; write sin of skein_uav.formula"),
     ("x = seen.own.north_m ** seen.own.east_m", "raises to a power; write a product, or sqrt, or exp"),
     ("x = (seen.own.north_m > 3) * 2.0", "computes with a condition; write where\\(condition, 1.0, 0.0\\)"),
     ("x = f.where(seen.own.north_m, 1, 2)", "takes a number for a condition; write a comparison"),

@@ -39,6 +39,7 @@ from typing import Any
 
 from .actions import Action, Yaw, along, attitude, hover, land, position, turn, velocity, velocity_at
 from .formula import atan2, hypot, minimum, smallest, where
+from .untraceable import explained
 
 __all__ = [
     "Action",
@@ -363,7 +364,12 @@ class Scenario:
         """
         from .written import Writer
 
-        return Writer(self).text()
+        try:
+            return Writer(self).text()
+        except TypeError as error:
+            if (better := explained(error)) is None:
+                raise
+            raise better from error
 
     def write(self, file: str | os.PathLike[str]) -> Path:
         """Writes `text` to a file, whose name ends in ``.scenario``."""

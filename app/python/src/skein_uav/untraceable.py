@@ -6,6 +6,7 @@ import linecache
 import os
 import re
 import sys
+import traceback
 
 from .errors import SkeinError
 
@@ -21,7 +22,20 @@ def refused(reason: str) -> Untraceable:
     frame = sys._getframe(1)
     while frame.f_back is not None and not _is_users(frame.f_code.co_filename):
         frame = frame.f_back
-    name, line = frame.f_code.co_filename, frame.f_lineno
+    return _at(frame.f_code.co_filename, frame.f_lineno, reason)
+
+
+def explained(error: TypeError) -> Untraceable | None:
+    """In the place of what NumPy says of an array that has numbers known in flight alone beside others."""
+    lacking = re.search(r"has no callable (\w+) method", str(error))
+    frames = [one for one in traceback.extract_tb(error.__traceback__) if _is_users(one.filename)]
+    if lacking is None or not frames:
+        return None
+    reason = f"NumPy has no {lacking[1]} for this array; write {lacking[1]} of skein_uav.formula, which takes arrays"
+    return _at(frames[-1].filename, frames[-1].lineno or 0, reason)
+
+
+def _at(name: str, line: int, reason: str) -> Untraceable:
     code = linecache.getline(name, line).strip()
     shown = f": {code}" if code else ""
     return Untraceable(f"{os.path.basename(name)}:{line}{shown}\n  {_better(reason, code)}")
@@ -72,6 +86,10 @@ _VALUES = [
     (r"\bf[\"']|\bformat\(|%", "a text cannot hold it; leave it away, or make it a series of the scenario"),
 ]
 _BRANCHES = [
+    (r"\bnp\.maximum\(", "maximum(a, b) of skein_uav.formula, which takes arrays"),
+    (r"\bnp\.minimum\(", "minimum(a, b) of skein_uav.formula, which takes arrays"),
+    (r"\bnp\.clip\(", "clip(x, least, most) of skein_uav.formula, which takes arrays"),
+    (r"\bwhere\(", "maximum or minimum of skein_uav.formula, which take arrays, or where for each number of an array"),
     (r"\bmin\(", "minimum(a, b)"),
     (r"\bmax\(", "maximum(a, b)"),
     (r"\b(?:sorted|\.sort)\(", "smallest(items, key), or minimum and maximum of neighbours"),

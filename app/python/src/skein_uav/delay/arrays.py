@@ -41,6 +41,39 @@ def put(array: Any, slot: slice, value: Any) -> Any:
     return array
 
 
+def copied(array: Any) -> Any:
+    """Arrays of JAX cannot be changed, and are not."""
+    if type(array) is np.ndarray:
+        return array.copy("K")
+    return array.clone() if hasattr(array, "is_cuda") else array
+
+
+def changed(array: Any, mask: Any, value: Any) -> Any:
+    """A copy with another array's values in some environments: by their numbers with NumPy, else where flags say so."""
+    if type(array) is not np.ndarray:
+        return namespace(array).where(beside(mask, array), value, array)
+    array = array.copy("K")
+    array[mask] = value[mask]
+    return array
+
+
+def followed(rows: Any, newest: Any) -> Any:
+    """Rows of each environment, shape (environments, rows, …), without the first, and with another behind them."""
+    if type(rows) is not np.ndarray:
+        return namespace(rows).concatenate([rows[:, 1:], newest[:, None]], 1)
+    later = np.empty_like(rows)
+    later[:, :-1] = rows[:, 1:]
+    later[:, -1] = newest
+    return later
+
+
+def repeated(one: Any, number: int) -> Any:
+    """Rows of each environment; with NumPy, environments are contiguous, so that rows are copied by one loop."""
+    if type(one) is not np.ndarray:
+        return namespace(one).stack([one] * number, 1)
+    return np.moveaxis(np.stack([np.ascontiguousarray(one.T)] * number).T, -1, 1)
+
+
 def beside(flags: Any, array: Any) -> Any:
     """Flags or weights of the environments, with as many axes as the array."""
     return flags if flags.ndim == array.ndim else flags.reshape((-1,) + (1,) * (array.ndim - 1))

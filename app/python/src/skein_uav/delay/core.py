@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arrays import Tree, beside, cast, each, leaf, namespace, on
+from .arrays import Tree, beside, cast, changed, copied, each, followed, leaf, namespace, on, repeated
 from .history import History
 from .profiles import Trace, delays
 from .schedule import MOST_ROWS, Schedule, spawned
@@ -18,7 +18,7 @@ MOST_LINKS = 256
 """Of more environments, those share a link whose numbers differ by a multiple."""
 
 _LATER = 2**31
-_ROWS, _BYTES = 64, 2**22
+_ROWS, _BYTES = 512, 2**24
 """Steps of which histories have room, if they fit into so many bytes, but as many as delays are long."""
 
 Link = str | float | ArrayLike | Trace
@@ -83,6 +83,8 @@ class Delay:
         What acts before an action of the episode has arrived.
     pending : int
         Decisions that are told beside the observation.
+    encode : callable, optional
+        Of a batch of actions, what is told of them as pending; by default the actions.
     predict : callable, optional
         ``predict(observation, action)`` gives the observation a step later, for the whole batch. What is seen is then
         carried forward to the moment at which an action chosen now acts by the mean delay, under the actions on their way.
@@ -97,6 +99,9 @@ class Delay:
         Steps since the link began.
     longest_age_s : float
         Of an observation, s.
+    spare : int
+        Columns behind those of an observation, for what is told beside it, where observations are matrices of NumPy and
+        not predicted: the age, and others that are left free. To be set before the first.
 
     Raises
     ------
@@ -119,6 +124,7 @@ class Delay:
         first: str = "known",
         idle_action: ArrayLike = 0,
         pending: int = 0,
+        encode: Callable[[Tree], Tree] | None = None,
         predict: Callable[[Tree, Tree], Tree] | None = None,
         every: int = 1,
         seed: int | None = None,
@@ -140,7 +146,7 @@ class Delay:
         both = delays(link, "link")
         back = both if observation_delay is None else delays(observation_delay, "observation_delay")
         to = both if action_delay is None else delays(action_delay, "action_delay")
-        self.step_s, self._every, self._pending = step_s, every, pending
+        self.step_s, self._every, self._pending, self._encode = step_s, every, pending, encode
         self._is_zero, self._is_shared, self._predict = first == "zeros", arrival == "share", predict
         self._idle_action = idle_action
         is_own = any(one.trace is not None and one.trace.ndim == 2 for one in (back, to))
@@ -151,16 +157,17 @@ class Delay:
         )  # fmt: skip
         self.longest_age_s = self._schedule.oldest_seen * step_s
         self._ahead = self._schedule.action_delay_rows
-        behind = (self._schedule.oldest_seen + self._ahead) // every + 2
-        self._kept_observations = self._schedule.oldest_seen + 2
-        self._kept_actions = max(self._schedule.oldest_acting, behind, pending) + 2
+        oldest = max(self._schedule.oldest_seen, self._schedule.oldest_acting * every)
+        self._kept = max(oldest, self._schedule.oldest_seen + self._ahead) + 2 * every
         self._count, self.row, self._first, self._end = count, 0, 0, 0
         self._seeds = np.random.SeedSequence(seed).spawn(links)
         self._links = np.arange(count) % links if count > links else None
         self._observations: History | None = None
         self._actions: History | None = None
         self._idles: Tree = {}
+        self._told: Tree = None
         self._is_begun = False
+        self.spare = 0
 
     def begin(
         self,
@@ -197,20 +204,22 @@ class Delay:
         if self._observations is None:
             self._like = leaf(observations)
             self._xp = namespace(self._like)
+            self._maximum = self._xp.maximum
             self._room = self._rows_at_once(observations)
-            self._observations = History(observations, self._kept_observations, self._room, self._count)
-            steps = np.arange(self._kept_observations + self._room)[::-1]
-            self._ages = on(self._like, np.repeat(steps * self.step_s, self._count))
+            self._has_room = self.spare > 0 and self._xp is np and self._predict is None
+            spare = self.spare if self._has_room else 0
+            self._observations = History(observations, self._kept, self._room, self._count, spare)
+            self._ages = on(self._like, self._table())
             self._columns = on(self._like, np.arange(self._count))
-            rows = np.arange(self._room)[:, None]
-            self._begins = self._places(rows, -(-rows // self._every) - 1)
-            self._began = self._begins[0] + 0
+            links = self._schedule.count
+            self._of_links = on(self._like, np.arange(-(-self._count // links) * links).reshape(-1, links))
+            self._began = self._row(0)
         if self._actions is None and actions is not None:
             self._allocate(actions)
         at = self._in_block()
         mask = on(self._like, np.ones(self._count, dtype=np.bool_) if mask is None else mask)
         self._void(mask, at)
-        self._observations.put_where(mask, at, at + 1, observations)
+        self._observations.put_where(mask.nonzero()[0] if self._xp is np else mask, at, observations)
         return self._look(at)
 
     def acting(self, actions: Tree = None) -> Tree:
@@ -223,10 +232,14 @@ class Delay:
         """
         at = self._in_block()
         if actions is not None:
-            actions = each(lambda one: on(self._like, one), actions)
+            if type(actions) is not np.ndarray or self._xp is not np:
+                actions = each(lambda one: on(self._like, one), actions)
             if self._actions is None:
                 self._allocate(actions)
-            self._actions.put(at // self._every, actions)
+            self._actions.put(at + 1, actions)
+            if self._pending:
+                newest = actions if self._encode is None else self._encode(actions)
+                self._told = each(followed, self._told, newest)
         if self._is_shared:
             return self._mean(at)
         return self._actions.take(self._newest[1])
@@ -242,47 +255,62 @@ class Delay:
         self.row += 1
         at = self._in_block()
         if began is not None:
-            self._void(on(self._like, began), at)
+            self._void(began if type(began) is np.ndarray and self._xp is np else on(self._like, began), at)
         self._observations.put(at, observations)
         return self._look(at)
 
     def _void(self, mask: Any, at: int) -> None:
         """Episodes begin: what was decided before is void, and the idle action stands in the place of the last."""
         if type(mask) is np.ndarray:
-            if not mask.nonzero()[0].size:  # faster than ``any`` of few
+            which = mask.nonzero()[0]
+            if not which.size:
                 return
-            np.copyto(self._began, self._begins[at], where=mask)
+            places = which + (at + self._kept) * self._count
+            self._began[which] = places
         else:
-            self._began = self._xp.where(mask, self._begins[at], self._began)
+            which, places = mask, None
+            self._began = self._xp.where(mask, self._row(at), self._began)
         if self._actions is not None:
-            next = -(-at // self._every)
-            self._actions.put_where(mask, next - max(self._pending, 1), next, self._idles)
+            self._actions.put_where(which, at, self._idles, places)
+            if self._pending:
+                self._told = each(lambda told, idle: changed(told, which, idle), self._told, self._idle_told)
 
     def _look(self, at: int) -> Seen:
-        self._newest = self._xp.maximum(self._arrived[at], self._began)
+        # Environments beyond the links share them in turns.
+        arrived = (self._arrived[at] + self._of_links).reshape(2, -1)[:, : self._count]
+        self._newest = self._maximum(arrived, self._began)
         newest = self._newest[0]
         observation = self._observations.take(newest)
         if self._is_zero:
-            has = self._arrived[at][0] >= self._began[0]
+            has = arrived[0] >= self._began
             observation = each(lambda one: self._xp.where(beside(has, one), one, self._xp.zeros_like(one)), observation)
         if self._predict is not None:
             observation = self._predicted(observation, (self._row(at) - newest) // self._count, at)
         # The table ends with ages of 0, which here are those of this row.
         ages = self._ages[(self._room - 1 - at) * self._count :]
+        if self._has_room:
+            if ages.dtype != observation.dtype:
+                self._ages = self._table().astype(observation.dtype)
+                ages = self._ages[-len(ages) :]
+            age_s = observation[:, -self.spare]
+            ages.take(newest, 0, age_s, "clip")
+            return Seen(observation, age_s, self._told)
         age_s = ages.take(newest) if self._xp is np else ages[newest]
-        pending = self._actions.before(-(-at // self._every), self._pending) if self._pending else None
-        return Seen(observation, age_s, pending)
+        return Seen(observation, age_s, each(copied, self._told) if self._pending else None)
 
-    def _row(self, at: int) -> Any:
-        """The places of observations in this row."""
-        return self._columns + (at + self._kept_observations) * self._count
+    def _table(self) -> Any:
+        """Ages by places, at the last row."""
+        return np.repeat(np.arange(self._kept + self._room)[::-1] * self.step_s, self._count)
+
+    def _row(self, at: Any) -> Any:
+        """The places in this row."""
+        return self._columns + (at + self._kept) * self._count
 
     def _predicted(self, observation: Tree, lag: Any, at: int) -> Tree:
         newest = -(-at // self._every) - 1
         for step in range(int(self._most[at]) + self._ahead):
-            chosen = ((at - lag + step - self._ahead) // self._every).clip(None, newest)
-            places = self._columns + (chosen + self._kept_actions) * self._count
-            places = self._xp.maximum(places, self._began[1])
+            chosen = ((at - lag + step - self._ahead) // self._every).clip(None, newest) * self._every
+            places = self._maximum(self._row(chosen + 1), self._began)
             later = self._predict(observation, self._actions.take(places))
             goes = step < lag + self._ahead
             observation = each(lambda old, new: self._xp.where(beside(goes, old), new, old), observation, later)
@@ -292,10 +320,11 @@ class Delay:
         """The mean of the actions in force during a step."""
         shares, left = [], 1.0
         for lag, weight in enumerate(self._weights[at]):
-            counts = self._row(at) - lag * self._every * self._count >= self._began[0]
+            counts = self._row(at - lag * self._every) >= self._began
             shares.append(self._xp.where(counts, weight if self._links is None else weight[self._links], 0.0))
             left = left - shares[-1]
-        rows = [self._actions.row(at // self._every - lag) for lag in range(len(shares))]
+        chosen = at - at % self._every
+        rows = [self._actions.row(chosen - lag * self._every + 1) for lag in range(len(shares))]
 
         def mean(idle: Any, *ones: Any) -> Any:
             total = beside(left, idle) * idle
@@ -317,7 +346,11 @@ class Delay:
             return cast(on(self._like, np.broadcast_to(np.asarray(idle), tuple(one.shape)).copy()), one.dtype)
 
         self._idles = each(filled, actions, idles)
-        self._actions = History(self._idles, self._kept_actions, self._room // self._every, self._count)
+        self._actions = History(self._idles, self._kept, self._room + 1, self._count)
+        if self._pending:
+            idle = self._idles if self._encode is None else self._encode(self._idles)
+            self._idle_told = each(lambda one: repeated(one, self._pending), idle)
+            self._told = self._idle_told
 
     def _rows_at_once(self, observations: Tree) -> int:
         """How many rows histories take before old ones are forgotten."""
@@ -326,7 +359,7 @@ class Delay:
         # Arrays of JAX are copied whole whenever they are changed.
         is_copied = self._xp is not np and not hasattr(self._like, "is_cuda")
         fit = 0 if is_copied else _BYTES // sum(sizes)
-        rows = max(min(fit, _ROWS), self._kept_observations, self._kept_actions * self._every)
+        rows = max(min(fit, _ROWS), self._kept)
         return -(-min(rows, self._schedule.rows) // self._every) * self._every
 
     def _in_block(self) -> int:
@@ -340,28 +373,23 @@ class Delay:
     def _forget(self, rows: int) -> None:
         if rows and self._observations is not None:
             self._observations.forget(rows)
-            decisions = rows // self._every
             if self._actions is not None:
-                self._actions.forget(decisions)
-            begin = on(self._like, np.array([[rows], [decisions]]) * self._count)
+                self._actions.forget(rows)
             # An episode may be older than what is kept; bounded, so that 32 bits hold it.
-            self._began = (self._began - begin).clip(-4 * MOST_ROWS * self._every * self._count)
-
-    def _places(self, seen: Any, acting: Any) -> list[Any]:
-        """The places of what is seen and of what acts, shape (2, environments), row by row, by their histories' rows."""
-        rows = np.stack(np.broadcast_arrays(seen + self._kept_observations, acting + self._kept_actions), 1)
-        links = rows.shape[-1]
-        columns = np.arange(-(-self._count // links) * links).reshape(-1, links)
-        places = (rows[:, :, None] * self._count + columns).reshape(len(rows), 2, -1)[..., : self._count]
-        return list(on(self._like, places))
+            self._began = (self._began - rows * self._count).clip(-4 * MOST_ROWS * self._count)
 
     def _make_block(self) -> None:
-        """Uploads what the link does in the next rows: the places of what is seen, and of what acts."""
+        """Uploads what the link does in the next rows: where the rows of what is seen, and of what acts, begin."""
         schedule, at = self._schedule, self._schedule.row(self._first)
         rows = min(self._room, schedule.rows - at)
         self._end, block = self._first + rows, slice(at, at + rows)
         numbers = np.arange(rows)[:, None]
-        acts = numbers // self._every - schedule.acts[block]
-        self._arrived = self._places(numbers - schedule.seen[block], acts)
+        # An action stands a row after its decision, since the idle one stands in the row in which an episode begins.
+        first = np.empty((rows, 2, schedule.count), np.intp)
+        np.subtract(numbers + self._kept, schedule.seen[block], out=first[:, 0])
+        np.multiply(schedule.acts[block], -self._every, out=first[:, 1])
+        first[:, 1] += numbers - numbers % self._every + (self._kept + 1)
+        first *= self._count
+        self._arrived = list(on(self._like, first[:, :, None]))
         self._most = schedule.seen[block].max(1)
         self._weights = on(self._like, schedule.weights[block]) if self._is_shared else None

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from .arrays import Tree, beside, cast, each, leaf, namespace, put
+from .arrays import Tree, cast, changed, copied, each, leaf, namespace, put
 
 
 class History:
@@ -23,52 +23,63 @@ class History:
         Rows that `forget` keeps, and rows that fit behind them.
     count : int
         Environments.
+    spare : int
+        Columns behind those of the value, which is a matrix of NumPy then: `take` has them, with any numbers. Columns are
+        contiguous then, so that each is copied by one loop.
     """
 
-    def __init__(self, value: Tree, kept: int, room: int, count: int) -> None:
+    def __init__(self, value: Tree, kept: int, room: int, count: int, spare: int = 0) -> None:
         self._xp, self._kept, self._count, self._length = namespace(leaf(value)), kept, count, kept + room
-        self._rows: Tree = each(lambda one: _repeated(self._xp, one, kept + room), value)
+        self._spare = spare
+        self._hold(each(lambda one: _repeated(self._xp, one, kept + room), value))
+
+    def _hold(self, rows: Tree) -> None:
+        self._rows = np.asfortranarray(rows) if self._spare else rows
+        self._columns = self._rows.T if self._spare else None
+        self._dtype = rows.dtype if type(rows) is np.ndarray else None
 
     def put(self, row: int, value: Tree) -> None:
-        slot, rows = self._slot(row, row + 1), self._rows
-        if type(rows) is np.ndarray and rows.dtype == value.dtype:
-            rows[slot] = value
+        begin = (row + self._kept) * self._count
+        slot = slice(begin, begin + self._count)
+        if self._dtype is not None and (value.dtype is self._dtype or value.dtype == self._dtype):
+            self._rows[slot] = value
         else:
-            self._rows = each(lambda rows, one: put(_wide(rows, one), slot, one), rows, value)
+            self._hold(each(lambda rows, one: put(_wide(rows, one), slot, one), self._rows, value))
 
-    def put_where(self, mask: Any, first: int, end: int, value: Tree) -> None:
-        """Puts the value in all rows from the first to the end, in some environments."""
-        slot, rows = self._slot(first, end), self._rows
-        if type(rows) is np.ndarray and end - first == 1:
-            np.copyto(rows[slot], value, where=beside(mask, value))
-            return
-        self._rows = each(lambda rows, one: _put_where(self._xp, rows, slot, mask, one), rows, value)
+    def put_where(self, which: Any, row: int, value: Tree, places: Any = None) -> None:
+        """Puts the value in a row, in some environments: by their numbers with NumPy, else where flags say so.
+
+        Parameters
+        ----------
+        places : ndarray, optional
+            Of these numbers in the row, where they are known.
+        """
+        slot = self._slot(row, row + 1)
+        if self._dtype is not None:
+            self._rows[which + slot.start if places is None else places] = value[which]
+        else:
+            self._hold(each(lambda rows, one: put(rows, slot, changed(rows[slot], which, one)), self._rows, value))
 
     def take(self, places: Any) -> Tree:
-        rows = self._rows
-        return rows.take(places, 0) if type(rows) is np.ndarray else each(lambda one: _taken(one, places), rows)
+        rows, columns = self._rows, self._columns
+        if columns is not None:
+            width = len(columns)
+            taken = np.empty((width + self._spare, self._count), self._dtype)
+            columns.take(places, 1, taken[:width], "clip")  # else ``out`` is copied
+            return taken.T
+        return rows.take(places, 0) if self._dtype is not None else each(lambda one: _taken(one, places), rows)
 
     def row(self, row: int) -> Tree:
         """A whole row, of the episode or not; not to be changed."""
         slot = self._slot(row, row + 1)
         return each(lambda rows: rows[slot], self._rows)
 
-    def before(self, row: int, number: int) -> Tree:
-        """So many rows before this one, shape (environments, number, …)."""
-        slot = self._slot(row - number, row)
-
-        def copied(rows: Any) -> Any:
-            last = rows[slot].reshape((number, self._count) + tuple(rows.shape[1:])).swapaxes(0, 1)
-            return last.clone() if hasattr(last, "is_cuda") else last.copy()
-
-        return each(copied, self._rows)
-
     def forget(self, number: int) -> None:
         """Makes room: row ``number`` becomes row 0."""
         if number:
             old = self._slot(number - self._kept, min(number + 1, self._length - self._kept))
             new = slice(0, old.stop - old.start)
-            self._rows = each(lambda rows: put(rows, new, rows[old] + 0), self._rows)  # a copy, since they overlap
+            self._hold(each(lambda rows: put(rows, new, copied(rows[old])), self._rows))  # they overlap
 
     def _slot(self, first: int, end: int) -> slice:
         return slice((first + self._kept) * self._count, (end + self._kept) * self._count)
@@ -81,14 +92,6 @@ def _repeated(xp: Any, one: Any, number: int) -> Any:
 
 def _taken(rows: Any, places: Any) -> Any:
     return rows.take(places, 0) if type(rows) is np.ndarray else rows[places]
-
-
-def _put_where(xp: Any, rows: Any, slot: slice, mask: Any, value: Any) -> Any:
-    if xp is np:
-        np.copyto(rows[slot].reshape((-1,) + value.shape), value, where=beside(mask, value))
-        return rows
-    old = rows[slot].reshape((-1,) + tuple(value.shape))
-    return put(rows, slot, xp.where(beside(mask, value), value, old).reshape((-1,) + tuple(value.shape[1:])))
 
 
 def _wide(rows: Any, one: Any) -> Any:

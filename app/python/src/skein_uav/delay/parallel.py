@@ -11,7 +11,7 @@ from pettingzoo.utils.wrappers import BaseParallelWrapper
 
 from .arrays import each
 from .core import Delay
-from .spaces import Telling, batched, idle
+from .spaces import Telling, batched, encoding, idle
 
 
 class DelayParallelEnv(BaseParallelWrapper):
@@ -43,8 +43,8 @@ class DelayParallelEnv(BaseParallelWrapper):
         self._seed = np.random.SeedSequence(seed).entropy
         for agent in env.possible_agents:
             space = env.action_space(agent)
-            own = {"idle_action": idle(space), **settings}
-            self._delays[agent] = Delay(1, step_s, pending=pending, **own)
+            own = {"pending": pending, "encode": encoding(env.observation_space(agent), space), "idle_action": idle(space)}
+            self._delays[agent] = Delay(1, step_s, **{**own, **settings})
             longest = self._delays[agent].longest_age_s
             self._tellings[agent] = Telling(env.observation_space(agent), space, longest, ages, pending)
         self.observation_spaces = {agent: one.space for agent, one in self._tellings.items()}

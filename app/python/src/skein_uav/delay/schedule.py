@@ -133,8 +133,10 @@ class Schedule:
 
     def _make(self) -> None:
         decided = slice(None, None, self.every)
-        back, back_lost = self._back.block(self.first, self.rows, self._links, self._lines, self._dropout)
-        (to,), to_lost = self._to.block(self.first, self.rows, self._links, self._lines, self._dropout)
+        kinds = [one.draws + (self._dropout > 0) for one in (self._back, self._to)]
+        drawn = _drawn(self._lines, self.rows, kinds)
+        back, back_lost = self._back.block(self.first, self.rows, self._links, drawn[0], self._dropout)
+        (to,), to_lost = self._to.block(self.first, self.rows, self._links, drawn[1], self._dropout)
         to_lost = None if to_lost is None else to_lost[decided]
         self.seen = self._newest(0, self._kept(0, _whole(back[0]), back_lost), 1)
         if not self._is_exact:
@@ -243,7 +245,7 @@ class _Direction:
 
     def __init__(self, delays: Delays, count: int, step_s: float, lines: int, link: _Direction | None = None) -> None:
         self._delays, self._count, self._step_s, self._lines, self._link = delays, count, step_s, lines, link
-        self._draws = 0 if delays.is_constant or delays.trace is not None or delays.correlation_s else lines
+        self.draws = 0 if delays.is_constant or delays.trace is not None or delays.correlation_s else lines
         if delays.trace is not None and delays.trace.ndim == 2 and delays.trace.shape[1] != count:
             raise ValueError(f"expected delays of shape (times,) or (times, {count}), came {delays.trace.shape}")
 
@@ -258,12 +260,17 @@ class _Direction:
         first: int,
         rows: int,
         links: list[np.random.Generator],
-        lines: list[np.random.Generator],
+        drawn: NDArray[np.uint16],
         dropout: float,
     ) -> tuple[list[Timed], NDArray[np.bool_] | None]:
-        """Of each line the delays, and which of the first one's messages are lost, shape (rows, count)."""
+        """Of each line the delays, and which of the first one's messages are lost, shape (rows, count).
+
+        Parameters
+        ----------
+        drawn : ndarray, shape (draws, rows, count)
+            Random numbers below 2**16; a last one where messages can be lost.
+        """
         delays, h = self._delays, self._step_s
-        drawn = _drawn(lines, rows, self._draws + (dropout > 0))
         lost = drawn[-1] < round(dropout * 2**16) if dropout else None
         if delays.trace is not None:
             begin = self._begin if self._link is None else self._link._begin
@@ -284,7 +291,7 @@ class _Direction:
         state = self._link or self
         told = []
         for line in range(self._lines):
-            at = drawn[line] % SIZE if state._held is None else state._held
+            at = drawn[line] & (SIZE - 1) if state._held is None else state._held
             if state._is_busy is not None:
                 at = np.where(state._is_busy, at, at + np.asarray(SIZE, at.dtype))
             told.append((np.concatenate([delays.busy, delays.quiet]) / h, at))
@@ -325,13 +332,18 @@ def _snapped(rows: Floats) -> Floats:
         return np.where(np.abs(rows - whole) < _TINY, whole, rows)
 
 
-def _drawn(generators: list[np.random.Generator], rows: int, kinds: int) -> NDArray[np.uint16]:
-    """Numbers below 2**16, shape (kinds, rows, generators); rows is a multiple of 4."""
-    if kinds == 0:
-        return np.empty((0, rows, len(generators)), dtype=np.uint16)
-    raw = np.stack([one.bit_generator.random_raw(-(-rows * kinds // 4)) for one in generators])
-    drawn = raw.astype("<u8", copy=False).view("<u2")[:, : rows * kinds].reshape(len(generators), rows, kinds)
-    return np.ascontiguousarray(drawn.transpose(2, 1, 0))
+def _drawn(generators: list[np.random.Generator], rows: int, kinds: list[int]) -> list[NDArray[np.uint16]]:
+    """Numbers below 2**16, each of shape (kinds, rows, generators)."""
+    words, count = [-(-rows * one // 4) for one in kinds], len(generators)
+    raw = np.concatenate([one.bit_generator.random_raw(sum(words)) for one in generators]).reshape(count, -1)
+    # By whole words first: numbers one by one would each be far from the next.
+    parts = np.ascontiguousarray(raw.T).astype("<u8", copy=False).view("<u2").reshape(-1, count, 4)
+    numbers = np.ascontiguousarray(parts.swapaxes(1, 2)).reshape(-1, count)
+    ends = np.cumsum(words) * 4
+    return [
+        numbers[end - 4 * size :][: rows * one].reshape(rows, one, count).swapaxes(0, 1)
+        for one, size, end in zip(kinds, words, ends)
+    ]
 
 
 def spawned(seed: np.random.SeedSequence, number: int) -> np.random.SeedSequence:

@@ -10,7 +10,7 @@ from gymnasium.vector.utils import create_empty_array
 
 from .arrays import each
 from .core import Delay
-from .spaces import Telling, batched, idle
+from .spaces import Telling, batched, encoding, idle
 
 
 class DelayEnv(gym.Wrapper, gym.utils.RecordConstructorArgs):
@@ -57,8 +57,11 @@ class DelayEnv(gym.Wrapper, gym.utils.RecordConstructorArgs):
         self._idle = idle(env.action_space) if idle_action is None else idle_action
         self._like = create_empty_array(env.action_space, 1, fn=np.zeros)
         self._substeps = substeps
-        self._delay = Delay(1, step_s, pending=pending, every=substeps, idle_action=self._idle, **settings)
+        encode = encoding(env.observation_space, env.action_space)
+        own = {"pending": pending, "encode": encode, "every": substeps, "idle_action": self._idle}
+        self._delay = Delay(1, step_s, **own, **settings)
         self._telling = Telling(env.observation_space, env.action_space, self._delay.longest_age_s, ages, pending)
+        self._delay.spare = self._telling.spare
         self.observation_space = self._telling.space
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:

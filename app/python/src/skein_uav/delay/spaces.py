@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import gymnasium as gym
@@ -34,6 +36,8 @@ class Telling:
     ----------
     space : Space
         Of one environment.
+    spare : int
+        Columns behind an observation that `told` fills, as of `skein_uav.delay.Delay`; 0 without ages.
     """
 
     def __init__(
@@ -41,9 +45,9 @@ class Telling:
     ) -> None:
         if pending and not isinstance(action, (Box, Discrete)):
             raise ValueError(f"pending: expected 0 with actions that are no Box and no Discrete, came {pending}")
-        self._ages, self._pending, self._action = ages, pending, action
-        is_vector = isinstance(observation, Box) and len(observation.shape) == 1
-        self._is_flat = is_vector and np.issubdtype(observation.dtype, np.floating)
+        self._ages, self._pending = ages, pending
+        self._is_flat = _is_flat(observation)
+        self.spare = 0
         if not ages and not pending:
             self.space = observation
         elif self._is_flat:
@@ -57,6 +61,8 @@ class Telling:
                 most.append(np.tile(np.ones(action.n) if one_hot else action.high.ravel(), pending))
             low, high = (np.concatenate(parts).astype(observation.dtype) for parts in (least, most))
             self.space = Box(low, high, dtype=observation.dtype)
+            self._width = len(low)
+            self.spare = self._width - len(observation.low) if ages else 0
         else:
             parts = {"observation": observation}
             if ages:
@@ -71,6 +77,10 @@ class Telling:
     def told(self, seen: Seen) -> Tree:
         """For a batch."""
         observation = seen.observation
+        if self.spare and type(observation) is np.ndarray and observation.shape[1] == self._width:
+            if self._pending:
+                observation[:, 1 - self.spare :] = seen.pending.reshape(len(observation), -1)
+            return observation
         if not self._ages and not self._pending:
             return observation
         if not self._is_flat:
@@ -80,19 +90,27 @@ class Telling:
             if self._pending:
                 told["pending"] = seen.pending
             return told
-        pending = None
-        if self._pending:
-            pending = seen.pending
-            if isinstance(self._action, Discrete):
-                pending = _one_hot(pending, self._action)
-            pending = pending.reshape(len(pending), -1)
-        return joined([observation, seen.age_s[:, None] if self._ages else None, pending], self.space.shape[0])
+        pending = seen.pending.reshape(len(observation), -1) if self._pending else None
+        return joined([observation, seen.age_s[:, None] if self._ages else None, pending], self._width)
 
 
-def _one_hot(numbers: Any, space: Discrete) -> Any:
-    if type(numbers) is np.ndarray and space.n <= 64:  # a table is faster, and larger by the square
-        return np.eye(space.n, dtype=np.float32).take(numbers - space.start, 0)
-    return numbers[:, :, None] == on(numbers, np.arange(space.start, space.start + space.n))
+def encoding(observation: gym.Space, action: gym.Space) -> Callable[[Tree], Tree] | None:
+    """What is told of pending actions beside such an observation; None: themselves."""
+    if not _is_flat(observation) or not isinstance(action, Discrete):
+        return None
+    table = np.eye(action.n, dtype=np.float32) if action.n <= 64 else None  # a table is faster, and larger by the square
+    return partial(_one_hot, table, np.arange(action.start, action.start + action.n))
+
+
+def _one_hot(table: Any, values: Any, numbers: Any) -> Any:
+    if type(numbers) is np.ndarray and table is not None:
+        return table.take(numbers - values[0] if values[0] else numbers, 1).T
+    return numbers[:, None] == on(numbers, values)
+
+
+def _is_flat(observation: gym.Space) -> bool:
+    is_vector = isinstance(observation, Box) and len(observation.shape) == 1
+    return is_vector and np.issubdtype(observation.dtype, np.floating)
 
 
 def idle(space: gym.Space) -> Any:

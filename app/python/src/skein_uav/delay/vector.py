@@ -11,7 +11,7 @@ from gymnasium.vector.utils import batch_space, create_empty_array
 
 from .arrays import each
 from .core import Delay
-from .spaces import Telling, idle
+from .spaces import Telling, encoding, idle
 
 
 class DelayVectorEnv(VectorWrapper, gym.utils.RecordConstructorArgs):
@@ -47,12 +47,16 @@ class DelayVectorEnv(VectorWrapper, gym.utils.RecordConstructorArgs):
             raise ValueError("substeps: wrap each environment in DelayEnv before a vector is made of them")
         if env.metadata.get("autoreset_mode") is None:
             raise ValueError("env: expected metadata['autoreset_mode'], of gymnasium.vector.AutoresetMode, came none")
-        self._mode = AutoresetMode(env.metadata["autoreset_mode"])
+        mode = AutoresetMode(env.metadata["autoreset_mode"])
+        self._resets, self._resets_next = mode is not AutoresetMode.DISABLED, mode is AutoresetMode.NEXT_STEP
         self._idle = idle(env.single_action_space) if idle_action is None else idle_action
-        self._delay = Delay(env.num_envs, step_s, pending=pending, idle_action=self._idle, **settings)
+        encode = encoding(env.single_observation_space, env.single_action_space)
+        own = {"pending": pending, "encode": encode, "idle_action": self._idle}
+        self._delay = Delay(env.num_envs, step_s, **own, **settings)
         self._telling = Telling(
             env.single_observation_space, env.single_action_space, self._delay.longest_age_s, ages, pending
         )
+        self._delay.spare = self._telling.spare
         self.single_observation_space = self._telling.space
         self.observation_space = batch_space(self.single_observation_space, env.num_envs)
         self._like = create_empty_array(env.single_action_space, env.num_envs, fn=np.zeros)
@@ -75,11 +79,11 @@ class DelayVectorEnv(VectorWrapper, gym.utils.RecordConstructorArgs):
     def step(self, actions: Any) -> tuple[Any, Any, Any, Any, dict[str, Any]]:
         """Decides in every environment, upon what the last call told."""
         observations, rewards, terminated, truncated, infos = self.env.step(self._delay.acting(actions))
-        if self._mode is AutoresetMode.DISABLED:
-            seen = self._delay.seen(observations)
-        elif self._mode is AutoresetMode.NEXT_STEP:
+        if self._resets_next:
             seen = self._delay.seen(observations, self._ended)
             self._ended = terminated | truncated
+        elif not self._resets:
+            seen = self._delay.seen(observations)
         elif "final_obs" in infos:
             seen = self._finals(observations, terminated | truncated, infos)
         else:

@@ -9,7 +9,8 @@ import skein.scenario.*
 import skein.simd.WorldRandom
 
 /** Compares the rates of scenarios written in Python with their Scala twins, by the processor's time of
-  * alternating rounds: `forward/Test/runMain skein.lanes.PythonTwinRates FOLDER`, the folder of their files.
+  * alternating rounds: `forward/Test/runMain skein.lanes.PythonTwinRates FOLDER [NAME]`, the folder of their
+  * files.
   */
 object PythonTwinRates:
   private val lag    = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
@@ -17,8 +18,10 @@ object PythonTwinRates:
   private val system = ManagementFactory.getPlatformMXBean(classOf[OperatingSystemMXBean])
 
   def main(arguments: Array[String]): Unit =
-    for (name, twin) <- Seq("ring" -> Surround(), "pursuit" -> PaperDuel()); share <- Seq(true, false) do
-      val text   = Files.readString(Path.of(arguments(0)).resolve(s"$name.scenario"))
+    val folder = Path.of(arguments(0))
+    val twins  = Seq("ring" -> Surround(), "pursuit" -> PaperDuel(), "network" -> NetworkDuel.of(folder))
+    for (name, twin) <- twins if arguments.drop(1).forall(_ == name); share <- Seq(true, false) do
+      val text   = Files.readString(folder.resolve(s"$name.scenario"))
       val python = ScenarioText.read(text).fold(why => throw IllegalArgumentException(why), _.standard)
       val judged = Objective.measures(python).values.toVector.flatMap(ScenarioTerm(_).judged(20, 0.1))
       val batch  = TeamBatch(LoopTiming.Stream(), lag, threads = 1)

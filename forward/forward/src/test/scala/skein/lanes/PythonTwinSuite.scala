@@ -9,8 +9,8 @@ import skein.signal.{Kinematics, SplitMix64}
 import skein.simd.WorldRandom
 import skein.units.*
 
-/** Scenarios written in Python, by the files beside the examples, and the same ones in Scala: equal bits. The
-  * package's tests hold the files to the Python.
+/** Scenarios written in Python, by the files beside the examples, and the same ones in Scala: equal bits, but
+  * for a network by SIMD. The package's tests hold the files to the Python.
   */
 class PythonTwinSuite extends munit.FunSuite:
   private val root = Iterator
@@ -30,7 +30,8 @@ class PythonTwinSuite extends munit.FunSuite:
       written("ring", "ring-m" -> "11.5", "pursuer-mps" -> "9"),
       Surround(ringM = 11.5, pursuerMps = 9)
     ),
-    ("the paper's duel", written("pursuit"), PaperDuel())
+    ("the paper's duel", written("pursuit"), PaperDuel()),
+    ("a network's duel", written("network"), NetworkDuel.of(root.resolve("examples/scenario-in-python")))
   )
 
   private val lag   = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
@@ -79,7 +80,7 @@ class PythonTwinSuite extends munit.FunSuite:
       (by, pace) <- Seq("the scalar engine" -> true, "SIMD" -> true, "SIMD, at paces of their own" -> false)
     do
       val isReference = by.startsWith("the scalar")
-      test(s"$name, $timing, shared episodes: $share, by $by: the same results, to the bit"):
+      test(s"$name, $timing, shared episodes: $share, by $by: the same results"):
         val batch               = TeamBatch(timing, lag, threads = 1, isReference = isReference)
         def flown(of: Scenario) =
           val judged =
@@ -99,4 +100,8 @@ class PythonTwinSuite extends munit.FunSuite:
           val engine = batch.engine(team, share, Seq(DelayTable.vpn)).text
           assert(isReference || engine.startsWith("SIMD"), engine)
           batch.fly(worlds).values.map(_.toVector).toVector
-        assertEquals(flown(python), flown(scala))
+        val (one, other) = (flown(python), flown(scala))
+        // SIMD folds the scales of a network's inputs into weights that are known, but not into a policy's numbers.
+        if isReference || !name.contains("network") then assertEquals(one, other)
+        else
+          for (a, b) <- one.flatten.zip(other.flatten) do assertEqualsFloat(a, b, 1e-4f * b.abs.max(1))
