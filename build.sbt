@@ -267,7 +267,7 @@ lazy val rosbag = project.in(file("fly/rosbag"))
 /** Episodes step by step, for learners. */
 lazy val environment = project.in(file("learn/environment"))
   .settings(artifact("environment", "Episodes under a loop's timing, step by step, for learners"))
-  .dependsOn(flight)
+  .dependsOn(flight, forward % "test->test")
   .settings(testsCompute := true, libraryDependencies ++= munit)
 
 /** Learners of policies. */

@@ -157,8 +157,8 @@ def test_wrong_settings_and_a_closed_environment_are_told(make):
     for settings, told in [
         ({"link": "nowhere"}, "link: "),
         ({"loop": "plan"}, "loop: expected paused, .* which plans"),
-        ({"plant": "quadrotor", "altitude_m": 3.0}, "plant: the lanes know no ground"),
-        ({"learner": "nobody"}, "learner: expected pursuer or evader"),
+        ({"learner": "nobody"}, "learners: expected one of evader, pursuer"),
+        ({"learner": "all"}, "learner: expected one in a world, came Evader, Pursuer"),
         ({"opponent": "nobody"}, "opponent: "),
         ({"capture_radius_m": -1}, "capture_radius_m: expected"),
         ({"render_mode": "human"}, "render_mode: expected"),
@@ -208,17 +208,38 @@ def test_pettingzoo_finds_nothing_wrong():
     pytest.importorskip("pettingzoo")
     from pettingzoo.test import parallel_api_test, parallel_seed_test
 
-    from skein_uav.parallel import DuelParallelEnv
+    from skein_uav.parallel import TeamParallelEnv
 
-    parallel_api_test(DuelParallelEnv(start_within_m=(5, 30), episode_s=5), num_cycles=200)
-    parallel_seed_test(lambda: DuelParallelEnv(start_within_m=(5, 30)), num_cycles=50)
+    parallel_api_test(TeamParallelEnv(start_within_m=(5, 30), episode_s=5), num_cycles=200)
+    parallel_seed_test(lambda: TeamParallelEnv(start_within_m=(5, 30)), num_cycles=50)
+
+
+@pytest.mark.parametrize("backend", ["process", "socket"])
+def test_several_of_a_team_learn_in_one_world(backend):
+    pytest.importorskip("pettingzoo")
+    from pettingzoo.test import parallel_api_test
+
+    from skein_uav.parallel import TeamParallelEnv
+
+    team = {"scenario": "surround", "settings": {"vehicles": 4}, "backend": backend, "episode_s": 3}
+    with contextlib.closing(TeamParallelEnv(learners="pursuers", objective="off-ring", **team)) as env:
+        assert env.engine.startswith("SIMD, ")
+        assert env.possible_agents == ["pursuer1", "pursuer2", "pursuer3"]
+        parallel_api_test(env, num_cycles=200)
+        env.reset(seed=1)
+        _, rewards, *_ = env.step(dict.fromkeys(env.agents, np.zeros(1, np.float32)))
+        assert len(set(rewards.values())) == 1
+    with contextlib.closing(TeamParallelEnv(learners="Pursuer2,Evader", **team)) as env:
+        assert env.possible_agents == ["evader", "pursuer2"]
+        infos = env.reset(seed=1)[1]
+        assert infos["evader"]["distance_m"] > 20
 
 
 def test_the_spaces_of_both_sides_are_told_by_name_too():
     pytest.importorskip("pettingzoo")
-    from skein_uav.parallel import DuelParallelEnv
+    from skein_uav.parallel import TeamParallelEnv
 
-    with contextlib.closing(DuelParallelEnv()) as env:
+    with contextlib.closing(TeamParallelEnv()) as env:
         for agent in env.possible_agents:
             assert env.observation_spaces[agent] is env.observation_space(agent)
             assert env.action_spaces[agent] is env.action_space(agent)
@@ -226,9 +247,9 @@ def test_the_spaces_of_both_sides_are_told_by_name_too():
 
 def test_both_sides_rewards_add_up_to_nothing():
     pytest.importorskip("pettingzoo")
-    from skein_uav.parallel import DuelParallelEnv
+    from skein_uav.parallel import TeamParallelEnv
 
-    env = DuelParallelEnv(episode_s=5)
+    env = TeamParallelEnv(episode_s=5)
     env.reset(seed=1)
     with pytest.raises(ValueError, match="expected one of evader"):
         env.step({})
@@ -289,7 +310,7 @@ def test_behind_a_socket_it_is_the_same_in_forked_processes_too(make):
 def test_another_scenario_is_learned_in_by_one_of_its_pursuers():
     settings = {"scenario": "surround", "settings": {"vehicles": 4}, "objective": "off-ring", "episode_s": 3.0}
     with contextlib.closing(gym.make_vec("skein_uav/Pursuit-v0", num_envs=3, link="vpn", **settings)) as env:
-        assert env.unwrapped.engine.startswith("scalar: environments of surround")
+        assert env.unwrapped.engine.startswith("SIMD, ")
         seen, _ = env.reset(seed=1)
         assert len({tuple(row[:2]) for row in seen}) == 3
         rewards = np.zeros(3)
@@ -297,8 +318,10 @@ def test_another_scenario_is_learned_in_by_one_of_its_pursuers():
             _, now, _, truncated, infos = env.step(np.zeros((3, 1), np.float32))
             rewards += now
         assert (rewards < -1).all() and (infos["distance_m"] > 5).all()
-    with pytest.raises(ValueError, match="scenario: expected one with a pursuer and vehicles of another role, came formation"):
+    with pytest.raises(ValueError, match="learners: expected one of leader, follower"):
         gym.make_vec("skein_uav/Pursuit-v0", num_envs=1, scenario="formation")
+    with contextlib.closing(gym.make("skein_uav/Pursuit-v0", plant="quadrotor", altitude_m=3.0)) as env:
+        assert env.unwrapped.engine.startswith("scalar: the lanes know no ground")
 
 
 def test_both_sides_may_turn_by_a_rate():

@@ -18,18 +18,6 @@ Floats = NDArray[np.float32]
 Flags = NDArray[np.bool_]
 
 
-class Backend(Protocol):
-    """Runs a batch: in this process, or behind a socket."""
-
-    def reset(self, seeds: NDArray[np.int64], mask: Flags | None) -> None: ...
-
-    def step(self) -> None: ...
-
-    def close(self) -> None: ...
-
-    def engine(self) -> str: ...
-
-
 class Block:
     """The arrays that a batch of environments shares with its backend, all views of one block of bytes.
 
@@ -37,7 +25,7 @@ class Block:
     ----------
     memory : ndarray of uint8, shape (Block.size(agents, count),)
     agents : int
-        Learners; the evader first where both sides learn.
+        Learners, in the scenario's order.
     count : int
         Environments.
 
@@ -46,8 +34,10 @@ class Block:
     actions : (agents, count) float32
     observations, finals : (agents, FIELDS, count) float32
     rewards : (agents, count) float32
-    distance, time : (count,) float32
-        In m and s.
+    distance : (agents, count) float32
+        To the nearest opponent, m.
+    time : (count,) float32
+        In s.
     terminated, truncated : (count,) bool
     due : (agents, count) bool
         Who decides now.
@@ -67,7 +57,7 @@ class Block:
         self.observations: Floats = part(np.float32, agents, FIELDS, count)
         self.finals: Floats = part(np.float32, agents, FIELDS, count)
         self.rewards: Floats = part(np.float32, agents, count)
-        self.distance: Floats = part(np.float32, count)
+        self.distance: Floats = part(np.float32, agents, count)
         self.time: Floats = part(np.float32, count)
         self.terminated: Flags = part(np.bool_, count)
         self.truncated: Flags = part(np.bool_, count)
@@ -76,19 +66,45 @@ class Block:
     @staticmethod
     def size(agents: int, count: int) -> int:
         """Size of a block in bytes."""
-        return (4 * (2 * agents + 2 * agents * FIELDS + 2) + 2 + agents) * count
+        return (4 * (3 * agents + 2 * agents * FIELDS + 1) + 2 + agents) * count
+
+
+class Backend(Protocol):
+    """Runs a batch: in this process, or behind a socket."""
+
+    learners: list[str]
+    block: Block
+
+    def reset(self, seeds: NDArray[np.int64], mask: Flags | None) -> None: ...
+
+    def step(self) -> None: ...
+
+    def close(self) -> None: ...
+
+    def engine(self) -> str: ...
 
 
 class InProcess:
-    """Runs the batch by Java in this process, directly on the memory of `block`."""
+    """Runs the batch by Java in this process, directly on the memory of its block.
 
-    def __init__(self, settings: Mapping[str, str], count: int, autoreset: int, block: Block) -> None:
+    Attributes
+    ----------
+    learners : list of str
+        Names of the learners' vehicles.
+    block : Block
+    """
+
+    def __init__(self, settings: Mapping[str, str], count: int, autoreset: int) -> None:
         jpype = jvm.start()
         self._jpype = jpype
-        self._block = block  # Java writes to it as long as this lives.
-        buffer = jpype.nio.convertToDirectBuffer(memoryview(block.memory))
-        made = jpype.JClass("skein.environment.EnvironmentBatch").make
-        self._batch = self._told(lambda: made(jpype.java.util.HashMap(settings), count, autoreset, buffer))
+        batches = jpype.JClass("skein.environment.EnvironmentBatch")
+        java = jpype.java.util.HashMap(settings)
+        self.learners = str(self._told(lambda: batches.learners(java))).splitlines()
+        agents = len(self.learners)
+        # Java writes to it as long as this lives.
+        self.block = Block(np.zeros(Block.size(agents, count), dtype=np.uint8), agents, count)
+        buffer = jpype.nio.convertToDirectBuffer(memoryview(self.block.memory))
+        self._batch = self._told(lambda: batches.make(java, count, autoreset, buffer))
         self._step = self._batch.step
 
     def reset(self, seeds: NDArray[np.int64], mask: Flags | None) -> None:

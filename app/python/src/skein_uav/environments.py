@@ -1,7 +1,7 @@
-"""Environments of Gymnasium: a duel under a loop's real timing, over a link.
+"""Environments of Gymnasium: a scenario under a loop's real timing, over a link.
 
-In ``skein_uav/Pursuit-v0`` the learner is the pursuer, in ``skein_uav/Evasion-v0`` the evader; the other side uses any
-policy.
+In ``skein_uav/Pursuit-v0`` the learner is a pursuer, in ``skein_uav/Evasion-v0`` an evader, by default of the duel; other
+vehicles use their own policies.
 
 A step is one decision of the learner, at the moment at which the loop decides. Observations are old, and actions take
 effect later, by the delays of the link.
@@ -20,12 +20,12 @@ Observation, 9 numbers (float32), in the frame whose x-axis is the learner's las
 8  opponent's age    s     of the opponent's
 == ================= ===== ====================================================
 
-Action, 1 number from -1 to 1 (values beyond are clipped): for the pursuer the rate of turn to the right, as a share of
-1 rad/s; for the evader an immediate turn to the right, as a share of half a turn. With ``turn_rate_rad_per_s`` it is, for
-both, the share of that rate.
+Action, 1 number from -1 to 1 (values beyond are clipped): the rate of turn to the right, as a share of 1 rad/s; for an
+evader an immediate turn to the right, as a share of half a turn. With ``turn_rate_rad_per_s`` it is, for both, the share
+of that rate.
 
-Reward of the pursuer: minus the distance divided by 10 m, once a period, and 10 for a capture. Of the
-evader: the opposite. In other scenarios than the duel, ``objective`` may replace the distance.
+Reward of a pursuer: minus the distance to its nearest opponent divided by 10 m, once a period, and 10 for a capture. Of an
+evader: the opposite. ``objective`` may replace the distance.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
-from .batch import Backend, Block, Flags, Floats, InProcess
+from .batch import Backend, Flags, Floats, InProcess
 from .errors import SkeinError
 from .seeds import folded
 from .pictures import picture
@@ -66,7 +66,7 @@ def action_space() -> gym.spaces.Box:
 
 
 class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
-    """Many duels side by side; each row of the arrays belongs to one.
+    """Many worlds of a scenario side by side, with one learner each; each row of the arrays belongs to one.
 
     Environments are grouped by 128. Those of a group share a link: their messages have equal delays, and they begin
     together. An episode that ends early, by a capture, is followed by another that lasts until the end of the others.
@@ -75,10 +75,11 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
     ----------
     num_envs : int
         Environments.
-    learner : {'pursuer', 'evader'}
-        Which side learns.
+    learner : str
+        ``pursuer``, ``evader`` or another role of the scenario: in environment i the learner is number i of its role,
+        modulo their number. Or the name of a vehicle.
     opponent : str
-        A policy file or a family's name; by default the paper's policy.
+        A policy file or a family's name, for the evaders, or for the pursuers where an evader learns; by default their own.
     loop : {'stream', 'predictive', 'sequential', 'futures', 'paused'}
         The loop whose timing is simulated.
     link : str
@@ -86,28 +87,28 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
     period_ms : float
         Between decisions for one vehicle, ms.
     plant : str, optional
-        The vehicle model: ``reduced``, ``drag``, ``quadrotor``, or a model file; by default ``reduced``, and ``drag`` in
-        another scenario than the duel.
-    altitude_m, episode_s : float
-        In m and s.
+        The vehicle model: ``reduced``, ``drag``, ``quadrotor``, ``tilt`` or a model file; by default ``reduced`` at 20 m
+        altitude and ``drag`` at others, or ``tilt`` where a policy may climb.
+    altitude_m : float, optional
+        Of all vehicles at the start; by default the scenario's.
+    episode_s : float
+        In s.
     capture_radius_m : float
         The distance that ends an episode; 0: none does.
     start_within_m : (float, float)
-        Least and greatest initial distance of the evader from the pursuer, in any direction, with any headings; (0, 0):
-        the paper's start. In another scenario: distance of each vehicle from its usual start.
+        Least and greatest initial distance of one of two vehicles from the other (of the evader from the pursuer), in any
+        direction, with any headings; of each of more vehicles from its usual start; (0, 0): the scenario's start.
     moves_in_flight : int
         Most unanswered commands to a vehicle.
     scenario : str
-        The scenario whose pursuer or evader learns: the paper's ``duel``, or for example ``surround``. In environment i
-        the learner is number i of its side, modulo their number; all others use their own policies.
+        The paper's ``duel``, or for example ``surround``.
     settings : mapping, optional
         Of the scenario, for example ``{"vehicles": 4}``.
     objective : str
-        In another scenario than the duel: the reward in place of the distance to the nearest opponent, a sum of means of
-        its measures, for example ``off-ring``; a pursuer minimises it and an evader maximises it, unless ``minimise`` or
-        ``maximise`` precedes it.
+        The reward in place of the distance to the nearest opponent: a sum of means of the scenario's measures, for example
+        ``off-ring``; an evader maximises it and others minimise it, unless ``minimise`` or ``maximise`` precedes it.
     turn_rate_rad_per_s : float, optional
-        Greatest turn rate of the learner. By default 1 rad/s for a pursuer; an evader's actions are immediate turns.
+        Greatest turn rate of the learner. By default 1 rad/s; an evader's actions are immediate turns.
     autoreset_mode : AutoresetMode or str
         As Gymnasium defines them.
     copy : bool
@@ -120,8 +121,8 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
     Attributes
     ----------
     engine : str
-        The engine: the duel's environments are simulated side by side (``SIMD, …``), those of another scenario one by
-        one (``scalar: …``), some hundred times slower.
+        The engine: environments are simulated side by side (``SIMD, …``), or one by one where that is not supported, some
+        hundred times slower (``scalar: …``, with the reason).
 
     Raises
     ------
@@ -141,7 +142,7 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
         link: str = "vpn",
         period_ms: float = 100.0,
         plant: str = "",
-        altitude_m: float = 20.0,
+        altitude_m: float | None = None,
         episode_s: float = 60.0,
         capture_radius_m: float = 0.0,
         start_within_m: tuple[float, float] = (0.0, 0.0),
@@ -157,8 +158,6 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
     ) -> None:
         if not isinstance(num_envs, int) or num_envs < 1:
             raise ValueError(f"num_envs: expected a whole number from 1, came {num_envs!r}")
-        if learner not in ("pursuer", "evader"):
-            raise ValueError(f"learner: expected pursuer or evader, came {learner!r}")
         if render_mode not in (None, "rgb_array"):
             raise ValueError(f"render_mode: expected None or 'rgb_array', came {render_mode!r}")
         self.num_envs = num_envs
@@ -177,7 +176,7 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
             "link": link,
             "period_ms": period_ms,
             "plant": plant,
-            "altitude_m": altitude_m,
+            "altitude_m": altitude_m or 0,
             "episode_s": episode_s,
             "capture_radius_m": capture_radius_m,
             "start_most_m": start_within_m[1],
@@ -188,8 +187,15 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
         }
         texts |= {f"set.{name}": value for name, value in (settings or {}).items()}
         if turn_rate_rad_per_s is not None:
-            texts["turn_rate_rad_per_s" if learner == "pursuer" else "evader_rate_rad_per_s"] = turn_rate_rad_per_s
-        self._block, self._backend = open_batch(texts, 1, num_envs, self.autoreset_mode, backend)
+            texts |= {"turn_rate_rad_per_s": turn_rate_rad_per_s, "evader_rate_rad_per_s": turn_rate_rad_per_s}
+        self._backend = open_batch(texts, num_envs, self.autoreset_mode, backend)
+        self._block = self._backend.block
+        if len(self._backend.learners) > 1:
+            self._backend.close()
+            raise ValueError(
+                f"learner: expected one in a world, came {', '.join(self._backend.learners)}; "
+                "skein_uav.parallel has several"
+            )
         self._observations = self._block.observations[0].T
         self._finals = self._block.finals[0].T
         self._actions = self._block.actions[0]
@@ -285,7 +291,7 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
     def _infos(self) -> dict[str, Any]:
         block = self._block
         return {
-            "distance_m": block.distance.copy(),
+            "distance_m": block.distance[0].copy(),
             "_distance_m": self._all,
             "time_s": block.time.copy(),
             "_time_s": self._all,
@@ -304,7 +310,7 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
 
 
 class PursuitEnv(gym.Env[Floats, Floats]):
-    """One duel; see `PursuitVectorEnv`, whose parameters it takes."""
+    """One world; see `PursuitVectorEnv`, whose parameters it takes."""
 
     metadata = {"render_modes": ["rgb_array"], "render_fps": 10}
 
@@ -344,18 +350,14 @@ class PursuitEnv(gym.Env[Floats, Floats]):
         return {name: float(infos[name][0]) for name in ("distance_m", "time_s")}
 
 
-def open_batch(
-    settings: dict[str, Any], agents: int, count: int, autoreset: AutoresetMode, backend: str
-) -> tuple[Block, Backend]:
-    """A batch and the memory that is shared with it."""
+def open_batch(settings: dict[str, Any], count: int, autoreset: AutoresetMode, backend: str) -> Backend:
+    """A batch, with the memory that is shared with it."""
     texts = {name: str(value) for name, value in settings.items()}
     number = [AutoresetMode.NEXT_STEP, AutoresetMode.SAME_STEP, AutoresetMode.DISABLED].index(autoreset)
     if backend == "process":
-        block = Block(np.zeros(Block.size(agents, count), dtype=np.uint8), agents, count)
-        return block, InProcess(texts, count, number, block)
+        return InProcess(texts, count, number)
     if backend == "socket" or backend.startswith("unix:"):
-        served = Served(texts, agents, count, number, backend[5:] if backend.startswith("unix:") else None)
-        return served.block, served
+        return Served(texts, count, number, backend[5:] if backend.startswith("unix:") else None)
     raise ValueError(f"backend: expected 'process', 'socket' or 'unix:PATH', came {backend!r}")
 
 

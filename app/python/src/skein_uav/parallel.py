@@ -1,14 +1,15 @@
-"""The duel as a ParallelEnv of PettingZoo: the caller decides for both sides.
+"""A scenario as a ParallelEnv of PettingZoo: the caller decides for several of its vehicles.
 
-Observations, actions and rewards are those of `skein_uav.environments`. The sum of both rewards is 0.
+Observations, actions and rewards are those of `skein_uav.environments`. In the duel the sum of both rewards is 0.
 
-A step lasts until the loop lets a side decide. Under ``paused`` both always decide simultaneously. Over a link one side may
-still be waiting for an answer while the other decides alone; then its observation stays unchanged and its action is
-ignored: ``infos[agent]["decides"]`` states it.
+A step lasts until the loop lets a learner decide. Under ``paused`` learners decide simultaneously, unless other vehicles
+decide between them. Over a link one may still be waiting for an answer while another decides alone; then its observation
+stays unchanged and its action is ignored: ``infos[agent]["decides"]`` states it.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import gymnasium as gym
@@ -23,37 +24,54 @@ from .environments import action_space, observation_space, open_batch, seeds_of
 from .errors import SkeinError
 from .pictures import picture
 
-_AGENTS = ("evader", "pursuer")
 
-
-class DuelParallelEnv(ParallelEnv[str, Floats, Floats]):
-    """One duel in which the caller decides for both sides.
+class TeamParallelEnv(ParallelEnv[str, Floats, Floats]):
+    """One world of a scenario; its agents are the learners' vehicles, by their names in lower case.
 
     Parameters
     ----------
+    scenario : str
+        The paper's ``duel``, or for example ``surround``.
+    learners : str
+        ``all`` vehicles, all of a role (``pursuers``), or names separated by commas (``Pursuer1,Evader``); others use
+        their own policies.
+    settings : mapping, optional
+        Of the scenario, for example ``{"vehicles": 4}``.
     render_mode : {None, 'rgb_array'}
-        What the pursuer sees, as a picture.
+        What the last agent sees, as a picture.
     backend : {'process', 'socket', 'unix:PATH'}
         As in `skein_uav.environments.PursuitVectorEnv`.
-    **settings
+    **others
         ``loop``, ``link``, ``period_ms``, ``plant``, ``altitude_m``, ``episode_s``, ``capture_radius_m``,
-        ``start_within_m`` and ``moves_in_flight``, as there.
+        ``start_within_m``, ``moves_in_flight`` and ``objective``, as there.
     """
 
-    metadata = {"name": "skein_uav_duel_v0", "render_modes": ["rgb_array"], "render_fps": 10, "is_parallelizable": True}
+    metadata = {"name": "skein_uav_team_v0", "render_modes": ["rgb_array"], "render_fps": 10, "is_parallelizable": True}
 
-    def __init__(self, *, render_mode: str | None = None, backend: str = "process", **settings: Any) -> None:
+    def __init__(
+        self,
+        scenario: str = "duel",
+        learners: str = "all",
+        settings: Mapping[str, Any] | None = None,
+        *,
+        render_mode: str | None = None,
+        backend: str = "process",
+        **others: Any,
+    ) -> None:
         if render_mode not in (None, "rgb_array"):
             raise ValueError(f"render_mode: expected None or 'rgb_array', came {render_mode!r}")
-        within = settings.pop("start_within_m", (0.0, 0.0))
-        texts = {"learners": "both", "start_most_m": within[1], "start_least_m": within[0], **settings}
-        self._block, self._backend = open_batch(texts, len(_AGENTS), 1, AutoresetMode.DISABLED, backend)
-        self.possible_agents = list(_AGENTS)
+        within = others.pop("start_within_m", (0.0, 0.0))
+        texts = {"scenario": scenario, "learners": learners, "start_most_m": within[1], "start_least_m": within[0]}
+        texts |= {f"set.{name}": value for name, value in (settings or {}).items()}
+        self._backend = open_batch(texts | others, 1, AutoresetMode.DISABLED, backend)
+        self._block = self._backend.block
+        self.engine = self._backend.engine()
+        self.possible_agents = [name.lower() for name in self._backend.learners]
         self.agents: list[str] = []
         self.render_mode = render_mode
         # By name, too, as PettingZoo's wrappers and skrl read them.
-        self.observation_spaces = {agent: observation_space() for agent in _AGENTS}
-        self.action_spaces = {agent: action_space() for agent in _AGENTS}
+        self.observation_spaces = {agent: observation_space() for agent in self.possible_agents}
+        self.action_spaces = {agent: action_space() for agent in self.possible_agents}
         self._random = np.random.default_rng()
         self._is_reset = self._is_closed = False
 
@@ -74,7 +92,7 @@ class DuelParallelEnv(ParallelEnv[str, Floats, Floats]):
             self._random, _ = seeding.np_random(seed)
         self._backend.reset(seeds_of(seed, 1, self._is_reset, self._random), None)
         self._is_reset = True
-        self.agents = list(_AGENTS)
+        self.agents = list(self.possible_agents)
         return self._seen(), self._infos()
 
     def step(
@@ -86,7 +104,7 @@ class DuelParallelEnv(ParallelEnv[str, Floats, Floats]):
         self._assert_open()
         if not self.agents:
             raise SkeinError("the episode has ended, or was not begun: reset() begins one")
-        for number, agent in enumerate(_AGENTS):
+        for number, agent in enumerate(self.possible_agents):
             if agent not in actions:
                 raise ValueError(f"actions: expected one of {agent}, came {', '.join(actions) or 'none'}")
             chosen = np.asarray(actions[agent])
@@ -100,9 +118,9 @@ class DuelParallelEnv(ParallelEnv[str, Floats, Floats]):
         terminated, truncated = bool(block.terminated[0]), bool(block.truncated[0])
         result = (
             self._seen(),
-            {agent: float(block.rewards[number, 0]) for number, agent in enumerate(_AGENTS)},
-            dict.fromkeys(_AGENTS, terminated),
-            dict.fromkeys(_AGENTS, truncated),
+            {agent: float(block.rewards[number, 0]) for number, agent in enumerate(self.possible_agents)},
+            dict.fromkeys(self.possible_agents, terminated),
+            dict.fromkeys(self.possible_agents, truncated),
             self._infos(),
         )
         if terminated or truncated:
@@ -111,7 +129,7 @@ class DuelParallelEnv(ParallelEnv[str, Floats, Floats]):
 
     def render(self) -> NDArray[np.uint8] | None:
         """A picture, (200, 200, 3), if ``render_mode`` is ``'rgb_array'``."""
-        return None if self.render_mode is None else picture(self._block.observations[1, :, 0])
+        return None if self.render_mode is None else picture(self._block.observations[-1, :, 0])
 
     def close(self) -> None:
         """Releases the environment."""
@@ -124,15 +142,15 @@ class DuelParallelEnv(ParallelEnv[str, Floats, Floats]):
             raise SkeinError("the environment is closed")
 
     def _seen(self) -> dict[str, Floats]:
-        return {agent: self._block.observations[number, :, 0].copy() for number, agent in enumerate(_AGENTS)}
+        return {agent: self._block.observations[number, :, 0].copy() for number, agent in enumerate(self.possible_agents)}
 
     def _infos(self) -> dict[str, dict[str, Any]]:
         block = self._block
         return {
             agent: {
-                "distance_m": float(block.distance[0]),
+                "distance_m": float(block.distance[number, 0]),
                 "time_s": float(block.time[0]),
                 "decides": bool(block.due[number, 0]),
             }
-            for number, agent in enumerate(_AGENTS)
+            for number, agent in enumerate(self.possible_agents)
         }

@@ -75,30 +75,38 @@ class Served:
     ----------
     path : str or None
         Of a running server's socket; None starts one, for this batch alone.
+
+    Attributes
+    ----------
+    learners : list of str
+        Names of the learners' vehicles.
+    block : Block
     """
 
-    def __init__(
-        self, settings: Mapping[str, str], agents: int, count: int, autoreset: int, path: str | None
-    ) -> None:
+    def __init__(self, settings: Mapping[str, str], count: int, autoreset: int, path: str | None) -> None:
         self._server = None if path else Server()
+        self._socket = socket.socket(socket.AF_UNIX)
+        at = path or str(self._server.path)  # type: ignore[union-attr]
+        try:
+            self._socket.connect(at)
+            self._open(settings, count, autoreset)
+        except OSError as mistake:
+            self.close()
+            raise SkeinError(f"expected a server of environments at {at}: {mistake}") from None
+        except (SkeinError, ValueError):
+            self.close()
+            raise
+
+    def _open(self, settings: Mapping[str, str], count: int, autoreset: int) -> None:
+        self._ask(_text(settings))
+        self.learners = self._receive_text().splitlines()
+        agents = len(self.learners)
         size = Block.size(agents, count)
         with tempfile.NamedTemporaryFile(prefix="skein-") as file:
             file.truncate(size)
             self._map = mmap.mmap(file.fileno(), size)
             self.block = Block(np.frombuffer(self._map, dtype=np.uint8), agents, count)
-            words = {"count": count, "autoreset": autoreset, "file": file.name, **settings}
-            text = "\n".join(f"{name}={value}" for name, value in words.items()).encode()
-            self._socket = socket.socket(socket.AF_UNIX)
-            at = path or str(self._server.path)  # type: ignore[union-attr]
-            try:
-                self._socket.connect(at)
-                self._ask(struct.pack(">i", len(text)) + text)
-            except OSError as mistake:
-                self.close()
-                raise SkeinError(f"expected a server of environments at {at}: {mistake}") from None
-            except (SkeinError, ValueError):
-                self.close()
-                raise
+            self._ask(_text({"count": count, "autoreset": autoreset, "file": file.name, **settings}))
 
     def reset(self, seeds: NDArray[np.int64], mask: Flags | None) -> None:
         told = seeds.astype(">i8").tobytes()
@@ -109,8 +117,7 @@ class Served:
 
     def engine(self) -> str:
         self._ask(b"\x04")
-        (length,) = struct.unpack(">i", self._receive(4))
-        return self._receive(length).decode()
+        return self._receive_text()
 
     def close(self) -> None:
         self._socket.close()
@@ -125,9 +132,12 @@ class Served:
         except (BrokenPipeError, ConnectionResetError):
             raise SkeinError("the server of environments has ended") from None
         if status:
-            (length,) = struct.unpack(">i", self._receive(4))
-            message = self._receive(length).decode()
+            message = self._receive_text()
             raise ValueError(message) if status == 1 else SkeinError(message)
+
+    def _receive_text(self) -> str:
+        (length,) = struct.unpack(">i", self._receive(4))
+        return self._receive(length).decode()
 
     def _receive(self, count: int) -> bytes:
         received = b""
@@ -137,3 +147,8 @@ class Served:
                 raise SkeinError("the server of environments has ended")
             received += part
         return received
+
+
+def _text(words: Mapping[str, object]) -> bytes:
+    text = "\n".join(f"{name}={value}" for name, value in words.items()).encode()
+    return struct.pack(">i", len(text)) + text

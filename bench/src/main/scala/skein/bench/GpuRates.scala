@@ -29,7 +29,7 @@ object GpuRates:
     println("|---|---|---|---|---|---|---|")
     def paper(i: Int): Policy  = PaperPursuer(0.8 + 0.4 * (i % 1024) / 1024)
     def neural(i: Int): Policy = NeuralPolicy(network, weights.map(_ * (0.5 + (i % 1024) / 1024.0)))
-    val drag                          = PlantResponse(ReducedModel.AirSim)
+    val drag                   = PlantResponse(ReducedModel.AirSim)
     def duels(
         name: String,
         timing: LoopTiming,

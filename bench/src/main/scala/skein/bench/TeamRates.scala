@@ -7,7 +7,7 @@ import skein.lanes.score.Judged
 import skein.policy.{Action, Policy, Fleet, Observation, PaperPursuer}
 import skein.scenario.*
 import skein.simd.WorldRandom
-import skein.units.{MetresPerSecond, Radians}
+import skein.units.Radians
 
 /** How fast are teams in forward simulation, with SIMD and by the scalar engine? 256 candidates of one
   * episode, and 256 with delays of their own, `stream` over `vpn`, 60 s, the reduced model, one thread; an
@@ -33,8 +33,8 @@ object TeamRates:
         Seq("surround" -> surround(vehicles), "formation" -> formation(vehicles)) ++
           // More would exceed the operations that a formula may have.
           Option.when(vehicles <= 32)("crossing" -> crossing(vehicles)) ++
-          Option.when(vehicles == 2)("paper's duel" -> duel(PaperPursuer())) ++
-          Option.when(vehicles == 2)("README's chase" -> duel(Chase))
+          Option.when(vehicles == 2)("paper's duel" -> duel(number => PaperPursuer(0.8 + 0.001 * number))) ++
+          Option.when(vehicles == 2)("README's chase" -> duel(_ => Chase))
       shared <- Seq(true, false)
     do
       val candidates    = Vector.tabulate(Candidates)(draw)
@@ -67,11 +67,10 @@ object TeamRates:
   def crossing(vehicles: Int)(number: Int): TeamCandidate =
     candidate(Crossing(vehicles, marginM = 0.5 + 0.005 * number), Vector(Separation))
 
-  private def duel(by: Policy)(number: Int): TeamCandidate =
+  private def duel(by: Int => Policy)(number: Int): TeamCandidate =
     val Vector(evader, pursuer) = PaperDuel().agents: @unchecked
-    val speed                   = MetresPerSecond(8 + 0.01 * number)
     TeamCandidate(
-      Engagement.of(Fleet(Vector(evader, pursuer.copy(speed = speed, policy = by))), DurationS),
+      Engagement.of(Fleet(Vector(evader, pursuer.copy(policy = by(number)))), DurationS),
       Vector(Judged(Separation, Reduction.Mean, DurationS - 10))
     )
 

@@ -1,4 +1,4 @@
-"""Sees a camera and two lidars of the vehicle `a`, as anybody would with rclpy."""
+"""Sees a camera, with depths and segmentation, and two lidars of the vehicle `a`, as anybody would with rclpy."""
 import math
 import struct
 import sys
@@ -11,10 +11,12 @@ from sensor_msgs.msg import CameraInfo, Image, PointCloud2
 domain, wanted = int(sys.argv[1]), int(sys.argv[2])
 rclpy.init(domain_id=domain)
 node = rclpy.create_node("see_sensors")
-seen = {"image": [], "info": [], "own": [], "world": []}
+seen = {"image": [], "info": [], "depth": [], "segmentation": [], "own": [], "world": []}
 for name, kind, topic in [
     ("image", Image, "/a/front/image_raw"),
     ("info", CameraInfo, "/a/front/camera_info"),
+    ("depth", Image, "/a/front/depth/image_raw"),
+    ("segmentation", Image, "/a/front/segmentation/image_raw"),
     ("own", PointCloud2, "/a/spin/points"),
     ("world", PointCloud2, "/a/fixed/points"),
 ]:
@@ -40,6 +42,13 @@ assert image.header.frame_id == info.header.frame_id == "a/front/optical", image
 focal = 32 / math.tan(math.radians(45))
 assert abs(info.k[0] - focal) < 1e-6 and info.k[2] == 31.5 and info.k[5] == 23.5, info.k
 assert {stamp(one) for one in seen["info"]} & {stamp(one) for one in seen["image"]}
+depth, parts = seen["depth"][-1], seen["segmentation"][-1]
+assert (depth.width, depth.height, depth.step, depth.encoding) == (64, 48, 256, "32FC1"), depth
+# The wall is 30 m before the camera, wherever in the image: depth is along the camera's axis.
+metres = [d for (d,) in struct.iter_unpack("<f", bytes(depth.data))]
+assert abs(metres[24 * 64 + 32] - 30) < 0.1 and math.inf in metres, (metres[24 * 64 + 32], max(metres))
+assert (parts.step, parts.encoding) == (192, "bgr8") and len(set(bytes(parts.data))) > 1, parts
+assert {stamp(one) for one in seen["depth"]} & {stamp(one) for one in seen["image"]}
 
 
 def points(cloud):

@@ -93,6 +93,11 @@ final case class FlightOptions(
     )
     knows: Option[String],
     @arg(doc =
+      "how `predictive` predicts vehicles whose commands it does not know: turn (their last turn goes on), " +
+        "straight, or belief (samples of turns, weighted by what is seen)"
+    )
+    strangers: Option[String],
+    @arg(doc =
       "gives each vehicle a controller of its own, with a link of its own, that knows of the others what it reads"
     )
     decentralised: Flag,
@@ -100,6 +105,11 @@ final case class FlightOptions(
       "with --decentralised and fly --simulator: flies this vehicle alone, beside processes that fly the others"
     )
     only: Option[String],
+    @arg(doc =
+      "with --decentralised: controllers read their own vehicles alone, and send one another what they read over " +
+        "a link of this profile, such as range:60m,loss:10%/4,constant:40ms"
+    )
+    between: Option[String],
     @arg(doc = "deadline of each decision, for example 20ms; without it, the loop waits for policies")
     deadline: Option[String],
     @arg(doc =

@@ -140,7 +140,10 @@ final class LearnCommand(program: String)(using Scenarios)
          |loop ${question.conditions.loopText} every ${question.conditions.periodMs.significant(
           4
         )} ms over ${question.link}; ${setup.conditions.vehicle.description}
-         |${question.environments} environments, ${steps(setup)}; engine: ${setup.engine}""".stripMargin
+         |${question.environments} environments, ${steps(setup)}; engine: ${setup.engine.fold(
+          identity,
+          _.text
+        )}""".stripMargin
     )
     @volatile var stopped = false
     Edge.untilInterrupted(() => stopped = true):

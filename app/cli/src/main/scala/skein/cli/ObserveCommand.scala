@@ -3,7 +3,7 @@ package skein.cli
 import java.io.IOException
 import java.nio.file.Path
 import java.util.concurrent.{CountDownLatch, Executors, TimeUnit}
-import mainargs.{Flag, ParserForClass, arg}
+import mainargs.ParserForClass
 import org.apache.pekko.actor.ActorSystem
 import skein.figures.ObservedFigure
 import skein.link.*
@@ -12,75 +12,7 @@ import skein.report.{ObservedTables, Paragraph, Section, TopicTables}
 import skein.ros.RosNode
 import skein.rosbag.{BagLoop, GraphLoop}
 import skein.units.{Clock, Expect}
-
-/** Command-line options of `./skein observe`, with their help texts. */
-final case class ObserveOptions(
-    @arg(doc =
-      "where the program connects, in place of the simulator; 0.0.0.0 opens it to other machines; without it, " +
-        "127.0.0.1:41452, with --mavlink 127.0.0.1:14680"
-    )
-    listen: Option[String],
-    @arg(doc =
-      "the simulator: AirSim, one of its forks, or ./skein serve; with --mavlink a vehicle's UDP port, or " +
-        "tcp://HOST:PORT; without it, 127.0.0.1:41451, with --mavlink 127.0.0.1:14580"
-    )
-    simulator: Option[String],
-    @arg(doc = "the program speaks MAVLink 2, as to PX4, and not AirSim's protocol")
-    mavlink: Flag,
-    @arg(doc =
-      "a network that is emulated between the program and the simulator: direct, vpn, constant:200ms, …"
-    )
-    link: String = ObserveOptions.Link,
-    @arg(doc = "seed of every random choice")
-    seed: Long = ObserveOptions.Seed,
-    @arg(doc =
-      "instead of a program: a bag of ROS 2, its folder or an MCAP file; the loop that it holds is measured"
-    )
-    bag: Option[String],
-    @arg(doc =
-      "instead of a simulator's wire: topics of a running graph of ROS 2, which must be installed; domain and " +
-        "middleware are those of the environment"
-    )
-    ros: Flag,
-    @arg(doc =
-      "with --bag or --ros: a topic that vehicles are read by, for example /uav1/odom; can be repeated; " +
-        "without it, topics of odometry and poses; with --mavlink a message, for example ATTITUDE; without it, " +
-        "those of positions"
-    )
-    readings: Seq[String],
-    @arg(doc =
-      "with --bag or --ros: a topic of commands, for example /uav1/cmd_vel; can be repeated; without it, " +
-        "topics of twists and poses named cmd, command, setpoint, target or goal"
-    )
-    commands: Seq[String],
-    @arg(doc =
-      "folder for observed.json with the tables, commands.csv with a row for each command, and the figure " +
-        "ages.svg, ages.png; without it, the tables are only shown"
-    )
-    out: Option[String],
-    @arg(doc = Shown.Doc)
-    json: Flag,
-    @arg(doc =
-      "the program and its arguments, behind --: it is started, and observed until it ends; " +
-        "without one, until Ctrl-C"
-    )
-    command: Behind
-)
-
-object ObserveOptions:
-  private val Link = "none"
-  private val Seed = 1L
-
-  extension (options: ObserveOptions)
-    /** Options of the wire to a simulator, which neither a bag nor topics have. */
-    def ofWire: Vector[String] =
-      Vector(
-        "--listen"    -> options.listen.isDefined,
-        "--simulator" -> options.simulator.isDefined,
-        "--mavlink"   -> options.mavlink.value,
-        "--link"      -> (options.link != Link),
-        "--seed"      -> (options.seed != Seed)
-      ).collect { case (name, true) => name }
+import skein.view.Shows
 
 /** `./skein observe`: measures the control loop of any program that flies by AirSim's interface or by
   * MAVLink, from between it and the simulator, or of any graph of ROS 2, by its topics or a bag.
@@ -99,6 +31,7 @@ object ObserveCommand
 
   private def observeBag(bag: Path, options: ObserveOptions): Either[String, Unit] =
     val others = options.ofWire ++ Option.when(options.ros.value)("--ros") ++
+      Option.when(options.view.view.value)("--view") ++
       Option.when(options.command.words.nonEmpty)("a program")
     for
       _ <- Expect.that(others.isEmpty):
@@ -109,23 +42,49 @@ object ObserveCommand
     yield ()
 
   private def observeGraph(options: ObserveOptions): Either[String, Unit] =
-    val command = options.command.words
     for
       _ <- Expect.that(options.ofWire.isEmpty):
         s"--ros: topics are measured, and no simulator's wire; came ${options.ofWire.mkString(", ")} too"
       _      <- RosNode.missing.toLeft(()).left.map("--ros: " + _)
       folder <- folderOf(options)
-      loop   <- GraphLoop.open(options.readings.toSet, options.commands.toSet, Clock.system)
+      shows = Shows()
+      _ <- options.view.serving(shows)(observeGraph(options, folder, shows))
+    yield ()
+
+  private def observeGraph(
+      options: ObserveOptions,
+      folder: Option[Path],
+      shows: Shows
+  ): Either[String, Unit] =
+    val command = options.command.words
+    for
+      loop <- GraphLoop.open(options.readings.toSet, options.commands.toSet, Clock.system)
         .left.map("--ros: " + _)
+      findings = () => { val now = loop.observed; (now, TopicTables.findings(now) ++ loop.remarks) }
       ended =
         Shown(options.json.value)
           .say("measuring topics of ROS 2" + (if command.isEmpty then "; Ctrl-C ends it" else ""))
-        try telling(loop.progress)(untilEnd(command))
+        try
+          viewing(shows, "topics", "ROS 2", loop.takeNew, () => findings()._2):
+            telling(loop.progress)(untilEnd(command))
         finally loop.close()
       _ <- ended
-      observed = loop.observed
-      _ <- show(observed, TopicTables.findings(observed) ++ loop.remarks, folder, options)
+      (observed, found) = findings()
+      _ <- show(observed, found, folder, options)
     yield ()
+
+  /** Shows the loop to viewers until `body` has ended. */
+  private def viewing[A](
+      shows: Shows,
+      what: String,
+      where: String,
+      takeNew: () => Vector[NewCommands],
+      findings: () => Vector[String]
+  )(body: => A): A =
+    val shown = LoopOnShow(takeNew, findings, Clock.system)
+    shown.show(shows, what, where)
+    try body
+    finally shown.end()
 
   private def show(
       observed: ObservedTopics,
@@ -164,8 +123,10 @@ object ObserveCommand
         s"--listen: expected another address than the simulator's, came $listenAt twice"
       profile <- Arguments.latency(options.link).left.map("--link: " + _)
       folder  <- folderOf(options)
-      wire = Wire(listenAt, simulator, LinkProfile.symmetric(profile), isTcp)
-      _ <- if isMavlink then observeMavlink(wire, folder, options) else observeAirSim(wire, folder, options)
+      shows = Shows()
+      wire  = Wire(listenAt, simulator, LinkProfile.symmetric(profile), isTcp, shows)
+      _ <- options.view.serving(shows):
+        if isMavlink then observeMavlink(wire, folder, options) else observeAirSim(wire, folder, options)
     yield ()
 
   private def address(option: String, text: Option[String], usualPort: Int): Either[String, Address] =
@@ -178,7 +139,7 @@ object ObserveCommand
   ): Either[String, Unit] =
     val loop = MavlinkLoop(isDatagrams = !wire.isTcp, options.readings.toSet)
     for
-      (observed, ended) <- observe(loop, wire, options)
+      (observed, ended) <- observe(loop, wire, options)(TopicTables.findings)
       _                 <- show(observed, TopicTables.findings(observed) ++ loop.remarks, folder, options)
       _                 <- ended
     yield ()
@@ -186,7 +147,7 @@ object ObserveCommand
   private def observeAirSim(wire: Wire, folder: Option[Path], options: ObserveOptions): Either[String, Unit] =
     val shown = Shown(options.json.value)
     for
-      (observed, ended) <- observe(AirSimAnalysis(), wire, options)
+      (observed, ended) <- observe(AirSimAnalysis(), wire, options)(ObservedTables.findings)
       data = ObservedTables.data(observed)
       _    = shown.tables(data, text(ObservedTables.tables(observed), ObservedTables.findings(observed)))
       _ <- ended
@@ -213,19 +174,26 @@ object ObserveCommand
       .map(files => shown.say(s"written: ${files.mkString(", ")}"))
 
   /** Where a program and its simulator are, and what is between them. */
-  private final case class Wire(listenAt: Address, simulator: Address, profile: LinkProfile, isTcp: Boolean)
+  private final case class Wire(
+      listenAt: Address,
+      simulator: Address,
+      profile: LinkProfile,
+      isTcp: Boolean,
+      shows: Shows
+  )
 
   /** Observes until the program ends.
     *
+    * @param findings of an observation, for the page
     * @return Left if it could not begin; else what was observed, and whether the program could be run
     */
   private def observe[A](
       analysis: Analysis[A],
       wire: Wire,
       options: ObserveOptions
-  ): Either[String, (A, Either[String, Unit])] =
+  )(findings: A => Vector[String]): Either[String, (A, Either[String, Unit])] =
     import wire.*
-    given system: ActorSystem   = ActorSystem("skein")
+    given system: ActorSystem   = ActorSystem("skein", ObservingProxy.Settings)
     val reader                  = Executors.newSingleThreadExecutor(Thread.ofPlatform().daemon().factory())
     val shown                   = Shown(options.json.value)
     def warn(reason: Throwable) = Console.err.println(s"skein observe: ${reason.getMessage}")
@@ -250,7 +218,9 @@ object ObserveCommand
           (if profile == LinkProfile.none then "" else s" over ${profile.toServer.name}") +
           (if command.isEmpty then "; connect your program there, Ctrl-C ends it" else "")
       )
-      val ended = telling(proxy.progress)(untilEnd(command))
+      val ended =
+        viewing(shows, "a program's loop", simulator.toString, proxy.takeNew, () => findings(proxy.observed)):
+          telling(proxy.progress)(untilEnd(command))
       Edge.await(proxy.close())
       Right((proxy.observed, ended))
     catch case error: TransportError => Left(error.getMessage)

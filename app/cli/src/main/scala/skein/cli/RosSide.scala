@@ -9,10 +9,12 @@ import skein.units.Clock
 /** The node of `./skein serve --ros`, and what a person learns of it. */
 private[cli] final class RosSide private (node: RosNode, val topics: SimulatedTopics):
   private var said   = Set.empty[String]
-  private var counts = (skipped = 0L, images = 0L, refused = 0L, failed = 0L)
+  private var counts = (skipped = 0L, images = 0L, refused = 0L, failed = 0L, missed = 0L)
+  private var served = Option.empty[SimulatorServer]
 
   /** Lets the topics fly the vehicles and show their sensors, and prints what is missing. */
   def fly(server: SimulatorServer, world: WorldSettings)(using ActorSystem): Unit =
+    served = Some(server)
     val here = Reachable.from(server.address).getOrElse(server.address)
     for line <- topics.missing ++ topics.fly(server).left.toOption ++ topics.show(world, here).left.toOption
     do
@@ -24,7 +26,8 @@ private[cli] final class RosSide private (node: RosNode, val topics: SimulatedTo
       skipped = topics.skipped,
       images = topics.skippedImages,
       refused = node.refused,
-      failed = node.failed
+      failed = node.failed,
+      missed = served.fold(0L)(_.missedCommands)
     )
     val lines = (node.notes ++ topics.notes).filterNot(said)
     val count = Option.when(now != counts):
@@ -32,7 +35,8 @@ private[cli] final class RosSide private (node: RosNode, val topics: SimulatedTo
         now.skipped -> "moments not published, the machine is too slow",
         now.images  -> "images or scans not published",
         now.refused -> "messages refused",
-        now.failed  -> "messages not sent"
+        now.failed  -> "messages not sent",
+        now.missed  -> "stops of the clock without a command"
       ).collect { case (count, what) if count > 0 => s"$count $what" }.mkString(", ")
     said ++= lines
     counts = now

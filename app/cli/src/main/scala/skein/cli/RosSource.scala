@@ -5,10 +5,11 @@ import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.{Future, blocking}
 import skein.flight.VehicleSource
 import skein.loop.LoopKind
-import skein.ros.{RosFleet, RosNode}
+import skein.policy.Action
+import skein.ros.{RosFleet, RosNode, TwistCommand}
 import skein.settings.{FlySettings, Wire}
 import skein.units.{Clock, Expect}
-import skein.vehicle.VehicleKind
+import skein.vehicle.{Guidance, VehicleKind}
 
 /** The vehicles of `./skein fly --ros`: those behind ROS 2's topics.
   *
@@ -19,6 +20,8 @@ private[cli] final class RosSource(remappings: Seq[String], clock: Clock)(using 
   import system.dispatcher
 
   val where: String = "ROS 2"
+
+  override def guidance: Action => Guidance = TwistCommand.guidance
 
   def open(names: Vector[String]): Future[Either[String, VehicleSource.Opened]] =
     RosFleet

@@ -19,6 +19,7 @@ import skein.simulator.{
   SimulatorSettings
 }
 import skein.units.{Clock, Expect, Span}
+import skein.vehicle.PathFollowing
 import skein.view.Shows
 
 /** Command-line options of `./skein serve`, with their help texts. */
@@ -60,6 +61,13 @@ final case class ServeOptions(
         "/clock go out, /NAME/cmd_vel and /NAME/setpoint_pose fly them"
     )
     ros: Flag,
+    @arg(
+      name = "ros-step",
+      doc =
+        "with --ros: the clock waits for nodes; once a vehicle is commanded, it stops this often, a multiple of 20ms, " +
+          "until each vehicle that is flown has a command stamped then or later"
+    )
+    rosStep: Option[String],
     @arg(doc =
       "lets an external autopilot fly each vehicle: px4 (TCP 4560, 4561, …, in lockstep), " +
         "ardupilot (JSON, UDP 9002, 9012, …) or betaflight (UDP 9002, one vehicle)"
@@ -101,6 +109,8 @@ object ServeCommand
       _ <- autopilot.flatMap(_ => plant.refusesAutopilots).map("--plant: " + _).toLeft(())
       _ <- Expect.that(!options.ros.value || autopilot.isEmpty && !options.mavlink.value):
         "--ros: not together with --mavlink or --hil, which fly the vehicles themselves"
+      step <- options.rosStep.fold[Either[String, Option[Span]]](Right(None))(stepOf(_).map(Some(_)))
+      _    <- Expect.that(step.isEmpty || options.ros.value)("--ros-step: expected together with --ros")
       flies = if options.ros.value then "--ros" else if autopilot.isDefined then "--hil" else "--mavlink"
       other = world.vehicles.find(vehicle => vehicle.isCar || vehicle.isCamera)
       _ <- Expect.that(autopilot.isEmpty && !options.mavlink.value && !options.ros.value || other.isEmpty):
@@ -138,6 +148,7 @@ object ServeCommand
           ),
           Option.when(options.view.view.value)(shows),
           ros,
+          step,
           file.notice.map(notice => s"${options.settings.getOrElse("")}: $notice")
         )
       )
@@ -163,6 +174,13 @@ object ServeCommand
       .find(_.label == label)
       .toRight(s"--hil: expected ${AutopilotKind.values.map(_.label).mkString(", ")}, came '$label'")
 
+  private def stepOf(text: String): Either[String, Span] =
+    for
+      step <- Span.parse(text).left.map("--ros-step: " + _)
+      _    <- Expect.that(step > Span.Zero && step.toNanos % StepsOf.toNanos == 0):
+        s"--ros-step: expected a multiple of ${StepsOf.toMillis.toInt}ms, came $text"
+    yield step
+
   private def gridsOf(folder: String): Either[String, Path] =
     val path = Path.of(folder)
     Expect.that(Files.isDirectory(path))(s"--grids: expected a folder, came '$folder'").map(_ => path)
@@ -178,12 +196,13 @@ object ServeCommand
       settings: SimulatorSettings,
       shows: Option[Shows],
       ros: Option[RosSide],
+      step: Option[Span],
       notice: Option[String]
   ): Either[String, Unit] =
     given system: ActorSystem = ActorSystem("skein")
     try
       val server =
-        Edge.await(SimulatorServer.start(settings, TcpTransport(), Clock.system, ros.map(_.topics)))
+        Edge.await(SimulatorServer.start(settings, TcpTransport(), Clock.system, ros.map(_.topics), step))
       ros.foreach(_.fly(server, settings.world))
       val vehicles = settings.world.vehicles.map(vehicle => TextTable.printable(vehicle.name)).mkString(", ")
       val mavlink  = settings.mavlink.fold(""): open =>
@@ -225,6 +244,9 @@ object ServeCommand
 
   /** Time within which it ends, whatever the simulation does. */
   private val GraceMillis = 2_000L
+
+  /** Time between two messages of the simulator's clock. */
+  private val StepsOf = PathFollowing.Period
 
   private val NewsEvery  = 10.seconds
   private val LeadsAfter = 10.seconds

@@ -115,7 +115,7 @@ object ObservedTables:
     sentence ++ paused ++ lost ++ more
 
   private val columns = Vector("atS", "vehicle", "method", "connection", "ownAgeMs", "othersAgeMs") ++
-    Vector("boundMs", "sinceOwnMs", "sinceOthersMs")
+    Vector("boundMs", "sinceOwnMs", "sinceOthersMs", "unanswered")
 
   /** A row for each command that the log holds, as comma-separated values; an empty cell is unknown. */
   def csv(log: Vector[ObservedCommand]): String =
@@ -125,7 +125,8 @@ object ObservedTables:
     val rows                          = log.map: command =>
       import command.*
       (Vector(at.toSeconds.fixed(6), text(vehicle), text(method), connection.toString) ++
-        Vector(ownAgeMs, othersAgeMs, boundMs, sinceOwnMs, sinceOthersMs).map(number)).mkString(",")
+        Vector(ownAgeMs, othersAgeMs, boundMs, sinceOwnMs, sinceOthersMs).map(number) :+
+        unanswered.fold("")(_.toString)).mkString(",")
     (columns.mkString(",") +: rows).mkString("", "\n", "\n")
 
   /** Progress in one line; None before the first command. */

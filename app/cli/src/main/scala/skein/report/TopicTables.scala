@@ -2,7 +2,7 @@ package skein.report
 
 import skein.observe.{ObservedTopic, ObservedTopics}
 import skein.report.ObservedTables.{ages, mean, p99, section}
-import skein.units.Decimals.{brief, fixed}
+import skein.units.Decimals.{brief, counted, fixed}
 
 /** Measurements of a loop whose messages are topics', as tables and sentences. */
 object TopicTables:
@@ -63,6 +63,9 @@ object TopicTables:
     val clocks = Option.when(observed.byOtherClock.nonEmpty):
       s"The stamps of ${observed.byOtherClock.map(name => if name.isEmpty then "the vehicle" else name).mkString(", ")} are by " +
         "another clock than the times of reception: ages lack the way of the fastest message."
+    val early = observed.vehicles.filter(_.early > 0).map: vehicle =>
+      s"${counted(vehicle.early, "command")} to ${vehicle.name} passed before the first TIMESYNC was answered: the " +
+        "ages behind them are not in the table."
     val ours = "Times are by the clock of the machine that received the messages."
     val time = observed.simulated.fold(ours): by =>
       val before =
@@ -74,4 +77,4 @@ object TopicTables:
       observed.topics.filter(_.gaps > 0).map(broken) ++ observed.topics.filter(
         _.backwards > 0
       ).map(disorder) ++
-      assumed ++ clocks ++ Option.when(observed.topics.nonEmpty)(time) ++ more
+      assumed ++ clocks ++ early ++ Option.when(observed.topics.nonEmpty)(time) ++ more

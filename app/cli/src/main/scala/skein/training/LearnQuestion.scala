@@ -163,9 +163,9 @@ final case class LearnSetup(
     val (own, learned) = (evaluator(_ => team), evaluator(from => team.flownBy(role, family.policy(from))))
     judge => if judge == Judge.Baseline then own else learned
 
-  /** The engine of the episodes while it learns. */
-  def engine: Engine =
-    if isOfTeam then EnvironmentBatch.engineOf(question.scenario) else EnvironmentBatch.EngineOfGame
+  /** The engine of the episodes while it learns; Left states what was expected and what was given. */
+  def engine(using Scenarios): Either[String, Engine] =
+    EnvironmentBatch.engine(environment, game.opponent, Some(family.defaultPolicy))
 
   /** @return Left states what was expected and what was given */
   def task(using Scenarios): Either[String, SideTask] =
@@ -178,7 +178,7 @@ final case class LearnSetup(
       link = question.link,
       periodMs = question.conditions.periodMs,
       plant = question.conditions.plant,
-      altitudeM = question.conditions.altitudeM,
+      altitudeM = if isOfTeam then 0 else question.conditions.altitudeM,
       episodeS = question.lessonS,
       startWithinM = (question.startLeastM, question.startMostM),
       turnRateRadPerS = question.turnRateRadPerS,

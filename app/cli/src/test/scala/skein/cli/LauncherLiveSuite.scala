@@ -81,20 +81,19 @@ class LauncherLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders:
       assert(started(), taken)
       assert(!started(), taken)
 
-  copy.test("the program is built with its runtime and cache, and built again for a new version"):
-    folder =>
-      assertEquals(run(folder, Map.empty, "./skein", "fly")._1, 0)
-      assertEquals(Files.readString(folder.resolve("target/build.log")), "sbt cli/program\n")
-      script(
-        folder.resolve("sbtw"),
-        s"""rm -r $program
+  copy.test("the program is built with its runtime and cache, and built again for a new version"): folder =>
+    assertEquals(run(folder, Map.empty, "./skein", "fly")._1, 0)
+    assertEquals(Files.readString(folder.resolve("target/build.log")), "sbt cli/program\n")
+    script(
+      folder.resolve("sbtw"),
+      s"""rm -r $program
          |mkdir -p ${program}er/bin
          |printf '#!/usr/bin/env bash\necho newer\n' >${program}er/bin/skein
          |chmod +x ${program}er/bin/skein""".stripMargin
-      )
-      Files.delete(folder.resolve(program).resolve("bin/skein"))
-      assert(clue(run(folder, Map.empty, "./skein", "fly")._2).endsWith("newer\n"))
-      assertEquals(run(folder, Map.empty, "./skein", "fly"), (0, "newer\n"))
+    )
+    Files.delete(folder.resolve(program).resolve("bin/skein"))
+    assert(clue(run(folder, Map.empty, "./skein", "fly")._2).endsWith("newer\n"))
+    assertEquals(run(folder, Map.empty, "./skein", "fly"), (0, "newer\n"))
 
   copy.test("the launcher starts without HOME"): folder =>
     val (status, said) = run(folder, Map("HOME" -> ""), "./skein", "--help")

@@ -44,7 +44,7 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     val words  = "--scenario surround --set vehicles=4 --objective off-ring --json".split(' ').toSeq
     val (status, out, err) = run(words ++ Seq("--out", folder.toString) ++ short)
     assertEquals(status, 0, err)
-    assert(err.contains("engine: scalar: environments of surround"), err)
+    assert(err.contains("engine: SIMD, "), err)
     val rows = ujson.read(out)("tables")(0)("rows").arr
     assertEquals(rows.map(_(0).str).toSeq, Seq("learned:8", "surround's own", "learned:8"))
     assertEquals(rows.map(_(5).str).toSeq, Seq("m", "m", "m"))
@@ -185,10 +185,7 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     refused("expected settings of the scenario, came --altitude", "--scenario", "surround", "--altitude", "9")
     def team(scenario: String, objective: String) = Seq("--scenario", scenario, "--objective", objective)
     refused("expected one of off-ring, gap, came 'ring'", team("surround", "ring")*)
-    refused(
-      "scenario: expected one with a pursuer and vehicles of another role",
-      team("formation", "slot-rms")*
-    )
+    refused("learners: expected one of leader, follower", team("formation", "slot-rms")*)
     refused("no measure of a quantity", team("blind-pursuit", "distance")*)
     refused("--side: expected pursuer or evader", "--side", "both")
     refused("--network: expected", "--network", "0x3")
@@ -205,7 +202,6 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
       "--set: expected 'vehicles' once, came 4 and 6",
       team("surround", "off-ring") ++ "--set vehicles=4 --set vehicles=6".split(' ')*
     )
-    refused("plant: the lanes know no ground", "--plant", "quadrotor", "--altitude", "3")
     refused("--batch: expected at most", "--algorithm", "ppo", "--batch", "60000")
 
   folder.test("on a full disk the learner's previous numbers are kept unchanged"): path =>

@@ -44,20 +44,19 @@ class ListedLoopSimulation extends munit.FunSuite, Unhurried, TemporaryFolders:
     assertEquals(elsewhere.status, 0, elsewhere.said)
     assert(!elsewhere.said.contains("flown again"), elsewhere.said)
 
-  folder.test("an own loop can be spread and completed, and a program without it lists its loops"):
-    folder =>
-      val spread =
-        run(TakingTurns, s"spread --loop turns --link vpn --seeds 2 --duration 12s --out $folder/spread")
-      assertEquals(spread.status, 0, spread.said)
-      for name <- Seq("fly", "spread") do
-        val loop = TakingTurns.commands.find(_.name == name).get.options.find(_.flag == "--loop").get
-        assert(clue(loop.values).contains("turns"))
-      val unknown = run(Main, "fly --loop turns")
-      assertEquals(unknown.status, 1)
-      assert(
-        unknown.said.contains("expected one of paused, sequential, futures, stream, predictive, plan"),
-        unknown.said
-      )
+  folder.test("an own loop can be spread and completed, and a program without it lists its loops"): folder =>
+    val spread =
+      run(TakingTurns, s"spread --loop turns --link vpn --seeds 2 --duration 12s --out $folder/spread")
+    assertEquals(spread.status, 0, spread.said)
+    for name <- Seq("fly", "spread") do
+      val loop = TakingTurns.commands.find(_.name == name).get.options.find(_.flag == "--loop").get
+      assert(clue(loop.values).contains("turns"))
+    val unknown = run(Main, "fly --loop turns")
+    assertEquals(unknown.status, 1)
+    assert(
+      unknown.said.contains("expected one of paused, sequential, futures, stream, predictive, plan"),
+      unknown.said
+    )
 
   test("two loops with one name are refused"):
     val known = TakingTurns.scenarios

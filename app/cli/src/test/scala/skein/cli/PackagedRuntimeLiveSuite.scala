@@ -31,8 +31,8 @@ class PackagedRuntimeLiveSuite extends munit.FunSuite, Lengthy, Unhurried:
     assertEquals(needed -- present -- unused, Set.empty[String])
 
   private def modulesOf(jars: Vector[String]): Set[String] =
-    val out       = StringWriter()
-    val printed   = PrintWriter(out)
+    val out     = StringWriter()
+    val printed = PrintWriter(out)
     // jdeps resolves a jar with a module descriptor together with all modules that this requires.
     val plain     = jars.filterNot(jar => jar.contains("progressbar") || jar.contains("jline"))
     val arguments =
@@ -40,4 +40,6 @@ class PackagedRuntimeLiveSuite extends munit.FunSuite, Lengthy, Unhurried:
     val status = ToolProvider.findFirst("jdeps").get.run(printed, printed, (arguments ++ plain)*)
     printed.flush()
     assertEquals(status, 0, out.toString)
-    "-> ((?:java|jdk)[.][\\w.]+)".r.findAllMatchIn(out.toString).map(_.group(1)).filterNot(_.endsWith(".jar")).toSet
+    "-> ((?:java|jdk)[.][\\w.]+)".r.findAllMatchIn(
+      out.toString
+    ).map(_.group(1)).filterNot(_.endsWith(".jar")).toSet

@@ -93,100 +93,99 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
 
   folder.test(
     "in a browser, a flight is shown, paused and continued, and its recording is played and sought"
-  ):
-    out =>
-      val _      = (needed(JavaScriptTools.packages), needed(JavaScriptTools.browser))
-      val flying = Flying.start(out, Flown*)
-      val shown  =
-        "[...skein.flight.vehicles.values()].map(one => [one.name, one.north, one.east, one.trail.length])"
-      val seen = browse(
-        flying.url,
-        flying.token,
-        step(
-          "wait",
-          "window.skein?.flight?.vehicles.size === 2 && skein.flight.now > 4 && skein.frames > 10"
-        ),
-        step("ask", "before", shown),
-        step("ask", "obstacles", "skein.flight.obstacles.length"),
-        step("wait", "skein.flight.own.length && skein.flight.series.own0.buckets.length"),
-        step(
-          "ask",
-          "own",
-          "[skein.flight.own[0].title, skein.flight.series.altitude.buckets.at(-1).values[0]]"
-        ),
-        step("wait", "skein.cameras.length === 2 && skein.cameras.every(one => one.shown > 3)"),
-        step("ask", "cameras", "skein.cameras.map(one => [one.name, one.canvas.width, one.canvas.height])"),
-        step(
-          "ask",
-          "colours",
-          "skein.cameras.map(one => [...one.canvas.getContext('2d').getImageData(2, 2, 1, 1).data])"
-        ),
-        step("ask", "parts", "document.querySelectorAll('#graph rect').length"),
-        step(
-          "ask",
-          "crossed",
-          "[...document.querySelectorAll('#graph svg > text[paint-order] ~ path')].length"
-        ),
-        step("click", "#pause"),
-        step("wait", "skein.flight.paused"),
-        step("sleep", 1500),
-        step("ask", "decided", "[...skein.flight.vehicles.values()].map(one => one.decided)"),
-        step("sleep", 1500),
-        step("ask", "still", "[...skein.flight.vehicles.values()].map(one => one.decided)"),
-        step("click", "#continue"),
-        step("wait", "!skein.flight.paused"),
-        step("wait", "[...skein.flight.vehicles.values()].every(one => one.decided > skein.flight.now - 1)"),
-        step("click", "#abort"),
-        step("wait", "skein.flight.ending"),
-        step("wait", "!skein.isConnected"),
-        step("ask", "state", "document.getElementById('state').textContent"),
-        step("ask", "ended", Standing),
-        step("sleep", 1500),
-        step("ask", "later", Standing)
+  ): out =>
+    val _      = (needed(JavaScriptTools.packages), needed(JavaScriptTools.browser))
+    val flying = Flying.start(out, Flown*)
+    val shown  =
+      "[...skein.flight.vehicles.values()].map(one => [one.name, one.north, one.east, one.trail.length])"
+    val seen = browse(
+      flying.url,
+      flying.token,
+      step(
+        "wait",
+        "window.skein?.flight?.vehicles.size === 2 && skein.flight.now > 4 && skein.frames > 10"
+      ),
+      step("ask", "before", shown),
+      step("ask", "obstacles", "skein.flight.obstacles.length"),
+      step("wait", "skein.flight.own.length && skein.flight.series.own0.buckets.length"),
+      step(
+        "ask",
+        "own",
+        "[skein.flight.own[0].title, skein.flight.series.altitude.buckets.at(-1).values[0]]"
+      ),
+      step("wait", "skein.cameras.length === 2 && skein.cameras.every(one => one.shown > 3)"),
+      step("ask", "cameras", "skein.cameras.map(one => [one.name, one.canvas.width, one.canvas.height])"),
+      step(
+        "ask",
+        "colours",
+        "skein.cameras.map(one => [...one.canvas.getContext('2d').getImageData(2, 2, 1, 1).data])"
+      ),
+      step("ask", "parts", "document.querySelectorAll('#graph rect').length"),
+      step(
+        "ask",
+        "crossed",
+        "[...document.querySelectorAll('#graph svg > text[paint-order] ~ path')].length"
+      ),
+      step("click", "#pause"),
+      step("wait", "skein.flight.paused"),
+      step("sleep", 1500),
+      step("ask", "decided", "[...skein.flight.vehicles.values()].map(one => one.decided)"),
+      step("sleep", 1500),
+      step("ask", "still", "[...skein.flight.vehicles.values()].map(one => one.decided)"),
+      step("click", "#continue"),
+      step("wait", "!skein.flight.paused"),
+      step("wait", "[...skein.flight.vehicles.values()].every(one => one.decided > skein.flight.now - 1)"),
+      step("click", "#abort"),
+      step("wait", "skein.flight.ending"),
+      step("wait", "!skein.isConnected"),
+      step("ask", "state", "document.getElementById('state').textContent"),
+      step("ask", "ended", Standing),
+      step("sleep", 1500),
+      step("ask", "later", Standing)
+    )
+    flying.land()
+    val file     = out.resolve("predictive-vpn.duckdb")
+    val recorded = RecordingReader.read(file).fold(error => fail(error.message), identity)
+    val events   = recorded.events.map(_.kind)
+    assertEquals(
+      events.filter(Set(EventKind.Paused, EventKind.Continued, EventKind.Aborted)),
+      Vector(EventKind.Paused, EventKind.Continued, EventKind.Aborted)
+    )
+    assertEquals(seen("questions").arr.size, 3)
+    assertEquals(seen("told")("state").str, "Stopped: it was stopped from outside")
+    assertEquals(seen("told")("ended"), seen("told")("later"))
+    // The page's time is the flight's: it begins with the first reading.
+    val flown = recorded.ending.get.at.since(recorded.readings.map(_.state.sentAt).min).toSeconds
+    assertEqualsDouble(seen("told")("ended")(0).num, flown, 0.3)
+    assertEquals(seen("told")("own")(0).str, "distance, m")
+    assertEqualsDouble(seen("told")("own")(1).num, 20, 10)
+    // A street's objects, and its sky above what two cameras see.
+    assert(seen("told")("obstacles").num >= 10, seen("told")("obstacles").toString)
+    assertEquals(
+      seen("told")("cameras").arr.toSet,
+      Set[ujson.Value](
+        ujson.Arr("Pursuer, front_center", 256, 144),
+        ujson.Arr("Evader, front_center", 256, 144)
       )
-      flying.land()
-      val file     = out.resolve("predictive-vpn.duckdb")
-      val recorded = RecordingReader.read(file).fold(error => fail(error.message), identity)
-      val events   = recorded.events.map(_.kind)
-      assertEquals(
-        events.filter(Set(EventKind.Paused, EventKind.Continued, EventKind.Aborted)),
-        Vector(EventKind.Paused, EventKind.Continued, EventKind.Aborted)
+    )
+    for colour <- seen("told")("colours").arr do assertEquals(colour(3).num, 255.0)
+    val images =
+      RecordingReader.records(file).fold(error => fail(error.message), identity).map(_._2).collect:
+        case image: CameraImage => image
+    assertEquals(images.map(_.vehicle).toSet, Set("Pursuer", "Evader"))
+    assert(images.sizeIs > 20, s"${images.size} images")
+    assertEquals(seen("told")("decided"), seen("told")("still"))
+    // Two of each vehicle's stages, and due, events, view, cast, steered, fan, record, feed back.
+    assertEquals(seen("told")("parts").num.toInt, 18)
+    assertEquals(seen("told")("crossed").num.toInt, 0, "lines above labels")
+    for vehicle <- seen("told")("before").arr do
+      val places = recorded.readings.filter(_.vehicle == vehicle(0).str).map(_.state.value.positionNed)
+      assert(
+        places.exists(place => (place.x, place.y) == (vehicle(1).num, vehicle(2).num)),
+        vehicle.toString
       )
-      assertEquals(seen("questions").arr.size, 3)
-      assertEquals(seen("told")("state").str, "Stopped: it was stopped from outside")
-      assertEquals(seen("told")("ended"), seen("told")("later"))
-      // The page's time is the flight's: it begins with the first reading.
-      val flown = recorded.ending.get.at.since(recorded.readings.map(_.state.sentAt).min).toSeconds
-      assertEqualsDouble(seen("told")("ended")(0).num, flown, 0.3)
-      assertEquals(seen("told")("own")(0).str, "distance, m")
-      assertEqualsDouble(seen("told")("own")(1).num, 20, 10)
-      // A street's objects, and its sky above what two cameras see.
-      assert(seen("told")("obstacles").num >= 10, seen("told")("obstacles").toString)
-      assertEquals(
-        seen("told")("cameras").arr.toSet,
-        Set[ujson.Value](
-          ujson.Arr("Pursuer, front_center", 256, 144),
-          ujson.Arr("Evader, front_center", 256, 144)
-        )
-      )
-      for colour <- seen("told")("colours").arr do assertEquals(colour(3).num, 255.0)
-      val images =
-        RecordingReader.records(file).fold(error => fail(error.message), identity).map(_._2).collect:
-          case image: CameraImage => image
-      assertEquals(images.map(_.vehicle).toSet, Set("Pursuer", "Evader"))
-      assert(images.sizeIs > 20, s"${images.size} images")
-      assertEquals(seen("told")("decided"), seen("told")("still"))
-      // Two of each vehicle's stages, and due, events, view, cast, steered, fan, record, feed back.
-      assertEquals(seen("told")("parts").num.toInt, 18)
-      assertEquals(seen("told")("crossed").num.toInt, 0, "lines above labels")
-      for vehicle <- seen("told")("before").arr do
-        val places = recorded.readings.filter(_.vehicle == vehicle(0).str).map(_.state.value.positionNed)
-        assert(
-          places.exists(place => (place.x, place.y) == (vehicle(1).num, vehicle(2).num)),
-          vehicle.toString
-        )
-        assert(vehicle(3).num > 3)
-      replayed(file, recorded)
+      assert(vehicle(3).num > 3)
+    replayed(file, recorded)
 
   /** Checks that the page shows at a time exactly what the recording held by then. */
   private def replayed(file: Path, recorded: Recording): Unit =

@@ -18,9 +18,9 @@ class ObservedTablesSuite extends munit.FunSuite:
   test("each command is a row of comma-separated values, with empty cells for what is unknown"):
     assertEquals(
       ObservedTables.csv(observed("A").log),
-      """atS,vehicle,method,connection,ownAgeMs,othersAgeMs,boundMs,sinceOwnMs,sinceOthersMs
-        |0.020000,A,hover,0,15.000,,5.000,,
-        |0.120000,A,hover,0,115.000,,5.000,100.000,
+      """atS,vehicle,method,connection,ownAgeMs,othersAgeMs,boundMs,sinceOwnMs,sinceOthersMs,unanswered
+        |0.020000,A,hover,0,15.000,,5.000,,,1
+        |0.120000,A,hover,0,115.000,,5.000,100.000,,2
         |""".stripMargin
     )
 

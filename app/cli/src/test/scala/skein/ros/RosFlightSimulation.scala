@@ -17,8 +17,8 @@ import skein.testing.Optimised
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** Flights by odometry and `cmd_vel` in virtual time: all parts of `fly --ros` and `serve --ros` except the
-  * middleware, which function calls replace.
+/** Flights by odometry and `cmd_vel` in virtual time: all of `fly --ros` and `serve --ros` but the
+  * middleware, of whose place a function call takes.
   */
 class RosFlightSimulation extends munit.FunSuite, Optimised:
   private def settings(loop: LoopKind, seconds: Double) = FlySettings(
@@ -30,7 +30,7 @@ class RosFlightSimulation extends munit.FunSuite, Optimised:
     planning = PlanSettings(horizonSteps = 10, slices = 2, blocksPerSlice = 1)
   )
 
-  /** A vehicle without topics between: its readings are the truth, and it receives equal velocities. */
+  /** A vehicle without topics between: the truth is read, and the same velocities are flown. */
   private final class Direct(server: SimulatorServer, index: Int, clock: Clock) extends VehiclePort:
     import scala.concurrent.ExecutionContext.parasitic
     private var flying = Promise[Either[VehicleError, Boolean]]()
@@ -61,7 +61,7 @@ class RosFlightSimulation extends munit.FunSuite, Optimised:
       act(Action.Hover, Span.ofSeconds(1)): Unit
       Future.successful(Right(true))
 
-  /** @param byTopics whether odometry and commands are sent as messages */
+  /** @param byTopics whether odometry and commands go by messages */
   private def flown(
       settings: FlySettings,
       byTopics: Boolean = true
@@ -101,6 +101,7 @@ class RosFlightSimulation extends munit.FunSuite, Optimised:
             )
           object source extends VehicleSource:
             val where                       = "ROS 2"
+            override val guidance           = TwistCommand.guidance(_)
             def open(names: Vector[String]) =
               assertEquals(names, agents.map(_.name))
               Future
@@ -137,7 +138,7 @@ class RosFlightSimulation extends munit.FunSuite, Optimised:
 
   // Odometry is up to 20 ms old, which `predictive` knows of and `stream` does not.
   for (loop, most) <- Seq(LoopKind.Stream -> 0.1, LoopKind.Predictive -> 0.05) do
-    test(s"${loop.label} flies the duel by topics nearly as with equal velocities without them"):
+    test(s"${loop.label} flies the duel by topics nearly as by the same velocities without them"):
       val Seq(topics, direct) = Seq(true, false).map: byTopics =>
         val (outcome, recording) = flown(settings(loop, 40), byTopics).fold(fail(_), identity)
         assertEquals(outcome, FlightOutcome.Completed)
@@ -145,13 +146,25 @@ class RosFlightSimulation extends munit.FunSuite, Optimised:
       println(f"${loop.label}: $topics%.3f m by topics, $direct%.3f m without")
       assertEqualsDouble(topics / direct, 1, most)
 
+  for (link, mostMm) <- Seq(LatencyProfile.none -> 5.0, LatencyProfile.vpn -> 50.0) do
+    test(s"predictive foresees what commands of cmd_vel do, over ${link.name}"):
+      val (_, recording) =
+        flown(settings(LoopKind.Predictive, 40).copy(links = List(link))).fold(fail(_), identity)
+      val errors      = recording.predictions.drop(40).map(_.error.value * 1e3).sorted
+      def at(p: Int)  = errors(errors.size * p / 100)
+      val (half, p95) = (at(50), at(95))
+      println(
+        f"${link.name}: $half%.1f mm off at the median, $p95%.1f mm at 95 %%, ${distance(recording)}%.3f m"
+      )
+      assert(p95 < mostMm, p95)
+
   for loop <- LoopKind.values if loop != LoopKind.Paused do
     test(s"${loop.label} flies by topics"):
       val (outcome, recording) = flown(settings(loop, 3)).fold(fail(_), identity)
       assertEquals(outcome, FlightOutcome.Completed)
       assert(recording.decisions.size > 20, recording.decisions.size)
 
-  test("paused, and a link with a rate, are refused before any vehicle moves"):
+  test("paused, and a link with a rate, are refused before anything moves"):
     assert(flown(settings(LoopKind.Paused, 3)).left.exists(_.contains("which vehicles of ROS 2 have not")))
     val slow = LatencyProfile.parse("rate:50mbit,vpn", Left(_)).fold(error => fail(error.message), identity)
     val over = settings(LoopKind.Stream, 3).copy(links = List(slow))

@@ -119,9 +119,16 @@ final class Trace(most: Int = 200_000):
 
   private def isNever(a: Node) = a.op == Not && a.args(0).op == Always
 
-  /** Whether its value is chosen among few constants. */
-  private def ofConsts(a: Node, depth: Int = 3): Boolean =
-    depth > 0 && a.op == Where && a.args.drop(1).forall(each => each.isConst || ofConsts(each, depth - 1))
+  /** Whether its value is chosen among few constants, such as the nearest of all vehicles. */
+  private def ofConsts(a: Node): Boolean = a.op == Where && withoutConsts(a, Trace.MostChosen) >= 0
+
+  /** What is left of a number of constants after those among which a value is chosen; negative if it is not
+    * chosen among so few.
+    */
+  private def withoutConsts(a: Node, most: Int): Int =
+    if most < 0 || a.isConst then most - 1
+    else if a.op == Where then withoutConsts(a.args(2), withoutConsts(a.args(1), most))
+    else -1
 
   private def leaves(a: Node)(change: Node => Node): Node =
     if a.op == Where then where(a.args(0), leaves(a.args(1))(change), leaves(a.args(2))(change))
@@ -149,6 +156,8 @@ final class Trace(most: Int = 200_000):
     made
 
 object Trace:
+  private val MostChosen = 64
+
   /** Identifies equal nodes: their operation, and their arguments' numbers or their own. */
   private final case class Key(op: Int, first: Long, rest: Long):
     override def hashCode: Int =

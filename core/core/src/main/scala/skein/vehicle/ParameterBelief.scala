@@ -5,7 +5,7 @@ package skein.vehicle
   * Source of the update: Gelb (ed.), "Applied Optimal Estimation", 1974, section 4.2, for one measurement at
   * a time.
   */
-final case class ParameterBelief private (mean: Vector[Double], covariance: Vector[Vector[Double]]):
+final case class ParameterBelief private[vehicle] (mean: Vector[Double], covariance: Vector[Vector[Double]]):
 
   /** Adds a measurement.
     *

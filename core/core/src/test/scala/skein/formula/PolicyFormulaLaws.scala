@@ -18,7 +18,9 @@ class PolicyFormulaLaws extends munit.FunSuite:
     )
 
   private def drawn(family: PolicyFamily)(random: SplitMix64): HeadingPolicy =
-    family.policy(family.space.at(Vector.fill(family.space.dimension)(random.nextDouble()))).asInstanceOf[HeadingPolicy]
+    family.policy(
+      family.space.at(Vector.fill(family.space.dimension)(random.nextDouble()))
+    ).asInstanceOf[HeadingPolicy]
 
   for (name, draw) <- policies do
     test(s"$name: the formula answers to the bit what the method does (seed $seed)"):

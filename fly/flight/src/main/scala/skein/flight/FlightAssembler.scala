@@ -13,11 +13,12 @@ import skein.link.*
 import skein.loop.*
 import skein.loop.learning.{Learning, Lessons, LessonsAgain, LessonsBeside}
 import skein.loop.planning.{CountedPlanWorkers, PlanThread, PlanWorkers, ThreadedPlanWorkers}
-import skein.policy.Fleet
+import skein.policy.{ActionGuidance, Fleet}
 import skein.port.{CommandPlan, VehicleError, VehiclePort}
 import skein.record.*
 import skein.settings.{ChosenPolicy, FlightPlan, FlySettings, PolicyFile, RecordedPlan, Wire}
-import skein.signal.LatencyProfile
+import skein.scene.Moment
+import skein.signal.{LatencyProfile, SplitMix64}
 import skein.solver.{Briefing, SolverClient}
 import skein.simulator.{MavlinkSettings, SimulatorServer, SimulatorSettings}
 import skein.units.*
@@ -133,8 +134,9 @@ final class FlightAssembler(
           Future.failed(CannotFly(missing))
         )
       yield
-        val loopSettings = settings.loopSettings(plan)
-        val planners     =
+        val loopSettings =
+          settings.loopSettings(plan).copy(guidance = elsewhere.fold(ActionGuidance.of)(_.guidance))
+        val planners =
           if plan.loop != LoopKind.Plan || solver.isDefined then PlanWorkers.none
           else
             opened.closing(workers(settings.planning)): threads =>
@@ -143,6 +145,13 @@ final class FlightAssembler(
         val endCondition = EndCondition(settings.scenario, plan.loop == LoopKind.Paused, monitor)
         val flown        = plan.policy.fold(plan.fleet(settings))(learning(plan, _, opened, monitor))
         val hold         = Hold()
+
+        val network = settings.between.filter(_ => reached.apart.nonEmpty).map: link =>
+          val inScene = Moment(settings.world.scene, Vector.empty)
+          val seed    = SplitMix64.seedOf(plan.seed, FlySettings.MostControllers)
+          opened.closing(
+            VehicleNetwork(fleet.agents.map(_.name), link, seed, inScene.sees(_, _), clock, monitor)
+          )(_.close())
 
         def team(vehicles: Vector[VehiclePort], only: Option[Int]) = Team(
           flown,
@@ -154,7 +163,8 @@ final class FlightAssembler(
           solver,
           reached.clocks,
           only,
-          hold
+          hold,
+          only.flatMap(self => network.map(_.of(self)))
         )
         val teams =
           if reached.apart.isEmpty then Vector(team(reached.vehicles, None))

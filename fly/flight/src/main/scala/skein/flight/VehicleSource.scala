@@ -2,8 +2,10 @@ package skein.flight
 
 import org.apache.pekko.Done
 import scala.concurrent.Future
+import skein.policy.{Action, ActionGuidance}
 import skein.port.VehiclePort
 import skein.signal.ClockAlignment
+import skein.vehicle.Guidance
 
 /** Vehicles that are reached neither by AirSim's protocol nor by MAVLink: another part of the program
   * connects to them.
@@ -11,6 +13,9 @@ import skein.signal.ClockAlignment
 trait VehicleSource:
   /** Where the vehicles are, as a word for a person. */
   def where: String
+
+  /** How its vehicles perform an action, for predictions. */
+  def guidance: Action => Guidance = ActionGuidance.of
 
   /** Connects to the vehicles of a flight.
     *

@@ -80,6 +80,7 @@ object WarmUp:
       wire = Wire.AirSim,
       solver = None,
       decentralised = false,
+      between = None,
       only = None,
       links = List(LatencyProfile.none),
       duration = settings.duration.min(Rehearsed),

@@ -1,9 +1,10 @@
 package skein.loop
 
 import skein.flow.Sense
+import skein.policy.{Action, ActionGuidance}
 import skein.port.Moves
 import skein.units.*
-import skein.vehicle.{QuadrotorModel, VehicleModel}
+import skein.vehicle.{Guidance, QuadrotorModel, VehicleModel}
 
 /** How a loop is run.
   *
@@ -21,6 +22,7 @@ import skein.vehicle.{QuadrotorModel, VehicleModel}
   * @param decideThenPace `stream` decides at every view and paces the commands, instead of pacing first and
   *   deciding on the newest view
   * @param model by which `predictive` and `plan` predict a vehicle from its readings
+  * @param guidance how vehicles perform an action, for predictions
   * @param planning settings of `plan`
   * @param seed of its searches
   * @param deadline of every decision; without one a policy decides on the loop's own thread, which waits for
@@ -29,6 +31,7 @@ import skein.vehicle.{QuadrotorModel, VehicleModel}
   *   the vehicle ([[skein.port.PlanBuffer]]). Such commands are answered when they arrive, so `movesInFlight`
   *   does not limit them, [[skein.port.Moves.MostInFlight]] does
   * @param knows what the controller of a vehicle knows of the others; `plan` knows all
+  * @param strangers how `predictive` predicts those whose commands it does not know
   */
 final case class LoopSettings(
     period: Span = Span.ofMillis(100),
@@ -42,11 +45,13 @@ final case class LoopSettings(
     early: Sense.Early = Sense.Early.Overtakes,
     decideThenPace: Boolean = false,
     model: Int => VehicleModel[?] = _ => QuadrotorModel.AirSim,
+    guidance: Action => Guidance = ActionGuidance.of,
     planning: PlanSettings = PlanSettings(),
     seed: Long = 1,
     deadline: Option[Deadline] = None,
     planInPacket: Boolean = false,
-    knows: Knowledge = Knowledge.All
+    knows: Knowledge = Knowledge.All,
+    strangers: Strangers = Strangers.Turn
 ):
   require(period > Span.Zero, "the period must be positive")
   require(window > 0, "the window must be at least 1")

@@ -1,13 +1,17 @@
 package skein.loop
 
-import skein.record.RecordingHeader
+import skein.record.{ReadingRow, Recording, RecordingHeader}
 import skein.signal.{Kinematics, Stamped}
+import skein.units.Instant
 
 /** The position and motion that a vehicle reported.
   *
   * @param sequence counts the readings of this vehicle in the order of the requests: see [[Reading.number]]
   */
-final case class Reading(vehicle: Int, sequence: Long, state: Stamped[Kinematics])
+final case class Reading(vehicle: Int, sequence: Long, state: Stamped[Kinematics]):
+  /** As another vehicle's controller received it in a message: numbered as that controller's own. */
+  private[skein] def relayed(from: Int, to: Int, receivedAt: Instant): Reading =
+    copy(sequence = sequence - from + to, state = state.copy(receivedAt = receivedAt))
 
 object Reading:
   /** The number of a controller's n-th reading of a vehicle. Of C controllers with a vehicle each, number c
@@ -19,6 +23,13 @@ object Reading:
   /** How many controllers read each vehicle in a recorded flight. The one of `number` is its remainder. */
   private[skein] def controllers(heading: RecordingHeader): Int =
     if heading.parameter("decentralised").contains("true") then heading.vehicles.size else 1
+
+  /** The readings that controllers requested themselves, without those received in messages of others. */
+  private[skein] def asked(recording: Recording): Vector[ReadingRow] =
+    if recording.heading.parameter("between").isEmpty then recording.readings
+    else
+      val indexOf = recording.heading.vehicles.map(_.name).zipWithIndex.toMap
+      recording.readings.filter(read => read.sequence % indexOf.size == indexOf(read.vehicle))
 
 /** The values that a sensor of a vehicle reported.
   *

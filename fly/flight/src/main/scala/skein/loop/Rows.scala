@@ -94,7 +94,7 @@ private final class Rows(fleet: Fleet):
   /** The recorded speed: absent for the vehicle's own, where its policy plays against one opponent. */
   private def speedColumn(action: Action, agent: Agent): Option[MetresPerSecond] = action match
     case Action.Along(_, agent.speed, _, Yaw.Still) if agent.policy.isAgainstOne => None
-    case _ => Some(action.speed)
+    case _                                                                       => Some(action.speed)
 
   /** The recorded action: absent for a heading at the altitude of the start. */
   private def actionColumn(action: Action, agent: Agent): Option[Action] = action match

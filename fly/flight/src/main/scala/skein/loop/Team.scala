@@ -16,6 +16,7 @@ import skein.units.*
   * @param only the vehicle of a controller of its own, which reads all vehicles and commands this one;
   *   without it, all are commanded
   * @param hold while it is held, the vehicles hover without decisions; they are still read
+  * @param messages by which the controller of one vehicle knows the others, instead of reading them
   */
 final class Team(
     val fleet: Fleet,
@@ -27,9 +28,11 @@ final class Team(
     solver: Option[Solver] = None,
     clocks: Option[ClockAlignment] = None,
     only: Option[Int] = None,
-    val hold: Hold = Hold()
+    val hold: Hold = Hold(),
+    messages: Option[Messages] = None
 )(using ExecutionContext):
   require(ports.size == fleet.agents.size, "one vehicle per agent")
+  require(messages.isEmpty || only.isDefined, "messages are for the controller of one vehicle")
   require(solver.isEmpty || settings.deadline.isDefined, "who is asked elsewhere needs a deadline")
 
   val vehicles: Range = ports.indices
@@ -41,9 +44,10 @@ final class Team(
   private val deciders = vehicles.map(Decider(fleet, _))
   val log: TeamLog     = TeamLog(fleet, deciders, clock, recorder)
 
-  private val parts    = TeamParts(fleet)
-  private val sensing  = TeamSensing(fleet, ports, own, clock, settings, clocks, parts, log)
-  private val viewing  = TeamViewing(fleet, own, settings, clocks, hold, sensing, parts, log)
+  private val parts   = TeamParts(fleet)
+  private val sensing = TeamSensing(fleet, ports, own, clock, settings, clocks, messages, parts, log)
+  private val viewing =
+    TeamViewing(fleet, own, settings, clocks, messages.isDefined, hold, sensing, parts, log)
   private val deciding = TeamDeciding(fleet, clock, settings, deciders, workers, solver, sensing, parts, log)
   private val steering = TeamSteering(ports, own, clock, settings, hold, sensing, parts, log)
 

@@ -19,6 +19,7 @@ private final class TeamSensing(
     clock: Clock,
     settings: LoopSettings,
     clocksBefore: Option[ClockAlignment],
+    messages: Option[Messages],
     parts: TeamParts,
     log: TeamLog
 )(using ExecutionContext):
@@ -30,6 +31,26 @@ private final class TeamSensing(
   // Known as answers come, before anything is made of them.
   private val clocks = AtomicReference(clocksBefore)
 
+  /** Of the vehicles that are not read, but known by messages. */
+  private val inboxes: Map[Int, Inbox] =
+    val others = messages.toVector.flatMap(_ => ports.indices.filterNot(own.contains))
+    others
+      .map: vehicle =>
+        def dropped(message: Reading) =
+          log.note(EventKind.Dropped, Some(vehicle), s"reading ${message.sequence}: too many messages wait")
+        vehicle -> Inbox(isNewer, dropped)
+      .toMap
+
+  for by <- messages do
+    by.onReceived: message =>
+      aligned(message.state)
+      log.read(message)
+      inboxes(message.vehicle).put(message)
+
+  /** Learns of the vehicles' clock from a reading; returns what was known before. */
+  private def aligned(state: Stamped[?]): Option[ClockAlignment] =
+    clocks.getAndUpdate(known => Some(known.fold(ClockAlignment.of(state))(_.updated(state))))
+
   /** Reads a vehicle; records the answer or the error, and contradictions between the clocks. Thread-safe. */
   def read(vehicle: Int): Future[Either[VehicleError, Reading]] = read(vehicle, isRunning = true)
 
@@ -38,6 +59,9 @@ private final class TeamSensing(
     * @param isRunning whether the simulator's clock runs by itself
     */
   private def read(vehicle: Int, isRunning: Boolean): Future[Either[VehicleError, Reading]] =
+    inboxes.get(vehicle).fold(ask(vehicle, isRunning))(_.read().map(Right(_)))
+
+  private def ask(vehicle: Int, isRunning: Boolean): Future[Either[VehicleError, Reading]] =
     val sequence = Reading.number(asked.getAndIncrement(vehicle), own, ports.size)
     val meter    = meters(vehicle)
     meter.called()
@@ -45,8 +69,7 @@ private final class TeamSensing(
       .read()
       .map:
         case Right(state) =>
-          val before =
-            clocks.getAndUpdate(known => Some(known.fold(ClockAlignment.of(state))(_.updated(state))))
+          val before = aligned(state)
           if isRunning && before.exists(known => clocks.get.exists(_.restarts > known.restarts)) then
             for anew <- before.flatMap(_.contradiction(state)) do
               log.note(EventKind.ClockRestarted, Some(vehicle), s"reading $sequence: $anew")
@@ -54,6 +77,7 @@ private final class TeamSensing(
           meter.answered()
           meter.pass(ageOf(Some(state.validAt)))
           log.read(reading)
+          messages.foreach(_.send(reading))
           Right(reading)
         case Left(error) =>
           meter.answered()
@@ -66,9 +90,16 @@ private final class TeamSensing(
 
   /** Reads one vehicle once a period from a start on; emits answers in order, never an older one after a
     * newer. All vehicles are read in phase, unless the settings spread them; a random phase between them
-    * would make the data of one older than that of the other.
+    * would make the data of one older than that of the other. Of a vehicle that is known by messages, emits
+    * these as they arrive.
     */
   def sense(vehicle: Int, start: Instant): Source[Reading, NotUsed] =
+    inboxes
+      .get(vehicle)
+      .fold(senseByAsking(vehicle, start))(_.messages)
+      .addAttributes(parts.named("sense", vehicle))
+
+  private def senseByAsking(vehicle: Int, start: Instant): Source[Reading, NotUsed] =
     val offset = settings.spread * vehicle.toLong / ports.size.toLong
     Sense
       .at[VehicleError, Reading, NotUsed](
@@ -83,7 +114,6 @@ private final class TeamSensing(
         onMissed =
           ticks => log.note(EventKind.Skipped, Some(vehicle), s"$ticks ticks missed: window full")
       )
-      .addAttributes(parts.named("sense", vehicle))
 
   /** Joins the newest readings of all vehicles, each with its vehicle; emits when one is new, for decisions
     * of its own.
@@ -140,9 +170,11 @@ private final class TeamSensing(
           case error           => Future.successful(error)
 
   /** Reads all vehicles of a simulator that stands still, in the scenario's order; ends at the first error.
+    * Vehicles that are known by messages are as in the newest when their turn comes, after the own one.
     */
   def readAll(): Future[Either[VehicleError, Vector[Reading]]] =
-    ports.indices.foldLeft(Future.successful[Either[VehicleError, Vector[Reading]]](Right(Vector.empty))):
+    val inTurn = if messages.isEmpty then ports.indices else own ++ inboxes.keys.toVector.sorted
+    inTurn.foldLeft(Future.successful[Either[VehicleError, Vector[Reading]]](Right(Vector.empty))):
       (soFar, vehicle) =>
         soFar.flatMap:
           case Right(readings) => read(vehicle, isRunning = false).map(_.map(readings :+ _))

@@ -27,6 +27,8 @@ final case class SentCommand(
   * @param knows what policies may see of the other vehicles
   * @param strangers predicts each vehicle from its readings alone; present where the loop predicts and
   *   commands of others are not known
+  * @param byMessages the vehicles that are known by messages: how long these took says nothing of when a
+  *   command acts
   */
 final case class TeamView(
     readings: Vector[Option[Reading]],
@@ -36,7 +38,8 @@ final case class TeamView(
     forecast: Option[Forecast] = None,
     estimates: Option[Vector[Estimate]] = None,
     knows: Knowledge = Knowledge.All,
-    strangers: Option[Forecast] = None
+    strangers: Option[Forecast] = None,
+    byMessages: Set[Int] = Set.empty
 ):
   def withReading(reading: Reading): TeamView =
     copy(
@@ -54,7 +57,7 @@ final case class TeamView(
   def withMove(move: SentCommand): TeamView = copy(moves = moves.updated(move.vehicle, Some(move)))
 
   def withEvent(event: ForecastEvent): TeamView = copy(
-    forecast = forecast.map(_.withEvent(event)),
+    forecast = if byMessages(event.vehicle) then forecast else forecast.map(_.withEvent(event)),
     strangers = event match
       case _: ForecastEvent.Seen => strangers.map(_.withEvent(event))
       case _                     => strangers
@@ -62,7 +65,8 @@ final case class TeamView(
 
   /** The view with the forecast of one vehicle's controller. */
   def of(vehicle: Int): TeamView = strangers.fold(this): others =>
-    copy(forecast = forecast.map(own => others.withVehicleOf(own, vehicle)))
+    val strange = readings.indices.filter(_ != vehicle)
+    copy(forecast = forecast.map(strange.foldLeft(_)(_.withVehicleOf(others, _))))
 
   /** A vehicle's state: as estimated, or else as read. */
   def kinematics(vehicle: Int): Kinematics =

@@ -5,18 +5,22 @@ import org.apache.pekko.stream.{Graph, UniformFanOutShape}
 import org.apache.pekko.stream.scaladsl.{Broadcast, Flow, MergePreferred, Source}
 import skein.flow.Hold
 import skein.forecast.{Commanded, ForecastEvent, Forecast}
-import skein.policy.{ActionGuidance, Fleet}
+import skein.policy.Fleet
 import skein.port.CommandPlan
 import skein.record.EventKind
 import skein.signal.ClockAlignment
 import skein.units.*
 
-/** Folds loop events into team views and emits decision requests. */
+/** Folds loop events into team views and emits decision requests.
+  *
+  * @param byMessages whether all but the own vehicle are known by messages
+  */
 private final class TeamViewing(
     fleet: Fleet,
     own: Vector[Int],
     settings: LoopSettings,
     clocks: Option[ClockAlignment],
+    byMessages: Boolean,
     hold: Hold,
     sensing: TeamSensing,
     parts: TeamParts,
@@ -40,13 +44,19 @@ private final class TeamViewing(
       nothingSeen.copy(
         forecast = Some(Forecast(vehicles.map(settings.model).toVector)),
         strangers = Option.when(settings.knows == Knowledge.Positions)(
-          Forecast(vehicles.map(vehicle => Knowledge.stranger(settings.model(vehicle))).toVector)
+          Forecast(vehicles.map(vehicle => settings.strangers.model(settings.model(vehicle))).toVector)
         )
       )
     )
 
   private def nothingSeen =
-    TeamView.empty(fleet.agents.size).copy(alignment = clocks, knows = settings.knows)
+    TeamView
+      .empty(fleet.agents.size)
+      .copy(
+        alignment = clocks,
+        knows = settings.knows,
+        byMessages = if byMessages then vehicles.toSet -- own else Set.empty
+      )
 
   private def viewFrom(start: TeamView): Flow[LoopEvent, DecisionRequest, NotUsed] =
     val meter = parts.meter("view")
@@ -79,11 +89,11 @@ private final class TeamViewing(
 
   private def told(move: SentCommand, plan: Option[CommandPlan]): ForecastEvent = plan match
     case None =>
-      val command = Commanded(move.decision, ActionGuidance.of(move.action), move.sentAt)
+      val command = Commanded(move.decision, settings.guidance(move.action), move.sentAt)
       ForecastEvent.Sent(move.vehicle, command)
     case Some(plan) =>
       val commands = plan.actions.map: (at, action) =>
-        Commanded(move.decision, ActionGuidance.of(action), move.sentAt, actsAt = Some(at))
+        Commanded(move.decision, settings.guidance(action), move.sentAt, actsAt = Some(at))
       ForecastEvent.Planned(move.vehicle, commands)
 
   private def request(view: TeamView, deciders: Set[Int]) =

@@ -1,5 +1,6 @@
 package skein.measure
 
+import skein.loop.Reading
 import skein.policy.Role
 import skein.record.*
 import skein.scenario.{Measure, Result, Scenario, Scenarios, Track, Tracks}
@@ -142,7 +143,7 @@ object FlightSummary:
       recording.readings.size,
       recording.decisions.size,
       recording.commands.size,
-      recording.events.groupMapReduce(_.kind)(_ => 1)(_ + _),
+      recording.events.groupMapReduce(_.kind)(_.count.fold(1)(_.toInt))(_ + _),
       cutShort(recording, tracks),
       recording.heading.parameter("policy"),
       PlanningSummary.of(recording),
@@ -240,6 +241,6 @@ object FlightSummary:
         )
 
   private def roundTripsMs(recording: Recording): Option[Distribution] =
-    val ofReadings = recording.readings.map(_.state.roundTrip)
+    val ofReadings = Reading.asked(recording).map(_.state.roundTrip)
     val ofLink     = recording.latencies.map(_.roundTrip)
     Distribution.of((if ofLink.nonEmpty then ofLink else ofReadings).map(_.toMillis))

@@ -22,7 +22,7 @@ object RoundTripTrace:
     */
   def of(recording: Recording): Vector[RoundTripTrace] =
     val controllers = Reading.controllers(recording.heading)
-    recording.readings.groupBy(read => (read.vehicle, read.sequence % controllers)).values.toVector.map:
+    Reading.asked(recording).groupBy(read => (read.vehicle, read.sequence % controllers)).values.toVector.map:
       readings =>
         val known       = readings.map(reading => reading.sequence -> reading.state).toMap
         val numbers     = known.keys.min to known.keys.max by controllers

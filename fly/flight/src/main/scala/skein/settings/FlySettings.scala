@@ -26,10 +26,13 @@ import skein.vehicle.VehicleKind
   *   deliver several simultaneously: see [[skein.flow.Steer]]
   * @param planInPacket whether `predictive` sends plans to a buffer beside the vehicle: see [[LoopSettings]]
   * @param knows what the controller of a vehicle knows of the others, in all loops
+  * @param strangers how `predictive` predicts vehicles whose commands it does not know
   * @param decentralised whether each vehicle has a controller of its own, with a link of its own; then
   *   controllers know of the others what they read. `paused`, the truth, has one, which knows positions too,
   *   and no link
   * @param only the vehicle that this process flies, in a running simulator, where others fly the rest
+  * @param between with `decentralised`, the link over which controllers send one another what they read of
+  *   their own vehicles; then they do not read the others
   * @param plant the built-in simulator's kind of multirotor
   * @param wire protocol of the vehicles
   * @param solver a remote solver for additional flights, beside those that decide in this process; a decision
@@ -53,8 +56,10 @@ final case class FlySettings(
     movesInFlight: Int = Moves.InFlight,
     planInPacket: Boolean = false,
     knows: Knowledge = Knowledge.All,
+    strangers: Strangers = Strangers.Turn,
     decentralised: Boolean = false,
     only: Option[String] = None,
+    between: Option[VehicleLink] = None,
     plant: SimulatedBody = SimulatedBody.AirSim,
     wire: Wire = Wire.AirSim,
     solver: Option[SolverChoice] = None,
@@ -123,6 +128,7 @@ final case class FlySettings(
         planning = planning.keeping(scenario),
         movesInFlight = movesInFlight,
         knows = if decentralised then Knowledge.Positions else knows,
+        strangers = strangers,
         deadline = deadline.map(Deadline(_, fallback))
       )
     if scenario.isAsPublished then timely.asPublished else timely
@@ -284,8 +290,13 @@ object FlySettings:
       Moves.mistake(settings.movesInFlight).map("moves-in-flight: " + _),
       packetMistake(settings).map("plan-in-packet: " + _),
       knowsMistake(settings).map("knows: " + _),
+      Option.when(settings.strangers != Strangers.Turn && settings.loopSettings.knows == Knowledge.All)(
+        "strangers: expected knows positions with it, or decentralised, since otherwise all commands are known, " +
+          s"came ${settings.strangers.label} without"
+      ),
       apartMistake(settings, isGiven = optionAt("knows", config).isDefined).map("decentralised: " + _),
       onlyMistake(settings).map("only: " + _),
+      betweenMistake(settings).map("between: " + _),
       Option.when(settings.solver.isDefined && !settings.loops.exists(decidedElsewhere))(
         "solver: expected with a loop whose decisions can be made elsewhere, came with paused alone"
       ),
@@ -391,6 +402,13 @@ object FlySettings:
         Option.when(settings.loops.contains(LoopKind.Paused)):
           "expected loops other than paused, which stops the time of all vehicles"
 
+  private def betweenMistake(settings: FlySettings): Option[String] =
+    settings.between.flatMap: link =>
+      if !settings.decentralised then Some(s"expected decentralised with it, came '${link.text}' without")
+      else
+        settings.only.map: name =>
+          s"expected all controllers in this process, which carries their messages, came only $name"
+
   private def isRightAltitude(altitudeM: Double) = altitudeM > 0 && altitudeM <= MostAltitudeM
 
   /** Whether a policy can replace one in this fleet: its opponent is the nearest of another role. */
@@ -443,8 +461,11 @@ object FlySettings:
   private given ConfigReader[NamedScene] = parsed("scene", NamedScene.read)
   private given ConfigReader[Wire]       = parsed("wire", Wire.parse)
   private given ConfigReader[Knowledge]  = parsed("knowledge", Knowledge.parse)
+  private given ConfigReader[Strangers]  = parsed("strangers", Strangers.parse)
 
   private given ConfigReader[SimulatedBody] = parsed("plant", SimulatedBody.parse)
+
+  private given ConfigReader[VehicleLink] = parsed("link between vehicles", VehicleLink.parse)
 
   private given ConfigReader[SolverChoice] = parsed("solver", SolverChoice.parse(_))
   private given ConfigReader[ImageSource]  = parsed("images", ImageSource.parse)

@@ -56,7 +56,8 @@ object RecordedPlan:
       deadline = deadline,
       onlyPolicies = false,
       knows = flown.loopSettings.knows,
-      decentralised = flown.isDecentralised(plan)
+      decentralised = flown.isDecentralised(plan),
+      between = flown.between.filter(_ => flown.isDecentralised(plan))
     )
     val ofPolicy = plan.policy.toSeq.flatMap: chosen =>
       Seq(

@@ -2,7 +2,7 @@ package skein.settings
 
 import scala.compiletime.{constValueTuple, summonAll}
 import scala.deriving.Mirror
-import skein.loop.{AnyLoop, Fallback, Knowledge, PlanSettings}
+import skein.loop.{AnyLoop, Fallback, Knowledge, PlanSettings, Strangers}
 import skein.record.ParameterRow
 import skein.scenario.{Scenario, Scenarios}
 import skein.signal.LatencyProfile
@@ -65,8 +65,13 @@ private[settings] object RecordedSetting:
   given RecordedSetting[Wire]      = labelled(Wire.values, _.label, usual = Wire.AirSim)
   given RecordedSetting[Knowledge] = labelled(Knowledge.values, _.label, usual = Knowledge.All)
 
+  given RecordedSetting[Strangers] = labelled(Strangers.values, _.label, usual = Strangers.Turn)
+
   given RecordedSetting[SolverChoice] =
     Text[SolverChoice]("where a solver is", _.text)(SolverChoice.parse(_).toOption)
+
+  given RecordedSetting[VehicleLink] =
+    Text[VehicleLink]("a link between vehicles", _.text)(VehicleLink.parse(_).toOption)
 
   given RecordedSetting[Fallback] =
     Text[Fallback]("hold, repeat, hover or a policy", _.label)(Fallback.parse(_).toOption)

@@ -8,7 +8,7 @@ import skein.link.{Address, TcpTransport}
 import skein.loop.{FlightOutcome, LoopKind}
 import skein.record.{MemoryRecorder, Recording}
 import skein.scenario.{PaperDuel, Scenarios}
-import skein.settings.FlySettings
+import skein.settings.{FlySettings, VehicleLink}
 import skein.signal.LatencyProfile
 import skein.simulator.{SimulatorServer, SimulatorSettings}
 import skein.testing.{TemporaryFolders, Waiting}
@@ -21,25 +21,29 @@ class DecentralisedLiveSuite extends munit.FunSuite, TemporaryFolders, Waiting:
   override def afterAll(): Unit     = { val _ = Await.result(system.terminate(), 10.seconds) }
   import system.dispatcher
 
-  folder.test("every loop's controllers decide each for its vehicle, and their decisions replay"): folder =>
-    val settings = FlySettings(
-      List(LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream, LoopKind.Predictive),
-      List(LatencyProfile.direct),
-      duration = Span.ofSeconds(5),
-      period = Span.ofMillis(100),
-      seed = 1,
-      decentralised = true
-    )
-    val assembler = FlightAssembler(TcpTransport(), Clock.system, settings, simulator = None)
-    val flown     = Future.traverse(settings.plans): plan =>
-      val recorder = MemoryRecorder(assembler.heading(plan, clockKind = "real"))
-      assembler.start(plan, recorder).flatMap(_.fold(fail(_), _.landed)).map((_, recorder))
-    for (landed, recorder) <- Await.result(flown, 60.seconds) do
-      val plan = landed.plan
-      assertEquals(landed.outcome, FlightOutcome.Completed, plan.id)
-      assert(recorder.writeTo(plan.file(folder)).isRight)
-      assertEquals(Replayed.of(plan.file(folder)).map(_.decidedAgain), Right(None), plan.id)
-      assertOwn(recorder.recording)
+  for between <- Seq(None, Some("loss:10%,constant:40ms")) do
+    folder.test(
+      s"every loop's controllers decide each for its vehicle, and their decisions replay; messages $between"
+    ): folder =>
+      val settings = FlySettings(
+        List(LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream, LoopKind.Predictive),
+        List(LatencyProfile.direct),
+        duration = Span.ofSeconds(5),
+        period = Span.ofMillis(100),
+        seed = 1,
+        decentralised = true,
+        between = between.map(VehicleLink.parse(_).fold(fail(_), identity))
+      )
+      val assembler = FlightAssembler(TcpTransport(), Clock.system, settings, simulator = None)
+      val flown     = Future.traverse(settings.plans): plan =>
+        val recorder = MemoryRecorder(assembler.heading(plan, clockKind = "real"))
+        assembler.start(plan, recorder).flatMap(_.fold(fail(_), _.landed)).map((_, recorder))
+      for (landed, recorder) <- Await.result(flown, 60.seconds) do
+        val plan = landed.plan
+        assertEquals(landed.outcome, FlightOutcome.Completed, plan.id)
+        assert(recorder.writeTo(plan.file(folder)).isRight)
+        assertEquals(Replayed.of(plan.file(folder)).map(_.decidedAgain), Right(None), plan.id)
+        assertOwn(recorder.recording)
 
   folder.test("two programs fly a vehicle each in a running simulator, and each records its own decisions"):
     folder =>

@@ -4,11 +4,11 @@ import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.{ExecutionContext, Future}
 import skein.link.{MemoryNetwork, NetworkPlan}
 import skein.loop.learning.Learning
-import skein.loop.{FlightOutcome, Knowledge, LoopKind}
+import skein.loop.{FlightOutcome, Knowledge, LoopKind, Strangers}
 import skein.measure.{PredictionErrors, RoundTripTrace}
 import skein.policy.Role
 import skein.record.{DecisionRow, MemoryRecorder, Recording}
-import skein.scenario.{PaperDuel, Scenario, Scenarios, Surround}
+import skein.scenario.{PaperDuel, Scenario, Scenarios, Shadow, Surround}
 import skein.settings.{ChosenPolicy, FlySettings, PolicyFile}
 import skein.signal.LatencyProfile
 import skein.testing.{Optimised, TemporaryFolders}
@@ -84,6 +84,16 @@ class DecentralisedSimulation extends munit.FunSuite, TemporaryFolders, Optimise
         assert(flown.writeTo(file).isRight)
         val replayed = Replayed.of(file).fold(fail(_), identity)
         assertEquals((replayed.decidedAgain, replayed.isSame), (None, true))
+
+  folder.test("others predicted by belief: a flight repeats to the bit, and its recording replays"): folder =>
+    val flight = settings(LoopKind.Predictive, scenario = Shadow()).copy(strangers = Strangers.Belief)
+    val flown  = fly(flight)
+    assertEquals(fly(flight).digest, flown.digest)
+    assertNotEquals(fly(flight.copy(strangers = Strangers.Turn)).digest, flown.digest)
+    val file = flight.plans.head.file(folder)
+    assert(flown.writeTo(file).isRight)
+    val replayed = Replayed.of(file).fold(fail(_), identity)
+    assertEquals((replayed.decidedAgain, replayed.isSame), (None, true))
 
   for loop <- loops do
     test(s"${loop.label}: a decision uses its own controller's readings, and their ages"):

@@ -113,6 +113,17 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
       "2: skein.fly.knows: expected all with a solver, which is told every command, came positions"
     )
 
+  test("how others are predicted is refused where their commands are known"):
+    assertTold(
+      "strangers = belief",
+      "2: skein.fly.strangers: expected knows positions with it, or decentralised, since otherwise all commands " +
+        "are known, came belief without"
+    )
+    assertTold(
+      "knows = positions, strangers = none",
+      "2: skein.fly.strangers: expected turn or straight or belief, came 'none'"
+    )
+
   test("decentralised is refused where one controller decides for all, or is told of the others"):
     def refused(text: String)(why: String) = assertTold(text, s"2: skein.fly.decentralised: expected $why")
     refused("decentralised = true, loops = [stream, plan]"):
@@ -129,6 +140,13 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
       "one of Evader, Pursuer, came 'Hare'"
     refusedOnly("decentralised = true, only = Evader"):
       "loops other than paused, which stops the time of all vehicles"
+    def refusedBetween(text: String)(why: String) = assertTold(text, s"2: skein.fly.between: expected $why")
+    refusedBetween("between = vpn, loops = [stream]")("decentralised with it, came 'vpn' without")
+    refusedBetween("decentralised = true, loops = [stream], only = Pursuer, between = vpn"):
+      "all controllers in this process, which carries their messages, came only Pursuer"
+    refusedBetween("between = \"range:far,vpn\"")("a range such as 60m, came 'far'")
+    refusedBetween("between = \"rate:1mbit,vpn\""):
+      "no rate, since messages have no size, came 'rate:1mbit,vpn'"
     val read = this.read("skein.fly.decentralised = true").fold(fail(_), identity)
     assertEquals(read.loopSettings.knows, Knowledge.Positions)
     assertEquals(

@@ -1,6 +1,6 @@
 package skein.settings
 
-import skein.loop.{Fallback, Knowledge, LoopKind, PlanSettings}
+import skein.loop.{Fallback, Knowledge, LoopKind, PlanSettings, Strangers}
 import skein.policy.Role
 import skein.record.{ParameterRow, Recording, RecordingHeader, Samples}
 import skein.scenario.{PaperDuel, Scenarios}
@@ -21,8 +21,10 @@ class RecordedPlanSuite extends munit.FunSuite:
     movesInFlight = 6,
     planInPacket = true,
     knows = Knowledge.Positions,
+    strangers = Strangers.Belief,
     decentralised = true,
     only = Some("Pursuer"),
+    between = Some(right(VehicleLink.parse("range:60m,loss:10%/4,vpn"))),
     plant = right(SimulatedBody.recorded("mujoco:gone.xml")),
     wire = Wire.Mavlink,
     images = List(ImageSource.Seen, right(ImageSource.parse("front@10"))),
@@ -51,8 +53,10 @@ class RecordedPlanSuite extends munit.FunSuite:
         "movesInFlight"  -> "6",
         "planInPacket"   -> "true",
         "knows"          -> "positions",
+        "strangers"      -> "belief",
         "decentralised"  -> "true",
         "only"           -> "Pursuer",
+        "between"        -> "range:60m,loss:10%/4,vpn",
         "plant"          -> "mujoco:gone.xml",
         "wire"           -> "mavlink",
         "solver"         -> "link:vpn",

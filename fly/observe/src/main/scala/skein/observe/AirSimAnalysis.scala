@@ -28,4 +28,6 @@ final class AirSimAnalysis extends Analysis[Observed]:
 
   def progress: Progress = account.progress
 
+  def takeNew(): Vector[NewCommands] = account.takeNew()
+
   def observed: Observed = account.observed

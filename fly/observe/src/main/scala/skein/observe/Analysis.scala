@@ -24,4 +24,7 @@ trait Analysis[A]:
 
   def progress: Progress
 
+  /** Commands since the last call, by vehicle. */
+  def takeNew(): Vector[NewCommands]
+
   def observed: A

@@ -121,7 +121,8 @@ final class LoopAccount:
         others.maxOption,
         commanded.reading.map(_.bound(clock).toMillis),
         commanded.account.commandedAt.map(sinceMs),
-        rest.flatMap(_.account.commandedAt).maxOption.map(sinceMs)
+        rest.flatMap(_.account.commandedAt).maxOption.map(sinceMs),
+        Some(outstanding.sum + 1)
       )
       if log.size < MostLogged then log += command
       commanded.account.add(command, at, others ++ own)
@@ -203,6 +204,9 @@ final class LoopAccount:
   /** The progress, at constant cost for any number of observations. */
   def progress: Progress =
     VehicleAccount.progress(begunAt.fold(Span.Zero)(lastAt.since), vehicles.all.map(_.account))
+
+  /** Commands since the last call, by vehicle. */
+  def takeNew(): Vector[NewCommands] = vehicles.all.flatMap(_.account.takeNew()).toVector
 
   /** The complete observations so far; sorts every sample. */
   def observed: Observed =

@@ -92,6 +92,8 @@ final class MavlinkLoop(isDatagrams: Boolean, readings: Set[String] = Set.empty)
 
   def progress: Progress = account.progress
 
+  def takeNew(): Vector[NewCommands] = account.takeNew()
+
   def observed: ObservedTopics =
     val before = account.observed
     before.copy(notKept = before.notKept + over)

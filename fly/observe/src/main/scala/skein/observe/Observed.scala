@@ -41,6 +41,8 @@ final case class Observed(
   * @param at since the first call
   * @param boundMs half width of the own age's uncertainty
   * @param sinceOwnMs since the last command to the vehicle; `sinceOthersMs`: to any other
+  * @param unanswered calls of any kind without an answer when it passed, itself included; absent where
+  *   nothing is answered
   */
 final case class ObservedCommand(
     at: Span,
@@ -51,8 +53,27 @@ final case class ObservedCommand(
     othersAgeMs: Option[Double],
     boundMs: Option[Double],
     sinceOwnMs: Option[Double],
-    sinceOthersMs: Option[Double]
+    sinceOthersMs: Option[Double],
+    unanswered: Option[Int] = None
 )
+
+/** Some commands to one vehicle: the largest of each number of [[ObservedCommand]]. */
+final case class NewCommands(
+    vehicle: String,
+    ownAgeMs: Option[Double],
+    sinceOwnMs: Option[Double],
+    unanswered: Option[Int]
+):
+  def worst(other: NewCommands): NewCommands = NewCommands(
+    vehicle,
+    (ownAgeMs ++ other.ownAgeMs).maxOption,
+    (sinceOwnMs ++ other.sinceOwnMs).maxOption,
+    (unanswered ++ other.unanswered).maxOption
+  )
+
+object NewCommands:
+  def of(command: ObservedCommand): NewCommands =
+    NewCommands(command.vehicle, command.ownAgeMs, command.sinceOwnMs, command.unanswered)
 
 /** The commands to one vehicle.
   *
@@ -62,6 +83,7 @@ final case class ObservedCommand(
   * @param everyMs from one command to the next
   * @param sinceOthersMs since any other vehicle was commanded
   * @param skewMs between the oldest and the newest reading of all vehicles
+  * @param early commands before a vehicle's clock was compared with ours, whose ages are left out
   * @param superseded commands replaced by the next before a physics step could apply them
   * @param overtaken commands that reached the simulator after a later one
   * @param mostInFlight largest number of simultaneously unanswered commands
@@ -77,6 +99,7 @@ final case class ObservedVehicle(
     everyMs: Option[Distribution],
     sinceOthersMs: Option[Distribution],
     skewMs: Option[Distribution],
+    early: Long,
     superseded: Long,
     overtaken: Long,
     mostInFlight: Int,

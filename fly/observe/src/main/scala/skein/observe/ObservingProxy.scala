@@ -1,5 +1,6 @@
 package skein.observe
 
+import com.typesafe.config.{Config, ConfigFactory}
 import java.util.concurrent.atomic.{AtomicInteger, AtomicLong}
 import java.util.concurrent.{ConcurrentLinkedQueue, Executor}
 import org.apache.pekko.Done
@@ -8,6 +9,7 @@ import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.stream.scaladsl.{BidiFlow, Flow}
 import org.apache.pekko.util.ByteString
 import scala.concurrent.{ExecutionContext, Future, Promise}
+import scala.util.control.NonFatal
 import skein.link.*
 import skein.units.{Clock, Instant}
 
@@ -30,18 +32,29 @@ final class ObservingProxy[A] private (
   /** Present progress; may be called repeatedly while it observes. */
   def progress: Progress = looking.progress
 
+  /** Commands since the last call, by vehicle. */
+  def takeNew(): Vector[NewCommands] = looking.takeNew()
+
   /** The observations so far; later messages are analysed after it. */
   def observed: A = looking.observed
 
-  /** Accepts no more connections, closes the open ones, and analyses what has passed until now. */
+  /** Accepts no more connections, closes the open ones, and analyses what has passed until now. Fails if the
+    * analysis has failed, which is a defect; bytes passed all the same.
+    */
   def close(): Future[Done] =
     given ExecutionContext = ExecutionContext.parasitic
     val looked             = Promise[Done]()
     proxy.close().flatMap: _ =>
-      looking.add(Piece.End(() => looked.success(Done): Unit))
+      looking.add(Piece.End(failure => looked.complete(failure.toLeft(Done).toTry): Unit))
       looked.future
 
 object ObservingProxy:
+  /** Settings of an actor system whose connections pass images: bytes are read by up to 1 MiB, which takes a
+    * third less processor time than by Pekko's 128 KiB.
+    */
+  val Settings: Config =
+    ConfigFactory.parseString("pekko.io.tcp.direct-buffer-size = 1 MiB").withFallback(ConfigFactory.load())
+
   /** Limit of bytes that have passed and wait for analysis. */
   val MostWaiting: Long = 256L << 20
 
@@ -49,7 +62,7 @@ object ObservingProxy:
     case Opened(connection: Int, at: Instant)
     case Bytes(connection: Int, isFromClient: Boolean, bytes: ByteString, at: Instant)
     case Closed(connection: Int, at: Instant)
-    case End(looked: () => Unit)
+    case End(looked: Option[Throwable] => Unit)
 
   /** Starts listening. Fails with a [[TransportError]] if that is not possible.
     *
@@ -110,8 +123,11 @@ object ObservingProxy:
     private val count   = AtomicInteger()
     private val waiting = AtomicLong()
     private val missed  = AtomicLong()
+    private var failure = Option.empty[Throwable]
 
     def progress: Progress = synchronized(analysis.progress)
+
+    def takeNew(): Vector[NewCommands] = synchronized(analysis.takeNew())
 
     def observed: A = synchronized:
       analysis.passedOver(missed.getAndSet(0))
@@ -133,13 +149,18 @@ object ObservingProxy:
     private def drain(): Unit =
       var left = true
       while left do
-        look(pieces.poll())
+        val piece = pieces.poll()
+        try if failure.isEmpty then look(piece)
+        catch case NonFatal(defect) => failure = Some(defect)
+        piece match
+          case Piece.End(looked)           => looked(failure)
+          case Piece.Bytes(_, _, bytes, _) => waiting.addAndGet(-bytes.size): Unit
+          case _                           => ()
         left = count.decrementAndGet() > 0
 
     private def look(piece: Piece): Unit = piece match
       case Piece.Opened(connection, at)                     => synchronized(analysis.opened(connection, at))
       case Piece.Bytes(connection, isFromClient, bytes, at) =>
-        waiting.addAndGet(-bytes.size): Unit
         synchronized(analysis.passed(connection, isFromClient, bytes, at))
       case Piece.Closed(connection, at) => synchronized(analysis.closed(connection, at))
-      case Piece.End(looked)            => looked()
+      case Piece.End(_)                 => ()

@@ -13,8 +13,9 @@ import skein.units.{Instant, Span}
   *
   * If the first stamp of a vehicle is within [[TopicAccount.SameClock]] of the time at which its message
   * arrived, stamps are taken as they are. Otherwise they are by another clock, such as simulated time. What
-  * goes there and back relates the two ([[exchanged]]), with a bound. Without that,
-  * [[skein.signal.FastestMessage]] does: ages lack the way of the fastest message.
+  * goes there and back relates the two ([[exchanged]]), with a bound; ages from before the first exchange are
+  * left out and counted. Without any, [[skein.signal.FastestMessage]] does: ages lack the way of the fastest
+  * message.
   *
   * Memory: [[TopicAccount.MostVehicles]] vehicles, [[TopicAccount.MostTopics]] topics, a million samples of
   * each quantity, and [[LoopAccount.MostLogged]] commands.
@@ -69,7 +70,8 @@ final class TopicAccount:
         rest.flatMap(_.account.commandedAt).maxOption.map(at.since(_).toMillis)
       )
       if log.size < LoopAccount.MostLogged then log += command
-      account.add(command, at, others ++ own)
+      val isEarly = (commanded +: rest).exists(one => one.newest.isDefined && one.isByOtherClock)
+      account.add(command, at, others ++ own, isEarly)
 
   /** Compares a vehicle's clock with ours.
     *
@@ -109,6 +111,9 @@ final class TopicAccount:
   def progress: Progress = VehicleAccount.progress(lasted, vehicles.all.map(_.account))
 
   private def lasted: Span = begunAt.fold(Span.Zero)(lastAt.since)
+
+  /** Commands since the last call, by vehicle. */
+  def takeNew(): Vector[NewCommands] = vehicles.all.flatMap(_.account.takeNew()).toVector
 
   /** The complete observations so far; sorts every sample. */
   def observed: ObservedTopics = ObservedTopics(

@@ -41,6 +41,8 @@ class LoopAccountSuite extends munit.FunSuite:
     def move(vehicle: String, sentMs: Double, connection: Int = 0): Long =
       call("moveByVelocityZ", vehicle, sentMs, connection)
 
+    def takeNew(): Vector[NewCommands] = account.takeNew()
+
     def closed(ms: Double): Unit = account.add(Passed.Closed(0, at(ms)))
     def observed: Observed       = account.observed
     def found: Set[String]       = Diagnosis.of(observed).map(_.name).toSet
@@ -71,6 +73,18 @@ class LoopAccountSuite extends munit.FunSuite:
     assertEqualsDouble(log(1).othersAgeMs.get, 50, 1e-6)
     assertEquals(log(2).sinceOthersMs, Some(5.0))
     assertEqualsDouble(log(2).at.toMillis, 75, 1e-6)
+
+  test("of commands since the last look, the largest age, interval and number of unanswered calls are kept"):
+    val program = Program()
+    program.called("getMultirotorState", "A", 0, 20, Some(10))
+    program.move("A", 30)
+    program.move("B", 35)
+    program.move("A", 90)
+    assertEquals(
+      program.takeNew().map(one => one.copy(ownAgeMs = one.ownAgeMs.map(_.round.toDouble))),
+      Vector(NewCommands("A", Some(80.0), Some(60.0), Some(3)), NewCommands("B", None, None, Some(2)))
+    )
+    assertEquals(program.takeNew(), Vector.empty)
 
   test("the age of a command's data counts from when it was sampled, by the clocks' offset"):
     val program = Program()

@@ -37,7 +37,7 @@ class MavlinkLoopSimulation extends munit.FunSuite, Unhurried:
     private val newest  = mutable.HashMap.empty[Int, Long]
     private val readers = Map(true -> FrameReader(), false -> FrameReader())
     val agesMs          = mutable.ArrayBuffer.empty[Option[Double]]
-    export loop.{closed, observed, opened, passedOver, progress}
+    export loop.{closed, observed, opened, passedOver, progress, takeNew}
 
     def passed(connection: Int, isFromClient: Boolean, bytes: ByteString, at: Instant): Unit =
       loop.passed(connection, isFromClient, bytes, at)

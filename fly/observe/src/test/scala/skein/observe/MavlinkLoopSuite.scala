@@ -51,6 +51,19 @@ class MavlinkLoopSuite extends munit.FunSuite:
     assert(bound > 0 && bound <= 20.1, bound)
     assertEquals(here.loop.observed.byOtherClock, Vector.empty)
 
+  test("ages from before the first TIMESYNC are left out and counted"):
+    val here = Conversation()
+    here.position(1, 0, 60)
+    here.setpoint(1, 100)
+    assertEquals(here.loop.observed.vehicles.head.ownAgeMs.map(_.count), Some(1))
+    here.timesync(110, 140)
+    here.position(1, 150, 190)
+    here.setpoint(1, 200)
+    here.setpoint(1, 210)
+    val vehicle = here.loop.observed.vehicles.head
+    assertEquals((vehicle.commands, vehicle.early), (3L, 1L))
+    assertEquals(vehicle.ownAgeMs.map(_.sorted.map(_.round.toInt).toVector), Some(Vector(50, 60)))
+
   test("without it, they lack the way of the fastest message, and that is said"):
     val here = Conversation()
     here.position(1, 0, 60)

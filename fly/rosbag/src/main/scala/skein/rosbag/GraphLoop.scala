@@ -2,7 +2,7 @@ package skein.rosbag
 
 import scala.collection.mutable
 import skein.mcap.Bytes
-import skein.observe.{ObservedTopics, Progress}
+import skein.observe.{NewCommands, ObservedTopics, Progress}
 import skein.ros.{Qos, RosGraph, RosNode, RosWatcher}
 import skein.units.{Clock, Instant}
 
@@ -48,6 +48,9 @@ final class GraphLoop private[rosbag] (readings: Set[String], commands: Set[Stri
   def upTo(at: Instant): Unit = synchronized(order.upTo(at))
 
   def progress: Progress = synchronized(loop.progress)
+
+  /** Commands since the last call, by vehicle. */
+  def takeNew(): Vector[NewCommands] = synchronized(loop.takeNew())
 
   def observed: ObservedTopics = synchronized(loop.observed)
 

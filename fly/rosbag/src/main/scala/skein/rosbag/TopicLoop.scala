@@ -3,7 +3,7 @@ package skein.rosbag
 import java.nio.ByteOrder
 import java.util.Locale
 import skein.mcap.Bytes
-import skein.observe.{ObservedTopics, Progress, SimulatedTime, TopicAccount, TopicKind}
+import skein.observe.{NewCommands, ObservedTopics, Progress, SimulatedTime, TopicAccount, TopicKind}
 import skein.units.Instant
 
 /** Measures the loop of a graph of ROS 2 from messages of any types, as CDR, in the order in which they
@@ -60,6 +60,8 @@ private[rosbag] final class TopicLoop(readings: Set[String], commands: Set[Strin
     (readings ++ commands).filterNot(among).toVector.sorted
 
   def progress: Progress = account.progress
+
+  def takeNew(): Vector[NewCommands] = account.takeNew()
 
   def observed: ObservedTopics = account.observed.copy(simulated = clock.step.map(SimulatedTime(_, before)))
 

@@ -2,6 +2,7 @@ package skein.lanes;
 
 import java.util.Arrays;
 import skein.forward.RolloutAgent;
+import skein.lanes.policy.Directions;
 import skein.lanes.policy.LaneObservation;
 import skein.lanes.policy.LanePolicy;
 import skein.lanes.policy.VehicleNumbers;
@@ -18,15 +19,11 @@ final class OpponentAgents extends TimetableAgents implements TeamMember {
   private final int self;
   private final LaneObservation observation;
 
-  /** Whether a caller outside the kernel reads its observations. */
-  private final boolean isTold;
-
   /** The camera that is its only knowledge of the opponent, or null. */
   private final TimetableEye eye;
 
   /** @param self the vehicle's number, 0 or 1
    * @param effort receives the sums of the heading's changes
-   * @param isTold whether a caller outside the kernel reads all of its observations
    * @param eye the camera that is its only knowledge of the opponent; null if it reads the opponent's state
    */
   OpponentAgents(
@@ -36,10 +33,8 @@ final class OpponentAgents extends TimetableAgents implements TeamMember {
       LanePolicy policy,
       float[] effort,
       LaneObservation observation,
-      boolean isTold,
       TimetableEye eye) {
     super(model.vehicles(agent));
-    this.isTold = isTold;
     this.eye = eye;
     this.self = self;
     this.policy = policy;
@@ -69,24 +64,17 @@ final class OpponentAgents extends TimetableAgents implements TeamMember {
     Arrays.fill(effort, 0f);
   }
 
-  /** Restarts one world: its vehicle is at its start, commanded along a constant heading before. */
-  void restart(int world, float headingRad) {
+  @Override
+  public void restart(int world, float headingRad) {
     vehicles.restart(world);
     policy.restart(world, headingRad);
     float cos = (float) StrictMath.cos(headingRad), sin = (float) StrictMath.sin(headingRad);
-    for (int i = world; i < headings.cos.length; i += WORLDS) {
-      headings.cos[i] = cos;
-      headings.sin[i] = sin;
-    }
+    headings.point(world, WORLDS, cos, sin);
   }
 
   @Override
   public boolean needsVelocity() {
-    return isTold || policy.needsVelocity();
-  }
-
-  private boolean needsAges() {
-    return isTold || policy.needsAges();
+    return policy.needsVelocity();
   }
 
   @Override
@@ -99,18 +87,35 @@ final class OpponentAgents extends TimetableAgents implements TeamMember {
       int after,
       float[] times,
       int number) {
-    if (eye == null) {
-      see(all, views, view, times, number);
-      policy.decide(observation, headings, before, all[1 - self].headings, known, headings, after);
-    } else {
-      believe(views[view + self] * WORLDS, times, number);
-      policy.decide(observation, headings, before, eye.heading(), 0, headings, after);
-    }
+    see(all, views, view, times, number);
+    Directions theirs = eye == null ? all[1 - self].headings : eye.heading();
+    policy.decide(observation, headings, before, theirs, eye == null ? known : 0, headings, after);
     policy.commit(effort);
   }
 
+  @Override
+  public void observe(
+      TimetableAgents[] all, int[] views, int view, int known, int before, float[] times, int number) {
+    see(all, views, view, times, number);
+    policy.observe(observation, headings, before, all[1 - self].headings, known);
+  }
+
+  @Override
+  public float[] memory() {
+    return policy.memory;
+  }
+
+  @Override
+  public float[] nextMemory() {
+    return policy.newMemory;
+  }
+
   /** Fills the observation of a decision. */
-  void see(TimetableAgents[] all, int[] views, int view, float[] times, int number) {
+  private void see(TimetableAgents[] all, int[] views, int view, float[] times, int number) {
+    if (eye != null) {
+      believe(views[view + self] * WORLDS, times, number);
+      return;
+    }
     TimetableVehicles ours = vehicles, theirs = all[1 - self].vehicles;
     int ownSeen = views[view + self] * WORLDS,
         opponentSeen = views[view + 1 - self] * WORLDS;
@@ -121,7 +126,7 @@ final class OpponentAgents extends TimetableAgents implements TeamMember {
       observation.see(LaneObservation.VY, theirs.seenVy, opponentSeen, ours.seenVy, ownSeen);
     }
     Arrays.fill(observation.elapsed, times[number]);
-    if (needsAges()) {
+    if (policy.needsAges()) {
       Arrays.fill(observation.ownAge, times[number + 1]);
       Arrays.fill(observation.opponentAge, times[number + 2]);
     }

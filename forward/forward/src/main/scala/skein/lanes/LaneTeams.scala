@@ -1,6 +1,6 @@
 package skein.lanes
 
-import skein.forward.{LoopTiming, TabledDelays}
+import skein.forward.{LoopTiming, RolloutAgent, TabledDelays}
 import skein.lanes.loop.{LaneAgents, LoopKernel, LoopLanes}
 import skein.lanes.policy.{OpponentLanes, TeamLanes}
 import skein.lanes.score.Scoreboard
@@ -49,6 +49,17 @@ private[lanes] abstract class LaneTeams(form: TeamForm):
           for lane <- 0 until filled do told(worldOf(lane)) = scores.value(score, lane)
           score += 1
 
+private[lanes] object LaneTeams:
+  /** The vehicles of worlds that all have one episode.
+    *
+    * @param agents of one of these teams, whose vehicles are alike
+    */
+  def inEpisode(form: TeamForm, agents: Vector[RolloutAgent]): Array[? <: TimetableAgents & TeamMember] =
+    form.policies match
+      case team: TeamLanes    => TeamAgents.of(agents, form.vehicles, TeamViews(team))
+      case two: OpponentLanes =>
+        Opponents.inEpisode(agents, form.vehicles, Opponents.policiesOf(two), Opponents.eyesOf(two))
+
 /** Teams whose worlds all have one episode.
   *
   * @param first one of them, whose vehicles are alike
@@ -59,15 +70,7 @@ private[lanes] final class EpisodeTeams(
     episodes: Episodes,
     timetables: Timetables
 ) extends LaneTeams(form):
-  private val flown: Array[? <: TimetableAgents & TeamMember] = form.policies match
-    case team: TeamLanes    => TeamAgents.of(first.engagement.agents, form.vehicles, TeamViews(team))
-    case two: OpponentLanes =>
-      Opponents.inEpisode(
-        first.engagement.agents,
-        form.vehicles,
-        Opponents.policiesOf(two),
-        Opponents.eyesOf(two)
-      )
+  private val flown  = LaneTeams.inEpisode(form, first.engagement.agents)
   private val kernel = TimetableKernel(flown.map(identity[TimetableAgents]), scores)
 
   protected def members: Array[? <: TeamMember] = flown

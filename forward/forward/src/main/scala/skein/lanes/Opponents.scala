@@ -24,7 +24,7 @@ private[lanes] object Opponents:
       eyes: Map[Int, TimetableEye]
   ): Array[OpponentAgents] = Array.tabulate(2): self =>
     val eye = eyes.getOrElse(self, null)
-    OpponentAgents(self, agents(self), model, policies(self), newEffort, LaneObservation(), false, eye)
+    OpponentAgents(self, agents(self), model, policies(self), newEffort, LaneObservation(), eye)
 
   def eyesOf(two: OpponentLanes): Map[Int, TimetableEye] =
     two.cameras.map((self, forms) => self -> TimetableEye(forms, two.agents(self), two.agents(1 - self)))

@@ -3,181 +3,8 @@ package skein.lanes
 import java.util.Arrays
 import skein.forward.RolloutAgent
 import skein.lanes.loop.{LaneAgents, LaneOffers, LaneVectors, LoopLanes}
-import skein.lanes.policy.{Directions, TeamLanes, VehicleNumbers}
-import skein.lanes.timetable.{Timetable, TimetableAgents, ViewCall}
-
-/** The values that several vehicles of a team compute from one view, in many worlds. Mutable. */
-private[lanes] final class TeamViews(val lanes: TeamLanes):
-  private val worlds = TimetableAgents.WORLDS
-  val call: ViewCall = ViewCall(lanes.shared, lanes.reading)
-  private var last   = TeamViews.Nothing
-
-  val values: Array[Float] = Array.ofDim(lanes.shared.outputs * worlds)
-  for number <- 0 until lanes.shared.outputs do call.call.output(number, values, number * worlds)
-
-  /** Resets to the start of an episode, of which the first worlds count. */
-  def start(worlds: Int): Unit =
-    call.call.use(worlds)
-    last = TeamViews.Nothing
-
-  /** Computes [[values]] of a view, unless they were computed already. */
-  def show(all: Array[TimetableAgents], views: Array[Int], view: Int): Unit =
-    if isNew(view) then
-      call.look(all, views, view)
-      call.call.apply()
-
-  /** Computes the values from the present readings of all vehicles, in the order of their numbers.
-    *
-    * @param beat number of the readings
-    */
-  def show(beat: Int): Unit = if isNew(beat) then call.call.apply()
-
-  private def isNew(view: Int) =
-    val isAsked = lanes.shared.outputs > 0 && view != last
-    last = view
-    isAsked
-
-private object TeamViews:
-  private val Nothing = -1
-
-/** The decisions of one vehicle of a team in many worlds, each with its own start and policy. Mutable.
-  *
-  * @param altitudesDownM of all vehicles
-  */
-private[lanes] final class TeamDecisions(self: Int, team: TeamViews, altitudesDownM: Vector[Double]):
-  import TeamDecisions.Never
-  import TeamLanes.Source
-  import TimetableAgents.WORLDS
-
-  private val lanes              = team.lanes
-  private val bound              = lanes.functions(self)
-  private val parameters         = Array.ofDim[Float](lanes.parameters(self) * WORLDS)
-  private val startCos, startSin = Array.ofDim[Float](WORLDS)
-  private val cruise, startDown  = Array.ofDim[Float](WORLDS)
-
-  // Of the heading before and of the decided one.
-  private var cos, sin, newCos, newSin   = Array.ofDim[Float](WORLDS)
-  private var asksCos, asksSin, asksTime = Never
-
-  // What is remembered, by number, then by world: at first, before, and after the decision.
-  private val memories          = lanes.memories(self)
-  private val initial           = Array.ofDim[Float](memories * WORLDS)
-  private var memory, newMemory = Array.ofDim[Float](memories * WORLDS)
-  private val asksMemory        = Array.fill(memories)(Never)
-
-  /** By vehicle: age of its reading, s; filled only where it is needed. */
-  val agesS: Array[Array[Float]] = Array.ofDim(lanes.count)
-
-  /** By vehicle: its last known commanded heading, where it is needed. */
-  val known: Array[Directions]           = Array.ofDim(lanes.count)
-  private val asksKnownCos, asksKnownSin = Array.fill(lanes.count)(Never)
-
-  /** Time until the command takes effect, s; null if it is not needed. */
-  var actsInS: Array[Float] = null
-
-  /** The call that reads the vehicle's observation. */
-  val call: ViewCall = ViewCall(bound, lanes.reading)
-
-  for (input, place) <- bound.inputs.zipWithIndex if lanes.reading(input).isEmpty do
-    def stands(array: Array[Float], from: Int = 0): Unit = call.call.input(place, array, from)
-    lanes.source(input) match
-      case Source.Cos               => asksCos = place
-      case Source.Sin               => asksSin = place
-      case Source.Elapsed           => asksTime = place
-      case Source.Cruise            => stands(cruise)
-      case Source.StartDown         => stands(startDown)
-      case Source.Memory(number)    => asksMemory(number) = place
-      case Source.Altitude(vehicle) => stands(Array.fill(WORLDS)(altitudesDownM(vehicle).toFloat))
-      case Source.Age(vehicle)      =>
-        agesS(vehicle) = Array.ofDim[Float](WORLDS)
-        stands(agesS(vehicle))
-      case Source.ActsIn =>
-        actsInS = Array.ofDim[Float](WORLDS)
-        stands(actsInS)
-      case Source.KnownCos(vehicle) => asksKnownCos(vehicle) = place
-      case Source.KnownSin(vehicle) => asksKnownSin(vehicle) = place
-      case Source.Parameter(number) => stands(parameters, number * WORLDS)
-      case Source.Shared(number)    => stands(team.values, number * WORLDS)
-  for vehicle <- known.indices if asksKnownCos(vehicle) >= 0 || asksKnownSin(vehicle) >= 0 do
-    known(vehicle) = Directions(WORLDS)
-
-  /** Sets a world's initial heading and policy parameters. The policy must be of this form. */
-  def take(world: Int, numbers: VehicleNumbers): Unit =
-    startCos(world) = numbers.cos
-    startSin(world) = numbers.sin
-    cruise(world) = numbers.speedMps
-    startDown(world) = numbers.downM
-    val count = numbers.parameters
-    for number <- 0 until count do parameters(number * WORLDS + world) = numbers.policy(number)
-    for number <- 0 until memories do initial(number * WORLDS + world) = numbers.policy(count + number)
-
-  /** Resets to the start of an episode, of which the first worlds count. */
-  def start(worlds: Int): Unit =
-    team.start(worlds)
-    call.call.use(worlds)
-    System.arraycopy(startCos, 0, cos, 0, WORLDS)
-    System.arraycopy(startSin, 0, sin, 0, WORLDS)
-    System.arraycopy(initial, 0, memory, 0, initial.length)
-
-  /** Cosine and sine of the last decided heading, by world. */
-  def direction: (Array[Float], Array[Float]) = (cos, sin)
-
-  /** Whether it needs another vehicle's commanded heading. */
-  def asksHeading(vehicle: Int): Boolean = known(vehicle) != null
-
-  /** Decides on the observation that [[call]] reads.
-    *
-    * @param elapsedS since the own last decision, by world
-    * @param into receives the velocities, m/s, from an offset on
-    */
-  def decide(elapsedS: Array[Float], into: Directions, at: Int): Unit =
-    if asksCos >= 0 then call.call.input(asksCos, cos, 0)
-    if asksSin >= 0 then call.call.input(asksSin, sin, 0)
-    if asksTime >= 0 then call.call.input(asksTime, elapsedS, 0)
-    call.call.output(0, into.cos, at)
-    call.call.output(1, into.sin, at)
-    call.call.output(2, newCos, 0)
-    call.call.output(3, newSin, 0)
-    if lanes.inSpace then
-      call.call.output(4, into.third, at)
-      call.call.output(5, into.holds, at)
-    var number = 0
-    while number < memories do
-      if asksMemory(number) >= 0 then call.call.input(asksMemory(number), memory, number * WORLDS)
-      call.call.output(lanes.decided + number, newMemory, number * WORLDS)
-      number += 1
-    call.call.apply()
-
-  /** Sets where another vehicle's known heading is stored. */
-  def knows(vehicle: Int, headings: Directions, at: Int): Unit =
-    if asksKnownCos(vehicle) >= 0 then call.call.input(asksKnownCos(vehicle), headings.cos, at)
-    if asksKnownSin(vehicle) >= 0 then call.call.input(asksKnownSin(vehicle), headings.sin, at)
-
-  /** Makes the decisions of all worlds commands. */
-  def commit(): Unit =
-    val (oldCos, oldSin) = (cos, sin)
-    cos = newCos; sin = newSin
-    newCos = oldCos; newSin = oldSin
-    if memories > 0 then
-      val before = memory
-      memory = newMemory
-      newMemory = before
-
-  /** Makes the decisions of those worlds commands whose time is earlier than another. */
-  def commitBefore(times: Array[Int], before: Int): Unit =
-    var world = 0
-    while world < WORLDS do
-      if times(world) < before then
-        cos(world) = newCos(world)
-        sin(world) = newSin(world)
-      world += 1
-    var number = 0
-    while number < memory.length do
-      if times(number % WORLDS) < before then memory(number) = newMemory(number)
-      number += 1
-
-private object TeamDecisions:
-  private val Never = -1
+import skein.lanes.policy.{Directions, VehicleNumbers}
+import skein.lanes.timetable.{Timetable, TimetableAgents}
 
 /** One vehicle of a team, simulated in many worlds. */
 private[lanes] trait TeamMember:
@@ -186,6 +13,17 @@ private[lanes] trait TeamMember:
 
   /** The effort by world, where it was asked for. */
   def effortRad: Array[Float] = Array.emptyFloatArray
+
+  /** Restarts one world: its vehicle is at its start at rest, and all commands before were along a heading.
+    */
+  def restart(world: Int, headingRad: Float): Unit =
+    throw UnsupportedOperationException("a world that restarts alone needs a timetable")
+
+  /** The policies' memory before the decision, by number, then by world. */
+  def memory: Array[Float] = Array.emptyFloatArray
+
+  /** The memory after the decision, or after what is observed only. */
+  def nextMemory: Array[Float] = Array.emptyFloatArray
 
 /** A vehicle with equal delays in all worlds.
   *
@@ -225,6 +63,18 @@ private[lanes] class TeamAgents(
       // The timetable keeps the first heading at place 0.
       note(0)
 
+  override def restart(world: Int, headingRad: Float): Unit =
+    val (cos, sin) = (StrictMath.cos(headingRad).toFloat, StrictMath.sin(headingRad).toFloat)
+    vehicles.restart(world)
+    decisions.restart(world, cos, sin)
+    if told != null then told.point(world, WORLDS, cos, sin)
+    val mps = decisions.speedMps(world)
+    headings.point(world, WORLDS, mps * cos, mps * sin)
+    if vehicles.inSpace then headings.level(world, WORLDS, vehicles.startZ(world))
+
+  override def memory: Array[Float]     = decisions.memories._1
+  override def nextMemory: Array[Float] = decisions.memories._2
+
   private def note(at: Int): Unit =
     val (cos, sin) = decisions.direction
     System.arraycopy(cos, 0, told.cos, at, WORLDS)
@@ -245,13 +95,35 @@ private[lanes] class TeamAgents(
       times: Array[Float],
       number: Int
   ): Unit =
-    team.show(all, views, view)
-    decisions.call.look(all, views, view)
-    Arrays.fill(elapsedS, times(number))
-    if asksMore then learn(all, known / WORLDS)
+    look(all, views, view, known, times(number), decides = true)
     decisions.decide(elapsedS, headings, after)
     decisions.commit()
     if told != null then note(after)
+
+  override def observe(
+      all: Array[TimetableAgents],
+      views: Array[Int],
+      view: Int,
+      known: Int,
+      before: Int,
+      times: Array[Float],
+      number: Int
+  ): Unit =
+    look(all, views, view, known, times(number), decides = false)
+    decisions.observe(elapsedS)
+
+  private def look(
+      all: Array[TimetableAgents],
+      views: Array[Int],
+      view: Int,
+      known: Int,
+      sinceS: Float,
+      decides: Boolean
+  ): Unit =
+    team.show(all, views, view)
+    decisions.look(all, views, view, decides)
+    Arrays.fill(elapsedS, sinceS)
+    if asksMore then learn(all, known / WORLDS)
 
   /** Copies further numbers of a decision from the timetable. */
   private def learn(all: Array[TimetableAgents], decision: Int): Unit =
@@ -358,7 +230,7 @@ private[lanes] object LoopTeamAgents:
   ): Array[LoopTeamAgents] =
     val all = Array.tabulate(team.size): self =>
       LoopTeamAgents(self, team(self), loop, model, views, team.map(_.altitudeDownM))
-    for (vehicle, self) <- all.zipWithIndex; call <- views.call +: all.map(_.decisions.call) do
+    for (vehicle, self) <- all.zipWithIndex; call <- views.call +: all.toVector.flatMap(_.decisions.calls) do
       call.show(self, vehicle.seen, vehicle.seenFrom)
     for asking <- all; other <- all.indices if asking.decisions.asksHeading(other) && all(other).told == null
     do

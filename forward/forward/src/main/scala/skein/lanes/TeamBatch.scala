@@ -1,12 +1,9 @@
 package skein.lanes
 
 import java.util.IdentityHashMap
-import java.util.concurrent.ConcurrentHashMap
 import scala.collection.mutable
-import skein.forward.{DelayTable, Delays, Engagement, LoopTiming, SpatialResponse, VelocityResponse}
+import skein.forward.{DelayTable, Delays, Engagement, LoopTiming, VelocityResponse}
 import skein.lanes.loop.BySlowest
-import skein.lanes.policy.{OpponentLanes, TeamLanes, TeamPolicies}
-import skein.lanes.score.{Effort, ScoreLanes}
 import skein.lanes.timetable.{TimetableKernel, Timetables}
 import skein.simd.LaneMath
 import skein.units.Expect
@@ -16,12 +13,13 @@ import skein.units.Expect
   *
   * Candidates whose policies and quantities are formulas run on SIMD: worlds that share episodes by
   * [[TimetableKernel]], all of an episode by one [[skein.lanes.timetable.Timetable]], which is computed once;
-  * others by [[skein.lanes.loop.LoopKernel]]. Two that play against one another by headings
-  * decide by [[OpponentLanes]], others by [[TeamLanes]]. Quadrotors and MuJoCo
-  * bodies of other teams are stepped side by side under the scalar loops ([[SteppedRollouts]]). All else runs
-  * on the scalar reference ([[skein.forward.Rollout]]), which the engine's text states. `docs/engines.md` has
-  * the table. The engine of a world depends on its candidate, its link and `shareEpisodes` alone, so results
-  * do not depend on threads, on a call's other worlds or on their order. One call at a time.
+  * others by [[skein.lanes.loop.LoopKernel]]. Two that play against one another by
+  * headings decide by [[skein.lanes.policy.OpponentLanes]], others by
+  * [[skein.lanes.policy.TeamLanes]]. Quadrotors and MuJoCo bodies of other teams are stepped side by side
+  * under the scalar loops ([[SteppedRollouts]]). All else runs on the scalar reference
+  * ([[skein.forward.Rollout]]), which the engine's text states. `docs/engines.md` has the table. The engine
+  * of a world depends on its candidate, its link and `shareEpisodes` alone, so results do not depend on
+  * threads, on a call's other worlds or on their order. One call at a time.
   *
   * @param accelerator simulates the candidates of [[Worlds.episodesOfEach]] that are formulas, if it supports
   *   the loop and the vehicles
@@ -36,18 +34,11 @@ final class TeamBatch(
 ):
   require(threads > 0, s"threads must be positive, got $threads")
 
-  private val inSpace     = model.isInstanceOf[SpatialResponse]
-  private val isPredicted = timing.isInstanceOf[LoopTiming.Predictive]
   private val episodes   = Episodes(timing)
   private val timetables = Timetables()
   private val workers    = Vector.fill(threads)(Worker())
 
-  private val dynamics: Either[String, LaneDynamics] =
-    for
-      _        <- LaneSupport.present
-      _        <- Expect.that(!isReference)("the reference was asked for")
-      vehicles <- LaneDynamics.under(timing, model)
-    yield vehicles
+  private val forms = TeamForms(timing, model, isReference)
 
   private val accelerated: Option[Either[String, AcceleratedTeams]] =
     accelerator.map(_.teams(timing, model, threads, episodes))
@@ -59,7 +50,7 @@ final class TeamBatch(
     * @param links of the worlds: SIMD does not support delays that are long for the period, or recorded
     */
   def engine(candidate: TeamCandidate, shareEpisodes: Boolean, links: Seq[Delays]): Engine =
-    val form  = lanesOf(candidate)
+    val form  = forms.of(candidate)
     val asked = (form, shareEpisodes, links)
     if found._1 == asked then found._2
     else
@@ -117,50 +108,6 @@ final class TeamBatch(
       seen.left.toOption.filter(_ => form.sees).orElse:
         LoopSupport.refusal(timing, form.count, link, form.vehicles)
 
-  /** One object for each form, which is compared by its reference then. */
-  private val forms = ConcurrentHashMap[TeamForm, TeamForm]()
-
-  private def lanesOf(candidate: TeamCandidate): Either[String, TeamForm] =
-    import candidate.{engagement, quantities}
-    val efforts = candidate.judged.map:
-      case Effort(vehicle) => Some(vehicle)
-      case _               => None
-    for
-      vehicles <- dynamics
-      _        <- Expect.that(!engagement.hasCars)("it has cars")
-      _        <- LaneDynamics.isHighEnough(model, engagement.agents)
-      policies <- Option
-        .when(candidate.areAtOnePace):
-          OpponentLanes.of(engagement, efforts.flatten.contains, inSpace, isPredicted)
-        .flatten
-        .getOrElse(teamOf(engagement, efforts.flatten))
-      scores <- ScoreLanes
-        .of(quantities, engagement.agents.size)
-        .left
-        .map(refused => s"a quantity is no formula: ${refused.getMessage}")
-    yield
-      val altitudes = if inSpace then Vector.empty else engagement.agents.map(_.altitudeDownM)
-      val form      = TeamForm(policies, scores, efforts, engagement.durationS, altitudes)(vehicles)
-      val known     = forms.putIfAbsent(form, form)
-      if known == null then form else known
-
-  private def teamOf(engagement: Engagement, efforts: Vector[Int]): Either[String, TeamPolicies] =
-    for
-      team <- TeamLanes
-        .of(engagement.agents.map(_.policy), engagement.assignment, isPredicted, inSpace)
-        .left
-        .map(refused => s"a policy is no formula: ${refused.getMessage}")
-      _ <- Expect.that(efforts.isEmpty):
-        "efforts are summed by lanes of two that play against one another by headings"
-      _ <- Expect.that(engagement.agents.forall(_.eye.isEmpty)):
-        "who sees by a sensor flies by lanes against one other, both by headings"
-      _ <- team.leaves(engagement.agents).filterNot(_ => inSpace).toLeft(())
-      _ <- Expect.that(!team.looksUp || !model.regardsYaw):
-        "a policy asks how high vehicles are, and the quadrotor's height is not told side by side"
-      _ <- Expect.that(!team.turns || !model.regardsYaw):
-        "a policy may turn its vehicle, and this one keeps its yaw"
-    yield team
-
   /** Simulates all worlds, unless it is cancelled.
     *
     * @param onProgress called with the number of worlds done, after each batch, by one thread at a time
@@ -180,7 +127,7 @@ final class TeamBatch(
       if last == null || (last.candidate ne candidate) then
         last = known.computeIfAbsent(
           candidate,
-          PreparedTeam(_, lanesOf(candidate), steppedOf(candidate.engagement))
+          PreparedTeam(_, forms.of(candidate), steppedOf(candidate.engagement))
         )
       last
     val judged   = if worlds.size == 0 then 0 else worlds.candidate(0).judged.size

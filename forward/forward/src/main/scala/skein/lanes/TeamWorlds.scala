@@ -20,7 +20,7 @@ final class TeamCandidate(
     val judged: Vector[Judged | Effort],
     val areAtOnePace: Boolean = true
 ):
-  private[lanes] val quantities: Vector[Judged] = judged.collect { case each: Judged => each }
+  private[skein] val quantities: Vector[Judged] = judged.collect { case each: Judged => each }
 
 /** The results of each world.
   *

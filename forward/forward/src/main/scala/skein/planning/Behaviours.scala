@@ -6,8 +6,8 @@ import skein.simd.WorldRandom
 object Behaviours:
 
   /** The estimated target, with half of the weight, and variations of it, drawn from a stream: displaced by
-    * about 0.2 m, with a policy that an observer may assume ([[skein.policy.Policy.guessed]]). A
-    * stream gives equal behaviours each time, so that all candidates of a tick are compared fairly.
+    * about 0.2 m, with a policy that an observer may assume ([[skein.policy.Policy.guessed]]). A stream gives
+    * equal behaviours each time, so that all candidates of a tick are compared fairly.
     */
   def around(target: Target, count: Int, stream: Long): Vector[Behaviour] =
     require(count > 0, s"at least one behaviour is needed, came $count")

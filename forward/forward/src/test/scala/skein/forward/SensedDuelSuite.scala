@@ -108,9 +108,9 @@ class SensedDuelSuite extends munit.FunSuite:
       val engine = batch.engine(pursuer, evader, shareEpisodes = false, Seq(DelayTable.vpn)).text
       assert(engine.startsWith("SIMD, "), engine)
       val worlds = new PairWorlds:
-        def size: Int                          = 40
-        def key(world: Int): Int               = WorldRandom.key(world, 0, 0)
-        def link(world: Int): Delays           = DelayTable.vpn
+        def size: Int                   = 40
+        def key(world: Int): Int        = WorldRandom.key(world, 0, 0)
+        def link(world: Int): Delays    = DelayTable.vpn
         def pursuer(world: Int): Policy = SensedDuelSuite.this.pursuer
         def evader(world: Int): Policy  = SensedDuelSuite.this.evader
       val outcomes = batch.fly(worlds)

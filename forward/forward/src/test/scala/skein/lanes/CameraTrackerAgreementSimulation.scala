@@ -108,12 +108,12 @@ abstract class CameraTrackerAgreement(isDaily: Boolean) extends munit.FunSuite:
   /** The batch of forward simulation gives these results, to the bit. */
   private def isFlownByBatch(timing: LoopTiming, episode: Int, kernel: PairKernel): Unit =
     val all = new PairWorlds:
-      def size: Int                          = worlds
-      override def shareEpisodes: Boolean    = true
-      def key(world: Int): Int               = episode
-      def link(world: Int): Delays           = DelayTable.vpn
-      def pursuer(world: Int): Policy = CameraTrackerAgreement.this.pursuer(world)
-      def evader(world: Int): Policy  = CameraTrackerAgreement.this.evader(world)
+      def size: Int                       = worlds
+      override def shareEpisodes: Boolean = true
+      def key(world: Int): Int            = episode
+      def link(world: Int): Delays        = DelayTable.vpn
+      def pursuer(world: Int): Policy     = CameraTrackerAgreement.this.pursuer(world)
+      def evader(world: Int): Policy      = CameraTrackerAgreement.this.evader(world)
     val batch = PairBatch(duel, timing, model, threads = 1)
     val told  = batch.engine(pursuer(0), evader(0), shareEpisodes = true, Seq(DelayTable.vpn)).text
     assert(told.startsWith("SIMD"), told)

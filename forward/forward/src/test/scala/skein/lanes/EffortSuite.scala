@@ -15,8 +15,8 @@ class EffortSuite extends munit.FunSuite:
       override def shareEpisodes: Boolean = shared
       override def asked: Set[PairNumber] =
         if efforts then super.asked else Set(PairNumber.MeanDistance, PairNumber.MinDistance)
-      def key(world: Int): Int               = WorldRandom.key(1, 0, if shared then world % 2 else world)
-      def link(world: Int): Delays           = DelayTable.vpn
+      def key(world: Int): Int        = WorldRandom.key(1, 0, if shared then world % 2 else world)
+      def link(world: Int): Delays    = DelayTable.vpn
       def pursuer(world: Int): Policy = PaperPursuer(0.6 + 0.002 * world)
       def evader(world: Int): Policy  = PaperEvader()
     PairBatch(duel, timing, PlantResponse(ReducedModel.AirSimLag), threads = 1).fly(worlds)

@@ -32,12 +32,12 @@ class FewCandidatesSuite extends munit.FunSuite, Unhurried:
     val batch = PairBatch(duel, timing, model, threads = 1)
     val came  = batch.fly(
       new PairWorlds:
-        def size: Int                          = count
-        override def shareEpisodes: Boolean    = true
-        def key(world: Int): Int               = WorldRandom.key(3, 1, 1)
-        def link(world: Int): Delays           = DelayTable.vpn
-        def pursuer(world: Int): Policy = PaperPursuer(0.6 + 1e-2 * world)
-        def evader(world: Int): Policy  = PaperEvader()
+        def size: Int                       = count
+        override def shareEpisodes: Boolean = true
+        def key(world: Int): Int            = WorldRandom.key(3, 1, 1)
+        def link(world: Int): Delays        = DelayTable.vpn
+        def pursuer(world: Int): Policy     = PaperPursuer(0.6 + 1e-2 * world)
+        def evader(world: Int): Policy      = PaperEvader()
     )
     PairNumber.values.toVector.map(came(_).take(few).toVector)
 

@@ -117,12 +117,12 @@ class FlownByLanesSuite extends munit.FunSuite:
 
   private def agree(batch: PairBatch, timing: LoopTiming, model: VelocityResponse, shared: Boolean): Unit =
     val all = new PairWorlds:
-      def size: Int                          = 24
-      override def shareEpisodes: Boolean    = shared
-      def key(world: Int): Int               = WorldRandom.key(5, 0, if shared then 1 else world)
-      def link(world: Int): Delays           = DelayTable.vpn
-      def pursuer(world: Int): Policy = PaperPursuer(0.6 + 0.004 * world)
-      def evader(world: Int): Policy  = PaperEvader(7 + 0.01 * world)
+      def size: Int                       = 24
+      override def shareEpisodes: Boolean = shared
+      def key(world: Int): Int            = WorldRandom.key(5, 0, if shared then 1 else world)
+      def link(world: Int): Delays        = DelayTable.vpn
+      def pursuer(world: Int): Policy     = PaperPursuer(0.6 + 0.004 * world)
+      def evader(world: Int): Policy      = PaperEvader(7 + 0.01 * world)
     val flown = batch.fly(all)
     for world <- 0 until all.size by 5 do
       val own =

@@ -67,12 +67,12 @@ object LaneDigests:
     val duel = Duel.paper.copy(evader = Duel.paper.evader.copy(startY = evaderAsideM), durationS = 4)
     val out  = PairBatch(duel, timing, model, threads = 1).fly(
       new PairWorlds:
-        def size: Int                          = count
-        override def shareEpisodes: Boolean    = shared
-        def key(world: Int): Int               = WorldRandom.key(5, 0, if shared then 1 else world)
-        def link(world: Int): Delays           = if shared then links(1) else links(world % links.size)
-        def pursuer(world: Int): Policy = pursuing(world)
-        def evader(world: Int): Policy  = PaperEvader(7 + 0.01 * world)
+        def size: Int                       = count
+        override def shareEpisodes: Boolean = shared
+        def key(world: Int): Int            = WorldRandom.key(5, 0, if shared then 1 else world)
+        def link(world: Int): Delays        = if shared then links(1) else links(world % links.size)
+        def pursuer(world: Int): Policy     = pursuing(world)
+        def evader(world: Int): Policy      = PaperEvader(7 + 0.01 * world)
       ,
       captureRadiusM = 3.9
     )

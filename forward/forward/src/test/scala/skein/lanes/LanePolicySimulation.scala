@@ -19,7 +19,9 @@ class LanePolicySimulation extends munit.FunSuite:
     )
 
   private def drawn(family: PolicyFamily)(random: SplitMix64): HeadingPolicy =
-    family.policy(family.space.at(Vector.fill(family.space.dimension)(random.nextDouble()))).asInstanceOf[HeadingPolicy]
+    family.policy(
+      family.space.at(Vector.fill(family.space.dimension)(random.nextDouble()))
+    ).asInstanceOf[HeadingPolicy]
 
   for (name, draw) <- families do
     test(s"$name decides by SIMD like the scalar policy"):

@@ -222,34 +222,34 @@ object PairBatchSimulation:
   def mixed(count: Int): PairWorlds =
     val links = Vector(DelayTable.vpn, DelayTable.direct, DelayTable.none)
     new PairWorlds:
-      def size: Int                          = count
-      def key(world: Int): Int               = WorldRandom.key(7, 1, world)
-      def link(world: Int): DelayTable       = links(world / 10 % links.size)
-      def pursuer(world: Int): Policy = PaperPursuer(0.8 + 0.001 * world)
-      def evader(world: Int): Policy  =
+      def size: Int                    = count
+      def key(world: Int): Int         = WorldRandom.key(7, 1, world)
+      def link(world: Int): DelayTable = links(world / 10 % links.size)
+      def pursuer(world: Int): Policy  = PaperPursuer(0.8 + 0.001 * world)
+      def evader(world: Int): Policy   =
         if world % 7 == 6 then Straight else PaperEvader(8 - 0.002 * world)
 
   /** Candidates with 3 episodes over 2 links; the evader of every seventh goes straight on. */
   def candidates(count: Int): PairWorlds =
     val links = Vector(DelayTable.vpn, DelayTable.direct)
     new PairWorlds:
-      def size: Int                          = count * 6
-      override def shareEpisodes: Boolean    = true
-      def key(world: Int): Int               = WorldRandom.key(9, 0, world % 3)
-      def link(world: Int): DelayTable       = links(world % 6 / 3)
-      def pursuer(world: Int): Policy =
+      def size: Int                       = count * 6
+      override def shareEpisodes: Boolean = true
+      def key(world: Int): Int            = WorldRandom.key(9, 0, world % 3)
+      def link(world: Int): DelayTable    = links(world % 6 / 3)
+      def pursuer(world: Int): Policy     =
         if world / 6 % 5 == 0 then PaperPursuer(stepRad = Some(0.1))
         else PaperPursuer(0.8 + 0.002 * (world / 6))
       def evader(world: Int): Policy = if world % 7 == 6 then Straight else PaperEvader()
 
   def reordered(worlds: PairWorlds, number: Int => Int, count: Option[Int] = None): PairWorlds =
     new PairWorlds:
-      def size: Int                          = count.getOrElse(worlds.size)
-      override def shareEpisodes: Boolean    = worlds.shareEpisodes
-      def key(world: Int): Int               = worlds.key(number(world))
-      def link(world: Int): Delays           = worlds.link(number(world))
-      def pursuer(world: Int): Policy = worlds.pursuer(number(world))
-      def evader(world: Int): Policy  = worlds.evader(number(world))
+      def size: Int                       = count.getOrElse(worlds.size)
+      override def shareEpisodes: Boolean = worlds.shareEpisodes
+      def key(world: Int): Int            = worlds.key(number(world))
+      def link(world: Int): Delays        = worlds.link(number(world))
+      def pursuer(world: Int): Policy     = worlds.pursuer(number(world))
+      def evader(world: Int): Policy      = worlds.evader(number(world))
 
   def numbers(o: PairOutcomes, world: Int): Vector[Float] =
     Vector(

@@ -17,12 +17,12 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
   )
 
   private def worlds(shared: Boolean): PairWorlds = new PairWorlds:
-    def size: Int                          = 256
-    override def shareEpisodes: Boolean    = shared
-    def key(world: Int): Int               = WorldRandom.key(5, 0, world / 128)
-    def link(world: Int): Delays           = DelayTable.vpn
-    def pursuer(world: Int): Policy = PaperPursuer(0.6 + 0.004 * (world % 128))
-    def evader(world: Int): Policy  = PaperEvader(7 + 0.01 * (world % 128))
+    def size: Int                       = 256
+    override def shareEpisodes: Boolean = shared
+    def key(world: Int): Int            = WorldRandom.key(5, 0, world / 128)
+    def link(world: Int): Delays        = DelayTable.vpn
+    def pursuer(world: Int): Policy     = PaperPursuer(0.6 + 0.004 * (world % 128))
+    def evader(world: Int): Policy      = PaperEvader(7 + 0.01 * (world % 128))
 
   private val train = PlantResponse(Train(lagS = 0.6))
 
@@ -72,9 +72,9 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
     test(s"$name by SIMD under ${timing.productPrefix} with separate delays equals its scalar simulation"):
       val batch = PairBatch(short, timing, vehicle, threads = 1)
       val all   = new PairWorlds:
-        def size: Int                          = 256
-        def key(world: Int): Int               = WorldRandom.key(5, 1, world)
-        def link(world: Int): Delays           = if world % 2 == 0 then DelayTable.vpn else DelayTable.direct
+        def size: Int                   = 256
+        def key(world: Int): Int        = WorldRandom.key(5, 1, world)
+        def link(world: Int): Delays    = if world % 2 == 0 then DelayTable.vpn else DelayTable.direct
         def pursuer(world: Int): Policy = PaperPursuer(0.6 + 0.002 * world)
         def evader(world: Int): Policy  = PaperEvader(7 + 0.005 * world)
       assert(batch.engine(PaperPursuer(), PaperEvader(), shareEpisodes = false, Seq(DelayTable.vpn)).isFast)

@@ -50,7 +50,7 @@ import skein.vehicle.ReducedModel
       override def shareEpisodes: Boolean = shared
       def key(world: Int): Int            =
         WorldRandom.key(3, 1, if shared then from + world / 512 % 8 else from + world)
-      def link(world: Int): Delays           = over
+      def link(world: Int): Delays    = over
       def pursuer(world: Int): Policy = PaperPursuer(0.6 + 1e-4 * (world % 512))
       def evader(world: Int): Policy  = PaperEvader()
     val isFast = batch.engine(PaperPursuer(), PaperEvader(), shared, Seq(over)).isFast

@@ -28,12 +28,12 @@ class UnseenPolicySuite extends munit.FunSuite:
       val pursuers = Vector.fill(128)(draw(random))
       val evader   = ChauffeurEvader()
       val worlds   = new PairWorlds:
-        def size: Int                          = pursuers.size
-        override def shareEpisodes: Boolean    = shared
-        def key(world: Int): Int               = WorldRandom.key(1, 0, if shared then 0 else world)
-        def link(world: Int): Delays           = DelayTable.vpn
-        def pursuer(world: Int): Policy = pursuers(world)
-        def evader(world: Int): Policy  = UnseenPolicySuite.Evader
+        def size: Int                       = pursuers.size
+        override def shareEpisodes: Boolean = shared
+        def key(world: Int): Int            = WorldRandom.key(1, 0, if shared then 0 else world)
+        def link(world: Int): Delays        = DelayTable.vpn
+        def pursuer(world: Int): Policy     = pursuers(world)
+        def evader(world: Int): Policy      = UnseenPolicySuite.Evader
       val batch = PairBatch(short, timing, model, 1)
       assert(
         batch.engine(pursuers.head, evader, shared, Seq(DelayTable.vpn)).isFast,

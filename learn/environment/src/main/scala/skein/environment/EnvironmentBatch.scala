@@ -3,62 +3,62 @@ package skein.environment
 import java.nio.ByteBuffer
 import java.util.stream.IntStream
 import scala.util.Try
-import skein.lanes.Engine
-import skein.lanes.LearnerDuels.WORLDS
+import skein.lanes.{Engine, LearnerWorlds}
 import skein.policy.Policy
-import skein.scenario.{ScenarioText, Scenarios}
+import skein.scenario.Scenarios
 import skein.settings.PolicyFile
-import skein.simd.LaneMath
 import skein.units.Expect
 
-/** Many episodes, simulated step by step. The caller decides for one or both sides of the duel, or for a side
-  * of another scenario ([[EnvironmentSettings]]), at the times at which the loop decides, on readings with
-  * the age that the link causes. Observations and actions are in [[EnvironmentBuffers]].
+/** Many episodes, simulated step by step. The caller decides for learners ([[EnvironmentSettings]]), at the
+  * times at which the loop decides, on readings with the age that the link causes. Observations and actions
+  * are in [[EnvironmentBuffers]].
   *
-  * A step is one decision. Its reward is, for a pursuer, minus the distances scored since the last one (once
-  * a period), divided by 10 m, and 10 for a capture; for an evader the opposite. So the pursuer's rewards of
-  * an episode without a capture sum to minus its mean distance, as `./skein search` has it, times the number
-  * of periods, divided by 10 m.
+  * A step is one decision, or one of each learner that decides at that moment. Its reward is, for a pursuer,
+  * minus the distances to its nearest opponent scored since the last step (once a period), divided by 10 m,
+  * and 10 for a capture; for an evader the opposite. So the pursuer's rewards of an episode of the duel
+  * without a capture sum to minus its mean distance, as `./skein search` has it, times the number of periods,
+  * divided by 10 m. Another quantity may be rewarded instead of the distance.
   *
-  * In other scenarios another quantity may be rewarded instead of the distance.
+  * Environments fly by SIMD, up to [[LearnerWorlds.Most]] together, or one by one by the scalar reference;
+  * [[engine]] says by which, and why.
   *
-  * The duel uses SIMD, [[DuelGroup]]. Other scenarios use the scalar reference, [[ScenarioGroup]]: the caller
-  * decides for one vehicle of each environment; the others of its role use their own policies, or that of
-  * [[fly]].
-  *
-  * One call at a time. A step of the duel allocates nothing, except where many groups share the processors.
+  * One call at a time. A step by SIMD allocates nothing, except where many groups share the processors.
   *
   * @param count of environments
   * @param block of [[EnvironmentBuffers.bytes]]
   */
 final class EnvironmentBatch private (
-    config: EnvironmentSettings.Resolved | ScenarioSide,
+    side: LearnerSide,
     val count: Int,
     autoreset: Autoreset,
     block: ByteBuffer
 ) extends AutoCloseable:
-  private val groups: Array[EnvironmentGroup] = config match
-    case duel: EnvironmentSettings.Resolved =>
-      val timetables = EnvironmentTimetables(duel)
-      val buffers    = EnvironmentBuffers(block, duel.learners.size, count)
-      Array.tabulate((count + WORLDS - 1) / WORLDS): group =>
-        val first = group * WORLDS
-        DuelGroup(duel, timetables, autoreset, first, (count - first).min(WORLDS), buffers)
-    case side: ScenarioSide =>
-      Array(ScenarioGroup(side, autoreset, count, EnvironmentBuffers(block, 1, count)))
+  private val buffers = EnvironmentBuffers(block, side.learners, count)
+  private var flownBy = side.engine(None)
+  private var groups  = groupsOf(None)
   private var isReset = false
 
   /** What flies the environments. */
-  val engine: Engine = config match
-    case _: EnvironmentSettings.Resolved => EnvironmentBatch.EngineOfGame
-    case side: ScenarioSide              => EnvironmentBatch.engineOf(side.settings.scenario)
+  def engine: Engine = flownBy
 
-  /** Sets, in other scenarios than the duel, the policy of the learner's role for vehicles without a learner,
-    * from their next episodes on.
+  private def groupsOf(beside: Option[Policy]): Array[EnvironmentGroup] =
+    val most = if engine.fliesByLanes then LearnerWorlds.Most else 1
+    for
+      (learning, turn) <- side.turns.toArray.zipWithIndex
+      numbers          <- (turn until count by side.turns.size).grouped(most)
+    yield
+      val worlds = side.worlds(engine, learning, beside, numbers.size)
+      val stride = side.turns.size
+      EnvironmentGroup(side, learning, worlds, autoreset, numbers.head, stride, numbers.size, buffers)
+
+  /** Sets the policy of the other vehicles of a learner's role, where they learn in turns; all environments
+    * must be reset then.
     */
-  def fly(policy: Policy): Unit = groups.foreach:
-    case team: ScenarioGroup => team.fly(policy)
-    case _                   => ()
+  def fly(policy: Policy): Unit = if side.turns.size > 1 then
+    close()
+    flownBy = side.engine(Some(policy))
+    groups = groupsOf(Some(policy))
+    isReset = false
 
   /** Ends all episodes; no method may be called afterwards. */
   def close(): Unit = groups.foreach(_.close())
@@ -107,16 +107,25 @@ object EnvironmentBatch:
   /** Groups from which on several threads are used. */
   private val Together = 4
 
-  /** What flies environments of the paper's game. */
-  val EngineOfGame: Engine = Engine(Engine.Kind.Lanes, s"SIMD, ${LaneMath.LANES} environments at a time")
+  /** What flies such environments; Left states what was expected and what was given.
+    *
+    * @param beside see [[EnvironmentBatch.fly]]
+    */
+  def engine(
+      settings: EnvironmentSettings,
+      opponent: Option[PolicyFile] = None,
+      beside: Option[Policy] = None
+  )(using Scenarios): Either[String, Engine] =
+    LearnerSide.of(settings, opponent).map(side => side.engine(beside.filter(_ => side.turns.size > 1)))
 
-  /** What flies those of another scenario. */
-  def engineOf(scenario: String): Engine =
-    Engine.scalar(
-      s"environments of ${ScenarioText.called(scenario)} fly one by one; those of the duel fly by SIMD"
-    )
+  /** The names of an environment's learners, in the order of [[EnvironmentBuffers]]: the first one's, where
+    * they take turns.
+    */
+  private[environment] def learners(settings: EnvironmentSettings)(using
+      Scenarios
+  ): Either[String, Vector[String]] = LearnerSide.of(settings).map(side => side.turns.head.map(side.names))
 
-  /** @param opponent of the side that does not learn; without one, as the settings name it
+  /** @param opponent policy of the vehicles of another role; without one, as the settings name it
     * @return Left states what was expected and what was given
     */
   def of(
@@ -125,13 +134,11 @@ object EnvironmentBatch:
       autoreset: Autoreset,
       block: ByteBuffer,
       opponent: Option[PolicyFile] = None
-  )(using scenarios: Scenarios): Either[String, EnvironmentBatch] =
+  )(using Scenarios): Either[String, EnvironmentBatch] =
     for
-      config <-
-        if scenarios.isPapersGame(settings.scenario, settings.set) then settings.resolvedAgainst(opponent)
-        else ScenarioSide.of(settings)
+      side <- LearnerSide.of(settings, opponent)
       _    <- Expect.that(count >= 1 && count <= Most)(s"num_envs: expected 1 to $Most, came $count")
-      made <- Try(new EnvironmentBatch(config, count, autoreset, block)).toEither.left.map(_.getMessage)
+      made <- Try(new EnvironmentBatch(side, count, autoreset, block)).toEither.left.map(_.getMessage)
     yield made
 
   /** Makes a batch from names and texts, for callers in other languages.
@@ -149,3 +156,13 @@ object EnvironmentBatch:
       .read(settings)
       .flatMap(of(_, count, Autoreset.fromOrdinal(autoreset), block)(using Scenarios.ours))
       .fold(mistake => throw IllegalArgumentException(mistake), identity)
+
+  /** The names of an environment's learners, a line each, for callers in other languages.
+    *
+    * @throws IllegalArgumentException with what was expected and what was given
+    */
+  def learners(settings: java.util.Map[String, String]): String =
+    EnvironmentSettings
+      .read(settings)
+      .flatMap(learners(_)(using Scenarios.ours))
+      .fold(mistake => throw IllegalArgumentException(mistake), _.mkString("\n"))

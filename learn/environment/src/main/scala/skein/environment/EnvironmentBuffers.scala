@@ -1,10 +1,10 @@
 package skein.environment
 
 import java.nio.{ByteBuffer, ByteOrder, FloatBuffer}
-import skein.lanes.LearnerDuels.FIELDS
+import skein.lanes.LearnerPolicy.Fields
 
 /** What an environment batch shares with who steps it: one block of memory, in the machine's byte order. Of A
-  * learners (the evader first) and n environments, one after the other:
+  * learners, in the scenario's order, and n environments, one after the other:
   *
   * | what                                                                | type | shape   |
   * |:--------------------------------------------------------------------|:-----|:--------|
@@ -12,7 +12,7 @@ import skein.lanes.LearnerDuels.FIELDS
   * | observations                                                        | f32  | A, 9, n |
   * | last observations of episodes that ended, under same-step autoreset | f32  | A, 9, n |
   * | rewards                                                             | f32  | A, n    |
-  * | distance at the last score, m                                       | f32  | n       |
+  * | distance to the nearest opponent at the last score, m               | f32  | A, n    |
   * | time since the episode's beginning, s                               | f32  | n       |
   * | terminated                                                          | u8   | n       |
   * | truncated                                                           | u8   | n       |
@@ -32,10 +32,10 @@ final class EnvironmentBuffers(block: ByteBuffer, val agents: Int, val count: In
     slice
 
   val actions: FloatBuffer      = part(4 * agents * count).asFloatBuffer
-  val observations: FloatBuffer = part(4 * agents * FIELDS * count).asFloatBuffer
-  val finals: FloatBuffer       = part(4 * agents * FIELDS * count).asFloatBuffer
+  val observations: FloatBuffer = part(4 * agents * Fields * count).asFloatBuffer
+  val finals: FloatBuffer       = part(4 * agents * Fields * count).asFloatBuffer
   val rewards: FloatBuffer      = part(4 * agents * count).asFloatBuffer
-  val distances: FloatBuffer    = part(4 * count).asFloatBuffer
+  val distances: FloatBuffer    = part(4 * agents * count).asFloatBuffer
   private val times             = part(4 * count).asFloatBuffer
   val terminations: ByteBuffer  = part(count)
   val truncations: ByteBuffer   = part(count)
@@ -44,32 +44,63 @@ final class EnvironmentBuffers(block: ByteBuffer, val agents: Int, val count: In
   def action(agent: Int, number: Int): Float              = actions.get(agent * count + number)
   def reward(agent: Int, number: Int, value: Float): Unit = rewards.put(agent * count + number, value): Unit
 
-  /** The first of these environments whose action is not finite, or −1. */
-  def misfit(first: Int, count: Int): Int =
-    var agent = 0
-    while agent < agents do
-      var number = first
-      while number < first + count do
-        if !(Math.abs(action(agent, number)) <= Float.MaxValue) then return number
-        number += 1
-      agent += 1
-    -1
+  /** Writes a part of a row: environments from `first` on, `stride` apart. */
+  private[environment] def write(
+      to: FloatBuffer,
+      row: Int,
+      first: Int,
+      stride: Int,
+      from: Array[Float],
+      at: Int,
+      some: Int
+  ): Unit =
+    val place = row * count + first
+    if stride == 1 then to.put(place, from, at, some): Unit
+    else
+      var i = 0
+      while i < some do
+        to.put(place + i * stride, from(at + i)): Unit
+        i += 1
 
-  /** Writes an environment's state at the begin of an episode, except its observation. */
-  def begun(number: Int, distanceM: Float): Unit =
-    distance(number, distanceM)
+  /** Writes whether a learner decides now, in environments from `first` on, `stride` apart. */
+  private[environment] def due(agent: Int, first: Int, stride: Int, some: Int, value: Boolean): Unit =
+    var i = 0
+    while i < some do
+      dues.put(agent * count + first + i * stride, byte(value)): Unit
+      i += 1
+
+  /** Reads a part of a row: environments from `first` on, `stride` apart. */
+  private[environment] def read(
+      from: FloatBuffer,
+      row: Int,
+      first: Int,
+      stride: Int,
+      into: Array[Float],
+      some: Int
+  ): Unit =
+    val place = row * count + first
+    if stride == 1 then from.get(place, into, 0, some): Unit
+    else
+      var i = 0
+      while i < some do
+        into(i) = from.get(place + i * stride)
+        i += 1
+
+  /** Writes a learner's and its environment's state at the begin of an episode, except its observation. */
+  def begun(agent: Int, number: Int, distanceM: Float): Unit =
+    distance(agent, number, distanceM)
+    reward(agent, number, 0)
     time(number, 0)
-    for agent <- 0 until agents do reward(agent, number, 0)
     terminated(number, false)
     truncated(number, false)
 
-  def distance(number: Int, metres: Float): Unit         = distances.put(number, metres): Unit
-  def time(number: Int, seconds: Float): Unit            = times.put(number, seconds): Unit
-  def terminated(number: Int, value: Boolean): Unit      = terminations.put(number, byte(value)): Unit
-  def truncated(number: Int, value: Boolean): Unit       = truncations.put(number, byte(value)): Unit
-  def due(agent: Int, number: Int, value: Boolean): Unit = dues.put(agent * count + number, byte(value)): Unit
-  private def byte(value: Boolean): Byte                 = if value then 1 else 0
+  def distance(agent: Int, number: Int, metres: Float): Unit =
+    distances.put(agent * count + number, metres): Unit
+  def time(number: Int, seconds: Float): Unit       = times.put(number, seconds): Unit
+  def terminated(number: Int, value: Boolean): Unit = terminations.put(number, byte(value)): Unit
+  def truncated(number: Int, value: Boolean): Unit  = truncations.put(number, byte(value)): Unit
+  private def byte(value: Boolean): Byte            = if value then 1 else 0
 
 object EnvironmentBuffers:
   def bytes(agents: Int, count: Int): Int =
-    Math.toIntExact((4L * (2 * agents + 2 * agents * FIELDS + 2) + 2 + agents) * count)
+    Math.toIntExact((4L * (3 * agents + 2 * agents * Fields + 1) + 2 + agents) * count)

@@ -1,26 +1,261 @@
 package skein.environment
 
-/** Some of a batch's environments, which are stepped together. Mutable; one thread at a time. */
-private trait EnvironmentGroup extends AutoCloseable:
+import java.nio.FloatBuffer
+import skein.lanes.{LearnerPolicy, LearnerWorlds}
+import skein.signal.SplitMix64
+
+/** Environments that run side by side over one link: delays and losses of messages are equal in all of them.
+  * Mutable; one thread at a time.
+  *
+  * They begin a ''run'' together, which lasts as long as an episode. Where an episode ends earlier, by a
+  * capture, the next begins immediately in the current run, and lasts until the run's end; worlds that cannot
+  * restart alone begin a new run.
+  *
+  * @param learning the learners' vehicles
+  * @param first of the batch's environments; the others follow by `stride`
+  */
+private final class EnvironmentGroup(
+    side: LearnerSide,
+    learning: Vector[Int],
+    worlds: LearnerWorlds,
+    autoreset: Autoreset,
+    first: Int,
+    stride: Int,
+    count: Int,
+    into: EnvironmentBuffers
+) extends AutoCloseable:
+  import EnvironmentGroup.{CaptureReward, Tolerance}
+  import LearnerPolicy.Fields
+  import LearnerWorlds.Most
+
+  private val settings  = side.settings
+  private val vehicles  = learning.toArray
+  private val agents    = vehicles.length
+  private val mostTurns = vehicles.map(side.mostTurn(_)._2)
+  private val gains     = vehicles.map(CaptureReward * side.captureSign(_))
+  private val apart     = side.apart(learning).size
+  private val weights   = vehicles.indices.map(side.weights(learning, _)).toArray
+  private val starts    = Starts(side)
+  private val seeds     = Array.ofDim[Long](count)
+  private val episodes  = Array.ofDim[Long](count)
+  private val isDone    = Array.ofDim[Boolean](count)
+
+  /** When each world's episode began, since the run's start, s. */
+  private val beganS = Array.ofDim[Float](count)
+  private val seen   = Array.ofDim[Float](Fields * Most)
+
+  // Of the present step, by world.
+  private val actions   = Array.ofDim[Float](agents, Most)
+  private val row, cost = Array.ofDim[Float](Most)
+  private val isCapture = Array.ofDim[Boolean](count)
+  private val startM    = Array.ofDim[Float](agents * count)
+  private val wasDue    = Array.ofDim[Boolean](agents)
+  private var runs      = 0L
+  private var isOver    = true
+
+  /** Whether the run ended before its time. */
+  private var isEarly = false
+
+  /** Whether no decision has been made in this run. */
+  private var isFirst = true
+
+  private def numberOf(world: Int) = first + world * stride
 
   /** Resets every environment.
     *
     * @param newSeeds of the whole batch; a negative one continues the environment's own sequence
     */
-  def reset(newSeeds: Array[Long]): Unit
+  def reset(newSeeds: Array[Long]): Unit =
+    for world <- 0 until count do seed(world, newSeeds(numberOf(world)))
+    if newSeeds(first) >= 0 then runs = 0
+    startRun()
+    for world <- 0 until count do clear(world)
+    show(into.observations)
 
   /** Resets the environments of the mask, with their seeds. */
-  def reset(newSeeds: Array[Long], mask: Array[Boolean]): Unit
+  def reset(newSeeds: Array[Long], mask: Array[Boolean]): Unit =
+    val chosen = (0 until count).filter(world => mask(numberOf(world)))
+    for world <- chosen do seed(world, newSeeds(numberOf(world)))
+    if chosen.nonEmpty then
+      val others = isDone.clone
+      if isOver || !worlds.restartAlone then startRun() else chosen.foreach(begin)
+      System.arraycopy(others, 0, isDone, 0, count)
+      for world <- chosen do
+        isDone(world) = false
+        clear(world)
+      show(into.observations)
 
-  /** An environment whose action is not finite, or −1. */
-  def misfit(): Int
+  private def seed(world: Int, seed: Long): Unit =
+    if seed >= 0 then
+      seeds(world) = seed
+      episodes(world) = 0
+
+  /** Reads the actions; returns an environment whose action is not finite, or −1. */
+  def misfit(): Int =
+    var agent = 0
+    while agent < agents do
+      val read = actions(agent)
+      into.read(into.actions, agent, first, stride, read, count)
+      var world = 0
+      while world < count do
+        if !(Math.abs(read(world)) <= Float.MaxValue) then return numberOf(world)
+        world += 1
+      agent += 1
+    -1
 
   /** An environment that has ended and was not reset, or −1. */
-  def ended: Int
+  def ended: Int =
+    val world = if autoreset == Autoreset.Disabled then isDone.indexOf(true) else -1
+    if world < 0 then -1 else numberOf(world)
 
-  def step(): Unit
+  /** Makes the decisions whose actions were read. */
+  def step(): Unit =
+    if isOver then nextRun()
+    else
+      var agent = 0
+      while agent < agents do
+        if worlds.isDue(agent) then turn(agent)
+        agent += 1
+      worlds.decide()
+      // Scores before the first decision count for the first step.
+      if !isFirst then worlds.forgetScores()
+      isFirst = false
+      val goesOn = worlds.flyOn()
+      val isLast = worlds.scoredAtS + Tolerance >= settings.episodeS
+      isOver = !goesOn || isLast
+      isEarly = !goesOn && !isLast
+      agent = 0
+      while agent < agents do
+        reward(agent)
+        agent += 1
+      judge()
 
-  def close(): Unit = ()
+  private def turn(agent: Int): Unit =
+    val numbers = actions(agent)
+    var world   = 0
+    while world < count do
+      numbers(world) = math.max(-1f, math.min(1f, numbers(world))) * mostTurns(agent)
+      world += 1
+    worlds.turn(agent, numbers)
+
+  /** Writes a learner's rewards and distances, and notes captures. */
+  private def reward(agent: Int): Unit =
+    val distance = 2 * agent.min(apart - 1)
+    worlds.soFar(distance, row)
+    // Nothing may have been scored yet.
+    if !row(0).isNaN then into.write(into.distances, agent, first, stride, row, 0, count)
+    java.util.Arrays.fill(cost, 0f)
+    var term  = 0
+    var world = 0
+    while term < weights(agent).length do
+      val weight = weights(agent)(term)
+      if weight != 0 then
+        worlds.soFar(2 * apart + term, row)
+        world = 0
+        while world < count do
+          cost(world) -= weight * row(world) / EnvironmentSettings.RewardM
+          world += 1
+      term += 1
+    if agent == 0 then java.util.Arrays.fill(isCapture, false)
+    if settings.captureRadiusM > 0 then
+      val radiusM = settings.captureRadiusM.toFloat
+      worlds.soFar(distance + 1, row)
+      world = 0
+      while world < count do
+        if row(world) <= radiusM then
+          isCapture(world) = true
+          cost(world) += gains(agent)
+        world += 1
+    into.write(into.rewards, agent, first, stride, cost, 0, count)
+
+  /** Judges which episodes have ended. */
+  private def judge(): Unit =
+    val scoredAtS = worlds.scoredAtS
+    var world     = 0
+    var again     = false
+    while world < count do
+      val number = numberOf(world)
+      into.time(number, scoredAtS - beganS(world))
+      if isDone(world) then
+        // Its action was ignored; it shows its next episode's first observation.
+        isDone(world) = false
+        begin(world)
+        clear(world)
+      else
+        into.terminated(number, isCapture(world) || isEarly)
+        into.truncated(number, isOver && !isCapture(world) && !isEarly)
+        isDone(world) = isCapture(world) || isOver
+      again |= isDone(world)
+      world += 1
+    autoreset match
+      case Autoreset.SameStep if again =>
+        show(into.finals)
+        restartDone()
+        show(into.observations)
+      case Autoreset.NextStep if again && !worlds.restartAlone =>
+        isOver = true
+        show(into.observations)
+      case _ => show(into.observations)
+
+  /** Starts new episodes under `SameStep`: distance and time remain those of the ended episode. */
+  private def restartDone(): Unit =
+    if isOver || !worlds.restartAlone then startRun()
+    else for world <- 0 until count if isDone(world) do begin(world)
+    java.util.Arrays.fill(isDone, false)
+
+  /** Starts a run under `NextStep`: every environment's next episode begins with it. */
+  private def nextRun(): Unit =
+    // An environment that was restarted exactly at the run's end begins its episode once more.
+    for world <- 0 until count if !isDone(world) do episodes(world) -= 1
+    startRun()
+    for world <- 0 until count do clear(world)
+    show(into.observations)
+
+  private def startRun(): Unit =
+    worlds.start(SplitMix64.seedOf(seeds(0), runs), settings.episodeS.toFloat)
+    runs += 1
+    isOver = false
+    isFirst = true
+    java.util.Arrays.fill(isDone, false)
+    java.util.Arrays.fill(beganS, 0f)
+    for world <- 0 until count do begin(world)
+    if !worlds.flyOn() then
+      throw IllegalStateException(
+        "nothing is decided in an episode: are the answers later than the time-out?"
+      )
+    java.util.Arrays.fill(beganS, 0f)
+
+  private def begin(world: Int): Unit =
+    starts.draw(SplitMix64.seedOf(seeds(world), episodes(world)))
+    episodes(world) += 1
+    beganS(world) = worlds.scoredAtS
+    for agent <- 0 until agents do startM(agent * count + world) = starts.distanceM(vehicles(agent))
+    var vehicle = 0
+    while vehicle < starts.northM.length do
+      import starts.{eastM, headingRad, northM}
+      worlds.restart(world, vehicle, northM(vehicle), eastM(vehicle), headingRad(vehicle))
+      vehicle += 1
+
+  private def clear(world: Int): Unit =
+    for agent <- 0 until agents do into.begun(agent, numberOf(world), startM(agent * count + world))
+
+  /** Writes the observations of the learners that are due; the others' stay unchanged. */
+  private def show(to: FloatBuffer): Unit =
+    var agent = 0
+    while agent < agents do
+      val isDue = worlds.isDue(agent)
+      if isDue != wasDue(agent) then
+        wasDue(agent) = isDue
+        into.due(agent, first, stride, count, isDue)
+      if isDue then
+        worlds.observe(agent, seen)
+        var field = 0
+        while field < Fields do
+          into.write(to, agent * Fields + field, first, stride, seen, field * Most, count)
+          field += 1
+      agent += 1
+
+  def close(): Unit = worlds.close()
 
 private object EnvironmentGroup:
   val CaptureReward = 10f

@@ -15,12 +15,13 @@ import skein.units.Expect
   * actions are in a file that both sides map ([[EnvironmentBuffers]]); the socket carries only requests.
   *
   * A connection is one batch. It begins with a text of `name=value` lines: `count`, `autoreset` (0 next step,
-  * 1 same step, 2 disabled), `file`, and the settings. Each request then begins with a byte: 1 for a step; 2
-  * for a reset, followed by a seed (64 bits) for each environment; 3 for a reset of some, followed by the
-  * seeds and by a byte for each environment; 4 for a description of their engine. Every answer, also that to
-  * the first text, begins with a byte: 0 done, followed by a text if the request was a 4; 1 wrong arguments
-  * or 2 wrong state, followed by a text. A text is its length in bytes (32 bits) and UTF-8. Numbers are
-  * big-endian.
+  * 1 same step, 2 disabled), `file`, and the settings. A text without a `file` is answered by the learners'
+  * names, a line each, and another one follows. Each request then begins with a byte: 1 for a step; 2 for a
+  * reset, followed by a seed (64 bits) for each environment; 3 for a reset of some, followed by the seeds and
+  * by a byte for each environment; 4 for a description of their engine. Every answer, also that to a text,
+  * begins with a byte: 0 done, followed by a text if the request was a 4 or a text without a `file`; 1 wrong
+  * arguments or 2 wrong state, followed by a text. A text is its length in bytes (32 bits) and UTF-8. Numbers
+  * are big-endian.
   *
   * The server ends with its standard input: when the process that started it ends.
   */
@@ -54,9 +55,16 @@ object EnvironmentServer:
     thread.start()
 
   private def serve(client: SocketChannel): Unit =
-    val in  = DataInputStream(Channels.newInputStream(client))
-    val out = DataOutputStream(Channels.newOutputStream(client))
-    opened(text(in)) match
+    val in    = DataInputStream(Channels.newInputStream(client))
+    val out   = DataOutputStream(Channels.newOutputStream(client))
+    var words = wordsOf(text(in))
+    while !words.contains("file") do
+      EnvironmentSettings
+        .read(words.asJava)
+        .flatMap(EnvironmentBatch.learners(_)(using Scenarios.ours))
+        .fold(answer(out, 1, _), names => answer(out, 0, names.mkString("\n")))
+      words = wordsOf(text(in))
+    opened(words) match
       case Left(mistake) => answer(out, 1, mistake)
       case Right(batch)  =>
         out.write(0)
@@ -82,10 +90,10 @@ object EnvironmentServer:
           case mistake: IOException              => throw mistake
           case NonFatal(mistake)                 => answer(out, 2, mistake.getMessage)
 
-  private def opened(words: String): Either[String, EnvironmentBatch] =
-    val told = words.linesIterator.map(_.split("=", 2)).collect { case Array(name, value) =>
-      name -> value
-    }.toMap
+  private def wordsOf(text: String): Map[String, String] =
+    text.linesIterator.map(_.split("=", 2)).collect { case Array(name, value) => name -> value }.toMap
+
+  private def opened(told: Map[String, String]): Either[String, EnvironmentBatch] =
     for
       count     <- told.get("count").flatMap(_.toIntOption).toRight("count: expected a whole number")
       autoreset <- told

@@ -1,11 +1,10 @@
 package skein.environment
 
+import java.util.Locale
 import scala.jdk.CollectionConverters.*
-import scala.jdk.OptionConverters.*
-import skein.forward.{Delays, Duel, LinkDelays, LoopTiming}
-import skein.lanes.{LearnerDuels, LaneDynamics}
+import skein.forward.{Delays, LinkDelays, LoopTiming}
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
-import skein.policy.{PaperEvader, PaperPursuer, Policy, Role}
+import skein.policy.{Agent, Role}
 import skein.port.Moves
 import skein.scenario.{PaperDuel, Scenarios}
 import skein.settings.{FlySettings, OutsidePolicy, PolicyFile, TextFile, VehicleChoice}
@@ -14,22 +13,26 @@ import skein.units.{Expect, Span}
 
 /** Settings of environments, in the user's terms.
   *
-  * @param learners `pursuer`, `evader`, or `both`
-  * @param opponent a policy file or a family's name; empty: the paper's. Ignored where both learn, and in
-  *   other scenarios than the duel, where all vehicles without a learner use their own policies
-  * @param plant see [[VehicleChoice.parse]]; empty: `reduced` in the duel, else `drag`
+  * @param learners a role of the scenario, such as `pursuer`: one vehicle of it, in the next environment the
+  *   next one; its plural: all of them in one world; `all` (or `both`): all vehicles; or names of vehicles,
+  *   separated by commas
+  * @param opponent a policy file or a family's name, for the evaders without a learner, or the pursuers where
+  *   an evader learns; empty: their own policies
+  * @param plant see [[VehicleChoice.parse]]; empty: `reduced` at the altitude where it was identified, `drag`
+  *   at others, `tilt` where a policy may climb
+  * @param altitudeM of all vehicles at the start; 0: that of the scenario
   * @param captureRadiusM distance that ends an episode; 0: none does
-  * @param startWithinM least and greatest initial distance of the evader from the pursuer, in any direction,
-  *   each commanded in any direction; both 0: the paper's start. In other scenarios: distance of every
-  *   vehicle from its usual start
+  * @param startWithinM least and greatest initial distance of one of two from the other (of the evader from
+  *   the pursuer), in any direction, each commanded in any direction; of every vehicle of more than two from
+  *   its usual start; both 0: the scenario's start
   * @param movesInFlight most unanswered moves of one vehicle
-  * @param turnRateRadPerS greatest turn rate of a learning pursuer
+  * @param turnRateRadPerS greatest turn rate of a learner, but of evaders
   * @param evaderRateRadPerS greatest turn rate of a learning evader; 0: its actions are immediate turns of up
   *   to half a turn
-  * @param scenario whose pursuer or evader learns
+  * @param scenario whose vehicles learn
   * @param set settings of the scenario, by their keys
-  * @param objective reward in other scenarios than the duel: a sum of means of the scenario's measures;
-  *   empty: the distance to the nearest opponent
+  * @param objective reward: a sum of means of the scenario's measures; empty: the distance to the nearest
+  *   opponent, which evaders maximise and others minimise
   */
 final case class EnvironmentSettings(
     learners: String = "pursuer",
@@ -38,7 +41,7 @@ final case class EnvironmentSettings(
     link: String = "vpn",
     periodMs: Double = 100,
     plant: String = "",
-    altitudeM: Double = 20,
+    altitudeM: Double = 0,
     episodeS: Double = 60,
     captureRadiusM: Double = 0,
     startWithinM: (Double, Double) = (0, 0),
@@ -53,41 +56,31 @@ final case class EnvironmentSettings(
 
   /** The greatest turn of a learner: rad/s until the next decision, and rad in one instant. */
   def mostTurn(role: Role): (Double, Double) =
-    if role == Role.Pursuer then (turnRateRadPerS, 0)
+    if role != Role.Evader then (turnRateRadPerS, 0)
     else (evaderRateRadPerS, if evaderRateRadPerS > 0 then 0 else math.Pi)
 
-  /** @return Left states what was expected and what was given */
-  private[environment] def resolved: Either[String, Resolved] =
-    resolvedAgainst(None)(using Scenarios.ours)
+  /** The learners of environments, in turns: those of environment n are number n, modulo their count.
+    *
+    * @return Left states what was expected and what was given
+    */
+  private[environment] def turns(agents: Vector[Agent]): Either[String, Vector[Vector[Int]]] =
+    def ofRole(name: String) = agents.indices.filter(agents(_).role.name.equalsIgnoreCase(name)).toVector
+    val names                = learners.split(',').toVector.map(_.trim)
+    val places               = names.map(name => agents.indexWhere(_.name == name))
+    if learners == "both" || learners == "all" then Right(Vector(agents.indices.toVector))
+    else if ofRole(learners).nonEmpty then Right(ofRole(learners).map(Vector(_)))
+    else if learners.endsWith("s") && ofRole(learners.init).nonEmpty then Right(Vector(ofRole(learners.init)))
+    else if !places.contains(-1) && places.distinct == places then Right(Vector(places.sorted))
+    else
+      val roles = agents.map(_.role.name.toLowerCase(Locale.ROOT)).distinct
+      Left(
+        s"learners: expected one of ${roles.mkString(", ")}, all of a role (${roles.head}s), all, or " +
+          s"vehicles of ${agents.map(_.name).mkString(",")}, came '$learners'"
+      )
 
-  /** @param told the opponent; without one, as the settings name it */
-  private[environment] def resolvedAgainst(told: Option[PolicyFile])(using
-      Scenarios
-  ): Either[String, Resolved] =
-    for
-      roles <- roles
-      _     <- Expect.that(objective.isEmpty):
-        "objective: expected with another scenario than the duel, " +
-          s"whose distance is rewarded, came '$objective'"
-      flown <- flown(altitudeM, "reduced", vehicles = 2)
-      (timing, delays, vehicle) = flown
-      paper                     = Duel.paperAt(altitudeM, episodeS + SpareS)
-      _ <- LaneDynamics
-        .isHighEnough(vehicle.response, Seq(paper.evader, paper.pursuer)).left.map("plant: " + _)
-      model   <- LaneDynamics.under(timing, vehicle.response).left.map("plant: " + _)
-      against <- told.fold(opponentFile(roles))(file => Right(Some(file)))
-      (evader, pursuer) = against.fold((PaperEvader(), PaperPursuer())): file =>
-        if file.role == Role.Pursuer then (PaperEvader(), file.policy) else (file.policy, PaperPursuer())
-      _ <- Vector(evader, pursuer)
-        .flatMap(LearnerDuels.refusal(_).toScala)
-        .headOption
-        .map("opponent: " + _)
-        .toLeft(())
-    yield Resolved(this, roles, evader, pursuer, paper, timing, delays, model)
-
-  private[environment] def roles: Either[String, Vector[Role]] = Learners.get(learners).toRight(
-    s"learners: expected ${Learners.keys.mkString(", ")}, came '$learners'"
-  )
+  private[environment] def opponentOf(learner: Role)(using Scenarios): Either[String, Option[PolicyFile]] =
+    if opponent.isEmpty then Right(None)
+    else PolicyFile.chosen(Role.opponentOf(learner), opponent).left.map("opponent: " + _).map(Some(_))
 
   /** The loop's timing, the link, and the vehicles at an altitude.
     *
@@ -128,39 +121,9 @@ final case class EnvironmentSettings(
       .left.map(_.message)
       .flatMap(LinkDelays.checked(_, LinkDelays.packetsPerS(vehicles, periodMs / 1000)))
 
-  private def opponentFile(roles: Vector[Role]): Either[String, Option[PolicyFile]] =
-    if opponent.isEmpty then Right(None)
-    else if roles.size == 2 then Left(s"opponent: expected none where both sides learn, came '$opponent'")
-    else
-      PolicyFile
-        .chosen(Role.opponentOf(roles.head), opponent)(using Scenarios.ours)
-        .left
-        .map("opponent: " + _)
-        .map(Some(_))
-
 object EnvironmentSettings:
   /** The distance that costs the pursuer, and earns the evader, 1 a period, m. */
   val RewardM = 10f
-
-  /** Resolved settings. The duel lasts slightly longer than an episode: a learner that observes its end must
-    * be due once more.
-    */
-  private[environment] final case class Resolved(
-      settings: EnvironmentSettings,
-      learners: Vector[Role],
-      evader: Policy,
-      pursuer: Policy,
-      duel: Duel,
-      timing: LoopTiming,
-      link: Delays,
-      model: LaneDynamics
-  )
-
-  private val Learners: Map[String, Vector[Role]] = Map(
-    "pursuer" -> Vector(Role.Pursuer),
-    "evader"  -> Vector(Role.Evader),
-    "both"    -> Vector(Role.Evader, Role.Pursuer)
-  )
 
   /** Time after an episode's end within which a learner is due again, s, unless the vehicles' readings have
     * ended.

@@ -2,116 +2,125 @@ package skein.environment
 
 import scala.util.control.ControlThrowable
 import skein.forward.{LoopObserver, Rollout}
-import skein.policy.{Action, PlanarObservation, HeadingPolicy, Policy}
-import skein.signal.SplitMix64
-import skein.simd.WorldRandom
+import skein.lanes.{LearnerPolicy, LearnerTeams, LearnerWorlds, TeamCandidate}
+import skein.lanes.score.OfMoment
+import skein.policy.{Action, HeadingPolicy, PlanarObservation}
+import skein.scenario.{Positions, Quantity, Reduction}
 import skein.units.OwnFailure
 
-/** Episodes of a scenario, one after the other, that stop whenever the vehicle of a learner is to decide.
-  * They are simulated by [[Rollout]], whose policy waits for the caller's decision: so learning works in
-  * every scenario, loop and link of forward simulation. Mutable.
-  *
-  * @param learner the vehicle, by its index in the scenario
+/** One world by the scalar reference, [[Rollout]], whose learners' policies wait for the caller's decision:
+  * so learning works in every scenario, loop and link of forward simulation.
   */
-private final class LearnerRollout(side: ScenarioSide, learner: Int) extends AutoCloseable:
+private final class LearnerRollout(side: LearnerSide, team: TeamCandidate, learners: Vector[Int])
+    extends LearnerWorlds:
   import LearnerRollout.*
 
-  private val flying                 = Resumed(fly)
-  private var next                   = Option.empty[(Long, Option[Policy])]
-  private var ask: () => Unit        = () => ()
-  private var isBegun                = false
-  private val (rateRadPerS, turnRad) = side.settings.mostTurn(side.role)
+  private val flying          = Resumed(fly)
+  private var ask: () => Unit = () => ()
+  private val agents          = team.engagement.agents.toArray
+  private var key             = 0
+  private var isAnew          = false
+  private var due             = Nobody
+  private var untilS          = 0f
+  private val turns           = Array.ofDim[Float](learners.size)
+  private val observed        = Array.ofDim[Double](learners.size, LearnerPolicy.Fields)
+  private var (northM, eastM) = (Array.empty[Double], Array.empty[Double])
+  private val downM           = Array.ofDim[Double](agents.length)
+  private val values          = Array.ofDim[Double](team.quantities.size)
+  private var lastScoredAtS   = 0.0
 
-  /** The vehicle's current observation, in the form of [[PlanarObservation.fromOwnHeading]]. */
-  val seen: Array[Float] = Array.ofDim(skein.lanes.LearnerDuels.FIELDS)
+  def restartAlone: Boolean = false
 
-  /** The turn to make now, as a fraction, −1 to 1. */
-  var share: Double = 0
+  def start(draw: Long, untilS: Float): Unit =
+    key = LearnerTeams.keyOf(draw)
+    this.untilS = untilS
+    isAnew = true
 
-  /** The cost since the last decision, in the reward's unit. */
-  var loss: Double = 0
+  def restart(world: Int, vehicle: Int, northM: Float, eastM: Float, headingRad: Float): Unit =
+    agents(vehicle) = agents(vehicle).copy(startX = northM, startY = eastM, startHeadingRad = headingRad)
 
-  /** Distance to the nearest opponent, m: at the last score, and the least since the last decision. */
-  var distanceM, leastM: Double = 0
+  def flyOn(): Boolean =
+    flying.goOn()
+    flying.await()
+    due != Nobody
 
-  /** Time of the last score, since the episode's beginning, s. */
-  var scoredAtS: Double = 0
-  var isOver: Boolean   = true
+  def isDue(learner: Int): Boolean = due == learner
 
-  /** Makes the next [[goOn]] start an episode, abandoning the current one.
-    *
-    * @param beside the policy of the others of its role; without one, their own
-    */
-  def begin(seed: Long, beside: Option[Policy]): Unit = next = Some((seed, beside))
+  def observe(learner: Int, into: Array[Float]): Unit =
+    for field <- 0 until LearnerPolicy.Fields do
+      into(field * LearnerWorlds.Most) = observed(learner)(field).toFloat
 
-  /** Continues the simulation. Nothing may be read until [[await]] has returned. */
-  def goOn(): Unit = flying.goOn()
+  def turn(learner: Int, numbers: Array[Float]): Unit = turns(learner) = numbers(0)
 
-  /** Blocks until the vehicle is to decide, or the episode has ended. */
-  def await(): Unit = flying.await()
+  /** [[flyOn]] does. */
+  def decide(): Unit = ()
 
-  def close(): Unit = flying.close()
+  def scoredAtS: Float = lastScoredAtS.toFloat
+
+  def soFar(number: Int, into: Array[Float]): Unit = into(0) = values(number).toFloat
+
+  def forgetScores(): Unit =
+    for number <- values.indices do
+      team.quantities(number).reduction match
+        case OfMoment.Newest => ()
+        case Reduction.Least => values(number) = Double.PositiveInfinity
+        case _               => values(number) = 0
+
+  override def close(): Unit = flying.close()
 
   private def fly(suspend: () => Unit): Unit =
     ask = suspend
     while true do
-      val (seed, beside) = next.get
-      next = None
-      isOver = false
-      scoredAtS = 0
+      isAnew = false
+      lastScoredAtS = 0
+      java.util.Arrays.fill(values, Double.NaN)
+      forgetScores()
+      val flown = agents.toVector.zipWithIndex.map: (agent, vehicle) =>
+        val learner = learners.indexOf(vehicle)
+        if learner < 0 then agent else agent.copy(policy = Outside(learner))
       try
-        val engagement = side.engagement(learner, outside, beside, seed)
-        begun(engagement.agents.map(_.startX).toArray, engagement.agents.map(_.startY).toArray)
-        Rollout(engagement, side.timing, side.link, side.response)
-          .fly(
-            WorldRandom.key(1, 0, ((SplitMix64.seedOf(seed, 1) >>> 1) % Flights).toInt),
-            observer = scores
-          ): Unit
-        // No decision was due after the end.
-        isOver = true
+        northM = agents.map(_.startX)
+        eastM = agents.map(_.startY)
+        Rollout(team.engagement.copy(agents = flown), side.timing, side.link, side.response)
+          .fly(key, observer = scores): Unit
+        due = Nobody
         suspend()
       catch case Anew => ()
 
-  private def begun(northM: Array[Double], eastM: Array[Double]): Unit =
-    distanceM = side.distanceM(learner, northM, eastM)
-    leastM = Double.PositiveInfinity
-    loss = 0
-    isBegun = false
+  private final class Outside(learner: Int) extends HeadingPolicy.Memoryless:
+    private val byRate = side.mostTurn(learners(learner))._1
 
-  private object outside extends HeadingPolicy.Memoryless:
     def heading(now: PlanarObservation): Double =
-      for (number, field) <- now.fromOwnHeading.iterator.zipWithIndex do seen(field) = number.toFloat
-      isOver = scoredAtS + EnvironmentGroup.Tolerance >= side.settings.episodeS
+      observed(learner) = now.fromOwnHeading
+      due = learner
       ask()
-      if next.isDefined then throw Anew
-      // Scores before the first decision count for the first step.
-      if isBegun then
-        loss = 0
-        leastM = Double.PositiveInfinity
-      isBegun = true
-      now.ownHeadingRad + share * (rateRadPerS * now.elapsedS + turnRad)
+      if isAnew then throw Anew
+      now.ownHeadingRad + turns(learner) * (if byRate then now.elapsedS else 1.0)
 
   private object scores extends LoopObserver:
-    private val northM, eastM = Array.ofDim[Double](side.count)
-
     override def scored(timeS: Double, vehicle: Int, x: Double, y: Double, z: Double): Unit =
-      northM(vehicle) = x
-      eastM(vehicle) = y
-      if vehicle == side.count - 1 && timeS <= side.settings.episodeS + EnvironmentGroup.Tolerance then
-        scoredAtS = timeS
-        distanceM = side.distanceM(learner, northM, eastM)
-        leastM = leastM.min(distanceM)
-        loss += side.loss(distanceM, northM, eastM)
+      northM(vehicle) = x; eastM(vehicle) = y; downM(vehicle) = z
+      if vehicle == agents.length - 1 && timeS <= untilS + EnvironmentGroup.Tolerance then
+        lastScoredAtS = timeS
+        val places = Positions(IArray.from(northM), IArray.from(eastM), IArray.from(downM))
+        for (judged, number) <- team.quantities.zipWithIndex do
+          val value = Quantity.told(judged.quantity, places)
+          judged.reduction match
+            case OfMoment.Newest => values(number) = value
+            case Reduction.Least => values(number) = values(number).min(value)
+            case _               =>
+              if !value.isFinite then
+                throw OwnFailure(Quantity.whose(judged.quantity), s"answered $value, which is no reward")
+              values(number) += value
 
     override def commanded(vehicle: Int, number: Int, atNs: Long, action: Action): Unit =
       if !Action.isFinite(action) then
         throw OwnFailure(
-          s"the policy of ${side.nameOf(vehicle)}",
+          s"the policy of ${side.names(vehicle)}",
           s"decided for what no vehicle can do: $action"
         )
 
 private object LearnerRollout:
-  private object Anew extends ControlThrowable
+  private val Nobody = -1
 
-  /** Number of flights over the link, one of which each episode draws. */
-  private val Flights = 1 << 24
+  private object Anew extends ControlThrowable

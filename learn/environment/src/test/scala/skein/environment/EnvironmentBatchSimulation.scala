@@ -2,8 +2,8 @@ package skein.environment
 
 import java.nio.{ByteBuffer, ByteOrder}
 import skein.forward.{Delays, Duel, DuelOutcome, Engagement, PlantResponse, Rollout}
-import skein.lanes.{TeamBatch, TeamCandidate, TeamWorlds}
-import skein.lanes.LearnerDuels.FIELDS
+import skein.lanes.{LearnerTeams, TeamBatch, TeamCandidate, TeamWorlds}
+import skein.lanes.LearnerPolicy.Fields
 import skein.lanes.score.Judged
 import skein.scenario.{Reduction, Scenarios, Separation}
 import skein.signal.SplitMix64
@@ -23,20 +23,20 @@ class EnvironmentBatchSimulation extends munit.FunSuite:
       ByteBuffer.allocateDirect(EnvironmentBuffers.bytes(agents, count)).order(ByteOrder.nativeOrder)
     private val floats          = block.asFloatBuffer
     private val seenAt          = agents * count
-    private val finalsAt        = seenAt + agents * FIELDS * count
-    private val rewardsAt       = finalsAt + agents * FIELDS * count
-    private val endsAt          = 4 * (rewardsAt + agents * count + 2 * count)
+    private val finalsAt        = seenAt + agents * Fields * count
+    private val rewardsAt       = finalsAt + agents * Fields * count
+    private val endsAt          = 4 * (rewardsAt + 2 * agents * count + count)
     val batch: EnvironmentBatch =
       EnvironmentBatch.of(settings, count, autoreset, block).fold(fail(_), identity)
 
     def act(number: Int, action: Float, agent: Int = 0): Unit =
       floats.put(agent * count + number, action): Unit
     def seen(number: Int, field: Int, agent: Int = 0): Float =
-      floats.get(seenAt + (agent * FIELDS + field) * count + number)
+      floats.get(seenAt + (agent * Fields + field) * count + number)
     def last(number: Int, field: Int): Float       = floats.get(finalsAt + field * count + number)
     def reward(number: Int, agent: Int = 0): Float = floats.get(rewardsAt + agent * count + number)
     def distance(number: Int): Float               = floats.get(rewardsAt + agents * count + number)
-    def timeS(number: Int): Float                  = floats.get(rewardsAt + agents * count + count + number)
+    def timeS(number: Int): Float                  = floats.get(rewardsAt + 2 * agents * count + number)
     def terminated(number: Int): Boolean           = block.get(endsAt + number) != 0
     def truncated(number: Int): Boolean            = block.get(endsAt + count + number) != 0
     def isDue(agent: Int): Boolean                 = block.get(endsAt + 2 * count + agent * count) != 0
@@ -49,9 +49,9 @@ class EnvironmentBatchSimulation extends munit.FunSuite:
 
   /** The engine's result for the paper's pursuer over the link of a run. */
   private def engine(settings: EnvironmentSettings, seed: Long): (DuelOutcome, Float, Float) =
-    val config = settings.resolved.fold(fail(_), identity)
-    val duel   = Duel.paperAt(settings.altitudeM, settings.episodeS)
-    val runKey = EnvironmentTimetables.keyOf(EnvironmentTimetables.indexOf(SplitMix64.seedOf(seed, 0)))
+    val config = LearnerSide.of(settings).fold(fail(_), identity)
+    val duel   = Duel.paperAt(20, settings.episodeS)
+    val runKey = LearnerTeams.keyOf(SplitMix64.seedOf(seed, 0))
     val judged = Vector(Judged(Separation, Reduction.Least, 0), Judged(Separation, Reduction.Mean, 0))
     val team   = TeamCandidate(Engagement.of(duel), judged)
     val worlds = new TeamWorlds:
@@ -97,7 +97,7 @@ class EnvironmentBatchSimulation extends munit.FunSuite:
       Vector.tabulate(60): step =>
         for number <- 0 until count do learner.act(number, math.sin(step * 0.3 + number).toFloat)
         learner.batch.step()
-        Vector.tabulate(8, FIELDS)((number, field) => learner.seen(number, field)) ->
+        Vector.tabulate(8, Fields)((number, field) => learner.seen(number, field)) ->
           Vector.tabulate(8)(number =>
             (learner.reward(number), learner.terminated(number), learner.truncated(number))
           )
@@ -164,12 +164,12 @@ class EnvironmentBatchSimulation extends munit.FunSuite:
     evader && pursuer
 
   test("invalid settings are refused with what was expected, and an action of NaN changes nothing"):
-    def refused(settings: EnvironmentSettings) = settings.resolved.swap.getOrElse("accepted")
+    def refused(settings: EnvironmentSettings) = LearnerSide.of(settings).swap.getOrElse("accepted")
     assert(refused(EnvironmentSettings(learners = "x")).startsWith("learners: expected "))
     assert(refused(EnvironmentSettings(loop = "plan")).contains("which plans"))
     assert(refused(EnvironmentSettings(link = "no")).startsWith("link: "))
-    assert(refused(EnvironmentSettings(plant = "quadrotor", altitudeM = 3)).startsWith(
-      "plant: the lanes know no ground"
+    assert(refused(EnvironmentSettings(learners = "both", opponent = "paper-pursuer")).startsWith(
+      "opponent: expected none where"
     ))
     assert(refused(EnvironmentSettings(movesInFlight = 33)).startsWith("moves_in_flight: expected 1 to 32"))
     assert(refused(EnvironmentSettings(startWithinM = (5, 2))).startsWith("start_within_m: expected 5.0"))

@@ -453,6 +453,9 @@ enum EventKind:
   /** A call was not answered in time. */
   case TimedOut
 
+  /** Messages between vehicles did not arrive; `count` says how many in the whole flight. */
+  case MessagesLost
+
   /** A policy did not decide in time. */
   case DeadlineMissed
 

@@ -15,7 +15,7 @@ export class Flight {
     this.eventCount = 0;
     this.ending = undefined;
     this.paused = false;
-    this.series = { age: new Series(), error: new Series(), distance: new Series(), roundTrip: new Series(), altitude: new Series(Math.min) };
+    this.series = { age: new Series(), commandAge: new Series(), every: new Series(), unanswered: new Series(), error: new Series(), distance: new Series(), roundTrip: new Series(), altitude: new Series(Math.min) };
     // What the scenario draws, and what it forbids.
     this.own = [];
     this.limits = [];
@@ -94,6 +94,19 @@ export class Flight {
       // It stands still from here on, whatever comes.
       case "ending": this.ending = row; this.now = at; break;
       case "clock": this.begin(BigInt(row.startedAtNs)); break;
+      // Of a program that is seen from outside: the worst of each vehicle's commands, and what is wrong.
+      case "observed":
+        this.hasBegun = true;
+        this.findings = row.findings;
+        for (const { vehicle: name, ageMs, everyMs, unanswered } of row.vehicles) {
+          const commanded = this.vehicle(name);
+          commanded.ageMs = ageMs;
+          const line = this.line(commanded);
+          this.series.commandAge.put(at, line, ageMs);
+          this.series.every.put(at, line, everyMs);
+          this.series.unanswered.put(at, line, unanswered);
+        }
+        break;
       case "scenario":
         row.series.forEach(({ title, bound, points }, index) => {
           this.own[index] = { series: `own${index}`, title, bound, single: true };

@@ -15,7 +15,7 @@ if (/none|swiftshader|llvmpipe|software/i.test(card)) {
 gl?.getExtension("WEBGL_lose_context")?.loseContext();
 
 const find = id => document.getElementById(id);
-const tables = ["flight", "vehicle", "parameter", "reading", "decision", "command", "prediction", "plan", "event", "ending", "clock", "scenario", "graph"];
+const tables = ["flight", "vehicle", "parameter", "reading", "decision", "command", "prediction", "plan", "event", "ending", "clock", "scenario", "graph", "observed"];
 const map = new FlightMap(document.querySelector("#map canvas"));
 const plots = new Plots(find("plots"));
 const graph = new Graph(find("graph"));
@@ -136,7 +136,7 @@ function words() {
   find("legend").replaceChildren(...(vehicles.length > 8 ? [] : vehicles).map(vehicle => {
     const item = document.createElement("li"), dot = document.createElement("i");
     dot.style.background = vehicle.colour;
-    const age = vehicle.ageMs === undefined ? "" : `, ${vehicle.ageMs.toFixed(0)} ms old at its last decision`;
+    const age = vehicle.ageMs === undefined ? "" : `, ${vehicle.ageMs.toFixed(0)} ms old at its last ${flight.findings ? "command" : "decision"}`;
     const up = vehicle.down === undefined ? "" : `, ${(-vehicle.down).toFixed(1)} m up`;
     item.append(dot, `${vehicle.name}${up}${age}`);
     return item;
@@ -147,6 +147,9 @@ function words() {
     [flight.clouds.size, "points: what lidars see"],
   ];
   find("signs").textContent = signs.filter(([is]) => is).map(([, words]) => words).join("; ");
+  // A program seen from outside has no places.
+  find("map").classList.toggle("bare", Boolean(flight.findings));
+  find("findings").replaceChildren(...(flight.findings ?? []).map(finding => Object.assign(document.createElement("li"), { textContent: finding })));
   find("limits").hidden = !flight.limits.length && !flight.failed;
   document.querySelector("#limits ul").replaceChildren(...flight.limits.map(limit => {
     const words = limit.stretches

@@ -3,6 +3,9 @@
 
 const kinds = [
   { series: "age", title: "Age of a vehicle's own data at its decisions, ms" },
+  { series: "commandAge", title: "Age of a vehicle's own data at its commands, ms" },
+  { series: "every", title: "Time since its last command, ms" },
+  { series: "unanswered", title: "Calls unanswered when it was commanded" },
   { series: "roundTrip", title: "Round trips, ms" },
   { series: "error", title: "Error of predictions, mm" },
   { series: "distance", title: "Smallest distance between two vehicles, m", single: true },

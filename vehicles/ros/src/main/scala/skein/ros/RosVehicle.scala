@@ -116,7 +116,11 @@ final class RosVehicle private[ros] (
   /** The present time, on the clock of the headers. */
   private def stamp: Instant = clock.now() - fastest.fold(Span.Zero)(_.offset)
 
-  private val ticking: Cancellable = system.scheduler.scheduleWithFixedDelay(Every, Every)(() => tick())
+  private val ticking: Cancellable =
+    system.scheduler.scheduleWithFixedDelay(TwistCommand.Every.toDuration, TwistCommand.Every.toDuration)(
+      () =>
+        tick()
+    )
 
   /** Lets the vehicle hover, and ends every unanswered call. */
   private[ros] def close(): Unit =
@@ -134,7 +138,6 @@ object RosVehicle:
   )
 
   private val Patience = 1.second
-  private val Every    = 50.millis
 
   /** Opens the topics `/NAME/odom` and `/NAME/cmd_vel` of a vehicle; ROS's remapping gives them other names.
     *

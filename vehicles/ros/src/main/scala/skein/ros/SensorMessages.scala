@@ -2,6 +2,7 @@ package skein.ros
 
 import java.nio.{ByteBuffer, ByteOrder}
 import scala.collection.immutable.ArraySeq
+import skein.airsim.{Image as SeenImage, Pixels, Scan}
 import skein.ros.message.*
 import skein.units.{Instant, Radians, Quaternion as Rotation, Vector3 as Ned}
 
@@ -19,12 +20,25 @@ object SensorMessages:
   def optical(at: Instant, frame: String, positionNed: Ned, orientation: Rotation): TransformStamped =
     VehicleMessages.transform(at, frame, positionNed, RosFrames.toEnu(orientation) * FluFromOptical)
 
+  /** Colours as `bgr8`, and depths as `32FC1`, m, with +∞ where nothing is (REP 118). None for a file. */
+  def image(header: Header, seen: SeenImage): Option[Image] =
+    val pixels = seen.pixels match
+      case Pixels.Bgr(bytes)      => Some(("bgr8", bytes.toArray))
+      case Pixels.Numbers(depths) => Some(("32FC1", floats(depths)))
+      case Pixels.Png(_)          => None
+    pixels.map(image(header, seen.width, seen.height, _, _))
+
   /** @param pixels rows from the top, without gaps
     * @param encoding by its name in ROS, such as `bgr8`
     */
   def image(header: Header, width: Int, height: Int, encoding: String, pixels: Array[Byte]): Image =
     val step = if height > 0 then pixels.length / height else 0
     Image(header, height, width, encoding, 0, step, ArraySeq.unsafeWrapArray(pixels))
+
+  private def floats(depths: Array[Float]): Array[Byte] =
+    val bytes = ByteBuffer.allocate(4 * depths.length).order(ByteOrder.LITTLE_ENDIAN)
+    for depth <- depths do bytes.putFloat(if depth < BeyondM then depth else Float.PositiveInfinity): Unit
+    bytes.array
 
   /** A pinhole camera without distortion; the middles of pixels are at whole numbers, as in OpenCV. */
   def cameraInfo(header: Header, width: Int, height: Int, fov: Radians): CameraInfo =
@@ -61,6 +75,31 @@ object SensorMessages:
       ArraySeq.unsafeWrapArray(bytes.array),
       isDense = true
     )
+
+  /** A scan as a cloud, in the world's frame or in the lidar's own, and where that is in the world.
+    *
+    * @param frame the lidar's
+    * @param isLocal whether its points are in the lidar's frame, else in the vehicle's world frame
+    * @param startNed origin of that frame
+    */
+  def scan(
+      scan: Scan,
+      at: Instant,
+      frame: String,
+      isLocal: Boolean,
+      startNed: Ned
+  ): (Option[TransformStamped], PointCloud2) =
+    def point(number: Int) =
+      Ned(scan.points(3 * number), scan.points(3 * number + 1), scan.points(3 * number + 2))
+    val placed = Option.when(isLocal):
+      VehicleMessages.transform(at, frame, scan.positionNed, RosFrames.toEnu(scan.orientation))
+    val header = Header(Time.of(at), if isLocal then frame else VehicleMessages.World)
+    val cloud  = points(header, scan.size): number =>
+      if isLocal then RosFrames.swapBody(point(number)) else RosFrames.swapWorld(point(number) + startNed)
+    (placed, cloud)
+
+  /** AirSim's depth of the sky, m: the greatest half-precision float. */
+  private val BeyondM = 65504f
 
   /** From a camera's optical frame to its front, left, up. */
   private val FluFromOptical = Rotation(0.5, -0.5, 0.5, -0.5)

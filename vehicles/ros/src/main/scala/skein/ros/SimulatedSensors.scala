@@ -4,22 +4,22 @@ import java.util.concurrent.atomic.{AtomicBoolean, AtomicLong}
 import java.util.concurrent.{Executors, TimeUnit}
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.{ExecutionContext, Future}
-import skein.airsim.{AirSimClient, Eyes, Image, Multirotor, Pixels, Scan, SensorKind, SettingsSection, Shot}
-import skein.airsim.{VehicleSettings, WorldSettings}
+import skein.airsim.{AirSimClient, Encoding, Eyes, Image, ImageKind, Multirotor, Scan, Shot}
+import skein.airsim.{SensorKind, SettingsSection, VehicleSettings, WorldSettings}
 import skein.link.{Address, TcpTransport}
 import skein.ros.message.{Image as ImageMessage, *}
 import skein.rpc.{RpcClient, RpcError}
-import skein.signal.Stamped
-import skein.units.{Clock as OwnClock, Expect, Instant, Radians, Vector3 as Ned}
+import skein.units.{Clock as OwnClock, Expect, Instant, Radians, Span}
 
 /** Cameras and lidars of a simulator's vehicles as topics: `/NAME/CAMERA/image_raw` with
-  * `/NAME/CAMERA/camera_info`, and `/NAME/LIDAR/points`, each with its frame in `/tf`. They are requested
-  * every 100 ms of simulated time, by AirSim's wire, while something subscribes. If the last image or scan of
-  * a sensor has not come by then, one is left out, and counted.
+  * `/NAME/CAMERA/camera_info`, both also below `depth` and `segmentation`, all of one instant; and
+  * `/NAME/LIDAR/points`; each camera and lidar with its frame in `/tf`. They are requested every 100 ms of
+  * simulated time, by AirSim's wire, while something subscribes. If the last image or scan of a sensor has
+  * not come by then, one is left out, and counted.
   */
 final class SimulatedSensors private (sensors: Vector[SimulatedSensors.Sensor], end: () => Unit)
     extends AutoCloseable:
-  private var looks = 0L
+  private var nextAt = Instant.Epoch
 
   /** Images and scans that were left out, because the last one of the sensor had not come. */
   def skipped: Long = sensors.map(_.skipped.get).sum
@@ -27,16 +27,15 @@ final class SimulatedSensors private (sensors: Vector[SimulatedSensors.Sensor], 
   /** The first failure of each sensor, with its topic. */
   def notes: Vector[String] = sensors.flatMap(_.failure)
 
-  /** To be called for each of the simulator's instants, which are 20 ms apart. */
-  def look(): Unit =
-    if looks % SimulatedSensors.Every == 0 then sensors.foreach(_.look())
-    looks += 1
+  /** To be called for each of the simulator's instants. */
+  def look(at: Instant): Unit = if at >= nextAt then
+    nextAt = at + SimulatedSensors.Every
+    sensors.foreach(_.look())
 
   def close(): Unit = end()
 
 object SimulatedSensors:
-  /** Instants from one image to the next: 100 ms. */
-  private val Every = 5
+  private val Every = Span.ofMillis(100)
 
   private val Usual = "front_center"
 
@@ -124,6 +123,27 @@ object SimulatedSensors:
         end()
         Left(why)
 
+  /** A kind of images of a camera.
+    *
+    * @param below the topics' place below the camera's
+    */
+  private enum Sight(val below: String, val kind: ImageKind, val encoding: Encoding):
+    case Colour       extends Sight("", ImageKind.Scene, Encoding.Raw)
+    case Depth        extends Sight("depth/", ImageKind.DepthPlanar, Encoding.Numbers)
+    case Segmentation extends Sight("segmentation/", ImageKind.Segmentation, Encoding.Raw)
+
+  private final class SightTopics(
+      val sight: Sight,
+      images: RosPublisher[ImageMessage],
+      infos: RosPublisher[CameraInfo]
+  ):
+    def isRead: Boolean = images.isRead || infos.isRead
+
+    def publish(header: Header, image: Image, fov: Radians): Unit =
+      for message <- SensorMessages.image(header, image) do
+        infos.publish(SensorMessages.cameraInfo(header, image.width, image.height, fov))
+        images.publish(message)
+
   private def camera(
       node: RosNode,
       eyes: Eyes,
@@ -133,25 +153,25 @@ object SimulatedSensors:
   )(using ExecutionContext): Either[String, Sensor] =
     val name  = s"$vehicle/${SensorMessages.token(camera)}"
     val frame = s"$name/optical"
-    for
-      images <- node.publish[ImageMessage](s"/$name/image_raw")
-      infos  <- node.publish[CameraInfo](s"/$name/camera_info")
-    yield
-      def show(taken: Stamped[Image], fov: Radians): Unit = taken.value.pixels match
-        case Pixels.Bgr(bytes) =>
-          val (image, at) = (taken.value, taken.validAt)
-          val header      = Header(Time.of(at), frame)
-          frames(SensorMessages.optical(at, frame, image.positionNed, image.orientation))
-          infos.publish(SensorMessages.cameraInfo(header, image.width, image.height, fov))
-          images.publish(SensorMessages.image(header, image.width, image.height, "bgr8", bytes.toArray))
-        case _ => ()
-      Sensor(
-        name,
-        () => images.isRead || infos.isRead,
-        () =>
-          eyes.image(Shot(camera)).zip(eyes.fov(camera)).map: (taken, fov) =>
-            for image <- taken; angle <- fov yield show(image, angle)
-      )
+    val made  = Expect.each(Sight.values.toVector): sight =>
+      for
+        images <- node.publish[ImageMessage](s"/$name/${sight.below}image_raw")
+        infos  <- node.publish[CameraInfo](s"/$name/${sight.below}camera_info")
+      yield SightTopics(sight, images, infos)
+    made.map: all =>
+      def take(): Future[Either[RpcError, Unit]] =
+        val read  = all.filter(_.isRead)
+        val shots = read.map(topics => Shot(camera, topics.sight.kind, topics.sight.encoding))
+        if read.isEmpty then Future.successful(Right(()))
+        else
+          eyes.images(shots).zip(eyes.fov(camera)).map: (taken, fov) =>
+            for images <- taken; angle <- fov do
+              val (at, first) = (images.validAt, images.value.head)
+              frames(SensorMessages.optical(at, frame, first.positionNed, first.orientation))
+              for (topics, image) <- read.zip(images.value) do
+                topics.publish(Header(Time.of(at), frame), image, angle)
+            taken.map(_ => ())
+      Sensor(name, () => all.exists(_.isRead), () => take())
 
   private def lidar(
       node: RosNode,
@@ -166,14 +186,9 @@ object SimulatedSensors:
       var shownAt                             = Instant.Epoch
       def show(scan: Scan, at: Instant): Unit = if at > shownAt then
         shownAt = at
-        def point(number: Int) =
-          Ned(scan.points(3 * number), scan.points(3 * number + 1), scan.points(3 * number + 2))
-        if isLocal then
-          frames(VehicleMessages.transform(at, name, scan.positionNed, RosFrames.toEnu(scan.orientation)))
-        val header = Header(Time.of(at), if isLocal then name else VehicleMessages.World)
-        clouds.publish(SensorMessages.points(header, scan.size): number =>
-          if isLocal then RosFrames.swapBody(point(number))
-          else RosFrames.swapWorld(point(number) + vehicle.startNed))
+        val (placed, cloud) = SensorMessages.scan(scan, at, name, isLocal, vehicle.startNed)
+        placed.foreach(frames)
+        clouds.publish(cloud)
       Sensor(
         name,
         () => clouds.isRead,

@@ -66,34 +66,42 @@ final class SimulatedTopics private (
     Expect
       .each(vehicles.zipWithIndex): (vehicle, index) =>
         val name = vehicle.name
-        def take(topic: String, command: Either[String, Kinematics => Action], lasts: Option[Span]): Unit =
+        def take(
+            topic: String,
+            header: Header,
+            command: Either[String, Kinematics => Action],
+            lasts: Option[Span]
+        ): Unit =
+          val stamp = Some(header.stamp.instant).filter(_ > Instant.Epoch)
           command match
-            case Right(action) => server.act(index, action, lasts)
+            case Right(action) => server.act(index, action, lasts, stamp)
             case Left(why)     => node.refuse(s"/$name/$topic", why)
-        def velocity(topic: String, frame: String, twist: Twist) =
-          take(topic, VehicleCommands.velocity(name, frame, twist), Some(VehicleCommands.VelocityLasts))
+        def velocity(topic: String, header: Header, twist: Twist) =
+          val command = VehicleCommands.velocity(name, header.frameId, twist)
+          take(topic, header, command, Some(VehicleCommands.VelocityLasts))
         for
-          _ <- node.subscribe[TwistStamped](s"/$name/cmd_vel")(it =>
-            velocity("cmd_vel", it.header.frameId, it.twist)
+          _ <- node.subscribe[TwistStamped](s"/$name/cmd_vel")(it => velocity("cmd_vel", it.header, it.twist))
+          _ <- node.subscribe[Twist](s"/$name/cmd_vel_unstamped")(
+            velocity("cmd_vel_unstamped", Header(Time(0, 0), ""), _)
           )
-          _ <- node.subscribe[Twist](s"/$name/cmd_vel_unstamped")(velocity("cmd_vel_unstamped", "", _))
           _ <- node.subscribe[PoseStamped](s"/$name/setpoint_pose")(it =>
-            take("setpoint_pose", VehicleCommands.position(it), None)
+            take("setpoint_pose", it.header, VehicleCommands.position(it), None)
           )
         yield ()
       .map(_ => ())
 
   private val thread = Thread.ofPlatform().daemon().name("skein-ros-out").start: () =>
     var last  = Option.empty[Instant]
-    var count = 0L
+    var fixAt = Instant.Epoch
     while !isClosed do
       queue.poll(RepeatMillis, TimeUnit.MILLISECONDS) match
         case null =>
           for at <- last do clock.publish(Clock(Time.of(at)))
         case (at, seen) =>
-          publish(at, seen, withFix = count % FixEvery == 0)
-          sensors.foreach(_.look())
-          count += 1
+          val withFix = at >= fixAt
+          if withFix then fixAt = at + FixEvery
+          publish(at, seen, withFix)
+          sensors.foreach(_.look(at))
           last = Some(at)
 
   private def publish(at: Instant, seen: Vector[SeenVehicle], withFix: Boolean): Unit =
@@ -124,7 +132,7 @@ object SimulatedTopics:
   private val MostWaiting = 64
 
   private val RepeatMillis = 100L
-  private val FixEvery     = 10
+  private val FixEvery     = Span.ofMillis(200)
   private val JoinMillis   = 2_000L
 
   /** Opens the topics of vehicles with these names, in the simulator's order.

@@ -1,14 +1,16 @@
 package skein.ros
 
-import skein.policy.{Action, Yaw}
+import skein.policy.{Action, ActionGuidance, Yaw}
 import skein.port.VehicleError
 import skein.ros.message.{Odometry, Twist, Vector3 as RosVector}
 import skein.signal.Kinematics
-import skein.units.{Quaternion, Vector3}
-import skein.vehicle.GoTo
+import skein.units.{Quaternion, Span, Vector3}
+import skein.vehicle.{GoTo, Guidance, Setpoint}
 
 /** Converts odometry to motion in Skein's terms, and actions to the `cmd_vel` that performs them. */
 object TwistCommand:
+  /** Time after which a command is sent again. */
+  val Every: Span = Span.ofMillis(50)
 
   /** Converts odometry to a motion in NED. Left states which numbers are no motion. */
   def kinematics(odometry: Odometry): Either[String, Kinematics] =
@@ -49,6 +51,21 @@ object TwistCommand:
         Left(
           VehicleError.Unsupported("expected an action by velocity or position, cmd_vel takes no attitude")
         )
+
+  /** How a vehicle performs an action by commands that are sent again every [[Every]], for predictions. */
+  def guidance(action: Action): Guidance = ByTwists(action)
+
+  private final case class ByTwists(action: Action) extends Guidance:
+    val period: Option[Span] = Some(Every)
+
+    def setpoint(now: => Kinematics): Setpoint =
+      val performed = of(action, now).fold(
+        _ => action,
+        twist =>
+          val v = twist.linear
+          Action.Velocity(RosFrames.swapWorld(Vector3(v.x, v.y, v.z)), Yaw.Turning(-twist.angular.z))
+      )
+      ActionGuidance.of(performed).setpoint(now)
 
   private def twist(ned: Vector3, turnRadps: Double) =
     val enu = RosFrames.swapWorld(ned)

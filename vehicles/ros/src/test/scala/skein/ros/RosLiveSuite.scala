@@ -7,8 +7,8 @@ import skein.testing.{Conclusive, Lengthy, Waiting}
   */
 class RosLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
 
-  private def serving(speed: Double)(use: => Unit): String =
-    val served = ServedProcess.start(RosHere.variables(), speed, port = 0)
+  private def serving(speed: Double, stepMs: Int = 0)(use: => Unit): String =
+    val served = ServedProcess.start(RosHere.variables(), speed, port = 0, stepMs)
     try use
     catch
       case failure: Throwable =>
@@ -33,6 +33,16 @@ class RosLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
           ended
         )
         assert(ended.contains("package tf2_msgs for tf2_msgs/msg/TFMessage, it is not installed"), ended)
+
+  test("with a clock that waits for commands, a node flies equal places twice, at ten times real time"):
+    conclusive:
+      def flown() =
+        var said = ""
+        serving(speed = 10, stepMs = 100) {
+          said = run("repeat.py", Seq("200") ++ ServedProcess.Names*)
+        }: Unit
+        said.linesIterator.find(_.startsWith("PASSED"))
+      assertEquals(flown(), flown())
 
   test("a camera and lidars are seen, in their frames, with their stamps and the camera's matrix"):
     conclusive:

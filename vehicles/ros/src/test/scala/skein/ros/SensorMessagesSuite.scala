@@ -1,8 +1,9 @@
 package skein.ros
 
 import java.nio.{ByteBuffer, ByteOrder}
-import skein.airsim.WorldSettings
-import skein.ros.message.{Header, Time}
+import skein.airsim.{Image, Pixels, Scan, Shot, WorldSettings}
+import skein.ros.message.{Header, PointCloud2, Time, TransformStamped}
+import skein.rpc.Bytes
 import skein.units.*
 
 class SensorMessagesSuite extends munit.FunSuite:
@@ -36,9 +37,61 @@ class SensorMessagesSuite extends munit.FunSuite:
     assertEquals(Vector.fill(6)(bytes.getFloat), Vector(0f, 10f, 20f, 1f, 11f, 21f))
     assertEquals((cloud.width, cloud.rowStep, cloud.pointStep), (2, 24, 12))
 
+  private def image(pixels: Pixels) =
+    SensorMessages.image(header, Image(Shot("front"), 4, 2, pixels, Vector3.Zero, Quaternion.Identity))
+
   test("an image's rows have no gaps"):
-    val image = SensorMessages.image(header, 4, 2, "bgr8", Array.ofDim[Byte](24))
-    assertEquals((image.step, image.width, image.height), (12, 4, 2))
+    val colours = image(Pixels.Bgr(Bytes(Array.ofDim[Byte](24), 0, 24))).get
+    assertEquals((colours.step, colours.width, colours.height, colours.encoding), (12, 4, 2, "bgr8"))
+
+  test("depths are floats in metres, and infinite where nothing is"):
+    val depths = image(Pixels.Numbers(Array(0.5f, 65504f, 3, 4, 5, 6, 7, 8))).get
+    val bytes  = ByteBuffer.wrap(depths.data.toArray).order(ByteOrder.LITTLE_ENDIAN)
+    assertEquals((depths.step, depths.encoding), (16, "32FC1"))
+    assertEquals(Vector.fill(3)(bytes.getFloat), Vector(0.5f, Float.PositiveInfinity, 3f))
+
+  /** A vector in a transform's frame, in its parent's. */
+  private def inWorld(of: TransformStamped, at: Vector3): Vector3 =
+    val (turn, move) = (of.transform.rotation, of.transform.translation)
+    Quaternion(turn.w, turn.x, turn.y, turn.z).toWorld(at) + Vector3(move.x, move.y, move.z)
+
+  private def near(one: Vector3, other: Vector3): Unit =
+    assertEqualsDouble((one - other).norm, 0, 1e-5, s"$one, $other")
+
+  test("a lidar's points are where its frame in /tf puts them, and those of the world's where they are"):
+    // It heads east, rolled by a quarter turn, so that its right points down.
+    val pose  = Quaternion.ofYaw(math.Pi / 2) * Quaternion(math.sqrt(0.5), math.sqrt(0.5), 0, 0)
+    val place = Vector3(3, -2, -5)
+    val scan  = Scan(Array(30, 1, 0), Array.emptyIntArray, place, pose)
+    val ned   = place + pose.toWorld(Vector3(30, 1, 0))
+    near(ned, Vector3(3, 28, -4))
+    def first(cloud: PointCloud2) =
+      val bytes = ByteBuffer.wrap(cloud.data.toArray).order(ByteOrder.LITTLE_ENDIAN)
+      Vector3(bytes.getFloat.toDouble, bytes.getFloat.toDouble, bytes.getFloat.toDouble)
+    val (placed, cloud) =
+      SensorMessages.scan(scan, Instant.Epoch, "a/spin", isLocal = true, startNed = Vector3(9, 9, 9))
+    assertEquals((placed.get.header.frameId, placed.get.childFrameId), ("map", "a/spin"))
+    assertEquals(cloud.header.frameId, "a/spin")
+    near(inWorld(placed.get, first(cloud)), RosFrames.swapWorld(ned))
+    val (none, world) = SensorMessages.scan(
+      scan.copy(points = Array(1, 2, 3)),
+      Instant.Epoch,
+      "a/spin",
+      isLocal = false,
+      startNed = place
+    )
+    assertEquals((none, world.header.frameId), (None, "map"))
+    near(first(world), RosFrames.swapWorld(Vector3(4, 0, -2)))
+
+  test("a camera's frame in /tf and its matrix put a pixel where the camera sees it"):
+    val (place, pose) = (Vector3(1, 2, -3), Quaternion.ofYaw(math.Pi / 2))
+    val frame         = SensorMessages.optical(Instant.Epoch, "a/front/optical", place, pose)
+    val k             = SensorMessages.cameraInfo(header, 64, 48, Radians(math.Pi / 2)).k.values
+    // 10 m ahead, which is east; 2 m to the right, south; 1 m down.
+    val (depth, right, down) = (10.0, 2.0, 1.0)
+    val (u, v)               = (k(0) * right / depth + k(2), k(4) * down / depth + k(5))
+    val optical              = Vector3((u - k(2)) / k(0), (v - k(5)) / k(4), 1) * depth
+    near(inWorld(frame, optical), RosFrames.swapWorld(place + Vector3(-2, 10, 1)))
 
   test("sensors whose topics would be one are refused, and one that would take the body's frame"):
     def mistake(cameras: String, lidar: String) =

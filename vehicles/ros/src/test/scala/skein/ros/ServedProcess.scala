@@ -10,7 +10,7 @@ import skein.airsim.WorldSettings
 import skein.link.{Address, TcpTransport}
 import skein.scene.{Placement, Scene, SceneObject, Shape}
 import skein.simulator.{SimulatorServer, SimulatorSettings}
-import skein.units.{Clock, Vector3}
+import skein.units.{Clock, Span, Vector3}
 
 /** A simulator behind ROS 2 in a process of its own, whose environment has the libraries. */
 private[ros] final class ServedProcess private (process: Process, val log: () => String):
@@ -30,7 +30,9 @@ private[ros] object ServedProcess:
   val settings: String = """{ "SettingsVersion": 1.2, "SimMode": "Multirotor", "Vehicles": {
     "a": { "VehicleType": "SimpleFlight", "X": 3, "Y": -2,
       "Cameras": { "front": { "Z": -1, "CaptureSettings": [
-        { "ImageType": 0, "Width": 64, "Height": 48, "FOV_Degrees": 90 } ] } },
+        { "ImageType": 0, "Width": 64, "Height": 48, "FOV_Degrees": 90 },
+        { "ImageType": 1, "Width": 64, "Height": 48, "FOV_Degrees": 90 },
+        { "ImageType": 5, "Width": 64, "Height": 48, "FOV_Degrees": 90 } ] } },
       "Sensors": {
         "spin": { "SensorType": 6, "Enabled": true, "Z": -1, "PointsPerSecond": 20000, "Range": 60,
           "VerticalFOVLower": -1, "VerticalFOVUpper": 1, "DataFrame": "SensorLocalFrame" },
@@ -42,9 +44,10 @@ private[ros] object ServedProcess:
   /** Starts it, and waits until it serves.
     *
     * @param port of AirSim's wire
+    * @param stepMs after which the clock waits for commands; 0: never
     */
-  def start(variables: Map[String, String], speed: Double, port: Int): ServedProcess =
-    start(program(variables, "serveOnRos", speed.toString, port.toString))
+  def start(variables: Map[String, String], speed: Double, port: Int, stepMs: Int = 0): ServedProcess =
+    start(program(variables, "serveOnRos", speed.toString, port.toString, stepMs.toString))
 
   /** Starts a program that prints `serving`, and ends when its input does. */
   def start(program: ProcessBuilder): ServedProcess =
@@ -72,7 +75,7 @@ private[ros] object ServedProcess:
 
 /** Serves three vehicles to ROS 2 until its input ends; the first has a camera and two lidars before a wall.
   */
-@main def serveOnRos(speed: Double, port: Int): Unit =
+@main def serveOnRos(speed: Double, port: Int, stepMs: Int): Unit =
   given system: ActorSystem = ActorSystem("ros")
   val world = WorldSettings.parse(ServedProcess.settings).fold(why => sys.error(why.message), identity)
   val wall  =
@@ -89,7 +92,8 @@ private[ros] object ServedProcess:
     case Right((node, topics)) =>
       val settings =
         SimulatorSettings(world, Address("127.0.0.1", port), speed = speed, scene = Scene(Vector(wall)))
-      val started = SimulatorServer.start(settings, TcpTransport(), Clock.system, Some(topics))
+      val step    = Option.when(stepMs > 0)(Span.ofMillis(stepMs))
+      val started = SimulatorServer.start(settings, TcpTransport(), Clock.system, Some(topics), step)
       val server  = Await.result(started, 20.seconds)
       topics.fly(server).left.foreach(println)
       topics.show(world, server.address).left.foreach(println)

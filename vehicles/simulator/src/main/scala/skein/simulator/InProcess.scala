@@ -8,24 +8,43 @@ import skein.vehicle.{PathFollowing, Setpoint}
 /** The simulation as other parts of this process use it: it reports to an onlooker, and vehicles perform
   * actions until these end, another one replaces them, or a client moves or resets the vehicle. Then, or once
   * no action is left, a vehicle in the air holds its position, as after any move.
+  *
+  * @param step after which the clock waits for commands ([[CommandLockstep]]); without one it does not
   */
-private[simulator] final class InProcess(simulation: Simulation, onlooker: Onlooker):
+private[simulator] final class InProcess(
+    simulation: Simulation,
+    onlooker: Onlooker,
+    step: Option[Span] = None
+):
   private val world  = simulation.world
   private val pilots = world.vehicles.indices.map(OnBoard(_)).toVector
   private var seenAt = Option.empty[Instant]
 
-  pilots.foreach(pilot => world.attach(pilot.index, pilot))
+  private val lockstep = step.map(CommandLockstep(_, world.step, () => world.now))
 
-  /** When the onlooker sees the vehicles next, on the simulator's clock. */
-  def nextDue: Instant = seenAt.fold(world.now)(_ + PathFollowing.Period)
+  pilots.foreach(pilot => world.attach(pilot.index, pilot))
+  lockstep.foreach(world.holdTo)
+
+  /** When the onlooker sees the vehicles next, on the simulator's clock; None: not before a command. */
+  def nextDue: Option[Instant] =
+    Option.unless(lockstep.exists(_.isWaiting))(seenAt.fold(world.now)(_ + PathFollowing.Period))
+
+  /** Number of stops at which commands were awaited in vain. */
+  def missed: Long = lockstep.fold(0L)(_.missed)
 
   /** Lets a vehicle perform an action; see [[SimulatorServer.act]]. */
-  def act(vehicle: Int, action: Kinematics => Action, lasts: Option[Span]): Unit =
-    pilots(vehicle).act(action, lasts)
+  def act(
+      vehicle: Int,
+      action: Kinematics => Action,
+      lasts: Option[Span],
+      stamp: Option[Instant] = None
+  ): Unit = lockstep.zip(stamp.filter(_ <= world.now)) match
+    case Some((clock, at)) => clock.heard(vehicle, at)(pilots(vehicle).act(action, lasts))
+    case None              => pilots(vehicle).act(action, lasts)
 
   private def see(at: Instant): Unit =
     seenAt = Some(at)
-    onlooker.see(at, world.vehicles.map(motionOf(_, at)))
+    if lockstep.forall(_.isSeen(at)) then onlooker.see(at, world.vehicles.map(motionOf(_, at)))
 
   private def motionOf(vehicle: SimulatedVehicle, at: Instant) = SeenVehicle(
     vehicle.settings.name,

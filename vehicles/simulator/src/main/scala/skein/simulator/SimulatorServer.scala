@@ -40,7 +40,8 @@ final class SimulatorServer private (
     broken: Future[Throwable],
     peers: Option[PeerServer],
     counters: PeerCounters,
-    heldUp: AtomicBoolean
+    heldUp: AtomicBoolean,
+    missed: AtomicLong
 ):
 
   /** The listening address, with the actual port. */
@@ -65,6 +66,9 @@ final class SimulatorServer private (
   /** Whether moves have held all workers for longer than [[SimulatorSettings.patience]]. */
   def hasHeldUp: Boolean = heldUp.get
 
+  /** Stops of the clock at which commands were awaited in vain: see [[SimulatorServer.start]]. */
+  def missedCommands: Long = missed.get
+
   /** The true motion of all vehicles; does not complete once the server is closed. */
   def truth(): Future[SimulatorServer.Truth] =
     val answer = Promise[SimulatorServer.Truth]()
@@ -78,9 +82,14 @@ final class SimulatorServer private (
     * @param action by the vehicle's present motion, world NED; evaluated every 20 ms of simulated time
     * @param lasts simulated time after which a vehicle in the air holds its position; None: until the next
     *   action, or until a client moves or resets it
+    * @param stamp when it was decided, on the simulator's clock, if that is known
     */
-  def act(vehicle: Int, action: Kinematics => Action, lasts: Option[Span]): Unit =
-    simulator ! SimulatorServer.Message.Act(vehicle, action, lasts)
+  def act(
+      vehicle: Int,
+      action: Kinematics => Action,
+      lasts: Option[Span],
+      stamp: Option[Instant] = None
+  ): Unit = simulator ! SimulatorServer.Message.Act(vehicle, action, lasts, stamp)
 
   /** Stops listening and closes all connections; moves in progress are not answered. */
   def close(): Future[Done] =
@@ -103,16 +112,20 @@ object SimulatorServer:
     * [[skein.link.TransportError.PortTaken]].
     *
     * @param onlooker sees the vehicles of the settings, which must be multirotors
+    * @param step a multiple of 20 ms: the clock stops every `step` from the first [[act]] with a stamp on,
+    *   until each vehicle that was commanded has a command stamped then or later, for at most a second
     */
   def start(
       settings: SimulatorSettings,
       transport: Transport,
       clock: Clock,
-      onlooker: Option[Onlooker] = None
+      onlooker: Option[Onlooker] = None,
+      step: Option[Span] = None
   )(using system: ActorSystem): Future[SimulatorServer] =
     given ExecutionContext = ExecutionContext.parasitic
     val behind             = AtomicLong()
     val heldUp             = AtomicBoolean()
+    val missed             = AtomicLong()
     val broken             = Promise[Throwable]()
     val lines              = CallLines[Call](isUrgent = call => Simulation.isControl(call.request.method))
     val work               = AtomicBoolean()
@@ -122,6 +135,7 @@ object SimulatorServer:
       Behaviors.withTimers(Running(
         Simulation(settings, clock.now()),
         onlooker,
+        step,
         counters,
         clock,
         lines,
@@ -129,6 +143,7 @@ object SimulatorServer:
         work,
         behind,
         heldUp,
+        missed,
         broken
       ).behavior)
     )
@@ -164,14 +179,14 @@ object SimulatorServer:
             .recoverWith: error =>
               simulator ! Message.Stop
               rpc.close().transformWith(_ => Future.failed(error))
-    yield SimulatorServer(rpc, simulator, lines, behind, broken.future, open, counters, heldUp)
+    yield SimulatorServer(rpc, simulator, lines, behind, broken.future, open, counters, heldUp, missed)
 
   private[simulator] enum Message:
     /** Calls wait to be run. */
     case Work
     case Wake
     case Look(answer: Promise[Truth])
-    case Act(vehicle: Int, action: Kinematics => Action, lasts: Option[Span])
+    case Act(vehicle: Int, action: Kinematics => Action, lasts: Option[Span], stamp: Option[Instant])
     case Stop
 
     case Gone(connection: Long, isForgotten: Boolean)
@@ -190,6 +205,7 @@ object SimulatorServer:
   final private class Running(
       simulation: Simulation,
       onlooker: Option[Onlooker],
+      step: Option[Span],
       counters: PeerCounters,
       clock: Clock,
       lines: CallLines[Call],
@@ -197,6 +213,7 @@ object SimulatorServer:
       work: AtomicBoolean,
       behind: AtomicLong,
       heldUp: AtomicBoolean,
+      missed: AtomicLong,
       broken: Promise[Throwable]
   ):
     private val waiting                        = mutable.LongMap.empty[Call]
@@ -205,7 +222,7 @@ object SimulatorServer:
     private val protocol: Option[PeerProtocol] =
       simulation.settings.mavlink.map(MavlinkVehicles(simulation, _))
         .orElse(simulation.settings.hil.map(HilVehicles(simulation, _)))
-    private val inProcess = onlooker.map(InProcess(simulation, _))
+    private val inProcess = onlooker.map(InProcess(simulation, _, step))
     private val outs      = mutable.LongMap.empty[BoundedSourceQueue[ByteString]]
 
     def behavior(timers: TimerScheduler[Message]): Behavior[Message] = Behaviors.setup: context =>
@@ -219,8 +236,9 @@ object SimulatorServer:
               counters.dropped.incrementAndGet(): Unit
         behind.set(simulation.behind.toNanos)
         heldUp.set(simulation.hasHeldUp)
+        missed.set(inProcess.fold(0L)(_.missed))
         val now = clock.now()
-        val due = (protocol.flatMap(_.nextDue) ++ inProcess.map(_.nextDue)).flatMap(simulation.comesTo)
+        val due = (protocol.flatMap(_.nextDue) ++ inProcess.flatMap(_.nextDue)).flatMap(simulation.comesTo)
         for at <- (simulation.nextWake(now) ++ due.map(_.max(now))).minOption if wakeAt.forall(at < _) do
           wakeAt = Some(at)
           // A timer is late by up to its scheduler's tick.
@@ -252,10 +270,10 @@ object SimulatorServer:
             simulation.advance(clock.now())
             answer.success(truth): Unit
             goOn()
-        case Message.Act(vehicle, action, lasts) =>
+        case Message.Act(vehicle, action, lasts, stamp) =>
           orEnd:
             simulation.advance(clock.now())
-            inProcess.foreach(_.act(vehicle, action, lasts))
+            inProcess.foreach(_.act(vehicle, action, lasts, stamp))
             // Answers the move that it has ended.
             simulation.advance(clock.now())
             goOn()

@@ -43,6 +43,22 @@ public final class Directions {
     Arrays.fill(holds, 1f);
   }
 
+  /** Sets the directions of one of many worlds in all commands. */
+  public void point(int world, int worlds, float cosOf, float sinOf) {
+    for (int at = world; at < cos.length; at += worlds) {
+      cos[at] = cosOf;
+      sin[at] = sinOf;
+    }
+  }
+
+  /** Holds the altitude of one of many worlds, m down, with all commands in space. */
+  public void level(int world, int worlds, float down) {
+    for (int at = world; at < third.length; at += worlds) {
+      third[at] = down;
+      holds[at] = 1f;
+    }
+  }
+
   public void fill(int from, int to, double headingRad) {
     Arrays.fill(cos, from, to, (float) StrictMath.cos(headingRad));
     Arrays.fill(sin, from, to, (float) StrictMath.sin(headingRad));

@@ -23,8 +23,16 @@ public class LanePolicy {
 
   public final int[] offsets;
 
+  /** Those of the function that observes; made when it is first called. */
+  private float[][] observing;
+
+  private int[] observingAt;
+  private float[] observingScratch;
+
   /** The memory of each world's policy, by number, then by world: initially, now, and after the decision. */
-  private final float[] initial, memory, newMemory;
+  private final float[] initial;
+
+  public final float[] memory, newMemory;
 
   /** Change of each world's decided heading from the one before, by the shorter way, rad; 0 without efforts.
    */
@@ -50,7 +58,8 @@ public class LanePolicy {
     parameters = new float[LaneFunction.places(form.parameters())];
     scratch = new float[function.scratch()];
     // What the own readings tell comes last.
-    arrays = new float[form.inputs() + form.outputs().size() - unasked + LaneObservation.READ][];
+    int unread = form.memories() - form.remembered();
+    arrays = new float[form.inputs() + form.outputs().size() - unasked - unread + LaneObservation.READ][];
     offsets = new int[arrays.length];
     initial = new float[form.memories() * WORLDS];
     memory = new float[initial.length];
@@ -125,32 +134,61 @@ public class LanePolicy {
       int knownAt,
       Directions into,
       int intoAt) {
-    // In the order of PolicyLanes.In, then of the outputs.
-    for (int i = 0; i < LaneObservation.READ; i++) {
-      set(i, observation.opponent[i], observation.opponentAt[i]);
-      set(arrays.length - LaneObservation.READ + i, observation.own[i], observation.ownAt[i]);
-    }
-    set(4, observation.elapsed, 0);
-    set(5, own.cos, ownAt);
-    set(6, own.sin, ownAt);
-    set(7, known.cos, knownAt);
-    set(8, known.sin, knownAt);
-    set(9, heading, 0);
-    set(10, observation.ownAge, 0);
-    set(11, observation.opponentAge, 0);
-    int outputs = form.inputs(), memories = form.memories();
-    for (int i = 0; i < memories; i++) {
-      set(12 + i, memory, i * WORLDS);
-      set(outputs + decided + i, newMemory, i * WORLDS);
-    }
-    set(outputs, into.cos, intoAt);
-    set(outputs + 1, into.sin, intoAt);
-    if (withEffort) set(outputs + 2, turned, 0);
-    if (form.keepsHeading()) set(outputs + decided + memories, newHeading, 0);
+    look(arrays, offsets, observation, own, ownAt, known, knownAt);
+    int outputs = form.inputs(), remembered = form.remembered();
+    for (int i = 0; i < remembered; i++)
+      set(arrays, offsets, outputs + decided + i, newMemory, i * WORLDS);
+    set(arrays, offsets, outputs, into.cos, intoAt);
+    set(arrays, offsets, outputs + 1, into.sin, intoAt);
+    if (withEffort) set(arrays, offsets, outputs + 2, turned, 0);
+    if (form.keepsHeading()) set(arrays, offsets, outputs + decided + remembered, newHeading, 0);
     function.apply(arrays, offsets, parameters, scratch, worlds);
   }
 
-  private void set(int place, float[] array, int offset) {
+  /** Computes the memory that no decision looks at, without deciding. The arguments are those of {@link
+   * #decide}.
+   */
+  public void observe(
+      LaneObservation observation, Directions own, int ownAt, Directions known, int knownAt) {
+    int outputs = form.inputs(), remembered = form.remembered();
+    if (observing == null) {
+      observing = new float[outputs + form.memories() - remembered + LaneObservation.READ][];
+      observingAt = new int[observing.length];
+      observingScratch = new float[form.observing().scratch()];
+      for (int i = remembered; i < form.memories(); i++)
+        set(observing, observingAt, outputs + i - remembered, newMemory, i * WORLDS);
+    }
+    look(observing, observingAt, observation, own, ownAt, known, knownAt);
+    form.observing().apply(observing, observingAt, parameters, observingScratch, worlds);
+  }
+
+  private void look(
+      float[][] arrays,
+      int[] offsets,
+      LaneObservation observation,
+      Directions own,
+      int ownAt,
+      Directions known,
+      int knownAt) {
+    // In the order of PolicyLanes.In.
+    for (int i = 0; i < LaneObservation.READ; i++) {
+      set(arrays, offsets, i, observation.opponent[i], observation.opponentAt[i]);
+      int last = arrays.length - LaneObservation.READ + i;
+      set(arrays, offsets, last, observation.own[i], observation.ownAt[i]);
+    }
+    set(arrays, offsets, 4, observation.elapsed, 0);
+    set(arrays, offsets, 5, own.cos, ownAt);
+    set(arrays, offsets, 6, own.sin, ownAt);
+    set(arrays, offsets, 7, known.cos, knownAt);
+    set(arrays, offsets, 8, known.sin, knownAt);
+    set(arrays, offsets, 9, heading, 0);
+    set(arrays, offsets, 10, observation.ownAge, 0);
+    set(arrays, offsets, 11, observation.opponentAge, 0);
+    for (int i = 0; i < form.memories(); i++)
+      set(arrays, offsets, 12 + i, memory, i * WORLDS);
+  }
+
+  private static void set(float[][] arrays, int[] offsets, int place, float[] array, int offset) {
     // Nearly always the same one: to store a reference costs the collector's bookkeeping.
     if (arrays[place] != array) arrays[place] = array;
     offsets[place] = offset;
@@ -168,18 +206,13 @@ public class LanePolicy {
     for (int i = world; i < memory.length; i += WORLDS) memory[i] = initial[i];
   }
 
-  /** Sets the single parameter of one world's external policy. */
-  public void tell(int world, float number) {
-    parameters[place(0, world)] = number;
-  }
-
   /** Makes all worlds' decisions commands.
    *
    * @param effort receives the sums of the heading's changes
    */
   public void commit(float[] effort) {
     if (form.keepsHeading()) System.arraycopy(newHeading, 0, heading, 0, WORLDS);
-    System.arraycopy(newMemory, 0, memory, 0, memory.length);
+    System.arraycopy(newMemory, 0, memory, 0, form.remembered() * WORLDS);
     if (!withEffort) return;
     for (int i = 0; i < WORLDS; i += LANES)
       FloatVector.fromArray(SPECIES, effort, i)

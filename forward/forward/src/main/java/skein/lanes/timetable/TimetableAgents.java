@@ -49,6 +49,12 @@ public abstract class TimetableAgents {
       float[] times,
       int number);
 
+  /** Computes the memory after a decision in all worlds, without deciding: what a policy that is decided from
+   * outside observes. The arguments are those of {@link #decide}.
+   */
+  public abstract void observe(
+      TimetableAgents[] all, int[] views, int view, int known, int before, float[] times, int number);
+
   /** Takes an image in all worlds, if this vehicle has a camera.
    *
    * @param view the index of the readings that it shows

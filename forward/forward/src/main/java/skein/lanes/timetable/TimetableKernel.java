@@ -109,4 +109,17 @@ public final class TimetableKernel {
       default -> throw new IllegalStateException("no operation of a timetable: " + operations[field]);
     }
   }
+
+  /** Lets the vehicle of a decision observe, without deciding. */
+  public void observe(int operation) {
+    int field = operation * Timetable.Fields();
+    agents[operations[field + 1]].observe(
+        agents,
+        views,
+        operations[field + 2] * agents.length,
+        operations[field + 3] * WORLDS,
+        operations[field + 4] * WORLDS,
+        times,
+        operation * numbers);
+  }
 }

@@ -84,6 +84,10 @@ public abstract class TimetableVehicles {
       seenY[i] = startY[world];
       seenVx[i] = 0f;
       seenVy[i] = 0f;
+      if (inSpace) {
+        seenZ[i] = startZ[world];
+        seenVz[i] = 0f;
+      }
     }
     if (predicted != null) predicted.restart(world, seenX, seenY, seenVx, seenVy);
     rest(world);

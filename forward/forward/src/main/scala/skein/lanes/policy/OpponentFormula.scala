@@ -50,12 +50,13 @@ private[policy] object OpponentFormula:
     */
   def of(formula: PolicyFormula, self: Int): Either[Untraceable, OpponentFormula] =
     import formula.motion
-    val trace                        = Trace()
-    def inputOf(node: Node)          = Option.when(node.op == Op.Input)(formula.inputs(node.index))
+    val trace                              = Trace()
+    def inputOf(node: Node)                = Option.when(node.op == Op.Input)(formula.inputs(node.index))
     def replaced(node: Node): Option[Node] = node.op match
       case Op.Sub   => difference(inputOf(node.args(0)), inputOf(node.args(1)), self, trace)
-      case Op.Input => Some(trace.input(placeOf(formula.inputs(node.index), self).getOrElse(Other + node.index)))
-      case _        => None
+      case Op.Input =>
+        Some(trace.input(placeOf(formula.inputs(node.index), self).getOrElse(Other + node.index)))
+      case _ => None
     for
       heading <- motion match
         case Motion.Along(heading, speed) if inputOf(speed).contains(PolicyInput.Cruise) => Right(heading)
@@ -65,7 +66,9 @@ private[policy] object OpponentFormula:
       nodes  = Trace.replaced(heading +: formula.memory, trace)(replaced)
       others = Trace.needed(nodes).find(node => node.op == Op.Input && node.index >= Other)
       _ <- others
-        .map(node => Untraceable(s"it regards ${formula.inputs(node.index - Other)}, and not by a difference"))
+        .map(node =>
+          Untraceable(s"it regards ${formula.inputs(node.index - Other)}, and not by a difference")
+        )
         .toLeft(())
     yield OpponentFormula(formula, trace, nodes.head, nodes.tail)
 

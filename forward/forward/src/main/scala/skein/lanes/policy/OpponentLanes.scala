@@ -57,7 +57,8 @@ private[lanes] object OpponentLanes:
     val agents = engagement.agents
     for
       _     <- Option.when(engagement.assignment == OpponentFormula.Rivals)(())
-      forms <- Expect.each(agents.indices)(self => PolicyLanes.of(agents(self).policy, self, isPredicted)).toOption
+      forms <-
+        Expect.each(agents.indices)(self => PolicyLanes.of(agents(self).policy, self, isPredicted)).toOption
     yield Expect.each(agents.flatMap(_.eye))(cameraOf).map: _ =>
       val sees  = agents.exists(_.eye.isDefined)
       val alike = agents.map: agent =>

@@ -87,10 +87,32 @@ private[skein] final class PolicyLanes private (formula: OpponentFormula):
   /** Number of arrays that it reads. */
   def inputs: Int = In.Memory + memories
 
-  /** Computes [[outputs]] from the inputs of [[In]], the first of which are passed as the opponent's readings
-    * and the own ones.
+  /** Number of values in the memory up to the last one that a decision looks at. The others are there to be
+    * seen from outside.
     */
-  lazy val function: LaneFunction = LaneCompiler.compile(inputs, outputs, LaneObservation.READ, parameters)
+  val remembered: Int =
+    needed.iterator.filter(node => node.op == Op.Input && node.index >= In.Memory).map(
+      _.index - In.Memory + 1
+    )
+      .maxOption.getOrElse(0)
+
+  private def deciding(withEffort: Boolean) =
+    val all = nodes(withEffort)
+    all.patch(all.size - (outputs.size - decided) + remembered, Nil, memories - remembered)
+
+  /** Computes [[outputs]] without the memory that is not [[remembered]], from the inputs of [[In]], the first
+    * of which are passed as the opponent's readings and the own ones.
+    */
+  lazy val function: LaneFunction =
+    LaneCompiler.compile(inputs, deciding(withEffort = true), LaneObservation.READ, parameters)
+
+  /** Computes the memory that is not [[remembered]]. */
+  lazy val observing: LaneFunction = LaneCompiler.compile(
+    inputs,
+    outputs.slice(decided + remembered, decided + memories),
+    LaneObservation.READ,
+    parameters
+  )
 
   // But how far the decided heading is from the one before.
   private def course = outputs.patch(2, Nil, 1)
@@ -99,7 +121,7 @@ private[skein] final class PolicyLanes private (formula: OpponentFormula):
 
   /** [[function]] without the change of the decided heading. */
   lazy val functionWithoutEffort: LaneFunction =
-    LaneCompiler.compile(inputs, course, LaneObservation.READ, parameters)
+    LaneCompiler.compile(inputs, deciding(withEffort = false), LaneObservation.READ, parameters)
 
   /** [[function]] for worlds that all have one policy. */
   lazy val functionOfOne: LaneFunction = LaneCompiler.compile(inputs, course, LaneObservation.READ)

@@ -109,16 +109,33 @@ private[lanes] final class TeamLanes private (
   private val derived = angles.map(_.derived)
   private val numbers = derived.map(Evaluation(_))
 
-  private val common = Common.of(outputs, view)
+  /** By vehicle: number of values in the memory up to the last one that its decisions look at. The others are
+    * there to be seen from outside.
+    */
+  val remembered: Vector[Int] = Vector.tabulate(count): self =>
+    Trace.needed(outputs(self)).iterator.filter(node => node.op == Op.Input && node.index >= view)
+      .map(node => source(node.index)).collect { case Source.Memory(number) => number + 1 }
+      .maxOption.getOrElse(0)
+
+  private def deciding(self: Int)  = outputs(self).take(decided + remembered(self))
+  private def observing(self: Int) = outputs(self).drop(decided + remembered(self))
+
+  private val common =
+    Common.of(Vector.tabulate(count)(deciding) ++ Vector.tabulate(count)(observing), view)
 
   /** The function for what is computed once per view; may be empty. */
   val shared: BoundFunction = BoundFunction.of(common.nodes)
 
-  /** By vehicle: the function for its own part of the decision. */
-  val functions: Vector[BoundFunction] =
-    outputs.map(each =>
-      BoundFunction.of(common.without(trace, each, number => trace.input(sharedInput(number))))
-    )
+  private def own(outputs: Vector[Node]): BoundFunction =
+    BoundFunction.of(common.without(trace, outputs, number => trace.input(sharedInput(number))))
+
+  /** By vehicle: the function for its own part of the decision, without the memory that is not
+    * [[remembered]].
+    */
+  val functions: Vector[BoundFunction] = Vector.tabulate(count)(self => own(deciding(self)))
+
+  /** By vehicle: the function for its own part of the memory that is not [[remembered]]; may be empty. */
+  val sights: Vector[BoundFunction] = Vector.tabulate(count)(self => own(observing(self)))
 
   /** The vehicle and the component of its reading that an input stands for, 0 to 3: position north and east,
     * velocity north and east; in space, 4 and 5: position and velocity down.
@@ -130,10 +147,13 @@ private[lanes] final class TeamLanes private (
     if input >= FirstShared then Source.Shared(input - FirstShared)
     else Own.source((input - view) % Stride)
 
-  private val sources = functions.map(_.inputs.toVector.filter(reading(_).isEmpty).map(source))
+  private val sources = functions.zip(sights).map: (decides, observes) =>
+    (decides.inputs ++ observes.inputs).toVector.filter(reading(_).isEmpty).map(source)
 
   val needsVelocity: Boolean =
-    (shared +: functions).exists(_.inputs.exists(reading(_).exists((_, field) => field == 2 || field == 3)))
+    (shared +: (functions ++ sights)).exists(_.inputs.exists(reading(_).exists((_, field) =>
+      field == 2 || field == 3
+    )))
 
   /** By vehicle: whether it needs ages of readings, commands of others, or the time until its command takes
     * effect.

@@ -109,7 +109,11 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
   /** Time of the last score, since the start, s. */
   def scoredAtS: Float = shared(ScoreLanes.Time)
 
-  def soFar(number: Int, world: Int): Float = kept((ends(number) - 1) * worlds + world)
+  private def soFar(number: Int, world: Int): Float = kept((ends(number) - 1) * worlds + world)
+
+  /** Writes the last kept number by world. */
+  def soFar(number: Int, into: Array[Float]): Unit =
+    System.arraycopy(kept, (ends(number) - 1) * worlds, into, 0, worlds)
 
   /** The final values of a judged number in all worlds. */
   def values(number: Int): Array[Float] = Array.tabulate(worlds)(value(number, _))
@@ -125,6 +129,3 @@ private[lanes] object Scoreboard:
     */
   def ofDistance(by: (Reduction | OfMoment, Double)*): Scoreboard =
     Scoreboard(ScoreLanes.ofDistance(by*), Vector(0, 0))
-
-  /** The scores that learners need: newest, mean and least distance. */
-  def ofLearners: Scoreboard = ofDistance((OfMoment.Newest, 0), (Reduction.Mean, 0), (Reduction.Least, 0))

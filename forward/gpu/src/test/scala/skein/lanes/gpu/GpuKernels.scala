@@ -13,14 +13,15 @@ import skein.vehicle.{Quadrotor, ReducedModel}
 
 /** Writes kernels as they go to a GPU's driver into a folder, to be read, or translated by `ptxas -v`. */
 @main def gpuKernels(folder: String): Unit =
-  val layout                                                               = GpuLayout(2, shows = false)
+  val layout                                                        = GpuLayout(2, shows = false)
   def duels(name: String, model: VelocityResponse, pursuer: Policy) =
     val vehicle = GpuVehicle.of(model).fold(sys.error, identity)
     val duel    = Engagement.of(Duel.paper).flownBy(Role.Pursuer, pursuer)
-    val two     = OpponentLanes.of(duel, _ => false, inSpace = false, isPredicted = false).get.fold(sys.error, identity)
-    val scores  = ScoreLanes.ofDistance(Reduction.Mean -> 50.1)
-    val form    = TeamForm(two, scores, Vector(None), 60, Vector(-20, -20))(null)
-    val kernel  = GpuOpponentKernel(InterpretedGpu(), duel.agents, vehicle, None, form, two, layout)
+    val two     =
+      OpponentLanes.of(duel, _ => false, inSpace = false, isPredicted = false).get.fold(sys.error, identity)
+    val scores = ScoreLanes.ofDistance(Reduction.Mean -> 50.1)
+    val form   = TeamForm(two, scores, Vector(None), 60, Vector(-20, -20))(null)
+    val kernel = GpuOpponentKernel(InterpretedGpu(), duel.agents, vehicle, None, form, two, layout)
     Files.writeString(Path.of(folder, s"$name.ptx"), kernel.text): Unit
   duels("lag", PlantResponse(ReducedModel.AirSimLag), PaperPursuer())
   duels("drag", PlantResponse(ReducedModel.AirSim), PaperPursuer())

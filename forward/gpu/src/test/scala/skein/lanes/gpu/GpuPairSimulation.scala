@@ -42,14 +42,14 @@ class GpuPairSimulation extends munit.FunSuite, TestGpus:
 
   private final class Worlds(val size: Int, episodes: Int, link: Delays, of: Int => Policy)
       extends PairWorlds:
-    override def shareEpisodes: Boolean    = true
-    override def episodesOfEach: Int       = episodes
-    private val pursuers                   = Vector.tabulate(size)(world => of(world / episodes))
-    private val evaders                    = Vector(PaperEvader(7), PaperEvader(8))
-    def key(world: Int): Int               = WorldRandom.key(5, 0, world % episodes)
-    def link(world: Int): Delays           = link
-    def pursuer(world: Int): Policy = pursuers(world)
-    def evader(world: Int): Policy  = evaders(world / episodes % 2)
+    override def shareEpisodes: Boolean = true
+    override def episodesOfEach: Int    = episodes
+    private val pursuers                = Vector.tabulate(size)(world => of(world / episodes))
+    private val evaders                 = Vector(PaperEvader(7), PaperEvader(8))
+    def key(world: Int): Int            = WorldRandom.key(5, 0, world % episodes)
+    def link(world: Int): Delays        = link
+    def pursuer(world: Int): Policy     = pursuers(world)
+    def evader(world: Int): Policy      = evaders(world / episodes % 2)
 
   private def check(
       gpu: Gpu,

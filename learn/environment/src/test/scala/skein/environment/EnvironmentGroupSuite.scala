@@ -1,14 +1,11 @@
 package skein.environment
 
 import java.nio.ByteBuffer
-import skein.forward.{LoopObserver, Rollout}
 import skein.policy.*
 import skein.scenario.*
-import skein.signal.SplitMix64
-import skein.simd.WorldRandom
 import skein.units.{MetresPerSecond, OwnFailure, Radians, Vector3}
 
-class ScenarioGroupSuite extends munit.FunSuite:
+class EnvironmentGroupSuite extends munit.FunSuite:
   private given Scenarios = Scenarios.ours
 
   private val surround = EnvironmentSettings(
@@ -22,7 +19,7 @@ class ScenarioGroupSuite extends munit.FunSuite:
       settings: EnvironmentSettings,
       count: Int,
       autoreset: Autoreset = Autoreset.NextStep
-  ):
+  )(using Scenarios):
     private val block           = ByteBuffer.allocateDirect(EnvironmentBuffers.bytes(1, count))
     val batch: EnvironmentBatch =
       EnvironmentBatch.of(settings, count, autoreset, block).fold(fail(_), identity)
@@ -34,52 +31,30 @@ class ScenarioGroupSuite extends munit.FunSuite:
     def ended(number: Int): Boolean          = truncated(number) || buffers.terminations.get(number) != 0
     def truncated(number: Int): Boolean      = buffers.truncations.get(number) != 0
 
-  /** The turn towards the opponent, computed from an observation. */
-  private def towards(right: Double): Double = (right / 10).max(-1).min(1)
+  test("the engine is reported: SIMD, or scalar with the reason"):
+    def engine(settings: EnvironmentSettings)(using Scenarios) =
+      EnvironmentBatch.engine(settings).fold(fail(_), _.text)
+    for settings <- Seq(EnvironmentSettings(), surround, surround.copy(learners = "all")) do
+      assert(clue(engine(settings)).startsWith("SIMD, "))
+    val quadrotor = EnvironmentSettings(plant = "quadrotor", altitudeM = 3)
+    assert(clue(engine(quadrotor)).startsWith("scalar: the lanes know no ground"))
+    val others = Scenarios(ScenarioKind(Own()), ScenarioKind(Short()))
+    assert(clue(engine(own("", ""))(using others)).startsWith("scalar: a policy is no formula"))
+    assertEquals(
+      engine(EnvironmentSettings(scenario = "short"))(using others),
+      "scalar: its scenario says itself when it is over"
+    )
 
-  private object steered extends HeadingPolicy.Memoryless:
-    def heading(seen: PlanarObservation): Double =
-      seen.ownHeadingRad + towards(seen.fromOwnHeading(1).toFloat) * seen.elapsedS
-
-  test("the engine is reported: scalar for another scenario, SIMD for the duel"):
-    val team = Learner(surround, 2).batch.engine
-    assert(team.text.startsWith("scalar: environments of surround"), team)
-    val duel = Learner(EnvironmentSettings(), 2).batch.engine
-    assert(duel.text.startsWith("SIMD, "), duel)
-
-  for (loop, link) <- Seq("stream" -> "vpn", "predictive" -> "direct", "paused" -> "none") do
-    test(s"stepped under $loop over $link, motion and rewards equal the reference's with equal policies"):
-      val settings = surround.copy(loop = loop, link = link, startWithinM = (0, 5))
-      val side     = ScenarioSide.of(settings).fold(fail(_), identity)
-      for number <- 0 until 3 do
-        val learner = Learner(settings, 3)
-        learner.batch.reset(Array(5L, 6L, 7L))
-        var (sum, steps) = (0.0, 0)
-        while !learner.truncated(number) do
-          for each <- 0 until 3 do learner.act(each, towards(learner.seen(each, 1)).toFloat)
-          learner.batch.step()
-          sum += learner.reward(number)
-          steps += 1
-          assert(steps < 300)
-        learner.batch.close()
-        val seed           = SplitMix64.seedOf(5L + number, 0)
-        val engagement     = side.engagement(side.members(number), steered, None, seed)
-        val ring           = OffRing(8)
-        var (paid, scores) = (0.0, 0)
-        val observer       = new LoopObserver:
-          private val north, east = Array.ofDim[Double](4)
-          override def scored(timeS: Double, vehicle: Int, x: Double, y: Double, z: Double): Unit =
-            north(vehicle) = x; east(vehicle) = y
-            if vehicle == 3 && timeS <= 6 + 1e-6 then
-              scores += 1
-              paid += ring.of(Positions(IArray.from(north), IArray.from(east), IArray.fill(4)(-5.0)))
-        Rollout(engagement, side.timing, side.link, side.response)
-          .fly(
-            WorldRandom.key(1, 0, ((SplitMix64.seedOf(seed, 1) >>> 1) % (1 << 24)).toInt),
-            observer = observer
-          ): Unit
-        assertEquals(scores, 60)
-        assertEqualsDouble(-sum * EnvironmentSettings.RewardM, paid, 1e-3)
+  test("a scenario's own end terminates the episode"):
+    given Scenarios = Scenarios(ScenarioKind(Short()))
+    val learner     = Learner(EnvironmentSettings(scenario = "short", link = "none", episodeS = 9), 1)
+    learner.batch.reset(Array(1L))
+    val ends = Vector.fill(60):
+      learner.act(0, 0)
+      learner.batch.step()
+      (learner.ended(0), learner.truncated(0))
+    assert(ends.contains((true, false)) && !ends.exists(_._2), ends)
+    learner.batch.close()
 
   test("equal seeds and actions give equal episodes, to the bit, independent of other environments"):
     def flown(count: Int) =
@@ -137,55 +112,70 @@ class ScenarioGroupSuite extends munit.FunSuite:
       captureRadiusM = 20,
       episodeS = 10
     )
-    val learner = Learner(settings, 2, Autoreset.Disabled)
-    learner.batch.reset(Array(1L, 2L))
+    val learner = Learner(settings, 1, Autoreset.Disabled)
+    learner.batch.reset(Array(1L))
     while !learner.ended(0) do
       learner.act(0, 0)
-      learner.act(1, 0)
       learner.batch.step()
     assert(learner.reward(0) < -5, learner.reward(0))
     intercept[IllegalStateException](learner.batch.step()): Unit
     learner.batch.close()
 
+  private def own(policy: String, quantity: String) = EnvironmentSettings(
+    scenario = "own",
+    set = Map("policy" -> policy, "quantity" -> quantity),
+    objective = "off",
+    episodeS = 6
+  )
+
   test("an exception of a user's policy or quantity is reported with its name"):
     given Scenarios                            = Scenarios(ScenarioKind(Own()))
     def told(policy: String, quantity: String) =
-      val settings = EnvironmentSettings(
-        scenario = "own",
-        set = Map("policy" -> policy, "quantity" -> quantity),
-        objective = "off",
-        episodeS = 6
-      )
       val block = ByteBuffer.allocateDirect(EnvironmentBuffers.bytes(1, 1))
-      val batch = EnvironmentBatch.of(settings, 1, Autoreset.NextStep, block).fold(fail(_), identity)
+      val batch =
+        EnvironmentBatch.of(own(policy, quantity), 1, Autoreset.NextStep, block).fold(fail(_), identity)
       try
         intercept[OwnFailure]:
           batch.reset(Array(1L))
           for _ <- 0 until 20 do batch.step()
         .getMessage
       finally batch.close()
-    val thrown = "failed: java.lang.IllegalStateException: no such luck (ScenarioGroupSuite.scala:"
+    val thrown = "failed: java.lang.IllegalStateException: no such luck (EnvironmentGroupSuite.scala:"
     assert(clue(told("throws", "")).startsWith(s"the policy Away $thrown"))
     assert(clue(told("", "throws")).startsWith(s"the quantity Off $thrown"))
     assertEquals(
       told("NaN", ""),
       "the policy of Evader decided for what no vehicle can do: Along(NaN,4.0,-5.0,Still)"
     )
-    assertEquals(told("", "NaN"), "the quantity Off answered NaN, which nobody can be rewarded by")
+    assertEquals(told("", "NaN"), "the quantity Off answered NaN, which is no reward")
 
   test("a scenario unfit for learning is refused with what was expected"):
-    def refused(settings: EnvironmentSettings) = ScenarioSide.of(settings).swap.getOrElse("accepted")
+    def refused(settings: EnvironmentSettings) = LearnerSide.of(settings).swap.getOrElse("accepted")
     assert(clue(refused(surround.copy(scenario = "surrond"))).contains("the nearest is 'surround'"))
     assert(clue(refused(surround.copy(set = Map("x" -> "1")))).startsWith("set: no setting 'x'"))
     assert(clue(refused(surround.copy(objective = "nearest"))).contains("is told of recorded flights alone"))
-    assert(clue(refused(surround.copy(learners = "both"))).startsWith("learners: expected pursuer or evader"))
-    assert(clue(refused(surround.copy(opponent = "paper-evader"))).startsWith("opponent: expected none"))
-    assert(clue(refused(surround.copy(
-      scenario = "formation",
-      set = Map.empty
-    ))).contains("came formation of leader and follower"))
-    for (scenario, why) <- Seq("convoy" -> "which has cars", "forest" -> "which sees by cameras or lidars") do
-      assert(clue(refused(surround.copy(scenario = scenario, set = Map.empty))).contains(why))
+    assert(clue(refused(surround.copy(opponent =
+      "paper-pursuer"
+    ))).startsWith("opponent: family paper-pursuer is"))
+    assert(clue(refused(EnvironmentSettings(scenario = "formation"))).startsWith(
+      "learners: expected one of leader, follower, all of a role (leaders), all, or vehicles of Leader,"
+    ))
+    def learning(learners: String, scenario: String) =
+      refused(EnvironmentSettings(learners = learners, scenario = scenario))
+    assert(clue(learning("all", "convoy")).contains("in which a car would learn"))
+    assert(clue(learning("all", "forest")).contains("which sees by cameras or lidars"))
+    assert(clue(learning(
+      "Evader,Evader",
+      "surround"
+    )).startsWith("learners: expected one of evader, pursuer"))
+
+  test("learners are one of a role in turns, all of a role, all, or those of some names"):
+    def named(learners: String) =
+      EnvironmentBatch.learners(surround.copy(learners = learners)).fold(fail(_), identity).mkString(" ")
+    assertEquals(named("pursuer"), "Pursuer1")
+    assertEquals(named("pursuers"), "Pursuer1 Pursuer2 Pursuer3")
+    assertEquals(named("all"), "Evader Pursuer1 Pursuer2 Pursuer3")
+    assertEquals(named("Pursuer3,Evader"), "Evader Pursuer3")
 
 /** A scenario with an evader's policy and a pursuer's quantity that settings choose. */
 final case class Own(policy: String = "", quantity: String = "") extends Scenario:
@@ -196,10 +186,13 @@ final case class Own(policy: String = "", quantity: String = "") extends Scenari
   override def measures: Vector[Measure] = Vector(Series.of("off", "m", Off(quantity)).mean("off"))
 
 object Own:
-  def answer(how: String): Double = how match
-    case "throws" => throw IllegalStateException("no such luck")
-    case "NaN"    => Double.NaN
-    case _        => 1
+  // No formula.
+  def answer(how: String): Double = if Thread.currentThread.getName.isBlank && how == "" then 0
+  else
+    how match
+      case "throws" => throw IllegalStateException("no such luck")
+      case "NaN"    => Double.NaN
+      case _        => 1
 
 final case class Away(how: String) extends Policy:
   type Memory = Unit
@@ -209,3 +202,8 @@ final case class Away(how: String) extends Policy:
 
 final case class Off(how: String) extends Quantity:
   def of(positions: Positions): Double = Own.answer(how)
+
+/** Ends after 2 s. */
+final case class Short() extends Scenario:
+  def agents: Vector[Agent]                  = Surround(vehicles = 3).agents
+  override def isOver(known: Known): Boolean = known.elapsed.toSeconds >= 2

@@ -1,0 +1,33 @@
+package skein.settings
+
+import skein.signal.LatencyProfile
+import skein.units.*
+import skein.units.Decimals.brief
+
+/** The link between two vehicles: messages take half of a sampled round trip, and those that are lost are not
+  * sent again. Where something of the scene stands between the two, none arrives.
+  *
+  * @param range beyond which none arrives, either; absent: at any distance
+  */
+final case class VehicleLink(profile: LatencyProfile, range: Option[Metres]):
+  def text: String = range.fold("")(far => s"range:${far.value.brief}m,") + profile.name
+
+object VehicleLink:
+  def parse(text: String): Either[String, VehicleLink] = text match
+    case s"range:$range,$rest" =>
+      for
+        metres <- range
+          .stripSuffix("m")
+          .toDoubleOption
+          .filter(far => range.endsWith("m") && far > 0 && far.isFinite)
+          .toRight(s"expected a range such as 60m, came '$range'")
+        profile <- profile(rest)
+      yield VehicleLink(profile, Some(Metres(metres)))
+    case _ => profile(text).map(VehicleLink(_, None))
+
+  private def profile(text: String): Either[String, LatencyProfile] =
+    LatencyProfile
+      .parse(text, TextFile.read)
+      .left
+      .map(_.message)
+      .filterOrElse(_.bandwidth.isEmpty, s"expected no rate, since messages have no size, came '$text'")

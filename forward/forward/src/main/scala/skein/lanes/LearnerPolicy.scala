@@ -1,0 +1,40 @@
+package skein.lanes
+
+import skein.policy.{HeadingPolicy, PlanarObservation}
+
+/** Turns as its memory says, which a caller sets before each decision. Its next memory holds what it
+  * observed: so a learner's vehicle decides and observes by the code of any policy.
+  *
+  * @param byRate whether it turns by a rate, rad/s, and not by an angle, rad
+  */
+final case class LearnerPolicy(byRate: Boolean) extends HeadingPolicy:
+  type Memory = LearnerPolicy.Memory
+
+  def start: Memory = LearnerPolicy.start
+
+  def decide(seen: PlanarObservation, memory: Memory): (Double, Memory) =
+    val turnRad = if byRate then memory.turn * seen.elapsedS else memory.turn
+    (seen.ownHeadingRad + turnRad, LearnerPolicy.memory(memory.turn, seen.fromOwnHeading))
+
+object LearnerPolicy:
+  /** Count of numbers in an observation, see [[PlanarObservation.fromOwnHeading]]. */
+  final val Fields = 9
+
+  /** The turn to make, to the right, and the numbers of [[PlanarObservation.fromOwnHeading]]. */
+  final case class Memory(
+      turn: Double,
+      aheadM: Double,
+      rightM: Double,
+      aheadMps: Double,
+      rightMps: Double,
+      cos: Double,
+      sin: Double,
+      elapsedS: Double,
+      ownAgeS: Double,
+      opponentAgeS: Double
+  )
+
+  private val start = Memory(0, 0, 0, 0, 0, 1, 0, 0, 0, 0)
+
+  private def memory(told: Double, seen: Array[Double]) =
+    Memory(told, seen(0), seen(1), seen(2), seen(3), seen(4), seen(5), seen(6), seen(7), seen(8))

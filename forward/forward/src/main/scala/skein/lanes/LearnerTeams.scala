@@ -1,0 +1,166 @@
+package skein.lanes
+
+import skein.forward.{Delays, LoopTiming, VelocityResponse}
+import skein.lanes.policy.OpponentLanes
+import skein.lanes.score.{OfMoment, Scoreboard}
+import skein.lanes.timetable.{Timetable, TimetableAgents, TimetableKernel, TimetableScores, Timetables}
+import skein.simd.WorldRandom
+import skein.units.Expect
+
+/** Teams with learners in many worlds by one timetable, as [[TeamBatch]] flies them. Allocates nothing after
+  * construction, unless a timetable needs more places than any before.
+  *
+  * @param learners vehicles that decide by [[LearnerPolicy]]
+  * @param worlds that count
+  */
+final class LearnerTeams private[lanes] (
+    form: TeamForm,
+    team: TeamCandidate,
+    learners: Array[Int],
+    worlds: Int,
+    timetableOf: Long => Timetable
+) extends LearnerWorlds,
+      TimetableScores:
+  import LearnerTeams.ToleranceS
+  import TimetableKernel.{DECIDE, WORLDS}
+
+  private val members = LaneTeams.inEpisode(form, team.engagement.agents)
+  private val scores  = Scoreboard(form.scores, form.altitudesDownM)
+  private val kernel  = TimetableKernel(members.map(identity[TimetableAgents]), this)
+  private val passing =
+    team.quantities.indices.filter(team.quantities(_).reduction != OfMoment.Newest).toArray
+  private val isOfTwo = form.policies.isInstanceOf[OpponentLanes]
+  private val learns  = Array.tabulate(form.count)(learners.contains(_))
+
+  private var timetable: Timetable   = null
+  private var operations: Array[Int] = null
+  private var untilS                 = 0f
+
+  /** Index of the timetable's next operation, and end of the decisions that are due. */
+  private var next, dueUntil = 0
+
+  locally:
+    val prepared = PreparedTeam(team, Right(form), None)
+    for world <- 0 until WORLDS do
+      for self <- members.indices do members(self).take(world, prepared.numbers(self))
+      if form.hasParameters then scores.take(world, prepared.ofQuantities)
+
+  def restartAlone: Boolean = true
+
+  def start(draw: Long, untilS: Float): Unit =
+    timetable = timetableOf(draw)
+    operations = timetable.operations
+    this.untilS = untilS
+    next = 0
+    dueUntil = 0
+    kernel.start(timetable, worlds)
+
+  def restart(world: Int, vehicle: Int, northM: Float, eastM: Float, headingRad: Float): Unit =
+    val body = members(vehicle).vehicles
+    body.startX(world) = northM
+    body.startY(world) = eastM
+    members(vehicle).restart(world, headingRad)
+
+  def flyOn(): Boolean =
+    while next < timetable.size && !learnsAt(next) do
+      kernel.perform(next)
+      next += 1
+    dueUntil = next
+    // Several decide together where nothing happens between, and none knows what another is about to.
+    while dueUntil < timetable.size && learnsAt(dueUntil) && !knowsPending(dueUntil) do dueUntil += 1
+    next < timetable.size
+
+  private def learnsAt(operation: Int) =
+    val field = operation * Timetable.Fields
+    operations(field) == DECIDE && learns(operations(field + 1))
+
+  private def knowsPending(operation: Int): Boolean =
+    var before = next
+    while before < operation do
+      val field   = before * Timetable.Fields
+      val vehicle = operations(field + 1)
+      if vehicle == operations(operation * Timetable.Fields + 1) ||
+        knownPlace(operation, vehicle) == operations(field + 5)
+      then return true
+      before += 1
+    false
+
+  /** The place of another vehicle's heading that a decision knows. */
+  private def knownPlace(operation: Int, vehicle: Int) =
+    val known = operations(operation * Timetable.Fields + 3)
+    if isOfTwo then known else timetable.more.heading(known, vehicle)
+
+  def isDue(learner: Int): Boolean = operationOf(learner) >= 0
+
+  private def operationOf(learner: Int): Int =
+    var operation = next
+    while operation < dueUntil do
+      if operations(operation * Timetable.Fields + 1) == learners(learner) then return operation
+      operation += 1
+    -1
+
+  def observe(learner: Int, into: Array[Float]): Unit =
+    kernel.observe(operationOf(learner))
+    System.arraycopy(members(learners(learner)).nextMemory, WORLDS, into, 0, LearnerPolicy.Fields * WORLDS)
+
+  def turn(learner: Int, numbers: Array[Float]): Unit =
+    System.arraycopy(numbers, 0, members(learners(learner)).memory, 0, worlds)
+
+  def decide(): Unit =
+    while next < dueUntil do
+      kernel.perform(next)
+      next += 1
+
+  def scoredAtS: Float = scores.scoredAtS
+
+  def soFar(number: Int, into: Array[Float]): Unit = scores.soFar(number, into)
+
+  def forgetScores(): Unit =
+    var i = 0
+    while i < passing.length do
+      scores.forget(passing(i))
+      i += 1
+
+  def start(worlds: Int): Unit = scores.start(worlds)
+
+  def score(all: Array[TimetableAgents], views: Array[Int], view: Int, timeS: Float): Unit =
+    if timeS <= untilS + ToleranceS then scores.score(all, views, view, timeS)
+
+object LearnerTeams:
+  private val ToleranceS = 1e-4f
+
+  /** Number of flights over the link from which delays are drawn; each is computed once, and takes some 200
+    * kB for a minute of two vehicles.
+    */
+  private val Flights = 128
+
+  /** The key of a world of [[TeamBatch]] with a run's delays. */
+  def keyOf(draw: Long): Int = WorldRandom.key(1, 0, ((draw >>> 1) % Flights).toInt)
+
+  /** Makes teams under one loop's timing, over one link. Thread-safe.
+    *
+    * @param timing of the loop
+    * @param model of the vehicles
+    */
+  final class Maker(timing: LoopTiming, link: Delays, model: VelocityResponse):
+    private val forms      = TeamForms(timing, model)
+    private val episodes   = Episodes(timing)
+    private val timetables = Timetables()
+
+    /** Why SIMD does not fly a team; None if it does. */
+    def refusal(team: TeamCandidate): Option[String] = formOf(team).left.toOption
+
+    /** @param learners vehicles that decide by [[LearnerPolicy]]
+      * @param worlds number of worlds, at most [[LearnerWorlds.Most]]
+      * @return Left states why SIMD does not fly them
+      */
+    def of(team: TeamCandidate, learners: Vector[Int], worlds: Int): Either[String, LearnerTeams] =
+      formOf(team).map(form => LearnerTeams(form, team, learners.toArray, worlds, timetableOf(form, _)))
+
+    private def formOf(team: TeamCandidate) = Expect
+      .that(team.engagement.isOver.isEmpty)("its scenario says itself when it is over")
+      .flatMap(_ => forms.of(team))
+
+    private def timetableOf(form: TeamForm, draw: Long): Timetable =
+      val key = keyOf(draw)
+      timetables.getOrMake(episodes.nameOf(link, key, form))(episodes.timetable(link, key, form))

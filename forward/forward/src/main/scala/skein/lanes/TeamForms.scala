@@ -1,0 +1,70 @@
+package skein.lanes
+
+import java.util.concurrent.ConcurrentHashMap
+import skein.forward.{Engagement, LoopTiming, SpatialResponse, VelocityResponse}
+import skein.lanes.policy.{OpponentLanes, TeamLanes, TeamPolicies}
+import skein.lanes.score.{Effort, ScoreLanes}
+import skein.units.Expect
+
+/** What teams under one loop's timing have in common by SIMD, or why they do not fly by it. Thread-safe.
+  *
+  * @param isReference whether nothing shall fly by SIMD
+  */
+private[lanes] final class TeamForms(
+    timing: LoopTiming,
+    model: VelocityResponse,
+    isReference: Boolean = false
+):
+  private val inSpace     = model.isInstanceOf[SpatialResponse]
+  private val isPredicted = timing.isInstanceOf[LoopTiming.Predictive]
+
+  private val dynamics: Either[String, LaneDynamics] =
+    for
+      _        <- LaneSupport.present
+      _        <- Expect.that(!isReference)("the reference was asked for")
+      vehicles <- LaneDynamics.under(timing, model)
+    yield vehicles
+
+  /** One object for each form, which is compared by its reference then. */
+  private val forms = ConcurrentHashMap[TeamForm, TeamForm]()
+
+  def of(candidate: TeamCandidate): Either[String, TeamForm] =
+    import candidate.{engagement, quantities}
+    val efforts = candidate.judged.map:
+      case Effort(vehicle) => Some(vehicle)
+      case _               => None
+    for
+      vehicles <- dynamics
+      _        <- Expect.that(!engagement.hasCars)("it has cars")
+      _        <- LaneDynamics.isHighEnough(model, engagement.agents)
+      policies <- Option
+        .when(candidate.areAtOnePace):
+          OpponentLanes.of(engagement, efforts.flatten.contains, inSpace, isPredicted)
+        .flatten
+        .getOrElse(teamOf(engagement, efforts.flatten))
+      scores <- ScoreLanes
+        .of(quantities, engagement.agents.size)
+        .left
+        .map(refused => s"a quantity is no formula: ${refused.getMessage}")
+    yield
+      val altitudes = if inSpace then Vector.empty else engagement.agents.map(_.altitudeDownM)
+      val form      = TeamForm(policies, scores, efforts, engagement.durationS, altitudes)(vehicles)
+      val known     = forms.putIfAbsent(form, form)
+      if known == null then form else known
+
+  private def teamOf(engagement: Engagement, efforts: Vector[Int]): Either[String, TeamPolicies] =
+    for
+      team <- TeamLanes
+        .of(engagement.agents.map(_.policy), engagement.assignment, isPredicted, inSpace)
+        .left
+        .map(refused => s"a policy is no formula: ${refused.getMessage}")
+      _ <- Expect.that(efforts.isEmpty):
+        "efforts are summed by lanes of two that play against one another by headings"
+      _ <- Expect.that(engagement.agents.forall(_.eye.isEmpty)):
+        "who sees by a sensor flies by lanes against one other, both by headings"
+      _ <- team.leaves(engagement.agents).filterNot(_ => inSpace).toLeft(())
+      _ <- Expect.that(!team.looksUp || !model.regardsYaw):
+        "a policy asks how high vehicles are, and the quadrotor's height is not told side by side"
+      _ <- Expect.that(!team.turns || !model.regardsYaw):
+        "a policy may turn its vehicle, and this one keeps its yaw"
+    yield team

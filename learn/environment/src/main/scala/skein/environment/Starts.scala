@@ -1,0 +1,41 @@
+package skein.environment
+
+import skein.policy.Role
+import skein.signal.SplitMix64
+
+/** Where vehicles begin an episode, at rest: north and east, m, and the headings taken as commanded. Mutable.
+  */
+private final class Starts(side: LearnerSide):
+  private val agents        = side.engagement.agents
+  private val (least, most) = side.settings.startWithinM
+
+  val northM: Array[Float]     = agents.map(_.startX.toFloat).toArray
+  val eastM: Array[Float]      = agents.map(_.startY.toFloat).toArray
+  val headingRad: Array[Float] = agents.map(_.startHeadingRad.toFloat).toArray
+
+  /** The vehicle of two from which the other one's distance counts. */
+  private val centre = side.engagement.roles.indexOf(Role.Pursuer).max(0)
+
+  /** Draws the starts of an episode, see [[EnvironmentSettings.startWithinM]]. */
+  def draw(seed: Long): Unit =
+    if most > 0 then
+      val random = SplitMix64(seed)
+      if agents.size == 2 then
+        def angle() = (2 * random.nextDouble() - 1) * math.Pi
+        around(1 - centre, centre, least + random.nextDouble() * (most - least), angle())
+        headingRad(1 - centre) = angle().toFloat
+        headingRad(centre) = angle().toFloat
+      else
+        for vehicle <- agents.indices do
+          val distanceM = least + random.nextDouble() * (most - least)
+          around(vehicle, vehicle, distanceM, 2 * math.Pi * random.nextDouble())
+
+  private def around(vehicle: Int, of: Int, distanceM: Double, bearingRad: Double): Unit =
+    northM(vehicle) = (agents(of).startX + distanceM * StrictMath.cos(bearingRad)).toFloat
+    eastM(vehicle) = (agents(of).startY + distanceM * StrictMath.sin(bearingRad)).toFloat
+
+  /** Distance of a vehicle from its nearest opponent, m. */
+  def distanceM(vehicle: Int): Float =
+    side.rivals(vehicle).map(other =>
+      StrictMath.hypot(northM(vehicle) - northM(other), eastM(vehicle) - eastM(other)).toFloat
+    ).min

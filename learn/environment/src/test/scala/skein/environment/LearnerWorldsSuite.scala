@@ -1,0 +1,101 @@
+package skein.environment
+
+import skein.lanes.{LearnerPolicy, LearnerWorlds, Tower}
+import skein.scenario.{ScenarioKind, Scenarios}
+import skein.signal.SplitMix64
+
+class LearnerWorldsSuite extends munit.FunSuite:
+  private given Scenarios = Scenarios(Scenarios.ours.kinds :+ ScenarioKind(Tower()))
+
+  private val all = EnvironmentSettings(startWithinM = (2, 8), episodeS = 6)
+
+  /** What each learner observes at its decisions, and the sums of what is judged, until the last score. */
+  private def flown(side: LearnerSide, learning: Vector[Int], worlds: LearnerWorlds) =
+    val (starts, seen) = (Starts(side), Array.ofDim[Float](LearnerPolicy.Fields * LearnerWorlds.Most))
+    val observed       = Array.fill(learning.size)(Vector.newBuilder[Vector[Float]])
+    val judged         = side.team(learning, None).judged.indices
+    val decisions      = Array.ofDim[Int](learning.size)
+    starts.draw(5)
+    worlds.start(SplitMix64.seedOf(3, 0), 6)
+    for vehicle <- side.names.indices do
+      import starts.{eastM, headingRad, northM}
+      worlds.restart(0, vehicle, northM(vehicle), eastM(vehicle), headingRad(vehicle))
+    var goesOn = worlds.flyOn()
+    while goesOn do
+      for learner <- learning.indices if worlds.isDue(learner) do
+        worlds.observe(learner, seen)
+        observed(learner) += Vector.tabulate(LearnerPolicy.Fields)(field => seen(field * LearnerWorlds.Most))
+        decisions(learner) += 1
+        worlds.turn(
+          learner,
+          Array.fill(LearnerWorlds.Most)(math.sin(decisions(learner) * 0.2 + learner).toFloat)
+        )
+      worlds.decide()
+      goesOn = worlds.flyOn()
+    worlds.close()
+    (
+      observed.map(_.result()).toVector,
+      judged.map(number => { worlds.soFar(number, seen); seen(0) }).toVector
+    )
+
+  for
+    (settings, toleranceM) <- Seq(
+      all                                                                                             -> 2e-3,
+      all.copy(learners = "both", loop = "sequential")                                                -> 2e-3,
+      all.copy(scenario = "surround", learners = "pursuers")                                          -> 2e-3,
+      all.copy(scenario = "surround", learners = "all", loop = "paused")                              -> 2e-3,
+      all.copy(scenario = "surround", learners = "evader", loop = "predictive", link = "direct")      -> 2e-3,
+      all.copy(scenario = "surround", learners = "Pursuer2", plant = "quadrotor", altitudeM = 20)     -> 2e-2,
+      all.copy(scenario = "surround", learners = "Pursuer1,Evader", objective = "off-ring + 0.1*gap") -> 2e-2,
+      all.copy(scenario = "formation", learners = "follower")                                         -> 2e-3,
+      all.copy(scenario = "crossing", learners = "all")                                               -> 2e-3,
+      all.copy(scenario = "tower", learners = "keeper", objective = "kept")                           -> 2e-2,
+      all.copy(scenario = "tower", learners = "inspectors", objective = "kept", plant = "tilt")       -> 2e-2
+    )
+  do
+    test(
+      s"${settings.learners} of ${settings.scenario} under ${settings.loop}: SIMD equals the scalar engine"
+    ):
+      val side   = LearnerSide.of(settings).fold(fail(_), identity)
+      val engine = side.engine(None)
+      assert(engine.fliesByLanes, engine.text)
+      val learning         = side.turns.last
+      val (seen, sums)     = flown(side, learning, side.worlds(engine, learning, None, 3))
+      val (truth, scalars) = flown(side, learning, LearnerRollout(side, side.team(learning, None), learning))
+      assertEquals(seen.map(_.size), truth.map(_.size))
+      assert(seen.forall(_.sizeIs > 25), seen.map(_.size))
+      for (ours, theirs) <- seen.zip(truth); (one, other) <- ours.zip(theirs); (x, y) <- one.zip(other) do
+        assertEqualsDouble(
+          x,
+          y,
+          toleranceM,
+          s"decision ${ours.indexOf(one)} of ${ours.size}: $one, scalar $other"
+        )
+      for (one, other) <- sums.zip(scalars) do assertEqualsDouble(one, other, toleranceM * 60)
+
+  test("a world that restarts alone is where it was put, with what its vehicles were commanded before"):
+    val settings =
+      all.copy(scenario = "surround", learners = "all", loop = "paused", link = "none", plant = "tilt")
+    val side                    = LearnerSide.of(settings).fold(fail(_), identity)
+    val learning                = side.turns.head
+    val worlds                  = side.worlds(side.engine(None), learning, None, 4)
+    val seen                    = Array.ofDim[Float](LearnerPolicy.Fields * LearnerWorlds.Most)
+    def begin(world: Int): Unit =
+      for vehicle <- side.names.indices do worlds.restart(world, vehicle, 10f * vehicle, 3, 0.5f)
+    def look(world: Int) = Vector.tabulate(learning.size): learner =>
+      worlds.observe(learner, seen)
+      // The age of the first decision's time differs.
+      Vector.tabulate(6)(field => seen(field * LearnerWorlds.Most + world))
+    worlds.start(1, 6)
+    (0 until 4).foreach(begin)
+    assert(worlds.flyOn())
+    val first = look(2)
+    for _ <- 0 until 20 do
+      for learner <- learning.indices do worlds.turn(learner, Array.tabulate(LearnerWorlds.Most)(0.3f * _))
+      worlds.decide()
+      assert(worlds.flyOn())
+    val before = look(1)
+    assertNotEquals(look(2), first)
+    begin(2)
+    assertEquals(look(2), first)
+    assertEquals(look(1), before)
