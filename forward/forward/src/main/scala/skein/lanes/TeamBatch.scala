@@ -13,13 +13,12 @@ import skein.units.Expect
   *
   * Candidates whose policies and quantities are formulas run on SIMD: worlds that share episodes by
   * [[TimetableKernel]], all of an episode by one [[skein.lanes.timetable.Timetable]], which is computed once;
-  * others by [[skein.lanes.loop.LoopKernel]]. Two that play against one another by
-  * headings decide by [[skein.lanes.policy.OpponentLanes]], others by
-  * [[skein.lanes.policy.TeamLanes]]. Quadrotors and MuJoCo bodies of other teams are stepped side by side
-  * under the scalar loops ([[SteppedRollouts]]). All else runs on the scalar reference
-  * ([[skein.forward.Rollout]]), which the engine's text states. `docs/engines.md` has the table. The engine
-  * of a world depends on its candidate, its link and `shareEpisodes` alone, so results do not depend on
-  * threads, on a call's other worlds or on their order. One call at a time.
+  * others by [[skein.lanes.loop.LoopKernel]]. Two that play against one another by headings decide by
+  * [[skein.lanes.policy.OpponentLanes]], others by [[skein.lanes.policy.TeamLanes]]. Quadrotors and MuJoCo
+  * bodies of other teams are stepped side by side under the scalar loops ([[SteppedRollouts]]). All else runs
+  * on the scalar reference ([[skein.forward.Rollout]]), which the engine's text states. `docs/engines.md` has
+  * the table. The engine of a world depends on its candidate, its link and `shareEpisodes` alone, so results
+  * do not depend on threads, on a call's other worlds or on their order. One call at a time.
   *
   * @param accelerator simulates the candidates of [[Worlds.episodesOfEach]] that are formulas, if it supports
   *   the loop and the vehicles

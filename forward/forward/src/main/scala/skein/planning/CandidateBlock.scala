@@ -1,8 +1,7 @@
 package skein.planning
 
 /** A block of candidate manoeuvres, which are drawn, simulated and priced together. Mutable; one per thread.
-  * In arrays with one entry per step and candidate, the entry of candidate i in step h has index h · SIZE +
-  * i.
+  * In arrays with one entry per step and candidate, the entry of candidate i in step h has index h · SIZE + i.
   */
 private[planning] abstract class CandidateBlock(steps: Int):
   final val turnRates, speeds: Array[Float] = Array.ofDim(steps * CandidateBlock.Size)
