@@ -53,7 +53,8 @@ class OnnxPolicyRuntimeSuite extends munit.FunSuite, OnnxFiles, Unhurried:
     val file   = written(folder, model("Erf"))
     val policy = PolicyFile.read(file).fold(fail(_), identity)
     assert(policy.name.startsWith("onnx:"), policy.name)
-    assertEqualsDouble(policy.policy.heading(0, 0.4, 0, 0, 0, 0, 0.1), 0.1 * 0.42839235, 1e-7)
+    val heading = policy.policy.asInstanceOf[HeadingPolicy]
+    assertEqualsDouble(heading.heading(0, 0.4, 0, 0, 0, 0, 0.1), 0.1 * 0.42839235, 1e-7)
     val (one, other) =
       (flown(policy), flown(PolicyFile.parse(policy.role, policy.text).fold(fail(_), identity)))
     assertEquals(one.landed.outcome, FlightOutcome.Completed)
