@@ -58,7 +58,9 @@ object ObserverCost:
       val (bytes, ns, worked) = (all.map(_._2).sum, all.map(_._3).sum, all.map(_._4).sum)
       println(
         s"$name: $calls answers of $megabytes MiB, ${(bytes.toDouble / ns).fixed(2)} GB/s, $bytes bytes, " +
-          s"${(worked.toDouble / bytes).fixed(2)} s of processor time a GB, best ${all.map(one => one._2.toDouble / one._3).max.fixed(2)} GB/s"
+          s"${(worked.toDouble / bytes).fixed(2)} s of processor time a GB, best ${all.map(one =>
+              one._2.toDouble / one._3
+            ).max.fixed(2)} GB/s"
       )
 
   private val machine = ManagementFactory.getPlatformMXBean(classOf[OperatingSystemMXBean])

@@ -27,7 +27,8 @@ private[cli] final class LoopOnShow(
   /** @param what is observed, and `where`, for people */
   def show(shows: Shows, what: String, where: String): Unit =
     val now    = clock.now()
-    val flight = FlightRow(Id, "none", "none", 0, Every, Span.Zero, "real", Simulator.Other(where), what, "", now)
+    val flight =
+      FlightRow(Id, "none", "none", 0, Every, Span.Zero, "real", Simulator.Other(where), what, "", now)
     shows.add(LiveShow(RecordingHeader(flight, Nil), feed, Vector(Gauge(topic, Every, () => json()))))
 
   /** The page keeps what it shows from now on. */
@@ -49,8 +50,8 @@ private[cli] final class LoopOnShow(
   private def row(commands: NewCommands): ujson.Obj =
     val name = if commands.vehicle.isEmpty then "(the first)" else commands.vehicle
     val row  = ujson.Obj("vehicle" -> name)
-    for ms    <- commands.ownAgeMs do row("ageMs") = ms
-    for ms    <- commands.sinceOwnMs do row("everyMs") = ms
+    for ms <- commands.ownAgeMs do row("ageMs") = ms
+    for ms <- commands.sinceOwnMs do row("everyMs") = ms
     for count <- commands.unanswered do row("unanswered") = count
     row
 

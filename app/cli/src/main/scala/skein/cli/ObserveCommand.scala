@@ -61,7 +61,7 @@ object ObserveCommand
       loop <- GraphLoop.open(options.readings.toSet, options.commands.toSet, Clock.system)
         .left.map("--ros: " + _)
       findings = () => { val now = loop.observed; (now, TopicTables.findings(now) ++ loop.remarks) }
-      ended =
+      ended    =
         Shown(options.json.value)
           .say("measuring topics of ROS 2" + (if command.isEmpty then "; Ctrl-C ends it" else ""))
         try

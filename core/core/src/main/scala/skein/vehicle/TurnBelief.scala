@@ -4,8 +4,8 @@ import skein.signal.Kinematics
 import skein.units.*
 
 /** What a vehicle may do whose commands are unknown: samples of its next turns, each simulated by a model of
-  * the vehicle. It is taken to be commanded a velocity that turns at one of [[TurnRates.Each]], for a time, and
-  * then at another.
+  * the vehicle. It is taken to be commanded a velocity that turns at one of [[TurnRates.Each]], for a time,
+  * and then at another.
   *
   * From velocities and tilts, an extended Kalman filter estimates the commanded velocity: a vehicle that is
   * commanded to turn tilts before its path bends. [[TurnRates]] says how that velocity turns. A prediction is

@@ -74,16 +74,15 @@ class DecentralisedSimulation extends munit.FunSuite, TemporaryFolders, Optimise
   for loop <- loops do
     folder.test(
       s"${loop.label}: equal seeds give equal flights, other seeds other ones, and a recording replays"
-    ):
-      folder =>
-        // In two duels a decision's opponent depends on readings that it does not record.
-        val flight = settings(loop, scenario = PaperDuel(pairs = 2))
-        val flown  = fly(flight)
-        assertNotEquals(fly(flight, seed = 2).digest, flown.digest)
-        val file = flight.plans.head.file(folder)
-        assert(flown.writeTo(file).isRight)
-        val replayed = Replayed.of(file).fold(fail(_), identity)
-        assertEquals((replayed.decidedAgain, replayed.isSame), (None, true))
+    ): folder =>
+      // In two duels a decision's opponent depends on readings that it does not record.
+      val flight = settings(loop, scenario = PaperDuel(pairs = 2))
+      val flown  = fly(flight)
+      assertNotEquals(fly(flight, seed = 2).digest, flown.digest)
+      val file = flight.plans.head.file(folder)
+      assert(flown.writeTo(file).isRight)
+      val replayed = Replayed.of(file).fold(fail(_), identity)
+      assertEquals((replayed.decidedAgain, replayed.isSame), (None, true))
 
   folder.test("others predicted by belief: a flight repeats to the bit, and its recording replays"): folder =>
     val flight = settings(LoopKind.Predictive, scenario = Shadow()).copy(strangers = Strangers.Belief)

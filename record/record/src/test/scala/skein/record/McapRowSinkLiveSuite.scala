@@ -36,18 +36,17 @@ class McapRowSinkLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders:
     assertEquals(Digest.ofFile(again), Digest.ofFile(file))
     assertEquals(RecordingReader.records(again), RecordingReader.records(file))
 
-  folder.test("rows can be read after a second of commits, even if the file was never finished"):
-    folder =>
-      val mcap    = folder.resolve("cut.mcap")
-      val written = sink(mcap)
-      written.put(Samples.heading.records.zipWithIndex.map((record, at) => (at.toLong, record)))
-      for batch <- 1L to 20L do written.put(Seq((100 + batch, Samples.reading(batch))))
-      val readings = McapFile.stream(mcap): records =>
-        records.count:
-          case Right(Parsed.Found(_: Message, _, _)) => true
-          case _                                     => false
-      assert(readings > 20, s"$readings messages")
-      written.close()
+  folder.test("rows can be read after a second of commits, even if the file was never finished"): folder =>
+    val mcap    = folder.resolve("cut.mcap")
+    val written = sink(mcap)
+    written.put(Samples.heading.records.zipWithIndex.map((record, at) => (at.toLong, record)))
+    for batch <- 1L to 20L do written.put(Seq((100 + batch, Samples.reading(batch))))
+    val readings = McapFile.stream(mcap): records =>
+      records.count:
+        case Right(Parsed.Found(_: Message, _, _)) => true
+        case _                                     => false
+    assert(readings > 20, s"$readings messages")
+    written.close()
 
   folder.test("a file that can no longer be written is reported, and the recording continues"): folder =>
     val (file, mcap) = (folder.resolve("a.duckdb"), folder.resolve("a.mcap"))

@@ -62,24 +62,23 @@ class RecordingSuite extends munit.FunSuite, TemporaryFolders:
       execute(file, "UPDATE flight SET scenario = 'duel, as published, pursuer pure-pursuit'")
       assertEquals(RecordingReader.read(file).map(_.flight.nameOfScenario), Right("duel"))
 
-  folder.test("a table of a later format may be missing, but no table of the file's own format"):
-    folder =>
-      val file = folder.resolve("flight.duckdb")
-      record(file, Samples.oneOfEach*)
-      for
-        // Images and clouds are no part of what is read at once.
-        (table, came) <-
-          Seq("solved" -> 6, "sensing" -> 5, "measurement" -> 5, "ending" -> 4, "plan" -> 3, "sighting" -> 3)
-        _ = execute(file, s"DROP TABLE $table")
-        format <- Seq(came, came - 1)
-      do
-        execute(file, s"UPDATE format SET version = $format")
-        RecordingReader.read(file) match
-          case Right(_) => assert(format < came, s"no $table in format $format")
-          case Left(RecordError.NotARecording(`file`, why)) =>
-            assert(format >= came, s"$table in format $format: $why")
-            assert(why.contains(table), why)
-          case other => fail(s"expected a recording or NotARecording, got $other")
+  folder.test("a table of a later format may be missing, but no table of the file's own format"): folder =>
+    val file = folder.resolve("flight.duckdb")
+    record(file, Samples.oneOfEach*)
+    for
+      // Images and clouds are no part of what is read at once.
+      (table, came) <-
+        Seq("solved" -> 6, "sensing" -> 5, "measurement" -> 5, "ending" -> 4, "plan" -> 3, "sighting" -> 3)
+      _ = execute(file, s"DROP TABLE $table")
+      format <- Seq(came, came - 1)
+    do
+      execute(file, s"UPDATE format SET version = $format")
+      RecordingReader.read(file) match
+        case Right(_) => assert(format < came, s"no $table in format $format")
+        case Left(RecordError.NotARecording(`file`, why)) =>
+          assert(format >= came, s"$table in format $format: $why")
+          assert(why.contains(table), why)
+        case other => fail(s"expected a recording or NotARecording, got $other")
 
   folder.test("a required number cannot be null, and its missing column is reported"): folder =>
     val file = folder.resolve("flight.duckdb")

@@ -169,14 +169,13 @@ class ViewServerLiveSuite extends munit.FunSuite:
   serving(
     ViewerLimits(connections = 5),
     SetClock()
-  ).test("of two hundred silent connections each takes the place of the oldest, which is closed"):
-    served =>
-      val port    = served.server.port
-      val sockets = Vector.fill(200)(Socket("127.0.0.1", port))
-      // Sockets are accepted in order; a closed one sees the end of its stream, or a reset.
-      for socket <- sockets.dropRight(5) do assertEquals(Try(socket.getInputStream.read()).getOrElse(-1), -1)
-      sockets.foreach(_.close())
-      assertEquals(served.server.counts.displacedConnections, 195L)
+  ).test("of two hundred silent connections each takes the place of the oldest, which is closed"): served =>
+    val port    = served.server.port
+    val sockets = Vector.fill(200)(Socket("127.0.0.1", port))
+    // Sockets are accepted in order; a closed one sees the end of its stream, or a reset.
+    for socket <- sockets.dropRight(5) do assertEquals(Try(socket.getInputStream.read()).getOrElse(-1), -1)
+    sockets.foreach(_.close())
+    assertEquals(served.server.counts.displacedConnections, 195L)
 
   private val standing = SetClock()
 

@@ -27,10 +27,10 @@ object Frames:
     * as [[Metronome]] emits it. A frame's `validAt` is its exposure; every emitted frame is newer than the
     * one before. A request that fails never stops the source.
     *
-    * - '''Emits when''' a frame has arrived that is newer than all before and downstream demands.
-    * - '''Backpressures when''' never: while downstream is slow, the newest frame replaces the waiting one.
-    * - '''Completes when''' `ticks` has completed and all requested frames have arrived.
-    * - '''Cancels when''' downstream cancels.
+    *   - '''Emits when''' a frame has arrived that is newer than all before and downstream demands.
+    *   - '''Backpressures when''' never: while downstream is slow, the newest frame replaces the waiting one.
+    *   - '''Completes when''' `ticks` has completed and all requested frames have arrived.
+    *   - '''Cancels when''' downstream cancels.
     *
     * @param inFlight limit of the requested frames that have not arrived
     * @param isNewer whether one frame was exposed later than another: over a restart of the simulator

@@ -7,11 +7,11 @@ import skein.units.*
 /** Ticks at `first` and every `period` after it, by the clock: sources with equal `first` stay in phase,
   * however long each took to start, and never drift.
   *
-  * - '''Emits when''' a tick is due and downstream demands. The element is the number of ticks due since the
-  *   last element: 1 unless downstream was slow. Ticks that were due before the start are left out.
-  * - '''Backpressures when''' never; ticks add up.
-  * - '''Completes when''' never.
-  * - '''Cancels when''' downstream cancels.
+  *   - '''Emits when''' a tick is due and downstream demands. The element is the number of ticks due since
+  *     the last element: 1 unless downstream was slow. Ticks that were due before the start are left out.
+  *   - '''Backpressures when''' never; ticks add up.
+  *   - '''Completes when''' never.
+  *   - '''Cancels when''' downstream cancels.
   */
 final class Metronome(first: Instant, period: Span, clock: Clock) extends GraphStage[SourceShape[Int]]:
   require(period > Span.Zero, "the period must be positive")

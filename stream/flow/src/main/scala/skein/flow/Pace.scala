@@ -12,11 +12,11 @@ import skein.units.*
   * interval: jitter of the arrivals then costs neither a turn nor freshness, and the delay of one turn is not
   * passed on to the next.
   *
-  * - '''Emits when''' an element is held, downstream demands, and the interval since the last emission has
-  *   passed.
-  * - '''Backpressures when''' never; a newer element replaces the held one, which is reported.
-  * - '''Completes when''' upstream completes; an element still held is reported as replaced.
-  * - '''Cancels when''' downstream cancels.
+  *   - '''Emits when''' an element is held, downstream demands, and the interval since the last emission has
+  *     passed.
+  *   - '''Backpressures when''' never; a newer element replaces the held one, which is reported.
+  *   - '''Completes when''' upstream completes; an element still held is reported as replaced.
+  *   - '''Cancels when''' downstream cancels.
   *
   * @param onReplaced called for every element that was never emitted
   */

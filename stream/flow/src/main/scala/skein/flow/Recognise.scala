@@ -32,12 +32,12 @@ enum Unrecognised[+A]:
   * A late worker continues and gets no new frame until it has ended, so at most `workers` frames are in
   * progress. A worker that never ends is lost.
   *
-  * - '''Emits when''' a frame's recognition has ended in time and downstream demands: in the order of
-  *   exposure, once all frames before it have ended or are late; or, with `newestFirst`, immediately, and
-  *   frames with earlier exposures are not emitted.
-  * - '''Backpressures when''' all workers are busy, or twice as many frames wait to be emitted.
-  * - '''Completes when''' upstream has completed and every frame has been emitted or skipped.
-  * - '''Cancels when''' downstream cancels.
+  *   - '''Emits when''' a frame's recognition has ended in time and downstream demands: in the order of
+  *     exposure, once all frames before it have ended or are late; or, with `newestFirst`, immediately, and
+  *     frames with earlier exposures are not emitted.
+  *   - '''Backpressures when''' all workers are busy, or twice as many frames wait to be emitted.
+  *   - '''Completes when''' upstream has completed and every frame has been emitted or skipped.
+  *   - '''Cancels when''' downstream cancels.
   *
   * @param workers limit of the frames in progress at a time
   * @param isNewer whether one frame was exposed later than another; where the simulator may restart, use

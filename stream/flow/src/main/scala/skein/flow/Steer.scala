@@ -30,13 +30,13 @@ enum Steered[+C, +R]:
   *
   * While the vehicle is held ([[Hold]]), it is parked and upstream's commands are not sent.
   *
-  * - '''Emits when''' a command is sent or has ended, and downstream demands.
-  * - '''Backpressures when''' `mostOutstanding` commands are outstanding, within `minInterval` of the last
-  *   one, while an answer is lost and the vehicle not parked, or while [[Steer.EventLimit]] events wait for
-  *   downstream.
-  * - '''Completes when''' upstream has completed, the vehicle was parked or [[Steer.LastAttempts]] at it
-  *   failed, and every call has ended.
-  * - '''Cancels when''' downstream cancels.
+  *   - '''Emits when''' a command is sent or has ended, and downstream demands.
+  *   - '''Backpressures when''' `mostOutstanding` commands are outstanding, within `minInterval` of the last
+  *     one, while an answer is lost and the vehicle not parked, or while [[Steer.EventLimit]] events wait for
+  *     downstream.
+  *   - '''Completes when''' upstream has completed, the vehicle was parked or [[Steer.LastAttempts]] at it
+  *     failed, and every call has ended.
+  *   - '''Cancels when''' downstream cancels.
   *
   * @param minInterval between two commands sent: the rate cap
   * @param mostOutstanding commands that may be unanswered. More than [[Moves.InFlight]] let a link of a long

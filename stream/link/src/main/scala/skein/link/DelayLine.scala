@@ -11,13 +11,14 @@ import skein.units.*
   * order, with the delay of a [[Delivery]]. Bytes that are due together come out as one segment, as from a
   * socket. Datagrams are not joined, and come out when each is due, in any order.
   *
-  * - '''Emits when''' downstream pulls and the oldest bytes are due.
-  * - '''Backpressures when''' `maxBytes` or more are in transit.
-  * - '''Completes when''' upstream has completed, everything has come out and the end of sending is due, too.
-  * - '''Fails when''' upstream has failed and that is due, or with `broken` when the link breaks.
-  * - '''Cancels when''' the link breaks, or a delay after downstream has failed. A downstream that merely
-  *   cancels is not reported to the sender, as with a socket: further bytes are discarded until upstream
-  *   ends.
+  *   - '''Emits when''' downstream pulls and the oldest bytes are due.
+  *   - '''Backpressures when''' `maxBytes` or more are in transit.
+  *   - '''Completes when''' upstream has completed, everything has come out and the end of sending is due,
+  *     too.
+  *   - '''Fails when''' upstream has failed and that is due, or with `broken` when the link breaks.
+  *   - '''Cancels when''' the link breaks, or a delay after downstream has failed. A downstream that merely
+  *     cancels is not reported to the sender, as with a socket: further bytes are discarded until upstream
+  *     ends.
   *
   * With a bottleneck before it, bytes enter piece by piece, as the bottleneck has room, and have its delay in
   * addition.

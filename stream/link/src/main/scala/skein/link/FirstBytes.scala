@@ -43,11 +43,11 @@ object FirstBytes:
 
   /** Passes a connection's bytes on once the first ones fit the port's own protocol.
     *
-    * - '''Emits when''' bytes arrive and the protocol is decided.
-    * - '''Backpressures when''' downstream does.
-    * - '''Completes when''' upstream has completed.
-    * - '''Fails when''' the first bytes are foreign, with [[TransportError.Foreign]].
-    * - '''Cancels when''' downstream cancels, or it fails.
+    *   - '''Emits when''' bytes arrive and the protocol is decided.
+    *   - '''Backpressures when''' downstream does.
+    *   - '''Completes when''' upstream has completed.
+    *   - '''Fails when''' the first bytes are foreign, with [[TransportError.Foreign]].
+    *   - '''Cancels when''' downstream cancels, or it fails.
     */
   def guard(from: Address, own: Set[Int] = Set.empty): Flow[ByteString, ByteString, NotUsed] =
     // None: decided.

@@ -15,14 +15,14 @@ import upack.Msg
 /** Serves one connection: takes the bytes of requests and emits the bytes of replies, in the order of their
   * completion.
   *
-  * - '''Emits when''' replies are ready; those ready together leave together.
-  * - '''Backpressures when''' its limit of requests in progress, of reply bytes not yet taken, or of memory
-  *   held is reached. A request too large for the memory left waits for its connection's requests in
-  *   progress; then, or after the longest time for a message, it is answered with an error, and so is one
-  *   whose reply is too large.
-  * - '''Completes when''' upstream has completed and every request is answered, or immediately on malformed
-  *   input or a limit that waiting cannot relieve.
-  * - '''Cancels when''' downstream cancels, or on malformed input or such a limit.
+  *   - '''Emits when''' replies are ready; those ready together leave together.
+  *   - '''Backpressures when''' its limit of requests in progress, of reply bytes not yet taken, or of memory
+  *     held is reached. A request too large for the memory left waits for its connection's requests in
+  *     progress; then, or after the longest time for a message, it is answered with an error, and so is one
+  *     whose reply is too large.
+  *   - '''Completes when''' upstream has completed and every request is answered, or immediately on malformed
+  *     input or a limit that waiting cannot relieve.
+  *   - '''Cancels when''' downstream cancels, or on malformed input or such a limit.
   */
 private[rpc] final class ServerConnection(
     connection: Long,

@@ -130,22 +130,21 @@ class ServerLimitsSuite extends munit.FunSuite:
   private def replies(bytes: Seq[ByteString]): Seq[RpcMessage] =
     Wire.framed(Framer(), bytes).collect { case Framed.Complete(frame) => RpcMessage.fromServer(frame) }
 
-  rig("a request holds memory until it is answered, and one too large for the rest is refused", three):
-    r =>
-      val waiting = Seq.fill(2)(waits(r))
-      val third   = r.Connection()
-      third.send(large(300))
-      val text =
-        "this request takes 40687 bytes of the server's memory, and no " +
-          "more than 120000 in all beyond 10000 for each connection"
-      assertEquals(replies(Seq(third.replies.expectNext())), Seq(RpcMessage.Reply(300, Str(text), Null)))
-      third.ping()
-      assertEquals(r.counters.snapshot.lacking, 1L)
-      r.never.success(Right(Null))
-      for c <- waiting do
-        val _ = c.replies.expectNext()
-        c.ping()
-      r.until(r.holdings.bytes == 0)
+  rig("a request holds memory until it is answered, and one too large for the rest is refused", three): r =>
+    val waiting = Seq.fill(2)(waits(r))
+    val third   = r.Connection()
+    third.send(large(300))
+    val text =
+      "this request takes 40687 bytes of the server's memory, and no " +
+        "more than 120000 in all beyond 10000 for each connection"
+    assertEquals(replies(Seq(third.replies.expectNext())), Seq(RpcMessage.Reply(300, Str(text), Null)))
+    third.ping()
+    assertEquals(r.counters.snapshot.lacking, 1L)
+    r.never.success(Right(Null))
+    for c <- waiting do
+      val _ = c.replies.expectNext()
+      c.ping()
+    r.until(r.holdings.bytes == 0)
 
   rig("a pipeline of large requests is held back, and all of them are answered", three): r =>
     val honest = r.Connection()
@@ -184,7 +183,8 @@ class ServerLimitsSuite extends munit.FunSuite:
 
   private val six = ServerLimits(inFlightAssured = 2, inFlightInCommon = 4)
 
-  rig("a client with many endless requests leaves others their share, and all of its own are taken",
+  rig(
+    "a client with many endless requests leaves others their share, and all of its own are taken",
     six
   ): r =>
     val greedy = r.Connection()
@@ -218,15 +218,14 @@ class ServerLimitsSuite extends munit.FunSuite:
     )
     assertEquals(r.turns.mostBytes, 6L)
 
-  rig("a message that takes too long closes its connection and gives back its memory", ServerLimits()):
-    r =>
-      val slow = r.Connection()
-      slow.ping()
-      slow.send(begun(1000, 500))
-      r.until(r.holdings.bytes == 500)
-      r.passUntilClosed()
-      slow.expectClosed("a message under way for more than 10 s")
-      assertEquals((r.counters.snapshot.tooSlow, r.holdings.bytes), (1L, 0L))
+  rig("a message that takes too long closes its connection and gives back its memory", ServerLimits()): r =>
+    val slow = r.Connection()
+    slow.ping()
+    slow.send(begun(1000, 500))
+    r.until(r.holdings.bytes == 500)
+    r.passUntilClosed()
+    slow.expectClosed("a message under way for more than 10 s")
+    assertEquals((r.counters.snapshot.tooSlow, r.holdings.bytes), (1L, 0L))
 
   rig("a peer that takes no replies is closed", ServerLimits()): r =>
     val deaf = r.Connection(takesReplies = false)

@@ -10,12 +10,12 @@ import upack.*
 /** Reads an argument of this type as AirSim's server does, with the conversions of msgpack-c, which its
   * rpclib uses.
   *
-  * - A float may be sent as an integer, never as a boolean, a string or nil; a float is not accepted as an
-  *   integer, nor is an integer out of its type's range.
-  * - A string may be sent as str or as bin, which old clients send.
-  * - A map's missing keys keep their defaults and unknown keys are skipped, at any depth; a map with a key
-  *   that is no string, or another kind of value in its place, is refused.
-  * - A refusal is reported as `std::bad_cast`, without its place.
+  *   - A float may be sent as an integer, never as a boolean, a string or nil; a float is not accepted as an
+  *     integer, nor is an integer out of its type's range.
+  *   - A string may be sent as str or as bin, which old clients send.
+  *   - A map's missing keys keep their defaults and unknown keys are skipped, at any depth; a map with a key
+  *     that is no string, or another kind of value in its place, is refused.
+  *   - A refusal is reported as `std::bad_cast`, without its place.
   *
   * Unlike AirSim's server, this refuses numbers that are not finite, or too large for a 32-bit float
   * argument, or vectors and positions beyond a limit: they would corrupt physics for good.

@@ -78,22 +78,21 @@ class VoxelGridSuite extends munit.FunSuite, TemporaryFolders:
 
   folder.test(
     "no client can write a file elsewhere, over a file of another kind, or beyond the folder's limit"
-  ):
-    folder =>
-      val grids = GridFolder(folder)
-      for path <- Seq(
-          "/tmp/x.binvox",
-          "../x.binvox",
-          s"$folder/../x.binvox",
-          s"$folder/deep/x.binvox",
-          "deep/x.binvox",
-          "profile",
-          "",
-          "\u0000.binvox"
-        )
-      do assert(grids.file(path).isLeft, path)
-      for i <- 1 to GridFolder.Most do assert(grids.file(s"$i.binvox").exists(grids.save(_)(Array(1))))
-      assert(!grids.file("more.binvox").exists(grids.save(_)(Array(1))))
+  ): folder =>
+    val grids = GridFolder(folder)
+    for path <- Seq(
+        "/tmp/x.binvox",
+        "../x.binvox",
+        s"$folder/../x.binvox",
+        s"$folder/deep/x.binvox",
+        "deep/x.binvox",
+        "profile",
+        "",
+        "\u0000.binvox"
+      )
+    do assert(grids.file(path).isLeft, path)
+    for i <- 1 to GridFolder.Most do assert(grids.file(s"$i.binvox").exists(grids.save(_)(Array(1))))
+    assert(!grids.file("more.binvox").exists(grids.save(_)(Array(1))))
 
   folder.test("one grid is made at a time, and a simulator without a folder makes none"): folder =>
     val grids = GridFolder(folder)
