@@ -68,7 +68,7 @@ final class FlyCommand(using Scenarios)
   override protected def defaults: Map[String, String]   = FlightOptions.defaults
   override protected def known: Map[String, Seq[String]] = FlightOptions.known
 
-  /** Nodes of others stop for nobody's loop. */
+  /** The options' flights. Other programs' ROS 2 nodes do not stop for `paused`. */
   private def flights(options: FlyOptions) =
     if options.ros.value then options.flights.unpaused else options.flights
 

@@ -174,7 +174,7 @@ private[skein] final class Controller(
 
   /** The observation for a policy, as `skein.loop.Decider` builds it.
     *
-    * @param believed what a camera tells of the opponent, in place of its reading
+    * @param believed the estimate of the opponent by a camera, in place of its reading
     */
   private def observed(
       observation: RolloutView,

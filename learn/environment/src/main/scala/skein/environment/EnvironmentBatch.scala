@@ -47,7 +47,7 @@ final class EnvironmentBatch private (
       (learning, turn) <- side.turns.toArray.zipWithIndex
       numbers          <- (turn until count by side.turns.size).grouped(most)
     yield
-      val worlds = side.worlds(engine, learning, beside, numbers.size)
+      val worlds = EnvironmentBatch.worlds(side, engine, learning, beside, numbers.size)
       val stride = side.turns.size
       EnvironmentGroup(side, learning, worlds, autoreset, numbers.head, stride, numbers.size, buffers)
 
@@ -102,6 +102,19 @@ final class EnvironmentBatch private (
     else IntStream.range(0, groups.length).parallel().forEach(groups(_).step())
 
 object EnvironmentBatch:
+
+  /** The worlds of `count` environments that an engine flies together. */
+  private[environment] def worlds(
+      side: LearnerSide,
+      by: Engine,
+      learning: Vector[Int],
+      beside: Option[Policy],
+      count: Int
+  ): LearnerWorlds =
+    val team = side.team(learning, beside)
+    if by.fliesByLanes then side.maker.of(team, learning, count).fold(sys.error, identity)
+    else LearnerRollout(side, team, learning)
+
   val Most = 1 << 20
 
   /** Groups from which on several threads are used. */

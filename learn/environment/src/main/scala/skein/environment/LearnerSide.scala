@@ -2,7 +2,7 @@ package skein.environment
 
 import scala.util.Try
 import skein.forward.{Delays, Engagement, LoopTiming, VelocityResponse}
-import skein.lanes.{Engine, LearnerPolicy, LearnerTeams, LearnerWorlds, TeamCandidate}
+import skein.lanes.{Engine, LearnerPolicy, LearnerTeams, TeamCandidate}
 import skein.lanes.score.{Judged, OfMoment}
 import skein.optimise.{Objective, ScenarioTerm}
 import skein.policy.{Policy, Role}
@@ -28,7 +28,8 @@ private[environment] final case class LearnerSide(
     link: Delays,
     response: VelocityResponse
 ):
-  private val maker = LearnerTeams.Maker(timing, link, response)
+  /** Makes worlds that SIMD flies. */
+  val maker: LearnerTeams.Maker = LearnerTeams.Maker(timing, link, response)
 
   /** Number of learners in an environment. */
   def learners: Int = turns.head.size
@@ -94,12 +95,6 @@ private[environment] final case class LearnerSide(
     turns.iterator.flatMap(each => maker.refusal(team(each, beside))).nextOption() match
       case None      => Engine(Engine.Kind.Lanes, s"SIMD, ${LaneMath.LANES} environments at a time")
       case Some(why) => Engine.scalar(why)
-
-  /** Worlds that an engine flies together. */
-  def worlds(by: Engine, learning: Vector[Int], beside: Option[Policy], count: Int): LearnerWorlds =
-    val flown = team(learning, beside)
-    if by.fliesByLanes then maker.of(flown, learning, count).fold(sys.error, identity)
-    else LearnerRollout(this, flown, learning)
 
 private[environment] object LearnerSide:
 

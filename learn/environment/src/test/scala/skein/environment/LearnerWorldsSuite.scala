@@ -60,7 +60,7 @@ class LearnerWorldsSuite extends munit.FunSuite:
       val engine = side.engine(None)
       assert(engine.fliesByLanes, engine.text)
       val learning         = side.turns.last
-      val (seen, sums)     = flown(side, learning, side.worlds(engine, learning, None, 3))
+      val (seen, sums)     = flown(side, learning, EnvironmentBatch.worlds(side, engine, learning, None, 3))
       val (truth, scalars) = flown(side, learning, LearnerRollout(side, side.team(learning, None), learning))
       assertEquals(seen.map(_.size), truth.map(_.size))
       assert(seen.forall(_.sizeIs > 25), seen.map(_.size))
@@ -78,7 +78,7 @@ class LearnerWorldsSuite extends munit.FunSuite:
       all.copy(scenario = "surround", learners = "all", loop = "paused", link = "none", plant = "tilt")
     val side                    = LearnerSide.of(settings).fold(fail(_), identity)
     val learning                = side.turns.head
-    val worlds                  = side.worlds(side.engine(None), learning, None, 4)
+    val worlds                  = EnvironmentBatch.worlds(side, side.engine(None), learning, None, 4)
     val seen                    = Array.ofDim[Float](LearnerPolicy.Fields * LearnerWorlds.Most)
     def begin(world: Int): Unit =
       for vehicle <- side.names.indices do worlds.restart(world, vehicle, 10f * vehicle, 3, 0.5f)
