@@ -160,6 +160,8 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
             raise ValueError(f"num_envs: expected a whole number from 1, came {num_envs!r}")
         if render_mode not in (None, "rgb_array"):
             raise ValueError(f"render_mode: expected None or 'rgb_array', came {render_mode!r}")
+        if altitude_m is not None and not altitude_m > 0:
+            raise ValueError(f"altitude_m: expected more than 0 m, came {altitude_m!r}")
         self.num_envs = num_envs
         self.copy = copy
         self.render_mode = render_mode

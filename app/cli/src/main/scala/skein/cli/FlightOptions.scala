@@ -137,8 +137,12 @@ final case class FlightOptions(
 ):
 
   /** The settings: flags take precedence over the file, the file over defaults. */
-  def settings(using Scenarios): Either[String, FlySettings] =
-    configuration.flatMap(FlySettings.read).map: settings =>
+  def settings(using Scenarios): Either[String, FlySettings] = settingsOf(mayPause = true)
+
+  /** @param mayPause whether the vehicles' time can be stopped, as far as the command knows
+    */
+  private[cli] def settingsOf(mayPause: Boolean)(using Scenarios): Either[String, FlySettings] =
+    configurationOf(mayPause).flatMap(FlySettings.read).map: settings =>
       if settings.loops.contains(LoopKind.Plan) then
         val slow = Option.when(!Planner.isFast)(FlightOptions.slow)
         (slow ++ Planning.told(settings.fleet).toOption ++ OpponentModel.missing(settings.fleet))
@@ -146,27 +150,34 @@ final case class FlightOptions(
       settings
 
   /** The merged configuration before it is read: all of `skein.fly`. */
-  def configuration(using Scenarios): Either[String, Config] =
-    ConfigMistakes.guarded("--config")(merged)
+  def configuration(using Scenarios): Either[String, Config] = configurationOf(mayPause = true)
 
-  private def merged(using Scenarios): Either[String, Config] =
+  private def configurationOf(mayPause: Boolean)(using Scenarios): Either[String, Config] =
+    ConfigMistakes.guarded("--config")(merged(mayPause))
+
+  private def merged(mayPause: Boolean)(using Scenarios): Either[String, Config] =
     for
       _ <- Expect.that(loop.isEmpty || !asPaper.value):
         s"--as-paper flies the paper's loops: expected no --loop beside it, came ${loop.mkString(", ")}"
       file <- config.fold(Right(ConfigFactory.empty))(FlightOptions.read)
-      chosen = if mavlink.value || only.isDefined then unpaused else this
-      told   = FlightOptions.hovering(chosen.flags.withFallback(file))
+      told = FlightOptions.hovering(looping(flags.withFallback(file), mayPause))
       merged <- FlightOptions.scenarioRead(told.withFallback(ConfigFactory.load()).resolve())
       _      <- ConfigMistakes.ofShape(merged, "skein.fly").toLeft(())
       own    <- ofScenario(merged)
     yield own.withFallback(merged).withOnlyPath("skein.fly")
 
-  /** These options, with loops that do not stop the vehicles' time where none was chosen. */
-  private[cli] def unpaused: FlightOptions =
-    if loop.nonEmpty then this
+  /** The configuration with loops that do not stop the vehicles' time, where none was chosen and that time is
+    * not ours to stop.
+    */
+  private def looping(told: Config, mayPause: Boolean): Config =
+    def has(key: String, value: String) = Try(told.getString(s"skein.fly.$key")).toOption.contains(value)
+    val isOurs   = mayPause && !told.hasPath("skein.fly.only") && !has("wire", Wire.Mavlink.label)
+    val isChosen = loop.nonEmpty || told.hasPath("skein.fly.loops") && !asPaper.value
+    if isOurs || isChosen then told
     else
       val loops = FlightOptions.paperLoops ++ Option.when(!asPaper.value)(LoopKind.Predictive.label)
-      copy(loop = loops.filterNot(_ == LoopKind.Paused.label), asPaper = Flag())
+      val named = ConfigValueFactory.fromIterable(loops.filterNot(_ == LoopKind.Paused.label).asJava)
+      told.withValue("skein.fly.loops", named)
 
   /** Each option whose field is a setting of `skein.fly`. */
   private def flags: Config =

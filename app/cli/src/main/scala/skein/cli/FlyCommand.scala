@@ -68,16 +68,15 @@ final class FlyCommand(using Scenarios)
   override protected def defaults: Map[String, String]   = FlightOptions.defaults
   override protected def known: Map[String, Seq[String]] = FlightOptions.known
 
-  /** The options' flights. Other programs' ROS 2 nodes do not stop for `paused`. */
-  private def flights(options: FlyOptions) =
-    if options.ros.value then options.flights.unpaused else options.flights
+  /** Other programs' ROS 2 nodes do not stop for `paused`. */
+  private def settingsOf(options: FlyOptions) = options.flights.settingsOf(mayPause = !options.ros.value)
 
   override protected def check(options: FlyOptions): Either[String, Unit] =
-    flights(options).settings.map(_ => ())
+    settingsOf(options).map(_ => ())
 
   protected def execute(options: FlyOptions): Either[String, Unit] =
     for
-      settings <- flights(options).settings
+      settings <- settingsOf(options)
       learning <- options.learning.chosen(settings)
       plans = learning.fold(settings.plans)(settings.plansWith)
       isTcp = options.simulator.exists(_.startsWith(FlyCommand.Tcp))

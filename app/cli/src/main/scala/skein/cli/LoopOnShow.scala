@@ -24,6 +24,10 @@ private[cli] final class LoopOnShow(
   private var found  = Vector.empty[String]
   private var nextAt = Instant.Epoch
 
+  /** Whether commands have come since the findings were made. */
+  private var isStale = true
+  private var isEnded = false
+
   /** @param what is observed, and `where`, for people */
   def show(shows: Shows, what: String, where: String): Unit =
     val now    = clock.now()
@@ -32,14 +36,18 @@ private[cli] final class LoopOnShow(
     shows.add(LiveShow(RecordingHeader(flight, Nil), feed, Vector(Gauge(topic, Every, () => json()))))
 
   /** The page keeps what it shows from now on. */
-  def end(): Unit = feed.offer(Ending(clock.now(), EndingKind.Completed, None))
+  def end(): Unit =
+    isEnded = true
+    feed.offer(Ending(clock.now(), EndingKind.Completed, None))
 
   private[cli] def json(): Option[String] =
     val commands = takeNew()
     val before   = found
     val from     = clock.now()
-    if from >= nextAt && (commands.nonEmpty || found.isEmpty) then
+    isStale ||= commands.nonEmpty
+    if isStale && (from >= nextAt || isEnded) then
       found = findings()
+      isStale = false
       val now = clock.now()
       nextAt = now + (now.since(from) * Rest).max(FindEvery)
     Option.when(commands.nonEmpty || found != before):

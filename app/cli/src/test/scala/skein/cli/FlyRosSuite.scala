@@ -1,9 +1,10 @@
 package skein.cli
 
 import skein.scenario.Scenarios
+import skein.testing.TemporaryFolders
 
 /** `./skein fly --ros`, up to the point that needs ROS 2. */
-class FlyRosSuite extends munit.FunSuite:
+class FlyRosSuite extends munit.FunSuite, TemporaryFolders:
   private given Scenarios = Scenarios.ours
 
   private val possible = Seq("--ros", "--loop", "stream", "--link", "none")
@@ -18,9 +19,13 @@ class FlyRosSuite extends munit.FunSuite:
     assume(!Seq("AMENT_PREFIX_PATH", "LD_LIBRARY_PATH").exists(sys.env.contains), "ROS 2 may be here")
     assert(said(possible*).contains("--ros: ROS 2 was not found: expected librcl.so in lib of a folder of"))
 
-  test("where no loop is chosen, all fly that do not stop time"):
+  test("without chosen loops, all loops fly that do not stop time"):
     assume(!Seq("AMENT_PREFIX_PATH", "LD_LIBRARY_PATH").exists(sys.env.contains), "ROS 2 may be here")
     assert(clue(said("--ros", "--link", "none")).contains("ROS 2 was not found"))
+
+  folder.test("loops of a configuration file count where the command names none"): folder =>
+    val file = java.nio.file.Files.writeString(folder.resolve("paused.conf"), "skein.fly.loops = [paused]")
+    assert(clue(said("--ros", "--link", "none", "--config", s"$file")).contains("other than paused"))
 
   for (what, words, expected) <- Seq(
       (

@@ -42,3 +42,17 @@ class LoopOnShowSuite extends munit.FunSuite:
       shown.json(): Unit
       found
     assertEquals(Vector(after(0), after(10), after(9), after(1), after(10)), Vector(1, 1, 1, 2, 2))
+
+  test("findings are sought after the last commands too, and once more at the end"):
+    val shown                                         = show(findingTakes = Span.ofSeconds(1))
+    def turn(seconds: Int, isCommanded: Boolean): Int =
+      now = now + Span.ofSeconds(seconds)
+      if isCommanded then commands = Vector(NewCommands("a", Some(20), None, None))
+      shown.json(): Unit
+      found
+    assertEquals(Vector(turn(0, true), turn(5, true), turn(16, false), turn(30, false)), Vector(1, 1, 2, 2))
+    assertEquals(turn(1, isCommanded = true), 3)
+    assertEquals(turn(1, isCommanded = true), 3)
+    shown.end()
+    assertEquals(turn(0, isCommanded = false), 4)
+    assertEquals(turn(9, isCommanded = false), 4)

@@ -242,7 +242,15 @@ private[formula] final class Objects(
         val node = Whole(trace.const(wholeOf(simple)))
         if kind.isPrimitive then node else Boxed(node)
       case text: String => alikeIn(text); Known(text, None)
-      case other        => alikeIn(other.getClass); Known(other, path)
+      // Cases of an enum without fields share a class.
+      case single: (scala.reflect.Enum | java.lang.Enum[?]) if !isOfFields(single) =>
+        alikeIn(single)
+        Known(single, path)
+      case other => alikeIn(other.getClass); Known(other, path)
+
+  private def isOfFields(of: AnyRef) = of match
+    case product: Product => product.productArity > 0
+    case _                => false
 
   /** The element at an index. If the index is unknown, conditions choose among all elements. */
   def elementAt(array: Value, index: Node): Value =

@@ -73,7 +73,28 @@ class FormulaLaws extends munit.FunSuite:
       assert(refused.getMessage.contains(reason), refused.getMessage)
       assert(refused.where.contains("FormulaLaws.scala:"), refused.getMessage)
 
+  test("cases of an enum without fields are different forms"):
+    for
+      make <- Seq[Turn => AnyRef](Turning(_), TurningWith(_));
+      case Vector(one, other) <- Turn.values.toVector.combinations(2)
+    do
+      val formula = Formula.of(make(one), "turn").fold(throw _, identity)
+      assert(formula.fits(make(one)))
+      assert(!formula.fits(make(other)), s"$one and $other")
+
 object FormulaLaws:
+  enum Turn:
+    case Left, Right, Around
+
+  final case class Turning(by: Turn):
+    def turn(a: Double): Double = by match
+      case Turn.Left   => -a
+      case Turn.Right  => a
+      case Turn.Around => math.Pi
+
+  final case class TurningWith(by: Turn):
+    def turn(a: Double): Double = if by == Turn.Left then -a else if by eq Turn.Right then a else math.Pi
+
   enum Shape:
     case Round(radius: Double)
     case Square(side: Double)

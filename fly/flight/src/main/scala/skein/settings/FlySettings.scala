@@ -294,6 +294,15 @@ object FlySettings:
         "strangers: expected knows positions with it, or decentralised, since otherwise all commands are known, " +
           s"came ${settings.strangers.label} without"
       ),
+      Option.when(settings.strangers != Strangers.Turn && !settings.loops.exists(predicts))(
+        s"strangers: expected a loop that predicts, such as predictive, came ${settings.strangers.label} without"
+      ),
+      Option.when(
+        settings.strangers == Strangers.Belief && settings.predictor == PredictionModel.ConstantVelocity
+      )(
+        "strangers: expected turn or straight with the predictor constant-velocity, which predicts all straight " +
+          "on, came belief"
+      ),
       apartMistake(settings, isGiven = optionAt("knows", config).isDefined).map("decentralised: " + _),
       onlyMistake(settings).map("only: " + _),
       betweenMistake(settings).map("between: " + _),
@@ -364,6 +373,8 @@ object FlySettings:
       )
     else
       settings.cars.headOption.map(car => s"expected multirotors, which hold plans, came the car ${car.name}")
+
+  private def predicts(loop: AnyLoop) = loop == LoopKind.Predictive || loop.isInstanceOf[OwnLoop]
 
   private def knowsMistake(settings: FlySettings): Option[String] =
     val all = settings.knows == Knowledge.All

@@ -120,6 +120,15 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
         "are known, came belief without"
     )
     assertTold(
+      "knows = positions, strangers = belief, loops = [stream]",
+      "2: skein.fly.strangers: expected a loop that predicts, such as predictive, came belief without"
+    )
+    assertTold(
+      "knows = positions, strangers = belief, predictor = constant-velocity",
+      "2: skein.fly.strangers: expected turn or straight with the predictor constant-velocity, which predicts " +
+        "all straight on, came belief"
+    )
+    assertTold(
       "knows = positions, strangers = none",
       "2: skein.fly.strangers: expected turn or straight or belief, came 'none'"
     )

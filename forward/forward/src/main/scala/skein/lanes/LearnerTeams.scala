@@ -60,6 +60,7 @@ final class LearnerTeams private[lanes] (
     body.startX(world) = northM
     body.startY(world) = eastM
     members(vehicle).restart(world, headingRad)
+    for number <- passing do scores.forgetIn(world, number)
 
   def flyOn(): Boolean =
     while next < timetable.size && !learnsAt(next) do

@@ -78,7 +78,11 @@ private final class EnvironmentGroup(
     for world <- chosen do seed(world, newSeeds(numberOf(world)))
     if chosen.nonEmpty then
       val others = isDone.clone
-      if isOver || !worlds.restartAlone then startRun() else chosen.foreach(begin)
+      if isOver || !worlds.restartAlone then
+        startRun()
+        // The episodes of the others begin with their own reset.
+        for world <- 0 until count if !chosen.contains(world) do episodes(world) -= 1
+      else chosen.foreach(begin)
       System.arraycopy(others, 0, isDone, 0, count)
       for world <- chosen do
         isDone(world) = false
@@ -98,7 +102,7 @@ private final class EnvironmentGroup(
       into.read(into.actions, agent, first, stride, read, count)
       var world = 0
       while world < count do
-        if !(Math.abs(read(world)) <= Float.MaxValue) then return numberOf(world)
+        if worlds.isDue(agent) && !(Math.abs(read(world)) <= Float.MaxValue) then return numberOf(world)
         world += 1
       agent += 1
     -1
@@ -189,8 +193,10 @@ private final class EnvironmentGroup(
       world += 1
     autoreset match
       case Autoreset.SameStep if again =>
-        show(into.finals)
+        showFinals()
+        val ended = isDone.clone
         restartDone()
+        for world <- 0 until count if ended(world) do hide(world)
         show(into.observations)
       case Autoreset.NextStep if again && !worlds.restartAlone =>
         isOver = true
@@ -238,6 +244,20 @@ private final class EnvironmentGroup(
 
   private def clear(world: Int): Unit =
     for agent <- 0 until agents do into.begun(agent, numberOf(world), startM(agent * count + world))
+    hide(world)
+
+  /** Clears the observations of an episode that has ended, for learners that are not due. */
+  private def hide(world: Int): Unit =
+    for agent <- 0 until agents if !worlds.isDue(agent); field <- 0 until Fields do
+      into.observations.put((agent * Fields + field) * into.count + numberOf(world), 0f): Unit
+
+  /** Writes the last observations of all learners, also of those that are not due. */
+  private def showFinals(): Unit =
+    show(into.finals)
+    for agent <- 0 until agents if !worlds.isDue(agent); field <- 0 until Fields do
+      val of = agent * Fields + field
+      into.read(into.observations, of, first, stride, row, count)
+      into.write(into.finals, of, first, stride, row, 0, count)
 
   /** Writes the observations of the learners that are due; the others' stay unchanged. */
   private def show(to: FloatBuffer): Unit =

@@ -127,7 +127,9 @@ private[environment] object LearnerSide:
       engagement = flown.copy(agents = flown.agents.zipWithIndex.map: (agent, place) =>
         val by = opponent.filter(file => isFree(place) && agents(place).role == file.role)
         agent.copy(
-          altitudeDownM = if settings.altitudeM != 0 then -settings.altitudeM else agent.altitudeDownM,
+          altitudeDownM =
+            if settings.altitudeM != 0 && agent.kind == VehicleKind.Multirotor then -settings.altitudeM
+            else agent.altitudeDownM,
           policy = by.fold(agent.policy)(_.policy)
         ))
       objectives <-

@@ -89,6 +89,28 @@ class EnvironmentBatchSimulation extends munit.FunSuite:
       assertEqualsDouble(mean, reference.meanDistanceM, 0.02)
       assert(least == leastByLanes, s"$least m, by the lanes $leastByLanes m")
 
+  test("rewards do not depend on a start that was discarded before the first step"):
+    def paid(discarded: Long) =
+      val settings = EnvironmentSettings(startWithinM = (5, 30), link = "constant:300ms", episodeS = 6)
+      val learner  = Learner(settings, 2)
+      learner.reset(3, discarded)
+      learner.batch.reset(Array(-1L, 7L), Array(false, true))
+      learner.batch.step()
+      (learner.reward(1), learner.distance(1))
+    assertEquals(paid(5), paid(6))
+
+  test("a reset shows nothing of the episode before, to learners that are not due either"):
+    val settings = EnvironmentSettings(learners = "both", plant = "quadrotor", altitudeM = 3, episodeS = 6)
+    val learner  = Learner(settings, 1)
+    def begun()  =
+      learner.reset(1)
+      Vector.tabulate(2, Fields)((agent, field) => learner.seen(0, field, agent))
+    val first = begun()
+    assert(!learner.isDue(0) || !learner.isDue(1), "all learners are due")
+    for _ <- 0 until 20 do learner.batch.step()
+    assertEquals(begun(), first)
+    learner.batch.close()
+
   test("equal seeds and actions give equal episodes, to the bit, independent of other groups"):
     def flown(count: Int) =
       val learner =

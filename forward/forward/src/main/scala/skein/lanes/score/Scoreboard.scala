@@ -70,6 +70,13 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
     for place <- lanes.places(number) until lanes.places(number + 1) do
       Arrays.fill(kept, place * worlds, (place + 1) * worlds, lanes.initial(place))
 
+  /** Forgets one world's score. Its count goes on, so this is not for means and standard deviations at the
+    * end.
+    */
+  def forgetIn(world: Int, number: Int): Unit =
+    for place <- lanes.places(number) until lanes.places(number + 1) do
+      kept(place * worlds + world) = lanes.initial(place)
+
   def score(agents: Array[TimetableAgents], views: Array[Int], view: Int, timeS: Float): Unit =
     val stage = stageAt(timeS)
     if stage != null then
