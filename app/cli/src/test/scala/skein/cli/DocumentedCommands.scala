@@ -40,8 +40,18 @@ class DocumentedCommandsLiveSuite
     extends DocumentedCommands(DocumentedCommands.of(DocumentedCommands.Kind.Other)),
       Lengthy
 
-/** One command of each kind and engine, before every commit. */
-class DocumentedSampleLiveSuite extends DocumentedCommands(DocumentedCommands.sample), Optimised
+/** One command of each kind and engine, before every commit: searches here, all others in
+  * [[DocumentedSampleOfOthersLiveSuite]], so that they run side by side.
+  */
+class DocumentedSampleLiveSuite
+    extends DocumentedCommands(DocumentedCommands.sample(DocumentedCommands.Kind.Search)),
+      Optimised
+
+class DocumentedSampleOfOthersLiveSuite
+    extends DocumentedCommands(
+      DocumentedCommands.sample(DocumentedCommands.Kind.Other) ++ DocumentedCommands.sampleFlight
+    ),
+      Optimised
 
 /** Runs the commands of README, guides, results and examples as written there, for a shorter time;
   * [[DocumentedCommands.leftOut]] states which are not run, and why. Real sockets on loopback.
@@ -221,6 +231,7 @@ abstract class DocumentedCommands(commands: Seq[String]) extends munit.FunSuite:
       val asked = DocumentedCommands.words(command).map:
         case "HOST:PORT" => server.address.toString
         case "NAME"      => "patrol"
+        case "FOLDER"    => folder.resolve("results").toString
         case "FILE" if command.startsWith("policy") || command.contains("--policy FILE") => learned.toString
         case "FILE…" if command.startsWith("identify")                                   => seeing.toString
         case "FILE" | "FILE…"                                                            => recording.toString
@@ -334,8 +345,7 @@ object DocumentedCommands:
   /** One command of each kind and engine. Commands in several processes, and flights in real time except one,
     * are left to the nightly run.
     */
-  def sample: Vector[String] =
-    val quick   = of(Kind.Search) ++ of(Kind.Other)
+  def sample(kind: Kind): Vector[String] =
     val engines = Seq(
       "--scenario",
       "--gpu",
@@ -346,8 +356,12 @@ object DocumentedCommands:
       "--policy pursuer.onnx",
       "--onnx"
     )
-    quick.distinctBy(command => (command.takeWhile(_ != ' '), engines.filter(command.contains))) ++
-      of(Kind.Flight).find(_ == "fly --loop predictive --link vpn")
+    of(kind)
+      // [[BenchmarkSimulation]] flies a small one.
+      .filterNot(_.startsWith("benchmark "))
+      .distinctBy(command => (command.takeWhile(_ != ' '), engines.filter(command.contains)))
+
+  def sampleFlight: Option[String] = of(Kind.Flight).find(_ == "fly --loop predictive --link vpn")
 
   /** The words of a command. */
   def words(command: String): Vector[String] = """'([^']*)'|(\S+)""".r.findAllMatchIn(command).toVector.map(
