@@ -33,7 +33,7 @@ def tenths(runs):
 
 def main(folder, picture):
     found = curves(folder)
-    figure, panels = plt.subplots(1, len(found), figsize=(4.5 * len(found), 3.5), squeeze=False)
+    figure, panels = plt.subplots(1, len(found), figsize=(4.5 * len(found), 5), squeeze=False)
     for panel, (name, told) in zip(panels[0], found.items()):
         for place, what in enumerate(TOLD):
             if what in told:
@@ -41,7 +41,8 @@ def main(folder, picture):
                 panel.plot(*zip(*tenths(told[what])), color=f"C{place}", label=f"{label} ({len(told[what])})")
         panel.set(title=name, xlabel="steps", ylabel="return")
         panel.locator_params(axis="x", nbins=5)
-    panels[0][0].legend(title="told (seeds)", fontsize="small")
+        # Seeds differ from panel to panel.
+        panel.legend(title="told (seeds)", fontsize="small", loc="upper center", bbox_to_anchor=(0.5, -0.2))
     figure.tight_layout()
     figure.savefig(picture)
 
