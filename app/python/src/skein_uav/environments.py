@@ -160,8 +160,6 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
             raise ValueError(f"num_envs: expected a whole number from 1, came {num_envs!r}")
         if render_mode not in (None, "rgb_array"):
             raise ValueError(f"render_mode: expected None or 'rgb_array', came {render_mode!r}")
-        if altitude_m is not None and not altitude_m > 0:
-            raise ValueError(f"altitude_m: expected more than 0 m, came {altitude_m!r}")
         self.num_envs = num_envs
         self.copy = copy
         self.render_mode = render_mode
@@ -178,7 +176,7 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
             "link": link,
             "period_ms": period_ms,
             "plant": plant,
-            "altitude_m": altitude_m or 0,
+            "altitude_m": altitude_m,
             "episode_s": episode_s,
             "capture_radius_m": capture_radius_m,
             "start_most_m": start_within_m[1],
@@ -354,7 +352,10 @@ class PursuitEnv(gym.Env[Floats, Floats]):
 
 def open_batch(settings: dict[str, Any], count: int, autoreset: AutoresetMode, backend: str) -> Backend:
     """A batch, with the memory that is shared with it."""
-    texts = {name: str(value) for name, value in settings.items()}
+    altitude_m = settings.get("altitude_m")
+    if altitude_m is not None and not altitude_m > 0:
+        raise ValueError(f"altitude_m: expected more than 0 m, came {altitude_m!r}")
+    texts = {name: str(value) for name, value in settings.items() if value is not None}
     number = [AutoresetMode.NEXT_STEP, AutoresetMode.SAME_STEP, AutoresetMode.DISABLED].index(autoreset)
     if backend == "process":
         return InProcess(texts, count, number)

@@ -2,9 +2,10 @@
 
 Observations, actions and rewards are those of `skein_uav.environments`. In the duel the sum of both rewards is 0.
 
-A step lasts until the loop lets a learner decide. Under ``paused`` learners decide simultaneously by SIMD, unless
-other vehicles decide between them, and one after another by the scalar engine. Over a link one may still be waiting for an answer while another decides alone; then its observation
-stays unchanged and its action is ignored: ``infos[agent]["decides"]`` states it.
+A step lasts until the loop lets a learner decide. Under ``paused`` learners decide simultaneously by SIMD, unless other
+vehicles decide between them, and one after another by the scalar engine. Over a link one may still be waiting for an answer
+while another decides alone; then its observation stays unchanged and its action is ignored: ``infos[agent]["decides"]``
+states it.
 """
 
 from __future__ import annotations
@@ -63,7 +64,7 @@ class TeamParallelEnv(ParallelEnv[str, Floats, Floats]):
         within = others.pop("start_within_m", (0.0, 0.0))
         texts = {"scenario": scenario, "learners": learners, "start_most_m": within[1], "start_least_m": within[0]}
         texts |= {f"set.{name}": value for name, value in (settings or {}).items()}
-        self._backend = open_batch(texts | {key: each for key, each in others.items() if each is not None}, 1, AutoresetMode.DISABLED, backend)
+        self._backend = open_batch(texts | others, 1, AutoresetMode.DISABLED, backend)
         self._block = self._backend.block
         self.engine = self._backend.engine()
         self.possible_agents = [name.lower() for name in self._backend.learners]

@@ -170,8 +170,8 @@ final case class FlightOptions(
     * not ours to stop.
     */
   private def looping(told: Config, mayPause: Boolean): Config =
-    def has(key: String, value: String) = Try(told.getString(s"skein.fly.$key")).toOption.contains(value)
-    val isOurs   = mayPause && !told.hasPath("skein.fly.only") && !has("wire", Wire.Mavlink.label)
+    val wire     = Try(told.getString("skein.fly.wire")).toOption
+    val isOurs   = mayPause && !told.hasPath("skein.fly.only") && !wire.contains(Wire.Mavlink.label)
     val isChosen = loop.nonEmpty || told.hasPath("skein.fly.loops") && !asPaper.value
     if isOurs || isChosen then told
     else

@@ -1,16 +1,13 @@
 package skein.cli
 
-import java.io.File
 import java.nio.file.{Files, Path}
 import scala.jdk.CollectionConverters.*
 import scala.util.Using
+import skein.docs.Documentation
 import skein.testing.{TemporaryFolders, Unhurried}
 
 /** The script `./skein`, in a checkout with a fake build, so that each start takes a moment. */
 class LauncherLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders:
-  private val checkout =
-    Iterator.iterate(File("").getAbsoluteFile)(_.getParentFile).find(File(_, "sbtw").exists).get
-
   /** The path at which a build puts the program. */
   private val program = "app/cli/target/package/skein-1.0-any"
 
@@ -19,7 +16,7 @@ class LauncherLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders:
       val folder = temporaryFolder().toRealPath()
       Files.createDirectories(folder.resolve("project"))
       for name <- Seq("skein", "project/find-jdk") do
-        Files.copy(checkout.toPath.resolve(name), folder.resolve(name))
+        Files.copy(Documentation.root.resolve(name), folder.resolve(name))
         folder.resolve(name).toFile.setExecutable(true): Unit
       script(
         folder.resolve("sbtw"),
@@ -113,7 +110,7 @@ class LauncherLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders:
   test("a truncated class archive is removed, and a complete one is used"):
     val folder = temporaryFolder()
     Files.createDirectories(folder.resolve("bin"))
-    Files.copy(checkout.toPath.resolve("project/class-archive"), folder.resolve("class-archive"))
+    Files.copy(Documentation.root.resolve("project/class-archive"), folder.resolve("class-archive"))
     script(
       folder.resolve("launcher"),
       """addJava() { echo "$1"; }
@@ -134,7 +131,7 @@ class LauncherLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders:
 
   test("an old Java, and a missing one, are reported in one line"):
     val folder = temporaryFolder()
-    Files.copy(checkout.toPath.resolve("project/java-version"), folder.resolve("java-version"))
+    Files.copy(Documentation.root.resolve("project/java-version"), folder.resolve("java-version"))
     script(
       folder.resolve("launcher"),
       """. ./java-version
@@ -173,7 +170,7 @@ class LauncherLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders:
 
   test("the last output on standard error is kept when a whole process group is ended"):
     val folder = temporaryFolder()
-    Files.copy(checkout.toPath.resolve("project/quiet-vectors"), folder.resolve("quiet-vectors"))
+    Files.copy(Documentation.root.resolve("project/quiet-vectors"), folder.resolve("quiet-vectors"))
     script(
       folder.resolve("launcher"),
       """. ./quiet-vectors

@@ -1,19 +1,16 @@
 package skein.cli
 
-import java.io.File
 import java.nio.charset.StandardCharsets.UTF_8
 import java.nio.file.Path
 import scala.concurrent.ExecutionContext.Implicits.global
 import scala.concurrent.duration.*
 import scala.concurrent.{Await, Future, blocking}
+import skein.docs.Documentation
 
 /** Starts programs through their launchers. */
 object Launchers:
-  val checkout: Path =
-    Iterator.iterate(File("").getAbsoluteFile)(_.getParentFile).find(File(_, "sbtw").exists).get.toPath
-
   /** The staged launcher, made by `./sbtw cli/stage`; it may not exist. */
-  val staged: Path = checkout.resolve("app/cli/target/universal/stage/bin/skein")
+  val staged: Path = Documentation.root.resolve("app/cli/target/universal/stage/bin/skein")
 
   private def prepared(command: Seq[String], javaHome: String): ProcessBuilder =
     val builder = ProcessBuilder(command*).redirectErrorStream(true)

@@ -5,12 +5,13 @@ import java.nio.file.{Files, Path}
 import java.util.spi.ToolProvider
 import scala.jdk.CollectionConverters.*
 import scala.util.Using
+import skein.docs.Documentation
 import skein.testing.{Lengthy, Unhurried}
 
 /** The packaged program's own Java runtime. Made by `./sbtw cli/program`, or by `./skein`. */
 class PackagedRuntimeLiveSuite extends munit.FunSuite, Lengthy, Unhurried:
   private lazy val home: Option[Path] =
-    val folder = Launchers.checkout.resolve("app/cli/target/package")
+    val folder = Documentation.root.resolve("app/cli/target/package")
     Option.when(Files.isDirectory(folder))(folder).flatMap: folder =>
       Using.resource(Files.list(folder))(_.iterator.asScala.find(_.getFileName.toString.startsWith("skein-")))
         .filter(Files.isDirectory(_))

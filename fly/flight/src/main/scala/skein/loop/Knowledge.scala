@@ -1,5 +1,6 @@
 package skein.loop
 
+import skein.units.Expect
 import skein.vehicle.{CarModel, ConstantTurn, ConstantVelocity, QuadrotorModel, TurnBelief, VehicleModel}
 
 /** What the controller of a vehicle knows of the other ones. */
@@ -13,8 +14,7 @@ enum Knowledge(val label: String):
   case Positions extends Knowledge("positions")
 
 object Knowledge:
-  def parse(text: String): Either[String, Knowledge] =
-    values.find(_.label == text).toRight(s"expected ${values.map(_.label).mkString(" or ")}, came '$text'")
+  def parse(text: String): Either[String, Knowledge] = Expect.oneOf(values, text)(_.label)
 
 /** How a loop predicts the vehicles whose commands are not known. */
 enum Strangers(val label: String):
@@ -37,5 +37,4 @@ enum Strangers(val label: String):
         case _                         => TurnBelief(QuadrotorModel.AirSim)
 
 object Strangers:
-  def parse(text: String): Either[String, Strangers] =
-    values.find(_.label == text).toRight(s"expected ${values.map(_.label).mkString(" or ")}, came '$text'")
+  def parse(text: String): Either[String, Strangers] = Expect.oneOf(values, text)(_.label)

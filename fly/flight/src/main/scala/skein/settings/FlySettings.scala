@@ -290,19 +290,7 @@ object FlySettings:
       Moves.mistake(settings.movesInFlight).map("moves-in-flight: " + _),
       packetMistake(settings).map("plan-in-packet: " + _),
       knowsMistake(settings).map("knows: " + _),
-      Option.when(settings.strangers != Strangers.Turn && settings.loopSettings.knows == Knowledge.All)(
-        "strangers: expected knows positions with it, or decentralised, since otherwise all commands are known, " +
-          s"came ${settings.strangers.label} without"
-      ),
-      Option.when(settings.strangers != Strangers.Turn && !settings.loops.exists(predicts))(
-        s"strangers: expected a loop that predicts, such as predictive, came ${settings.strangers.label} without"
-      ),
-      Option.when(
-        settings.strangers == Strangers.Belief && settings.predictor == PredictionModel.ConstantVelocity
-      )(
-        "strangers: expected turn or straight with the predictor constant-velocity, which predicts all straight " +
-          "on, came belief"
-      ),
+      strangersMistake(settings).map("strangers: " + _),
       apartMistake(settings, isGiven = optionAt("knows", config).isDefined).map("decentralised: " + _),
       onlyMistake(settings).map("only: " + _),
       betweenMistake(settings).map("between: " + _),
@@ -374,8 +362,6 @@ object FlySettings:
     else
       settings.cars.headOption.map(car => s"expected multirotors, which hold plans, came the car ${car.name}")
 
-  private def predicts(loop: AnyLoop) = loop == LoopKind.Predictive || loop.isInstanceOf[OwnLoop]
-
   private def knowsMistake(settings: FlySettings): Option[String] =
     val all = settings.knows == Knowledge.All
     if !all && settings.loops.contains(LoopKind.Plan) then
@@ -383,6 +369,24 @@ object FlySettings:
     else if !all && settings.solver.isDefined then
       Some("expected all with a solver, which is told every command, came positions")
     else None
+
+  private def strangersMistake(settings: FlySettings): Option[String] =
+    import settings.strangers
+    def predicts(loop: AnyLoop) = loop == LoopKind.Predictive || loop.isInstanceOf[OwnLoop]
+    if strangers == Strangers.Turn then None
+    else if settings.loopSettings.knows == Knowledge.All then
+      Some(
+        "expected knows positions with it, or decentralised, since otherwise all commands are known, " +
+          s"came ${strangers.label} without"
+      )
+    else if !settings.loops.exists(predicts) then
+      Some(s"expected a loop that predicts, such as predictive, came ${strangers.label} without")
+    else
+      Option.when(
+        strangers == Strangers.Belief && settings.predictor == PredictionModel.ConstantVelocity
+      )(
+        "expected turn or straight with the predictor constant-velocity, which predicts all straight on, came belief"
+      )
 
   private def apartMistake(settings: FlySettings, isGiven: Boolean): Option[String] =
     val other =

@@ -159,13 +159,12 @@ private[skein] final class Controller(
     val before    = decided
     for forecast <- observation.forecast do ahead(observation, forecast)
     upon = observation
-    val opponent = world.assignment.opponentOf(agent, distance)
     val believed = world.views(agent).map: view =>
       val known = view.believed(observation.forecast.map(actsIn(_).toSeconds))
       view.turn(known.placeNed.x - observation.x(agent), known.placeNed.y - observation.y(agent))
       known
     if world.asksPolicies then
-      action = choosing.choose(observed(observation, opponent, believed, elapsedNs))
+      action = choosing.choose(observed(observation, believed, elapsedNs))
       decided = action.headingRad(decided)
     turned += math.abs(math.IEEEremainder(decided - before, 2 * math.Pi))
     lastDecidedAt = now
@@ -178,11 +177,11 @@ private[skein] final class Controller(
     */
   private def observed(
       observation: RolloutView,
-      opponent: Int,
       believed: Option[OpponentView.Believed],
       elapsedNs: Long
   ): Observation =
     val now         = world.nowNs
+    val opponent    = world.assignment.opponentOf(agent, distance)
     val isPredicted = observation.forecast.isDefined
     val seen        = Observation(
       agent,

@@ -13,8 +13,10 @@ final case class LearnerPolicy(byRate: Boolean) extends HeadingPolicy:
   def start: Memory = LearnerPolicy.start
 
   def decide(seen: PlanarObservation, memory: Memory): (Double, Memory) =
-    val turnRad = if byRate then memory.turn * seen.elapsedS else memory.turn
-    (seen.ownHeadingRad + turnRad, LearnerPolicy.memory(memory.turn, seen.fromOwnHeading))
+    (
+      LearnerPolicy.headingRad(seen, memory.turn, byRate),
+      LearnerPolicy.memory(memory.turn, seen.fromOwnHeading)
+    )
 
 object LearnerPolicy:
   /** Count of numbers in an observation, see [[PlanarObservation.fromOwnHeading]]. */
@@ -33,6 +35,10 @@ object LearnerPolicy:
       ownAgeS: Double,
       opponentAgeS: Double
   )
+
+  /** The heading after a turn to the right, by a rate since the last decision or by an angle, rad. */
+  def headingRad(seen: PlanarObservation, turn: Double, byRate: Boolean): Double =
+    seen.ownHeadingRad + (if byRate then turn * seen.elapsedS else turn)
 
   private val start = Memory(0, 0, 0, 0, 0, 1, 0, 0, 0, 0)
 

@@ -60,7 +60,6 @@ final class LearnerTeams private[lanes] (
     body.startX(world) = northM
     body.startY(world) = eastM
     members(vehicle).restart(world, headingRad)
-    for number <- passing do scores.forgetIn(world, number)
 
   def flyOn(): Boolean =
     while next < timetable.size && !learnsAt(next) do
@@ -121,6 +120,8 @@ final class LearnerTeams private[lanes] (
     while i < passing.length do
       scores.forget(passing(i))
       i += 1
+
+  def forgetScores(world: Int): Unit = for number <- passing do scores.forgetIn(world, number)
 
   def start(worlds: Int): Unit = scores.start(worlds)
 

@@ -47,6 +47,9 @@ trait LearnerWorlds extends AutoCloseable:
   /** Forgets all scores but the newest values. */
   def forgetScores(): Unit
 
+  /** Forgets one world's scores but the newest values, after a restart of that world. */
+  def forgetScores(world: Int): Unit
+
   def close(): Unit = ()
 
 object LearnerWorlds:

@@ -98,12 +98,13 @@ private final class EnvironmentGroup(
   def misfit(): Int =
     var agent = 0
     while agent < agents do
-      val read = actions(agent)
-      into.read(into.actions, agent, first, stride, read, count)
-      var world = 0
-      while world < count do
-        if worlds.isDue(agent) && !(Math.abs(read(world)) <= Float.MaxValue) then return numberOf(world)
-        world += 1
+      if worlds.isDue(agent) then
+        val read = actions(agent)
+        into.read(into.actions, agent, first, stride, read, count)
+        var world = 0
+        while world < count do
+          if !(Math.abs(read(world)) <= Float.MaxValue) then return numberOf(world)
+          world += 1
       agent += 1
     -1
 
@@ -241,6 +242,7 @@ private final class EnvironmentGroup(
       import starts.{eastM, headingRad, northM}
       worlds.restart(world, vehicle, northM(vehicle), eastM(vehicle), headingRad(vehicle))
       vehicle += 1
+    worlds.forgetScores(world)
 
   private def clear(world: Int): Unit =
     for agent <- 0 until agents do into.begun(agent, numberOf(world), startM(agent * count + world))

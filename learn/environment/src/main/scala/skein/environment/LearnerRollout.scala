@@ -66,6 +66,8 @@ private final class LearnerRollout(side: LearnerSide, team: TeamCandidate, learn
         case Reduction.Least => values(number) = Double.PositiveInfinity
         case _               => values(number) = 0
 
+  def forgetScores(world: Int): Unit = forgetScores()
+
   override def close(): Unit = flying.close()
 
   private def fly(suspend: () => Unit): Unit =
@@ -95,7 +97,7 @@ private final class LearnerRollout(side: LearnerSide, team: TeamCandidate, learn
       due = learner
       ask()
       if isAnew then throw Anew
-      now.ownHeadingRad + turns(learner) * (if byRate then now.elapsedS else 1.0)
+      LearnerPolicy.headingRad(now, turns(learner), byRate)
 
   private object scores extends LoopObserver:
     override def scored(timeS: Double, vehicle: Int, x: Double, y: Double, z: Double): Unit =

@@ -1,10 +1,11 @@
 package skein.record
 
+import skein.units.Expect
+
 /** The clocks of flights, by name. */
 enum ClockKind(val label: String):
   case Real    extends ClockKind("real")
   case Virtual extends ClockKind("virtual")
 
 object ClockKind:
-  def parse(label: String): Either[String, ClockKind] =
-    values.find(_.label == label).toRight(s"expected ${values.map(_.label).mkString(" or ")}, came '$label'")
+  def parse(label: String): Either[String, ClockKind] = Expect.oneOf(values, label)(_.label)
