@@ -1,7 +1,6 @@
 package skein.loop
 
 import skein.policy.{Action, Fleet, Observation, Policy, Seen, Sensed}
-import skein.signal.Stamped
 import skein.units.*
 
 /** State of one vehicle's decisions, in addition to the view.
@@ -68,7 +67,7 @@ final class Decider(fleet: Fleet, self: Int, policy: Policy):
       agent.speed,
       Metres(agent.startPositionNed.z),
       view.sensed(self).map: (sensor, reading) =>
-        sensor -> Sensed(reading.columns, reading.values.value, age(view, now, reading.values)),
+        sensor -> Sensed(reading.columns, reading.values.value, view.ageOf(reading.values, now)),
       actsIn(view, now)
     )
 

@@ -60,6 +60,11 @@ class OwnEndSuite extends munit.FunSuite, Optimised:
     ("by altitudes of level flight, and speed", level, random => BySpeed(within(random, 1, 6))),
     ("by the time", level, random => ByTime(within(random, 2, 15))),
     (ByAge.Name, level, random => ByAge(within(random, 0.05, 0.3))),
+    (
+      "from a file, by a place and ages",
+      level,
+      random => fromFile(within(random, 10, 50), within(random, 0, 0.15))
+    ),
     ("by height and climb", inSpace, random => ByClimb(within(random, 13, 22)))
   )
 
@@ -91,6 +96,38 @@ class OwnEndSuite extends munit.FunSuite, Optimised:
     assert(engine.text.contains("OwnEndSuite.scala:"), engine.text)
 
 object OwnEndSuite:
+  private val Text =
+    """skein-scenario 1
+      |name two
+      |setting far-m 20 "north at which it ends, m"
+      |setting old-s 1 "age from which it may end, s"
+      |0 setting far-m
+      |1 setting old-s
+      |2 const 0.0
+      |3 const 5.0
+      |4 const -20.0
+      |5 north 0
+      |6 age 1
+      |7 lt 0 5
+      |8 lt 1 6
+      |9 and 7 8
+      |10 start-down
+      |11 const 1.0
+      |vehicle V0 Scout 3 2 2 4 2
+      |does along 2 3 10
+      |vehicle V1 Scout 3 3 3 4 2
+      |does along 11 3 10
+      |over 9
+      |""".stripMargin
+
+  private val file = ScenarioText.read(Text).fold(mistake => throw IllegalArgumentException(mistake), identity)
+
+  private def fromFile(farM: Double, oldS: Double): Scenario =
+    file.read(Map("far-m" -> farM.toString, "old-s" -> oldS.toString)).fold(
+      mistakes => throw IllegalArgumentException(mistakes.mkString("; ")),
+      identity
+    )
+
   private def agent(i: Int, policy: Policy) =
     Agent(
       s"V$i",

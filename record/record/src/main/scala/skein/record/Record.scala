@@ -1,6 +1,6 @@
 package skein.record
 
-import skein.policy.{Action, Agent}
+import skein.policy.{Action, Agent, Seen}
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 import skein.vehicle.VehicleKind

@@ -87,10 +87,7 @@ public final class TimetableKernel {
       case JOIN -> agent.join(first, operations[field + 3] != 0, operations[field + 4]);
       case PREDICT ->
           agent.vehicles.predicted.predict(
-              agent.vehicles.seenX,
-              agent.vehicles.seenY,
-              agent.vehicles.seenVx,
-              agent.vehicles.seenVy,
+              agent.vehicles,
               agent.headings,
               first * WORLDS,
               operations[field + 3] * WORLDS,
@@ -98,10 +95,7 @@ public final class TimetableKernel {
               withVelocity);
       case ENTER ->
           agent.vehicles.predicted.enter(
-              agent.vehicles.seenX,
-              agent.vehicles.seenY,
-              agent.vehicles.seenVx,
-              agent.vehicles.seenVy,
+              agent.vehicles,
               agent.headings,
               first < 0 ? -1 : first * WORLDS,
               operations[field + 3] * WORLDS,
