@@ -40,10 +40,7 @@ private[lanes] object LoopSupport:
       case predictive: LoopTiming.Predictive =>
         for
           _ <- asksAtOnce(predictive.asking)
-          _ <- LanePredictor.of(predictive.predictor).filterOrElse(
-            !_.inSpace,
-            "SIMD predicts climbs where candidates share episodes"
-          )
+          _ <- LanePredictor.of(predictive.predictor)
         // Decisions are due half-way between two requests.
         yield Vector(predictive.periodS / 2)
       case _: LoopTiming.Paused => Left("worlds that stand still while it is decided meet no delays")

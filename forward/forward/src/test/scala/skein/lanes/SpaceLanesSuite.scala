@@ -46,7 +46,7 @@ class SpaceLanesSuite extends munit.FunSuite, Optimised:
     )
     (linked, link) <- Seq[(String, Delays)]("none" -> DelayTable.none, "vpn" -> DelayTable.vpn)
     shared         <- Seq(true, false)
-    if shared || !timing.isInstanceOf[LoopTiming.Paused] && !timing.isInstanceOf[LoopTiming.Predictive]
+    if shared || timing != LoopTiming.Paused()
   do
     val delays = if shared then "shared" else "own"
     test(s"${timing.productPrefix} over $linked, $delays delays: scores by SIMD are those of the scalar engine, to 5 mm"):
