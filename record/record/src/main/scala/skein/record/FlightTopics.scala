@@ -40,10 +40,10 @@ object FlightMessage:
 /** Converts the rows of a flight to messages: every row on the topic `/skein/TABLE`, by the names of its
   * columns, and views of the rows by Foxglove's schemas ([[FoxgloveViews]]). Rows must be given in order.
   *
-  * @param from the time of the first rows, which have none
+  * @param from time that is assigned to the first rows, which have none
   * @param offset from the simulator's clock to the controller's until a decision estimates it; None: the
   *   first reading is assumed to have no latency
-  * @param scene of the flight's world
+  * @param scene the scene of the flight's world
   * @param form encoding of images and clouds
   */
 final class FlightTopics(
