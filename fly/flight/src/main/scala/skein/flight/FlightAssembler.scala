@@ -272,7 +272,7 @@ final class FlightAssembler(
       case Some(Learning.Beside(explore, begun)) =>
         val on = learnsOn.getOrElse:
           val thread = BackgroundExecutor("skein-learn")
-          // It may hang in a lesson: nobody waits for that.
+          // It may hang in a lesson, which is not awaited.
           opened.closing(ExecutionContext.fromExecutor(thread)): _ =>
             thread.close()
             Future.successful(Done)
@@ -335,7 +335,7 @@ final class FlightAssembler(
           Option.when(plan.policy.exists(_.learning.isDefined)):
             "expected policies that do not learn in flight, which is one learner for all"
 
-  /** Asks the vehicles whether they hold plans, if the flight sends them. */
+  /** Requests whether the vehicles hold plans, if the flight sends them. */
   private def packets(plan: FlightPlan, reached: ConnectedFleet): Future[Unit] =
     if !settings.loopSettings(plan).planInPacket then Future.unit
     else if plan.policy.exists(_.learning.isDefined) then

@@ -162,9 +162,9 @@ private[flight] object SimulatorWatchdog:
   /** Time without an answer after which a flight ends. */
   val GivesUp: Span = Span.ofSeconds(10)
 
-  /** Limit of the attempts to reach a simulator that is silent when the flight's time is over. Each takes a
-    * time-out of [[skein.forward.Asking.Timeout]] and a pause: 6 s in all, more than an outage of a second
-    * and the waits of TCP after it.
+  /** Maximum number of attempts to reach a simulator that is silent when the flight's time is over. Each
+    * takes a time-out of [[skein.forward.Asking.Timeout]] and a pause: 6 s in all, more than an outage of a
+    * second and the waits of TCP after it.
     */
   private val AttemptsAtEnd = 10
 

@@ -33,7 +33,7 @@ private final class JointDecisionState private (
   /** Repeats a joint decision.
     *
     * @param views by vehicle
-    * @param slices of each search
+    * @param slices number of slices of each search
     */
   def decide(
       views: Vector[TeamView],

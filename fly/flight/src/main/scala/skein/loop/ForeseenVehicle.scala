@@ -22,8 +22,8 @@ private object ForeseenVehicle:
 
   /** Chooses the plant for a vehicle.
     *
-    * @param model that predicts its readings. For a model without a plant of velocities, plans use AirSim's
-    *   quadrotor at the vehicle's altitude
+    * @param model the model that predicts its readings. For a model without a plant of velocities, plans use
+    *   AirSim's quadrotor at the vehicle's altitude
     * @return Left states why planning does not support it
     */
   def of(agent: Agent, model: VehicleModel[?], settings: PlanSettings): Either[String, ForeseenVehicle] =

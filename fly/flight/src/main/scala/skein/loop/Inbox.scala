@@ -38,5 +38,5 @@ private final class Inbox(
         NotUsed
 
 private object Inbox:
-  /** Most messages that wait for a slow graph; a further one is dropped. */
+  /** Maximum number of messages that wait for a slow graph; a further one is dropped. */
   val Waiting = 64

@@ -43,7 +43,7 @@ private abstract class Planning(
 
   /** The decision for the plan found.
     *
-    * @param part whose situation includes the planned tracks of the others
+    * @param part the planning problem, whose situation includes the planned tracks of the others
     * @param isOld whether the vehicle's policy decides instead of the plan
     */
   final def decide(
@@ -78,7 +78,7 @@ private abstract class Planning(
 /** A planned decision, with the plan's data.
   *
   * @param byPolicy whether the last plan was too old to continue
-  * @param course the planned path; absent where the policy decides instead
+  * @param course the planned path; absent if the policy decides instead
   */
 final case class PlannedDecision(
     decision: Decision,
@@ -89,7 +89,7 @@ final case class PlannedDecision(
 ):
   /** The report of a planned decision.
     *
-    * @param slices that each search has finished
+    * @param slices number of slices each search has finished
     */
   def report(slices: Vector[Int]): PlanReport = PlanReport(
     plan.candidates,
@@ -104,13 +104,14 @@ final case class PlannedDecision(
 
 /** The recorded data of a planned decision.
   *
-  * @param candidates simulated by all searches together
-  * @param slices that each search has finished
-  * @param cost of the plan; absent where none was tried
+  * @param candidates number of candidates that all searches simulated together
+  * @param slices number of slices each search has finished
+  * @param cost cost of the plan; absent if none was simulated
   * @param isSearched whether any search finished a slice for this vehicle
   * @param byPolicy whether the last plan was too old to continue
-  * @param breaches of hard limits within the plan's horizon, of which `breach` is the first
-  * @param course the planned path; absent where the policy decides instead
+  * @param breaches number of violations of hard limits within the plan's horizon, of which `breach` is the
+  *   first
+  * @param course the planned path; absent if the policy decides instead
   */
 final case class PlanReport(
     candidates: Long,

@@ -15,7 +15,8 @@ import skein.units.*
   * and compared to the last bit: everything else in a decision, above all its opponent and the chosen
   * heading. The memory from decision to decision is the replay's own.
   *
-  * @param settings of the flight; for a loop that does not plan, only its controllers' knowledge matters
+  * @param settings the flight's settings; for a loop that does not plan, only its controllers' knowledge
+  *   matters
   * @throws IllegalArgumentException if planning does not support the recorded models here
   */
 final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = LoopSettings())(using
@@ -324,7 +325,7 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
 object Replay:
   /** State of the repeated decisions.
     *
-    * @param jointly for vehicles that plan
+    * @param jointly state of vehicles that plan
     * @param decided last joint decision, by vehicle and number
     */
   private final case class Minds(

@@ -41,12 +41,12 @@ object Solver:
   * @param askedAt on the controller's clock, like the other instants
   * @param decidedAt by the estimate of the solver's clock; before there is one, the time of the request
   * @param receivedAt time of receipt
-  * @param thinking from receipt of the request to sending of the answer
+  * @param thinking time from receipt of the request to sending of the answer
   * @param clock the controller's clock minus the solver's, as estimated at the request, with the bound of the
   *   error
   * @param begunAnew whether the solver had lost its memory of these vehicles, so that it decided as for the
   *   first time
-  * @param chosen for each requested vehicle
+  * @param chosen the decision for each requested vehicle
   */
 final case class Solved(
     solver: Long,
@@ -62,6 +62,6 @@ final case class Solved(
 
 /** The decision for one vehicle.
   *
-  * @param plan its data; absent where a policy decided
+  * @param plan the plan's data; absent if a policy decided
   */
 final case class Chosen(action: Action, plan: Option[PlanReport] = None)
