@@ -34,7 +34,7 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
     scenario
   )
 
-  /** One event: its vehicle, its index, its time, and its numbers. */
+  /** One event: its vehicle, its index, its time, and its values. */
   private case class Note(vehicle: Int, number: Int, at: Span, values: Double*):
     override def toString =
       f"vehicle $vehicle number $number at ${at.toSeconds}%.9f s: ${values.mkString(", ")}"
@@ -124,7 +124,7 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
       (LoopKind.Stream, "direct", 1),
       (LoopKind.Stream, "vpn", 2),
       (LoopKind.Stream, "vpn-mixed", 3),
-      // Answers overtake one another, come too late, and questions are missed.
+      // Answers overtake one another, arrive too late, and requests are skipped.
       (LoopKind.Stream, "lognormal:150ms,0.8", 1),
       (LoopKind.Predictive, "direct", 1),
       (LoopKind.Predictive, "vpn", 2),
@@ -133,7 +133,7 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
       (LoopKind.Sequential, "loss:5%/4,outage:1s/10s,vpn", 1),
       (LoopKind.Futures, "loss:5%/4,direct", 3),
       (LoopKind.Futures, "outage:1s/10s,vpn", 1),
-      // Time-outs end in the moment of a tick.
+      // Time-outs end at the time of a tick.
       (LoopKind.Stream, "loss:5%/4,vpn", 1),
       (LoopKind.Stream, "loss:5%/4,outage:1s/10s,vpn", 3),
       (LoopKind.Predictive, "loss:5%/4,vpn", 1),
@@ -175,8 +175,8 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
     )
 
   // Everything happens in the same nanosecond as something else: readings, ticks, time-outs of 500 ms. Left
-  // out are futures over none and 50 ms, where tasks of both vehicles end at once and the flight's streams
-  // say who decides first.
+  // out are futures over none and 50 ms, where tasks of both vehicles end simultaneously and the flight's
+  // streams determine which decides first.
   private val ties = Seq(
     LoopKind.Sequential -> Seq("none", "constant:100ms", "constant:400ms", "constant:500ms"),
     LoopKind.Futures    -> Seq("constant:100ms", "constant:400ms", "constant:500ms"),

@@ -17,7 +17,7 @@ final case class VirtualDuel(distanceM: Double, outcome: FlightOutcome, recordin
 
   /** Prediction errors, ascending, m.
     *
-    * @param own of the deciding vehicle itself, or of its opponent
+    * @param own whether errors are of the deciding vehicle itself, or of its opponent
     */
   def predictionErrors(own: Boolean): Vector[Double] =
     recording.predictions

@@ -133,7 +133,7 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
       "2: skein.fly.strangers: expected turn or straight or belief, came 'none'"
     )
 
-  test("decentralised is refused where one controller decides for all, or is told of the others"):
+  test("decentralised is refused where one controller decides for all, or knows the others' commands"):
     def refused(text: String)(why: String) = assertTold(text, s"2: skein.fly.decentralised: expected $why")
     refused("decentralised = true, loops = [stream, plan]"):
       "loops that decide for each vehicle by itself (paused, sequential, futures, stream, predictive), came plan"
@@ -255,7 +255,7 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
       ).contains("expected empty, forest, pursuit, street or a file, came 'wood'")
     )
 
-  test("a deadline is one where it is set"):
+  test("without a configured deadline there is none"):
     assertEquals(read("").map(_.deadline), Right(None))
     assertEquals(read("skein.fly.deadline = 20 ms").map(_.deadline), Right(Some(Span.ofMillis(20))))
 
