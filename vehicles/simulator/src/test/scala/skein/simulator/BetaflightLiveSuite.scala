@@ -20,7 +20,7 @@ class BetaflightLiveSuite extends munit.FunSuite, Lengthy, Waiting:
   override def afterAll(): Unit =
     val _ = Await.result(system.terminate(), 20.seconds)
 
-  test("Betaflight arms, takes off and holds a place within 0.3 m for 4 s"):
+  test("Betaflight arms, takes off and holds a position within 0.3 m for 4 s"):
     val firmware = Betaflight.firmware()
     assume(firmware.isRight, s"Betaflight's SITL cannot be built here: ${firmware.swap.getOrElse("")}")
     assume(Betaflight.arePortsFree, "another program has Betaflight's ports")

@@ -33,7 +33,7 @@ private final class Received:
   def trips: Vector[Double] = synchronized(latencies.toVector)
   def witness: Long         = synchronized(stamps.getValue)
 
-/** Most images of one camera in transit. */
+/** Maximum number of one camera's images in transit. */
 private val MostOnTheWay = 4
 
 /** Raw images of 1280 × 720 from the built-in simulator to a client of the same process, over TCP on
@@ -62,7 +62,8 @@ private val MostOnTheWay = 4
   val process =
     ManagementFactory.getOperatingSystemMXBean.asInstanceOf[com.sun.management.OperatingSystemMXBean]
 
-  /** @param perSecond of each camera; 0: each is requested again when its image has arrived */
+  /** @param perSecond images per second of each camera; 0: each is requested again when its image has arrived
+    */
   def row(name: String, connections: Int, perSecond: Int, lastsS: Double, isShown: Boolean = true): Unit =
     val rpc =
       RpcClient(TcpTransport(), server.address, Clock.system, RpcSettings(bulkConnections = connections))

@@ -39,7 +39,7 @@ class OfficialPythonClientLiveSuite extends munit.FunSuite, Conclusive, Lengthy,
   test("the official Python client runs AirSim's examples, and uses scene, cameras and markers"):
     fly("fly_examples.py")
 
-  test("the official Python client drives a car as AirSim's example does, beside a multirotor"):
+  test("the official Python client drives a car as AirSim's example does, in a world with a multirotor"):
     fly("drive_car.py", WorldSettings.of(mixed))
 
   test("the official Python client calls what methods.txt lists"):
