@@ -90,7 +90,7 @@ object SearchResult:
   /** Distance from a limit that counts as at it, as a fraction of the axis. */
   private val NearLimit = 0.01
 
-  /** @param state with a best candidate
+  /** @param state a state with a best candidate
     * @param isCancelled checked from time to time, from any thread
     * @return None if it was cancelled
     */
@@ -115,9 +115,9 @@ object SearchResult:
     s"${Interval.of(tally.mean, tally.halfWidth95).text} $unit".trim
 
   /** The last remarks of a policy file: the question that its policy answers, as it is stored, with its
-    * conditions beside it.
+    * conditions.
     *
-    * @param how it was answered, in place of fields of these names
+    * @param how fields on how it was answered, which replace the question's fields of these names
     */
   def question[Q: Writer](name: String, asked: Q, how: (String, ujson.Value)*): String =
     val fields     = writeJs(asked).obj

@@ -10,11 +10,11 @@ import skein.record.FileReason
 import upickle.default.{ReadWriter, write as writeJson}
 
 /** The state of a long computation as a JSON object on disk. It ends with a CRC-32C of all text before it:
-  * damaged or edited numbers would otherwise be read as valid, and the continued run would end differently
+  * damaged or edited values would otherwise be read as valid, and the continued run would end differently
   * from an uninterrupted one.
   *
-  * @param name of the file, in its folder
-  * @param version of the object, its first field
+  * @param name the file's name in its folder
+  * @param version the object's version, its first field
   * @param what the state belongs to, in words, for example "a search"
   */
 private[skein] final class StateFile[A: ReadWriter](name: String, version: Int, what: String):
