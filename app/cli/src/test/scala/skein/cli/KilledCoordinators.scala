@@ -15,8 +15,8 @@ import skein.cluster.WorkerProcesses
   * differ, or where a block counts twice.
   *
   * @param candidates enough for the search to last for all kills
-  * @param first number of a run, which is its seed; likewise `last`
-  * @param everyS interval of killing a worker; on a busy machine workers take long to start
+  * @param first the first run's number, which is its seed; likewise `last`
+  * @param everyS time between kills of a worker, s; on a busy machine workers take long to start
   */
 @main def killCoordinator(candidates: Int, first: Int, last: Int, everyS: Int, out: String): Unit =
   val question =

@@ -30,7 +30,7 @@ object TwinFlights:
 
   /** Runs all flights of the settings, and each again in virtual time. Blocks for the duration of a flight.
     *
-    * @param twins of each live flight
+    * @param twins number of twins of each live flight
     */
   def fly(settings: FlySettings, twins: Int): Either[String, FlightSet] =
     inFolder: folder =>
