@@ -107,8 +107,8 @@ final class TeamSubject(
       BudgetSubject.Stopped
     )
 
-  /** The worlds of cells that are simulated together: every link has the same episodes, and the links follow
-    * each other.
+  /** The worlds of cells that are simulated together: all links share the episodes, and the links follow each
+    * other.
     */
   private final class Worlds(candidate: TeamCandidate, links: Vector[DelayTable], each: Int)
       extends TeamWorlds:

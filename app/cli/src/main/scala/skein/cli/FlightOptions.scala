@@ -12,7 +12,7 @@ import skein.scenario.Scenarios
 import skein.settings.{ConfigKeys, ConfigMistakes, FlySettings, HoconFile, ScenarioSettings, Wire}
 import skein.units.Expect
 
-/** What to fly; options that are not given are read from the configuration `skein.fly`. */
+/** Options of the flights to fly; options that are not given are read from the configuration `skein.fly`. */
 final case class FlightOptions(
     @arg(doc =
       "paused, sequential, futures, stream, predictive, plan, or a loop of the program's own; can be repeated"

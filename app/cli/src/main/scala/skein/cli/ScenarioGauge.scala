@@ -52,7 +52,7 @@ private[cli] final class ScenarioGauge(
         at % 2 == 1
     count = seen.values.map(_.size).sum
 
-  /** What has changed since the last call, if anything. */
+  /** The changes since the last call, if there are any. */
   def json(): Option[String] =
     val from = clock.now()
     if from < nextAt || failed.isDefined || scenario.series.isEmpty && scenario.limits.isEmpty then None

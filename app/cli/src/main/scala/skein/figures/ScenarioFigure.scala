@@ -145,7 +145,7 @@ object ScenarioFigure:
   /** One of a scenario's series over time: a panel for each link, with a line for each loop and one for the
     * paused flight.
     *
-    * @param index which of the scenario's series is drawn
+    * @param index index of the drawn series among the scenario's series
     */
   def series(flown: ScenarioFlights, index: Int): Drawing =
     val links = flown.flights.filter(!flown.truth.contains(_)).map(_.summary.flight.link).distinct match

@@ -39,7 +39,7 @@ private[buffer] final case class Buffers(
 ):
   import Buffers.*
 
-  /** Adds a client's call, which is judged now or later. */
+  /** Adds a client's call, which is accepted or refused, now or later. */
   def received(ticket: Long, wish: Wish, now: Instant): Stepped = (wish match
     case Wish.Plan(Left(mistake)) => refused(ticket, mistake)
     case Wish.Plan(Right(plan))   => planned(ticket, plan, now)

@@ -22,7 +22,7 @@ private[flight] final class Custody(
 
   /** Requests the vehicles' states.
     *
-    * @return `Left` if the simulator did not answer, else why the flight cannot go on, if it cannot
+    * @return `Left` if the simulator did not answer, else why the flight cannot continue, if it cannot
     */
   def ask(): Future[Either[String, Option[String]]] =
     Future

@@ -33,7 +33,7 @@ import skein.units.Decimals.brief
   * @param learnsOn threads for policies that learn during the flight; without it, each has its own thread of
   *   low priority
   * @param solvers the links to solvers, for flights that another process decides for
-  * @param calledOff why a flight, by its name, must not go on while its vehicles move to their starts
+  * @param calledOff why a flight, by its name, must stop while its vehicles move to their starts
   * @param isWatched whether its records are shown, so that images and clouds that are not recorded are still
   *   offered
   * @param isMavlinkByTcp whether `simulator`, if it speaks MAVLink, is reached by TCP instead of datagrams

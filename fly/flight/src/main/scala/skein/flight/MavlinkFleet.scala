@@ -14,7 +14,7 @@ import skein.units.*
 /** A scenario's vehicles over MAVLink, the first with system id 1.
   *
   * @param isDatagrams whether `connect` provides datagrams, and not pieces of a stream
-  * @param calledOff why vehicles must not go on to their starts
+  * @param calledOff why vehicles must no longer move to their starts
   */
 private[flight] final class MavlinkFleet(
     fleet: Fleet,

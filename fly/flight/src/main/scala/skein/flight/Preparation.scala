@@ -13,7 +13,7 @@ import skein.vehicle.CarControls
 /** Brings a scenario's vehicles to their starts: at rest, hovering, under api control. A scenario's altitudes
   * are above the origin of each vehicle's own frame.
   *
-  * @param calledOff why vehicles must not go on to their starts
+  * @param calledOff why vehicles must no longer move to their starts
   */
 final class Preparation(
     client: AirSimClient,

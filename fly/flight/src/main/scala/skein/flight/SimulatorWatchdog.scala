@@ -183,7 +183,7 @@ private[flight] object SimulatorWatchdog:
   /** Time from a flight's start to the first check, so that checks coincide with no tick. */
   private val Offset = Span.ofMillis(137)
 
-  /** How long no answer may arrive before the simulator counts as silent: 700 ms, or more with a long period,
+  /** Time without an answer after which the simulator counts as silent: 700 ms, or more with a long period,
     * so that two lost requests in a row do not count as silence.
     */
   def within(period: Span, askTimeout: Span): Span = ToldAfter.max(period * 2 + askTimeout)

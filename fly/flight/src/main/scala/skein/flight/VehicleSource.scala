@@ -11,7 +11,7 @@ import skein.vehicle.Guidance
   * connects to them.
   */
 trait VehicleSource:
-  /** Where the vehicles are, as a word for a person. */
+  /** A word that says where the vehicles are, for messages. */
   def where: String
 
   /** How its vehicles perform an action, for predictions. */

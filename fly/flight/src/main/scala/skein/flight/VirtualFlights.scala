@@ -193,8 +193,8 @@ object NotFlown:
   def message(missing: Seq[NotFlown], planned: Int): String =
     (s"${missing.size} of $planned flights could not be flown:" +: missing.map(_.message)).mkString("\n")
 
-  /** What the user can fix, in words: the user's own code failed, or the program was started without virtual
-    * time's agent, as development environments do.
+  /** The reason of a failure that the user can fix: the user's own code failed, or the program was started
+    * without virtual time's agent, as development environments do.
     */
   private[skein] def mendable(error: Throwable): Option[String] =
     OwnFailure.behind(error).map(_.getMessage).orElse:
@@ -202,7 +202,7 @@ object NotFlown:
         case stopped: VirtualTimeException if stopped.problem.isInstanceOf[Problem.NoAgent] =>
           stopped.getMessage
 
-  /** The exception with its stack and causes; for what the user can fix, only the words. */
+  /** The exception with its stack and causes; for a failure that the user can fix, only its reason. */
   private[skein] def trace(error: Throwable): String = mendable(error) match
     case Some(reason) => reason
     case None         =>

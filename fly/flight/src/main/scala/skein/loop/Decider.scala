@@ -24,7 +24,7 @@ final class Decider(fleet: Fleet, self: Int, policy: Policy):
   /** Decides from a complete view.
     *
     * @throws skein.units.OwnFailure if the policy throws, or its answer cannot be commanded
-    * @param now on the clock of the readings' `receivedAt` and of the moves' `sentAt`
+    * @param now the current time, on the clock of the readings' `receivedAt` and of the moves' `sentAt`
     */
   def decide(memory: Memory, view: TeamView, now: Instant): (Memory, Decision) =
     val seen             = observation(memory, view, now)

@@ -32,7 +32,7 @@ private final class JointDecisionState private (
 
   /** Repeats a joint decision.
     *
-    * @param views by vehicle
+    * @param views a view for each vehicle
     * @param slices number of slices of each search
     */
   def decide(

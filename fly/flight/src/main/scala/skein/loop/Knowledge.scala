@@ -3,7 +3,7 @@ package skein.loop
 import skein.units.Expect
 import skein.vehicle.{CarModel, ConstantTurn, ConstantVelocity, QuadrotorModel, TurnBelief, VehicleModel}
 
-/** What the controller of a vehicle knows of the other ones. */
+/** The knowledge that a vehicle's controller has of the other vehicles. */
 enum Knowledge(val label: String):
   /** Their readings, the commands sent to them, and their policies. */
   case All extends Knowledge("all")

@@ -221,5 +221,5 @@ private object PausedFlight:
   /** Interval of checks whether the team is still held. */
   private val LookEvery = 100.millis
 
-/** A loop cannot go on; the message states why. */
+/** A loop cannot continue; the message states why. */
 final class LoopFailed(message: String) extends RuntimeException(message)

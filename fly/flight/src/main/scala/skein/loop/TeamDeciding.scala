@@ -30,7 +30,7 @@ private final class TeamDeciding(
   /** A view for a decision, with the time of the request. */
   private type Seen = (TeamView, Instant)
 
-  /** The plan is absent where a fallback decided. */
+  /** The plan is absent if a fallback decided. */
   private type Planned = (decision: Decision, plan: Option[PlanReport])
 
   private val foresight =

@@ -111,7 +111,7 @@ final case class FlightSummary(
   *
   * @param opponentTrueAgeMs absent, like other observations of an opponent, if the role's policies consider
   *   the team instead
-  * @param ownTrueAgeMs from the sampling of physics to the decision
+  * @param ownTrueAgeMs time from the sampling of physics to the decision
   */
 final case class RoleSummary(
     role: String,

@@ -174,9 +174,9 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
       Span.ofSeconds(3)
     )
 
-  // Everything happens in the same nanosecond as something else: readings, ticks, time-outs of 500 ms. Left
-  // out are futures over none and 50 ms, where tasks of both vehicles end simultaneously and the flight's
-  // streams determine which decides first.
+  // Every event coincides, to the nanosecond, with another: readings, ticks, time-outs of 500 ms. Left out
+  // are futures over none and 50 ms, where tasks of both vehicles end simultaneously and the flight's streams
+  // determine which decides first.
   private val ties = Seq(
     LoopKind.Sequential -> Seq("none", "constant:100ms", "constant:400ms", "constant:500ms"),
     LoopKind.Futures    -> Seq("constant:100ms", "constant:400ms", "constant:500ms"),
@@ -230,7 +230,7 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
       assert(sent > 2 && sent < 8, s"it was flown for $sent s")
       assertEqualsDouble(last.toSeconds, sent, 0.1)
 
-  // Where delays are equal in both directions, a flight knows the ages of its readings as they are.
+  // If delays are equal in both directions, a flight knows the true ages of its readings.
   for loop <- Seq(LoopKind.Sequential, LoopKind.Stream) do
     test(s"forward simulation repeats ${loop.label} over 100 ms, with a policy that depends on ages"):
       check(loop, profile("constant:100ms"), 1, AnyPolicies(byAges = true), Span.ofSeconds(6))

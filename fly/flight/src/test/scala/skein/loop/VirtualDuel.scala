@@ -11,7 +11,8 @@ import skein.vtime.VirtualTime
 
 /** The paper's duel in virtual time, on [[FarQuadrotors]].
   *
-  * @param distanceM between the vehicles' true positions, horizontally: mean over the last 10 s of physics
+  * @param distanceM horizontal distance between the vehicles' true positions: mean over the last 10 s of
+  *   physics
   */
 final case class VirtualDuel(distanceM: Double, outcome: FlightOutcome, recording: Recording):
 

@@ -149,7 +149,7 @@ private[torture] object KnowledgeChecks:
   private def where(decision: DecisionRow) = s"decision ${decision.sequence} of ${decision.vehicle}"
 
   /** Whether one state was truly sampled after another, determined independently of the loop. If the
-    * simulator was restarted between them with nearly the same clock, only if the reports show it.
+    * simulator was restarted between them with a nearly equal clock, only if the reports show it.
     */
   private[torture] def isNewer(runs: Vector[Run])(one: Stamped[?], other: Stamped[?]): Boolean =
     val offsets                               = clockOffset(runs, one).zip(clockOffset(runs, other))

@@ -41,8 +41,8 @@ object FlightMessage:
   * columns, and views of the rows by Foxglove's schemas ([[FoxgloveViews]]). Rows must be given in order.
   *
   * @param from time that is assigned to the first rows, which have none
-  * @param offset from the simulator's clock to the controller's until a decision estimates it; None: the
-  *   first reading is assumed to have no latency
+  * @param offset offset from the simulator's clock to the controller's, until a decision estimates it; None:
+  *   the first reading is assumed to have no latency
   * @param scene the scene of the flight's world
   * @param form encoding of images and clouds
   */

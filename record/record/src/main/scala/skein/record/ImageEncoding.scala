@@ -56,7 +56,7 @@ object ImageEncoding:
 
   /** `foxglove.CompressedImage`.
     *
-    * @param format for example `jpeg`
+    * @param format encoding of the file, for example `jpeg`
     */
   def compressed(file: Array[Byte], format: String, at: Instant, frame: String): Array[Byte] =
     Protobuf(file.length + 128)

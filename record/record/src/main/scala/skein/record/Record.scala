@@ -134,7 +134,7 @@ final case class MeasurementRow(
   *   little-endian, m
   * @param fov horizontal field of view; absent if unknown
   * @param positionNed the camera's position at exposure, world
-  * @param orientation from the camera's frame (front, right, down) to the world's
+  * @param orientation rotation from the camera's frame (front, right, down) to the world's
   * @param validAt time of exposure
   * @param pixels rows from top to bottom, without gaps
   */
@@ -159,7 +159,7 @@ final case class CameraImage(
   *
   * @param sequence counts the received scans of this lidar
   * @param positionNed the lidar's position, world
-  * @param orientation from the lidar's frame (front, right, down) to the world's
+  * @param orientation rotation from the lidar's frame (front, right, down) to the world's
   * @param validAt time of the scan
   * @param xyz three 32-bit floats for each point, little-endian, in the lidar's frame, m
   */

@@ -43,7 +43,7 @@ enum Pixels:
 /** One image.
   *
   * @param positionNed the camera's position at exposure, world, m
-  * @param orientation from the camera's frame (front, right, down) to world NED
+  * @param orientation rotation from the camera's frame (front, right, down) to world NED
   */
 final case class Image(
     shot: Shot,

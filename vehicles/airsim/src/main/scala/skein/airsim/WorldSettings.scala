@@ -7,7 +7,7 @@ import ujson.Obj
 /** A vehicle's settings. Its start is the origin of its own frame.
   *
   * @param startNed position of the start, world, m
-  * @param vehicleType in any letter case
+  * @param vehicleType kind of vehicle, by AirSim's name, in any letter case
   * @param firstPerson whether the view is its own (`IsFpvVehicle`), which makes it the default vehicle of
   *   calls that name none
   * @param armed whether it is armed after the start and after a reset (`DefaultVehicleState`)

@@ -139,7 +139,7 @@ final class Framer(limits: FrameLimits = FrameLimits(), keptBytes: Int = Int.Max
       headerBytes = 0
       open(header(0) & 0xff, bigEndian(header, 1, headerExpected - 1))
 
-  /** Begins one value: `size` is its header's length field, 0 where it has none. */
+  /** Begins one value: `size` is its header's length field, 0 if it has none. */
   private def open(marker: Int, size: Long): Unit =
     if marker == NeverUsed then throw Refused("byte 0xc1, which MessagePack never uses")
     val children = childCount(marker, size)

@@ -63,7 +63,7 @@ private[rpc] final class ServerConnection(
       private var heldBack = Option.empty[Array[Byte]]
       private var backFor  = 0
 
-      // What it holds, bytes.
+      // The memory that it holds, bytes.
       private val holding = holdings.Holding()
       private var segment = 0  // of the last segment, while it is not consumed
       private var inHand  = 0L // of requests being handled

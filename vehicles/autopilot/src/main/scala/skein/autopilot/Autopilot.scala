@@ -12,12 +12,12 @@ import skein.vehicle.{GoTo, Setpoint}
   * (`COM_OBL_RC_ACT`).
   *
   * @param system 1 to 255
-  * @param home where it started: the origin of its own frame
+  * @param home position of its start: the origin of its own frame
   * @param anchor the position that its mode flies to, own frame
-  * @param enteredAt when it entered its mode
-  * @param heardAt when the last setpoint was received
-  * @param stillSince since when it stands still while it lands
-  * @param groundedAt since when it is armed and on the ground
+  * @param enteredAt time at which it entered its mode
+  * @param heardAt time at which the last setpoint was received
+  * @param stillSince while it lands, time since which it stands still
+  * @param groundedAt time since which it is armed and on the ground
   * @param hasFlown whether it has flown since it was armed
   */
 final case class Autopilot(

@@ -27,7 +27,7 @@ final case class ReaderCounts(
 /** Decodes bytes to frames; after invalid input it resumes at the next frame. Holds less than one frame. Not
   * thread-safe.
   *
-  * @param signing with it, a frame without a valid signature is refused
+  * @param signing the key: with it, a frame without a valid signature is refused
   */
 final class FrameReader(signing: Option[Signing] = None):
   import Frame.*

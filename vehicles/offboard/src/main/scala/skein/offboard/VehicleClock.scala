@@ -22,7 +22,7 @@ final case class VehicleClock(alignment: ClockAlignment, latestLeg: Span, exchan
     * it was taken. So the request time is never later than the sample, and its delay has the link's true
     * distribution.
     *
-    * @param shift from the vehicle's clock's times to the flight's
+    * @param shift the flight's clock minus the vehicle's
     * @param doubt uncertainty of that shift
     */
   def stamped[A](value: A, sampledAt: Instant, receivedAt: Instant, shift: Span, doubt: Span): Stamped[A] =

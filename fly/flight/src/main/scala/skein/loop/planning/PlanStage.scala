@@ -15,8 +15,8 @@ object PlanStage:
     *
     * @param best the best plans of all searches; the initial plans if none has finished a slice
     * @param slices number of slices each search has finished
-    * @param unsearchedS by vehicle, time since any search finished a slice for it: 0 if one did now, infinite
-    *   if none ever did
+    * @param unsearchedS for each vehicle, time since any search finished a slice for it: 0 if one did now,
+    *   infinite if none ever did
     */
   final case class Answer(best: JointPlan, slices: Vector[Int], unsearchedS: Vector[Double]):
     /** Whether no search finished a slice for a vehicle: its plan is then the remainder of its last one. */
