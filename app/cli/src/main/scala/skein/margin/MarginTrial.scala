@@ -53,7 +53,7 @@ final class MarginTrial(
       yield run
 
   /** Calls the simulator through an observer for a while, so that their code is compiled before a run counts,
-    * and then gives the control threads precedence, where the system allows it. Blocks.
+    * and then gives the control threads precedence, if the system allows it. Blocks.
     */
   def warmUp(): Unit =
     simulated(SimulatorSettings(address = AnyPort)): (_, transport, observer) =>

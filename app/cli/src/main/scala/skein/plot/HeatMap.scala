@@ -18,7 +18,7 @@ final case class HeatMap(xs: Vector[Double], ys: Vector[Double], values: Vector[
       (row, i) <- values.zipWithIndex
       case (Some(value), j) <- row.zipWithIndex
     yield
-      // Neighbours overlap by half a pixel: where they only touched, the white below would shine through.
+      // Neighbours overlap by half a pixel: if they only touched, the white below would shine through.
       Mark.box(
         panel.atX(edge(xs, j)).max(panel.left),
         panel.atY(edge(ys, i + 1)).max(panel.top),

@@ -62,7 +62,7 @@ object SearchResult:
   /** Number of the winner's fresh episodes, from the first, that are compared with the scalar reference. */
   val Checked = 8
 
-  /** A warning if the scalar reference differs on equal episodes. Single episodes differ where rounding
+  /** A warning if the scalar reference differs on equal episodes. Single episodes differ when rounding
     * decides at a threshold; means over several hardly do.
     */
   def disagreement(flown: RunningStats, reference: RunningStats, unit: String): Option[String] =

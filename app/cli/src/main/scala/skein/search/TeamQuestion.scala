@@ -73,9 +73,9 @@ final case class TeamQuestion(
       method <- SearchQuestion.method(method, candidates, episodes, population, vary.size)
     yield ReadySearch(this, SearchedScenario(this, kind, space), by, engine, method, Some(fresh), seed)
 
-  /** Chooses the engine: SIMD, where forward simulation supports the policies and the measures; world by
-    * world, where the scenario itself decides when it is over, or measures are of whole flights; else flights
-    * in virtual time.
+  /** Chooses the engine: SIMD, if forward simulation supports the policies and the measures; world by world,
+    * if the scenario itself decides when it is over, or measures are of whole flights; else flights in
+    * virtual time.
     *
     * @param all the scenario with the plain settings, first, and with the bounds of the searched ones
     */

@@ -11,8 +11,8 @@ import skein.cluster.WorkerProcesses
 
 /** A search with two workers, and one with five, whose coordinator is killed twice, and whose workers are
   * killed from time to time; each time it continues with `--resume`. Then its files are compared with those
-  * of one process: `./sbtw "cli/Test/runMain skein.cli.killCoordinator 20000 1 20 5 DIR"`. Fails where they
-  * differ, or where a block counts twice.
+  * of one process: `./sbtw "cli/Test/runMain skein.cli.killCoordinator 20000 1 20 5 DIR"`. Fails if they
+  * differ, or if a block counts twice.
   *
   * @param candidates enough for the search to last for all kills
   * @param first the first run's number, which is its seed; likewise `last`

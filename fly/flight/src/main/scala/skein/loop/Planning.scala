@@ -159,9 +159,9 @@ object Planning:
   private val MostNamed = 8
 
   /** Cost by which a plan must be better than the policy's manoeuvre to be followed. A long search exploits
-    * every small gain of the simple model and of guesses about other vehicles, also where these are wrong;
-    * the policy does not. Vehicles at their goals follow the policy, and plans only where these save some 0.1
-    * m for a second.
+    * every small gain of the simple model and of guesses about other vehicles, even if these are wrong; the
+    * policy does not. Vehicles at their goals follow the policy, and plans only if these save some 0.1 m for
+    * a second.
     */
   private val ClearGain = 0.1
 

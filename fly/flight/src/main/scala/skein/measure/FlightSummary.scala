@@ -54,7 +54,7 @@ final case class FlightSummary(
     isInPacket: Boolean
 ):
 
-  /** The distance between the first pursuer and the first evader, where all play against one opponent each;
+  /** The distance between the first pursuer and the first evader, if all play against one opponent each;
     * absent if they were not both read.
     */
   val distance: Option[DistanceCurve] =
@@ -175,8 +175,8 @@ object FlightSummary:
         age      <- decision.trueAge if isAge(age.own)
       yield (age.own + command.sentAt.since(decision.decidedAt)).toMillis
 
-  /** Whether an age is valid: recordings of earlier versions have negative ages where the simulator's clock
-    * was reset.
+  /** Whether an age is valid: recordings of earlier versions have negative ages if the simulator's clock was
+    * reset.
     */
   private def isAge(age: Span) = age >= Span.Zero
 

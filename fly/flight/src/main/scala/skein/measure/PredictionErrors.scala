@@ -54,7 +54,7 @@ object PredictionErrors:
     val predicted = recording.decisions.filter(_.predicted.nonEmpty)
     val decisions = predicted.groupMapReduce(_.vehicle)(_ => 1)(_ + _)
     // A decider predicts once per decision each vehicle that it predicts at all: itself, and in a duel its
-    // opponent, even where not one of these predictions could be verified.
+    // opponent, even if not one of these predictions could be verified.
     val opponents = if isDuel then predicted.map(one => (one.vehicle, one.opponent.vehicle)) else Vector.empty
     val pairs     = (predicted.map(one => (one.vehicle, one.vehicle)) ++
       opponents ++

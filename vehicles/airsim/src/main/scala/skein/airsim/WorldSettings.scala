@@ -59,10 +59,10 @@ object WorldSettings:
   /** The default vehicle's type and name in AirSim. */
   val SimpleFlight = "SimpleFlight"
 
-  /** AirSim's vehicle type where `SimMode` is `Car`. */
+  /** AirSim's vehicle type if `SimMode` is `Car`. */
   val PhysXCar = "PhysXCar"
 
-  /** AirSim's vehicle type where `SimMode` is `ComputerVision`. */
+  /** AirSim's vehicle type if `SimMode` is `ComputerVision`. */
   val ComputerVision = "ComputerVision"
 
   private val CarMode = "Car"

@@ -28,7 +28,7 @@ final case class VehicleClock(alignment: ClockAlignment, latestLeg: Span, exchan
   def stamped[A](value: A, sampledAt: Instant, receivedAt: Instant, shift: Span, doubt: Span): Stamped[A] =
     Stamped(value, sampledAt + shift, (sampledAt - latestLeg - doubt).min(receivedAt), receivedAt)
 
-  /** The shift from this clock's times to another's, with its uncertainty. Both are zero where the two may be
+  /** The shift from this clock's times to another's, with its uncertainty. Both are zero if the two may be
     * one clock, as for vehicles of one simulator.
     */
   def shiftTo(other: VehicleClock): (shift: Span, doubt: Span) =

@@ -7,8 +7,8 @@ import skein.units.Vector3
   *
   * @param place placement on the vehicle
   * @param rangeM objects beyond it give no point
-  * @param horizontalFovDeg from, to, clockwise from the front; other points are dropped, as in AirSim, and
-  *   where both are equal none is dropped
+  * @param horizontalFovDeg first and last angle, clockwise from the front; other points are dropped, as in
+  *   AirSim; none is dropped if both are equal
   * @param noiseM standard deviation of the range
   * @param fresh whether a scan is taken on request, of that instant, instead of once a turn
   */

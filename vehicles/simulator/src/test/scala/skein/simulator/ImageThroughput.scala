@@ -39,7 +39,7 @@ private val MostOnTheWay = 4
 /** Raw images of 1280 × 720 from the built-in simulator to a client of the same process, over TCP on
   * loopback: four cameras at 60 Hz each, at most four images of each in transit, one connection for each and
   * one for all; then at the greatest possible rate; then by the official Python client, one call for all
-  * four, where it can be installed: `simulator/Test/runMain skein.simulator.imageThroughput 60`.
+  * four, if it can be installed: `simulator/Test/runMain skein.simulator.imageThroughput 60`.
   *
   * Each row states the requested and the received images, how many images repeated an exposure, and as its
   * witness the CRC of all stamps.

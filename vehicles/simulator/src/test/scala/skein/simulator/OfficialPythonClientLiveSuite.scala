@@ -11,8 +11,8 @@ import skein.testing.{Conclusive, Lengthy, PythonEnvironment, Waiting}
 import skein.units.*
 
 /** Proof that the built-in simulator speaks AirSim's protocol: the official client, the unmodified `airsim`
-  * package of PyPI, flies it over a real socket. Runs where Python can install that package; it fetches it
-  * once per user.
+  * package of PyPI, flies it over a real socket. Runs if Python can install that package; it fetches it once
+  * per user.
   */
 class OfficialPythonClientLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
   private given system: ActorSystem = ActorSystem("official-python-client")

@@ -110,7 +110,7 @@ object LessonsBeside:
 
 /** Repeats recorded lessons. One thread at a time.
   *
-  * @param recorded the updates, by the decision before which they took effect; where a fallback made that
+  * @param recorded the updates, by the decision before which they took effect; if a fallback made that
   *   decision, before the next
   */
 final class LessonsAgain(recorded: Map[Long, Vector[LearnerUpdate]]) extends Lessons:
