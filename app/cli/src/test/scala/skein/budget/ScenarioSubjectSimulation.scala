@@ -66,7 +66,7 @@ class ScenarioSubjectSimulation extends munit.FunSuite, Optimised:
       () => false
     )).left.exists(_.contains("has no value in the paused truth")))
 
-  test("for a truth of 0 deviations are distances, not fractions"):
+  test("if the paused loop's value is 0, deviations are distances, not fractions"):
     assert(Tolerance.Share(0.05).per(0).left.exists(_.contains("--within")))
     assertEquals(Tolerance.Within(2).per(0), Right(1.0))
     assertEquals((Tolerance.Within(2).text("m"), Tolerance.Share(0.05).text("m")), ("2 m", "5 %"))

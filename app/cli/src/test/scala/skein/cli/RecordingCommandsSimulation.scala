@@ -178,7 +178,7 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
     assertEquals(status, 1)
     assert(mistake.contains(s"expected every flight once, came the same one in $flight and $copy"), mistake)
 
-  recordings.test("report without --out writes beside the first recording"): folder =>
+  recordings.test("report without --out writes to the folder of the first recording"): folder =>
     assertEquals(run(ReportCommand(), folder.resolve("stream-vpn.duckdb").toString)._1, 0)
     assert(Files.exists(folder.resolve("figures/distance.svg")))
 

@@ -88,7 +88,7 @@ class PlanningSuite extends munit.FunSuite:
     (made.decision, made)
 
   test(
-    "where its policy decides instead of a plan, a pursuer keeps its turn limit and its constant speed"
+    "if its policy decides instead of a plan, a pursuer keeps its turn limit and its constant speed"
   ):
     // 10 m/s over 8 m for 0.2 s are 0.25 rad.
     assertEquals(fleet.agents(pursuer).speed.value, 10.0)
