@@ -1,6 +1,6 @@
 package skein.record
 
-import skein.policy.{Action, Agent}
+import skein.policy.{Action, Agent, Seen}
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 import skein.vehicle.VehicleKind
@@ -29,14 +29,18 @@ final class LaterRow(make: => Record) extends Recordable:
 /** A decision whose row is made later, with the facts that monitors of the flight need before.
   *
   * @param seesOthers whether it used other readings than its own vehicle's and its opponent's
+  * @param asRead the readings that it used, not predicted, in the order of vehicles; a vehicle that was not
+  *   read is missing
   */
 final class LaterDecision(
     val vehicle: String,
     val decidedAt: Instant,
     val action: Action,
     val seesOthers: Boolean,
+    asRead: => Vector[Seen],
     make: => DecisionRow
 ) extends Recordable:
+  def readings: Vector[Seen] = asRead
   lazy val row: DecisionRow = make
 
 object Record:
