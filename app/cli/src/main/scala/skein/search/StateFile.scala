@@ -20,7 +20,7 @@ import upickle.default.{ReadWriter, write as writeJson}
 private[skein] final class StateFile[A: ReadWriter](name: String, version: Int, what: String):
   import StateFile.*
 
-  /** The object's text with its checksum. */
+  /** The object's text; its last field is the checksum of all text before. */
   def json(state: A): String =
     val text = writeJson(state).stripSuffix("}")
     s"$text$Seal${sumOf(text)}}"

@@ -168,11 +168,9 @@ object WholeFlights:
       case Some(reason) if isTold => Left(s"--plant: expected $Tilt or $Spatial, came $plant: $reason")
       case Some(_)                => Right(if flown.isTraced then Tilt else Spatial)
 
-  /** @param why no faster engine can be used
-    */
+  /** @param why the reason for which no faster engine can be used */
   def inVirtualTime(why: String): Engine = Engine(Engine.Kind.Flights, s"flights in virtual time: $why")
 
-  /** Episodes as flights in virtual time. */
   def virtual(
       conditions: Conditions,
       loop: LoopKind,

@@ -76,7 +76,6 @@ final class FlightAssembler(
   /** Vehicles, starts and roles, equal in all flights; the policies are the plan's. */
   private val fleet: Fleet = settings.fleet
 
-  /** The header of this flight's recording. */
   def heading(plan: FlightPlan, clockKind: String): RecordingHeader = RecordingHeader(
     FlightRow(
       plan.id,

@@ -32,5 +32,5 @@ private[skein] object Lateness:
   /** Largest share of late ticks in a comparable flight. */
   val MostLate = 0.05
 
-  /** Least number of ticks for a judgement. */
+  /** With fewer ticks than these, a flight counts as comparable. */
   private val LeastTicks = 20

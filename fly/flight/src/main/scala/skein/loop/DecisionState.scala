@@ -13,7 +13,6 @@ private final class DecisionState(decider: Decider, memory: Memory):
     val (next, decision) = decider.decide(memory, view, now)
     (DecisionState(decider, next), decision)
 
-  /** Decides once by another decider. */
   def decideBy(one: Decider, view: TeamView, now: Instant): (DecisionState, Decision) =
     val (next, decision) = one.decideInstead(memory, view, now)
     (DecisionState(decider, next), decision)

@@ -11,7 +11,6 @@ import scala.util.Try
   */
 private final class ForeseenVehicle(val plant: ObservedPlant[?], carriesS: Double):
 
-  /** The vehicle's state in a view. */
   def at(view: TeamView, vehicle: Int): PredictedVehicle[?] =
     val state = view.estimates.fold(Vector.empty)(_(vehicle).state)
     PredictedVehicle.of(plant, PlantModel.readingOf(view.kinematics(vehicle)), carriesS, state)

@@ -164,7 +164,6 @@ object PlanSettings:
 
   private val mirror = summon[Mirror.ProductOf[PlanSettings]]
 
-  /** All settings, by their names. */
   private val words: Vector[(String, Word[Any])] =
     constValueTuple[mirror.MirroredElemLabels].toList.map(_.toString).toVector.zip(
       summonAll[Tuple.Map[mirror.MirroredElemTypes, Word]].toList.asInstanceOf[List[Word[Any]]]

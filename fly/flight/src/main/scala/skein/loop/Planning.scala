@@ -38,7 +38,6 @@ private abstract class Planning(
   /** The decision of the vehicle's policy instead of the plan. */
   protected def byPolicy(memory: Memory, view: TeamView, now: Instant, part: Part): PlannedMove
 
-  /** Whether speeds are planned too. */
   protected def choosesSpeed: Boolean
 
   /** The decision for the plan found.
@@ -63,7 +62,6 @@ private abstract class Planning(
     val (next, decision) = decider.decided(memory, view, now, Action.Along(heading, speed, down))
     (next, PlannedDecision(decision, action, plan, isOld, chosen.map(course(part, _))))
 
-  /** The path along which a manoeuvre leads. */
   private def course(part: Part, manoeuvre: Manoeuvre): PlannedPath =
     val track = ManoeuvreRollout(part.situation, part.objective, planner.dtS).track(manoeuvre)
     val steps = Vector.range(0, track.steps)

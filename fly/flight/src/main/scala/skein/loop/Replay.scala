@@ -164,7 +164,6 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
       case (Vector(), found) => Right(found)
       case (missing, _)      => Left(missing.head)
 
-  /** The view on which a decision was made. */
   private def view(recorded: DecisionRow, self: Int, regardsTeam: Boolean): Either[Difference, TeamView] =
     for
       other    <- vehicle(recorded, "opponentVehicle", recorded.opponent.vehicle)
@@ -188,7 +187,6 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
         .find(view => fleet.opponentOf(self, view.kinematics(_).positionNed) == other)
         .getOrElse(possible.head)
 
-  /** The sensor readings known at a decision. */
   private def sensed(of: DecisionRow, self: Int): Either[Difference, Map[String, SensorReading]] =
     collected(sensings.getOrElse((of.vehicle, of.sequence), Vector.empty)): sensing =>
       measured

@@ -32,7 +32,6 @@ private[skein] final class ProcessSocket(path: String, answerWithin: Span) exten
     await(SelectionKey.OP_READ)
     if channel.read(into) < 0 then throw IOException(ProcessSocket.Ended)
 
-  /** Reads this number of bytes of an answer. */
   def read(bytes: Int): ByteBuffer =
     val buffer = ByteBuffer.allocate(bytes)
     while buffer.hasRemaining do read(buffer)

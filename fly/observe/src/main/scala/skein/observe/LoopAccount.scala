@@ -199,7 +199,6 @@ final class LoopAccount:
 
   private def method(name: String, kind: CallKind): Option[Method] = methods.get(name)(Method(name, kind))
 
-  /** Number of commands to all vehicles. */
   private def commands: Long = vehicles.all.map(_.account.commands).sum
 
   /** The progress, at constant cost for any number of observations. */

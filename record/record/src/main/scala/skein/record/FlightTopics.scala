@@ -80,7 +80,6 @@ object FlightTopics:
     Table.all.map(table => Topic(ofTable(table), s"skein.${table.name}", JsonRow.schema(table))) ++
       FoxgloveViews.topics(vehicles).map((name, schema) => Topic(name, schema, FoxgloveSchemas.all(schema)))
 
-  /** The topics of a camera or a lidar. */
   def of(sensor: ImagingSensor, form: ImageEncoding = ImageEncoding.Whole): Vector[Topic] =
     def binary(name: String, schema: String) =
       Topic(name, schema, FoxgloveSchemas.binary(schema), isBinary = true, newestOnly = true)
