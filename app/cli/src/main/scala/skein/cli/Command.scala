@@ -66,7 +66,7 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
   /** Defaults by option name, for options whose own description does not state one. */
   protected def defaults: Map[String, String] = Map.empty
 
-  /** All values of an option, by option name, where the set is known. */
+  /** All values of an option, by option name, if the set is known. */
   protected def known: Map[String, Seq[String]] = Map.empty
 
   final def run(words: Seq[String]): Int =

@@ -25,13 +25,13 @@ private final class TeamSensing(
 )(using ExecutionContext):
   private val meters = ports.indices.map(parts.meter("sense", _))
 
-  // `futures` asks one vehicle from several threads at once.
+  // `futures` reads one vehicle from several threads concurrently.
   private val asked = AtomicLongArray(ports.size)
 
-  // Known as answers come, before anything is made of them.
+  // Updated as answers arrive, before they are used.
   private val clocks = AtomicReference(clocksBefore)
 
-  /** Of the vehicles that are not read, but known by messages. */
+  /** The inboxes of vehicles that are known by messages instead of readings. */
   private val inboxes: Map[Int, Inbox] =
     val others = messages.toVector.flatMap(_ => ports.indices.filterNot(own.contains))
     others
@@ -47,7 +47,7 @@ private final class TeamSensing(
       log.read(message)
       inboxes(message.vehicle).put(message)
 
-  /** Learns of the vehicles' clock from a reading; returns what was known before. */
+  /** Aligns the vehicles' clock by a reading; returns the alignment before it. */
   private def aligned(state: Stamped[?]): Option[ClockAlignment] =
     clocks.getAndUpdate(known => Some(known.fold(ClockAlignment.of(state))(_.updated(state))))
 
@@ -84,7 +84,7 @@ private final class TeamSensing(
           log.unread(vehicle, sequence, error)
           Left(error)
 
-  /** Whether one answer was sampled later than another, judged by all readings of the team. */
+  /** Whether one answer was sampled later than another, by all readings of the team. */
   def isNewer(one: Stamped[?], other: Stamped[?]): Boolean =
     clocks.get.getOrElse(ClockAlignment.of(one)).isNewer(one, other)
 
@@ -170,7 +170,8 @@ private final class TeamSensing(
           case error           => Future.successful(error)
 
   /** Reads all vehicles of a simulator that stands still, in the scenario's order; ends at the first error.
-    * Vehicles that are known by messages are as in the newest when their turn comes, after the own one.
+    * The states of vehicles that are known by messages are those of the newest message after this
+    * controller's own vehicle was read.
     */
   def readAll(): Future[Either[VehicleError, Vector[Reading]]] =
     val inTurn = if messages.isEmpty then ports.indices else own ++ inboxes.keys.toVector.sorted
@@ -184,7 +185,7 @@ private final class TeamSensing(
   def ticks(first: Instant): Source[Int, NotUsed] =
     Source.fromGraph(Metronome(first, settings.period, clock))
 
-  /** The present age of a moment on the vehicles' clock; absent as long as nothing is known of that clock. */
+  /** The present age of a moment on the vehicles' clock; absent until that clock is known. */
   def ageOf(validAt: Option[Instant]): Option[Span] =
     clocks.get
       .zip(validAt)
