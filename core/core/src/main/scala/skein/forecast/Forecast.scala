@@ -32,7 +32,7 @@ final case class Forecast private (
     * None until every vehicle was read. If a vehicle's newest reading is later than that, its estimate is the
     * reading.
     *
-    * @param now on the controller's clock
+    * @param now the current time, on the controller's clock
     */
   def whenActing(now: Instant): Option[Vector[Estimate]] =
     told

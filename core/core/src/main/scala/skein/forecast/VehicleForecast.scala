@@ -11,7 +11,8 @@ import skein.vehicle.{Setpoint, VehicleModel}
   * @param readings the newest readings, the newest last
   * @param resting setpoint in effect before the first command
   * @param before the command in effect before the first of `commands`; None for `resting`
-  * @param commands in the order of sending: the one in effect at the newest reading, and all later ones
+  * @param commands sent commands in the order of sending: the one in effect at the newest reading, and all
+  *   later ones
   */
 final case class VehicleForecast[S] private (
     model: VehicleModel[S],

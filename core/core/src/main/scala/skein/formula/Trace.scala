@@ -5,8 +5,8 @@ import skein.formula.Op.*
 
 /** One number, or one condition, of an expression.
   *
-  * @param value of a [[Op.Const]]
-  * @param index of an [[Op.Input]] or [[Op.Param]]
+  * @param value the value of a [[Op.Const]]
+  * @param index which input or parameter an [[Op.Input]] or [[Op.Param]] is
   */
 final class Node private[formula] (
     val id: Int,

@@ -4,7 +4,7 @@ package skein.policy
   * loops, virtual time and forward simulation share this rule. Agents are identified by their index in a
   * scenario.
   *
-  * @param rivals at least one for each agent, in ascending order; an agent with a single rival is assigned
+  * @param rivals indices of each agent's rivals, at least one, ascending; a single rival is assigned
   *   permanently. An agent that flies alone is its own opponent
   */
 final case class Assignment(rivals: Vector[Vector[Int]]):

@@ -6,11 +6,11 @@ import skein.vehicle.VehicleKind
 /** One vehicle and its policy.
   *
   * @param name the simulator's name of the vehicle; in AirSim, that of `settings.json`
-  * @param speed commanded where the policy does not choose one
+  * @param speed the commanded speed where the policy does not choose one
   * @param startPositionNed m, in the world frame; it also holds this altitude. A car's is 0
-  * @param startHeading taken as the last commanded heading before the first decision
+  * @param startHeading stands for the last commanded heading before the first decision
   * @param policy how it decides
-  * @param kind of vehicle; a car is steered in the plane or stands still
+  * @param kind the kind of vehicle; a car is steered in the plane or stands still
   */
 final case class Agent(
     name: String,

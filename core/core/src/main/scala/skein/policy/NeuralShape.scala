@@ -4,7 +4,7 @@ package skein.policy
   * per input, then the bias.
   *
   * @param hidden number of neurons of each hidden layer
-  * @param activations of each hidden layer, and of the output
+  * @param activations the activation of each hidden layer, and of the output
   */
 final case class NeuralShape(hidden: Vector[Int], inputs: Int, activations: Vector[Activation]):
   require(

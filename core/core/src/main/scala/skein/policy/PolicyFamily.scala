@@ -5,11 +5,11 @@ import skein.units.OwnFailure
 /** Policies of one form that differ in named parameters: searches choose from them, and policy files name
   * them.
   *
-  * @param name as on the command line and in policy files, for example `paper-pursuer`
+  * @param name its name on the command line and in policy files, for example `paper-pursuer`
   * @param summary one line for people
-  * @param roles for whom its policies are meant
+  * @param roles the roles for which its policies are meant
   * @param space the parameters, their bounds and defaults
-  * @param make a policy of one value per axis; a pure function
+  * @param make creates a policy from one value per axis; a pure function
   */
 final class PolicyFamily(
     val name: String,

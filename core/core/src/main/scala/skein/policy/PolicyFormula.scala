@@ -43,7 +43,7 @@ final class PolicyFormula private (
 
   /** Why the policy leaves the altitude of its vehicle's start, if it does.
     *
-    * @param startDown of the vehicle that it controls
+    * @param startDown the start's altitude, of the vehicle that it controls
     */
   def leaves(policy: Policy, startDown: Metres): Option[String] = vertical.flatMap: vertical =>
     val nodes   = Vector(vertical.third, vertical.holds)

@@ -117,7 +117,7 @@ object Series:
 
 /** A value with which a quantity is compared, drawn as a line.
   *
-  * @param name in the legend
+  * @param name its name in the legend
   */
 final case class Bound(name: String, value: Double)
 

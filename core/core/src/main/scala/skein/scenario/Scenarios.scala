@@ -11,9 +11,9 @@ trait NamedLoop:
   * name. It is required wherever settings or recordings are read.
   *
   * @param kinds the first is the default
-  * @param families of policies, in addition to Skein's
+  * @param families families of policies, in addition to Skein's
   * @param ownStructures structures of plants, in addition to Skein's
-  * @param loops in addition to Skein's
+  * @param loops named loops, in addition to Skein's
   */
 final case class Scenarios(
     kinds: Vector[ScenarioKind[?]],
@@ -82,7 +82,7 @@ final case class Scenarios(
   /** The scenario of a recording.
     *
     * @param name value of [[Scenario.name]]
-    * @param parameters of the recording, by name
+    * @param parameters the recorded settings, by name
     * @return Left states why this program does not know the scenario
     */
   def ofRecording(name: String, parameters: Map[String, String]): Either[String, Scenario] =

@@ -6,7 +6,7 @@ import skein.units.*
   *
   * @param positionNed m
   * @param velocityNed m/s
-  * @param orientation from body FRD to world NED
+  * @param orientation rotates from body FRD to world NED
   * @param angularVelocityFrd rad/s
   */
 final case class Kinematics(

@@ -9,7 +9,7 @@ package skein.vehicle
   * @param massKg total mass, motors included
   * @param motorKg mass of one motor, a point at its rotor
   * @param boxFrontM length of the body box along front; `boxRightM` and `boxDownM` likewise
-  * @param armM from the centre of mass to a rotor's axis, in the rotor plane
+  * @param armM distance from the centre of mass to a rotor's axis, in the rotor plane
   * @param rotorDownM the rotor plane's down coordinate in the body
   * @param rotorDiameterM GWS 9×5 propeller
   * @param rotorHeightM height of the cylinder that the rotor sweeps, which has drag sideways

@@ -2,7 +2,7 @@ package skein.vehicle
 
 /** The state of a moving car. Position and velocity are those of its centre of mass.
   *
-  * @param headingRad from north towards east, any number of turns
+  * @param headingRad heading, from north towards east, any number of turns
   * @param frontMps velocity along the heading, negative backwards
   * @param rightMps velocity across the heading
   * @param yawRadPerS clockwise seen from above

@@ -9,7 +9,7 @@ final case class ParameterBelief private[vehicle] (mean: Vector[Double], covaria
 
   /** Adds a measurement.
     *
-    * @param effects by how much it grows with each parameter
+    * @param effects the measurement's derivative by each parameter
     * @param error measured minus predicted by the mean
     * @param noise its standard deviation
     */

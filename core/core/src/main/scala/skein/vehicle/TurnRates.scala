@@ -8,8 +8,8 @@ package skein.vehicle
   * changed: the interacting multiple models of Blom and Bar-Shalom, IEEE Transactions on Automatic Control
   * 33(8), 1988. How far commands are off the line is learned.
   *
-  * @param shares of the rates; they add up to 1
-  * @param headings at each rate, rad; likewise `variances`, rad²
+  * @param shares probabilities of the rates; they add up to 1
+  * @param headings estimated heading for each rate, rad; likewise `variances`, rad²
   * @param offRad2 mean square of a measured heading's deviation from its line, rad²
   * @param spentS how long each rate was seen, s, fading
   */

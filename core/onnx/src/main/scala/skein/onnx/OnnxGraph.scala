@@ -20,7 +20,7 @@ object OnnxGraph:
   /** An operation of the graph.
     *
     * @param inputs names of the input values; an empty name means that the input is omitted
-    * @param attributes by name
+    * @param attributes the operation's attributes, by name
     */
   final case class Node(
       operator: String,

@@ -14,9 +14,9 @@ import skein.units.Expect
   * single output is a share, −1 to 1, of the largest turn: until the next decision (pursuer) or of one
   * decision (evader).
   *
-  * @param role as the file notes it
+  * @param role the role that the file notes
   * @param family `learned:…` where its network is one of ours
-  * @param parameters in the order of the family's axes, for a role
+  * @param parameters values in the order of the family's axes, for a role
   */
 final case class OnnxPolicy(role: Option[String], family: PolicyFamily, parameters: Role => Vector[Double])
 
@@ -68,7 +68,7 @@ object OnnxPolicy:
 
   /** Writes a network as an ONNX file.
     *
-    * @param role for which it was trained
+    * @param role the role for which it was trained
     * @return Left states why the policy is no network
     */
   def write(policy: Policy, role: String): Either[String, Array[Byte]] =
