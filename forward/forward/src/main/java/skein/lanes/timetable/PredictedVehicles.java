@@ -17,9 +17,9 @@ public abstract class PredictedVehicles {
 
   /** Adds a reading to the forecast, if the model's state contains more than a reading.
    *
-   * @param seenX positions north of the readings, by place; the other arrays have positions east and
+   * @param seenX positions north of the readings, by slot; the other arrays have positions east and
    *   velocities
-   * @param sent the commands, by place
+   * @param sent the commands, by slot
    * @param from the index, for the first world, of the previous reading; negative if there is none
    * @param reading the index, for the first world, of this reading
    * @param propagation the steps from the previous reading to this one
@@ -36,9 +36,9 @@ public abstract class PredictedVehicles {
 
   /** Predicts from a reading.
    *
-   * @param seenX positions north of the readings and predictions, by place; the other arrays have positions
+   * @param seenX positions north of the readings and predictions, by slot; the other arrays have positions
    *   east and velocities
-   * @param sent the commands, by place
+   * @param sent the commands, by slot
    * @param reading the index of the reading, for the first world
    * @param into the index of the prediction, for the first world
    * @param propagation the steps of the prediction

@@ -10,7 +10,7 @@ public interface TimetableScores {
 
   /** Scores the present positions of all vehicles.
    *
-   * @param agents in the order of the vehicles' numbers
+   * @param agents one per vehicle, in the vehicles' order
    * @param views all views of the timetable; the one to score begins at index {@code view}
    */
   void score(TimetableAgents[] agents, int[] views, int view, float timeS);

@@ -6,8 +6,8 @@ import skein.simd.{BoundFunction, Forms}
 import skein.units.Expect
 
 /** Scores flights in many worlds by SIMD. The quantities, compiled from [[Quantity.of]], and their reductions
-  * are one function: from the running numbers of each world and a view it computes their next values. Flights
-  * of one form differ in numbers alone.
+  * are one function: from the accumulators of each world and a view it computes their next values. Flights of
+  * one form differ only in parameter values.
   */
 private[lanes] final class ScoreLanes private (
     formulas: Vector[Formula],
@@ -27,10 +27,10 @@ private[lanes] final class ScoreLanes private (
       parameter => trace.input(FirstParameter + number * Stride + parameter)
     )
 
-  /** The initial values of the running numbers, by place. */
+  /** The initial values of the accumulators, by index. */
   val initial: Vector[Float] = judged.flatMap(initially)
 
-  /** Offset of each judged number's running numbers; the last entry is their total count. */
+  /** Offset of each score's accumulators; the last entry is their total number. */
   val places: Vector[Int] = judged.map(initially(_).size).scanLeft(0)(_ + _)
 
   private val successors: Vector[Vector[Node]] = judged.indices.toVector.map: number =>
@@ -40,10 +40,10 @@ private[lanes] final class ScoreLanes private (
       kept => trace.input(FirstKept + places(number) + kept)
     )
 
-  /** The next values of the running numbers. Each may overwrite its predecessor, which no other expression
+  /** The next values of the accumulators. Each may overwrite its predecessor, which no other expression
     * reads.
     *
-    * @param value the quantity now
+    * @param value the quantity's present value
     */
   private def successorsOf(number: Int, value: Node, kept: Int => Node): Vector[Node] =
     val own = trace.param(ownParameter(number))
@@ -64,7 +64,7 @@ private[lanes] final class ScoreLanes private (
   private val derived = angles.map(_.derived)
   private val numbers = derived.map(Evaluation(_))
 
-  /** The functions to use, each from a time until that of the next. */
+  /** The functions to use, each from its time until that of the next. */
   val stages: Vector[Stage] = judged.map(_.fromS).distinct.sorted.map: fromS =>
     val numbers = judged.indices.filter(judged(_).fromS <= fromS).toVector
     Stage(
@@ -74,7 +74,7 @@ private[lanes] final class ScoreLanes private (
       BoundFunction.of(numbers.flatMap(successors))
     )
 
-  /** The source of a function's input: a reading, an altitude, a parameter or a running number. */
+  /** The source of a function's input: a reading, an altitude, a parameter or an accumulator. */
   def source(input: Int): Source =
     if input < 2 * count then Source.Reading(input % count, input / count)
     else if input < FirstParameter then Source.Altitude(input - 2 * count)
@@ -82,7 +82,7 @@ private[lanes] final class ScoreLanes private (
       Source.Parameter((input - FirstParameter) / Stride, (input - FirstParameter) % Stride)
     else Source.Kept(input - FirstKept)
 
-  /** Whether a judged number needs the weight of a new value, 1 over the count so far. */
+  /** Whether a score needs the weight of a new value, 1 over the count so far. */
   def hasShare(number: Int): Boolean = judged(number).reduction == Reduction.Sd
 
   /** Number of parameters that distinguish a quantity from others of its form. */
@@ -91,7 +91,7 @@ private[lanes] final class ScoreLanes private (
   def parametersOf(number: Int, quantity: Quantity): Array[Double] =
     numbers(number)(Array.emptyDoubleArray, formulas(number).parametersOf(quantity))
 
-  /** Whether these judged numbers of this number of vehicles have this form. */
+  /** Whether these scores of this number of vehicles have this form. */
   def fits(by: Vector[Judged], vehicles: Int): Boolean =
     vehicles == count && by.size == judged.size && by.indices.forall: number =>
       val (own, other) = (judged(number), by(number))
@@ -102,8 +102,8 @@ private[lanes] object ScoreLanes:
   private final val Stride         = 1 << 18
   private final val FirstKept      = 1 << 30
 
-  /** Indices of the parameters that all worlds share: the time, s; then for each judged number a limit, or
-    * the weight of the new value.
+  /** Indices of the parameters that all worlds share: the time, s; then for each score a limit, or the weight
+    * of the new value.
     */
   final val Time                     = 0
   def ownParameter(number: Int): Int = 1 + number
@@ -116,8 +116,8 @@ private[lanes] object ScoreLanes:
 
   /** The function to use from a time on.
     *
-    * @param judged indices of the judged numbers that are updated from then on
-    * @param places place of the running number that each output updates
+    * @param judged indices of the scores that are updated from then on
+    * @param places index of the accumulator that each output updates
     */
   final case class Stage(fromS: Double, judged: Vector[Int], places: Vector[Int], function: BoundFunction):
     /** Samples later than this are scored (exclusive bound). */
@@ -139,9 +139,9 @@ private[lanes] object ScoreLanes:
   /** Compiles scores, once for each form. Left states why SIMD does not support them. */
   def of(judged: Vector[Judged], vehicles: Int): Either[Untraceable, ScoreLanes] = known((judged, vehicles))
 
-  /** The final value of a judged number; NaN without values.
+  /** The final value of a score; NaN without values.
     *
-    * @param kept its last running number
+    * @param kept its last accumulator
     * @param count number of values
     */
   def value(reduction: Reduction | OfMoment, kept: Float, count: Int): Float = reduction match
@@ -152,7 +152,7 @@ private[lanes] object ScoreLanes:
 
   /** Scores the distance between two vehicles.
     *
-    * @param by reductions of the distance, each from a time on, s
+    * @param by reductions of the distance, each with the time from which values count, s
     */
   def ofDistance(by: (Reduction | OfMoment, Double)*): ScoreLanes =
     of(by.toVector.map(Judged(Separation, _, _)), 2).fold(throw _, identity)

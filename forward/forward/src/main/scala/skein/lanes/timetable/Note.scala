@@ -29,7 +29,7 @@ private[lanes] object Note:
     * @param before number of its previous decision; this decision's number is one more
     * @param elapsedS time since the previous decision
     * @param opponent in a duel, number of the opponent's last known decision; else 0
-    * @param ownAgeS in a duel, age of the own reading; else 0
+    * @param ownAgeS in a duel, age of the vehicle's own reading; else 0
     * @param opponentAgeS in a duel, age of the opponent's reading; else 0
     * @param aheadS with a camera, time by which its estimate is predicted; −1 in loops without predictions
     * @param more further inputs, for teams that need them
@@ -62,8 +62,8 @@ private[lanes] object Note:
 
   /** A sensor takes an image.
     *
-    * @param bearingError in units of the standard deviation
-    * @param rangeError in units of the standard deviation
+    * @param bearingError error of the bearing, in standard deviations
+    * @param rangeError error of the range, in standard deviations
     * @param isFound whether an opponent in view is detected
     */
   final case class Expose(

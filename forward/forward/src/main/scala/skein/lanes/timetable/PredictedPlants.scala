@@ -5,11 +5,11 @@ import skein.lanes.plant.{PlantCorrection, PlantLanes, StagedFlight}
 import skein.lanes.policy.Directions
 
 /** Predicts by a plant. For each command, the propagation has the number of steps that end under it, and the
-  * numbers of the time after the last step ([[skein.lanes.plant.PlantStages]]). If readings lack a part of
-  * the state, that part is simulated from reading to reading. The scalar reference is
+  * values that the plant needs of the time after the last step ([[skein.lanes.plant.PlantStages]]). If
+  * readings lack a part of the state, that part is simulated from reading to reading. The scalar reference is
   * [[skein.vehicle.PlantModel]].
   *
-  * @param correction of the state by a reading
+  * @param correction corrects the state by a reading
   * @param speedMps speed of a command of length 1
   */
 private[lanes] final class PredictedPlants(
@@ -24,7 +24,7 @@ private[lanes] final class PredictedPlants(
   private val correct = correction.call
   private val count   = lanes.count
 
-  /** The state at each reading, by the reading's place; used only if readings lack a part of the state. */
+  /** The state at each reading, by the reading's slot; used only if readings lack a part of the state. */
   private var states = Array.emptyFloatArray
   private val before = Array.ofDim[Float](count * WORLDS)
   correct.inputs(0, count, before, 0)
