@@ -151,7 +151,7 @@ object VehicleForecast:
   /** Number of stored readings, with which predictions are compared. */
   val ReadingLimit = 8
 
-  /** Number of stored commands, and thus the limit of commands under way. */
+  /** Number of stored commands, and thus the maximum number of commands under way. */
   val CommandLimit = 64
 
   /** Time beyond two round trips after which a command is presumed lost. */

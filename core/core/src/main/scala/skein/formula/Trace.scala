@@ -27,9 +27,9 @@ final class Node private[formula] (
 
 /** A graph of expressions in which equal ones share a node, so that nothing is computed twice. Operations on
   * constants are evaluated immediately, bit-identical to a later evaluation; nothing is rearranged. A node's
-  * arguments have smaller numbers than the node. Not thread-safe.
+  * arguments have smaller `id`s than the node. Not thread-safe.
   *
-  * @param most limit of nodes; beyond it, tracing is refused
+  * @param most maximum number of nodes; beyond it, tracing is refused
   */
 final class Trace(most: Int = 200_000):
   private val known = mutable.HashMap.empty[Trace.Key, Node]
@@ -122,8 +122,8 @@ final class Trace(most: Int = 200_000):
   /** Whether its value is chosen among few constants, such as the nearest of all vehicles. */
   private def ofConsts(a: Node): Boolean = a.op == Where && withoutConsts(a, Trace.MostChosen) >= 0
 
-  /** What is left of a number of constants after those among which a value is chosen; negative if it is not
-    * chosen among so few.
+  /** `most`, less the number of constants among which a value is chosen; negative if there are more, or if it
+    * is not chosen among constants.
     */
   private def withoutConsts(a: Node, most: Int): Int =
     if most < 0 || a.isConst then most - 1
@@ -158,7 +158,7 @@ final class Trace(most: Int = 200_000):
 object Trace:
   private val MostChosen = 64
 
-  /** Identifies equal nodes: their operation, and their arguments' numbers or their own. */
+  /** Identifies equal nodes: their operation, and the numbers of their arguments or of themselves. */
   private final case class Key(op: Int, first: Long, rest: Long):
     override def hashCode: Int =
       val mixed = (first * 31 + rest) * 0x9e3779b97f4a7c15L + op
@@ -168,8 +168,8 @@ object Trace:
   def needed(of: Seq[Node]): Vector[Node] =
     val seen  = mutable.HashSet.empty[Int]
     val order = Vector.newBuilder[Node]
-    // Expressions may be deeper than a thread's stack: nodes with how many of their arguments have been gone
-    // to.
+    // Expressions may be deeper than a thread's stack: nodes with the number of their arguments that were
+    // visited.
     val walk = mutable.Stack.empty[(Node, Int)]
     for node <- of if seen.add(node.id) do
       walk.push((node, 0))

@@ -6,7 +6,7 @@ import skein.units.*
   *
   * @param validAt time at which physics was sampled or the image exposed; on one clock for all measurements
   *   of a vehicle
-  * @param positionNed m
+  * @param positionNed the measured position, m
   * @param covariance the position's covariance, NED, m²
   * @param velocity velocity with its covariance, if it was measured: NED, m/s, m²/s²
   */

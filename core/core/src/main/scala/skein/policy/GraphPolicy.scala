@@ -25,7 +25,7 @@ private[skein] final class PolicyGraph(
   require(actions.nonEmpty && actions.last._1.isEmpty, "the last action has no condition")
   require(starts.size == next.size, "each number of the memory has a start and a next value")
 
-  /** Condition and numbers of each action, in turn, and then the next memory. */
+  /** Condition and components of each action, in turn, and then the next memory. */
   val outputs: Vector[Node] = actions.flatMap((when, of) => when ++ of.numbers) ++ next
 
   /** Splits values of [[outputs]].

@@ -6,7 +6,7 @@ import skein.units.OwnFailure
   * them.
   *
   * @param name its name on the command line and in policy files, for example `paper-pursuer`
-  * @param summary one line for people
+  * @param summary one line for users
   * @param roles the roles for which its policies are meant
   * @param space the parameters, their bounds and defaults
   * @param make creates a policy from one value per axis; a pure function
@@ -123,7 +123,7 @@ object PolicyFamily:
     parameters => NeuralPolicy(shape, parameters.init, parameters.last)
   )
 
-  /** Networks as `./skein learn` trains them, named `learned:64x64` as [[LearnedPolicy.label]] says; the
+  /** Networks as `./skein learn` trains them, named like `learned:64x64` ([[LearnedPolicy.label]]); the
     * default's weights are all zero.
     */
   def learned(shape: NeuralShape): PolicyFamily = PolicyFamily(
@@ -164,7 +164,7 @@ object PolicyFamily:
       chauffeurEvader
     )
 
-  /** The family of this name.
+  /** The family of this name, Skein's or the program's own.
     *
     * @param own further families that the program knows
     * @return Left states which names were expected

@@ -19,7 +19,7 @@ object Bandwidth:
 
   private val LeastQueueBytes = 2 * FrameBytes
 
-  /** Limit of the time in which a full queue is sent; a longer queue would delay everything permanently. */
+  /** Maximum time in which a full queue is sent; a longer queue would delay everything permanently. */
   private val MostQueue = Span.ofSeconds(60)
 
   /** A line with a queue that is sent in 5 ms, but of at least 3,000 bytes. CoDel limits a queue to this

@@ -38,7 +38,7 @@ object OnnxGraph:
 
   /** A constant array of numbers.
     *
-    * @param values the numbers, row by row
+    * @param values the elements, row by row
     */
   final case class Tensor(shape: Vector[Int], values: Vector[Double])
 
