@@ -82,10 +82,7 @@ final class Decider(fleet: Fleet, self: Int, policy: Policy):
 
   private def seen(view: TeamView, now: Instant, vehicle: Int): Seen =
     val reading = view.readings(vehicle).get.state
-    Seen(view.kinematics(vehicle), age(view, now, reading), isPredicted = view.estimates.isDefined)
-
-  private def age(view: TeamView, now: Instant, reading: Stamped[?]): Span =
-    view.alignment.flatMap(_.ageOf(reading, now)).getOrElse(reading.ageByArrival(now))
+    Seen(view.kinematics(vehicle), view.ageOf(reading, now), isPredicted = view.estimates.isDefined)
 
   private def elapsed(memory: Memory, now: Instant): Span = memory.decidedAt.fold(Span.Zero)(now.since)
 

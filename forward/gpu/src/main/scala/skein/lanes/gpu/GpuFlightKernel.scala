@@ -243,6 +243,7 @@ private[lanes] abstract class GpuFlightKernel(
             case Source.Reading(vehicle, field)      => code.loadOwn(seen(vehicle), field)
             case Source.Altitude(vehicle)            => code.constant(agents(vehicle).altitudeDownM.toFloat)
             case Source.Kept(place)                  => kept(place)
+            case ofEnd                               => throw IllegalStateException(s"a quantity of $ofEnd")
             case Source.Parameter(number, parameter) => flying.quantity(number, parameter)
         ,
         parameter =>
