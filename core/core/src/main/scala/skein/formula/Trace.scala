@@ -74,7 +74,8 @@ final class Trace(most: Int = 200_000):
   private def comparison(op: Op, a: Node, b: Node): Node =
     if a.isConst && b.isConst then if Op.holds(op, a.value, b.value) then always else never
     else if op == Lt && a == b then never
-    // What a condition has chosen between known numbers is compared: it is the condition again.
+    // A comparison of a value that a condition chose between known numbers is the condition itself, or its
+    // negation.
     else if b.isConst && ofConsts(a) then chosen(a)(comparison(op, _, b))
     else if a.isConst && ofConsts(b) then chosen(b)(comparison(op, a, _))
     else node(op, a, b)
@@ -98,7 +99,7 @@ final class Trace(most: Int = 200_000):
     if a == b || condition.op == Always then a
     else if isNever(condition) then b
     else if condition.op == Not then where(condition.args(0), b, a)
-    // What the same condition chose before.
+    // A nested choice by the same condition.
     else if a.op == Where && a.args(0) == condition then where(condition, a.args(1), b)
     else if b.op == Where && b.args(0) == condition then where(condition, a, b.args(2))
     else node(Where, condition, a, b)

@@ -8,7 +8,7 @@ import skein.units.*
   * @param meansMs mean round trips, ascending
   * @param jittersMs jitters of the round trip, p99 − p50, ascending
   * @param cells `cells(jitter)(mean)`; None if no log-normal link has such a mean and jitter
-  * @param truth the objective under the paused loop with the same vehicles
+  * @param truth the objective under the paused loop, with equal vehicles
   * @param per unit of deviations: the magnitude of `truth`, or 1 for deviations in the objective's own unit
   */
 final case class LatencyBudget(

@@ -439,7 +439,7 @@ public abstract class LaneAgents {
 
   /** Time of a world's decision, s; infinity without one.
    *
-   * @param rowS time of the period's start
+   * @param rowS time of the period's start, s
    */
   final float decidesS(int world, double rowS) {
     return decides[world] == NONE

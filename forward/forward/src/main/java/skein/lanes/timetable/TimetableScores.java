@@ -20,11 +20,11 @@ public interface TimetableScores {
     return false;
   }
 
-  /** Ends the worlds in which the flight is over by what is known now.
+  /** Ends the worlds in which the flight is over, given these readings.
    *
    * @param view the index of the newest readings
-   * @param sinceS time since the first decision
-   * @param agesS of the readings, from index {@code ages} on
+   * @param sinceS time since the first decision, s
+   * @param agesS the readings' ages, s, from index {@code ages} on
    */
   default void end(
       TimetableAgents[] agents, int[] views, int view, float timeS, float sinceS, float[] agesS, int ages) {

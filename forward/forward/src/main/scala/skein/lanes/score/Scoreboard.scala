@@ -48,9 +48,9 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
   private val ending: ViewCall =
     lanes.ending.fold(null)(ending => showing(ending.function, Vector(ending.place)))
 
-  /** A call that computes running numbers.
+  /** A call that computes accumulators.
     *
-    * @param places of the function's outputs among them
+    * @param places indices of the function's outputs among the accumulators
     */
   private def showing(function: BoundFunction, places: Vector[Int]): ViewCall =
     val shown = ViewCall(

@@ -16,19 +16,19 @@ import skein.vehicle.ConstantVelocity
   * @param vehicles number of vehicles
   * @param operations [[Timetable.Fields]] integers each: the kind, of [[TimetableKernel]]; the vehicle; then
   *   slots
-  * @param numbers count of `times` per operation
-  * @param times of each operation: of an event of a vehicle, the numbers of its [[EventClock]]; of a
-  *   decision, the time since the one before, and in a duel the ages of the own and of the opponent's
-  *   reading; with a camera, the age of the own reading, the time, and the time for which an estimate is
-  *   predicted ([[TimetableEye.look]]); of an image the arguments of [[TimetableEye.expose]]; of a score, the
-  *   time; s
-  * @param views the inputs of decisions and scores: the places of all vehicles' readings, view by view
-  * @param propagations of predictions, in loops that predict
-  * @param readings number of places that the readings of one vehicle need simultaneously
-  * @param headings number of places for the headings of one vehicle
-  * @param more further inputs of decisions, if requested; then a decision's third place is its number there
-  * @param endAgesS of operations that may end the flight, which have their index here: the ages of all
-  *   vehicles' readings
+  * @param numbers number of `times` per operation
+  * @param times the times of each operation, s: for an event of a vehicle, the values of its [[EventClock]];
+  *   for a decision, the time since the one before, and in a duel the ages of the vehicle's own and of the
+  *   opponent's reading; with a camera, the age of the vehicle's own reading, the time, and the time for
+  *   which an estimate is predicted ([[TimetableEye.look]]); for an image, the arguments of
+  *   [[TimetableEye.expose]]; for a score, the time
+  * @param views the inputs of decisions and scores: the slots of all vehicles' readings, view by view
+  * @param propagations the steps of predictions, in loops that predict
+  * @param readings number of slots that the readings of one vehicle need simultaneously
+  * @param headings number of slots for the headings of one vehicle
+  * @param more further inputs of decisions, if requested; then a decision's third slot is its index there
+  * @param endAgesS the ages of all vehicles' readings, for operations that may end the flight, which contain
+  *   their index here
   */
 private[skein] final class Timetable private[lanes] (
     val vehicles: Int,
@@ -60,8 +60,9 @@ private[skein] object Timetable:
 
   /** The timetable of a world of this key, for this number of vehicles of this kind.
     *
-    * @param eyes of vehicles with cameras, of two
-    * @param tellsMore see [[Timetable.more]]; not of two that decide by [[skein.lanes.policy.OpponentLanes]]
+    * @param eyes the cameras, by vehicle; only for two vehicles
+    * @param tellsMore see [[Timetable.more]]; not for two vehicles that decide by
+    *   [[skein.lanes.policy.OpponentLanes]]
     * @param end how the flight may end before its duration
     */
   def of(
@@ -100,7 +101,7 @@ private[skein] object Timetable:
     /** Also by the time or the ages of readings. */
     case ByTime
 
-  /** Further inputs of decisions, by number of the decision and of the vehicle.
+  /** Further inputs of decisions, by decision, then by vehicle.
     *
     * @param headings slots of each vehicle's last known commanded heading
     * @param agesS ages of the readings, s

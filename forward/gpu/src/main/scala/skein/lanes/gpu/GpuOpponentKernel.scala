@@ -112,6 +112,6 @@ private[lanes] final class GpuOpponentKernel(
 private object GpuOpponentKernel:
   private def numbers(form: PolicyLanes): Int = form.parameters + form.memories + 2
 
-  /** Total count of the quantities' parameters, if they have any. */
+  /** Total number of the quantities' parameters, if they have any. */
   private def ofScores(form: TeamForm): Option[Int] =
     Some(form.scores.judged.indices.map(form.scores.parameters).sum).filter(_ > 0)
