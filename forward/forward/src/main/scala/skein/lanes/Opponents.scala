@@ -15,7 +15,7 @@ private[lanes] object Opponents:
   /** The two vehicles, with equal delays in all worlds.
     *
     * @param agents the vehicles; their speeds and first headings apply to all worlds
-    * @param eyes by vehicle, the camera through which alone it knows its opponent
+    * @param eyes the camera of each vehicle that knows its opponent through it alone
     */
   def inEpisode(
       agents: Vector[RolloutAgent],

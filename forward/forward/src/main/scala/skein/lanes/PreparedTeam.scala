@@ -8,7 +8,7 @@ import skein.lanes.timetable.Timetable
 
 /** The common properties of teams that are simulated together.
   *
-  * @param efforts for each judged value, the vehicle whose effort it is; None if it is the next of `scores`
+  * @param efforts the vehicle whose effort each judged value is; None if the value is the next of `scores`
   * @param altitudesDownM altitudes of vehicles that fly level
   */
 private[lanes] final case class TeamForm(

@@ -138,7 +138,7 @@ object EnvironmentBatch:
       Scenarios
   ): Either[String, Vector[String]] = LearnerSide.of(settings).map(side => side.turns.head.map(side.names))
 
-  /** @param opponent policy of the vehicles of another role; if None, the one that the settings name
+  /** @param opponent policy of the vehicles of another role; without one, as the settings name it
     * @return Left states what was expected and what was given
     */
   def of(

@@ -9,7 +9,7 @@ import skein.vehicle.PlantTiming
   * @param first index of the first parameter
   * @param state the state's components at the start of the step
   * @param north the command's component north, divided by the speed
-  * @param vertical for a command in space, its third component, and whether that is an altitude
+  * @param vertical the third component of a command in space, and whether that is an altitude
   * @param spanS duration of the step
   * @param taken transforms the components of the final state before they are read
   */

@@ -6,8 +6,8 @@ import skein.lanes.plant.{PlantLanes, StagedFlight}
 import skein.lanes.policy.Directions
 
 /** Vehicles that move by a [[skein.vehicle.Plant]]. Their clock represents a time by the number of steps that
-  * end before it, and by the values that [[skein.lanes.plant.PlantStages]] needs of the time since the last
-  * step. The scalar reference is `skein.forward.PlantVehicle`.
+  * end before it, and by the numbers of the time since the last step, as [[skein.lanes.plant.PlantStages]]
+  * needs them. The scalar reference is `skein.forward.PlantVehicle`.
   */
 private[lanes] final class TimetablePlants(agent: RolloutAgent, lanes: PlantLanes)
     extends TimetableVehicles(agent, lanes.inSpace):
