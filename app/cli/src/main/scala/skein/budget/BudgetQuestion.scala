@@ -1,6 +1,5 @@
 package skein.budget
 
-import skein.forward.Engagement
 import skein.lanes.Engine
 import skein.optimise.Objective
 import skein.policy.Role
@@ -41,7 +40,7 @@ object BudgetQuestion:
         flown     <- conditions.resolved
       yield
         def pair(of: Conditions.Resolved) =
-          Engagement.of(of.duel).flownBy(role, policy.policy).flownBy(opponent.role, opponent.policy)
+          of.game.flownBy(role, policy.policy).flownBy(opponent.role, opponent.policy)
         def effort(alone: Engine) = Effort.of(alone, alone, flown.vehicle, flown.sees)
         TeamSubject(
           conditions,

@@ -1,8 +1,9 @@
 package skein.search
 
-import skein.forward.{Delays, Duel, LinkDelays, LoopTiming, VelocityResponse}
+import skein.forward.{Delays, Engagement, LinkDelays, LoopTiming, VelocityResponse}
 import skein.lanes.{Accelerator, TeamBatch}
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
+import skein.policy.Role
 import skein.port.Moves
 import skein.scenario.{PaperDuel, Scenarios}
 import skein.settings.{FlySettings, SensorFile, TextFile, VehicleChoice}
@@ -63,12 +64,13 @@ final case class Conditions(
         .timing(kind, Span.ofMillis(periodMs), movesInFlight, vehicle.response)
         .left.map("--loop: " + _)
       sensor <- eye.fold(Right(None))(SensorFile.read(_).map(Some(_))).left.map("--eye: " + _)
-      duel = Duel.paperAt(altitudeM, durationS)
-    yield Conditions.Resolved(timing, vehicle, duel.copy(pursuer = duel.pursuer.copy(eye = sensor)))
+      game = Engagement.of(PaperDuel(altitudeM = altitudeM).fleet, durationS)
+    yield Conditions.Resolved(timing, vehicle, game.seeing(Role.Pursuer, sensor))
 
 object Conditions:
 
-  final case class Resolved(timing: LoopTiming, vehicle: VehicleChoice, duel: Duel):
+  /** @param game the paper's, in which policies of families are evaluated */
+  final case class Resolved(timing: LoopTiming, vehicle: VehicleChoice, game: Engagement):
     def batch(threads: Int, accelerator: Option[Accelerator] = None): TeamBatch =
       TeamBatch(timing, vehicle.response, threads, accelerator)
 
@@ -76,7 +78,7 @@ object Conditions:
     def reference: TeamBatch = TeamBatch(timing, vehicle.response, threads = 1, isReference = true)
 
     /** Whether the pursuer observes the evader only through a sensor. */
-    def sees: Boolean = duel.pursuer.eye.isDefined
+    def sees: Boolean = game.agents.exists(_.eye.isDefined)
 
     /** The ground truth with these vehicles and this period: a world that stands still while the controller
       * decides, and a pursuer that knows the evader's state.
@@ -84,7 +86,7 @@ object Conditions:
     def paused: Resolved =
       copy(
         timing = LoopTiming.Paused(timing.periodS),
-        duel = duel.copy(pursuer = duel.pursuer.copy(eye = None))
+        game = game.seeing(Role.Pursuer, None)
       )
 
   /** The loop's timing in `./skein fly`. A loop that predicts uses the best model of the vehicles. */

@@ -1,6 +1,6 @@
 package skein.search
 
-import skein.forward.{Duel, Engagement}
+import skein.forward.Engagement
 import skein.lanes.Engine
 import skein.optimise.{Objective, Search, SearchMethod}
 import skein.policy.{PolicyFamily, Role}
@@ -47,7 +47,7 @@ final case class SearchQuestion(
         s"--fresh: expected 2 to ${SearchQuestion.MostEpisode}, came ${fresh.getOrElse(0)}"
       method <- SearchQuestion.method(method, candidates, episodes, population, family.space.dimension)
     yield
-      val searched = SearchedFamily(this, family, role, flown.duel, opponent)
+      val searched = SearchedFamily(this, family, role, flown.game, opponent)
       ReadySearch(this, searched, objective, TeamEngine.Reduced(flown, delays), method, fresh, seed)
 
 object SearchQuestion:
@@ -97,17 +97,17 @@ object SearchQuestion:
 
 /** A family's policies for one role, against an opponent.
   *
-  * @param duel the duel in which they are evaluated
+  * @param game the game in which they are evaluated
   */
 private final class SearchedFamily(
     question: SearchQuestion,
     family: PolicyFamily,
     role: Role,
-    duel: Duel,
+    game: Engagement,
     opponent: PolicyFile
 ) extends Searched:
   private val paper = PolicyFile.paperOf(role)
-  private val pair  = Engagement.of(duel).flownBy(opponent.role, opponent.policy)
+  private val pair  = game.flownBy(opponent.role, opponent.policy)
 
   export family.{name, space}
   val baseline: Baseline                       = Baseline.of(paper)

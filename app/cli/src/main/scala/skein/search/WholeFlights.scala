@@ -135,7 +135,7 @@ object WholeFlights:
       Engine.scalar(why),
       Effort.OfScalarFlights,
       blockEpisodes = 64,
-      forward(flown.timing, link, flown.vehicle.response, flown.duel.durationS, seed)
+      forward(flown.timing, link, flown.vehicle.response, flown.game.durationS, seed)
     )
 
   /** Why a scenario needs whole flights, world by world; None if its quantities suffice. */

@@ -144,8 +144,8 @@ final case class LearnSetup(
   val roundsPerScore: Int = (rounds / LearnSetup.Scores).max(1)
 
   private def flown: Engagement = game.opponent match
-    case Some(other) => Engagement.of(conditions.duel).flownBy(other.role, other.policy)
-    case None        => Engagement.of(game.scenario.fleet, conditions.duel.durationS)
+    case Some(other) => conditions.game.flownBy(other.role, other.policy)
+    case None        => Engagement.of(game.scenario.fleet, conditions.game.durationS)
 
   /** Evaluators of policies of [[family]], and of the baseline. */
   def judges(threads: Int): Judge => ValueEvaluator =

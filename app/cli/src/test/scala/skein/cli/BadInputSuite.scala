@@ -3,13 +3,13 @@ package skein.cli
 import java.nio.file.{Files, Path}
 import skein.policy.{Action, Agent, Policy, Observation}
 import skein.record.MemoryRecorder
-import skein.report.DuelReport
+import skein.report.PaperReport
 import skein.scenario.{PaperDuel, Scenario, ScenarioKind, Scenarios}
 import skein.testing.{TemporaryFolders, Unhurried}
 
 /** Mistakes are reported in one line each, before any long work begins. */
 class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
-  private given Scenarios = DuelReport.scenarios
+  private given Scenarios = PaperReport.scenarios
 
   private def assertRefused(command: Command, arguments: Seq[String], expected: String)(using
       munit.Location

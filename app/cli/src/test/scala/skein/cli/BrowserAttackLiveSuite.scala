@@ -14,7 +14,7 @@ import skein.hil.AutopilotKind
 import skein.link.*
 import skein.observe.{AirSimAnalysis, ObservingProxy}
 import skein.record.Samples
-import skein.report.DuelReport
+import skein.report.PaperReport
 import skein.rpc.RpcClient
 import skein.scenario.Scenarios
 import skein.signal.LatencyProfile
@@ -27,7 +27,7 @@ import skein.view.*
 /** A page of another site, in a real browser, attacks every port that this program opens. */
 class BrowserAttackLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
   private given system: ActorSystem = ActorSystem("BrowserAttackLiveSuite")
-  private given Scenarios           = DuelReport.scenarios
+  private given Scenarios           = PaperReport.scenarios
 
   override def afterAll(): Unit = Edge.await(system.terminate()): Unit
 

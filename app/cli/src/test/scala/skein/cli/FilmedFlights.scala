@@ -4,7 +4,7 @@ import java.lang.management.ManagementFactory
 import java.nio.file.{Files, Path}
 import scala.util.Using
 import skein.record.{EventKind, CameraImage, RecordingReader}
-import skein.report.DuelReport
+import skein.report.PaperReport
 import skein.scenario.Scenarios
 
 /** One flight of two vehicles, repeated in turns: without images; with four cameras at 30 Hz in the
@@ -13,7 +13,7 @@ import skein.scenario.Scenarios
   * and rendering.
   */
 @main def filmedFlights(loop: String, seconds: Int, rounds: Int): Unit =
-  given Scenarios = DuelReport.scenarios
+  given Scenarios = PaperReport.scenarios
   val folder      = Files.createTempDirectory("filmed")
   val cameras     = Seq("--images", "front_center@30", "--images", "bottom_center@30")
   val kinds       = Seq(

@@ -2,14 +2,14 @@ package skein.cli
 
 import java.nio.file.{Files, Path}
 import skein.record.{EventKind, RecordingReader}
-import skein.report.DuelReport
+import skein.report.PaperReport
 import skein.scenario.Scenarios
 
 /** A flight with a learned policy, with and without learning in flight, in turns: `cli/Test/runMain
   * skein.cli.learningFlights 60 3`. Network and lessons have their default sizes.
   */
 @main def learningFlights(seconds: Int, rounds: Int): Unit =
-  given Scenarios = DuelReport.scenarios
+  given Scenarios = PaperReport.scenarios
   val folder      = Files.createTempDirectory("learning")
   val learned     = folder.resolve("learned")
   val teaching    = "--steps 20000 --lesson 10s --episodes 2 --fresh 4 --flights 1 --duration 12s".split(' ')

@@ -6,7 +6,7 @@ import java.lang.classfile.instruction.InvokeInstruction
 import java.nio.file.{Files, Path}
 import java.util.Locale
 import scala.jdk.CollectionConverters.*
-import skein.report.DuelReport
+import skein.report.PaperReport
 import skein.scenario.{Crossing, Scenarios}
 import skein.settings.FlySettings
 import skein.policy.Role
@@ -16,7 +16,7 @@ import skein.optimise.Objective
   * point is a comma.
   */
 class LocaleSuite extends munit.FunSuite:
-  private given Scenarios = DuelReport.scenarios
+  private given Scenarios = PaperReport.scenarios
 
   private val locales = Seq("tr-TR", "az-AZ", "lt-LT", "de-DE", "ar-EG-u-nu-arab", "hi-IN-u-nu-deva")
 

@@ -1,7 +1,7 @@
 package skein.cli
 
 import java.nio.file.{Files, Path}
-import skein.report.DuelReport
+import skein.report.PaperReport
 import skein.scenario.Scenarios
 import skein.testing.{Lengthy, TemporaryFolders, Waiting}
 
@@ -9,7 +9,7 @@ import skein.testing.{Lengthy, TemporaryFolders, Waiting}
   * threads precedence.
   */
 class MarginCommandLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
-  private given Scenarios = DuelReport.scenarios
+  private given Scenarios = PaperReport.scenarios
 
   private def run(folder: Path, words: String*): Ran =
     Ran.of(MarginCommand().run(Seq("--out", s"$folder") ++ words))

@@ -2,7 +2,7 @@ package skein.cli
 
 import java.nio.file.{Files, Path}
 import skein.docs.Documentation
-import skein.report.DuelReport
+import skein.report.PaperReport
 import skein.scenario.Scenarios
 import skein.testing.{Conclusive, Lengthy, PythonEnvironment, TemporaryFolders, Waiting}
 
@@ -10,7 +10,7 @@ import skein.testing.{Conclusive, Lengthy, PythonEnvironment, TemporaryFolders, 
   * that it copies.
   */
 class MarginOfScriptLiveSuite extends munit.FunSuite, Conclusive, TemporaryFolders, Lengthy, Waiting:
-  private given Scenarios = DuelReport.scenarios
+  private given Scenarios = PaperReport.scenarios
 
   private val client = PythonEnvironment.ofAirSim()
 

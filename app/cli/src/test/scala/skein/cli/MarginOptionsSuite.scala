@@ -1,10 +1,10 @@
 package skein.cli
 
-import skein.report.DuelReport
+import skein.report.PaperReport
 import skein.scenario.Scenarios
 
 class MarginOptionsSuite extends munit.FunSuite:
-  private given Scenarios = DuelReport.scenarios
+  private given Scenarios = PaperReport.scenarios
 
   private val program = Seq("--", "python", "my.py", "{port}")
 

@@ -1,10 +1,10 @@
 package skein.cli
 
-import skein.report.DuelReport
+import skein.report.PaperReport
 import skein.scenario.Scenarios
 
 class MisuseSuite extends munit.FunSuite:
-  private given Scenarios = DuelReport.scenarios
+  private given Scenarios = PaperReport.scenarios
 
   /** Exit status and the output before the hint at `--help`. */
   private def misused(command: Command, arguments: String*): (Int, Seq[String]) =

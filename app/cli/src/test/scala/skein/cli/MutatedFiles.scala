@@ -7,7 +7,7 @@ import scala.util.Using
 import skein.onnx.OnnxPolicy
 import skein.policy.{PolicyFamily, Role}
 import skein.record.{McapRecording, MemoryRecorder, RecordingReader}
-import skein.report.{DuelReport, Report, ReportSections, SyntheticFlight}
+import skein.report.{PaperReport, Report, ReportSections, SyntheticFlight}
 import skein.scenario.Scenarios
 import skein.settings.*
 import skein.signal.SplitMix64
@@ -203,7 +203,7 @@ object MutatedFiles:
 
 /** Tries many mutants of each kind, and prints the failures. */
 @main def tryMutants(seed: Long, count: Int, kinds: String*): Unit =
-  given Scenarios = DuelReport.scenarios
+  given Scenarios = PaperReport.scenarios
   val folder      = Files.createTempDirectory("mutants")
   for kind <- MutatedFiles.values if kinds.isEmpty || kinds.contains(kind.toString) do
     (1 to 20).foreach(warm => kind.attempt(-warm, folder)) // classes are loaded once

@@ -1,12 +1,12 @@
 package skein.cli
 
-import skein.report.DuelReport
+import skein.report.PaperReport
 import skein.scenario.Scenarios
 import skein.testing.{TemporaryFolders, Unhurried}
 
 /** Tries a few of the mutants of `tryMutants`. */
 class MutatedFilesSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
-  private given Scenarios = DuelReport.scenarios
+  private given Scenarios = PaperReport.scenarios
 
   for kind <- MutatedFiles.values do
     folder.test(s"$kind: a mutated file is read, or its mistakes are reported, a line each"): folder =>

@@ -11,7 +11,7 @@ import skein.mcap.Record as McapRecord
 import skein.mcap.file.McapFile
 import skein.record.{FlightTopics, MemoryRecorder, Recording, ImagingSensor}
 import skein.policy.{Axis, SearchSpace}
-import skein.report.DuelReport
+import skein.report.PaperReport
 import skein.report.SyntheticFlight
 import skein.scenario.Scenarios
 import skein.settings.{FlySettings, ModelFile, PredictionModel}
@@ -21,7 +21,7 @@ import skein.units.Span
 import skein.vehicle.ReducedModel
 
 class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhurried:
-  private given Scenarios = DuelReport.scenarios
+  private given Scenarios = PaperReport.scenarios
 
   private val recordings = FunFixture[Path](
     _ =>
@@ -130,7 +130,7 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
         Structure(label, SearchSpace(Vector.tabulate(parameters)(i => Axis(s"lag-$i-s", 0.02, 30, 1))), plant)
       val plain               = own("plain", 1)(values => ReducedModel.lag(1, values(0), 0))
       val rich                = own("rich", 12)(values => ReducedModel.lag(1, values.sum, 0))
-      given Scenarios         = DuelReport.scenarios.copy(ownStructures = Vector(plain, rich))
+      given Scenarios         = PaperReport.scenarios.copy(ownStructures = Vector(plain, rich))
       val (status, text, err) = run(IdentifyCommand(), folder.resolve("stream-vpn.duckdb").toString)
       assertEquals(status, 0, err)
       assert(

@@ -6,13 +6,13 @@ import scala.concurrent.Future
 import mainargs.ParserForClass
 import skein.flight.NotFlown
 import skein.measure.{FlightSummary, SummaryBytes}
-import skein.report.{DuelReport, ReportSections, Section}
+import skein.report.{PaperReport, ReportSections, Section}
 import skein.scenario.Scenarios
 import skein.search.{BlockBytes, BlockExecutor}
 import skein.testing.Unhurried
 
 class SpreadQuestionSimulation extends munit.FunSuite, Unhurried:
-  private given Scenarios = DuelReport.scenarios
+  private given Scenarios = PaperReport.scenarios
 
   private def options(words: String) =
     ParserForClass[FlightOptions].constructOrThrow(words.split(' ').toSeq)

@@ -10,7 +10,7 @@ import scala.concurrent.duration.DurationInt
 import scala.concurrent.{Await, ExecutionContext, Future}
 import scala.util.Using
 import skein.record.*
-import skein.report.DuelReport
+import skein.report.PaperReport
 import skein.scenario.Scenarios
 import skein.testing.{Lengthy, TemporaryFolders, Waiting}
 import skein.units.Clock
@@ -19,7 +19,7 @@ import skein.view.{RecordedShow, Shows, ViewServer}
 /** Flights that are viewed while they run: by Foxglove's own client, and in a browser. */
 class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
   import ViewLiveSuite.*
-  private given Scenarios = DuelReport.scenarios
+  private given Scenarios = PaperReport.scenarios
 
   private def needed[A](tool: Either[String, A]): A =
     tool.left.foreach(why => assume(false, why))

@@ -8,7 +8,7 @@ import java.util.concurrent.atomic.AtomicLong
 import scala.jdk.CollectionConverters.*
 import scala.util.Using
 import skein.record.{FlightTopics, RecordingReader}
-import skein.report.DuelReport
+import skein.report.PaperReport
 import skein.scenario.Scenarios
 
 /** The delays of a flight's requests after their ticks, from its recording.
@@ -74,7 +74,7 @@ final class Viewers(port: Int, count: Int) extends AutoCloseable:
 
 /** A flight without viewers and with ten, in turns: `cli/Test/runMain skein.cli.watchedFlights 30 3`. */
 @main def watchedFlights(seconds: Int, rounds: Int): Unit =
-  given Scenarios = DuelReport.scenarios
+  given Scenarios = PaperReport.scenarios
   val folder      = Files.createTempDirectory("watched")
   for round <- 1 to rounds; viewers <- Seq(0, 10) do
     val out    = folder.resolve(s"$round-$viewers")

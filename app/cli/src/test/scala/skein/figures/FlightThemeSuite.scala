@@ -3,12 +3,12 @@ package skein.figures
 import skein.loop.LoopKind
 import skein.measure.{FlightSet, FlightSummary}
 import skein.plot.{Mark, Point}
-import skein.report.DuelReport
+import skein.report.PaperReport
 import skein.report.SyntheticFlight
 import skein.scenario.Scenarios
 
 class FlightThemeSuite extends munit.FunSuite:
-  private given Scenarios = DuelReport.scenarios
+  private given Scenarios = PaperReport.scenarios
 
   test("each loop has its own colour, and unknown loops have another one"):
     val colours =

@@ -2,13 +2,13 @@ package skein.figures
 
 import skein.measure.Distribution
 import skein.plot.{Drawing, Mark, Panel, PlotAxis, Theme}
-import skein.report.{DuelReport, Report, SyntheticFlight}
+import skein.report.{PaperReport, Report, SyntheticFlight}
 import skein.scenario.Scenarios
 import skein.training.{LearnScore, LearningCurve}
 
 /** Figures of very few data, and of data that are far apart. */
 class SparseFiguresSuite extends munit.FunSuite:
-  private given Scenarios = DuelReport.scenarios
+  private given Scenarios = PaperReport.scenarios
 
   private def texts(drawing: Drawing): Vector[String] =
     drawing.shapes.toVector.collect { case text: Mark.Text => text.content }

@@ -3,7 +3,7 @@ package skein.flight
 import com.typesafe.config.ConfigFactory
 import java.nio.file.{Files, Path}
 import skein.loop.LoopKind
-import skein.report.DuelReport
+import skein.report.PaperReport
 import skein.scenario.{PaperDuel, Scenarios}
 import skein.search.Conditions
 import skein.settings.{FlightPlan, FlySettings, PredictionModel}
@@ -14,7 +14,7 @@ import skein.vehicle.{ReducedModel, PlantModel, VehicleModel}
 
 /** AirSim's vehicles lag more the higher they fly: a model is valid at one altitude. */
 class AltitudeSimulation extends munit.FunSuite, Unhurried, TemporaryFolders:
-  private given Scenarios = DuelReport.scenarios
+  private given Scenarios = PaperReport.scenarios
 
   private def settings(hocon: String): Either[String, FlySettings] = FlySettings.read(
     ConfigFactory
@@ -72,8 +72,8 @@ class AltitudeSimulation extends munit.FunSuite, Unhurried, TemporaryFolders:
     assert(told.contains("at 5.0 m altitude: reduced holds at 20.0 m"), told)
     for model <- Seq("drag", "quadrotor", "ideal") do
       val flown = Conditions("stream", model, 100, 60, altitudeM = 5).resolved.fold(fail(_), identity)
-      assertEquals(flown.duel.evader.altitudeDownM, -5.0)
-      assertEquals(flown.paused.duel.pursuer.altitudeDownM, -5.0)
+      assertEquals(flown.game.agents.head.altitudeDownM, -5.0)
+      assertEquals(flown.paused.game.agents.last.altitudeDownM, -5.0)
     for wrong <- Seq(0.0, -5.0, 5000.0, Double.NaN) do
       val mistake = Conditions("stream", "drag", 100, 60, altitudeM = wrong).resolved.left.getOrElse("")
       assert(mistake.startsWith("--altitude: expected more than 0"), mistake)

@@ -5,6 +5,7 @@ import skein.forward.{DelayTable, Rollout}
 import skein.identify.SensorFit
 import skein.loop.{LoopKind, FlightOutcome, Replay}
 import skein.measure.{FlightSummary, RecordedSeeing}
+import skein.policy.Role
 import skein.recognition.BlindPursuit
 import skein.scenario.Scenarios
 import skein.search.Conditions
@@ -71,9 +72,8 @@ class BlindPursuitSimulation extends munit.FunSuite, Lengthy, Optimised:
       assertEqualsDouble(again.bearingSdRad, fit.model.bearingSdRad, 1e-5)
       assertEqualsDouble(again.takes.mean.toMillis, fit.model.takes.mean.toMillis, 0.1)
       val conditions = Conditions(loop.label, "drag", 100, 20).resolved.fold(fail(_), identity)
-      val duel       = conditions.duel
       val rollout    = Rollout(
-        duel.copy(pursuer = duel.pursuer.copy(eye = Some(again))),
+        conditions.game.seeing(Role.Pursuer, Some(again)),
         conditions.timing,
         DelayTable.vpn,
         conditions.vehicle.response

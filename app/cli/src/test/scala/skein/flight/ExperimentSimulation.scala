@@ -3,7 +3,7 @@ package skein.flight
 import skein.loop.{LoopKind, FlightOutcome}
 import skein.measure.{DistanceCurve, FlightSummary}
 import skein.record.{EventKind, Recording}
-import skein.report.DuelReport
+import skein.report.PaperReport
 import skein.scenario.{PaperDuel, Scenarios}
 import skein.settings.{FlightPlan, FlySettings}
 import skein.signal.LatencyProfile
@@ -12,7 +12,7 @@ import skein.units.*
 
 /** The paper's experiment in virtual time, compared with the results of AirSim's own flight code. */
 class ExperimentSimulation extends munit.FunSuite, Unhurried:
-  private given Scenarios = DuelReport.scenarios
+  private given Scenarios = PaperReport.scenarios
 
   private def fly(
       loop: LoopKind,

@@ -3,7 +3,7 @@ package skein.flight
 import skein.loop.{LoopKind, Replay}
 import skein.measure.{FlightSummary, Published}
 import skein.policy.{LeadPursuit, PolicyFamily, Role}
-import skein.report.DuelReport
+import skein.report.PaperReport
 import skein.report.{Report, ReportSections}
 import skein.scenario.Scenarios
 import skein.settings.{FlySettings, PolicyFile, RecordedPlan}
@@ -12,7 +12,7 @@ import skein.testing.Unhurried
 import skein.units.*
 
 class PolicyFlightSimulation extends munit.FunSuite, Unhurried:
-  private given Scenarios = DuelReport.scenarios
+  private given Scenarios = PaperReport.scenarios
 
   private val policy = PolicyFile(Role.Pursuer, PolicyFamily.leadPursuit, Vector(0.5, 1.25, 1.0))
 

@@ -1,13 +1,13 @@
 package skein.flight
 
 import skein.loop.LoopKind
-import skein.report.DuelReport
+import skein.report.PaperReport
 import skein.scenario.{PaperDuel, Scenarios}
 import skein.testing.Unhurried
 
 /** Real sockets, real time and many threads; virtual time has only one. */
 class ReplayLiveSuite extends munit.FunSuite, Unhurried:
-  private given Scenarios = DuelReport.scenarios
+  private given Scenarios = PaperReport.scenarios
 
   test("live loops replay to equal decisions, also futures on several threads"):
     val loops    = List(LoopKind.Futures, LoopKind.Sequential, LoopKind.Stream, LoopKind.Predictive)

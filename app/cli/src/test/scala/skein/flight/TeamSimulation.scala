@@ -4,7 +4,7 @@ import java.nio.file.Files
 import skein.loop.{LoopKind, FlightOutcome, Replay}
 import skein.measure.FlightSummary
 import skein.record.{EventKind, Recording}
-import skein.report.DuelReport
+import skein.report.PaperReport
 import skein.scenario.*
 import skein.settings.FlySettings
 import skein.signal.LatencyProfile
@@ -13,7 +13,7 @@ import skein.units.*
 
 /** Scenarios of teams in virtual time. */
 class TeamSimulation extends munit.FunSuite, TemporaryFolders, Lengthy, Optimised:
-  private given Scenarios = DuelReport.scenarios
+  private given Scenarios = PaperReport.scenarios
 
   private def settings(
       scenario: Scenario,

@@ -8,7 +8,7 @@ import scala.util.Using
 import skein.link.TcpTransport
 import skein.loop.LoopKind
 import skein.measure.FlightSet
-import skein.report.DuelReport
+import skein.report.PaperReport
 import skein.report.{Report, SummaryTables}
 import skein.scenario.Scenarios
 import skein.settings.{FlightPlan, FlySettings}
@@ -17,7 +17,7 @@ import skein.units.*
 
 /** Live flights over real sockets and in real time, side by side, and their twins in virtual time. */
 object TwinFlights:
-  private given Scenarios = DuelReport.scenarios
+  private given Scenarios = PaperReport.scenarios
 
   /** Settings of the duel over `direct` and the given links. */
   def settings(loops: List[LoopKind], seconds: Int, more: LatencyProfile*): FlySettings = FlySettings(

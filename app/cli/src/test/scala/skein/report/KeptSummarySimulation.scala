@@ -11,7 +11,7 @@ import skein.units.Span
 
 /** The summary of a virtual flight's records, which `fly` shows without reading its recording. */
 class KeptSummarySimulation extends munit.FunSuite, TemporaryFolders, Unhurried:
-  private given Scenarios = DuelReport.scenarios
+  private given Scenarios = PaperReport.scenarios
 
   test("tables from a flight's records in memory equal those from its recording"):
     val folder   = temporaryFolder()

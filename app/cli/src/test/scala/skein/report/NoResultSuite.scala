@@ -7,7 +7,7 @@ import skein.units.*
 
 /** A report on flights without a result, and on flights that a busy machine disturbed. */
 class NoResultSuite extends munit.FunSuite:
-  private given Scenarios = DuelReport.scenarios
+  private given Scenarios = PaperReport.scenarios
 
   private val paused = SyntheticFlight("paused", "none", seed = 1, seconds = 12)
   private val stream = SyntheticFlight("stream", "vpn", seed = 2, seconds = 12)

@@ -12,7 +12,7 @@ import skein.testing.Unhurried
 import skein.units.*
 
 class PredictionErrorsSuite extends munit.FunSuite, Unhurried:
-  private given Scenarios = DuelReport.scenarios
+  private given Scenarios = PaperReport.scenarios
 
   test("errors are grouped by age around multiples of 20 ms, and small groups are left out"):
     val samples = Vector.tabulate(40)(index => (91.0 + index % 18, index / 1000.0)) ++

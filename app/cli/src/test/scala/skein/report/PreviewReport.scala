@@ -7,7 +7,7 @@ import skein.scenario.Scenarios
   * development. `./sbtw "cli/Test/runMain skein.report.PreviewReport FOLDER"`
   */
 object PreviewReport:
-  private given Scenarios = DuelReport.scenarios
+  private given Scenarios = PaperReport.scenarios
 
   def main(arguments: Array[String]): Unit =
     val flown = Vector("paused" -> "none") ++

@@ -12,7 +12,7 @@ import skein.testing.{TemporaryFolders, Unhurried}
 import skein.units.Decimals.fixed
 
 class ReportSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
-  private given Scenarios = DuelReport.scenarios
+  private given Scenarios = PaperReport.scenarios
 
   private lazy val set = Report.of(
     Seq(

@@ -5,7 +5,7 @@ import skein.plot.Drawing
 import skein.scenario.Scenarios
 
 class SectionSuite extends munit.FunSuite:
-  private given Scenarios = DuelReport.scenarios
+  private given Scenarios = PaperReport.scenarios
 
   private val table = TextTable(
     Vector("<loop", "<at", "m", "share", "range"),

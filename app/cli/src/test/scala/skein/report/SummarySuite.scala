@@ -17,7 +17,7 @@ import skein.units.*
 import skein.units.Decimals.brief
 
 class SummarySuite extends munit.FunSuite:
-  private given Scenarios = DuelReport.scenarios
+  private given Scenarios = PaperReport.scenarios
 
   private def second(time: Double): Instant = Instant.Epoch + Span.ofSeconds(time)
 

@@ -20,7 +20,7 @@ import skein.units.Decimals.{brief, fixed}
 
 /** The tables, compared with the flights that they describe. */
 class TablesSuite extends munit.FunSuite:
-  private given Scenarios = DuelReport.scenarios
+  private given Scenarios = PaperReport.scenarios
 
   private val paused  = SyntheticFlight("paused", "none", seed = 1, seconds = 12)
   private val streams = Vector(2L, 3L, 4L).map(SyntheticFlight("stream", "vpn", _, seconds = 12))

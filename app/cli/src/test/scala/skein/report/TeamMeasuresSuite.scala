@@ -10,7 +10,7 @@ import skein.units.*
 
 /** Measures of flights whose vehicles follow given trajectories. */
 class TeamMeasuresSuite extends munit.FunSuite:
-  private given Scenarios = DuelReport.scenarios
+  private given Scenarios = PaperReport.scenarios
 
   /** @param placeM position of a vehicle at a time, s: north and east, m */
   private def flown(scenario: Scenario, seconds: Int, loop: String = "stream")(

@@ -6,7 +6,7 @@ import skein.scenario.Scenarios
 import skein.units.*
 
 class TwinSuite extends munit.FunSuite:
-  private given Scenarios = DuelReport.scenarios
+  private given Scenarios = PaperReport.scenarios
 
   private def virtual(loop: String, link: String, seed: Long): Recording =
     SyntheticFlight(loop, link, seed, seconds = 12)

@@ -48,12 +48,12 @@ class AskingSuite extends munit.FunSuite:
     // Four steps begin before the first has ended, after 4 × 137 ms; of the two that are due by then one is
     // missed.
     assertEquals(
-      missedSteps(flown(LoopKind.Futures, VirtualDuel.constant(137))).head,
+      missedSteps(flown(LoopKind.Futures, VirtualGame.constant(137))).head,
       (Span.ofMillis(548), "1 steps missed: too many futures run")
     )
     // Four vehicles are read one after the other, 2 s each; four steps run at a time, one future for each
     // vehicle.
-    val slow        = flown(LoopKind.Futures, VirtualDuel.constant(2000), duration = Span.ofSeconds(9))
+    val slow        = flown(LoopKind.Futures, VirtualGame.constant(2000), duration = Span.ofSeconds(9))
     val (at, noted) = missedSteps(slow).head
     assertEquals(at, Span.ofSeconds(8))
     // Of the 81 that were due by then, four had run and one runs now.

@@ -104,7 +104,7 @@ class FailedFlightSuite extends munit.FunSuite:
     assertEquals(noted.flatMap(_.vehicle).toSet, Set("Pursuer", "Evader"))
 
   test("if two moves are unanswered when a flight fails, hovering waits until one of them has ended"):
-    val landed = fly(LoopKind.Stream, IllegalStateException("no idea"), link = VirtualDuel.constant(400))
+    val landed = fly(LoopKind.Stream, IllegalStateException("no idea"), link = VirtualGame.constant(400))
     assertEquals(
       landed.ports.map(port => (port.hovering, port.mostOutstanding)),
       Vector.fill(2)((true, 2))
@@ -114,7 +114,7 @@ class FailedFlightSuite extends munit.FunSuite:
     val landed = fly(
       LoopKind.Stream,
       IllegalStateException("no idea"),
-      link = VirtualDuel.constant(800),
+      link = VirtualGame.constant(800),
       settings = LoopSettings(movesInFlight = 6)
     )
     for port <- landed.ports do

@@ -28,7 +28,7 @@ class LateFailureSimulation extends munit.FunSuite, Unhurried:
         val clock              = Clock.ofNanos(VirtualTime.clock(system))
         val fleet              = PaperDuel().fleet
         val world              =
-          FarQuadrotors(fleet, VirtualDuel.constant(400), 1, clock)
+          FarQuadrotors(fleet, VirtualGame.constant(400), 1, clock)
         val kept     = MemoryRecorder(Samples.heading)
         val recorder = new Recorder:
           def offer(record: Recordable): Unit = kept.offer(record)

@@ -9,7 +9,7 @@ import skein.vehicle.ReducedModel
 class PlanLoopSimulation extends munit.FunSuite, Optimised:
   private val planning  = PlanSettings(behaviours = 1, searches = 1, slices = 3)
   private lazy val duel =
-    VirtualDuel.fly(
+    VirtualGame.fly(
       LoopKind.Plan,
       LatencyProfile.vpn,
       seed = 4,
@@ -17,7 +17,7 @@ class PlanLoopSimulation extends munit.FunSuite, Optimised:
       planning.slices
     )
 
-  private def distances(duel: VirtualDuel): Vector[Double] =
+  private def distances(duel: VirtualGame): Vector[Double] =
     duel.recording.decisions
       .filter(_.vehicle == "Pursuer")
       .map(decision => math.hypot(decision.relativeX.value, decision.relativeY.value))
@@ -55,15 +55,15 @@ class PlanLoopSimulation extends munit.FunSuite, Optimised:
 
   test("if no slice ever finishes, the policy decides, and every such deadline is counted"):
     val starved = LoopSettings(planning = planning)
-    val flown   = VirtualDuel.fly(LoopKind.Plan, LatencyProfile.direct, 5, starved, slices = 0)
+    val flown   = VirtualGame.fly(LoopKind.Plan, LatencyProfile.direct, 5, starved, slices = 0)
     val missed  = flown.recording.events.filter(_.kind == EventKind.DeadlineMissed)
     assertEquals(missed.size, flown.recording.planned.size)
     assertEquals(missed.map(_.detail).distinct, Vector("no slice was searched: the policy decides"))
-    assertEqualsDouble(flown.distanceM, VirtualDuel.truth.distanceM, 0.7)
+    assertEqualsDouble(flown.distanceM, VirtualGame.truth.distanceM, 0.7)
 
   test("a geofence is kept while the evader flees across it"):
     val fenced = LoopSettings(planning = planning.copy(geofenceM = 60))
-    val flown  = VirtualDuel.fly(LoopKind.Plan, LatencyProfile.direct, 6, fenced, planning.slices)
+    val flown  = VirtualGame.fly(LoopKind.Plan, LatencyProfile.direct, 6, fenced, planning.slices)
     val places = flown.recording.readings.filter(_.vehicle == "Pursuer").map(_.state.value.positionNed)
     for place <- places do
       assert(math.max(place.x.abs, place.y.abs) < 60.5, s"seed 6: at ${place.x}, ${place.y}")

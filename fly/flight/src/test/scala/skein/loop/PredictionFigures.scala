@@ -9,15 +9,15 @@ import skein.vehicle.*
   * @param over the links' names; all by default
   */
 @main def predictionFigures(seeds: Int, over: String*): Unit =
-  val truth = VirtualDuel.truth.distanceM
+  val truth = VirtualGame.truth.distanceM
   println(f"paused truth $truth%.3f m; $seeds seeds a row")
   val many  = LoopSettings(movesInFlight = 6)
   val links = Seq(
     ("direct", LatencyProfile.direct, LoopSettings()),
     ("vpn", LatencyProfile.vpn, LoopSettings()),
     ("vpn-mixed", LatencyProfile.vpnMixed, LoopSettings()),
-    ("constant:400ms", VirtualDuel.constant(400), LoopSettings()),
-    ("constant:400ms, 6 moves in flight", VirtualDuel.constant(400), many),
+    ("constant:400ms", VirtualGame.constant(400), LoopSettings()),
+    ("constant:400ms, 6 moves in flight", VirtualGame.constant(400), many),
     ("vpn, 6 moves in flight", LatencyProfile.vpn, many)
   )
   for (name, link, settings) <- links if over.isEmpty || over.contains(name) do
@@ -43,7 +43,7 @@ import skein.vehicle.*
     )
 
   def report(name: String, kind: LoopKind, link: LatencyProfile, settings: LoopSettings): Unit =
-    val duels     = (1 to seeds).map(seed => VirtualDuel.fly(kind, link, seed, settings))
+    val duels     = (1 to seeds).map(seed => VirtualGame.fly(kind, link, seed, settings))
     val distances = duels.map(_.distanceM)
     val mean      = distances.sum / seeds
     val spread    = math.sqrt(distances.map(d => (d - mean) * (d - mean)).sum / (seeds - 1).max(1))

@@ -11,12 +11,12 @@ class PredictiveLoopSimulation extends munit.FunSuite, Unhurried:
       link: LatencyProfile,
       settings: LoopSettings = LoopSettings()
   ): Double =
-    val duels = seeds.map(VirtualDuel.fly(kind, link, _, settings))
+    val duels = seeds.map(VirtualGame.fly(kind, link, _, settings))
     duels.foreach(duel => assertEquals(duel.outcome, FlightOutcome.Completed))
-    duels.map(_.distanceM).sum / duels.size / VirtualDuel.truth.distanceM - 1
+    duels.map(_.distanceM).sum / duels.size / VirtualGame.truth.distanceM - 1
 
   test("the paused flight's distance is the reference's 8.31 m"):
-    assertEqualsDouble(VirtualDuel.truth.distanceM, 8.31, 0.05)
+    assertEqualsDouble(VirtualGame.truth.distanceM, 8.31, 0.05)
 
   for (link, bound) <-
       Seq(LatencyProfile.none -> 0.005, LatencyProfile.direct -> 0.015, LatencyProfile.vpn -> 0.02)
@@ -28,7 +28,7 @@ class PredictiveLoopSimulation extends munit.FunSuite, Unhurried:
   test(
     "at a constant 200 ms each way predictive flies within 2 % if enough moves may be in flight"
   ):
-    val (link, settings) = (VirtualDuel.constant(400), LoopSettings(movesInFlight = 6))
+    val (link, settings) = (VirtualGame.constant(400), LoopSettings(movesInFlight = 6))
     val off              = deviation(LoopKind.Predictive, link, settings)
     val without          = deviation(LoopKind.Stream, link, settings)
     assert(math.abs(off) < 0.02, s"seeds $seeds: ${off * 100} %")
@@ -36,10 +36,10 @@ class PredictiveLoopSimulation extends munit.FunSuite, Unhurried:
 
   test("nine of ten predictions of the deciding vehicle are within a centimetre, over vpn"):
     for seed <- seeds do
-      val errors = VirtualDuel.fly(LoopKind.Predictive, LatencyProfile.vpn, seed).predictionErrors(own = true)
+      val errors = VirtualGame.fly(LoopKind.Predictive, LatencyProfile.vpn, seed).predictionErrors(own = true)
       assert(errors.size > 1000, s"seed $seed: only ${errors.size} predictions were verified")
       assert(errors((errors.size * 9) / 10) < 0.01, s"seed $seed")
 
   test("equal seeds give equal recordings"):
-    def duel() = VirtualDuel.fly(LoopKind.Predictive, LatencyProfile.vpn, 7).recording
+    def duel() = VirtualGame.fly(LoopKind.Predictive, LatencyProfile.vpn, 7).recording
     assertEquals(duel(), duel())

@@ -242,7 +242,7 @@ class SolverSimulation extends munit.FunSuite, Optimised:
         val fate: (To, Int) => Seq[Span] = (_, _) =>
           Seq(Span.ofMillis(median / 2 * (0.5 + random.nextExponential(0.7))))
         checked(SolverTrial.fly(seed = seed, seconds = 60, link = LatencyProfile.vpn, fate = fate)())
-      val off = flown.map(_.distanceM).sum / seeds.size / VirtualDuel.truth.distanceM - 1
+      val off = flown.map(_.distanceM).sum / seeds.size / VirtualGame.truth.distanceM - 1
       assert(math.abs(off) < 0.02, s"over $name hop: ${off * 100} %")
 
 object SolverSimulation:

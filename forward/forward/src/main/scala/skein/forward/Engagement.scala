@@ -1,5 +1,6 @@
 package skein.forward
 
+import skein.fusion.SensorModel
 import skein.policy.{Assignment, Fleet, Policy, Role}
 import skein.scenario.{Known, OwnEnd, Scenario}
 import skein.vehicle.VehicleKind
@@ -48,6 +49,10 @@ final case class Engagement(
       agents.zip(roles).map((agent, own) => if own == role then agent.copy(policy = policy) else agent)
     )
 
+  /** Lets all agents of a role know their opponents by a camera alone; without one, by readings. */
+  def seeing(role: Role, eye: Option[SensorModel]): Engagement =
+    copy(agents = agents.zip(roles).map((agent, own) => if own == role then agent.copy(eye = eye) else agent))
+
   def hasCars: Boolean = agents.exists(_.kind == VehicleKind.Car)
 
   /** The reason why some vehicle may turn or may leave the altitude of its start; None if all fly level. */
@@ -90,12 +95,3 @@ object Engagement:
     */
   def ofScenario(scenario: Scenario, durationS: Double): Engagement =
     inSpace(scenario.fleet, durationS).copy(isOver = OwnEnd.of(scenario))
-
-  /** An engagement of the two vehicles of a duel; the evader is read first. */
-  def of(duel: Duel): Engagement =
-    Engagement(
-      Vector(duel.evader, duel.pursuer),
-      Vector(Role.Evader, Role.Pursuer),
-      Assignment(Vector(Vector(1), Vector(0))),
-      duel.durationS
-    )

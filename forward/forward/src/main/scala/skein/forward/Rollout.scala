@@ -17,9 +17,6 @@ final class Rollout(
 ):
   import RolloutWorld.*
 
-  def this(duel: Duel, timing: LoopTiming, link: Delays, model: VelocityResponse) =
-    this(Engagement.of(duel), timing, link, model)
-
   private val world = RolloutWorld(
     engagement,
     link,
@@ -54,7 +51,7 @@ final class Rollout(
       worldKey: Int,
       captureRadiusM: Double = 0.0,
       observer: LoopObserver = LoopObserver.Nobody
-  ): DuelOutcome =
+  ): EpisodeOutcome =
     start(worldKey, captureRadiusM, observer)
     while !isOver do handle(world.next())
     outcome
@@ -89,10 +86,10 @@ final class Rollout(
     * team without sides all vehicles count, with the distance to the nearest other, and the effort is that of
     * the evaders.
     */
-  private[skein] def outcome: DuelOutcome =
+  private[skein] def outcome: EpisodeOutcome =
     val each    = evaderOutcomes
     val nearest = each.minBy(_.minDistanceM)
-    DuelOutcome(
+    EpisodeOutcome(
       nearest.minDistanceM,
       nearest.minDistanceAtS,
       each.map(_.meanDistanceM).sum / each.size,

@@ -40,7 +40,7 @@ class EngagementSuite extends munit.FunSuite:
         DelayTable.vpn,
         PlantResponse(ReducedModel.AirSimLag)
       ).fly(3)
-      val same = Rollout(Duel.paper, loop, DelayTable.vpn, PlantResponse(ReducedModel.AirSimLag)).fly(3)
+      val same = Rollout(Pair.paper.engagement, loop, DelayTable.vpn, PlantResponse(ReducedModel.AirSimLag)).fly(3)
       assertEquals(one, same, loop.toString)
 
   test("duels far from each other are simulated like each alone"):
@@ -56,7 +56,7 @@ class EngagementSuite extends munit.FunSuite:
       )
     )
     val alone =
-      places(Rollout(Duel.paper, LoopTiming.Paused(), DelayTable.none, PlantResponse(ReducedModel.AirSimLag)))
+      places(Rollout(Pair.paper.engagement, LoopTiming.Paused(), DelayTable.none, PlantResponse(ReducedModel.AirSimLag)))
     val together =
       places(Rollout(
         Engagement.of(scenario),
@@ -176,7 +176,7 @@ class EngagementSuite extends munit.FunSuite:
     val _ = intercept[IllegalArgumentException](Engagement.of(Fleet(mixed.toVector)))
     val _ = intercept[IllegalArgumentException](
       Engagement(
-        Vector(Duel.paper.evader, Duel.paper.evader),
+        Vector(Pair.paper.evader, Pair.paper.evader),
         Vector(Role.Evader, Role.Evader),
         Assignment(Vector(Vector(1), Vector(0)))
       )

@@ -32,9 +32,9 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
       )
 
   private def duel(pursuer: Policy, evader: Policy, start: Start, durationS: Double): Rollout =
-    val engaged = Duel(
-      Duel.paper.pursuer.copy(policy = pursuer, startX = 0, startY = 0, startHeadingRad = 0),
-      Duel.paper.evader.copy(
+    val engaged = Pair(
+      Pair.paper.pursuer.copy(policy = pursuer, startX = 0, startY = 0, startHeadingRad = 0),
+      Pair.paper.evader.copy(
         policy = evader,
         startX = start.ahead,
         startY = start.right,
@@ -42,7 +42,7 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
       ),
       durationS
     )
-    Rollout(engaged, LoopTiming.Paused(0.0025), DelayTable.none, VelocityResponses.Ideal)
+    Rollout(engaged.engagement, LoopTiming.Paused(0.0025), DelayTable.none, VelocityResponses.Ideal)
 
   private def closestM(
       pursuer: Policy,
@@ -63,7 +63,7 @@ class HomicidalChauffeurSimulation extends munit.FunSuite:
     boundary:
       val _ = duel(pursuer, evader, start, durationS).fly(
         0,
-        observer = DuelPath((timeS, ex, ey, px, py) =>
+        observer = PaperPath((timeS, ex, ey, px, py) =>
           if math.hypot(ex - px, ey - py) <= captureM then break(timeS)
         )
       )

@@ -16,8 +16,8 @@ class ImageTimingSuite extends munit.FunSuite:
 
   private def rollout(takes: LatencyDistribution, deadlineS: Double, timing: LoopTiming) =
     val camera = busy.copy(takes = takes, deadlineS = deadlineS)
-    val paper  = Duel.paper
-    Rollout(paper.copy(pursuer = paper.pursuer.copy(eye = Some(camera)), durationS = 12), timing, link, plant)
+    val paper  = Pair.paper
+    Rollout(paper.copy(pursuer = paper.pursuer.copy(eye = Some(camera)), durationS = 12).engagement, timing, link, plant)
 
   for
     timing <- Seq(
@@ -46,7 +46,7 @@ class ImageTimingSuite extends munit.FunSuite:
   /** The images taken and those known within a time, each with when that was, ns. */
   private def images(link: Delays, takes: LatencyDistribution, workers: Int, untilMs: Int) =
     val world = RolloutWorld(
-      Engagement.of(Duel.paper),
+      Pair.paper.engagement,
       link,
       plant,
       Asking(),

@@ -21,18 +21,18 @@ class RolloutOracleSuite extends munit.FunSuite:
       startX: Double,
       startY: Double,
       durationS: Double
-  ): Duel =
-    Duel(
-      Duel.paper.pursuer.copy(policy = pursuer),
-      Duel.paper.evader.copy(policy = evader, startX = startX, startY = startY, startHeadingRad = 0),
+  ): Pair =
+    Pair(
+      Pair.paper.pursuer.copy(policy = pursuer),
+      Pair.paper.evader.copy(policy = evader, startX = startX, startY = startY, startHeadingRad = 0),
       durationS
     )
 
-  private def positions(duel: Duel, timing: LoopTiming, link: Delays, model: VelocityResponse, key: Int) =
+  private def positions(duel: Pair, timing: LoopTiming, link: Delays, model: VelocityResponse, key: Int) =
     val points = ArrayBuffer.empty[Vector[Double]]
-    val _      = Rollout(duel, timing, link, model).fly(
+    val _      = Rollout(duel.engagement, timing, link, model).fly(
       key,
-      observer = DuelPath((_, ex, ey, px, py) => points += Vector(ex, ey, px, py))
+      observer = PaperPath((_, ex, ey, px, py) => points += Vector(ex, ey, px, py))
     )
     points.toVector
 
@@ -45,7 +45,7 @@ class RolloutOracleSuite extends munit.FunSuite:
   for radiusM <- Seq(0.5, 2.0, 8.0) do
     test(s"a straight chase to $radiusM m takes (d − l) / (vP − vE), to a period"):
       val chase = duel(PurePursuit(1), away, 21, 0, 10)
-      val flown = Rollout(chase, LoopTiming.Paused(0.002), DelayTable.none, VelocityResponses.Ideal)
+      val flown = Rollout(chase.engagement, LoopTiming.Paused(0.002), DelayTable.none, VelocityResponses.Ideal)
         .fly(0, captureRadiusM = radiusM)
       assertEqualsDouble(flown.captureS, (21.0 - radiusM) / (10.0 - 5.0), 0.0021)
 
@@ -62,7 +62,7 @@ class RolloutOracleSuite extends munit.FunSuite:
         assertClose(here, Seq(there(0), -there(1), there(2), -there(3)), 1e-6)
 
     test(s"${loop.productPrefix}: nothing changes when the world is turned and moved"):
-      val plain                 = Duel.paper.copy(evader = Duel.paper.evader.copy(startY = 2))
+      val plain                 = Pair.paper.copy(evader = Pair.paper.evader.copy(startY = 2))
       val (cos, sin)            = (math.cos(0.7), math.sin(0.7))
       def turn(d: RolloutAgent) = d.copy(
         startX = 100 + d.startX * cos - d.startY * sin,
@@ -89,7 +89,7 @@ class RolloutOracleSuite extends munit.FunSuite:
     val observer = new LoopObserver:
       override def commanded(vehicle: Int, number: Int, atNs: Long, action: Action): Unit =
         sent(vehicle) += action.headingRad(0)
-    val _ = Rollout(Duel.paper.copy(durationS = 20), timing, link, lag).fly(0, observer = observer)
+    val _ = Rollout(Pair.paper.copy(durationS = 20).engagement, timing, link, lag).fly(0, observer = observer)
     sent.view.mapValues(_.toVector).toMap
 
   for roundTripMs <- Seq(0.0, 30.0, 70.0) do

@@ -2,7 +2,6 @@ package skein.forward
 
 import scala.collection.mutable.ArrayBuffer
 import skein.policy.{Action, HeadingPolicy, PaperEvader, PaperPursuer, PlanarObservation}
-import skein.scenario.PaperDuel
 import skein.signal.LatencyDistribution
 import skein.simd.WorldRandom
 import skein.units.*
@@ -17,7 +16,7 @@ class RolloutSuite extends munit.FunSuite:
 
   private def trajectory(rollout: Rollout, key: Int): Vector[(Double, Double, Double, Double)] =
     val points = ArrayBuffer.empty[(Double, Double, Double, Double)]
-    val _      = rollout.fly(key, observer = DuelPath((_, ex, ey, px, py) => points += ((ex, ey, px, py))))
+    val _      = rollout.fly(key, observer = PaperPath((_, ex, ey, px, py) => points += ((ex, ey, px, py))))
     points.toVector
 
   private def distances(rollout: Rollout, key: Int): Vector[Double] =
@@ -29,8 +28,8 @@ class RolloutSuite extends munit.FunSuite:
 
   for model <- Seq(VelocityResponses.quadrotor(), lag, VelocityResponses.Ideal); loop <- loops do
     test(s"without delays, $loop flies as paused does, with ${model.getClass.getSimpleName}"):
-      val truth = distances(Rollout(Duel.paper, LoopTiming.Paused(), DelayTable.none, model), 1)
-      assertClose(distances(Rollout(Duel.paper, loop, DelayTable.none, model), 1), truth, 1e-6)
+      val truth = distances(Rollout(Pair.paper.engagement, LoopTiming.Paused(), DelayTable.none, model), 1)
+      assertClose(distances(Rollout(Pair.paper.engagement, loop, DelayTable.none, model), 1), truth, 1e-6)
 
   test("an exception in a policy or a plant is reported with its class and line"):
     final class Lost extends HeadingPolicy.Memoryless:
@@ -41,24 +40,24 @@ class RolloutSuite extends munit.FunSuite:
       def read(state: PlaneReading): PlaneReading = state
       def step(state: PlaneReading, northMps: Double, eastMps: Double, dtS: Double): PlaneReading =
         throw Exception("no way")
-    def told(duel: Duel, plant: VelocityResponse) =
-      intercept[OwnFailure](Rollout(duel, LoopTiming.Stream(), DelayTable.vpn, plant).fly(1)).getMessage
-    val ofPolicy = told(Duel.paper.copy(pursuer = Duel.paper.pursuer.copy(policy = Lost())), lag)
-    val ofPlant  = told(Duel.paper, PlantResponse(Stuck()))
+    def told(duel: Pair, plant: VelocityResponse) =
+      intercept[OwnFailure](Rollout(duel.engagement, LoopTiming.Stream(), DelayTable.vpn, plant).fly(1)).getMessage
+    val ofPolicy = told(Pair.paper.copy(pursuer = Pair.paper.pursuer.copy(policy = Lost())), lag)
+    val ofPlant  = told(Pair.paper, PlantResponse(Stuck()))
     for (text, whose) <- Seq(ofPolicy -> "policy Lost", ofPlant -> "plant Stuck") do
       assert(clue(text).startsWith(s"the $whose"))
       assert(clue(text).matches(".* failed: java.lang.Exception: no way \\(RolloutSuite.scala:\\d+\\)"))
 
   for loop <- loops do
     test(s"under $loop the result of a world depends on its key alone"):
-      val rollout = Rollout(Duel.paper, loop, DelayTable.vpn, lag)
+      val rollout = Rollout(Pair.paper.engagement, loop, DelayTable.vpn, lag)
       val alone   = rollout.fly(WorldRandom.key(7, 3, 11))
       for episode <- 0 until 5 do rollout.fly(WorldRandom.key(7, 3, episode))
       assertEquals(rollout.fly(WorldRandom.key(7, 3, 11)), alone)
 
     test(s"under $loop a rotation and a shift of the world change no distance"):
       // Off the axis, since straight ahead the pursuer's turn hangs on the sign of a rounding error.
-      val offset                = Duel.paper.copy(evader = Duel.paper.evader.copy(startY = 2))
+      val offset                = Pair.paper.copy(evader = Pair.paper.evader.copy(startY = 2))
       val angle                 = 0.7
       val (cos, sin)            = (math.cos(angle), math.sin(angle))
       def turn(d: RolloutAgent) = d.copy(
@@ -66,29 +65,29 @@ class RolloutSuite extends munit.FunSuite:
         startY = -50 + d.startX * sin + d.startY * cos,
         startHeadingRad = d.startHeadingRad + angle
       )
-      val turned = Duel(turn(offset.pursuer), turn(offset.evader))
+      val turned = Pair(turn(offset.pursuer), turn(offset.evader))
       val key    = WorldRandom.key(1, 2, 3)
-      val plain  = distances(Rollout(offset, loop, DelayTable.direct, lag), key)
-      assertClose(distances(Rollout(turned, loop, DelayTable.direct, lag), key), plain, 1e-6)
+      val plain  = distances(Rollout(offset.engagement, loop, DelayTable.direct, lag), key)
+      assertClose(distances(Rollout(turned.engagement, loop, DelayTable.direct, lag), key), plain, 1e-6)
 
   test("with symmetric policies, the mirrored duel has the mirrored flight"):
     val evader: HeadingPolicy.Memoryless =
       seen => 0.7 * math.atan2(-seen.dyM, -seen.dxM) + 0.3 * math.sin(seen.ownHeadingRad)
     val key               = WorldRandom.key(5, 0, 0)
     def fly(side: Double) =
-      val duel = Duel(
-        Duel.paper.pursuer.copy(policy = PaperPursuer(), startY = 3 * side),
-        Duel.paper.evader.copy(policy = evader, startHeadingRad = 0.4 * side),
+      val duel = Pair(
+        Pair.paper.pursuer.copy(policy = PaperPursuer(), startY = 3 * side),
+        Pair.paper.evader.copy(policy = evader, startHeadingRad = 0.4 * side),
         durationS = 20
       )
-      trajectory(Rollout(duel, LoopTiming.Stream(), DelayTable.vpn, lag), key)
+      trajectory(Rollout(duel.engagement, LoopTiming.Stream(), DelayTable.vpn, lag), key)
     for ((ex, ey, px, py), (mx, my, qx, qy)) <- fly(1).zip(fly(-1)) do
       assertClose(Seq(mx, -my, qx, -qy), Seq(ex, ey, px, py), 1e-6)
 
   test("a straight chase ends after (d − l) / (vP − vE)"):
-    val duel  = Duel(Duel.paper.pursuer.copy(policy = towards), Duel.paper.evader.copy(policy = awayFrom))
+    val duel  = Pair(Pair.paper.pursuer.copy(policy = towards), Pair.paper.evader.copy(policy = awayFrom))
     val flown =
-      Rollout(duel, LoopTiming.Paused(0.01), DelayTable.none, VelocityResponses.Ideal).fly(
+      Rollout(duel.engagement, LoopTiming.Paused(0.01), DelayTable.none, VelocityResponses.Ideal).fly(
         0,
         captureRadiusM = 2
       )
@@ -96,7 +95,7 @@ class RolloutSuite extends munit.FunSuite:
 
   test("the paper's game, paused, settles at the distance of AirSim's own flight code, 8.31 m ± 3 %"):
     val flown =
-      Rollout(Duel.paper, LoopTiming.Paused(), DelayTable.none, VelocityResponses.quadrotor()).fly(0)
+      Rollout(Pair.paper.engagement, LoopTiming.Paused(), DelayTable.none, VelocityResponses.quadrotor()).fly(0)
     assertEqualsDouble(flown.meanLast10sM, 8.31, 0.03 * 8.31)
     assertEqualsDouble(flown.minDistanceM, 3.7, 0.3)
     assertEqualsDouble(flown.minDistanceAtS, 6.0, 0.2)
@@ -110,7 +109,7 @@ class RolloutSuite extends munit.FunSuite:
     )
   do
     test(s"$loop over $name settles where the reference flights did, between $least and $most m"):
-      val rollout = Rollout(Duel.paper, loop, link, VelocityResponses.quadrotor())
+      val rollout = Rollout(Pair.paper.engagement, loop, link, VelocityResponses.quadrotor())
       for episode <- 0 until 4 do
         val settled = rollout.fly(WorldRandom.key(1, 0, episode)).meanLast10sM
         assert(settled > least && settled < most, s"episode $episode: $settled m")
@@ -120,18 +119,18 @@ class RolloutSuite extends munit.FunSuite:
       "period"
   ):
     val link    = DelayTable.of(LatencyDistribution.Constant(Span.ofMillis(50)))
-    val rollout = Rollout(Duel.paper, LoopTiming.Sequential(0.1), link, lag)
+    val rollout = Rollout(Pair.paper.engagement, LoopTiming.Sequential(0.1), link, lag)
     assertEqualsDouble(rollout.fly(0).decisions / 2.0, 60 / 0.2, 1.0)
 
   test("stream skips views if acknowledgements of commands take longer than two periods"):
     val link  = DelayTable.of(LatencyDistribution.Constant(Span.ofMillis(300)))
-    val flown = Rollout(Duel.paper, LoopTiming.Stream(), link, lag).fly(0)
+    val flown = Rollout(Pair.paper.engagement, LoopTiming.Stream(), link, lag).fly(0)
     assert(flown.skipped > 300, flown)
     assertEqualsDouble(flown.decisions + flown.skipped, 1200, 20)
 
   test("stream has a view at each reading without patience, and one per pair of readings with it"):
     def flown(patienceS: Double) =
-      Rollout(Duel.paper, LoopTiming.Stream(patienceS = patienceS), DelayTable.none, lag).fly(0)
+      Rollout(Pair.paper.engagement, LoopTiming.Stream(patienceS = patienceS), DelayTable.none, lag).fly(0)
     assertEquals((flown(0.1).decisions, flown(0).decisions), (1200, 2398))
 
   test("after its patience, stream continues without a vehicle that no longer answers"):
@@ -139,7 +138,7 @@ class RolloutSuite extends munit.FunSuite:
       (_, line, step, _, _) => if line == Delays.answer(0, 1) && step > 0 then 1L << 40 else 0L
     val timing = LoopTiming.Stream(patienceS = 0.05)
     // The first view is of the start; in each of the 599 periods after it one waits in vain.
-    assertEquals(Rollout(Duel.paper, timing, link, lag).fly(0).decisions, 1200)
+    assertEquals(Rollout(Pair.paper.engagement, timing, link, lag).fly(0).decisions, 1200)
 
   test("the last ten seconds of a minute contain a hundred distances, those after its fiftieth second"):
     assertEqualsDouble(Rollout.last10sFromS(60, 0.1), 50.1, 1e-9)
@@ -173,4 +172,4 @@ class RolloutSuite extends munit.FunSuite:
     assertClose(Seq(vehicle.x, vehicle.y, vehicle.vx, vehicle.vy), Seq(x, y, vx, vy), 3e-4)
 
   test("the default duel is that of the scenario"):
-    assertEquals(Duel.of(PaperDuel().fleet).evader.policy, PaperEvader())
+    assertEquals(Pair.paper.evader.policy, PaperEvader())

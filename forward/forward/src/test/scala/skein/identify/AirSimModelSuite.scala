@@ -1,9 +1,8 @@
 package skein.identify
 
 import skein.forecast.Structure
-import skein.forward.{DelayTable, Duel, LoopTiming, Rollout, Vehicle, VelocityResponse, VelocityResponses}
+import skein.forward.{DelayTable, Pair, LoopTiming, Rollout, Vehicle, VelocityResponse, VelocityResponses}
 import skein.policy.{Action, Role}
-import skein.scenario.PaperDuel
 import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
 
@@ -20,7 +19,7 @@ class AirSimModelSuite extends munit.FunSuite:
       flown += vehicle
       vehicle
     val _ = Rollout(
-      Duel.of(PaperDuel().fleet),
+      Pair.paper.engagement,
       LoopTiming.Stream(),
       DelayTable.vpn,
       tapped

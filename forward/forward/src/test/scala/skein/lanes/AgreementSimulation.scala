@@ -15,7 +15,7 @@ class AgreementSimulation extends munit.FunSuite, Unhurried:
   /** The paper's duel, with the evader's start moved from straight ahead, which is a threshold of most
     * pursuers.
     */
-  private val duel = Duel.paper.copy(evader = Duel.paper.evader.copy(startY = 2), durationS = 10)
+  private val duel = Pair.paper.copy(evader = Pair.paper.evader.copy(startY = 2), durationS = 10)
 
   // Some worlds at every index within a vector.
   private val many = 0 until worlds by 7

@@ -31,15 +31,15 @@ abstract class CameraTrackerAgreement(isDaily: Boolean) extends munit.FunSuite:
   private val camera = GuideCamera.model
 
   // To the side of the pursuer's way, so that rounding does not decide the side of any turn.
-  private val duel = Duel.paper.copy(
-    pursuer = Duel.paper.pursuer.copy(eye = Some(camera)),
-    evader = Duel.paper.evader.copy(startY = 2),
+  private val duel = Pair.paper.copy(
+    pursuer = Pair.paper.pursuer.copy(eye = Some(camera)),
+    evader = Pair.paper.evader.copy(startY = 2),
     durationS = 12
   )
 
   private val seeingPursuer = duel.copy(durationS = 6)
   private val seeingEvader  =
-    seeingPursuer.copy(pursuer = Duel.paper.pursuer, evader = duel.evader.copy(eye = Some(camera)))
+    seeingPursuer.copy(pursuer = Pair.paper.pursuer, evader = duel.evader.copy(eye = Some(camera)))
 
   private val plants = Seq[(String, VelocityResponse)](
     "lag"    -> VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05),
@@ -150,7 +150,7 @@ abstract class CameraTrackerAgreement(isDaily: Boolean) extends munit.FunSuite:
       )
 
   private def agreeAlone(
-      seeing: Duel,
+      seeing: Pair,
       timing: LoopTiming,
       model: VelocityResponse,
       link: TabledDelays

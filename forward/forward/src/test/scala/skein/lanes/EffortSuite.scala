@@ -1,13 +1,13 @@
 package skein.lanes
 
-import skein.forward.{DelayTable, Delays, Duel, LoopTiming, PlantResponse}
+import skein.forward.{DelayTable, Delays, Pair, LoopTiming, PlantResponse}
 import skein.policy.{PaperEvader, PaperPursuer, Policy}
 import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
 
 /** Efforts are computed where they are requested, and nothing else depends on that. */
 class EffortSuite extends munit.FunSuite:
-  private val duel = Duel.paper.copy(durationS = 5)
+  private val duel = Pair.paper.copy(durationS = 5)
 
   private def flown(shared: Boolean, efforts: Boolean, timing: LoopTiming): PairOutcomes =
     val worlds = new PairWorlds:

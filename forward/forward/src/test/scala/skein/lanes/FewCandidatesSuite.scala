@@ -28,7 +28,7 @@ class FewCandidatesSuite extends munit.FunSuite, Unhurried:
   private def loops(model: VelocityResponse) =
     Seq(LoopTiming.Stream(), LoopTiming.Sequential(), LoopTiming.Predictive(predictor = model.predictor))
 
-  private def duels(duel: Duel, timing: LoopTiming, model: VelocityResponse, count: Int) =
+  private def duels(duel: Pair, timing: LoopTiming, model: VelocityResponse, count: Int) =
     val batch = PairBatch(duel, timing, model, threads = 1)
     val came  = batch.fly(
       new PairWorlds:
@@ -59,7 +59,7 @@ class FewCandidatesSuite extends munit.FunSuite, Unhurried:
       .values
       .map(_.take(few).toVector)
 
-  private val short  = Duel.paper.copy(durationS = 12)
+  private val short  = Pair.paper.copy(durationS = 12)
   private val seeing = short.copy(pursuer = short.pursuer.copy(eye = Some(GuideCamera.model)))
 
   for (name, model) <- models; timing <- loops(model) do

@@ -34,8 +34,8 @@ class FlownByLanesSuite extends munit.FunSuite:
     LoopTiming.Predictive(predictor = model.predictor)
   )
 
-  private val duel = Duel.paper.copy(
-    evader = Duel.paper.evader.copy(startY = 2), // straight ahead a rounding error would decide where to turn
+  private val duel = Pair.paper.copy(
+    evader = Pair.paper.evader.copy(startY = 2), // straight ahead a rounding error would decide where to turn
     durationS = 3
   )
 
@@ -126,8 +126,8 @@ class FlownByLanesSuite extends munit.FunSuite:
     val flown = batch.fly(all)
     for world <- 0 until all.size by 5 do
       val own =
-        Duel(duel.pursuer.copy(policy = all.pursuer(world)), duel.evader.copy(policy = all.evader(world)), 3)
-      val scalar = Rollout(own, timing, DelayTable.vpn, model).fly(all.key(world))
+        Pair(duel.pursuer.copy(policy = all.pursuer(world)), duel.evader.copy(policy = all.evader(world)), 3)
+      val scalar = Rollout(own.engagement, timing, DelayTable.vpn, model).fly(all.key(world))
       assertEqualsDouble(flown.meanDistanceM(world), scalar.meanDistanceM, 4e-3, s"world $world")
       assertEqualsDouble(flown.pursuerEffortRad(world), scalar.pursuerEffortRad, 4e-3, s"world $world")
 

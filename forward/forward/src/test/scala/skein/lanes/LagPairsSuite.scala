@@ -3,8 +3,8 @@ package skein.lanes
 import scala.collection.mutable.ArrayBuffer
 import skein.forward.{
   DelayTable,
-  Duel,
-  DuelOutcome,
+  Pair,
+  EpisodeOutcome,
   LoopTiming,
   Rollout,
   TabledDelays,
@@ -29,9 +29,9 @@ class LagPairsSuite extends munit.FunSuite:
 
   private val captureRadiusM = 3.9f
 
-  private def duel(world: Int, durationS: Double): Duel = Duel(
-    Duel.paper.pursuer.copy(policy = PaperPursuer(turnRates(world))),
-    Duel.paper.evader.copy(policy = PaperEvader(radii(world))),
+  private def duel(world: Int, durationS: Double): Pair = Pair(
+    Pair.paper.pursuer.copy(policy = PaperPursuer(turnRates(world))),
+    Pair.paper.evader.copy(policy = PaperEvader(radii(world))),
     durationS
   )
 
@@ -46,7 +46,7 @@ class LagPairsSuite extends munit.FunSuite:
       pursuers.take(world, PaperPursuer(turnRates(of)))
       evaders.take(world, PaperEvader(radii(of)))
     PairKernels.alone(
-      Duel.paper.copy(durationS = durationS),
+      Pair.paper.copy(durationS = durationS),
       LoopTiming.Stream(),
       lag,
       Vector(evaders, pursuers),
@@ -62,7 +62,7 @@ class LagPairsSuite extends munit.FunSuite:
 
   private def agreement(link: DelayTable, durationS: Double, periodS: Double = 0.1): PairAgreement =
     PairAgreement.alone(
-      Duel.paper.copy(durationS = durationS),
+      Pair.paper.copy(durationS = durationS),
       LoopTiming.stream(periodS),
       lag,
       _ => link,
@@ -80,7 +80,7 @@ class LagPairsSuite extends munit.FunSuite:
     test(s"over $name kernel and scalar reference agree for 5 s, to 2 mm in every world"):
       val kernel = fly(link, 5)
       val equal  = (0 until worlds).count: world =>
-        val scalar = Rollout(duel(world, 5), LoopTiming.Stream(), link, lag).fly(keys(world), captureRadiusM)
+        val scalar = Rollout(duel(world, 5).engagement, LoopTiming.Stream(), link, lag).fly(keys(world), captureRadiusM)
         (kernel(PairNumber.MinDistance)(world) - scalar.minDistanceM).abs < 2e-3 &&
         (kernel(PairNumber.MeanDistance)(world) - scalar.meanDistanceM).abs < 2e-3 &&
         (kernel(PairNumber.PursuerEffort)(world) - scalar.pursuerEffortRad).abs < 2e-3 &&
@@ -89,9 +89,9 @@ class LagPairsSuite extends munit.FunSuite:
 
     test(s"over $name kernel and scalar reference agree on the mean of 60 s to 1 cm"):
       val kernel  = fly(link, 60)
-      val scalars = ArrayBuffer.empty[DuelOutcome]
+      val scalars = ArrayBuffer.empty[EpisodeOutcome]
       for world <- 0 until worlds do
-        scalars += Rollout(duel(world, 60), LoopTiming.Stream(), link, lag).fly(keys(world), captureRadiusM)
+        scalars += Rollout(duel(world, 60).engagement, LoopTiming.Stream(), link, lag).fly(keys(world), captureRadiusM)
       assertEqualsDouble(
         kernel(PairNumber.MeanLast10s).sum / worlds,
         scalars.map(_.meanLast10sM).sum / worlds,

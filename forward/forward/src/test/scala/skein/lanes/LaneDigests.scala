@@ -64,7 +64,7 @@ object LaneDigests:
       shared: Boolean,
       count: Int
   ): Bits =
-    val duel = Duel.paper.copy(evader = Duel.paper.evader.copy(startY = evaderAsideM), durationS = 4)
+    val duel = Pair.paper.copy(evader = Pair.paper.evader.copy(startY = evaderAsideM), durationS = 4)
     val out  = PairBatch(duel, timing, model, threads = 1).fly(
       new PairWorlds:
         def size: Int                       = count
@@ -134,7 +134,7 @@ object LaneDigests:
       ((name, pursuer), at) <- pursuers.zipWithIndex
       // The scalar engine, which has no lanes, simulates the others.
       if PairBatch(
-        Duel.paper,
+        Pair.paper,
         timing,
         model,
         threads = 1

@@ -1,6 +1,6 @@
 package skein.lanes
 
-import skein.forward.{DelayTable, Duel, LoopTiming, VelocityResponses}
+import skein.forward.{DelayTable, Pair, LoopTiming, VelocityResponses}
 import skein.lanes.policy.{Directions, LaneObservation, LanePolicy, PolicyLanes}
 import skein.policy.*
 import skein.signal.SplitMix64
@@ -94,7 +94,7 @@ class LanePolicySimulation extends munit.FunSuite:
       val pursuers = Vector.fill(worlds)(draw(random))
       val model    = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
       // Straight ahead rounding would decide to which side the two turn.
-      val short           = Duel.paper.copy(evader = Duel.paper.evader.copy(startY = 2), durationS = 5)
+      val short           = Pair.paper.copy(evader = Pair.paper.evader.copy(startY = 2), durationS = 5)
       def key(world: Int) = WorldRandom.key(1, 0, world)
       val agreement       =
         if shared then PairAgreement.shared(short, timing, model, DelayTable.vpn, key(0))

@@ -4,7 +4,7 @@ import skein.forward.{
   AlternatingDelays,
   Asking,
   DelayTable,
-  Duel,
+  Pair,
   LoopTiming,
   LossyDelays,
   PlantResponse,
@@ -41,11 +41,11 @@ abstract class LoopPairAgreement(isDaily: Boolean) extends munit.FunSuite:
   protected val captureM = 3.9f
 
   // The evader does not start straight ahead, on a threshold of its pursuer.
-  protected def duel(world: Int, durationS: Double): Duel = Duel(
-    Duel.paper.pursuer.copy(
+  protected def duel(world: Int, durationS: Double): Pair = Pair(
+    Pair.paper.pursuer.copy(
       policy = PaperPursuer(0.6 + 0.008 * world)
     ),
-    Duel.paper.evader.copy(policy = PaperEvader(7 + 0.02 * world), startY = 2),
+    Pair.paper.evader.copy(policy = PaperEvader(7 + 0.02 * world), startY = 2),
     durationS
   )
 

@@ -12,7 +12,7 @@ class OpponentFormulaSuite extends munit.FunSuite:
   import OpponentFormulaSuite.*
 
   private val lag   = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
-  private val short = Duel.paper.copy(durationS = 5)
+  private val short = Pair.paper.copy(durationS = 5)
 
   private def refusal(policy: Policy) =
     PolicyLanes.of(policy).fold(_.getMessage, _ => fail("it was compiled"))

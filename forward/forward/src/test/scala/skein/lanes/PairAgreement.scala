@@ -15,7 +15,7 @@ import skein.policy.{Action, Observation, PlanarObservation, Policy}
   * @param policies the policies of one world, by agent
   */
 private[skein] class PairAgreement(
-    duel: Duel,
+    duel: Pair,
     timing: LoopTiming,
     model: VelocityResponse,
     link: Int => Delays,
@@ -33,7 +33,7 @@ private[skein] class PairAgreement(
       val logs   = policies.map(of => Log(of(world)))
       val events = Events()
       val scalar = duel.copy(duel.pursuer.copy(policy = logs(1)), duel.evader.copy(policy = logs(0)))
-      val came   = Rollout(scalar, timing, link(world), model).fly(key(world), captureM, events)
+      val came   = Rollout(scalar.engagement, timing, link(world), model).fly(key(world), captureM, events)
       // The errors of directions so far, each within its bound.
       var off   = 0.0
       val first = events.all.iterator
@@ -108,7 +108,7 @@ private[skein] class PairAgreement(
   /** Where decisions are equal, the flights must be equal. */
   private def outcomes(
       world: Int,
-      came: DuelOutcome,
+      came: EpisodeOutcome,
       distances: Vector[(Double, Double)],
       placesOff: Double => Double
   ): Unit =
@@ -193,7 +193,7 @@ private[skein] object PairAgreement:
 
   /** Candidates that meet one episode, by [[skein.lanes.timetable.TimetableKernel]]. */
   def shared(
-      duel: Duel,
+      duel: Pair,
       timing: LoopTiming,
       model: VelocityResponse,
       link: Delays,
@@ -206,7 +206,7 @@ private[skein] object PairAgreement:
 
   /** Worlds with delays of their own, by [[skein.lanes.loop.LoopKernel]]. */
   def alone(
-      duel: Duel,
+      duel: Pair,
       timing: LoopTiming,
       model: VelocityResponse,
       link: Int => TabledDelays,
@@ -222,7 +222,7 @@ private[skein] object PairAgreement:
     * @param lanes the evader's and the pursuer's policies
     */
   def flownAlone(
-      duel: Duel,
+      duel: Pair,
       timing: LoopTiming,
       model: VelocityResponse,
       link: Int => TabledDelays,

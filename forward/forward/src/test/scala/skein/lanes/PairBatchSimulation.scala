@@ -6,7 +6,7 @@ import skein.forward.{
   Asking,
   DelayTable,
   Delays,
-  Duel,
+  Pair,
   LinkDelays,
   LoopTiming,
   PlantResponse,
@@ -25,7 +25,7 @@ import skein.vehicle.{ConstantTurn, ReducedModel, PlantModel}
 class PairBatchSimulation extends munit.FunSuite:
   import PairBatchSimulation.*
 
-  private val short = Duel.paper.copy(durationS = 12)
+  private val short = Pair.paper.copy(durationS = 12)
 
   test("threads, the other worlds and their order change no bit"):
     val all    = PairBatch(short, LoopTiming.Stream(), lag, threads = 2).fly(mixed(300), captureRadiusM = 5)
@@ -110,7 +110,7 @@ class PairBatchSimulation extends munit.FunSuite:
     assertEquals(same, part.flown)
 
   test("a cancelled call does not wait long for vehicles that are stepped together"):
-    val hours = Duel.paper.copy(durationS = 36_000)
+    val hours = Pair.paper.copy(durationS = 36_000)
     val batch = PairBatch(hours, LoopTiming.Stream(), VelocityResponses.quadrotor(), threads = 1)
     val asked = AtomicInteger()
     // Polled once before the batch, and then during it.
@@ -148,7 +148,7 @@ class PairBatchSimulation extends munit.FunSuite:
     test(
       s"candidates with $name that share episodes have by SIMD the results of each alone, close to the scalar engine"
     ):
-      val offAxis = Duel(short.pursuer, short.evader.copy(startY = 2), short.durationS)
+      val offAxis = Pair(short.pursuer, short.evader.copy(startY = 2), short.durationS)
       val batch   = PairBatch(offAxis, LoopTiming.Futures(), model, threads = 2)
       val worlds  = candidates(30)
       assert(batch.engine(PaperPursuer(), PaperEvader(), shareEpisodes = true, Nil).isFast)
@@ -167,7 +167,7 @@ class PairBatchSimulation extends munit.FunSuite:
   for timing <- Seq(LoopTiming.Stream(), LoopTiming.Sequential(), foreseen) do
     test(s"quadrotors with separate delays under $timing have results close to the scalar engine"):
       val (model, count) = (VelocityResponses.quadrotor(), 150)
-      val offAxis        = Duel(short.pursuer, short.evader.copy(startY = 2), short.durationS)
+      val offAxis        = Pair(short.pursuer, short.evader.copy(startY = 2), short.durationS)
       val all = PairBatch(offAxis, timing, model, threads = 2).fly(mixed(count), captureRadiusM = 5)
       assert(PairBatch(offAxis, timing, model).engine(PaperPursuer(), Straight, false, Nil).isFast)
       val single    = PairBatch(offAxis, timing, model, threads = 1)
@@ -180,7 +180,7 @@ class PairBatchSimulation extends munit.FunSuite:
         assert(near.forall((a, b) => a == b || (a - b).abs < 2e-2), s"world $world: ours and scalar $near")
 
   test("low quadrotors use the scalar reference, which includes the ground"):
-    val batch = PairBatch(Duel.paperAt(4.9, 12), LoopTiming.Stream(), VelocityResponses.quadrotor())
+    val batch = PairBatch(Pair.at(4.9, 12), LoopTiming.Stream(), VelocityResponses.quadrotor())
     assertEquals(
       batch.engine(PaperPursuer(), PaperEvader(), shareEpisodes = true, Nil).text,
       "scalar: the lanes know no ground and fly from 5.0 m altitude on"
@@ -266,14 +266,14 @@ object PairBatchSimulation:
       world: Int,
       timing: LoopTiming,
       model: VelocityResponse,
-      from: Duel = Duel.paper
+      from: Pair = Pair.paper
   ): Vector[Float] =
-    val duel = Duel(
+    val duel = Pair(
       from.pursuer.copy(policy = worlds.pursuer(world)),
       from.evader.copy(policy = worlds.evader(world)),
       12
     )
-    val o = Rollout(duel, timing, worlds.link(world), model).fly(worlds.key(world), 5)
+    val o = Rollout(duel.engagement, timing, worlds.link(world), model).fly(worlds.key(world), 5)
     Vector(o.minDistanceM, o.meanDistanceM, o.meanLast10sM, o.captureS, o.pursuerEffortRad, o.evaderEffortRad)
       .map(_.toFloat)
 
@@ -281,6 +281,6 @@ object PairBatchSimulation:
 object PairBatchWithoutVectors:
   def main(args: Array[String]): Unit =
     val batch =
-      PairBatch(Duel.paper.copy(durationS = 12), LoopTiming.Stream(), PairBatchSimulation.lag, threads = 1)
+      PairBatch(Pair.paper.copy(durationS = 12), LoopTiming.Stream(), PairBatchSimulation.lag, threads = 1)
     println(batch.engine(PaperPursuer(), PaperEvader(), false, Nil).text)
     println(PairBatchSimulation.numbers(batch.fly(PairBatchSimulation.mixed(1), captureRadiusM = 5), 0))

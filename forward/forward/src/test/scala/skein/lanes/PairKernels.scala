@@ -1,6 +1,6 @@
 package skein.lanes
 
-import skein.forward.{Delays, Duel, LoopTiming, TabledDelays, VelocityResponse}
+import skein.forward.{Delays, Pair, LoopTiming, TabledDelays, VelocityResponse}
 import skein.lanes.loop.{LoopEye, LoopKernel, LoopLanes}
 import skein.lanes.policy.{CameraTrackerLanes, LanePolicy}
 import skein.lanes.score.{Judged, Scoreboard, ScoreLanes}
@@ -8,7 +8,7 @@ import skein.lanes.timetable.{Timetable, TimetableEye, TimetableKernel}
 
 /** Values of the last flight of a kernel for duels, in each of its worlds. */
 final class PairKernel(
-    duel: Duel,
+    duel: Pair,
     timing: LoopTiming,
     captureM: Float,
     members: Array[? <: TeamMember],
@@ -26,7 +26,7 @@ final class PairKernel(
 object PairKernels:
   val WORLDS: Int = LanePolicy.WORLDS
 
-  private def scoreboard(duel: Duel, timing: LoopTiming, captureM: Float): Scoreboard =
+  private def scoreboard(duel: Pair, timing: LoopTiming, captureM: Float): Scoreboard =
     val judged = PairNumber.values.toVector.map(_.judged(duel, timing, captureM)).collect {
       case each: Judged =>
         each
@@ -35,7 +35,7 @@ object PairKernels:
 
   /** Candidates that share one episode. */
   def shared(
-      duel: Duel,
+      duel: Pair,
       timing: LoopTiming,
       model: VelocityResponse,
       policies: Vector[LanePolicy],
@@ -57,7 +57,7 @@ object PairKernels:
 
   /** Worlds with separate delays. */
   def alone(
-      duel: Duel,
+      duel: Pair,
       timing: LoopTiming,
       model: VelocityResponse,
       policies: Vector[LanePolicy],

@@ -1,7 +1,7 @@
 package skein.lanes
 
 import scala.collection.mutable
-import skein.forward.{Delays, Duel, DuelOutcome, Engagement, LoopTiming, Rollout, VelocityResponse}
+import skein.forward.{Delays, EpisodeOutcome, LoopTiming, Pair, Rollout, VelocityResponse}
 import skein.lanes.score.{Effort, Judged, OfMoment}
 import skein.policy.Policy
 import skein.scenario.{Reduction, Separation}
@@ -12,8 +12,8 @@ trait PairWorlds extends Worlds:
   def pursuer(world: Int): Policy
   def evader(world: Int): Policy
 
-/** The values of a [[DuelOutcome]]. */
-enum PairNumber(val of: DuelOutcome => Double):
+/** The values of a [[EpisodeOutcome]]. */
+enum PairNumber(val of: EpisodeOutcome => Double):
   case MinDistance   extends PairNumber(_.minDistanceM)
   case MeanDistance  extends PairNumber(_.meanDistanceM)
   case MeanLast10s   extends PairNumber(_.meanLast10sM)
@@ -21,7 +21,7 @@ enum PairNumber(val of: DuelOutcome => Double):
   case PursuerEffort extends PairNumber(_.pursuerEffortRad)
   case EvaderEffort  extends PairNumber(_.evaderEffortRad)
 
-  def judged(duel: Duel, timing: LoopTiming, captureRadiusM: Double): Judged | Effort = this match
+  def judged(duel: Pair, timing: LoopTiming, captureRadiusM: Double): Judged | Effort = this match
     case MinDistance  => Judged(Separation, Reduction.Least, 0)
     case MeanDistance => Judged(Separation, Reduction.Mean, 0)
     case MeanLast10s  =>
@@ -49,7 +49,7 @@ final class PairOutcomes(asked: Set[PairNumber], size: Int, of: TeamOutcomes):
 
 /** A [[TeamBatch]] of two; the policies come from the worlds. */
 final class PairBatch(
-    duel: Duel,
+    duel: Pair,
     timing: LoopTiming,
     model: VelocityResponse,
     threads: Int = Runtime.getRuntime.availableProcessors,
@@ -65,7 +65,7 @@ final class PairBatch(
       radiusM: Double
   ) =
     TeamCandidate(
-      Engagement.of(duel.copy(duel.pursuer.copy(policy = pursuer), duel.evader.copy(policy = evader))),
+      duel.copy(duel.pursuer.copy(policy = pursuer), duel.evader.copy(policy = evader)).engagement,
       PairNumber.values.toVector.filter(asked).map(_.judged(duel, timing, radiusM))
     )
 

@@ -11,8 +11,8 @@ import skein.vehicle.{DrivenCar, PlaneReading, Plant, ReducedModel}
 class PlantSimulation extends munit.FunSuite, Unhurried:
   private val bicycle =
     PlantResponse(Bicycle(wheelbaseM = 1.2, steeringLagS = 0.3, mostMps2 = 4, antennaM = 0.4))
-  private val short = Duel.paper.copy(
-    evader = Duel.paper.evader.copy(startY = 2), // straight ahead a rounding error would decide where to turn
+  private val short = Pair.paper.copy(
+    evader = Pair.paper.evader.copy(startY = 2), // straight ahead a rounding error would decide where to turn
     durationS = 6
   )
 
@@ -51,12 +51,12 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
       vehicle: VelocityResponse,
       world: Int
   ): Double =
-    val duel = Duel(
+    val duel = Pair(
       short.pursuer.copy(policy = all.pursuer(world)),
       short.evader.copy(policy = all.evader(world)),
       short.durationS
     )
-    val scalar = Rollout(duel, timing, all.link(world), vehicle).fly(all.key(world))
+    val scalar = Rollout(duel.engagement, timing, all.link(world), vehicle).fly(all.key(world))
     (flown.meanDistanceM(world) - scalar.meanDistanceM).abs max
       (flown.minDistanceM(world) - scalar.minDistanceM).abs
 
@@ -99,8 +99,8 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
     val timing = LoopTiming.Stream()
     for key <- 1 to 5 do
       val plant =
-        Rollout(short, timing, DelayTable.vpn, PlantResponse(GuideExample.Lagging(0.9, 0.8))).fly(key)
-      val exact = Rollout(short, timing, DelayTable.vpn, lag).fly(key)
+        Rollout(short.engagement, timing, DelayTable.vpn, PlantResponse(GuideExample.Lagging(0.9, 0.8))).fly(key)
+      val exact = Rollout(short.engagement, timing, DelayTable.vpn, lag).fly(key)
       assertEqualsDouble(plant.meanDistanceM, exact.meanDistanceM, 1e-9)
 
   for (name, plant, addsStart) <- Seq(
@@ -121,7 +121,7 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
             duel.pursuer.copy(policy = all.pursuer(world)),
             duel.evader.copy(policy = all.evader(world))
           )
-          val scalar = Rollout(own, timing, all.link(world), PlantResponse(plant)).fly(all.key(world))
+          val scalar = Rollout(own.engagement, timing, all.link(world), PlantResponse(plant)).fly(all.key(world))
           assertEqualsDouble(flown.meanDistanceM(world), scalar.meanDistanceM, 1e-3)
 
   private object Sheltered extends Plant[PlaneReading]:

@@ -19,7 +19,7 @@ object PythonTwinRates:
 
   def main(arguments: Array[String]): Unit =
     val folder = Path.of(arguments(0))
-    val twins  = Seq("ring" -> Surround(), "pursuit" -> PaperDuel(), "network" -> NetworkDuel.of(folder))
+    val twins  = Seq("ring" -> Surround(), "pursuit" -> PaperDuel(), "network" -> NetworkPair.of(folder))
     for (name, twin) <- twins if arguments.drop(1).forall(_ == name); share <- Seq(true, false) do
       val text   = Files.readString(folder.resolve(s"$name.scenario"))
       val python = ScenarioText.read(text).fold(why => throw IllegalArgumentException(why), _.standard)

@@ -31,7 +31,7 @@ class PythonTwinSuite extends munit.FunSuite:
       Surround(ringM = 11.5, pursuerMps = 9)
     ),
     ("the paper's duel", written("pursuit"), PaperDuel()),
-    ("a network's duel", written("network"), NetworkDuel.of(root.resolve("examples/scenario-in-python")))
+    ("a network's duel", written("network"), NetworkPair.of(root.resolve("examples/scenario-in-python")))
   )
 
   private val lag   = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)

@@ -3,7 +3,7 @@ package skein.lanes
 import skein.forward.{
   DelayTable,
   Delays,
-  Duel,
+  Pair,
   LinkDelays,
   LoopTiming,
   PlantResponse,
@@ -35,10 +35,10 @@ class TimetableKernelSimulation extends munit.FunSuite:
   /** The paper's duel with the evader's start moved from straight ahead, where the sign of a rounding error
     * would decide the direction in which the quadrotors' pursuer turns.
     */
-  private val paper = Duel.paper.copy(evader = Duel.paper.evader.copy(startY = 2))
+  private val paper = Pair.paper.copy(evader = Pair.paper.evader.copy(startY = 2))
 
-  private def duel(world: Int, durationS: Double): Duel =
-    Duel(
+  private def duel(world: Int, durationS: Double): Pair =
+    Pair(
       paper.pursuer.copy(policy = pursuer(world)),
       paper.evader.copy(policy = evader(world)),
       durationS
@@ -104,7 +104,7 @@ class TimetableKernelSimulation extends munit.FunSuite:
         val key    = WorldRandom.key(3, 1, episode)
         val kernel = fly(timing, link, key, 5, model)
         for world <- 0 until worlds by 3 do
-          val scalar = Rollout(duel(world, 5), timing, link, model).fly(key, captureM)
+          val scalar = Rollout(duel(world, 5).engagement, timing, link, model).fly(key, captureM)
           all += 1
           if (kernel(PairNumber.MinDistance)(world) - scalar.minDistanceM).abs < 2e-3 &&
             (kernel(PairNumber.MeanDistance)(world) - scalar.meanDistanceM).abs < 2e-3 &&

@@ -43,7 +43,7 @@ import skein.vehicle.ReducedModel
       }$linked"
     if only.forall(text => if text.startsWith("-") then !row.contains(text.drop(1)) else row.contains(text))
   do
-    val duel  = Duel.paper.copy(pursuer = Duel.paper.pursuer.copy(eye = Option.when(sees)(eye)))
+    val duel  = Pair.paper.copy(pursuer = Pair.paper.pursuer.copy(eye = Option.when(sees)(eye)))
     val batch = PairBatch(duel, timing, model, threads = 1)
     def worlds(count: Int, from: Int): PairWorlds = new PairWorlds:
       def size: Int                       = count
@@ -71,7 +71,7 @@ import skein.vehicle.ReducedModel
     val warm = System.nanoTime() + 4_000_000_000L
     while System.nanoTime() < warm do rate(count): Unit
     val lanes                        = Vector.fill(9)(rate(count)).max
-    val rollout                      = Rollout(duel, timing, over, model)
+    val rollout                      = Rollout(duel.engagement, timing, over, model)
     def scalar(flights: Int): Double =
       val from = times.getCurrentThreadCpuTime
       for flight <- 1 to flights do rollout.fly(flight): Unit

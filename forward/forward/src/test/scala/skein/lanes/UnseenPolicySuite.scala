@@ -1,6 +1,6 @@
 package skein.lanes
 
-import skein.forward.{DelayTable, Delays, Duel, LoopTiming, Rollout, VelocityResponses}
+import skein.forward.{DelayTable, Delays, Pair, LoopTiming, Rollout, VelocityResponses}
 import skein.policy.{ChauffeurEvader, Policy}
 import skein.signal.SplitMix64
 import skein.simd.WorldRandom
@@ -10,7 +10,7 @@ class UnseenPolicySuite extends munit.FunSuite:
   import UnseenPolicySuite.*
 
   private val model = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)
-  private val short = Duel.paper.copy(durationS = 5)
+  private val short = Pair.paper.copy(durationS = 5)
 
   for
     (name, draw)     <- Unseen
@@ -41,12 +41,12 @@ class UnseenPolicySuite extends munit.FunSuite:
       )
       val flown = batch.fly(worlds)
       val off   = pursuers.indices.map: world =>
-        val duel = Duel(
+        val duel = Pair(
           short.pursuer.copy(policy = pursuers(world)),
           short.evader.copy(policy = evader),
           short.durationS
         )
-        val scalar = Rollout(duel, timing, DelayTable.vpn, model).fly(worlds.key(world))
+        val scalar = Rollout(duel.engagement, timing, DelayTable.vpn, model).fly(worlds.key(world))
         (flown.meanDistanceM(world) - scalar.meanDistanceM).abs max
           (flown.minDistanceM(world) - scalar.minDistanceM).abs max
           (flown.pursuerEffortRad(world) - scalar.pursuerEffortRad).abs

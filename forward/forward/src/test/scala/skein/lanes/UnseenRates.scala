@@ -1,6 +1,6 @@
 package skein.lanes
 
-import skein.forward.{DelayTable, Duel, LoopTiming, Rollout, VelocityResponses}
+import skein.forward.{DelayTable, Pair, LoopTiming, Rollout, VelocityResponses}
 import skein.lanes.policy.{LanePolicy, PolicyLanes}
 import skein.lanes.score.Scoreboard
 import skein.lanes.timetable.{Timetable, TimetableKernel}
@@ -34,7 +34,7 @@ import skein.signal.SplitMix64
     val pursuers                 = LanePolicy.of(candidates(0))
     val compiledMs               = (System.nanoTime - started) / 1_000_000
     val evaders                  = LanePolicy.of(UnseenPolicySuite.Evader)
-    val agents                   = Vector(Duel.paper.evader, Duel.paper.pursuer)
+    val agents                   = Vector(Pair.paper.evader, Pair.paper.pursuer)
     val members                  = Opponents.inEpisode(agents, lanes, Vector(evaders, pursuers), Map.empty)
     val scores                   = Scoreboard.ofDistance(Reduction.Mean -> 50.1)
     val kernel                   = TimetableKernel(members.map(identity), scores)
@@ -46,12 +46,12 @@ import skein.signal.SplitMix64
     fly(1000)
     val rate = Vector.fill(5)(200 * PairKernels.WORLDS * 1200 / seconds(fly(200))).max * 1e-6
     def scalar(count: Int): Unit = for world <- 0 until count do
-      val duel = Duel(
-        Duel.paper.pursuer.copy(policy = candidates(world % PairKernels.WORLDS)),
-        Duel.paper.evader.copy(policy = UnseenPolicySuite.Evader),
+      val duel = Pair(
+        Pair.paper.pursuer.copy(policy = candidates(world % PairKernels.WORLDS)),
+        Pair.paper.evader.copy(policy = UnseenPolicySuite.Evader),
         60
       )
-      Rollout(duel, timing, DelayTable.vpn, model).fly(1): Unit
+      Rollout(duel.engagement, timing, DelayTable.vpn, model).fly(1): Unit
     scalar(150)
     val slow    = Vector.fill(3)(60 * 1200 / seconds(scalar(60))).max * 1e-6
     val size    = PolicyLanes.get(candidates(0)).operations

@@ -1,6 +1,6 @@
 package skein.optimise
 
-import skein.forward.{DelayTable, Duel, Engagement, LoopTiming, Rollout, VelocityResponses}
+import skein.forward.{DelayTable, LoopTiming, Pair, Rollout, VelocityResponses}
 import skein.lanes.{TeamBatch, TeamCandidate}
 import skein.policy.{PaperPursuer, Role}
 import skein.simd.WorldRandom
@@ -45,18 +45,18 @@ class ObjectiveSuite extends munit.FunSuite:
       assert(mistake.contains(place) && mistake.contains(expected), mistake)
 
   test("captures, their times and efforts equal those of the scalar reference"):
-    val duel     = Duel.paper.copy(durationS = 20)
+    val duel     = Pair.paper.copy(durationS = 20)
     val model    = VelocityResponses.lag(0.9, 0.8, 0.05)
     val pursuers = Vector(PaperPursuer(0.4), PaperPursuer(1.0), PaperPursuer(1.8))
     val timing   = LoopTiming.Futures()
     val key      = WorldRandom.key(1, 0, 0)
     for pursuer <- pursuers do
       val own = duel.copy(pursuer = duel.pursuer.copy(policy = pursuer))
-      val one = Rollout(own, timing, DelayTable.direct, model).fly(key, 4.5)
-      val far = Rollout(own, timing, DelayTable.direct, model).fly(key, 6)
+      val one = Rollout(own.engagement, timing, DelayTable.direct, model).fly(key, 4.5)
+      val far = Rollout(own.engagement, timing, DelayTable.direct, model).fly(key, 6)
       def value(text: String, role: Role = Role.Pursuer) =
         val objective = read(text, role)
-        val candidate = TeamCandidate(Engagement.of(own), objective.judged(20, timing.periodS))
+        val candidate = TeamCandidate(own.engagement, objective.judged(20, timing.periodS))
         val evaluator =
           TeamEvaluator(TeamBatch(timing, model, 1), _ => candidate, DelayTable.direct, objective, 1)
         evaluator.tallies(Vector(Vector.empty), 0 until 1).head.mean

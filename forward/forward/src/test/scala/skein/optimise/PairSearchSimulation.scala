@@ -1,7 +1,7 @@
 package skein.optimise
 
 import java.util.concurrent.atomic.AtomicInteger
-import skein.forward.{DelayTable, Duel, Engagement, LoopTiming, Rollout, VelocityResponses}
+import skein.forward.{DelayTable, LoopTiming, Pair, Rollout, VelocityResponses}
 import skein.lanes.{TeamBatch, TeamCandidate}
 import skein.policy.{PaperPursuer, PolicyFamily, Role}
 import skein.simd.WorldRandom
@@ -9,14 +9,14 @@ import skein.testing.Unhurried
 
 class PairSearchSimulation extends munit.FunSuite, Unhurried:
   private val lag   = VelocityResponses.lag(0.9, 0.8, 0.05)
-  private val short = Duel.paper.copy(durationS = 15)
+  private val short = Pair.paper.copy(durationS = 15)
 
   private val nearest = Objective(Vector(1.0 -> DistanceTerm.Last10s), Direction.Minimise)
 
   private def game(threads: Int): Evaluator = TeamEvaluator(
     TeamBatch(LoopTiming.Stream(), lag, threads),
     parameters =>
-      val team = Engagement.of(short).flownBy(Role.Pursuer, PolicyFamily.paperPursuer.policy(parameters))
+      val team = short.engagement.flownBy(Role.Pursuer, PolicyFamily.paperPursuer.policy(parameters))
       TeamCandidate(team, nearest.judged(15, 0.1))
     ,
     DelayTable.vpn,
@@ -33,7 +33,7 @@ class PairSearchSimulation extends munit.FunSuite, Unhurried:
     assertEquals(game(2).tallies(candidates, 0 until 30), tallies)
     for (tally, candidate) <- tallies.zip(candidates) do
       val pursuer   = short.pursuer.copy(policy = PaperPursuer(candidate.head.toFloat))
-      val rollout   = Rollout(short.copy(pursuer = pursuer), LoopTiming.Stream(), DelayTable.vpn, lag)
+      val rollout   = Rollout(short.copy(pursuer = pursuer).engagement, LoopTiming.Stream(), DelayTable.vpn, lag)
       val reference = (0 until 30).map(episode => rollout.fly(WorldRandom.key(1, 0, episode)).meanLast10sM)
       assertEqualsDouble(tally.mean, reference.sum / 30, 0.03)
 

@@ -1,11 +1,11 @@
 package skein.environment
 
 import java.nio.{ByteBuffer, ByteOrder}
-import skein.forward.{Delays, Duel, DuelOutcome, Engagement, PlantResponse, Rollout}
+import skein.forward.{Delays, Engagement, EpisodeOutcome, PlantResponse, Rollout}
 import skein.lanes.{LearnerTeams, TeamBatch, TeamCandidate, TeamWorlds}
 import skein.lanes.LearnerPolicy.Fields
 import skein.lanes.score.Judged
-import skein.scenario.{Reduction, Scenarios, Separation}
+import skein.scenario.{PaperDuel, Reduction, Scenarios, Separation}
 import skein.signal.SplitMix64
 import skein.vehicle.ReducedModel
 
@@ -48,12 +48,12 @@ class EnvironmentBatchSimulation extends munit.FunSuite:
       if right != 0 then math.signum(right) else if ahead < 0 then 1 else 0
 
   /** The engine's result for the paper's pursuer over the link of a run. */
-  private def engine(settings: EnvironmentSettings, seed: Long): (DuelOutcome, Float, Float) =
+  private def engine(settings: EnvironmentSettings, seed: Long): (EpisodeOutcome, Float, Float) =
     val config = LearnerSide.of(settings).fold(fail(_), identity)
-    val duel   = Duel.paperAt(20, settings.episodeS)
+    val game   = Engagement.of(PaperDuel(altitudeM = 20).fleet, settings.episodeS)
     val runKey = LearnerTeams.keyOf(SplitMix64.seedOf(seed, 0))
     val judged = Vector(Judged(Separation, Reduction.Least, 0), Judged(Separation, Reduction.Mean, 0))
-    val team   = TeamCandidate(Engagement.of(duel), judged)
+    val team   = TeamCandidate(game, judged)
     val worlds = new TeamWorlds:
       def size                                 = 1
       override def shareEpisodes               = true
@@ -62,7 +62,7 @@ class EnvironmentBatchSimulation extends munit.FunSuite:
       def candidate(world: Int): TeamCandidate = team
     val flown = TeamBatch(config.timing, PlantResponse(ReducedModel.AirSimLag), 1).fly(worlds)
     (
-      Rollout(duel, config.timing, config.link, PlantResponse(ReducedModel.AirSimLag)).fly(runKey),
+      Rollout(game, config.timing, config.link, PlantResponse(ReducedModel.AirSimLag)).fly(runKey),
       flown.values(0)(0),
       flown.values(1)(0)
     )

@@ -1,16 +1,18 @@
 package skein.learn
 
 import skein.environment.EnvironmentSettings
-import skein.forward.{DelayTable, Delays, Duel, Engagement, LinkDelays, LoopTiming, PlantResponse, Rollout}
+import skein.forward.{DelayTable, Delays, Engagement, LinkDelays, LoopTiming, PlantResponse, Rollout}
 import skein.lanes.{TeamBatch, TeamCandidate, TeamWorlds}
 import skein.lanes.score.Judged
 import skein.policy.*
-import skein.scenario.{Reduction, Scenarios, Separation}
+import skein.scenario.{PaperDuel, Reduction, Scenarios, Separation}
 import skein.signal.{LatencyDistribution, LatencyProfile, SplitMix64}
 import skein.units.Span
 import skein.vehicle.ReducedModel
 
 class SideTaskSimulation extends munit.FunSuite:
+  private val game = Engagement.of(PaperDuel(altitudeM = 20).fleet, 20)
+
   private given Scenarios = Scenarios.ours
   private val none = LinkDelays.of(LatencyProfile.Steady("none", LatencyDistribution.Constant(Span.Zero)))
 
@@ -45,19 +47,15 @@ class SideTaskSimulation extends munit.FunSuite:
         task.step(Array(math.tanh(pass.output(0)).toFloat))
         reward += task.rewards(0)
         isOver = task.ended(0)
-      val duel = Duel.paperAt(20, 20)
-      val both =
-        if side == "pursuer" then duel.copy(pursuer = duel.pursuer.copy(policy = policy))
-        else duel.copy(evader = duel.evader.copy(policy = policy))
+      val both = game.flownBy(if side == "pursuer" then Role.Pursuer else Role.Evader, policy)
       val flown = Rollout(both, LoopTiming.Stream(), none, PlantResponse(ReducedModel.AirSimLag)).fly(1)
       val mean  = math.abs(reward) * 100 / 200
       assertEqualsDouble(mean, flown.meanDistanceM, 0.05)
 
   test("a learned policy with SIMD equals the scalar reference"):
     val policy  = LearnedPolicy(LearnedPolicy.shape(Vector(16, 16)), SideTask.parameters(drawn(16, 16)), 1, 0)
-    val duel    = Duel.paperAt(20, 20)
-    val pursued = duel.copy(pursuer = duel.pursuer.copy(policy = policy))
-    val team    = TeamCandidate(Engagement.of(pursued), Vector(Judged(Separation, Reduction.Mean, 0)))
+    val pursued = game.flownBy(Role.Pursuer, policy)
+    val team    = TeamCandidate(pursued, Vector(Judged(Separation, Reduction.Mean, 0)))
     val worlds  = new TeamWorlds:
       def size                                 = 4
       override def shareEpisodes               = true

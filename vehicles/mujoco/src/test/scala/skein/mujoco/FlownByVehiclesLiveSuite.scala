@@ -4,7 +4,7 @@ import skein.forward.*
 import skein.lanes.*
 import skein.lanes.score.Judged
 import skein.policy.{PaperPursuer, Role}
-import skein.scenario.{OffRing, Reduction, Separation, Surround}
+import skein.scenario.{OffRing, PaperDuel, Reduction, Separation, Surround}
 import skein.simd.WorldRandom
 
 /** Checks the statement in docs/engines.md that MuJoCo bodies are simulated as vehicles. `FlownByLanesSuite`
@@ -23,13 +23,13 @@ class FlownByVehiclesLiveSuite extends MujocoHere:
 
   test("duels are simulated vehicle by vehicle under every loop, with the scalar engine's bits"):
     assumeMujoco()
-    val duel = Duel.paper.copy(durationS = 2)
+    val game = Engagement.of(PaperDuel().fleet, 2)
     for timing <- loops; shared <- Seq(true, false) do
       val told  = s"${timing.productPrefix}, shared delays: $shared"
       val batch = TeamBatch(timing, model, threads = 1)
       val all   = new TeamWorlds:
         private val teams = Vector.tabulate(3): world =>
-          val pursued = Engagement.of(duel).flownBy(Role.Pursuer, PaperPursuer(0.6 + 0.04 * world))
+          val pursued = game.flownBy(Role.Pursuer, PaperPursuer(0.6 + 0.04 * world))
           TeamCandidate(pursued, Vector(Judged(Separation, Reduction.Mean, 0)))
         def size: Int                            = 3
         override def shareEpisodes: Boolean      = shared

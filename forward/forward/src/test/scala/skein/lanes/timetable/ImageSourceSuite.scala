@@ -66,12 +66,12 @@ class ImageSourceSuite extends munit.FunSuite:
         all += Happens(number, atNs, Some(Option.when(image.found < model.detection)(errors)))
       override def recognised(vehicle: Int, image: Int, atNs: Long): Unit =
         all += Happens(image, atNs, None)
-    val paper = Duel.paper.copy(durationS = DurationS)
+    val paper = Pair.paper.copy(durationS = DurationS)
     val duel  =
       if agent == 0 then paper.copy(evader = paper.evader.copy(eye = Some(model)))
       else paper.copy(pursuer = paper.pursuer.copy(eye = Some(model)))
     Rollout(
-      duel,
+      duel.engagement,
       LoopTiming.stream(0.1),
       link,
       PlantResponse(ReducedModel.AirSimLag)

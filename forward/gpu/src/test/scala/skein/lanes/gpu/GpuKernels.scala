@@ -1,7 +1,7 @@
 package skein.lanes.gpu
 
 import java.nio.file.{Files, Path}
-import skein.forward.{Duel, Engagement, PlantResponse, VelocityResponse, VelocityResponses}
+import skein.forward.{Pair, PlantResponse, VelocityResponse, VelocityResponses}
 import skein.gpu.InterpretedGpu
 import skein.lanes.*
 import skein.lanes.plant.QuadrotorLanes
@@ -16,7 +16,7 @@ import skein.vehicle.{Quadrotor, ReducedModel}
   val layout                                                        = GpuLayout(2, shows = false)
   def duels(name: String, model: VelocityResponse, pursuer: Policy) =
     val vehicle = GpuVehicle.of(model).fold(sys.error, identity)
-    val duel    = Engagement.of(Duel.paper).flownBy(Role.Pursuer, pursuer)
+    val duel    = Pair.paper.engagement.flownBy(Role.Pursuer, pursuer)
     val two     =
       OpponentLanes.of(duel, _ => false, inSpace = false, isPredicted = false).get.fold(sys.error, identity)
     val scores = ScoreLanes.ofDistance(Reduction.Mean -> 50.1)

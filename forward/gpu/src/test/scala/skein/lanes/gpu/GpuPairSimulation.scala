@@ -60,7 +60,7 @@ class GpuPairSimulation extends munit.FunSuite, TestGpus:
       pursuer: Int => Policy,
       size: Int = 6
   ): Unit =
-    val duel   = Duel.paper.copy(evader = Duel.paper.evader.copy(startY = 2), durationS = durationS)
+    val duel   = Pair.paper.copy(evader = Pair.paper.evader.copy(startY = 2), durationS = durationS)
     val worlds = Worlds(size, episodes = 2, link, pursuer)
     val onCpu  = PairBatch(duel, timing, model, threads = 1)
     val onGpu  = PairBatch(duel, timing, model, threads = 1, Some(GpuAccelerator(gpu)))

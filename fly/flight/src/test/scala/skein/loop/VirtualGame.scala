@@ -14,7 +14,7 @@ import skein.vtime.VirtualTime
   * @param distanceM horizontal distance between the vehicles' true positions: mean over the last 10 s of
   *   physics
   */
-final case class VirtualDuel(distanceM: Double, outcome: FlightOutcome, recording: Recording):
+final case class VirtualGame(distanceM: Double, outcome: FlightOutcome, recording: Recording):
 
   /** Prediction errors, ascending, m.
     *
@@ -26,7 +26,7 @@ final case class VirtualDuel(distanceM: Double, outcome: FlightOutcome, recordin
       .map(_.error.value)
       .sorted
 
-object VirtualDuel:
+object VirtualGame:
   private val duration = Span.ofSeconds(60)
   private val measured = Span.ofSeconds(10)
 
@@ -36,7 +36,7 @@ object VirtualDuel:
       seed: Long,
       settings: LoopSettings = LoopSettings(),
       slices: Int = LoopSettings().planning.slices
-  ): VirtualDuel =
+  ): VirtualGame =
     var sum   = 0.0
     var steps = 0
     val run   = VirtualTime.run(seed): system =>
@@ -53,9 +53,9 @@ object VirtualDuel:
       val workers  = CountedPlanWorkers(settings.planning.searches, slices)
       val team     = Team(scenario, world.ports, clock, recorder, settings, workers)
       Flight.start(kind, team, Some(world), duration, clock, recorder).outcome.map((_, recorder.recording))
-    VirtualDuel(sum / steps, run.value._1, run.value._2)
+    VirtualGame(sum / steps, run.value._1, run.value._2)
 
-  lazy val truth: VirtualDuel = fly(LoopKind.Paused, LatencyProfile.none, 1)
+  lazy val truth: VirtualGame = fly(LoopKind.Paused, LatencyProfile.none, 1)
 
   /** A link that always takes half of `roundTripMs` each way. */
   def constant(roundTripMs: Double): LatencyProfile =

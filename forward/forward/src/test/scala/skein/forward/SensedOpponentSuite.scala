@@ -9,7 +9,7 @@ import skein.units.*
 import skein.vehicle.ReducedModel
 
 /** Pursuers whose only knowledge of their evaders is a sensor's model. */
-class SensedDuelSuite extends munit.FunSuite:
+class SensedOpponentSuite extends munit.FunSuite:
   private val exact = SensorModel(
     everyS = 0.02,
     fovRad = 3.1,
@@ -23,7 +23,7 @@ class SensedDuelSuite extends munit.FunSuite:
   private val camera = GuideCamera.model
 
   private def duel(eye: Option[SensorModel]) =
-    val paper = Duel.paper
+    val paper = Pair.paper
     paper.copy(pursuer = paper.pursuer.copy(eye = eye))
 
   private def flown(
@@ -32,7 +32,7 @@ class SensedDuelSuite extends munit.FunSuite:
       link: Delays = DelayTable.none,
       seed: Int = 1
   ) =
-    Rollout(duel(eye), timing, link, PlantResponse(ReducedModel.AirSimLag)).fly(WorldRandom.key(seed, 0, 0))
+    Rollout(duel(eye).engagement, timing, link, PlantResponse(ReducedModel.AirSimLag)).fly(WorldRandom.key(seed, 0, 0))
 
   private def last10s(eye: Option[SensorModel], timing: LoopTiming, link: Delays) =
     (1 to 12).map(flown(eye, timing, link, _).meanLast10sM).sum / 12
@@ -111,16 +111,16 @@ class SensedDuelSuite extends munit.FunSuite:
         def size: Int                   = 40
         def key(world: Int): Int        = WorldRandom.key(world, 0, 0)
         def link(world: Int): Delays    = DelayTable.vpn
-        def pursuer(world: Int): Policy = SensedDuelSuite.this.pursuer
-        def evader(world: Int): Policy  = SensedDuelSuite.this.evader
+        def pursuer(world: Int): Policy = SensedOpponentSuite.this.pursuer
+        def evader(world: Int): Policy  = SensedOpponentSuite.this.evader
       val outcomes = batch.fly(worlds)
-      val rollout  = Rollout(beside, timing, DelayTable.vpn, PlantResponse(ReducedModel.AirSimLag))
+      val rollout  = Rollout(beside.engagement, timing, DelayTable.vpn, PlantResponse(ReducedModel.AirSimLag))
       for world <- 0 until worlds.size by 7 do
         val alone = rollout.fly(worlds.key(world))
         assertEqualsDouble(outcomes.meanLast10sM(world), alone.meanLast10sM, 5e-3, s"world $world")
 
   test("eyes that SIMD does not support use the scalar engine, and the engine's text states it"):
-    def told(duel: Duel, model: VelocityResponse) =
+    def told(duel: Pair, model: VelocityResponse) =
       PairBatch(duel, predictive, model, threads = 1)
         .engine(pursuer, evader, shareEpisodes = false, Seq(DelayTable.vpn)).text
     val seeing = duel(Some(camera))

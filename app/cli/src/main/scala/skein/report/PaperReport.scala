@@ -5,7 +5,7 @@ import skein.measure.{FlightSet, FlightSummary}
 import skein.scenario.{PaperDuel, ScenarioKind, Scenarios}
 
 /** The paper's duel with its report: distances compared with those that the paper published. */
-object DuelReport extends ScenarioKind(PaperDuel()), ScenarioReport:
+object PaperReport extends ScenarioKind(PaperDuel()), ScenarioReport:
   override def results(set: FlightSet): Vector[Section] = Vector(
     Section(
       "Distance between pursuer and evader, ours and the paper's",
