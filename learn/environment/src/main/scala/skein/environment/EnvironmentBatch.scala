@@ -17,7 +17,8 @@ import skein.units.Expect
   * minus the distances to its nearest opponent scored since the last step (once a period), divided by 10 m,
   * and 10 for a capture; for an evader the opposite. So the pursuer's rewards of an episode of the duel
   * without a capture sum to minus its mean distance, as `./skein search` has it, times the number of periods,
-  * divided by 10 m. Another quantity may be rewarded instead of the distance.
+  * divided by 10 m. Means of other quantities may be rewarded instead, divided by 10 likewise, or a root mean
+  * square: then each reward is a square, divided by 100.
   *
   * Environments fly by SIMD, up to [[LearnerWorlds.Most]] together, or one by one by the scalar reference;
   * [[engine]] says by which, and why.

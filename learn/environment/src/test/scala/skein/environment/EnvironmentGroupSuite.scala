@@ -130,6 +130,23 @@ class EnvironmentGroupSuite extends munit.FunSuite:
 
   test("an exception of a user's policy or quantity is reported with its name"):
     given Scenarios                            = Scenarios(ScenarioKind(Own()))
+  test("rewards add up to what is optimised: a mean's values, or the squares of a root mean square"):
+    given Scenarios             = Scenarios(ScenarioKind(Own()))
+    def paid(objective: String) =
+      val settings = own("", "3").copy(objective = objective, link = "none", periodMs = 40)
+      val learner  = Learner(settings, 1, Autoreset.Disabled)
+      learner.batch.reset(Array(1L))
+      val sum = Iterator.continually {
+        learner.act(0, 0)
+        learner.batch.step()
+        learner.reward(0)
+      }.takeWhile(_ => !learner.ended(0)).sum
+      learner.batch.close()
+      sum
+    assert(paid("off") < -10)
+    assertEqualsFloat(paid("off-rms"), paid("off") * 3 / 10, 1e-3f)
+    assertEqualsFloat(paid("2*off-rms"), paid("off") * 2 * 3 / 10, 1e-3f)
+
     def told(policy: String, quantity: String) =
       val block = ByteBuffer.allocateDirect(EnvironmentBuffers.bytes(1, 1))
       val batch =
@@ -156,6 +173,11 @@ class EnvironmentGroupSuite extends munit.FunSuite:
     assert(clue(refused(surround.copy(objective = "nearest"))).contains("is told of recorded flights alone"))
     assert(clue(refused(surround.copy(opponent =
       "paper-pursuer"
+    assertEquals(
+      refused(surround.copy(objective = "off-ring + 0.1*gap")),
+      "objective: expected means over time, or one root mean square alone: rewards add up to these, " +
+        "came off-ring + 0.1*gap"
+    )
     ))).startsWith("opponent: family paper-pursuer is"))
     assert(clue(refused(EnvironmentSettings(scenario = "formation"))).startsWith(
       "learners: expected one of leader, follower, all of a role (leaders), all, or vehicles of Leader,"
@@ -183,7 +205,8 @@ final case class Own(policy: String = "", quantity: String = "") extends Scenari
     Agent("Evader", Role.Evader, MetresPerSecond(4), Vector3(30, 0, -5), Radians(0), Away(policy)),
     Agent("Pursuer", Role.Pursuer, MetresPerSecond(8), Vector3(0, 0, -5), Radians(0), Surrounding(0, 8, 8))
   )
-  override def measures: Vector[Measure] = Vector(Series.of("off", "m", Off(quantity)).mean("off"))
+  private def off                        = Series.of("off", "m", Off(quantity))
+  override def measures: Vector[Measure] = Vector(off.mean("off"), off.rms("off rms"))
 
 object Own:
   // No formula.
@@ -192,7 +215,7 @@ object Own:
     how match
       case "throws" => throw IllegalStateException("no such luck")
       case "NaN"    => Double.NaN
-      case _        => 1
+      case _        => how.toDoubleOption.getOrElse(1)
 
 final case class Away(how: String) extends Policy:
   type Memory = Unit

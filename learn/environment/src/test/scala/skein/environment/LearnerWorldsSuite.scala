@@ -40,17 +40,18 @@ class LearnerWorldsSuite extends munit.FunSuite:
 
   for
     (settings, toleranceM) <- Seq(
-      all                                                                                             -> 2e-3,
-      all.copy(learners = "both", loop = "sequential")                                                -> 2e-3,
-      all.copy(scenario = "surround", learners = "pursuers")                                          -> 2e-3,
-      all.copy(scenario = "surround", learners = "all", loop = "paused")                              -> 2e-3,
-      all.copy(scenario = "surround", learners = "evader", loop = "predictive", link = "direct")      -> 2e-3,
-      all.copy(scenario = "surround", learners = "Pursuer2", plant = "quadrotor", altitudeM = 20)     -> 2e-2,
-      all.copy(scenario = "surround", learners = "Pursuer1,Evader", objective = "off-ring + 0.1*gap") -> 2e-2,
-      all.copy(scenario = "formation", learners = "follower")                                         -> 2e-3,
-      all.copy(scenario = "crossing", learners = "all")                                               -> 2e-3,
-      all.copy(scenario = "tower", learners = "keeper", objective = "kept")                           -> 2e-2,
-      all.copy(scenario = "tower", learners = "inspectors", objective = "kept", plant = "tilt")       -> 2e-2
+      all                                                                                         -> 2e-3,
+      all.copy(learners = "both", loop = "sequential")                                            -> 2e-3,
+      all.copy(scenario = "surround", learners = "pursuers")                                      -> 2e-3,
+      all.copy(scenario = "surround", learners = "all", loop = "paused")                          -> 2e-3,
+      all.copy(scenario = "surround", learners = "evader", loop = "predictive", link = "direct")  -> 2e-3,
+      all.copy(scenario = "surround", learners = "Pursuer2", plant = "quadrotor", altitudeM = 20) -> 2e-2,
+      all.copy(scenario = "surround", learners = "Pursuer1,Evader", objective = "off-ring")       -> 2e-2,
+      all.copy(scenario = "surround", learners = "Pursuer1,Evader", objective = "gap")            -> 2e-2,
+      all.copy(scenario = "formation", learners = "follower")                                     -> 2e-3,
+      all.copy(scenario = "crossing", learners = "all")                                           -> 2e-3,
+      all.copy(scenario = "tower", learners = "keeper", objective = "kept")                       -> 2e-2,
+      all.copy(scenario = "tower", learners = "inspectors", objective = "kept", plant = "tilt")   -> 2e-2
     )
   do
     test(
