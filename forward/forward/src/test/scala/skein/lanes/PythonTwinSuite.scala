@@ -7,12 +7,13 @@ import skein.policy.*
 import skein.scenario.*
 import skein.signal.{Kinematics, SplitMix64}
 import skein.simd.WorldRandom
+import skein.testing.Unhurried
 import skein.units.*
 
 /** Scenarios written in Python, by the files beside the examples, and the same ones in Scala: equal bits, but
   * for a network by SIMD. The package's tests hold the files to the Python.
   */
-class PythonTwinSuite extends munit.FunSuite:
+class PythonTwinSuite extends munit.FunSuite, Unhurried:
   private val root = Iterator
     .iterate(Path.of("").toAbsolutePath)(_.getParent)
     .find(at => Files.exists(at.resolve("sbtw")))
