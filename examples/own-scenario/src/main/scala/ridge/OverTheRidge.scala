@@ -36,11 +36,8 @@ final case class OverTheRidge(
     )
   )
 
-  /** The least height of the line between the two above the ground: below 0 they cannot see each other. */
-  private val view = Series("line of sight above the ground", "m", Some(Bound("in view", 0)))(tracks =>
-    instant => land.clearanceM(tracks.positionNed(0, instant), tracks.positionNed(1, instant))
-  )
-  private val apart = Series("distance", "m")(tracks => tracks.separationM(0, 1, _))
+  private val view  = Series.of("line of sight above the ground", "m", View(land), Some(Bound("in view", 0)))
+  private val apart = Series.of("distance", "m", Apart)
 
   override def series: Vector[Series]    = Vector(view, apart)
   override def measures: Vector[Measure] = Vector(
@@ -57,3 +54,12 @@ final case class OverTheRidge(
   /** Ends when both have crossed the ridge. */
   override def isOver(known: Known): Boolean =
     known.vehicles.forall(_.kinematics.positionNed.x > goal - 2) || known.elapsed > Span.ofSeconds(90)
+
+/** Minimum height of the line between the two above the ground, m: below 0 they cannot see each other. A
+  * quantity is a function of the positions, so that searches can optimise it.
+  */
+final case class View(land: Land) extends Quantity:
+  def of(at: Positions): Double = land.clearanceM(at.ned(0), at.ned(1))
+
+case object Apart extends Quantity:
+  def of(at: Positions): Double = (at.ned(0) - at.ned(1)).norm

@@ -74,8 +74,7 @@ final case class TeamQuestion(
     yield ReadySearch(this, SearchedScenario(this, kind, space), by, engine, method, Some(fresh), seed)
 
   /** Chooses the engine: SIMD, where forward simulation supports the policies and the measures; world by
-    * world, where the scenario itself decides when it is over, or measures are of whole flights; else flights
-    * in virtual time.
+    * world, where measures are of whole flights; else flights in virtual time.
     *
     * @param all the scenario with the plain settings, first, and with the bounds of the searched ones
     */
@@ -167,7 +166,7 @@ private final class SearchedScenario(question: TeamQuestion, kind: ScenarioKind[
     val flown = scenario(candidate)
     val own   = Objective.measures(flown).values.map(each => each.name -> each).toMap
     val terms = by.measures.map((weight, measure) => (weight, ScenarioTerm(own(measure.name))))
-    (Engagement.inSpace(flown.fleet, durationS), by.copy(terms = terms))
+    (Engagement.ofScenario(flown, durationS), by.copy(terms = terms))
 
   override lazy val isAtOnePace: Boolean =
     val paces =

@@ -5,7 +5,7 @@ import skein.forward.*
 import skein.lanes.Engine
 import skein.loop.LoopKind
 import skein.optimise.{Objective, ScenarioTerm, ValueEvaluator}
-import skein.scenario.{Measure, Scenario, Track, Tracks}
+import skein.scenario.{Measure, Scenario, Track, Tracks, Window}
 import skein.settings.{FlySettings, VehicleChoice}
 import skein.signal.LatencyProfile
 import skein.simd.WorldRandom
@@ -140,11 +140,14 @@ object WholeFlights:
 
   /** Why a scenario needs whole flights, world by world; None if its quantities suffice. */
   def whole(flown: Engagement, objective: Objective): Option[String] =
-    val plain = objective.measures.map(_._2).filter(_.reduced.isEmpty).map(ScenarioTerm.keyOf)
-    if flown.isOver.nonEmpty then Some("it says itself when it is over")
+    def keysWhere(is: Measure => Boolean) = objective.measures.map(_._2).filter(is).map(ScenarioTerm.keyOf)
+    val plain  = keysWhere(_.reduced.isEmpty)
+    val partly = keysWhere(_.over != Window.Whole)
+    if plain.nonEmpty then
+      Some(s"${plain.mkString(", ")} is of whole flights, not of a quantity by itself")
     else
-      Option.when(plain.nonEmpty)(
-        s"${plain.mkString(", ")} is of whole flights, not of a quantity by itself"
+      Option.when(flown.isOver.nonEmpty && partly.nonEmpty)(
+        s"it says itself when it is over, and ${partly.mkString(", ")} is of a part of the flight"
       )
 
   /** The plant for a scenario.

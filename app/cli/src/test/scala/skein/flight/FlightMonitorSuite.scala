@@ -19,6 +19,7 @@ class FlightMonitorSuite extends munit.FunSuite:
         row.decidedAt,
         row.action.getOrElse(Action.Hover),
         seesOthers,
+        Vector.empty,
         row
       ))
     flown.readings.foreach(monitor.offer)

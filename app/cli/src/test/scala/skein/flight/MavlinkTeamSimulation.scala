@@ -35,5 +35,5 @@ class MavlinkTeamSimulation extends munit.FunSuite, TemporaryFolders, Lengthy, O
     assertEquals(result.violations, Vector.empty)
     assert(result.value("off ring").exists(_ < 1), result.measured)
     val page = Files.readString(Report.write(set, folder).fold(fail(_), identity).page)
-    assert(page.contains("MAVLink"), "the report names the wire")
+    assert(page.contains("mavlink"), "the report names the wire")
     for agent <- scenario.agents do assert(page.contains(agent.name), agent.name)

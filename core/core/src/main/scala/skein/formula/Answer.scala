@@ -17,6 +17,9 @@ final class Answer private[formula] (value: Value, lifter: Lifter):
 
   def number: Node = lifter.numberOf(value)
 
+  /** The node of an integer, or of a boolean as 1 or 0. */
+  def whole: Node = lifter.wholeOf(value)
+
   /** Whether the result is this object for all inputs. */
   def isOne(of: AnyRef): Boolean = lifter.isKnown(value, of)
 

@@ -176,6 +176,10 @@ private[formula] final class Arithmetic(trace: Trace, assumed: Assumptions, refu
         Some(Number(trace.binary(op, number(args(0)), number(args(1)))))
       case ("(D)J", _, _) if name == "round" && number(args(0)).isConst =>
         Some(Long(Math.round(number(args(0)).value)))
+      // Only `Span.ofSeconds` and its like round numbers that depend on inputs: they make nanoseconds.
+      case ("(D)J", _, _) if name == "round" =>
+        val nanos = trace.unary(Op.Floor, trace.add(number(args(0)), trace.const(0.5)))
+        Some(Time(trace.mul(nanos, trace.const(1e-9))))
       case _ if Composed(name)                         => None
       case ("(II)I" | "(I)I" | "(JJ)J" | "(J)J", _, _) => None
       case _                                           => refuse(

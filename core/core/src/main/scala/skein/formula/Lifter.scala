@@ -132,8 +132,12 @@ private[formula] final class Lifter(files: ClassFiles, val trace: Trace):
 
   /** Executes both branches of a condition up to the point where they meet. */
   private def both(frame: Frame, taken: Node, target: Int, at: Int, meet: Int): Option[End] =
-    if !frame.calling.open.add(at) then
-      refuse("a loop whose end depends on what is observed: give it a fixed number of rounds")
+    val rounds = frame.calling.open.getOrElse(at, 0)
+    if rounds == MostRounds then
+      refuse(
+        s"a loop whose end depends on what is observed, after $MostRounds rounds: give it a fixed number of rounds"
+      )
+    frame.calling.open(at) = rounds + 1
     val before    = objects.now
     val (yes, no) = (frame.copy, frame.copy)
     val ended     = assumptions.under(taken, holds = true)(run(yes, target, meet))
@@ -141,7 +145,7 @@ private[formula] final class Lifter(files: ClassFiles, val trace: Trace):
     objects.backTo(before)
     frame.calling.at = at
     val otherwise = assumptions.under(taken, holds = false)(run(no, at + 1, meet))
-    frame.calling.open -= at
+    frame.calling.open(at) = rounds
     frame.calling.at = at
     val merged = objects.Merge(taken, before, after)
     (ended, otherwise) match
@@ -304,13 +308,18 @@ private[formula] object Lifter:
   private val MostSteps = 5_000_000
   private val MostDepth = 200
 
+  /** Maximum number of rounds of a loop that may end earlier, depending on the inputs. */
+  private val MostRounds = 64
+
   private enum End:
     case Reached
     case Returned(value: Value)
 
   private final class Calling(val code: MethodCode):
-    var at                     = 0
-    val open: mutable.Set[Int] = mutable.HashSet.empty
+    var at = 0
+
+    /** By branch, how many of its conditions are being executed: in a loop, one each round. */
+    val open: mutable.HashMap[Int, Int] = mutable.HashMap.empty
 
   private final class Frame(val calling: Calling, val locals: Array[Value], var stack: List[Value]):
     def copy: Frame              = Frame(calling, locals.clone, stack)

@@ -2,7 +2,6 @@ package skein.policy
 
 import scala.util.control.NonFatal
 import skein.formula.{Answer, Evaluation, Example, Formula, Node, Op, Trace, Untraceable}
-import skein.signal.Kinematics
 import skein.units.*
 
 /** How a policy decides at one place of a team, as a formula of numbers: [[Policy.choose]], read from its
@@ -241,56 +240,32 @@ object PolicyFormula:
 
 /** An observation in which every number identifies its input. */
 private final class Tagged(val self: Int, count: Int, rivals: Vector[Int], isPredicted: Boolean):
-  private val told = Vector.newBuilder[PolicyInput]
-  private var next = 0
-
-  private def tag(input: PolicyInput): Double =
-    told += input
-    next += 1
-    (next - 1).toDouble
-
-  private def span(input: PolicyInput) = Span.ofNanos(tag(input).toLong)
-
-  private def vector(of: Int => PolicyInput) = Vector3(tag(of(0)), tag(of(1)), tag(of(2)))
+  private val tags = InputTags()
 
   /** The observation as an example for tracing; its inputs are in the order of the formula's. */
   val example: Example = Example(
     "seen",
     Observation(
       self,
-      Vector.tabulate(count): vehicle =>
-        Seen(
-          Kinematics(
-            vector(PolicyInput.Position(vehicle, _)),
-            vector(PolicyInput.Velocity(vehicle, _)),
-            Quaternion.Identity,
-            Vector3.Zero
-          ),
-          span(PolicyInput.Age(vehicle)),
-          isPredicted
-        ),
+      Vector.tabulate(count)(tags.seen(_, isPredicted)),
       rivals.head,
-      Vector.tabulate(count)(vehicle => Radians(tag(PolicyInput.Heading(vehicle)))),
-      span(PolicyInput.Elapsed),
+      Vector.tabulate(count)(vehicle => Radians(tags.tag(PolicyInput.Heading(vehicle)))),
+      tags.span(PolicyInput.Elapsed),
       0,
-      MetresPerSecond(tag(PolicyInput.Cruise)),
-      Metres(tag(PolicyInput.StartDown)),
+      MetresPerSecond(tags.tag(PolicyInput.Cruise)),
+      Metres(tags.tag(PolicyInput.StartDown)),
       Map.empty,
-      span(PolicyInput.ActsIn)
+      tags.span(PolicyInput.ActsIn)
     ),
     refused = Tagged.Refused
   )
 
-  val inputs: Vector[PolicyInput] = told.result()
+  val inputs: Vector[PolicyInput] = tags.inputs
 
 private object Tagged:
-  private val attitude = "it reads the attitude, which models of vehicles do not tell"
-
-  val Refused: Map[String, String] = Map(
-    "Kinematics.orientation"        -> attitude,
-    "Kinematics.angularVelocityFrd" -> attitude,
-    "Observation.sensed"            -> "it reads sensors, which no model has",
-    "Observation.decisions"         ->
+  val Refused: Map[String, String] = InputTags.Refused ++ Map(
+    "Observation.sensed"    -> "it reads sensors, which no model has",
+    "Observation.decisions" ->
       "it counts its decisions; deciding twice as often must not act twice as strongly, so integrate over elapsed"
   )
 

@@ -107,6 +107,17 @@ private[skein] object FileScenario:
   /** A file scenario that may end before its duration. It is a separate class because [[OwnEnd]] looks for
     * the class that declares `isOver`.
     */
-  private final class Ending(file: ScenarioFile, values: Array[Double], over: Watched)
+  private[scenario] final class Ending(file: ScenarioFile, values: Array[Double], over: Watched)
       extends FileScenario(file, values):
     override def isOver(known: Known): Boolean = over(known, values) != 0
+
+    lazy val end: EndFormula = EndFormula(
+      over.formula(file.settings.map(_.name)) {
+        case other: Ending => other.file eq file
+        case _             => false
+      } {
+        case other: Ending => other.values
+        case _             => Array.emptyDoubleArray
+      },
+      over.inputs
+    )

@@ -6,9 +6,18 @@ import scala.jdk.CollectionConverters.*
 import scala.jdk.OptionConverters.*
 import scala.util.Using
 
-/** Determines whether a scenario may end before its duration. */
+/** The condition by which a scenario ends before its duration.
+  *
+  * @throws OwnFailure if the scenario's code throws
+  */
+private[skein] final case class OwnEnd(scenario: Scenario) extends (Known => Boolean):
+  def apply(known: Known): Boolean = Scenario.told(scenario.name)(scenario.isOver(known))
+
 private[skein] object OwnEnd:
-  def has(scenario: Scenario): Boolean =
+  /** None if the scenario does not define an end. */
+  def of(scenario: Scenario): Option[OwnEnd] = Option.when(has(scenario))(OwnEnd(scenario))
+
+  private def has(scenario: Scenario): Boolean =
     val declaring = scenario.getClass.getMethod("isOver", classOf[Known]).getDeclaringClass
     declaring != classOf[Scenario] && !forwards(declaring)
 

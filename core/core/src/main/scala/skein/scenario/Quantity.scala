@@ -1,10 +1,12 @@
 package skein.scenario
 
-import skein.units.OwnFailure
+import skein.units.{OwnFailure, Vector3}
 
 /** Positions of all vehicles at one moment, by index in the scenario. World frame NED, m. */
 final case class Positions(northM: IArray[Double], eastM: IArray[Double], downM: IArray[Double]):
   def count: Int = northM.length
+
+  def ned(vehicle: Int): Vector3 = Vector3(northM(vehicle), eastM(vehicle), downM(vehicle))
 
   /** Horizontal distance between two vehicles, m. */
   def distanceM(one: Int, other: Int): Double =

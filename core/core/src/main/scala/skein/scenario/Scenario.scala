@@ -34,7 +34,9 @@ trait Scenario extends Product:
   /** The estimates that policies derive from cameras. */
   def eyes: Vector[Eye] = Vector.empty
 
-  /** Whether the flight ends now, before its duration; evaluated at every decision. A pure function. */
+  /** Whether the flight ends now, before its duration; evaluated at every decision. A pure function. If it is
+    * arithmetic, it is compiled to SIMD, as policies are (`docs/guides/formulas.md`).
+    */
   def isOver(known: Known): Boolean = false
 
   /** Whether this is the paper's game. Its reports include the paper's figures, and its two policies are
@@ -128,6 +130,6 @@ object Scenario:
 /** The state of a flight at a decision.
   *
   * @param elapsed time since the flight's first decision
-  * @param vehicles estimates of all vehicles, by index
+  * @param vehicles the readings that the decision was made from, not predicted; by index
   */
 final case class Known(elapsed: Span, vehicles: Vector[Seen])

@@ -216,7 +216,8 @@ private[scenario] final class ScenarioReader private (text: String):
         val ages = if hasAges then "positions, velocities, ages" else "positions, velocities"
         wrong(s"expected $what of $ages and elapsed alone, came a node of something else")
     read.foreach(exists)
-    Watched(nodes.moved(Vector(node), read)._2.head, read)
+    val (trace, moved) = nodes.moved(Vector(node), read)
+    Watched(trace, moved.head, read)
 
 private[scenario] object ScenarioReader:
   private final class VehicleLines(

@@ -1,6 +1,6 @@
 package skein.scenario
 
-import skein.formula.{Evaluation, Node}
+import skein.formula.{Evaluation, Formula, Node, Trace}
 import skein.policy.PolicyInput
 import skein.units.Vector3
 
@@ -9,7 +9,7 @@ import skein.units.Vector3
   * @param inputs meaning of the node's inputs: positions, velocities, ages and the time since the first
   *   decision
   */
-private[scenario] final class Watched(node: Node, inputs: Vector[PolicyInput]):
+private[scenario] final class Watched(trace: Trace, node: Node, val inputs: Vector[PolicyInput]):
   private val evaluation = Evaluation(Vector(node))
 
   def apply(known: Known, values: Array[Double]): Double = at(values):
@@ -23,6 +23,19 @@ private[scenario] final class Watched(node: Node, inputs: Vector[PolicyInput]):
     case PolicyInput.Position(vehicle, axis) => axisOf(tracks.positionNed(vehicle, instant), axis)
     case PolicyInput.Velocity(vehicle, axis) => axisOf(tracks.velocityNed(vehicle, instant), axis)
     case _                                   => tracks.timeS(instant)
+
+  /** The number as a formula; that of a condition is 1 or 0.
+    *
+    * @param settings names of its parameters
+    * @param isLike whether an object has this number
+    * @param valuesOf the parameters of such an object
+    */
+  def formula(settings: Vector[String])(isLike: AnyRef => Boolean)(
+      valuesOf: AnyRef => Array[Double]
+  ): Formula =
+    val number =
+      if node.op.isCondition then trace.where(node, trace.const(1), trace.const(0)) else node
+    Formula.ofGraph(trace, inputs.map(_.toString), Vector("number" -> number), settings)(isLike)(valuesOf)
 
   private def at(values: Array[Double])(input: PolicyInput => Double): Double =
     evaluation(inputs.iterator.map(input).toArray, values)(0)

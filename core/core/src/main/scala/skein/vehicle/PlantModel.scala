@@ -12,15 +12,14 @@ final case class PlantModel[S](plant: ObservedPlant[S]) extends VehicleModel[Pla
   private val deadTime = Span.ofSeconds(plant.deadTimeS)
 
   def start(seen: Kinematics): Flying[S] =
-    Flying(seen, plant.corrected(plant.initial, readingOf(seen)), Still, Still, Vector.empty)
+    Flying(seen, plant.corrected(plant.initial, readingOf(seen)), PendingCommands.resting(Vector3.Zero))
 
   def advanced(flying: Flying[S], setpoint: Setpoint, span: Span): Flying[S] =
-    val told         = velocityOf(setpoint)
-    val coming       = if told == flying.told then flying.coming else flying.coming :+ Coming(told, deadTime)
-    val (due, later) = coming.partition(_.in <= span)
-    val flight       = PlantFlight(plant)
-    flight.start(0, flying.state, flying.acting.x, flying.acting.y)
-    for command <- due do flight.act(command.in.toSeconds, command.velocityNed.x, command.velocityNed.y)
+    val (due, commands) = flying.commands.after(velocityOf(setpoint), deadTime, span)
+    val flight          = PlantFlight(plant)
+    val acting          = flying.commands.acting
+    flight.start(0, flying.state, acting.x, acting.y)
+    for next <- due do flight.act(next.in.toSeconds, next.command.x, next.command.y)
     flight.advance(span.toSeconds)
     val seen    = flying.now
     val reading = flight.reading
@@ -31,9 +30,7 @@ final case class PlantModel[S](plant: ObservedPlant[S]) extends VehicleModel[Pla
         velocityNed = Vector3(reading.northMps, reading.eastMps, seen.velocityNed.z)
       ),
       flight.state,
-      due.lastOption.fold(flying.acting)(_.velocityNed),
-      told,
-      later.map(command => command.copy(in = command.in - span))
+      commands
     )
 
   def corrected(flying: Flying[S], seen: Kinematics, sinceSeen: Span): Flying[S] =
@@ -49,29 +46,17 @@ object PlantModel:
 
   /** State of a prediction.
     *
-    * @param acting the commanded velocity in effect, m/s
-    * @param told the last command received, m/s
-    * @param coming received commands that are not in effect yet, the oldest first
+    * @param commands velocities, m/s
     */
   final case class Flying[S] private[vehicle] (
       now: Kinematics,
       state: S,
-      acting: Vector3,
-      told: Vector3,
-      coming: Vector[Coming]
+      private[vehicle] val commands: PendingCommands[Vector3]
   )
-
-  /** A command within its dead time.
-    *
-    * @param in time until it takes effect
-    */
-  final case class Coming private[vehicle] (velocityNed: Vector3, in: Span)
-
-  private val Still = Vector3.Zero
 
   private[skein] def readingOf(seen: Kinematics): PlaneReading =
     PlaneReading(seen.positionNed.x, seen.positionNed.y, seen.velocityNed.x, seen.velocityNed.y)
 
   private def velocityOf(setpoint: Setpoint): Vector3 =
     if setpoint.horizontal == HorizontalMode.Velocity then Vector3(setpoint.first, setpoint.second, 0)
-    else Still
+    else Vector3.Zero

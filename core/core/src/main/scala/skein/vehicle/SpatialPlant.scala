@@ -23,6 +23,17 @@ trait SpatialPlant[S] extends PlantTiming:
 
   def read(state: S): SpaceReading
 
+/** A [[SpatialPlant]] whose state can be corrected by readings, so that the loop `predictive`
+  * ([[SpatialModel]]) can predict its flights. Its motion must not depend on its horizontal position.
+  */
+trait ObservedSpatialPlant[S] extends SpatialPlant[S]:
+
+  /** The state corrected by a reading. Parts that a reading lacks stay unchanged.
+    *
+    * @param seen the reading; north and east may have any origin
+    */
+  def corrected(state: S, seen: SpaceReading): S
+
 /** A vehicle's position, m, and velocity, m/s, in a reading. */
 final case class SpaceReading(
     northM: Double,

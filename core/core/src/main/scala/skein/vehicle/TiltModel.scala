@@ -26,7 +26,7 @@ final case class TiltModel(
     downDragPerM: Double,
     override val deadTimeS: Double,
     gains: ControllerGains = ControllerGains()
-) extends SpatialPlant[TiltState]:
+) extends ObservedSpatialPlant[TiltState]:
   private val tiltPerMps   = gains.velocityP * gains.maxTilt
   private val tiltPerS     = gains.angleP * gains.maxRate
   private val climbPerM    = gains.positionP * gains.maxVelocity
@@ -39,6 +39,15 @@ final case class TiltModel(
   def read(state: TiltState): SpaceReading =
     import state.*
     SpaceReading(northM, eastM, northMps, eastMps, downM, downMps)
+
+  def corrected(state: TiltState, seen: SpaceReading): TiltState = state.copy(
+    northM = seen.northM,
+    eastM = seen.eastM,
+    downM = seen.downM,
+    northMps = seen.northMps,
+    eastMps = seen.eastMps,
+    downMps = seen.downMps
+  )
 
   def step(
       from: TiltState,

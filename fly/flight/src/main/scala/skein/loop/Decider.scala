@@ -1,7 +1,6 @@
 package skein.loop
 
 import skein.policy.{Action, Fleet, Observation, Policy, Seen, Sensed}
-import skein.signal.Stamped
 import skein.units.*
 
 /** State of one vehicle's decisions, in addition to the view.
@@ -68,7 +67,7 @@ final class Decider(fleet: Fleet, self: Int, policy: Policy):
       agent.speed,
       Metres(agent.startPositionNed.z),
       view.sensed(self).map: (sensor, reading) =>
-        sensor -> Sensed(reading.columns, reading.values.value, age(view, now, reading.values)),
+        sensor -> Sensed(reading.columns, reading.values.value, view.ageOf(reading.values, now)),
       actsIn(view, now)
     )
 
@@ -82,10 +81,7 @@ final class Decider(fleet: Fleet, self: Int, policy: Policy):
 
   private def seen(view: TeamView, now: Instant, vehicle: Int): Seen =
     val reading = view.readings(vehicle).get.state
-    Seen(view.kinematics(vehicle), age(view, now, reading), isPredicted = view.estimates.isDefined)
-
-  private def age(view: TeamView, now: Instant, reading: Stamped[?]): Span =
-    view.alignment.flatMap(_.ageOf(reading, now)).getOrElse(reading.ageByArrival(now))
+    Seen(view.kinematics(vehicle), view.ageOf(reading, now), isPredicted = view.estimates.isDefined)
 
   private def elapsed(memory: Memory, now: Instant): Span = memory.decidedAt.fold(Span.Zero)(now.since)
 

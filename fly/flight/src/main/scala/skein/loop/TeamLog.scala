@@ -129,6 +129,7 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
       decision.decidedAt,
       decision.action,
       seesOthers = others.nonEmpty,
+      decision.view.asRead(decision.decidedAt),
       rows.decision(decision)
     ))
     for other <- others do recorder.offer(LaterRow(rows.sighting(decision, other)))

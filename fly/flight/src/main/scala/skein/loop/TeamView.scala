@@ -1,8 +1,8 @@
 package skein.loop
 
-import skein.policy.{Action, Fleet}
+import skein.policy.{Action, Fleet, Seen}
 import skein.forecast.{Estimate, ForecastEvent, Forecast}
-import skein.signal.{ClockAlignment, Kinematics}
+import skein.signal.{ClockAlignment, Kinematics, Stamped}
 import skein.units.*
 
 /** A command that was sent to a vehicle, as other vehicles' policies observe it.
@@ -67,6 +67,14 @@ final case class TeamView(
   def of(vehicle: Int): TeamView = strangers.fold(this): others =>
     val strange = readings.indices.filter(_ != vehicle)
     copy(forecast = forecast.map(strange.foldLeft(_)(_.withVehicleOf(others, _))))
+
+  /** Age of a reading by the two clocks; before they are related, since its arrival. */
+  def ageOf(reading: Stamped[?], now: Instant): Span =
+    alignment.flatMap(_.ageOf(reading, now)).getOrElse(reading.ageByArrival(now))
+
+  /** The newest reading of each vehicle that was read, not predicted. */
+  def asRead(now: Instant): Vector[Seen] = readings.flatten.map: reading =>
+    Seen(reading.state.value, ageOf(reading.state, now), isPredicted = false)
 
   /** A vehicle's state: as estimated, or else as read. */
   def kinematics(vehicle: Int): Kinematics =

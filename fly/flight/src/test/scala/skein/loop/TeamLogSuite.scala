@@ -99,6 +99,8 @@ class TeamLogSuite extends munit.FunSuite:
       case Vector(decision: LaterDecision, _: LaterRow, _: LaterRow) =>
         assertEquals((decision.vehicle, decision.decidedAt), (team.agents(1).name, made.decidedAt))
         assert(decision.seesOthers)
+        assertEquals(decision.readings, made.view.asRead(made.decidedAt))
+        assertEquals(decision.readings.size, team.agents.size)
       case other => fail(s"expected a decision and two sightings to be made later, came $other")
     val rows = books.recording
     assertEquals(taken.result().map(_.row), (rows.decisions ++ rows.sightings).toVector)

@@ -89,9 +89,7 @@ object Engagement:
     * @throws IllegalArgumentException if a policy reads sensors
     */
   def ofScenario(scenario: Scenario, durationS: Double): Engagement =
-    inSpace(scenario.fleet, durationS).copy(isOver =
-      Option.when(OwnEnd.has(scenario))(known => Scenario.told(scenario.name)(scenario.isOver(known)))
-    )
+    inSpace(scenario.fleet, durationS).copy(isOver = OwnEnd.of(scenario))
 
   /** An engagement of the two vehicles of a duel; the evader is read first. */
   def of(duel: Duel): Engagement =

@@ -26,6 +26,7 @@ private[skein] final class PredictiveRun(timing: LoopTiming.Predictive, world: R
     world.schedule(periodNs / 2, RolloutWorld.Due, 0, 0)
 
   protected def renewed(vehicle: Int, question: Int): Unit =
+    observation.reading(vehicle) = question
     val at      = world.slot(vehicle, question)
     val reading = Stamped(
       world.seen(vehicle, question),

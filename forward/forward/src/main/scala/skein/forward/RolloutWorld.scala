@@ -68,39 +68,26 @@ private[skein] final class RolloutWorld(
     watching = listener
     ended = false
     begunAtNs = RolloutWorld.NotBegun
-    java.util.Arrays.fill(newest, RolloutWorld.Unread)
     queue.clear()
     for vehicle <- vehicles.indices do
       vehicles(vehicle).start(agents(vehicle).startX, agents(vehicle).startY, agents(vehicle).altitudeDownM)
       asked(vehicle) = firstQuestion; commanded(vehicle) = 0; commandAt(vehicle) = 0; ackAt(vehicle) = 0
 
-  private val isAwaited               = engagement.isOver.isDefined
-  private val newest                  = Array.ofDim[Int](count)
-  private val newestValid, newestCame = Array.ofDim[Long](count)
-  private var begunAtNs               = RolloutWorld.NotBegun
-  private var ended                   = false
+  private var begunAtNs = RolloutWorld.NotBegun
+  private var ended     = false
 
   /** Whether the engagement said that it is over. */
   def isOver: Boolean = ended
 
-  /** Asks the engagement whether it is over, given the newest reading received from each vehicle. */
-  private def mayEnd(): Unit =
-    if begunAtNs == RolloutWorld.NotBegun then begunAtNs = time
-    if !newest.contains(RolloutWorld.Unread) then
-      val known = Known(
-        Span.ofNanos(time - begunAtNs),
-        Vector.tabulate(count): vehicle =>
-          val at = slot(vehicle, newest(vehicle))
-          Seen(kinematics(at), Span.ofNanos(time - validAtNs(at)), isPredicted = false)
+  private def known(upon: Grounds): Known = Known(
+    Span.ofNanos(time - begunAtNs),
+    Vector.tabulate(count): vehicle =>
+      Seen(
+        kinematics(slot(vehicle, upon.reading(vehicle))),
+        Span.ofNanos(time - upon.validAtNs(vehicle)),
+        isPredicted = false
       )
-      ended = engagement.isOver.exists(_(known))
-
-  private def note(vehicle: Int, number: Int): Unit =
-    val at = slot(vehicle, number)
-    if newest(vehicle) == RolloutWorld.Unread || isNewer(at, newestValid(vehicle), newestCame(vehicle)) then
-      newest(vehicle) = number
-      newestValid(vehicle) = validAtNs(at)
-      newestCame(vehicle) = time
+  )
 
   /** Receives the events of the episode, such as readings and commands. */
   def observer: LoopObserver = watching
@@ -160,7 +147,6 @@ private[skein] final class RolloutWorld(
 
   def received(vehicle: Int, number: Int): Unit =
     receivedAtNs(slot(vehicle, number)) = time
-    if isAwaited then note(vehicle, number)
 
   /** Whether a reading, by its [[slot]], is newer than one of these times. */
   def isNewer(slot: Int, thanValidAtNs: Long, thanReceivedAtNs: Long): Boolean =
@@ -171,7 +157,6 @@ private[skein] final class RolloutWorld(
     asked(vehicle) += 1
     steps(slot(vehicle, number)) = step
     read(vehicle, number)
-    if isAwaited then note(vehicle, number)
     number
 
   private def read(vehicle: Int, number: Int): Unit =
@@ -223,7 +208,9 @@ private[skein] final class RolloutWorld(
 
   def decided(agent: Int, elapsedS: Double, upon: Grounds): Unit =
     observer.decided(agent, time, elapsedS, upon)
-    if isAwaited then mayEnd()
+    for isOver <- engagement.isOver do
+      if begunAtNs == RolloutWorld.NotBegun then begunAtNs = time
+      ended ||= isOver(known(upon))
 
   private def act(agent: Int, action: Action): Unit =
     vehicles(agent).advance(nowS)
@@ -231,7 +218,6 @@ private[skein] final class RolloutWorld(
 
 private[skein] object RolloutWorld:
   private val NotBegun = -1L
-  private val Unread   = -1
 
   // Kinds of events.
   val ScoreNow      = 0

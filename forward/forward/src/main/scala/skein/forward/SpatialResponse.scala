@@ -3,7 +3,14 @@ package skein.forward
 import skein.policy.Action
 import skein.signal.Kinematics
 import skein.units.{Quaternion, Vector3}
-import skein.vehicle.{SpaceReading, SpatialPlant, StepwiseFlight}
+import skein.vehicle.{
+  ConstantVelocity,
+  ObservedSpatialPlant,
+  SpatialFlight,
+  SpatialModel,
+  SpatialPlant,
+  VehicleModel
+}
 
 /** Vehicles that move by a [[skein.vehicle.SpatialPlant]]. They perform velocities, with or without an
   * altitude. Yaws are ignored; to hover or to turn in place becomes a command to stand still.
@@ -17,6 +24,10 @@ final case class SpatialResponse(plant: SpatialPlant[?]) extends VelocityRespons
   override def isSpatial: Boolean = true
 
   override def regardsYaw: Boolean = false
+
+  override def predictor: VehicleModel[?] = plant match
+    case observed: ObservedSpatialPlant[?] => SpatialModel(observed)
+    case _                                 => ConstantVelocity
 
   override def performs: Action => Boolean =
     case _: (Action.Velocity | Action.VelocityAt | Action.Along | Action.Turn) | Action.Hover => true
@@ -64,19 +75,3 @@ private final class SpatialVehicle[S](plant: SpatialPlant[S]) extends Vehicle:
     Quaternion.Identity,
     Vector3.Zero
   )
-
-private final class SpatialFlight[S](plant: SpatialPlant[S])
-    extends StepwiseFlight[S](plant, plant.initial(0)):
-  private var north, east, third, holds = 0.0
-
-  def reading: SpaceReading = plant.read(state)
-
-  def rest(downM: Double): Unit = begin(0, plant.initial(downM))
-
-  /** Sets the command in effect from `atS` on; the caller has simulated up to that time. */
-  def act(atS: Double, northMps: Double, eastMps: Double, third: Double, holds: Double): Unit =
-    north = northMps; east = eastMps
-    this.third = third; this.holds = holds
-    beginStep(atS)
-
-  protected def stepped(from: S, spanS: Double): S = plant.step(from, north, east, third, holds, spanS)

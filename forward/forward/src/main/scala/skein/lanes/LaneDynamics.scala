@@ -53,10 +53,12 @@ private[skein] object LaneDynamics:
   def under(timing: LoopTiming, model: VelocityResponse): Either[String, LaneDynamics] =
     of(model).flatMap: vehicles =>
       timing match
-        case _: LoopTiming.Predictive if model.isInstanceOf[SpatialResponse] =>
-          Left("SIMD does not predict climbs")
         case predictive: LoopTiming.Predictive =>
-          LanePredictor.of(predictive.predictor).map(PredictedDynamics(vehicles, _))
+          for
+            predictor <- LanePredictor.of(predictive.predictor)
+            _         <- Expect.that(predictor.inSpace == model.isInstanceOf[SpatialResponse]):
+              "SIMD predicts climbs by a model in space, and level flight by another"
+          yield PredictedDynamics(vehicles, predictor)
         case _ => Right(vehicles)
 
   /** Checks that all vehicles start high enough. Left states why SIMD does not support their start. */

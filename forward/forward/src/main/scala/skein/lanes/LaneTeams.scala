@@ -24,7 +24,7 @@ private[lanes] abstract class LaneTeams(form: TeamForm):
         // Candidates often have the very same opponent.
         if before == null || (numbers ne before.numbers(self)) then members(self).take(world, numbers)
         self += 1
-      if form.hasParameters then scores.take(world, team.ofQuantities)
+      if form.hasParameters then scores.take(world, team.ofScores)
 
   /** Simulates one episode in each world.
     *

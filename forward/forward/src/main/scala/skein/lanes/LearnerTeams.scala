@@ -43,7 +43,7 @@ final class LearnerTeams private[lanes] (
     val prepared = PreparedTeam(team, Right(form), None)
     for world <- 0 until WORLDS do
       for self <- members.indices do members(self).take(world, prepared.numbers(self))
-      if form.hasParameters then scores.take(world, prepared.ofQuantities)
+      if form.hasParameters then scores.take(world, prepared.ofScores)
 
   def restartAlone: Boolean = true
 

@@ -26,7 +26,11 @@ private[lanes] final case class TeamForm(
   /** Whether some vehicle knows its opponent by a camera alone. */
   def sees: Boolean = policies.eyes.nonEmpty
 
-  lazy val hasParameters: Boolean = scores.judged.indices.exists(scores.parameters(_) > 0)
+  /** The reason why a GPU does not support such a team; None if it does. */
+  def refusedByGpu: Option[String] = policies.refusedByGpu.orElse:
+    Option.when(scores.hasEnd)("the GPU flies every episode to its duration")
+
+  lazy val hasParameters: Boolean = (0 until scores.formulas).exists(scores.parameters(_) > 0)
 
   private lazy val last = Array.ofDim[(RolloutAgent, VehicleNumbers)](policies.count)
 
@@ -59,10 +63,9 @@ private[lanes] final class PreparedTeam(
   lazy val numbers: Array[VehicleNumbers] =
     Array.tabulate(form.count)(self => form.numbersOf(self, vehicles(self)))
 
-  /** The parameters of each quantity; requires a [[form]]. */
-  lazy val ofQuantities: Array[Array[Double]] =
-    candidate.quantities.toArray.zipWithIndex.map: (each, number) =>
-      form.scores.parametersOf(number, each.quantity)
+  /** The parameters of each quantity, then of an end; requires a [[form]]. */
+  lazy val ofScores: Array[Array[Double]] =
+    form.scores.parametersOf(candidate.quantities, candidate.ownEnd)
 
 /** The episodes that teams share under one loop. */
 private[lanes] final class Episodes(timing: LoopTiming):
@@ -74,8 +77,9 @@ private[lanes] final class Episodes(timing: LoopTiming):
   /** Everything that distinguishes an episode from others, as a key. */
   def nameOf(link: Delays, key: Int, form: TeamForm): Any =
     val delays = if areOne(form) then () else (link, key)
-    (delays, form.count, form.durationS, form.policies.needsMore, form.policies.eyes)
+    (delays, form.count, form.durationS, form.policies.needsMore, form.policies.eyes, form.scores.endsBy)
 
   def timetable(link: Delays, key: Int, form: TeamForm): Timetable =
     import form.policies.{eyes, needsMore}
-    Timetable.of(form.count, form.durationS, timing, link, key, form.vehicles, eyes, needsMore)
+    import form.scores.endsBy
+    Timetable.of(form.count, form.durationS, timing, link, key, form.vehicles, eyes, needsMore, endsBy)

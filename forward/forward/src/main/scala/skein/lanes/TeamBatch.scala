@@ -69,7 +69,7 @@ final class TeamBatch(
     def together(form: TeamForm) = shareEpisodes || episodes.areOne(form)
     def refused(by: Delays)      = form.toOption.flatMap(form => refusal(form, together(form), by))
     val worlds                   = if form.exists(together) then "candidates of an episode" else "worlds"
-    val byGpu                    = form.toOption.flatMap(_.policies.refusedByGpu).map(Left(_))
+    val byGpu                    = form.toOption.flatMap(_.refusedByGpu).map(Left(_))
     Engine.of(
       // Refused over the fastest link, it is over any.
       form.flatMap(_ => refused(DelayTable.none).toLeft(s"${LaneMath.LANES} $worlds at a time")),
@@ -95,6 +95,8 @@ final class TeamBatch(
   private def refusal(form: TeamForm, together: Boolean, link: Delays): Option[String] =
     if together then None
     else
+      val ends = Expect.that(!form.scores.hasEnd || !form.sees):
+        "one that ends by itself, and in which a vehicle sees by a sensor, flies by lanes where candidates share episodes"
       val seen =
         for
           _ <- Expect.that(form.vehicles.fliesAlone):
@@ -104,7 +106,7 @@ final class TeamBatch(
           _ <- Expect.that(form.policies.eyes.size == 1):
             "two that see one another by sensors fly by lanes where candidates share episodes"
         yield ()
-      seen.left.toOption.filter(_ => form.sees).orElse:
+      ends.left.toOption.orElse(seen.left.toOption.filter(_ => form.sees)).orElse:
         LoopSupport.refusal(timing, form.count, link, form.vehicles)
 
   /** Simulates all worlds, unless it is cancelled.

@@ -42,10 +42,12 @@ private[lanes] final class TeamForms(
           OpponentLanes.of(engagement, efforts.flatten.contains, inSpace, isPredicted)
         .flatten
         .getOrElse(teamOf(engagement, efforts.flatten))
+      _ <- Expect.that(engagement.isOver.isEmpty || candidate.ownEnd.isDefined):
+        "its end is no scenario's"
       scores <- ScoreLanes
-        .of(quantities, engagement.agents.size)
+        .of(quantities, engagement.agents.size, candidate.ownEnd)
         .left
-        .map(refused => s"a quantity is no formula: ${refused.getMessage}")
+        .map(_.getMessage)
     yield
       val altitudes = if inSpace then Vector.empty else engagement.agents.map(_.altitudeDownM)
       val form      = TeamForm(policies, scores, efforts, engagement.durationS, altitudes)(vehicles)

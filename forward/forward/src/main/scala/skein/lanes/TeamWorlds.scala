@@ -2,6 +2,7 @@ package skein.lanes
 
 import skein.forward.Engagement
 import skein.lanes.score.{Effort, Judged}
+import skein.scenario.OwnEnd
 
 /** The worlds of one call of [[TeamBatch]]: a candidate and a link each. */
 trait TeamWorlds extends Worlds:
@@ -21,6 +22,9 @@ final class TeamCandidate(
     val areAtOnePace: Boolean = true
 ):
   private[skein] val quantities: Vector[Judged] = judged.collect { case each: Judged => each }
+
+  /** The scenario's own end, if the team flies a scenario that has one. */
+  private[lanes] def ownEnd: Option[OwnEnd] = engagement.isOver.collect { case end: OwnEnd => end }
 
 /** The results of each world.
   *

@@ -2,9 +2,10 @@ package skein.lanes
 
 import java.nio.file.{Files, Path}
 import skein.forward.DelayTable
+import skein.testing.Optimised
 
 /** The code in the guide on formulas compiles and runs. */
-class GuideSuite extends munit.FunSuite:
+class GuideSuite extends munit.FunSuite, Optimised:
   private val root =
     Iterator.iterate(Path.of("").toAbsolutePath)(_.getParent).find(at => Files.exists(at.resolve("sbtw"))).get
   private val guide = Files.readString(root.resolve("docs/guides/formulas.md"))

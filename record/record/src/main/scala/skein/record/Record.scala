@@ -1,6 +1,6 @@
 package skein.record
 
-import skein.policy.{Action, Agent}
+import skein.policy.{Action, Agent, Seen}
 import skein.signal.{Kinematics, Stamped}
 import skein.units.*
 import skein.vehicle.VehicleKind
@@ -29,14 +29,18 @@ final class LaterRow(make: => Record) extends Recordable:
 /** A decision whose row is made later, with what those need who watch over the flight meanwhile.
   *
   * @param seesOthers whether it was made from more than its own and its opponent's reading
+  * @param asRead the readings from which it was made, not predicted; by the vehicle's number where all were
+  *   read
   */
 final class LaterDecision(
     val vehicle: String,
     val decidedAt: Instant,
     val action: Action,
     val seesOthers: Boolean,
+    asRead: => Vector[Seen],
     make: => DecisionRow
 ) extends Recordable:
+  def readings: Vector[Seen] = asRead
   lazy val row: DecisionRow = make
 
 object Record:

@@ -39,7 +39,11 @@ final class ForecastPlants implements ForecastVehicles {
   /** The state at the start and at the end of a step. */
   private final float[] from, to;
 
-  private final float[] north = new float[WORLDS], east = new float[WORLDS], forS = new float[WORLDS];
+  private final float[] north = new float[WORLDS],
+      east = new float[WORLDS],
+      third = new float[WORLDS],
+      holds = new float[WORLDS],
+      forS = new float[WORLDS];
 
   /** Time simulated so far, end of the command in effect, and latest start of the next step, s from the
    * reading.
@@ -63,7 +67,11 @@ final class ForecastPlants implements ForecastVehicles {
     step.inputs(0, count, from, 0);
     step.input(count, north, 0);
     step.input(count + 1, east, 0);
-    step.input(count + 2, forS, 0);
+    if (lanes.inSpace()) {
+      step.input(count + 2, third, 0);
+      step.input(count + 3, holds, 0);
+    }
+    step.input(count + (lanes.inSpace() ? 4 : 2), forS, 0);
     step.outputs(count, to, 0);
     look = lanes.read().call();
     look.inputs(0, count, from, 0);
@@ -75,8 +83,9 @@ final class ForecastPlants implements ForecastVehicles {
   }
 
   @Override
-  public void start() {
-    lanes.rest(held, 0);
+  public void start(float[] startZ) {
+    if (lanes.inSpace()) lanes.restInSpace(held, 0, startZ);
+    else lanes.rest(held, 0);
   }
 
   @Override
@@ -97,13 +106,18 @@ final class ForecastPlants implements ForecastVehicles {
     if (remembers) System.arraycopy(held, 0, from, 0, held.length);
     else correct(read, from);
     fly(vectors, way);
-    look.outputs(LaneObservation.READ, into, 0);
+    look.outputs(read(), into, 0);
     look.apply();
+  }
+
+  /** Number of components of a reading. */
+  private int read() {
+    return lanes.inSpace() ? LaneObservation.IN_SPACE : LaneObservation.READ;
   }
 
   /** Corrects the simulated state by a reading. */
   private void correct(float[] read, float[] into) {
-    correct.inputs(count, LaneObservation.READ, read, LaneVehicles.SEEN_X);
+    correct.inputs(count, read(), read, LaneVehicles.SEEN_X);
     correct.outputs(count, into, 0);
     correct.apply();
   }
@@ -129,6 +143,10 @@ final class ForecastPlants implements ForecastVehicles {
       boolean isLast = turn + 1 >= way.turnsOf[i / LANES], counts = turn >= way.heldFrom[i / LANES];
       FloatVector.fromArray(SPECIES, turnX, place).mul(speedMps).intoArray(north, i);
       FloatVector.fromArray(SPECIES, turnY, place).mul(speedMps).intoArray(east, i);
+      if (lanes.inSpace()) {
+        FloatVector.fromArray(SPECIES, way.turn.third, place).intoArray(third, i);
+        FloatVector.fromArray(SPECIES, way.turn.holds, place).intoArray(holds, i);
+      }
       FloatVector end = FloatVector.fromArray(SPECIES, way.endS, i);
       if (!counts) end = end.mul(0f);
       else if (!isLast) end = end.min(FloatVector.fromArray(SPECIES, turnS, place + WORLDS));

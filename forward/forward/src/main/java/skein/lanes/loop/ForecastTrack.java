@@ -23,7 +23,7 @@ import skein.lanes.policy.LanePolicy;
 
 /** The recent history of one vehicle in many worlds: its last reading, the commands sent since, and which of
  * these are assumed to be in effect. The scalar reference is {@link VehicleForecast} with a {@link
- * skein.vehicle.PlantModel}. Of the time before the reading, only the commands of the last dead time and the
+ * skein.vehicle.PlantModel}, in space a {@link skein.vehicle.SpatialModel}. Of the time before the reading, only the commands of the last dead time and the
  * state of {@link ForecastVehicles} matter.
  *
  * <p>{@link #lay} computes the track from the reading to a moment: a list of turns, at each of which the
@@ -62,13 +62,16 @@ final class ForecastTrack {
 
   // The row of the oldest stored command, which was in effect at the reading; and the direction before it.
   private final int[] head = new int[WORLDS];
-  private final Directions before = new Directions(WORLDS), prior = new Directions(WORLDS);
+  private final Directions before, prior;
+
+  /** Whether commands have a vertical part. */
+  private final boolean inSpace;
 
   // By row modulo slots: time of the command, NONE without one, and time at which its arrival was known; from
   // the row's start.
   private int slots = 8, oldest;
   private int[] sentAt = new int[slots * WORLDS], answeredAt = new int[slots * WORLDS];
-  private Directions sent = new Directions(slots * WORLDS);
+  private Directions sent;
 
   /** Times of the track's turns, s from the reading, ascending; {@link #turn} has the direction from each on.
    */
@@ -102,8 +105,14 @@ final class ForecastTrack {
 
   final ArrivedReadings arrived = new ArrivedReadings();
 
-  /** @param deadS from the arrival of a command until the vehicle is assumed to follow it, s */
-  ForecastTrack(double periodS, double deadS) {
+  /** @param deadS from the arrival of a command until the vehicle is assumed to follow it, s
+   * @param inSpace whether commands have a vertical part
+   */
+  ForecastTrack(double periodS, double deadS, boolean inSpace) {
+    this.inSpace = inSpace;
+    before = new Directions(WORLDS, inSpace);
+    prior = new Directions(WORLDS, inSpace);
+    sent = new Directions(slots * WORLDS, inSpace);
     this.periodS = (float) periodS;
     this.deadS = (float) deadS;
     periodGrains = LaneViews.grains(periodS);
@@ -114,12 +123,18 @@ final class ForecastTrack {
 
   private void makeTurns() {
     turnS = new float[(held + 1 + slots) * WORLDS];
-    turn = new Directions(turnS.length);
-    ofTurns = new float[][] {turnS, turn.cos, turn.sin};
+    turn = new Directions(turnS.length, inSpace);
+    ofTurns = inSpace
+        ? new float[][] {turnS, turn.cos, turn.sin, turn.third, turn.holds}
+        : new float[][] {turnS, turn.cos, turn.sin};
     counts = new int[turnS.length];
   }
 
-  void start() {
+  /** Resets to the start of an episode.
+   *
+   * @param startZ altitudes by world, m down, which vehicles in space hold at first
+   */
+  void start(float[] startZ) {
     Arrays.fill(knownRow, -1);
     Arrays.fill(readAt, -FAR);
     arrived.start();
@@ -129,6 +144,7 @@ final class ForecastTrack {
     Arrays.fill(turnS, LONG_AGO_S);
     Arrays.fill(turn.cos, 0);
     Arrays.fill(turn.sin, 0);
+    if (inSpace) for (Directions each : new Directions[] {before, turn}) each.level(startZ);
     Arrays.fill(heldFrom, held - 1);
     oldest = 0;
   }
@@ -159,13 +175,17 @@ final class ForecastTrack {
     slots = 2 * count;
     sentAt = new int[slots * WORLDS];
     answeredAt = new int[slots * WORLDS];
-    sent = new Directions(slots * WORLDS);
+    sent = new Directions(slots * WORLDS, inSpace);
     for (int r = oldest; r < row; r++) {
       int from = (r & count - 1) * WORLDS, to = (r & slots - 1) * WORLDS;
       System.arraycopy(sentBefore, from, sentAt, to, WORLDS);
       System.arraycopy(answeredBefore, from, answeredAt, to, WORLDS);
       System.arraycopy(directions.cos, from, sent.cos, to, WORLDS);
       System.arraycopy(directions.sin, from, sent.sin, to, WORLDS);
+      if (inSpace) {
+        System.arraycopy(directions.third, from, sent.third, to, WORLDS);
+        System.arraycopy(directions.holds, from, sent.holds, to, WORLDS);
+      }
     }
     makeTurns();
     for (int i = 0; i < ofTurns.length; i++)
@@ -186,6 +206,10 @@ final class ForecastTrack {
       IntVector.fromArray(INTS, answers, i).intoArray(answeredAt, slot + i);
       FloatVector.fromArray(SPECIES, directions.cos, i).intoArray(sent.cos, slot + i);
       FloatVector.fromArray(SPECIES, directions.sin, i).intoArray(sent.sin, slot + i);
+      if (inSpace) {
+        FloatVector.fromArray(SPECIES, directions.third, i).intoArray(sent.third, slot + i);
+        FloatVector.fromArray(SPECIES, directions.holds, i).intoArray(sent.holds, slot + i);
+      }
     }
   }
 
@@ -273,12 +297,13 @@ final class ForecastTrack {
         FloatVector at = FloatVector.fromArray(SPECIES, turnS, from),
             x = FloatVector.fromArray(SPECIES, turnX, from),
             y = FloatVector.fromArray(SPECIES, turnY, from);
-        VectorMask<Float> stands =
+        VectorMask<Float> changes =
             FloatVector.fromArray(SPECIES, turnX, last + i)
                 .compare(NE, x)
-                .or(FloatVector.fromArray(SPECIES, turnY, last + i).compare(NE, y))
-                .and(at.compare(LE, until))
-                .and(flies);
+                .or(FloatVector.fromArray(SPECIES, turnY, last + i).compare(NE, y));
+        if (inSpace)
+          changes = changes.or(differ(turn.third, last + i, from)).or(differ(turn.holds, last + i, from));
+        VectorMask<Float> stands = changes.and(at.compare(LE, until)).and(flies);
         if (stands.anyTrue()) {
           // The last turn that took effect by then replaces the stored one; later turns follow it.
           VectorMask<Float> follows = stands.and(at.compare(GT, span));
@@ -314,6 +339,10 @@ final class ForecastTrack {
       IntVector earliest = IntVector.fromArray(INTS, head, i);
       FloatVector.fromArray(SPECIES, beforeX, i).intoArray(priorX, i);
       FloatVector.fromArray(SPECIES, beforeY, i).intoArray(priorY, i);
+      if (inSpace) {
+        FloatVector.fromArray(SPECIES, before.third, i).intoArray(prior.third, i);
+        FloatVector.fromArray(SPECIES, before.holds, i).intoArray(prior.holds, i);
+      }
       for (int r = laidFrom; r < row; r++) {
         int slot = (r & mask) * WORLDS + i, at = first + (r - laidFrom) * WORLDS + i;
         VectorMask<Float> present =
@@ -333,9 +362,17 @@ final class ForecastTrack {
           IntVector.fromArray(INTS, head, i).blend(r, acted.cast(INTS)).intoArray(head, i);
           FloatVector.fromArray(SPECIES, beforeX, i).blend(x, acted).intoArray(beforeX, i);
           FloatVector.fromArray(SPECIES, beforeY, i).blend(y, acted).intoArray(beforeY, i);
+          if (inSpace) {
+            blend(before.third, i, prior.third, i, acted);
+            blend(before.holds, i, prior.holds, i, acted);
+          }
         }
         x.blend(FloatVector.fromArray(SPECIES, sent.cos, slot), present).intoArray(priorX, i);
         y.blend(FloatVector.fromArray(SPECIES, sent.sin, slot), present).intoArray(priorY, i);
+        if (inSpace) {
+          blend(prior.third, i, sent.third, slot, present);
+          blend(prior.holds, i, sent.holds, slot, present);
+        }
       }
       boolean isPast = true;
       for (int number = since; number < held; number++) {
@@ -350,6 +387,16 @@ final class ForecastTrack {
     if (isFull)
       throw new IllegalStateException(
           "more than " + held + " commands act within a dead time of " + deadS + " s");
+  }
+
+  private static VectorMask<Float> differ(float[] of, int one, int other) {
+    return FloatVector.fromArray(SPECIES, of, one).compare(NE, FloatVector.fromArray(SPECIES, of, other));
+  }
+
+  private static void blend(float[] into, int at, float[] of, int from, VectorMask<Float> where) {
+    FloatVector.fromArray(SPECIES, into, at)
+        .blend(FloatVector.fromArray(SPECIES, of, from), where)
+        .intoArray(into, at);
   }
 
   /** Computes the track from the newest reading until a command sent at a given moment takes effect.
@@ -414,6 +461,13 @@ final class ForecastTrack {
       at.intoArray(turnS, place);
       x.intoArray(turnX, place);
       y.intoArray(turnY, place);
+      FloatVector third = zero, holds = zero;
+      if (inSpace) {
+        third = FloatVector.fromArray(SPECIES, turn.third, standing + i);
+        holds = FloatVector.fromArray(SPECIES, turn.holds, standing + i);
+        third.intoArray(turn.third, place);
+        holds.intoArray(turn.holds, place);
+      }
       FloatVector latest = to.add(longAgo);
       IntVector seen = earliest.sub(earliest);
       int first = Math.max(oldest, Math.min(earliest.reduceLanes(MIN), row));
@@ -453,6 +507,14 @@ final class ForecastTrack {
           at.blend(dead, late).intoArray(turnS, place - WORLDS);
           x.blend(FloatVector.fromArray(SPECIES, before.cos, i), late).intoArray(turnX, place - WORLDS);
           y.blend(FloatVector.fromArray(SPECIES, before.sin, i), late).intoArray(turnY, place - WORLDS);
+          if (inSpace) {
+            third
+                .blend(FloatVector.fromArray(SPECIES, before.third, i), late)
+                .intoArray(turn.third, place - WORLDS);
+            holds
+                .blend(FloatVector.fromArray(SPECIES, before.holds, i), late)
+                .intoArray(turn.holds, place - WORLDS);
+          }
         }
         seen = seen.blend(yes, present);
         latest = latest.blend(acts, count);
@@ -462,6 +524,12 @@ final class ForecastTrack {
         at.intoArray(turnS, place);
         x.intoArray(turnX, place);
         y.intoArray(turnY, place);
+        if (inSpace) {
+          third = third.blend(FloatVector.fromArray(SPECIES, sent.third, slot), count);
+          holds = holds.blend(FloatVector.fromArray(SPECIES, sent.holds, slot), count);
+          third.intoArray(turn.third, place);
+          holds.intoArray(turn.holds, place);
+        }
         no.blend(yes, count.cast(INTS)).intoArray(counts, place);
       }
     }

@@ -11,7 +11,11 @@ interface ForecastVehicles {
     return false;
   }
 
-  default void start() {}
+  /** Resets to the start of an episode.
+   *
+   * @param startZ altitudes of the start by world, m down
+   */
+  default void start(float[] startZ) {}
 
   /** Simulates the track from the previous reading, and corrects the state by this one.
    *
@@ -23,7 +27,7 @@ interface ForecastVehicles {
   /** Simulates the track from the newest reading.
    *
    * @param read the newest readings, in the order of {@link LaneVehicles#SEEN_X} and the following constants
-   * @param into receives position, m, then velocity, m/s, each north, then east
+   * @param into receives position, m, then velocity, m/s, each north, then east; in space, then both down
    */
   void predict(LaneVectors vectors, ForecastTrack way, float[] read, float[] into);
 }

@@ -436,17 +436,31 @@ public abstract class LaneAgents {
     }
   }
 
+  /** Time of a world's decision, s; infinity without one.
+   *
+   * @param rowS time of the period's start
+   */
+  final float decidesS(int world, double rowS) {
+    return decides[world] == NONE
+        ? Float.POSITIVE_INFINITY
+        : (float) (rowS + decides[world] * (double) LaneViews.GRAIN_S);
+  }
+
   /** Computes the age of a vehicle's reading at the decision, s. */
   protected final void age(int vehicle, int[][] readAt, float[] into) {
     if (forecast != null) System.arraycopy(forecast.age(vehicle), 0, into, 0, WORLDS);
-    else
-      for (int i = 0; i < WORLDS; i += LANES)
-        ((FloatVector)
-                IntVector.fromArray(INTS, decides, i)
-                    .sub(IntVector.fromArray(INTS, readAt[vehicle], i))
-                    .convertShape(VectorOperators.I2F, SPECIES, 0))
-            .mul(LaneViews.GRAIN_S)
-            .intoArray(into, i);
+    else sinceRead(vehicle, readAt, into);
+  }
+
+  /** Computes the time from a vehicle's present reading to the decision, s. */
+  final void sinceRead(int vehicle, int[][] readAt, float[] into) {
+    for (int i = 0; i < WORLDS; i += LANES)
+      ((FloatVector)
+              IntVector.fromArray(INTS, decides, i)
+                  .sub(IntVector.fromArray(INTS, readAt[vehicle], i))
+                  .convertShape(VectorOperators.I2F, SPECIES, 0))
+          .mul(LaneViews.GRAIN_S)
+          .intoArray(into, i);
   }
 
   /** Clears the decisions in all other vectors. */

@@ -31,15 +31,17 @@ public final class LaneForecast {
 
   private final int[] due = new int[WORLDS];
 
-  /** @param deadTimeS from the arrival of a command until a vehicle is assumed to follow it, s */
-  LaneForecast(double periodS, int count, double deadTimeS) {
+  /** @param deadTimeS from the arrival of a command until a vehicle is assumed to follow it, s
+   * @param inSpace whether climbs are predicted
+   */
+  LaneForecast(double periodS, int count, double deadTimeS, boolean inSpace) {
     dueGrains = LaneViews.grains(periodS) / 2;
     Arrays.fill(due, dueGrains);
     tracks = new ForecastTrack[count];
-    for (int v = 0; v < count; v++) tracks[v] = new ForecastTrack(periodS, deadTimeS);
+    for (int v = 0; v < count; v++) tracks[v] = new ForecastTrack(periodS, deadTimeS, inSpace);
     vehicles = new ForecastVehicles[count];
     read = new LaneVehicles[count];
-    predicted = new float[count][LaneObservation.READ * WORLDS];
+    predicted = new float[count][(inSpace ? LaneObservation.IN_SPACE : LaneObservation.READ) * WORLDS];
   }
 
   /** Sets the model that predicts a vehicle, and the vehicles that its readings come from. */
@@ -55,8 +57,10 @@ public final class LaneForecast {
   void start() {
     delays.start();
     laidRow = -1;
-    for (ForecastTrack track : tracks) track.start();
-    for (ForecastVehicles each : vehicles) each.start();
+    for (int v = 0; v < tracks.length; v++) {
+      tracks[v].start(read[v].startZ);
+      vehicles[v].start(read[v].startZ);
+    }
   }
 
   /** Moves to a period; periods are processed in order. */

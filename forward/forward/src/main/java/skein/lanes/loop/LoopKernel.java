@@ -33,6 +33,9 @@ public final class LoopKernel {
   /** Whether readings are predicted. Then vehicles are also read in worlds without an offer. */
   private final boolean isForecast;
 
+  /** Time of each world's first decision, s. */
+  private final float[] begunS = new float[WORLDS];
+
   private static final LaneVectors ALL = LaneVectors.all();
   private final int[][] readAt;
 
@@ -51,11 +54,12 @@ public final class LoopKernel {
     periodS = loop.periodS();
     steps = (int) Math.round(loop.durationS() / periodS);
     readAt = new int[agents.length][WORLDS];
-    boolean needsVelocity = false, needsAges = false;
+    boolean needsVelocity = scores.needsVelocity(), needsAges = scores.needsAges();
     for (LaneAgents each : agents) {
       float[] state = each.vehicles.state;
       scores.place(each.self, state, LaneVehicles.X, state, LaneVehicles.Y);
       if (each.vehicles.inSpace) scores.placeDown(each.self, state, LaneVehicles.Z);
+      scores.placeReadings(each.self, state, LaneVehicles.SEEN_X);
       needsVelocity |= each.needsVelocity();
       needsAges |= each.needsAges();
     }
@@ -73,6 +77,7 @@ public final class LoopKernel {
     offers.start(worldKeys, links);
     for (LaneAgents each : agents) each.start();
     scores.start(WORLDS);
+    Arrays.fill(begunS, Float.POSITIVE_INFINITY);
     for (int row = 0; row < steps; row++) {
       if (row > 0) {
         for (LaneAgents each : agents) each.startRow(row);
@@ -88,6 +93,7 @@ public final class LoopKernel {
         if (!isScored) score(row);
         isScored = true;
         for (LaneAgents each : turns) if (offers.isFor(each.self)) each.decide(agents, offers, vectors, readAt);
+        if (scores.hasEnd()) mayEnd(row);
         int end = grainsToEnd(row);
         for (LaneAgents each : turns)
           if (offers.isFor(each.self)) {
@@ -108,6 +114,25 @@ public final class LoopKernel {
         IntVector now = IntVector.fromArray(INTS, at, i), before = IntVector.fromArray(INTS, held, i);
         if (fresh != null) now = before.blend(now, IntVector.fromArray(INTS, fresh, i).compare(GT, 0));
         now.intoArray(held, i);
+      }
+  }
+
+  /** Ends the worlds that are over by the readings of the decisions of this round. */
+  private void mayEnd(int row) {
+    double rowS = row * periodS;
+    float[] nowS = scores.nowS(), sinceS = scores.sinceS();
+    for (LaneAgents each : agents)
+      if (offers.isFor(each.self))
+        for (int i = 0; i < WORLDS; i++) begunS[i] = Math.min(begunS[i], each.decidesS(i, rowS));
+    for (LaneAgents each : agents)
+      if (offers.isFor(each.self)) {
+        for (int i = 0; i < WORLDS; i++) {
+          nowS[i] = each.decidesS(i, rowS);
+          sinceS[i] = nowS[i] - begunS[i];
+        }
+        if (scores.needsAges())
+          for (int v = 0; v < agents.length; v++) each.sinceRead(v, readAt, scores.agesS()[v]);
+        scores.end();
       }
   }
 

@@ -22,21 +22,19 @@ public final class PredictedLagVehicles extends PredictedVehicles {
   }
 
   @Override
-  public void start(int worlds) {
+  void start(int worlds, float[] startZ) {
     this.worlds = worlds;
   }
 
   @Override
   void predict(
-      float[] seenX,
-      float[] seenY,
-      float[] seenVx,
-      float[] seenVy,
+      TimetableVehicles read,
       Directions sent,
       int reading,
       int into,
       Propagation propagation,
       boolean withVelocity) {
+    float[] seenX = read.seenX, seenY = read.seenY, seenVx = read.seenVx, seenVy = read.seenVy;
     float carried = propagation.first(), kept = propagation.second();
     carry(seenX, seenVx, carried, seenX, reading, into);
     carry(seenY, seenVy, carried, seenY, reading, into);

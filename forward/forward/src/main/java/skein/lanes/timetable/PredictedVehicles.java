@@ -10,34 +10,31 @@ import skein.lanes.policy.LanePolicy;
 public abstract class PredictedVehicles {
   static final int WORLDS = LanePolicy.WORLDS;
 
-  void start(int worlds) {}
+  /** Resets to the start of an episode, of which the first worlds count.
+   *
+   * @param startZ altitudes of the start by world, m down
+   */
+  void start(int worlds, float[] startZ) {}
 
-  /** Sets all readings of one world's vehicle to its start, at rest. */
-  void restart(int world, float[] seenX, float[] seenY, float[] seenVx, float[] seenVy) {}
+  /** Sets all readings of one world's vehicle to its start, at rest.
+   *
+   * @param read has the readings
+   */
+  void restart(int world, TimetableVehicles read) {}
 
   /** Adds a reading to the forecast, if the model's state contains more than a reading.
    *
-   * @param seenX positions north of the readings, by place; the other arrays have positions east and
-   *   velocities
+   * @param read has the readings
    * @param sent the commands, by place
    * @param from the index, for the first world, of the previous reading; negative if there is none
    * @param reading the index, for the first world, of this reading
    * @param propagation the steps from the previous reading to this one
    */
-  void enter(
-      float[] seenX,
-      float[] seenY,
-      float[] seenVx,
-      float[] seenVy,
-      Directions sent,
-      int from,
-      int reading,
-      Propagation propagation) {}
+  void enter(TimetableVehicles read, Directions sent, int from, int reading, Propagation propagation) {}
 
   /** Predicts from a reading.
    *
-   * @param seenX positions north of the readings and predictions, by place; the other arrays have positions
-   *   east and velocities
+   * @param read has the readings, and receives the predictions
    * @param sent the commands, by place
    * @param reading the index of the reading, for the first world
    * @param into the index of the prediction, for the first world
@@ -45,10 +42,7 @@ public abstract class PredictedVehicles {
    * @param withVelocity whether velocities are predicted too
    */
   abstract void predict(
-      float[] seenX,
-      float[] seenY,
-      float[] seenVx,
-      float[] seenVy,
+      TimetableVehicles read,
       Directions sent,
       int reading,
       int into,

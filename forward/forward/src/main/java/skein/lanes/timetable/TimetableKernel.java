@@ -14,7 +14,7 @@ public final class TimetableKernel {
 
   /** Kinds of operations in a timetable. */
   public static final int LOOK = 0, DECIDE = 1, ACT = 2, SCORE = 3, PREDICT = 4, EXPOSE = 5, JOIN = 6,
-      ENTER = 7;
+      ENTER = 7, END = 8;
 
   private final TimetableAgents[] agents;
   private final TimetableScores scores;
@@ -23,7 +23,7 @@ public final class TimetableKernel {
   // Of the episode's timetable.
   private int[] operations, views;
   private int numbers;
-  private float[] times;
+  private float[] times, endAgesS;
   private Propagation[] propagations;
   private boolean readsVelocity;
 
@@ -33,7 +33,7 @@ public final class TimetableKernel {
     this.scores = scores;
     boolean needsVelocity = false;
     for (TimetableAgents each : agents) needsVelocity |= each.needsVelocity();
-    withVelocity = needsVelocity;
+    withVelocity = needsVelocity || scores.needsVelocity();
   }
 
   /** Simulates {@link #WORLDS} candidates in one episode, by the policies' parameters.
@@ -56,6 +56,7 @@ public final class TimetableKernel {
     views = timetable.views();
     numbers = timetable.numbers();
     times = timetable.times();
+    endAgesS = timetable.endAgesS();
     propagations = timetable.propagations();
     // Predictions start from velocities, whoever looks at them.
     readsVelocity = withVelocity || propagations.length > 0;
@@ -72,15 +73,21 @@ public final class TimetableKernel {
               times, number, first * WORLDS, readsVelocity && operations[field + 3] != 0);
       case ACT -> agent.vehicles.act(times, number, agent.headings, first * WORLDS);
       case SCORE -> scores.score(agents, views, first * agents.length, times[number]);
+      case END ->
+          scores.end(
+              agents,
+              views,
+              first * agents.length,
+              times[number],
+              times[number + 1],
+              endAgesS,
+              operations[field + 3]);
       case EXPOSE ->
           agent.expose(agents, views, first * agents.length, operations[field + 3], times, number);
       case JOIN -> agent.join(first, operations[field + 3] != 0, operations[field + 4]);
       case PREDICT ->
           agent.vehicles.predicted.predict(
-              agent.vehicles.seenX,
-              agent.vehicles.seenY,
-              agent.vehicles.seenVx,
-              agent.vehicles.seenVy,
+              agent.vehicles,
               agent.headings,
               first * WORLDS,
               operations[field + 3] * WORLDS,
@@ -88,10 +95,7 @@ public final class TimetableKernel {
               withVelocity);
       case ENTER ->
           agent.vehicles.predicted.enter(
-              agent.vehicles.seenX,
-              agent.vehicles.seenY,
-              agent.vehicles.seenVx,
-              agent.vehicles.seenVy,
+              agent.vehicles,
               agent.headings,
               first < 0 ? -1 : first * WORLDS,
               operations[field + 3] * WORLDS,

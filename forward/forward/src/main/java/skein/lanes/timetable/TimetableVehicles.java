@@ -72,7 +72,7 @@ public abstract class TimetableVehicles {
       }
     }
     start(worlds);
-    if (predicted != null) predicted.start(worlds);
+    if (predicted != null) predicted.start(worlds, startZ);
   }
 
   public abstract void start(int worlds);
@@ -89,7 +89,7 @@ public abstract class TimetableVehicles {
         seenVz[i] = 0f;
       }
     }
-    if (predicted != null) predicted.restart(world, seenX, seenY, seenVx, seenVy);
+    if (predicted != null) predicted.restart(world, this);
     rest(world);
   }
 

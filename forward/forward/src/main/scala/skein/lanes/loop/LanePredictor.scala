@@ -12,10 +12,21 @@ import skein.lanes.timetable.{
   StepClock,
   TimetablePredictor
 }
-import skein.vehicle.{ConstantVelocity, FirstOrderLag, ReducedModel, PlantModel, VehicleModel}
+import skein.vehicle.{
+  ConstantVelocity,
+  FirstOrderLag,
+  PlantModel,
+  PlantTiming,
+  ReducedModel,
+  SpatialModel,
+  VehicleModel
+}
 
 /** A kind of model whose predictions SIMD supports. */
 private[skein] trait LanePredictor extends TimetablePredictor:
+  /** Whether it predicts climbs. */
+  def inSpace: Boolean = false
+
   /** The predictions of one vehicle in all worlds, with separate delays in every world. */
   def alone(agent: RolloutAgent): ForecastVehicles
 
@@ -23,13 +34,16 @@ private[skein] object LanePredictor:
   /** The predictor of a model; Left states why SIMD does not support it. */
   def of(model: VehicleModel[?]): Either[String, LanePredictor] = model match
     case PlantModel(lag: ReducedModel) if lag.isLag => Right(LagPredictor(lag))
-    case PlantModel(plant)                          =>
-      for
-        lanes      <- PlantLanes.of(plant)
-        correction <- PlantCorrection.of(plant, lanes.count)
-      yield PlantPredictor(lanes, correction)
+    case PlantModel(plant)                          => byPlant(plant)
+    case SpatialModel(plant)                        => byPlant(plant)
     case ConstantVelocity => Right(CoastPredictor)
     case _                => Left("the lanes predict by plants and by constant velocity")
+
+  private def byPlant(plant: PlantTiming) =
+    for
+      lanes      <- PlantLanes.of(plant)
+      correction <- PlantCorrection.of(plant, lanes.count)
+    yield PlantPredictor(lanes, correction)
 
 /** Predicts constant velocity, by [[PredictedLagVehicles]]. */
 private[lanes] object CoastPredictor extends LanePredictor, Propagator:
@@ -65,6 +79,7 @@ private[lanes] final class PlantPredictor(val lanes: PlantLanes, val correction:
     extends LanePredictor:
   private val tell = lanes.stages.tell(lanes.plant)
 
+  override def inSpace: Boolean                        = lanes.inSpace
   override def remembers: Boolean                      = !correction.isTold
   def deadTimeS: Double                                = lanes.plant.deadTimeS
   def vehicles(agent: RolloutAgent): PredictedVehicles = PredictedPlants(lanes, correction, agent.speed)

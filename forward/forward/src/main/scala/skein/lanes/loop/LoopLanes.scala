@@ -26,7 +26,7 @@ private[lanes] final class LoopLanes(
 
   /** The forecast; null if decisions use the readings themselves. */
   val forecast: LaneForecast =
-    predictor.fold(null)(by => LaneForecast(timing.periodS, vehicles, by.deadTimeS))
+    predictor.fold(null)(by => LaneForecast(timing.periodS, vehicles, by.deadTimeS, by.inSpace))
 
   /** Sets the model that predicts a vehicle, and the source of its readings; does nothing in loops that do
     * not predict.

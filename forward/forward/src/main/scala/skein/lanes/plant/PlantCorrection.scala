@@ -3,9 +3,10 @@ package skein.lanes.plant
 import skein.formula.{Op, Untraceable}
 import skein.lanes.policy.LaneObservation
 import skein.simd.FixedFormula
-import skein.vehicle.ObservedPlant
+import skein.vehicle.PlantTiming
 
-/** Corrects a plant's state by readings, in many worlds by SIMD. Compiled from [[ObservedPlant.corrected]];
+/** Corrects a plant's state by readings, in many worlds by SIMD. Compiled from the method `corrected` of an
+  * [[skein.vehicle.ObservedPlant]] or [[skein.vehicle.ObservedSpatialPlant]];
   * inputs are the state's numbers, then position and velocity.
   *
   * @param count of numbers in the state
@@ -25,7 +26,7 @@ private[lanes] final class PlantCorrection private (formula: FixedFormula, count
 
 private[lanes] object PlantCorrection:
   /** Compiles the correction. Left states why SIMD does not support it. */
-  def of(plant: ObservedPlant[?], count: Int): Either[String, PlantCorrection] =
+  def of(plant: PlantTiming, count: Int): Either[String, PlantCorrection] =
     FixedFormula
       .of(plant, "corrected", alike = 0)
       .map(PlantCorrection(_, count))

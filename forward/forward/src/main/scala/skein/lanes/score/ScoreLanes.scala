@@ -1,44 +1,102 @@
 package skein.lanes.score
 
 import skein.formula.{Angles, Evaluation, Formula, Node, Op, Trace, Untraceable}
-import skein.scenario.{Positions, Quantity, Reduction, Separation}
+import skein.lanes.timetable.Timetable
+import skein.policy.PolicyInput
+import skein.scenario.{EndFormula, OwnEnd, Positions, Quantity, Reduction, Separation}
 import skein.simd.{BoundFunction, Forms}
 import skein.units.Expect
 
 /** Scores flights in many worlds by SIMD. The quantities, compiled from [[Quantity.of]], and their reductions
   * are one function: from the running numbers of each world and a view it computes their next values. Flights
-  * of one form differ in numbers alone.
+  * of one form differ in numbers alone. If the scenario has an end of its own, it is another function, which
+  * computes when each world ended; the running numbers of a world that has ended stay as they are.
   */
 private[lanes] final class ScoreLanes private (
-    formulas: Vector[Formula],
+    quantities: Vector[Formula],
     val judged: Vector[Judged],
-    val count: Int
+    val count: Int,
+    end: Option[EndFormula]
 ):
   import ScoreLanes.*
 
   private val trace = Trace()
 
-  private val angles: Vector[Angles] = formulas.zipWithIndex.map: (formula, number) =>
+  /** Those of the quantities, then that of the end. */
+  private val all = quantities ++ end.map(_.formula)
+
+  /** Number of formulas with parameters: the quantities, and the end if there is one. */
+  def formulas: Int = all.size
+
+  private val angles: Vector[Angles] = all.zipWithIndex.map: (formula, number) =>
     Angles(
       formula.trace,
       trace,
-      trace.input,
+      if number < judged.size then trace.input else ofEnd,
       _ => None,
       parameter => trace.input(FirstParameter + number * Stride + parameter)
     )
 
-  /** The initial values of the running numbers, by place. */
-  val initial: Vector[Float] = judged.flatMap(initially)
+  /** What an input of the end's formula stands for. */
+  private def ofEnd(input: Int): Node = end.get.inputs(input) match
+    case PolicyInput.Position(vehicle, axis) => trace.input(axis * count + vehicle)
+    case PolicyInput.Velocity(vehicle, axis) => trace.input((3 + axis) * count + vehicle)
+    case PolicyInput.Age(vehicle)            => trace.input(6 * count + Own.Ages + vehicle)
+    case _                                   => trace.input(6 * count + Own.Since)
 
-  /** Offset of each judged number's running numbers; the last entry is their total count. */
+  def hasEnd: Boolean = end.isDefined
+
+  /** Offset of each judged number's running numbers; the last entry is their total count. If there is an end,
+    * then follow the time at which the world ended, s, and for each judged number the count of its values.
+    */
   val places: Vector[Int] = judged.map(initially(_).size).scanLeft(0)(_ + _)
 
-  private val successors: Vector[Vector[Node]] = judged.indices.toVector.map: number =>
-    successorsOf(
-      number,
-      angles(number).convert(formulas(number).outputs(0)._2),
-      kept => trace.input(FirstKept + places(number) + kept)
-    )
+  private val endedAt = places.last
+
+  private def countOf(number: Int) = endedAt + 1 + number
+
+  /** Place of the count of a judged number's values in each world, which may end; None if all have one count.
+    */
+  def counted(number: Int): Option[Int] = Option.when(hasEnd)(countOf(number))
+
+  /** The initial values of the running numbers, by place. */
+  val initial: Vector[Float] = judged.flatMap(initially) ++
+    Vector.from(Option.when(hasEnd)(Float.PositiveInfinity +: judged.map(_ => 0f))).flatten
+
+  private def kept(place: Int): Node = trace.input(FirstKept + place)
+
+  private def formulaOf(number: Int): Node = angles(number).convert(all(number).outputs(0)._2)
+
+  /** By judged number, the places of its running numbers and their next values. */
+  private val successors: Vector[Vector[(Int, Node)]] = judged.indices.toVector.map: number =>
+    val own = successorsOf(number, formulaOf(number), each => kept(places(number) + each)).zipWithIndex.map:
+      (next, each) => (places(number) + each, next)
+    if !hasEnd then own
+    else
+      val isOver  = trace.lt(kept(endedAt), trace.param(Time))
+      val counted = (countOf(number), trace.add(kept(countOf(number)), trace.const(1)))
+      (own :+ counted).map((place, next) => (place, trace.where(isOver, kept(place), next)))
+
+  /** Computes when each world ended; None if all last for the whole duration. */
+  val ending: Option[Ending] = end.map: _ =>
+    val goesOn = trace.equal(formulaOf(judged.size), trace.const(0))
+    val now    = trace.where(goesOn, trace.const(Double.PositiveInfinity), trace.input(6 * count + Own.Now))
+    Ending(endedAt, BoundFunction.of(Vector(trace.binary(Op.Min, kept(endedAt), now))))
+
+  /** What the end depends on. */
+  val endsBy: Timetable.End =
+    if end.isEmpty then Timetable.End.None
+    else if asks({ case _: Source.Age | Source.Since => true }) then Timetable.End.ByTime
+    else Timetable.End.ByPlace
+
+  /** Whether the end depends on velocities of readings. */
+  def needsVelocity: Boolean = asks({ case _: Source.Velocity => true })
+
+  /** Whether the end depends on ages of readings. */
+  def needsAges: Boolean = asks({ case _: Source.Age => true })
+
+  private def asks(what: PartialFunction[Source, Boolean]): Boolean =
+    ending.exists(_.function.inputs.exists(input => what.isDefinedAt(source(input))))
 
   /** The next values of the running numbers. Each may overwrite its predecessor, which no other expression
     * reads.
@@ -70,14 +128,20 @@ private[lanes] final class ScoreLanes private (
     Stage(
       fromS,
       numbers,
-      numbers.flatMap(number => successors(number).indices.map(places(number) + _)),
-      BoundFunction.of(numbers.flatMap(successors))
+      numbers.flatMap(successors(_).map(_._1)),
+      BoundFunction.of(numbers.flatMap(successors(_).map(_._2)))
     )
 
   /** The source of a function's input: a reading, an altitude, a parameter or a running number. */
   def source(input: Int): Source =
     if input < 2 * count then Source.Reading(input % count, input / count)
-    else if input < FirstParameter then Source.Altitude(input - 2 * count)
+    else if input < 3 * count then Source.Altitude(input - 2 * count)
+    else if input < 6 * count then Source.Velocity(input % count, input / count - 3)
+    else if input < FirstParameter then
+      input - 6 * count match
+        case Own.Now   => Source.Now
+        case Own.Since => Source.Since
+        case age       => Source.Age(age - Own.Ages)
     else if input < FirstKept then
       Source.Parameter((input - FirstParameter) / Stride, (input - FirstParameter) % Stride)
     else Source.Kept(input - FirstKept)
@@ -88,14 +152,18 @@ private[lanes] final class ScoreLanes private (
   /** Number of parameters that distinguish a quantity from others of its form. */
   def parameters(number: Int): Int = derived(number).size
 
-  def parametersOf(number: Int, quantity: Quantity): Array[Double] =
-    numbers(number)(Array.emptyDoubleArray, formulas(number).parametersOf(quantity))
+  /** The parameters of each quantity, then of the end, where there is one. */
+  def parametersOf(quantities: Vector[Judged], end: Option[OwnEnd]): Array[Array[Double]] =
+    val of = quantities.map(_.quantity) ++ end.map(_.scenario)
+    Array.tabulate(of.size): number =>
+      numbers(number)(Array.emptyDoubleArray, all(number).parametersOf(of(number)))
 
-  /** Whether these judged numbers of this number of vehicles have this form. */
-  def fits(by: Vector[Judged], vehicles: Int): Boolean =
-    vehicles == count && by.size == judged.size && by.indices.forall: number =>
+  /** Whether these judged numbers of this number of vehicles, with this end, have this form. */
+  def fits(by: Vector[Judged], vehicles: Int, ends: Option[OwnEnd]): Boolean =
+    vehicles == count && by.size == judged.size && ends.isDefined == hasEnd && by.indices.forall { number =>
       val (own, other) = (judged(number), by(number))
-      own.reduction == other.reduction && own.fromS == other.fromS && formulas(number).fits(other.quantity)
+      own.reduction == other.reduction && own.fromS == other.fromS && all(number).fits(other.quantity)
+    } && ends.forall(each => all.last.fits(each.scenario))
 
 private[lanes] object ScoreLanes:
   private final val FirstParameter = 1 << 20
@@ -108,9 +176,21 @@ private[lanes] object ScoreLanes:
   final val Time                     = 0
   def ownParameter(number: Int): Int = 1 + number
 
+  /** Inputs that only the end has, by their order. */
+  private object Own:
+    final val Now   = 0
+    final val Since = 1
+    final val Ages  = 2
+
+  /** @see [[ScoreLanes.source]]; `Now` is the time of a decision and `Since` the time from the first decision
+    *   to it, s
+    */
   enum Source:
+    case Now, Since
+    case Age(vehicle: Int)
     case Reading(vehicle: Int, field: Int)
     case Altitude(vehicle: Int)
+    case Velocity(vehicle: Int, axis: Int)
     case Parameter(number: Int, parameter: Int)
     case Kept(place: Int)
 
@@ -125,6 +205,12 @@ private[lanes] object ScoreLanes:
       val (exact, near) = (Judged.afterS(fromS), Judged.afterS(fromS).toFloat)
       if near > exact then Math.nextDown(near) else near
 
+  /** The function that computes when each world ended, s: infinity until then.
+    *
+    * @param place of the time among the running numbers
+    */
+  final case class Ending(place: Int, function: BoundFunction)
+
   private def initially(judged: Judged): Vector[Float] = judged.reduction match
     case Reduction.Least | OfMoment.FirstWithin(_) => Vector(Float.PositiveInfinity)
     case Reduction.Most                            => Vector(Float.NegativeInfinity)
@@ -132,12 +218,28 @@ private[lanes] object ScoreLanes:
     case Reduction.Sd                              => Vector(0, 0)
     case Reduction.Mean | Reduction.Rms            => Vector(0)
 
-  private val known = Forms[(Vector[Judged], Int), ScoreLanes]((form, of) => form.fits(of._1, of._2)):
-    (judged, vehicles) =>
-      Expect.each(judged)(each => formulaOf(each.quantity, vehicles)).map(ScoreLanes(_, judged, vehicles))
+  private type Scored = (Vector[Judged], Int, Option[OwnEnd])
 
-  /** Compiles scores, once for each form. Left states why SIMD does not support them. */
-  def of(judged: Vector[Judged], vehicles: Int): Either[Untraceable, ScoreLanes] = known((judged, vehicles))
+  private val known = Forms[Scored, ScoreLanes]((form, of) => form.fits(of._1, of._2, of._3)):
+    (judged, vehicles, end) =>
+      for
+        quantities <- Expect.each(judged): each =>
+          formulaOf(each.quantity, vehicles).left.map(of("a quantity", _))
+        ending <- Expect.each(end.toVector)(EndFormula.of(_, vehicles).left.map(of("its end", _)))
+      yield ScoreLanes(quantities, judged, vehicles, ending.headOption)
+
+  private def of(what: String, refused: Untraceable) =
+    Untraceable(s"$what is no formula: ${refused.getMessage}")
+
+  /** Compiles scores, once for each form. Left states why SIMD does not support them.
+    *
+    * @param end by which the scenario ends before its duration
+    */
+  def of(
+      judged: Vector[Judged],
+      vehicles: Int,
+      end: Option[OwnEnd] = None
+  ): Either[Untraceable, ScoreLanes] = known((judged, vehicles, end))
 
   /** The final value of a judged number; NaN without values.
     *

@@ -4,6 +4,7 @@ import java.util.Arrays
 import skein.lanes.policy.LaneObservation
 import skein.lanes.timetable.{TimetableAgents, TimetableScores, ViewCall}
 import skein.scenario.Reduction
+import skein.simd.BoundFunction
 
 /** Scores the flights of many worlds, once a period. Mutable.
   *
@@ -20,9 +21,10 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
   private val counts     = Array.ofDim[Int](judged.size)
   private val shared     = Array.ofDim[Float](ScoreLanes.ownParameter(judged.size))
   private val inSpace    = altitudesDownM.isEmpty
+  private val level      = Array.ofDim[Float](worlds)
   private val altitudes  = altitudesDownM.toArray.flatMap(down => Array.fill(worlds)(down.toFloat))
   private val parameters =
-    Array.tabulate(judged.size)(number => Array.ofDim[Float](lanes.parameters(number) * worlds))
+    Array.tabulate(lanes.formulas)(number => Array.ofDim[Float](lanes.parameters(number) * worlds))
   private val stages = lanes.stages.map(Stage(_)).toArray
 
   private val hasShare = judged.indices.map(lanes.hasShare).toArray
@@ -33,26 +35,51 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
   private final class Stage(of: ScoreLanes.Stage):
     val fromS: Double      = of.fromS
     val judged: Array[Int] = of.judged.toArray
-    val shown: ViewCall    = ViewCall(
-      of.function,
+    val shown: ViewCall    = showing(of.function, of.places)
+
+  /** By world, the time of the decision at which a flight may end, and the time since the first decision, s.
+    */
+  val nowS, sinceS: Array[Float] = Array.ofDim[Float](worlds)
+
+  /** By vehicle, then by world, ages of the readings from which the decision was made, s. */
+  val agesS: Array[Array[Float]] = Array.ofDim[Float](if lanes.needsAges then lanes.count else 0, worlds)
+
+  /** Computes the end; null if there is none. */
+  private val ending: ViewCall =
+    lanes.ending.fold(null)(ending => showing(ending.function, Vector(ending.place)))
+
+  /** A call that computes running numbers.
+    *
+    * @param places of the function's outputs among them
+    */
+  private def showing(function: BoundFunction, places: Vector[Int]): ViewCall =
+    val shown = ViewCall(
+      function,
       input =>
         Some(lanes.source(input)).collect:
-          case Source.Reading(vehicle, field)      => (vehicle, field)
-          case Source.Altitude(vehicle) if inSpace => (vehicle, LaneObservation.DOWN)
+          case Source.Reading(vehicle, field)          => (vehicle, field)
+          case Source.Velocity(vehicle, axis) if axis < 2 => (vehicle, 2 + axis)
+          case Source.Altitude(vehicle) if inSpace     => (vehicle, LaneObservation.DOWN)
+          case Source.Velocity(vehicle, _) if inSpace  => (vehicle, LaneObservation.DOWN + 1)
       ,
       shared
     )
-    for (place, output) <- of.places.zipWithIndex do shown.call.output(output, kept, place * worlds)
-    for (input, place) <- of.function.inputs.zipWithIndex do
+    for (place, output) <- places.zipWithIndex do shown.call.output(output, kept, place * worlds)
+    for (input, place) <- function.inputs.zipWithIndex do
       lanes.source(input) match
-        case Source.Reading(_, _)     => ()
-        case Source.Altitude(vehicle) =>
+        case Source.Reading(_, _)        => ()
+        case Source.Now                  => shown.call.input(place, nowS, 0)
+        case Source.Since                => shown.call.input(place, sinceS, 0)
+        case Source.Age(vehicle)         => shown.call.input(place, agesS(vehicle), 0)
+        case Source.Velocity(_, axis)    => if !inSpace && axis == 2 then shown.call.input(place, level, 0)
+        case Source.Altitude(vehicle)    =>
           if !inSpace then shown.call.input(place, altitudes, vehicle * worlds)
         case Source.Kept(from)                   => shown.call.input(place, kept, from * worlds)
         case Source.Parameter(number, parameter) =>
           shown.call.input(place, parameters(number), parameter * worlds)
+    shown
 
-  /** Sets the parameters of a world's quantities. */
+  /** Sets the parameters of a world's quantities and of its end. */
   def take(world: Int, numbers: Array[Array[Double]]): Unit =
     for number <- numbers.indices; i <- numbers(number).indices do
       parameters(number)(i * worlds + world) = numbers(number)(i).toFloat
@@ -62,13 +89,17 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
 
   def start(worlds: Int): Unit =
     for stage <- stages do stage.shown.call.use(worlds)
+    if ending != null then ending.call.use(worlds)
     shared(ScoreLanes.Time) = 0
-    for number <- judged.indices do forget(number)
+    Arrays.fill(counts, 0)
+    for place <- lanes.initial.indices do begin(place)
+
+  private def begin(place: Int): Unit =
+    Arrays.fill(kept, place * worlds, (place + 1) * worlds, lanes.initial(place))
 
   def forget(number: Int): Unit =
     counts(number) = 0
-    for place <- lanes.places(number) until lanes.places(number + 1) do
-      Arrays.fill(kept, place * worlds, (place + 1) * worlds, lanes.initial(place))
+    for place <- lanes.places(number) until lanes.places(number + 1) do begin(place)
 
   /** Forgets one world's score. Its count goes on, so this is not for means and standard deviations at the
     * end.
@@ -82,6 +113,34 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
     if stage != null then
       stage.shown.look(agents, views, view)
       add(stage, timeS)
+
+  override def needsVelocity: Boolean = lanes.needsVelocity
+
+  override def end(
+      agents: Array[TimetableAgents],
+      views: Array[Int],
+      view: Int,
+      timeS: Float,
+      sinceS: Float,
+      agesS: Array[Float],
+      ages: Int
+  ): Unit =
+    Arrays.fill(nowS, timeS)
+    Arrays.fill(this.sinceS, sinceS)
+    for vehicle <- this.agesS.indices do Arrays.fill(this.agesS(vehicle), agesS(ages + vehicle))
+    ending.look(agents, views, view)
+    end()
+
+  def hasEnd: Boolean = ending != null
+
+  def needsAges: Boolean = agesS.nonEmpty
+
+  /** Sets the array of a vehicle's readings, as in [[ViewCall.show]], for [[end]] without a view. */
+  def placeReadings(vehicle: Int, array: Array[Float], from: Int): Unit =
+    if hasEnd then ending.show(vehicle, array, from)
+
+  /** Ends the worlds in which the flight is over at [[nowS]], by the readings that were set. */
+  def end(): Unit = ending.call.apply()
 
   /** Sets the arrays of a vehicle's positions, by world, for [[score]] without a view. */
   def place(vehicle: Int, north: Array[Float], northAt: Int, east: Array[Float], eastAt: Int): Unit =
@@ -127,7 +186,8 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
 
   /** The final value of a judged number in one world; NaN without values. */
   def value(number: Int, world: Int): Float =
-    ScoreLanes.value(judged(number).reduction, soFar(number, world), counts(number))
+    val count = lanes.counted(number).fold(counts(number))(place => kept(place * worlds + world).toInt)
+    ScoreLanes.value(judged(number).reduction, soFar(number, world), count)
 
 private[lanes] object Scoreboard:
   /** Scores the distance between two vehicles.

@@ -60,6 +60,13 @@ private[lanes] object Note:
 
   final case class Score(atS: Double, view: Int) extends Note
 
+  /** A flight with an end of its own may end.
+    *
+    * @param sinceS time since the first decision
+    * @param agesS age of each vehicle's reading
+    */
+  final case class End(atS: Double, view: Int, sinceS: Double, agesS: Array[Double]) extends Note
+
   /** A sensor takes an image.
     *
     * @param bearingError in units of the standard deviation

@@ -7,7 +7,7 @@ import skein.lanes.policy.Directions
 /** Predicts by a plant. For each command, the propagation has the number of steps that end under it, and the
   * numbers of the time after the last step ([[skein.lanes.plant.PlantStages]]). If readings lack a part of
   * the state, that part is simulated from reading to reading. The scalar reference is
-  * [[skein.vehicle.PlantModel]].
+  * [[skein.vehicle.PlantModel]], in space [[skein.vehicle.SpatialModel]].
   *
   * @param correction of the state by a reading
   * @param speedMps speed of a command of length 1
@@ -20,81 +20,76 @@ private[lanes] final class PredictedPlants(
   import PredictedVehicles.WORLDS
   private val origin  = Array.ofDim[Float](WORLDS)
   private val flight  = StagedFlight(lanes, speedMps, origin, origin)
-  private val still   = Directions(WORLDS)
+  private val still   = Directions(WORLDS, lanes.inSpace)
   private val correct = correction.call
   private val count   = lanes.count
+  private var startZ  = Array.emptyFloatArray
 
   /** The state at each reading, by the reading's place; used only if readings lack a part of the state. */
   private var states = Array.emptyFloatArray
   private val before = Array.ofDim[Float](count * WORLDS)
   correct.inputs(0, count, before, 0)
 
-  override def start(worlds: Int): Unit =
+  override def start(worlds: Int, startZ: Array[Float]): Unit =
     flight.use(worlds)
     correct.use(worlds)
+    if lanes.inSpace then
+      this.startZ = startZ
+      still.level(startZ)
+
+  /** Writes the state before the first reading. */
+  private def rest(): Unit = if lanes.inSpace then lanes.restInSpace(before, 0, startZ) else lanes.rest(before, 0)
 
   override def enter(
-      seenX: Array[Float],
-      seenY: Array[Float],
-      seenVx: Array[Float],
-      seenVy: Array[Float],
+      read: TimetableVehicles,
       sent: Directions,
       from: Int,
       reading: Int,
       propagation: Propagation
   ): Unit =
-    if states.length < seenX.length * count then states = Arrays.copyOf(states, seenX.length * count)
-    if from < 0 then lanes.rest(before, 0)
+    val needed = read.seenX.length * count
+    if states.length < needed then states = Arrays.copyOf(states, needed)
+    if from < 0 then rest()
     else
       System.arraycopy(states, from * count, flight.state, 0, flight.state.length)
       if fly(sent, propagation) then flight.end(before, 0)
       else System.arraycopy(flight.state, 0, before, 0, before.length)
-    take(seenX, seenY, seenVx, seenVy, reading, states, reading * count)
+    take(read, reading, states, reading * count)
 
-  override def restart(
-      world: Int,
-      seenX: Array[Float],
-      seenY: Array[Float],
-      seenVx: Array[Float],
-      seenVy: Array[Float]
-  ): Unit =
+  override def restart(world: Int, read: TimetableVehicles): Unit =
     val state = Array.ofDim[Float](before.length)
-    lanes.rest(before, 0)
+    rest()
     for reading <- 0 until states.length by state.length do
-      take(seenX, seenY, seenVx, seenVy, reading / count, state, 0)
+      take(read, reading / count, state, 0)
       for at <- world until state.length by WORLDS do states(reading + at) = state(at)
 
   def predict(
-      seenX: Array[Float],
-      seenY: Array[Float],
-      seenVx: Array[Float],
-      seenVy: Array[Float],
+      read: TimetableVehicles,
       sent: Directions,
       reading: Int,
       into: Int,
       propagation: Propagation,
       withVelocity: Boolean
   ): Unit =
-    if correction.isTold then take(seenX, seenY, seenVx, seenVy, reading, flight.state, 0)
+    import read.*
+    if correction.isTold then take(read, reading, flight.state, 0)
     else System.arraycopy(states, reading * count, flight.state, 0, flight.state.length)
-    if fly(sent, propagation) then flight.look(seenX, seenY, seenVx, seenVy, into, withVelocity)
-    else
+    if !fly(sent, propagation) then
       for seen <- Array(seenX, seenY, seenVx, seenVy) do System.arraycopy(seen, reading, seen, into, WORLDS)
+      if lanes.inSpace then
+        for seen <- Array(seenZ, seenVz) do System.arraycopy(seen, reading, seen, into, WORLDS)
+    else if lanes.inSpace then flight.lookInSpace(seenX, seenY, seenVx, seenVy, seenZ, seenVz, into)
+    else flight.look(seenX, seenY, seenVx, seenVy, into, withVelocity)
 
   /** Corrects the simulated state by a reading. */
-  private def take(
-      seenX: Array[Float],
-      seenY: Array[Float],
-      seenVx: Array[Float],
-      seenVy: Array[Float],
-      reading: Int,
-      into: Array[Float],
-      at: Int
-  ): Unit =
-    correct.input(count, seenX, reading)
-    correct.input(count + 1, seenY, reading)
-    correct.input(count + 2, seenVx, reading)
-    correct.input(count + 3, seenVy, reading)
+  private def take(read: TimetableVehicles, reading: Int, into: Array[Float], at: Int): Unit =
+    correct.input(count, read.seenX, reading)
+    correct.input(count + 1, read.seenY, reading)
+    correct.input(count + 2, read.seenVx, reading)
+    correct.input(count + 3, read.seenVy, reading)
+    if lanes.inSpace then
+      correct.input(count + 4, read.seenZ, reading)
+      correct.input(count + 5, read.seenVz, reading)
     correct.outputs(count, into, at)
     correct()
 

@@ -27,6 +27,8 @@ import skein.vehicle.ConstantVelocity
   * @param readings number of places that the readings of one vehicle need simultaneously
   * @param headings number of places for the headings of one vehicle
   * @param more further inputs of decisions, if requested; then a decision's third place is its number there
+  * @param endAgesS of operations that may end the flight, which have their index here: the ages of all
+  *   vehicles' readings
   */
 private[skein] final class Timetable private[lanes] (
     val vehicles: Int,
@@ -37,12 +39,13 @@ private[skein] final class Timetable private[lanes] (
     val propagations: Array[Propagation],
     val readings: Int,
     val headings: Int,
-    val more: Timetable.More = Timetable.More.None
+    val more: Timetable.More = Timetable.More.None,
+    val endAgesS: Array[Float] = Array.emptyFloatArray
 ):
   def size: Int = operations.length / Timetable.Fields
 
   lazy val bytes: Long =
-    more.bytes + 4L * (operations.length + times.length + views.length) + propagations.iterator.map(
+    more.bytes + 4L * (endAgesS.length + operations.length + times.length + views.length) + propagations.iterator.map(
       _.bytes
     ).sum
 
@@ -59,6 +62,7 @@ private[skein] object Timetable:
     *
     * @param eyes of vehicles with cameras, of two
     * @param tellsMore see [[Timetable.more]]; not of two that decide by [[skein.lanes.policy.OpponentLanes]]
+    * @param end how the flight may end before its duration
     */
   def of(
       vehicles: Int,
@@ -68,9 +72,10 @@ private[skein] object Timetable:
       key: Int,
       model: TimetableDynamics,
       eyes: Map[Int, SensorModel] = Map.empty,
-      tellsMore: Boolean = false
+      tellsMore: Boolean = false,
+      end: End = End.None
   ): Timetable =
-    val notes = TimetableNotes(vehicles, model, eyes, tellsMore)
+    val notes = TimetableNotes(vehicles, model, eyes, tellsMore, end)
     Rollout(
       StandingStill.engagement(vehicles, durationS, eyes),
       unpredicted(timing),
@@ -84,6 +89,16 @@ private[skein] object Timetable:
   private def unpredicted(timing: LoopTiming): LoopTiming = timing match
     case predictive: LoopTiming.Predictive => predictive.copy(predictor = ConstantVelocity)
     case other                             => other
+
+  /** How flights may end before their duration. */
+  enum End:
+    case None
+
+    /** By positions and velocities alone. */
+    case ByPlace
+
+    /** Also by the time or the ages of readings. */
+    case ByTime
 
   /** Further inputs of decisions, by number of the decision and of the vehicle.
     *
@@ -108,7 +123,7 @@ private final class TimetableCompiler(
     model: TimetableDynamics
 ):
   import Timetable.Fields
-  import TimetableKernel.{ACT, DECIDE, ENTER, EXPOSE, JOIN, LOOK, PREDICT, SCORE}
+  import TimetableKernel.{ACT, DECIDE, END, ENTER, EXPOSE, JOIN, LOOK, PREDICT, SCORE}
 
   /** Events by time; those of equal times in the order of recording. Only commands take effect later than
     * events recorded after them.
@@ -137,6 +152,8 @@ private final class TimetableCompiler(
   private val knownHeadings  = Array.newBuilder[Int]
   private val agesS, actsInS = Array.newBuilder[Float]
   private var toldDecisions  = 0
+  private val endAgesS       = Array.newBuilder[Float]
+  private var ends           = 0
 
   private val operations = Array.ofDim[Int](end * Fields)
   private val numbers    = Timetable.LeastNumbers.max(clocks.map(_.numbers).max)
@@ -154,6 +171,7 @@ private final class TimetableCompiler(
         case note: Note.Decide  => decide(note, i)
         case note: Note.Act     => act(note, i)
         case note: Note.Score   => score(note, i)
+        case note: Note.End     => mayEnd(note, i)
         case note: Note.Expose  => expose(note, i)
         case note: Note.Join    => join(note)
     Timetable(
@@ -165,7 +183,8 @@ private final class TimetableCompiler(
       propagations.result(),
       readings.map(_.size).max,
       headings.map(_.size).max,
-      Timetable.More(vehicles, knownHeadings.result(), agesS.result(), actsInS.result())
+      Timetable.More(vehicles, knownHeadings.result(), agesS.result(), actsInS.result()),
+      endAgesS.result()
     )
 
   private def findLastUses(note: Note, at: Int): Unit = note match
@@ -182,6 +201,10 @@ private final class TimetableCompiler(
       headings(vehicle).usedAt(before + 1, at)
     case Note.Act(vehicle, _, decision)         => headings(vehicle).usedAt(decision, at)
     case score: Note.Score                      => usedAt(score.view, at)
+    case mayEnd: Note.End                       =>
+      usedAt(mayEnd.view, at)
+      val seen = notes.views(mayEnd.view)
+      for each <- 0 until vehicles do decidedUpon(each)(seen(each)) = true
     case image: Note.Expose                     => usedAt(image.view, at)
     case Note.Predict(vehicle, _, _, from, way) =>
       carriedAt(vehicle, from, way, at)
@@ -314,6 +337,13 @@ private final class TimetableCompiler(
   private def score(note: Note.Score, at: Int): Unit =
     operation(SCORE, 0, tell(note.view))
     took(note.atS)
+    releaseView(note.view, at)
+
+  private def mayEnd(note: Note.End, at: Int): Unit =
+    operation(END, 0, tell(note.view), ends)
+    ends += vehicles
+    endAgesS ++= note.agesS.map(_.toFloat)
+    took(note.atS, note.sinceS)
     releaseView(note.view, at)
 
   private def operation(

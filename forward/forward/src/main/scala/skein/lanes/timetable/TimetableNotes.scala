@@ -13,7 +13,8 @@ private[lanes] final class TimetableNotes(
     vehicles: Int,
     model: TimetableDynamics,
     eyes: Map[Int, SensorModel],
-    tellsMore: Boolean
+    tellsMore: Boolean,
+    end: Timetable.End
 ) extends LoopObserver:
   val all: mutable.ArrayBuffer[Note] = mutable.ArrayBuffer.empty
 
@@ -111,6 +112,21 @@ private[lanes] final class TimetableNotes(
         Note.More(upon.sentDecision.clone, Array.tabulate(vehicles)(ageS), aheadS.max(0))
     )
     decisions(vehicle) += 1
+    if end != Timetable.End.None then mayEnd(atNs, upon, ageS)
+
+  /** View of the last note of an end. */
+  private var ended = -1
+
+  /** Time of the first decision. */
+  private var begunNs = -1L
+
+  private def mayEnd(atNs: Long, upon: Grounds, ageS: Int => Double): Unit =
+    if begunNs < 0 then begunNs = atNs
+    val view = viewOf(Array.tabulate(vehicles)(each => readingOf(each)(upon.reading(each))))
+    // Several vehicles often decide on one view.
+    if end == Timetable.End.ByTime || view != ended then
+      ended = view
+      all += Note.End(atNs * 1e-9, view, (atNs - begunNs) * 1e-9, Array.tabulate(vehicles)(ageS))
 
   private val orders = Array.fill(vehicles)(ImageOrder())
 

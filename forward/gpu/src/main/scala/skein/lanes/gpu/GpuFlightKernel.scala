@@ -244,6 +244,7 @@ private[lanes] abstract class GpuFlightKernel(
             case Source.Altitude(vehicle)            => code.constant(agents(vehicle).altitudeDownM.toFloat)
             case Source.Kept(place)                  => kept(place)
             case Source.Parameter(number, parameter) => flying.quantity(number, parameter)
+            case ofEnd                               => throw IllegalStateException(s"a quantity of $ofEnd")
         ,
         parameter =>
           if parameter == ScoreLanes.Time then time

@@ -24,7 +24,7 @@ private[lanes] final class GpuOpponentKernel(
 ) extends GpuFlightKernel(
       gpu,
       layout,
-      two.forms.map(GpuOpponentKernel.numbers) ++ GpuOpponentKernel.ofQuantities(form),
+      two.forms.map(GpuOpponentKernel.numbers) ++ GpuOpponentKernel.ofScores(form),
       form.scores,
       agents
     ):
@@ -35,8 +35,8 @@ private[lanes] final class GpuOpponentKernel(
   protected val withVelocity: Boolean = forms.exists(_.needsVelocity)
 
   def sidesOf(teams: Array[PreparedTeam]): Vector[(Array[Float], Array[Int])] =
-    Vector(0, 1).map(side(teams, _)) ++ GpuOpponentKernel.ofQuantities(form).map: _ =>
-      (teams.flatMap(_.ofQuantities.flatten.map(_.toFloat)), teams.indices.toArray)
+    Vector(0, 1).map(side(teams, _)) ++ GpuOpponentKernel.ofScores(form).map: _ =>
+      (teams.flatMap(_.ofScores.flatten.map(_.toFloat)), teams.indices.toArray)
 
   /** Numbers of one vehicle's side. Nearly always all candidates share the identical agent, and so one set of
     * numbers.
@@ -113,5 +113,5 @@ private object GpuOpponentKernel:
   private def numbers(form: PolicyLanes): Int = form.parameters + form.memories + 2
 
   /** Total count of the quantities' parameters, if they have any. */
-  private def ofQuantities(form: TeamForm): Option[Int] =
+  private def ofScores(form: TeamForm): Option[Int] =
     Some(form.scores.judged.indices.map(form.scores.parameters).sum).filter(_ > 0)

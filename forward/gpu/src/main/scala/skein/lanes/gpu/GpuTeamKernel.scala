@@ -101,4 +101,4 @@ private object GpuTeamKernel:
 
   private def numbersOf(team: PreparedTeam): Array[Float] =
     team.numbers.flatMap(own => Array(own.northM, own.eastM, own.cos, own.sin) ++ own.policy) ++
-      team.ofQuantities.flatten.map(_.toFloat)
+      team.ofScores.flatten.map(_.toFloat)

@@ -46,7 +46,7 @@ private[lanes] final class GpuTeams(
         brought.map(fly(form, some, some.map(teams), numbers, _, held.layout, each, into)).isDefined
     Accelerated(flown, GpuEpisodes.worldsOf(unknown, each))
 
-  private def isOnGpu(team: PreparedTeam) = team.form != null && team.form.policies.refusedByGpu.isEmpty
+  private def isOnGpu(team: PreparedTeam) = team.form != null && team.form.refusedByGpu.isEmpty
 
   private def episodesFor(form: TeamForm): GpuEpisodes =
     val shows = form.policies.isInstanceOf[TeamLanes]

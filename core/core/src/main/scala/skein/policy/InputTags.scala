@@ -1,0 +1,42 @@
+package skein.policy
+
+import skein.signal.Kinematics
+import skein.units.*
+
+/** Numbers that identify the inputs of an example, for tracing: the first is 0. Mutable. */
+private[skein] final class InputTags:
+  private val told = Vector.newBuilder[PolicyInput]
+  private var next = 0
+
+  def tag(input: PolicyInput): Double =
+    told += input
+    next += 1
+    (next - 1).toDouble
+
+  def span(input: PolicyInput): Span = Span.ofNanos(tag(input).toLong)
+
+  /** A vehicle's estimate; models of vehicles have no attitude. */
+  def seen(vehicle: Int, isPredicted: Boolean): Seen = Seen(
+    Kinematics(
+      vector(PolicyInput.Position(vehicle, _)),
+      vector(PolicyInput.Velocity(vehicle, _)),
+      Quaternion.Identity,
+      Vector3.Zero
+    ),
+    span(PolicyInput.Age(vehicle)),
+    isPredicted
+  )
+
+  private def vector(of: Int => PolicyInput) = Vector3(tag(of(0)), tag(of(1)), tag(of(2)))
+
+  /** The inputs in the order of their tags. */
+  def inputs: Vector[PolicyInput] = told.result()
+
+private[skein] object InputTags:
+  private val attitude = "it reads the attitude, which models of vehicles do not tell"
+
+  /** Fields of an estimate that a traced method must not read, each with the reason. */
+  val Refused: Map[String, String] = Map(
+    "Kinematics.orientation"        -> attitude,
+    "Kinematics.angularVelocityFrd" -> attitude
+  )
