@@ -43,7 +43,7 @@ class Counter(gym.Env):
 
 
 def flown(env, actions, seed=7):
-    """All that an environment tells, under these actions."""
+    """The first observation of an environment, then the results of its steps under these actions."""
     told = [env.reset(seed=seed)[0]]
     for action in actions:
         told.append(env.step(action)[:4])
@@ -55,7 +55,7 @@ def same(one, other):
 
 
 def reference(count, step_s, back_s, to_s, rows):
-    """What is seen and what acts at each row, by delays in s of shape (rows, count), told one by one."""
+    """The observed and the acting row at each row, computed one by one from delays in s of shape (rows, count)."""
     seen, acts = (np.full((rows, count), -1) for _ in range(2))
     for env in range(count):
         arrives = 0.0
@@ -157,7 +157,7 @@ def test_no_schedule_is_older_than_it_says(link, settings):
         schedule.row(schedule.first + schedule.rows)
         assert schedule.seen.max() <= schedule.oldest_seen and schedule.acts.max() <= schedule.oldest_acting
         assert schedule.seen.min() >= 0 and schedule.acts.min() >= 0
-        # What is seen and what acts never becomes older than by the time that passes: newer only replaces older.
+        # Observations and acting actions age at most by the time that passes: only newer ones replace them.
         assert np.all(np.diff(schedule.seen.astype(int), axis=0) <= 1)
         if settings.get("shares"):
             assert np.allclose(schedule.weights.sum(1), 1)
@@ -189,7 +189,7 @@ def test_vpn_mixed_is_busy_393_of_935_times_for_40_s_on_the_mean():
         schedule.row(schedule.first + schedule.rows)
     busy = np.concatenate(busy)
     assert busy.mean() == pytest.approx(393 / 935, abs=0.01)
-    # Of stretches with exponential lengths, the share that end within a second.
+    # The share of busy stretches, whose lengths are exponential, that end within a second.
     assert (busy[:-1] & ~busy[1:]).sum() / busy.sum() == pytest.approx(1 - math.exp(-1 / 40), rel=0.06)
 
 
@@ -205,12 +205,12 @@ def test_dropout_loses_its_share():
 def test_with_two_moves_in_flight_an_action_leaves_once_a_round_trip():
     schedule = Schedule(1, 0.1, delays(0.1), delays(0.1), moves_in_flight=2)
     schedule.seed([np.random.SeedSequence(0)])
-    # 0 and 1 leave at once. 1 arrives at 2, so 0 is answered at 3: then 3 leaves, and 2 is superseded.
+    # 0 and 1 leave immediately. 1 arrives at 2, so 0 is answered at 3: then 3 leaves, and 2 is superseded.
     newest = np.arange(12) - schedule.acts[:12, 0]
     assert list(newest[2:]) == [1, 1, 3, 3, 5, 5, 7, 7, 9, 9]
 
 
-# What acts and what is seen.
+# Actions and observations under delay.
 
 
 def test_an_action_acts_for_the_rest_of_the_step_in_which_it_arrives():
@@ -364,7 +364,7 @@ def test_no_episode_sees_or_feels_the_one_before(mode):
         time = np.where(begun, 0, time + 1)
         episode = episode + begun
         assert np.array_equal(terminated, (time == lengths) & ~begun)
-        # What acted was chosen in this episode, or nothing did.
+        # The action that acted was chosen in this episode, or none acted.
         assert np.all((rewards == 0) | (rewards > step - time) | begun)
         if mode is AutoresetMode.SAME_STEP and terminated.any():
             for at in np.flatnonzero(terminated):
@@ -383,7 +383,7 @@ def test_no_episode_sees_or_feels_the_one_before(mode):
 
 
 class Plain:
-    """A delayed vector of environments, told one environment and one step at a time, from lists."""
+    """A delayed vector of environments, computed from lists, one environment and one step at a time."""
 
     def __init__(self, back_rows, to_rows, pending, is_zero):
         sent = np.arange(len(back_rows))[:, None]
@@ -395,7 +395,7 @@ class Plain:
         self.episodes[env] = {"began": self.row, "seen": {self.row: observation}, "decided": {}}
 
     def act(self, actions):
-        """Takes the decisions of a step; gives what acts in it."""
+        """Takes the decisions of a step; returns the actions that act in it."""
         acting = []
         for env, action in enumerate(actions):
             decided = self.episodes[env]["decided"]
@@ -513,7 +513,7 @@ def test_a_trace_plays_in_its_order_from_anywhere():
 
 # Spaces.
 
-# The checker warns of wrappers, and of what the environments within are themselves.
+# The checker warns about wrappers, and about faults of the wrapped environments.
 a_wrapper = pytest.mark.filterwarnings("ignore::UserWarning")
 
 
@@ -691,7 +691,7 @@ def test_pettingzoo_finds_nothing_wrong():
             age = told["one"][2]
             assert age == pytest.approx((step - told["one"][0]) * STEP_S, abs=1e-6)
             if "two" in told:
-                # One link: a correlated delay is both agents'.
+                # With one link, both agents have its correlated delay.
                 assert told["two"]["age_s"][0] == pytest.approx(age)
 
 

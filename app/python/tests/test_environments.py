@@ -50,7 +50,7 @@ def test_the_papers_pursuer_comes_to_the_papers_distance(make):
             break
     mean = -total / 600 * 10
     assert truncated.all() and env.observation_space.contains(seen)
-    # ./skein search over vpn: 10.69 m over the last 10 s; the chase before is from 21 m to 4 m.
+    # ./skein search over vpn: 10.69 m over the last 10 s; during the chase before, the distance falls from 21 m to 4 m.
     assert np.all((mean > 9) & (mean < 14)), mean
 
 

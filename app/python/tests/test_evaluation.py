@@ -7,7 +7,7 @@ pytest.importorskip("gymnasium")
 
 
 def paper(seen):
-    """The paper's pursuer: as sharply as it can to the side at which the evader was seen."""
+    """The paper's pursuer: turns as sharply as it can to the side at which the evader was seen."""
     return np.where(seen[..., 1] != 0, np.sign(seen[..., 1]), seen[..., 0] < 0)
 
 

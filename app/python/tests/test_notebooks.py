@@ -16,7 +16,7 @@ NEEDED = {
     "delay-anywhere": ("gymnasium", "matplotlib", "mujoco", "stable_baselines3", "PyFlyt"),
 }
 
-# Of Jupyter's own packages.
+# Jupyter's packages warn; in other tests a warning is an error.
 pytestmark = pytest.mark.filterwarnings("default")
 
 

@@ -19,7 +19,7 @@ def test_a_policy_in_python_flies_as_the_same_policy_on_the_jvm(tmp_path):
     ]
     assert [len(one.recordings) for one in flights] == [1, 1]
     own, python = (next(iter(one.tables.values()))["last 10 s m"].iloc[0] for one in flights)
-    # The question's floats are 32 bits wide, so a side is another only where the evader is all but straight ahead.
+    # The request's floats are 32 bits wide, so a side differs only if the evader is almost straight ahead.
     assert python == pytest.approx(own, abs=0.05)
 
 

@@ -1,4 +1,4 @@
-"""Scenarios in Python: what is written down, and what cannot be. None of these tests needs Java."""
+"""Scenarios in Python: what is traced, and what cannot be. None of these tests needs Java."""
 
 import math
 import random
@@ -23,7 +23,7 @@ import tower  # noqa: E402
 
 
 def scenario(policy, memory=None, others=1):
-    """A scenario of a vehicle with this policy, and of others that stand."""
+    """A scenario of a vehicle with this policy, and of others that hover."""
 
     class One(Scenario):
         pace_mps = 5.0
@@ -37,7 +37,7 @@ def scenario(policy, memory=None, others=1):
 
 
 def interpreted(text):
-    """Evaluates the nodes of a file, by inputs such as ``north 0``: a second reader, of twenty lines."""
+    """Evaluates the nodes of a file, by inputs such as ``north 0``: an independent reader of the file."""
     lines = [line for line in text.splitlines() if line[0].isdigit()]
     operations = {
         **{"add": lambda a, b: a + b, "sub": lambda a, b: a - b, "mul": lambda a, b: a * b, "div": lambda a, b: a / b},

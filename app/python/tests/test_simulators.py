@@ -20,7 +20,7 @@ class Point:
 
 
 class Pair:
-    """PettingZoo's: two points, of which one leaves after a step."""
+    """PettingZoo's interface: two points, of which one leaves after a step."""
 
     possible_agents = ["a", "b"]
 
@@ -77,7 +77,7 @@ def test_a_flight_steps_a_gymnasium_environment_until_it_ends():
             if not own.at[0] >= 3:
                 seen, reward, ended, _, _ = own.step(np.array([7, 1.5]))
                 assert (told["reward"], told["terminated"], told["body"][:2]) == (reward, ended, list(seen))
-        # It has ended, and stays.
+        # It has ended, and stays unchanged.
         assert (told["reward"], told["terminated"], told["body"][0]) == (0, True, own.at[0])
         assert flight.ask()["vehicles"]["One"]["terminated"] is False
 
@@ -114,7 +114,7 @@ def test_rewards_of_a_mujoco_environment_are_those_of_its_own_loop_to_the_digit(
     pytest.importorskip("mujoco")
 
     def jacobian(seen):
-        """Of the fingertip's place by the two joints: links of 10 and 11 cm."""
+        """The fingertip's position, differentiated by the two joints' angles: links of 10 and 11 cm."""
         cos_1, cos_2, sin_1, sin_2 = seen[0:4]
         cos, sin = cos_1 * cos_2 - sin_1 * sin_2, sin_1 * cos_2 + cos_1 * sin_2
         return np.array([[-0.1 * sin_1 - 0.11 * sin, -0.11 * sin], [0.1 * cos_1 + 0.11 * cos, 0.11 * cos]])
@@ -144,6 +144,6 @@ def test_rewards_of_a_mujoco_environment_are_those_of_its_own_loop_to_the_digit(
                 assert told["body"][:2] == list(fingertip(None, seen).position_ned[:2])
                 rewards.append(reward)
                 ends.append(truncated)
-    # Its own limit of steps ends it; the arm has moved.
+    # The environment's limit of steps ends the episode; the arm has moved.
     assert len(rewards) == 50 and ends[-1]
     assert len(set(rewards)) == 50

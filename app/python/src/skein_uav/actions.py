@@ -1,4 +1,4 @@
-"""What a policy decides: actions, and choices between them by what is known in flight alone."""
+"""A policy's decisions: actions, and choices between them by values that are known only in flight."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Action:
     kind : str
         ``along``, ``velocity-at``, ``velocity``, ``position``, ``turn``, ``attitude``, ``hover`` or ``land``.
     numbers : tuple
-        Those of the kind, as the function of its name takes them.
+        The arguments of the function that the kind names.
     yaw : Yaw
     """
 
@@ -64,7 +64,7 @@ class Choice:
 
 
 def cases(of: Any, when: Any) -> list[tuple[Any, Action]]:
-    """Actions with their conditions; the first that holds is meant, and the last one holds."""
+    """Actions with their conditions: the first whose condition holds applies; the last one always holds."""
     if isinstance(of, Choice):
         first = [(logical_and(of.condition, condition), action) for condition, action in of.a]
         return first + of.b
@@ -74,22 +74,22 @@ def cases(of: Any, when: Any) -> list[tuple[Any, Action]]:
 
 
 def along(heading_rad: Any, speed_mps: Any, down_m: Any, yaw: Yaw = Yaw()) -> Action:
-    """Flies on a heading at an altitude; `Observation.along` is at that of the start."""
+    """Flies on a heading at an altitude; `Observation.along` keeps the altitude of the start."""
     return Action("along", (heading_rad, speed_mps, down_m), yaw)
 
 
 def velocity_at(north_mps: Any, east_mps: Any, down_m: Any, yaw: Yaw = Yaw()) -> Action:
-    """Flies by a horizontal velocity at an altitude."""
+    """Flies with a horizontal velocity at an altitude."""
     return Action("velocity-at", (north_mps, east_mps, down_m), yaw)
 
 
 def velocity(north_mps: Any, east_mps: Any, down_mps: Any, yaw: Yaw = Yaw()) -> Action:
-    """Flies by a velocity in space."""
+    """Flies with a velocity in three dimensions."""
     return Action("velocity", (north_mps, east_mps, down_mps), yaw)
 
 
 def position(north_m: Any, east_m: Any, down_m: Any, speed_mps: Any, yaw: Yaw = Yaw()) -> Action:
-    """Flies to a place, no faster than a speed, and stays there."""
+    """Flies to a position, no faster than a speed, and stays there."""
     return Action("position", (north_m, east_m, down_m, speed_mps), yaw)
 
 
@@ -99,7 +99,7 @@ def turn(yaw: Yaw) -> Action:
 
 
 def attitude(roll_rad: Any, pitch_rad: Any, yaw_rad: Any, thrust: Any) -> Action:
-    """Holds three angles, by a share of full thrust from 0 to 1."""
+    """Holds an attitude, with a share of full thrust from 0 to 1."""
     return Action("attitude", (roll_rad, pitch_rad, yaw_rad, thrust))
 
 

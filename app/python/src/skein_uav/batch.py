@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from . import jvm
 from .errors import SkeinError
 
-#: Numbers of an observation.
+#: Number of components of an observation.
 FIELDS = 9
 
 Floats = NDArray[np.float32]
@@ -25,9 +25,9 @@ class Block:
     ----------
     memory : ndarray of uint8, shape (Block.size(agents, count),)
     agents : int
-        Learners, in the scenario's order.
+        Number of learners; they are in the scenario's order.
     count : int
-        Environments.
+        Number of environments.
 
     Attributes
     ----------
@@ -35,12 +35,12 @@ class Block:
     observations, finals : (agents, FIELDS, count) float32
     rewards : (agents, count) float32
     distance : (agents, count) float32
-        To the nearest opponent, m.
+        Distance to the nearest opponent, m.
     time : (count,) float32
-        In s.
+        Time since the episode began, s.
     terminated, truncated : (count,) bool
     due : (agents, count) bool
-        Who decides now.
+        Which learners decide now.
     """
 
     def __init__(self, memory: NDArray[np.uint8], agents: int, count: int) -> None:
@@ -101,7 +101,7 @@ class InProcess:
         prepared = self._told(lambda: batches.prepare(jpype.java.util.HashMap(settings)))
         self.learners = str(prepared.learners()).splitlines()
         agents = len(self.learners)
-        # Java writes to it as long as this lives.
+        # Java writes to it for the lifetime of this object.
         self.block = Block(np.zeros(Block.size(agents, count), dtype=np.uint8), agents, count)
         buffer = jpype.nio.convertToDirectBuffer(memoryview(self.block.memory))
         self._batch = self._told(lambda: prepared.make(count, autoreset, buffer))

@@ -23,7 +23,7 @@ from .results import Budget, Flights, Found, Tables
 from .scenario import Scenario
 from .seeds import folded
 
-#: For policies in Python in flights in real time.
+#: Deadline of policies in Python in real time.
 _DEADLINE_MS = 20.0
 
 
@@ -49,37 +49,37 @@ def fly(
     Parameters
     ----------
     scenario : Scenario, str or path, optional
-        One written in Python (`skein_uav.scenario`), its file, or a name: ``surround``, ``formation``, ``crossing``,
-        ``forest``, ``convoy``, ``blind-pursuit``; the paper's duel unless given. A file of one written in Python lies
-        beside the results.
+        A scenario written in Python (`skein_uav.scenario`), its file, or a name: ``surround``, ``formation``,
+        ``crossing``, ``forest``, ``convoy``, ``blind-pursuit``; by default the paper's duel. The file of a scenario
+        written in Python is saved with the results.
     loop : str or iterable of str
         ``paused``, ``sequential``, ``futures``, ``stream``, ``predictive`` or ``plan``.
     link : str or iterable of str
         A latency profile: ``none``, ``direct``, ``vpn``, ``constant:200ms``, …
     duration_s : float, optional
-        Of each flight, s; 60 s, or that of a scenario in Python, unless given.
+        Duration of each flight, s; by default 60 s, or that of a scenario in Python.
     seed : int
-        Of every random choice, of any size. In virtual time, equal seeds give equal flights, to the last bit.
+        Seed of every random choice, of any size. In virtual time, equal seeds give equal flights, to the last bit.
     clock : str
         ``virtual`` (many times faster) or ``real``.
     settings : mapping, optional
-        Of the scenario, for example ``{"ring-m": 10}``.
+        Settings of the scenario, for example ``{"ring-m": 10}``.
     policy : path, optional
         A policy file, as `search` writes one, or an ONNX file of another framework.
     pursuer, evader : callable, optional
-        A policy written in Python: from an observation, ndarray of float32 of shape (9,), to a number from -1 to 1, as
-        in `skein_uav.environments`. All flights call it on one thread while they run. It must not count its calls:
-        a rehearsal before live flights calls it, too.
+        A policy written in Python: takes an observation, ndarray of float32 of shape (9,), and returns a number from
+        -1 to 1, as in `skein_uav.environments`. All flights call it on one thread while they run. It must not count
+        its calls: a rehearsal before live flights calls it, too.
 
         Each of `policy`, `pursuer` and `evader` has flights of its own, in which all other vehicles use the scenario's
-        policies. Without any of them only the scenario's own policies are flown.
+        policies. Without any of them, only the scenario's own policies are used.
     deadline_ms : float, optional
         Time within which a policy must decide, ms; if it has not, or has failed, ``fallback`` decides (``hold``,
         ``repeat`` or a policy's name), and the recording states it. The default is 20 ms for a policy in Python with
-        ``clock="real"``; else policies are waited for, at most 10 s. In virtual time the clock stands still meanwhile.
+        ``clock="real"``; else flights wait for policies, at most 10 s. In virtual time the clock stands still meanwhile.
         The loop ``paused`` has no deadline.
     out : path, optional
-        Folder for recordings and report; a new temporary one unless named.
+        Folder for recordings and report; by default a new temporary one.
     verbose : bool
         Shows the command's progress on ``stderr``: a bar where tqdm is installed, else the lines that it prints.
     **options
@@ -92,7 +92,7 @@ def fly(
     Raises
     ------
     SkeinError
-        With what the command said, if it failed.
+        If the command failed; with its error output.
     """
     _told_here("fly", options, duration="duration_s", deadline="deadline_ms", set="settings")
     folder = _folder(out)
@@ -136,7 +136,7 @@ def spread(
     Parameters
     ----------
     seeds : int
-        Flights for each loop and link.
+        Number of flights for each loop and link.
     loop, link, duration_s, scenario, settings, verbose
         As in `fly`.
     **options
@@ -145,7 +145,7 @@ def spread(
     Returns
     -------
     dict of str to DataFrame
-        Mean and spread over the seeds, by title; units stand in the columns' names.
+        Mean and spread over the seeds, by title; units are in the columns' names.
     """
     _told_here("spread", options, duration="duration_s", set="settings")
     with tempfile.TemporaryDirectory(prefix="skein-") as folder:
@@ -180,21 +180,21 @@ def search(
     Parameters
     ----------
     scenario : Scenario, str or path, optional
-        Searches its settings, instead of a duel's policy; as in `fly`.
+        The scenario whose settings are searched, instead of a duel's policy; as in `fly`.
     family : str, optional
-        Of the policies to choose from: ``paper-pursuer`` unless named, ``lead-pursuit``, ``neural:8x8``, …
+        Family of the policies to choose from: ``paper-pursuer`` by default, ``lead-pursuit``, ``neural:8x8``, …
     link : str
         A latency profile.
     candidates : int
-        To try in all.
+        Number of candidates to try in all.
     episodes : int
-        That each candidate flies.
+        Number of episodes for each candidate.
     settings : mapping, optional
-        Of the scenario, fixed.
+        Fixed settings of the scenario.
     vary : mapping, optional
-        Settings to search, each with its least and its greatest value; ``ring_m`` and ``ring-m`` are one.
+        Settings to search, each with its least and its greatest value; ``ring_m`` and ``ring-m`` are equivalent.
     out : path, optional
-        Folder for state, policy and pictures; a new temporary one unless named.
+        Folder for state, policy and pictures; by default a new temporary one.
     verbose : bool
         Shows the command's progress on ``stderr``: a bar where tqdm is installed, else the lines that it prints.
     **options
@@ -236,14 +236,14 @@ def budget(
     verbose: bool = False,
     **options: Any,
 ) -> Budget:
-    """How much latency and jitter a scenario, or a duel's policy, tolerates.
+    """Maps how much latency and jitter a scenario, or a duel's policy, tolerates.
 
     Parameters
     ----------
     scenario, settings, verbose
         As in `fly`.
     out : path, optional
-        Folder for the map's files and picture; a new temporary one unless named.
+        Folder for the map's files and picture; by default a new temporary one.
     **options
         Any other option of ``./skein budget``, for example ``objective="off-ring"``.
 
@@ -295,11 +295,11 @@ def run(command: str, *words: str, verbose: bool = False, **options: Any) -> Tab
     Parameters
     ----------
     command : str
-        One that has ``--json``: ``fly``, ``spread``, ``search``, ``report``, …
+        A command that has ``--json``: ``fly``, ``spread``, ``search``, ``report``, …
     *words : str
-        What stands behind the options, such as files.
+        Arguments after the options, such as files.
     verbose : bool
-        Shows on ``stderr`` what it says meanwhile.
+        Shows its progress on ``stderr``.
     **options
         ``moves_in_flight=6`` is ``--moves-in-flight 6``; a list is the option several times, True a bare flag, None
         no option.
@@ -311,14 +311,14 @@ def run(command: str, *words: str, verbose: bool = False, **options: Any) -> Tab
     Raises
     ------
     SkeinError
-        With what the command said, if it failed.
+        If the command failed; with its error output.
     """
     printed = _ran(command, *words, verbose=verbose, **options)["tables"]
     return Tables({table["title"]: _frame(table) for table in printed})
 
 
 def _ran(command: str, *words: str, verbose: bool = False, **options: Any) -> Any:
-    """What a command prints with ``--json``."""
+    """Runs a command and returns the output of ``--json``."""
     installed = find()
     arguments = [command, "--json", *_flags(options), *words]
     environment = {**os.environ, "JAVA_HOME": str(installed.java)}
@@ -335,7 +335,7 @@ def _ran(command: str, *words: str, verbose: bool = False, **options: Any) -> An
         try:
             complained = _heard(process, verbose)
         except BaseException:
-            # A notebook interrupts Python alone; the command then hovers its vehicles and ends by itself.
+            # A notebook interrupts only Python; the command then hovers its vehicles and ends by itself.
             process.send_signal(signal.SIGINT)
             process.wait()
             raise
@@ -380,7 +380,7 @@ def _flags(options: Mapping[str, Any]) -> list[str]:
 
 _NUMBER = r"[-+]?\d+(?:\.\d+)?"
 
-#: Cells for people that hold several numbers, or one with its unit, and what follows the column's name for each.
+#: Cells for people with several numbers, or one with its unit, and a suffix of the column's name for each number.
 _PARTS = [
     (re.compile(f"({_NUMBER})/({_NUMBER})/({_NUMBER})"), (" mean", " median", " p99")),
     (re.compile(f"({_NUMBER}) … ({_NUMBER})"), (" min", " max")),
@@ -427,7 +427,7 @@ def _folder(out: str | os.PathLike[str] | None) -> Path:
 
 
 def _scenario(scenario: Scenario | str | os.PathLike[str] | None, folder: Path) -> str | None:
-    """What ``--scenario`` takes; one written in Python is written to a file in the folder."""
+    """The value of ``--scenario``; a scenario written in Python is saved as a file in the folder."""
     if not isinstance(scenario, Scenario):
         return None if scenario is None else os.fspath(scenario)
     folder.mkdir(parents=True, exist_ok=True)

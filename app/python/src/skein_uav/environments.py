@@ -11,13 +11,13 @@ Observation, 9 numbers (float32), in the frame whose x-axis is the learner's las
 == ================= ===== ====================================================
 0  ahead             m     the opponent's position by the readings
 1  right             m
-2  ahead             m/s   its velocity minus the own one
+2  ahead             m/s   its velocity minus the learner's
 3  right             m/s
-4  cosine            1     of its heading commanded last, from the own one
+4  cosine            1     of its last commanded heading, from the learner's
 5  sine              1
-6  elapsed           s     since the own last decision; 0 at the first
-7  own age           s     of the own reading, since physics was sampled
-8  opponent's age    s     of the opponent's
+6  elapsed           s     since the learner's previous decision; 0 at the first
+7  own age           s     of the learner's own reading, since physics was sampled
+8  opponent's age    s     of the opponent's reading
 == ================= ===== ====================================================
 
 Action, 1 number from -1 to 1 (values beyond are clipped): the rate of turn to the right, as a share of 1 rad/s; for an
@@ -51,7 +51,7 @@ _LARGEST_S = 1e4
 
 
 def observation_space() -> gym.spaces.Box:
-    """The observation space of one environment; the module describes its numbers."""
+    """The observation space of one environment; the module describes its components."""
     most = np.array(
         [_LARGEST_M, _LARGEST_M, _LARGEST_MPS, _LARGEST_MPS, 1.001, 1.001, _LARGEST_S, _LARGEST_S, _LARGEST_S],
         dtype=np.float32,
@@ -61,12 +61,12 @@ def observation_space() -> gym.spaces.Box:
 
 
 def action_space() -> gym.spaces.Box:
-    """The action space of one environment; the module describes its number."""
+    """The action space of one environment; the module describes its component."""
     return gym.spaces.Box(-1.0, 1.0, (1,), dtype=np.float32)
 
 
 class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
-    """Many worlds of a scenario side by side, with one learner each; each row of the arrays belongs to one.
+    """Many worlds of a scenario in lockstep, with one learner each; each row of the arrays belongs to one.
 
     Environments are grouped by 128. Those of a group share a link: their messages have equal delays, and they begin
     together. An episode that ends early, by a capture, is followed by another that lasts until the end of the others.
@@ -74,61 +74,61 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
     Parameters
     ----------
     num_envs : int
-        Environments.
+        Number of environments.
     learner : str
-        ``pursuer``, ``evader`` or another role of the scenario: in environment i the learner is number i of its role,
-        modulo their number. Or the name of a vehicle.
+        ``pursuer``, ``evader`` or another role of the scenario: in environment i the learner is the i-th vehicle of its
+        role, modulo their number. Or the name of a vehicle.
     opponent : str
-        A policy file or a family's name, for the evaders, or for the pursuers where an evader learns; by default their own.
+        A policy file or a family's name, for the evaders, or for the pursuers if an evader learns; by default their own.
     loop : {'stream', 'predictive', 'sequential', 'futures', 'paused'}
         The loop whose timing is simulated.
     link : str
         A latency profile: ``none``, ``direct``, ``vpn``, ``vpn-mixed``, ``constant:200ms``, …
     period_ms : float
-        Between decisions for one vehicle, ms.
+        Time between decisions for one vehicle, ms.
     plant : str, optional
         The vehicle model: ``reduced``, ``drag``, ``quadrotor``, ``tilt`` or a model file; by default ``reduced`` at 20 m
-        altitude and ``drag`` at others, or ``tilt`` where a policy may climb.
+        altitude and ``drag`` at others, or ``tilt`` if a policy may climb.
     altitude_m : float, optional
-        Of all vehicles at the start; by default the scenario's.
+        Altitude of all vehicles at the start; by default the scenario's.
     episode_s : float
-        In s.
+        Duration of an episode, s.
     capture_radius_m : float
-        The distance that ends an episode; 0: none does.
+        Distance at which an episode ends; 0: at none.
     start_within_m : (float, float)
         Least and greatest initial distance of one of two vehicles from the other (of the evader from the pursuer), in any
         direction, with any headings; of each of more vehicles from its usual start; (0, 0): the scenario's start.
     moves_in_flight : int
-        Most unanswered commands to a vehicle.
+        Maximum number of unanswered commands to a vehicle.
     scenario : str
         The paper's ``duel``, or for example ``surround``.
     settings : mapping, optional
-        Of the scenario, for example ``{"vehicles": 4}``.
+        Settings of the scenario, for example ``{"vehicles": 4}``.
     objective : str
-        The reward in place of the distance to the nearest opponent: a sum of the scenario's measures that are means over
+        The reward instead of the distance to the nearest opponent: a sum of the scenario's measures that are means over
         time, or one root mean square, for example ``off-ring``, by its squares; an evader maximises it and others minimise
         it, unless ``minimise`` or ``maximise`` precedes it.
     turn_rate_rad_per_s : float, optional
         Greatest turn rate of the learner. By default 1 rad/s; an evader's actions are immediate turns.
     autoreset_mode : AutoresetMode or str
-        As Gymnasium defines them.
+        When an ended episode is reset, as Gymnasium defines it.
     copy : bool
-        Whether observations are copies; without, the next step overwrites them.
+        Whether observations are copies; if not, the next step overwrites them.
     render_mode : {None, 'rgb_array'}
         A picture of each environment, seen by the learner.
     backend : {'process', 'socket', 'unix:PATH'}
-        Java in this process; in one of its own; in that of a `skein_uav.served.Server`, for processes that fork.
+        Java in this process; in a process of its own; in that of a `skein_uav.served.Server`, for processes that fork.
 
     Attributes
     ----------
     engine : str
-        The engine: environments are simulated side by side (``SIMD, …``), or one by one where that is not supported, some
+        The engine: environments are simulated together (``SIMD, …``), or one by one if that is not supported, some
         hundred times slower (``scalar: …``, with the reason).
 
     Raises
     ------
     ValueError
-        If a setting is not what was expected; the message says both.
+        If a setting is invalid; the message states what was expected and what was given.
     """
 
     metadata = {"render_modes": ["rgb_array"], "render_fps": 10, "autoreset_mode": AutoresetMode.NEXT_STEP}
@@ -212,7 +212,7 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
         Parameters
         ----------
         seed : int, sequence of int, or None
-            Environment i takes ``seed + i``, or the i-th, whole numbers from 0 of any size
+            Environment i uses ``seed + i``, or the i-th seed: integers from 0 of any size
             (`skein_uav.seeds.folded`); equal seeds give equal episodes, to the last bit. None: continues.
         options : dict, optional
             ``reset_mask``, an array of bool: only these are reset.
@@ -221,7 +221,7 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
         -------
         observations : ndarray, shape (num_envs, 9)
         infos : dict
-            ``distance_m`` and ``time_s``, one number an environment.
+            ``distance_m`` and ``time_s``, one value per environment.
         """
         self._assert_open()
         super().reset(seed=seed if isinstance(seed, int) else None)
@@ -237,7 +237,7 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
 
         Parameters
         ----------
-        actions : ndarray of numbers, shape (num_envs, 1)
+        actions : ndarray, shape (num_envs, 1)
 
         Returns
         -------
@@ -246,12 +246,12 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
         terminations, truncations : ndarray of bool, shape (num_envs,)
         infos : dict
             ``distance_m`` at the last score, ``time_s`` of the episode; under same-step autoreset those of the episode
-            that ended, beside ``final_obs`` and ``final_info``.
+            that ended, in addition to ``final_obs`` and ``final_info``.
 
         Raises
         ------
         ValueError
-            If actions are of another shape or kind, or not finite; then nothing is done.
+            If actions have another shape or type, or are not finite; then nothing is done.
         SkeinError
             If the environment is closed, or an episode has ended and was not reset.
         """
@@ -273,7 +273,7 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
         return self._seen(), block.rewards[0].copy(), terminated, truncated, infos
 
     def render(self) -> tuple[NDArray[np.uint8], ...] | None:
-        """One picture an environment, (200, 200, 3), if ``render_mode`` is ``'rgb_array'``."""
+        """One picture per environment, (200, 200, 3), if ``render_mode`` is ``'rgb_array'``."""
         if self.render_mode is None:
             return None
         return tuple(picture(seen) for seen in self._observations)
@@ -311,7 +311,7 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
 
 
 class PursuitEnv(gym.Env[Floats, Floats]):
-    """One world; see `PursuitVectorEnv`, whose parameters it takes."""
+    """One world; its parameters are those of `PursuitVectorEnv`."""
 
     metadata = {"render_modes": ["rgb_array"], "render_fps": 10}
 
@@ -352,7 +352,7 @@ class PursuitEnv(gym.Env[Floats, Floats]):
 
 
 def open_batch(settings: dict[str, Any], count: int, autoreset: AutoresetMode, backend: str) -> Backend:
-    """A batch, with the memory that is shared with it."""
+    """Opens a batch with its shared memory."""
     altitude_m = settings.get("altitude_m")
     if altitude_m is not None and not altitude_m > 0:
         raise ValueError(f"altitude_m: expected more than 0 m, came {altitude_m!r}")

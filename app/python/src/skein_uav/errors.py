@@ -6,4 +6,4 @@ class SkeinError(RuntimeError):
 
 
 class NotFound(SkeinError):
-    """Java 25 or Skein's own files are missing; the message states what was searched for, and where."""
+    """Java 25 or Skein's own files are missing; the message states which, and where they were sought."""

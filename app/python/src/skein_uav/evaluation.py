@@ -1,4 +1,4 @@
-"""Policies written with arrays, evaluated in many episodes at once under a loop's timing."""
+"""Policies written with arrays, evaluated in many episodes together under a loop's timing."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 #: Environments that share a link, and so one draw of its delays.
 _GROUP = 128
 _REWARD_M = 10.0
-#: Of Student's distribution, two-sided 95 %, for 1 to 30 degrees of freedom.
+#: Quantiles of Student's distribution, two-sided 95 %, for 1 to 30 degrees of freedom.
 _T95 = (
     *(12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160, 2.145, 2.131),
     *(2.120, 2.110, 2.101, 2.093, 2.086, 2.080, 2.074, 2.069, 2.064, 2.060, 2.056, 2.052, 2.048, 2.045, 2.042),
@@ -32,28 +32,28 @@ def evaluate(
     episode_s: float = 60.0,
     **settings: Any,
 ) -> pd.DataFrame:
-    """Flies a policy, or each of many candidates, in many episodes of the duel by forward simulation.
+    """Evaluates a policy, or each of many candidates, in many episodes of the duel by forward simulation.
 
-    The policy is called once a step for all episodes together, so it may be of NumPy, PyTorch or JAX, at a rate of
-    hundreds of thousands of decisions a second. 128 episodes share a draw of the link's delays; every candidate meets
-    the same draws and the same starts, so that candidates can be compared.
+    The policy is called once per step for all episodes together, so it may use NumPy, PyTorch or JAX, at a rate of
+    hundreds of thousands of decisions per second. 128 episodes share a draw of the link's delays; all candidates have
+    equal draws and equal starts, so that they can be compared.
 
     Parameters
     ----------
     policy : callable
-        ``policy(seen)``, with an observation of `skein_uav.environments` in the last axis, gives as many numbers from -1
-        to 1. With candidates ``policy(seen, candidates)``: seen of shape (episodes, candidates, 9).
-    candidates : array, shape (candidates, numbers), optional
-        Parameters of the policy, a row each.
+        ``policy(seen)``, with an observation of `skein_uav.environments` in the last axis, returns a number from -1 to 1
+        for each. With candidates ``policy(seen, candidates)``: seen of shape (episodes, candidates, 9).
+    candidates : array, shape (candidates, parameters), optional
+        Parameters of the policy, one row for each candidate.
     draws : int
-        Of the link's delays.
+        Number of draws of the link's delays.
     last_s : float
-        The score is the mean distance in so many seconds before the end.
+        The score is the mean distance over this time before the end, s.
     seed : int
-        Of the first draw; equal seeds give equal results.
+        Seed of the first draw; equal seeds give equal results.
     learner, period_ms, episode_s, **settings
-        As of `skein_uav.environments.PursuitVectorEnv`: ``link``, ``loop``, ``start_within_m``, ``backend``, … From the
-        paper's start all episodes of one policy and one draw are the same, so give ``start_within_m`` there.
+        As in `skein_uav.environments.PursuitVectorEnv`: ``link``, ``loop``, ``start_within_m``, ``backend``, … From the
+        paper's start, all episodes of one policy and one draw are identical, so set ``start_within_m`` there.
 
     Returns
     -------
@@ -64,7 +64,7 @@ def evaluate(
     Raises
     ------
     ValueError
-        If the policy returns anything but finite numbers of that shape, or a setting is wrong.
+        If the policy returns anything but finite numbers of that shape, or a setting is invalid.
     """
     from .environments import PursuitVectorEnv
 
@@ -117,9 +117,9 @@ def evaluate(
 
 
 def _layout(candidates: int, draws: int, seed: int) -> tuple[np.ndarray[Any, Any], list[int]]:
-    """Which environment is flown by which candidate, shape (episodes, candidates), and the environments' seeds.
+    """The environments of each candidate, shape (episodes, candidates), and the environments' seeds.
 
-    A draw is a group of 128 environments, or several with equal seeds where there are more candidates.
+    A draw is a group of 128 environments, or several with equal seeds if there are more candidates.
     """
     groups = -(-candidates // _GROUP)
     starts = max(_GROUP // candidates, 1)

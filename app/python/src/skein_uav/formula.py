@@ -1,12 +1,12 @@
-"""Ordinary arithmetic on numbers that are known in flight alone.
+"""Ordinary arithmetic on numbers that are known only in flight.
 
 A policy or a measure is an ordinary function. Called with floats, it computes with floats. A scenario (see
-`skein_uav.scenario`) calls it once with symbolic numbers and writes down what it computes, which every engine flies.
+`skein_uav.scenario`) calls it once with symbolic numbers and traces its computation, which every engine executes.
 
 Operators, NumPy's functions and those of this module take both: ``sin``, ``cos``, ``tan``, ``asin``, ``acos``, ``atan``,
 ``atan2``, ``hypot``, ``sqrt``, ``exp``, ``tanh``, ``floor``, ``ceil``, ``rint``, ``sign``, ``remainder``, ``wrap``,
 ``minimum``, ``maximum``, ``clip``, ``where``, ``logical_and``, ``logical_or``, ``logical_not``, ``pick`` and
-``smallest``. `Untraceable` says which line does what cannot be written down, and what to write instead.
+``smallest``. `Untraceable` names a line whose computation cannot be traced, and what to write instead.
 """
 
 from __future__ import annotations
@@ -94,7 +94,7 @@ def _extreme(of: Callable[..., Any], neutral: float, one: Any, other: Any) -> An
 
 
 def clip(x: Any, least: Any, most: Any) -> Any:
-    """The number, or the bound that it is beyond."""
+    """The number, limited to the bounds."""
     return minimum(maximum(x, least), most)
 
 
@@ -104,7 +104,7 @@ def logical_and(a: Any, b: Any) -> Any:
 
 
 def logical_or(a: Any, b: Any) -> Any:
-    """Whether one of both holds."""
+    """Whether at least one holds."""
     return operation("or", a, b) if isinstance(a, Symbol) or isinstance(b, Symbol) else bool(a) or bool(b)
 
 
@@ -144,7 +144,7 @@ def where(condition: Any, a: Any, b: Any) -> Any:
 
 
 def pick(index: Any, values: Sequence[Any]) -> Any:
-    """The value at an index that may be known in flight alone; beyond the last one, the last one."""
+    """The value at an index that may be known only in flight; beyond the last one, the last one."""
     if not isinstance(index, Symbol):
         return values[int(index)]
     chosen = values[-1]
@@ -154,7 +154,7 @@ def pick(index: Any, values: Sequence[Any]) -> Any:
 
 
 def smallest(items: Sequence[Any], key: Callable[[Any], Any]) -> Any:
-    """The item with the least key, the first of equals."""
+    """The item with the least key; of several, the first."""
     best, least = items[0], key(items[0])
     for item in items[1:]:
         found = key(item)

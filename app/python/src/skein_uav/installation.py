@@ -30,7 +30,7 @@ class Installation:
     Parameters
     ----------
     java : Path
-        Home of a Java 25, with ``bin/java``.
+        Home folder of Java 25, with ``bin/java``.
     home : Path
         Skein's folder, with ``bin/skein`` and ``lib/*.jar``.
     """
@@ -59,7 +59,7 @@ def find() -> Installation:
     Raises
     ------
     NotFound
-        If either is missing; the message lists where it was looked for.
+        If either is missing; the message lists where it was sought.
     """
     home = find_home()
     runtime = home / "runtime"
@@ -72,7 +72,7 @@ def find_java() -> Path:
     Returns
     -------
     Path
-        Its home.
+        Its home folder.
 
     Raises
     ------
@@ -105,7 +105,7 @@ def _is_java(home: Path) -> bool:
 
 
 def find_home() -> Path:
-    """Finds Skein: ``SKEIN_HOME``, the files in this package, or the build of the checkout it lies in.
+    """Finds Skein: ``SKEIN_HOME``, the files in this package, or the build of the checkout that contains it.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""The Java machine in this process, started when it is first needed."""
+"""The Java virtual machine in this process, started on first use."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ def _fork() -> None:
 
 @contextlib.contextmanager
 def _alone() -> Iterator[None]:
-    """One thread of one process of a user at a time.
+    """Admits one thread of one of a user's processes at a time.
 
     Threads that start Java simultaneously would both find that it does not run; and when many processes started it
-    simultaneously on a very busy machine, JPype crashed in some. Where there is no folder for the lock, or it is another
+    simultaneously on a very busy machine, JPype crashed in some. If there is no folder for the lock, or it is another
     user's, processes do not lock.
     """
     with _starting, contextlib.ExitStack() as held:
@@ -47,12 +47,12 @@ def start() -> Any:
     Returns
     -------
     module
-        ``jpype``, by which Java's classes are reached.
+        ``jpype``, which gives access to Java's classes.
 
     Raises
     ------
     SkeinError
-        In a process that was forked after Java had been started: Java does not live on there.
+        In a process that was forked after Java had been started: Java does not run there.
     """
     import jpype
 

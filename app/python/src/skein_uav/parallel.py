@@ -39,14 +39,14 @@ class TeamParallelEnv(ParallelEnv[str, Floats, Floats]):
         ``all`` vehicles, all of a role (``pursuers``), or names separated by commas (``Pursuer1,Evader``); others use
         their own policies.
     settings : mapping, optional
-        Of the scenario, for example ``{"vehicles": 4}``.
+        Settings of the scenario, for example ``{"vehicles": 4}``.
     render_mode : {None, 'rgb_array'}
-        What the last agent sees, as a picture.
+        Renders the last agent's observation as a picture.
     backend : {'process', 'socket', 'unix:PATH'}
         As in `skein_uav.environments.PursuitVectorEnv`.
     **others
         ``loop``, ``link``, ``period_ms``, ``plant``, ``altitude_m``, ``episode_s``, ``capture_radius_m``,
-        ``start_within_m``, ``moves_in_flight`` and ``objective``, as there.
+        ``start_within_m``, ``moves_in_flight`` and ``objective``, as in `PursuitVectorEnv`.
     """
 
     metadata = {"name": "skein_uav_team_v0", "render_modes": ["rgb_array"], "render_fps": 10, "is_parallelizable": True}

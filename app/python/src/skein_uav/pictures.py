@@ -13,7 +13,7 @@ _OWN, _OPPONENT, _RING = (31, 119, 180), (214, 39, 40), (200, 200, 200)
 
 
 def picture(seen: Floats) -> NDArray[np.uint8]:
-    """Draws an observation from above, the own heading up: 80 m on a side, with rings every 10 m.
+    """Draws an observation from above, with the learner's heading up: 80 m on a side, with rings every 10 m.
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ import numpy as np
 
 from .batch import FIELDS, Floats
 
-#: From what is seen, shape (9,), to a number from -1 to 1; see `skein_uav.environments`.
+#: From an observation, shape (9,), to a number from -1 to 1; see `skein_uav.environments`.
 Policy = Callable[[Floats], Any]
 
 _QUESTION = 4 * FIELDS
@@ -36,7 +36,7 @@ class PolicyServer:
     Attributes
     ----------
     option : str
-        What ``./skein fly --policy`` takes.
+        The value for ``./skein fly --policy``.
     """
 
     def __init__(self, policy: Policy, role: str) -> None:
@@ -54,7 +54,7 @@ class PolicyServer:
                         return
 
         self._server = ThreadingUnixStreamServer(path, Flight)
-        # A policy that hangs must not hold up who flew it.
+        # A policy that hangs must not delay the caller.
         self._server.daemon_threads = True
         self._server.block_on_close = False
         threading.Thread(target=self._server.serve_forever, args=(0.05,), daemon=True).start()

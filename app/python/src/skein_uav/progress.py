@@ -1,4 +1,4 @@
-"""Shows a command's progress: as a bar where tqdm is installed, else as the lines that it prints."""
+"""Shows a command's progress: as a bar if tqdm is installed, else as the lines that it prints."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import warnings
 from types import TracebackType
 from typing import Any
 
-#: `` 27 %  12 s left      best 3.0 m``: the share that is done, and what is said beside it.
+#: `` 27 %  12 s left      best 3.0 m``: the completed share, and the text next to it.
 _SHARE = re.compile(r"\s*(\d{1,3}) %  (.*)")
 _COUNT = re.compile(r"(\d+) of (\d+) (.*)")
 
@@ -31,7 +31,7 @@ class Progress:
         self._close()
 
     def show(self, line: str) -> None:
-        """Moves the bar, or prints the line where it tells no share."""
+        """Moves the bar, or prints the line if it states no share."""
         share, count = _SHARE.match(line), _COUNT.match(line)
         if self._bars is None or not (share or count):
             self._print(line)
@@ -61,7 +61,7 @@ class Progress:
 
 
 def _tqdm() -> Any:
-    """Its class for this terminal or notebook; None where it is not installed."""
+    """tqdm's class for this terminal or notebook; None if it is not installed."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # a notebook without widgets gets a bar of text
         try:

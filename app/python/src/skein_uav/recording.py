@@ -18,7 +18,7 @@ class Recording(Mapping[str, pd.DataFrame]):
     """A recording: its tables by name, each read on first access.
 
     Names of columns end in their unit: ``Ns`` whole nanoseconds, ``Ms`` milliseconds, ``M`` metres, ``Mps``
-    metres per second, ``Rad`` radians. ``North``, ``East``, ``Down`` are the world frame. ``validAtNs``
+    metres per second, ``Rad`` radians. ``North``, ``East``, ``Down`` are in the world frame. ``validAtNs``
     (also ``ownValidAtNs`` and the like), ``actsAtNs`` and ``predictedForNs`` are on the simulator's clock, all other
     instants on the controller's. Every table begins with ``row``, the order in which the rows of the flight were
     accepted.
@@ -26,7 +26,7 @@ class Recording(Mapping[str, pd.DataFrame]):
     Parameters
     ----------
     path : path
-        A DuckDB file of ``fly``; it is opened for reading alone.
+        A DuckDB file of ``fly``; it is opened read-only.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What the commands return: data frames, files, and how a notebook shows them."""
+"""The commands' results: data frames and files, with their display in notebooks."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .recording import Recording, load
 
 
 class Tables(dict[str, pd.DataFrame]):
-    """What a command printed: data frames by their titles, which a notebook shows one below the other."""
+    """A command's output: data frames by their titles, which a notebook shows one below the other."""
 
     def _repr_html_(self) -> str:
         return "".join(_table(title, frame) for title, frame in self.items())
@@ -26,7 +26,7 @@ class Figure:
     Attributes
     ----------
     path : Path
-        Of the SVG file.
+        The SVG file.
     """
 
     path: Path
@@ -43,9 +43,9 @@ class Flights:
     Attributes
     ----------
     tables : dict of str to DataFrame
-        What the report shows, by title; units stand in the columns' names.
+        The report's tables, by title; units are in the columns' names.
     recordings : list of Path
-        One DuckDB file a flight; `skein_uav.load` opens one.
+        One DuckDB file per flight; `skein_uav.load` opens one.
     report : Path
         A page with tables and pictures.
     """
@@ -56,7 +56,7 @@ class Flights:
 
     @property
     def figures(self) -> dict[str, Figure]:
-        """The report's, by the names of their files: ``trajectories``, ``latency``, …; graphs of loops come last."""
+        """The report's figures, by the files' names: ``trajectories``, ``latency``, …; graphs of loops come last."""
         return _figures(self.report.parent / "figures")
 
     def load(self, number: int = 0) -> Recording:
@@ -70,7 +70,7 @@ class Flights:
         return self.tables[title]
 
     def __repr__(self) -> str:
-        """The names of its parts: whole tables would fill pages."""
+        """The names of its parts, since whole tables would fill pages."""
         titles = ", ".join(repr(title) for title in self.tables)
         files = ", ".join(path.name for path in self.recordings)
         return f"Flights(tables: {titles}; recordings: {files}; report: {self.report})"
@@ -122,7 +122,7 @@ class Budget:
     Attributes
     ----------
     map : DataFrame
-        A row for each cell: mean and jitter of the latency in ms, the objective there, its deviation from the truth.
+        A row for each cell: mean and jitter of the latency in ms, the objective there, and its deviation from `paused`.
     folder : Path
         The map's files; temporary, unless ``budget(out=…)`` named it.
     """
@@ -154,7 +154,7 @@ def _table(title: str, frame: pd.DataFrame) -> str:
 
 
 def _pictures(figures: dict[str, Figure]) -> str:
-    """As images rather than inline: a page then has no style of one figure in another."""
+    """The figures as images, not inline, so that one figure's style does not affect another's."""
 
     def picture(name: str, figure: Figure) -> str:
         coded = base64.b64encode(figure.path.read_bytes()).decode()

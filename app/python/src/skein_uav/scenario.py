@@ -1,8 +1,8 @@
-"""Scenarios in Python: who flies, by which policies, measured how.
+"""Scenarios in Python: vehicles, their policies, and measures.
 
 A scenario is a dataclass. Its fields that are floats are settings, which ``settings={"ring-m": 6}`` and
-``vary={"ring-m": (4, 12)}`` change without Python; its other fields are fixed when it is written down. A vehicle's
-policy is a method or function; `skein_uav.formula` has what it may call.
+``vary={"ring-m": (4, 12)}`` change without Python; its other fields are fixed when it is traced. A vehicle's policy is
+a method or function; `skein_uav.formula` lists the functions that it may call.
 
 Examples
 --------
@@ -74,16 +74,16 @@ def setting(default: float, meaning: str) -> Any:
 
 @dataclass(frozen=True)
 class Known:
-    """What is known of a vehicle. World frame, north, east and down.
+    """The known state of a vehicle, in the world frame: north, east, down.
 
     Attributes
     ----------
     north_m, east_m, down_m, north_mps, east_mps, down_mps : float
         Estimated position and velocity.
     heading_rad : float
-        Commanded last, as far as known; before the first command, that of the start. Not in measures.
+        The last commanded heading, as far as known; before the first command, that of the start. Not in measures.
     age_s : float
-        Of the reading behind it. Not in measures.
+        Age of the reading behind the estimate, s. Not in measures.
     """
 
     north_m: Any = 0.0
@@ -114,23 +114,23 @@ class Moment:
 
 @dataclass(frozen=True)
 class Observation:
-    """What a policy decides by.
+    """The input of a policy's decision.
 
     Attributes
     ----------
     place : int
-        The own one in the team.
+        Index of the deciding vehicle in the team.
     vehicles : sequence of Known
     elapsed_s : float
-        Since the own last decision; 0 at the first. Integrate over it, and never count decisions.
+        Time since this vehicle's previous decision; 0 at the first. Integrate over it, and never count decisions.
     acts_in_s : float
-        Predicted time until the command acts; 0 where nothing is predicted.
+        Predicted time until the command acts; 0 if the loop does not predict.
     cruise_mps : float
         The speed that the scenario gives the vehicle.
     start_down_m : float
-        Of its start.
+        Down coordinate of its start.
     rivals : sequence of int
-        Vehicles of another role, or all others where there are none.
+        Indices of the vehicles of another role, or of all others if there are none.
     """
 
     place: int
@@ -157,7 +157,7 @@ class Observation:
 
     @property
     def opponent(self) -> Known:
-        """The nearest rival in the plane, the first of equals."""
+        """The nearest rival in the plane; of several, the first."""
         rivals = self.rivals or [place for place in range(len(self.vehicles)) if place != self.place] or [self.place]
         return smallest([self.vehicles[one] for one in rivals], self.own.distance_m)
 
@@ -166,7 +166,7 @@ class Observation:
         return along(heading_rad, speed_mps, self.start_down_m, yaw)
 
     def towards(self, north_mps: Any, east_mps: Any, most_mps: Any) -> Any:
-        """Flies by a velocity, limited to a greatest speed, at the altitude of the start."""
+        """Flies with a velocity, limited to a maximum speed, at the altitude of the start."""
         speed = hypot(north_mps, east_mps)
         still = self.along(self.own.heading_rad, 0.0)
         return where(speed < 1e-9, still, self.along(atan2(east_mps, north_mps), minimum(speed, most_mps)))
@@ -180,20 +180,20 @@ class Vehicle:
     ----------
     name : str
     policy : callable
-        From an `Observation` to an action, or, with `memory`, from an observation and the memory to an action and the
-        next memory.
+        Maps an `Observation` to an action, or, with `memory`, an observation and the memory to an action and the next
+        memory.
     start_ned_m : tuple of float
     speed_mps : float
-        What `Observation.cruise_mps` is.
+        The value of `Observation.cruise_mps`.
     heading_rad : float
-        At the start.
+        Heading at the start.
     role : str
-        Any word; vehicles of one role are no rivals.
+        Any word; vehicles of one role are not rivals.
     memory : optional
-        Before the first decision: a float or a bool, or a dataclass, tuple or list of them.
+        The memory before the first decision: a float or a bool, or a dataclass, tuple or list of them.
     wants : callable, optional
-        From an observation and a time ahead, s, to the place wanted then, north and east, m: what planners need, with
-        `most_mps` and `least_apart_m`.
+        Maps an observation and a time ahead, s, to the position wanted then, north and east, m: the input of planners,
+        with `most_mps` and `least_apart_m`.
     """
 
     name: str
@@ -228,7 +228,7 @@ class Series:
     ----------
     name, unit : str
     of : callable
-        From a `Moment` to a number.
+        Maps a `Moment` to a number.
     bound : tuple of str and float, optional
         A line to compare it with.
     """
@@ -254,19 +254,19 @@ class Series:
         return self._reduced(name, "most", last_s, after_s)
 
     def least_at(self, name: str) -> Measure:
-        """When it was least, s."""
+        """Time of the least value, s."""
         return self._reduced(name, "least-at")
 
     def most_at(self, name: str) -> Measure:
-        """When it was greatest, s."""
+        """Time of the greatest value, s."""
         return self._reduced(name, "most-at")
 
     def time_positive(self, name: str, *, last_s: Any = None, after_s: Any = None) -> Measure:
-        """How long it was above 0, s."""
+        """Total time above 0, s."""
         return self._reduced(name, "time-positive", last_s, after_s)
 
     def first_positive(self, name: str) -> Measure:
-        """When it was first above 0, s."""
+        """First time above 0, s."""
         return self._reduced(name, "first-positive")
 
     def _reduced(self, name: str, by: str, last_s: Any = None, after_s: Any = None) -> Measure:
@@ -278,7 +278,7 @@ class Series:
 
 @dataclass(frozen=True)
 class Limit:
-    """What must not happen; violations are counted, listed and shown."""
+    """A condition that must hold; violations are counted, listed and shown."""
 
     kind: str
     numbers: tuple[Any, ...]
@@ -318,13 +318,13 @@ class Scenario:
     Attributes
     ----------
     name : str
-        In settings and recordings; the class's name in words unless set.
+        Name in settings and recordings; by default the class's name in words.
     duration_s : float
-        Of a flight.
+        Duration of a flight, s.
     note : str
         How to read the measures, for the report.
     scene : str
-        Of the built-in simulator.
+        Scene of the built-in simulator.
     """
 
     name = ""
@@ -334,7 +334,7 @@ class Scenario:
 
     @property
     def title(self) -> str:
-        """The name, of small letters."""
+        """The name in lower-case letters."""
         return self.name or _words(type(self).__name__)
 
     def vehicles(self) -> Sequence[Vehicle]:
@@ -344,7 +344,7 @@ class Scenario:
         return []
 
     def series(self) -> Sequence[Series]:
-        """Quantities that the report draws, beside those of the measures."""
+        """Quantities that the report draws in addition to those of the measures."""
         return []
 
     def measures(self) -> Sequence[Measure]:
@@ -355,12 +355,12 @@ class Scenario:
         return False
 
     def text(self) -> str:
-        """The scenario as data, which ``./skein fly --scenario FILE.scenario`` and all other commands take.
+        """The scenario as data, which ``./skein fly --scenario FILE.scenario`` and all other commands accept.
 
         Raises
         ------
         Untraceable
-            If a function does what cannot be written down; with its line, and what to write instead.
+            If a function's computation cannot be traced; with its line, and what to write instead.
         """
         from .written import Writer
 

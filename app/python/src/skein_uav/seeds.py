@@ -11,17 +11,17 @@ _BITS = 63
 def folded(seed: SupportsIndex) -> int:
     """Folds a seed to Java's 64 bits.
 
-    One below 2**63 stays as it is; of a larger one, the groups of 63 bits are combined by exclusive or.
+    A seed below 2**63 stays unchanged; of a larger one, the groups of 63 bits are combined by exclusive or.
 
     Parameters
     ----------
     seed : int
-        From 0, of any size.
+        An integer from 0, of any size.
 
     Returns
     -------
     int
-        From 0 up to 2**63 - 1.
+        An integer from 0 to 2**63 - 1.
 
     Raises
     ------

@@ -27,7 +27,7 @@ class Server:
     Attributes
     ----------
     path : Path
-        Of the socket: ``PursuitVectorEnv(backend=f"unix:{server.path}")`` flies there.
+        The socket: ``PursuitVectorEnv(backend=f"unix:{server.path}")`` connects to it.
     """
 
     def __init__(self) -> None:
@@ -74,7 +74,7 @@ class Served:
     Parameters
     ----------
     path : str or None
-        Of a running server's socket; None starts one, for this batch alone.
+        Socket of a running server; None starts a server for this batch alone.
 
     Attributes
     ----------

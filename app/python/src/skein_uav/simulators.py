@@ -11,7 +11,7 @@ from pathlib import Path
 from socketserver import StreamRequestHandler, ThreadingUnixStreamServer
 from typing import Any, NamedTuple
 
-#: Of a line that a flight sends; one names no more than a velocity for each vehicle.
+#: Maximum size of a line that a flight sends: a line has at most a velocity for each vehicle.
 _LONGEST_LINE = 1 << 20
 
 
@@ -24,7 +24,7 @@ class Body(NamedTuple):
 
 
 class EnvironmentSimulator:
-    """Serves an environment to one flight after the other, each starting with a reset with `seed`.
+    """Serves an environment to one flight after another; each begins with a reset with `seed`.
 
     The flight steps the environment: so it can be paused, stepped, or run by the clock.
 
@@ -32,20 +32,20 @@ class EnvironmentSimulator:
     ----------
     env : gymnasium.Env or pettingzoo.ParallelEnv
     step_s : float
-        Simulated time of one step of it, s.
+        Simulated time of one step of the environment, s.
     vehicles : mapping
-        Names of the flight's vehicles, and of the environment's agents; a Gymnasium environment has one, None.
+        Maps names of the flight's vehicles to the environment's agents; a Gymnasium environment has one, None.
     body : callable
-        From an agent and its observation to a `Body`.
+        Maps an agent and its observation to a `Body`.
     action : callable
-        From an agent, its observation and the velocity that it is commanded, (north, east, down), m/s, to its action.
+        Maps an agent, its observation and its commanded velocity, (north, east, down), m/s, to its action.
     seed : int
-        Of every reset.
+        Seed of every reset.
 
     Attributes
     ----------
     path : Path
-        Of the socket.
+        The socket.
 
     Examples
     --------
@@ -107,7 +107,7 @@ class EnvironmentSimulator:
         Returns
         -------
         dict
-            Rewards of the vehicles.
+            The vehicles' rewards.
         """
         flying = {name: agent for name, agent in self.vehicles.items() if not any(self._ended[agent])}
         self._rewards = dict.fromkeys(self.vehicles.values(), 0.0)

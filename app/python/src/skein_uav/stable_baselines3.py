@@ -1,4 +1,4 @@
-"""The environments by Stable-Baselines3's own interface."""
+"""The environments with Stable-Baselines3's own interface."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .environments import PursuitVectorEnv
 
 
 class PursuitVecEnv(VecEnv):
-    """Many duels side by side; see `skein_uav.environments.PursuitVectorEnv`, whose parameters it takes."""
+    """Many duels in lockstep; its parameters are those of `skein_uav.environments.PursuitVectorEnv`."""
 
     def __init__(self, num_envs: int = 64, **settings: Any) -> None:
         self._env = PursuitVectorEnv(num_envs, autoreset_mode=AutoresetMode.SAME_STEP, **settings)

@@ -1,4 +1,4 @@
-"""Numbers and conditions that are known in flight alone, and the graph of what is computed with them."""
+"""Numbers and conditions that are known only in flight, and the graph of computations with them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {}
 
 
 class Graph:
-    """What was computed so far: each operation once, with its arguments' places."""
+    """The computation so far: each operation once, with its arguments' indices."""
 
     def __init__(self) -> None:
         self.lines: list[tuple[str, tuple[int, ...], str]] = []
@@ -32,14 +32,14 @@ class Graph:
         return self._known[key]
 
     def leaf(self, op: str, text: str = "", of: object = None) -> Number:
-        """A number that is read, by the decision or settings that it belongs to."""
+        """An input, of the decision or the settings that it belongs to."""
         return Number(self, self.add(op, (), text), of)
 
 
 class Symbol:
     """A number or a condition of a graph.
 
-    `of` is the decision during which it was read; None for what depends on settings alone.
+    `of` is the decision during which it was read; None if it depends only on settings.
     """
 
     __slots__ = ("graph", "node", "of")
@@ -94,7 +94,7 @@ def _boxed(one: Symbol) -> np.ndarray[Any, Any]:
 
 
 class Condition(Symbol):
-    """Whether something holds, known in flight alone."""
+    """A condition whose value is known only in flight."""
 
     __slots__ = ()
 
@@ -121,7 +121,7 @@ class Condition(Symbol):
 
 
 class Number(Symbol):
-    """A number that is known in flight alone."""
+    """A number that is known only in flight."""
 
     __slots__ = ()
 
@@ -257,7 +257,7 @@ _CONDITIONS = ("lt", "le", "eq", "not", "and", "or", "always")
 
 
 def operation(op: str, *args: Any) -> Any:
-    """An operation on numbers, of which one or more are symbolic."""
+    """An operation on numbers, at least one of which is symbolic."""
     first = next(one for one in args if isinstance(one, Symbol))
     kind = Condition if op in ("not", "and", "or") else Number
     nodes, of = [], None
@@ -291,7 +291,7 @@ def _as_symbol(graph: Graph, one: Any, kind: type) -> Any:
 
 
 def constant(graph: Graph, value: float) -> Number:
-    """A number that is known already."""
+    """A number whose value is known."""
     if math.isnan(value):
         raise refused("it computes with a number that is none (NaN)")
     text = repr(value) if math.isfinite(value) else "Infinity" if value > 0 else "-Infinity"

@@ -1,4 +1,4 @@
-"""Says which line of a policy cannot be written down, and what to write instead."""
+"""Names the line of a policy that cannot be traced, and what to write instead."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ _HERE = os.path.dirname(os.path.abspath(__file__)) + os.sep
 
 
 class Untraceable(SkeinError):
-    """A policy does what cannot be written down; the message has its line, and what to write instead."""
+    """A policy's computation cannot be traced; the message has the line, and what to write instead."""
 
 
 def refused(reason: str) -> Untraceable:
-    """The error for the line of the user's code that is being run."""
+    """The error for the line of the user's code that runs now."""
     frame = sys._getframe(1)
     while frame.f_back is not None and not _is_users(frame.f_code.co_filename):
         frame = frame.f_back
@@ -26,7 +26,7 @@ def refused(reason: str) -> Untraceable:
 
 
 def explained(error: TypeError) -> Untraceable | None:
-    """In the place of what NumPy says of an array that has numbers known in flight alone beside others."""
+    """Replaces NumPy's error about an array that mixes numbers known only in flight with others."""
     lacking = re.search(r"has no callable (\w+) method", str(error))
     frames = [one for one in traceback.extract_tb(error.__traceback__) if _is_users(one.filename)]
     if lacking is None or not frames:
@@ -47,7 +47,7 @@ def _is_users(name: str) -> bool:
 
 
 def _better(reason: str, code: str) -> str:
-    """Names what to write instead, as far as the line says what was meant."""
+    """Suggests what to write instead, as far as the line shows the intention."""
     if reason == BRANCH:
         for pattern, instead in _BRANCHES:
             if re.search(pattern, code):

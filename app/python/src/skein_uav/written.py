@@ -1,4 +1,4 @@
-"""Writes a scenario down: calls its functions once, with numbers that are known in flight alone."""
+"""Traces a scenario: calls its functions once, with numbers that are known only in flight."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def _key(name: str) -> str:
 
 
 class Writer:
-    """Calls a scenario's functions once, and writes down what they compute."""
+    """Calls a scenario's functions once, and traces their computations."""
 
     def __init__(self, scenario: Scenario) -> None:
         self.graph = Graph()
@@ -213,7 +213,7 @@ class Writer:
 
 
 def _role(name: str) -> str:
-    """Skein's own roles are known whatever the letters' case."""
+    """Skein's own roles are recognised in any letter case."""
     return name.lower() if name.lower() in ("pursuer", "evader", "leader", "follower", "traveller") else name
 
 
@@ -273,7 +273,7 @@ def _leaves(memory: Any, where_: str) -> list[Any]:
 
 
 def _filled(memory: Any, held: Any) -> Any:
-    """A memory of this form with other numbers."""
+    """A memory of this form with other values."""
     if dataclasses.is_dataclass(memory) and not isinstance(memory, type):
         parts = {each.name: _filled(getattr(memory, each.name), held) for each in dataclasses.fields(memory)}
         return dataclasses.replace(memory, **parts)

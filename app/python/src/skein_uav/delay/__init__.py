@@ -1,7 +1,7 @@
-"""A link and a loop's timing around anybody's environment: delays in seconds, ages, actions on their way.
+"""A link and a loop's timing around any environment: delays in seconds, ages, actions on their way.
 
 ``DelayEnv`` wraps an environment of Gymnasium, ``DelayVectorEnv`` a vector of them, ``DelayParallelEnv`` one of
-PettingZoo; ``Delay`` is what they are made of, on arrays and with NumPy alone.
+PettingZoo; ``Delay``, on which they are based, works on arrays and needs only NumPy.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _WRAPPERS = {"DelayEnv": "single", "DelayVectorEnv": "vector", "DelayParallelEnv
 
 
 def __getattr__(name: str) -> Any:
-    """The wrappers, whose modules need Gymnasium or PettingZoo."""
+    """Imports the wrappers on first use, since their modules need Gymnasium or PettingZoo."""
     if name in _WRAPPERS:
         from importlib import import_module
 

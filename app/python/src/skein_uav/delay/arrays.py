@@ -1,4 +1,4 @@
-"""What differs between arrays of NumPy, PyTorch and JAX, and trees of arrays: dicts and tuples of them."""
+"""Operations that differ between arrays of NumPy, PyTorch and JAX, and trees of arrays: dicts and tuples of them."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def namespace(array: Any) -> Any:
 
 
 def on(like: Any, value: Any) -> Any:
-    """A value as an array of the kind of another, on its device."""
+    """A value as an array of another one's kind, on its device."""
     if type(like) is np.ndarray:
         return np.asarray(value)
     xp = namespace(like)
@@ -34,7 +34,7 @@ def cast(array: Any, dtype: Any) -> Any:
 
 
 def put(array: Any, slot: slice, value: Any) -> Any:
-    """The array with a value in these places of the first axis; arrays of JAX cannot be changed, others are."""
+    """The array with a value in this slice of the first axis; changed in place, except for immutable arrays of JAX."""
     if type(array) is not np.ndarray and hasattr(array, "at"):
         return array.at[slot].set(value)
     array[slot] = value
@@ -42,14 +42,14 @@ def put(array: Any, slot: slice, value: Any) -> Any:
 
 
 def copied(array: Any) -> Any:
-    """Arrays of JAX cannot be changed, and are not."""
+    """A copy; arrays of JAX are immutable and returned as they are."""
     if type(array) is np.ndarray:
         return array.copy("K")
     return array.clone() if hasattr(array, "is_cuda") else array
 
 
 def changed(array: Any, mask: Any, value: Any) -> Any:
-    """A copy with another array's values in some environments: by their numbers with NumPy, else where flags say so."""
+    """A copy with another array's values in some environments: given by indices with NumPy, else by flags."""
     if type(array) is not np.ndarray:
         return namespace(array).where(beside(mask, array), value, array)
     array = array.copy("K")
@@ -58,7 +58,7 @@ def changed(array: Any, mask: Any, value: Any) -> Any:
 
 
 def followed(rows: Any, newest: Any) -> Any:
-    """Rows of each environment, shape (environments, rows, …), without the first, and with another behind them."""
+    """Rows of each environment, shape (environments, rows, …), without the first and with a new last one."""
     if type(rows) is not np.ndarray:
         return namespace(rows).concatenate([rows[:, 1:], newest[:, None]], 1)
     later = np.empty_like(rows)
@@ -68,19 +68,19 @@ def followed(rows: Any, newest: Any) -> Any:
 
 
 def repeated(one: Any, number: int) -> Any:
-    """Rows of each environment; with NumPy, environments are contiguous, so that rows are copied by one loop."""
+    """Equal rows for each environment; with NumPy, environments are contiguous, so that one loop copies a row."""
     if type(one) is not np.ndarray:
         return namespace(one).stack([one] * number, 1)
     return np.moveaxis(np.stack([np.ascontiguousarray(one.T)] * number).T, -1, 1)
 
 
 def beside(flags: Any, array: Any) -> Any:
-    """Flags or weights of the environments, with as many axes as the array."""
+    """Flags or weights of the environments, with the array's number of axes."""
     return flags if flags.ndim == array.ndim else flags.reshape((-1,) + (1,) * (array.ndim - 1))
 
 
 def joined(columns: list[Any], width: int) -> Any:
-    """Matrices side by side, so wide together, of the kind of the first; None is none."""
+    """Matrices joined by columns to this total width, of the first one's kind; None values are skipped."""
     first = columns[0]
     if type(first) is not np.ndarray:
         return namespace(first).concatenate([cast(one, first.dtype) for one in columns if one is not None], 1)
@@ -94,7 +94,7 @@ def joined(columns: list[Any], width: int) -> Any:
 
 
 def leaf(tree: Tree) -> Any:
-    """Some array of a tree."""
+    """Any array of a tree."""
     while isinstance(tree, (dict, tuple)):
         tree = next(iter(tree.values())) if isinstance(tree, dict) else tree[0]
     return tree

@@ -1,4 +1,4 @@
-"""A link and a loop's timing around a batch of environments, as arrays and without Gymnasium."""
+"""A link and a loop's timing around a batch of environments, on arrays and without Gymnasium."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ Link = str | float | ArrayLike | Trace
 
 
 class Seen(NamedTuple):
-    """What a policy knows when it decides.
+    """The input of a policy's decision.
 
     Attributes
     ----------
     observation : Tree
-        The newest that has arrived.
+        The newest observation that has arrived.
     age_s : array of float, shape (environments,)
-        Since it was sampled; before one of the episode has arrived, since the episode began.
+        Time since it was sampled, s; before the episode's first one has arrived, since the episode began.
     pending : Tree or None
         The last ``pending`` decisions, the oldest first, shape (environments, pending, …).
     """
@@ -43,10 +43,10 @@ class Seen(NamedTuple):
 
 
 class Delay:
-    """Decides which observation is seen, and which action acts, in each of a batch of environments.
+    """Determines which observation is seen, and which action acts, in each of a batch of environments.
 
-    Arrays may be of NumPy, PyTorch or JAX, and stay where they are; what the link does is made ahead on the host and
-    uploaded for many steps together.
+    Arrays may be of NumPy, PyTorch or JAX, and stay on their device; the link's behaviour is computed in advance on the
+    host and uploaded for many steps together.
 
     >>> delay = Delay(2, 0.05, observation_delay=0.05, action_delay=0.1)
     >>> delay.begin(np.array([0.0, 0.0]), seed=[1, 2]).age_s
@@ -59,54 +59,54 @@ class Delay:
     Parameters
     ----------
     count : int
-        Environments.
+        Number of environments.
     step_s : float
         Simulated time of a step of the environment, s.
     link : str, float, array or Trace
-        Both directions: a profile (`skein_uav.delay.profiles`), or one-way delays in s.
+        Delays of both directions: a profile (`skein_uav.delay.profiles`), or one-way delays in s.
     observation_delay, action_delay : str, float, array or Trace, optional
-        One direction, in the place of ``link``. A profile tells round trips here, too: one direction takes half.
+        Delays of one direction, instead of ``link``. A profile states round trips here, too: one direction takes half.
     compute_s : float
-        From an observation to the departure of the action chosen upon it, s.
+        Time from an observation to the departure of the action chosen on it, s.
     dropout : float
-        Share of the messages of each direction that are lost, from 0 to 0.9; as many in a row as one time in 10⁹.
+        Share of each direction's messages that are lost, 0 to 0.9; losses in a row end at a probability of 10⁻⁹.
     moves_in_flight : int, optional
-        Actions that may be unanswered, from 2. An action is answered when its successor arrives. What waits for an answer
-        is superseded by what is chosen after it.
+        Maximum number of unanswered actions, from 2. An action is answered when its successor arrives. An action that
+        waits for an answer is superseded by a newer one.
     arrival : {'next', 'share'}
-        What an action does that arrives within a step. ``next``: it acts from the next one on. ``share``: the step gets
-        the mean of the actions that are in force during it, each weighted by its share of the step; for actions of floats.
+        The effect of an action that arrives within a step. ``next``: it acts from the next step on. ``share``: the step
+        gets the mean of the actions in force during it, weighted by their shares of the step; for actions of floats.
     first : {'known', 'zeros'}
-        What is seen before an observation of the episode has arrived: the first one, or zeros as by Gymnasium's
+        The observation seen before one of the episode has arrived: the first one, or zeros as in Gymnasium's
         ``DelayObservation``.
     idle_action : array or number
-        What acts before an action of the episode has arrived.
+        The action that acts before one of the episode has arrived.
     pending : int
-        Decisions that are told beside the observation.
+        Number of last decisions that are part of the policy's input.
     encode : callable, optional
-        Of a batch of actions, what is told of them as pending; by default the actions.
+        Encodes a batch of actions for the policy's input as pending ones; by default the actions themselves.
     predict : callable, optional
-        ``predict(observation, action)`` gives the observation a step later, for the whole batch. What is seen is then
-        carried forward to the moment at which an action chosen now acts by the mean delay, under the actions on their way.
+        ``predict(observation, action)`` returns the observation a step later, for the whole batch. The seen observation
+        is then predicted for the time at which an action chosen now acts by the mean delay, under the pending actions.
     every : int
         Steps of the environment from one decision to the next.
     seed : int, optional
-        Of the link's own generators, until `begin` has one.
+        Seed of the link's random generators, until `begin` sets one.
 
     Attributes
     ----------
     row : int
-        Steps since the link began.
+        Number of steps since the link began.
     longest_age_s : float
-        Of an observation, s.
+        Greatest age of an observation, s.
     spare : int
-        Columns behind those of an observation, for what is told beside it, where observations are matrices of NumPy and
-        not predicted: the age, and others that are left free. To be set before the first.
+        Number of columns after those of an observation, if observations are NumPy matrices and not predicted: one for
+        the age, and others that are left free. To be set before the first observation.
 
     Raises
     ------
     ValueError
-        With what was expected, and what came.
+        If an argument is invalid; states what was expected and what was given.
     """
 
     def __init__(
@@ -182,13 +182,13 @@ class Delay:
         Parameters
         ----------
         mask : array of bool, optional
-            Only in these environments.
+            The environments in which episodes begin; by default all.
         seed : sequence of int or None, optional
-            One an environment; the link begins anew, too. None: goes on.
+            One seed per environment, with which the link begins anew, too. None: the link continues.
         line : int
-            Which of several vehicles over one link.
+            Index of the vehicle, of several over one link.
         actions : Tree, optional
-            Of the kind of those to come: needed where pending ones are told, or observations predicted.
+            Examples of the later actions: needed if pending ones are reported, or observations predicted.
         """
         self.row = -(-self.row // self._every) * self._every
         if not self._is_begun or (seed is not None and any(one is not None for one in seed)):
@@ -198,7 +198,7 @@ class Delay:
                 if one is not None:
                     self._seeds[at] = np.random.SeedSequence(one)
             self._schedule.seed(self._seeds, line)
-            # An environment that is given no seed later goes on with other numbers.
+            # An environment without a later seed continues with other random numbers.
             self._seeds = [spawned(one, _LATER) for one in self._seeds]
             self.row, self._first, self._end, self._is_begun = 0, 0, 0, True
         if self._observations is None:
@@ -223,12 +223,12 @@ class Delay:
         return self._look(at)
 
     def acting(self, actions: Tree = None) -> Tree:
-        """Takes what is decided at the begin of a step; gives what acts in it.
+        """Takes the actions decided at the beginning of a step; returns those that act in it.
 
         Parameters
         ----------
         actions : Tree, optional
-            None in the steps between two decisions.
+            The decided actions; None in the steps between two decisions.
         """
         at = self._in_block()
         if actions is not None:
@@ -245,12 +245,12 @@ class Delay:
         return self._actions.take(self._newest[1])
 
     def seen(self, observations: Tree, began: Any = None) -> Seen:
-        """Lets a step pass, after which the environment is as these observations tell.
+        """Takes the observations after a step; returns the policy's input.
 
         Parameters
         ----------
         began : array of bool, optional
-            Where this step began a new episode: the observation is its first.
+            The environments in which this step began a new episode, of which the observation is the first.
         """
         self.row += 1
         at = self._in_block()
@@ -260,7 +260,7 @@ class Delay:
         return self._look(at)
 
     def _void(self, mask: Any, at: int) -> None:
-        """Episodes begin: what was decided before is void, and the idle action stands in the place of the last."""
+        """Begins episodes: earlier decisions are void, and the idle action replaces the last one."""
         if type(mask) is np.ndarray:
             which = mask.nonzero()[0]
             if not which.size:
@@ -286,7 +286,7 @@ class Delay:
             observation = each(lambda one: self._xp.where(beside(has, one), one, self._xp.zeros_like(one)), observation)
         if self._predict is not None:
             observation = self._predicted(observation, (self._row(at) - newest) // self._count, at)
-        # The table ends with ages of 0, which here are those of this row.
+        # The table ends with ages of 0: those of this row.
         ages = self._ages[(self._room - 1 - at) * self._count :]
         if self._has_room:
             if ages.dtype != observation.dtype:
@@ -299,11 +299,11 @@ class Delay:
         return Seen(observation, age_s, each(copied, self._told) if self._pending else None)
 
     def _table(self) -> Any:
-        """Ages by places, at the last row."""
+        """Ages by history index, at the last row."""
         return np.repeat(np.arange(self._kept + self._room)[::-1] * self.step_s, self._count)
 
     def _row(self, at: Any) -> Any:
-        """The places in this row."""
+        """The history indices of this row."""
         return self._columns + (at + self._kept) * self._count
 
     def _predicted(self, observation: Tree, lag: Any, at: int) -> Tree:
@@ -354,16 +354,16 @@ class Delay:
 
     def _rows_at_once(self, observations: Tree) -> int:
         """How many rows histories take before old ones are forgotten."""
-        sizes = [48 * self._count]  # of places
+        sizes = [48 * self._count]  # of the indices
         each(lambda one: sizes.append(one.nbytes), observations)
-        # Arrays of JAX are copied whole whenever they are changed.
+        # Arrays of JAX are copied as a whole at each change.
         is_copied = self._xp is not np and not hasattr(self._like, "is_cuda")
         fit = 0 if is_copied else _BYTES // sum(sizes)
         rows = max(min(fit, _ROWS), self._kept)
         return -(-min(rows, self._schedule.rows) // self._every) * self._every
 
     def _in_block(self) -> int:
-        """The number of this row in the block, which is made if the last one is over."""
+        """The index of this row in the block; makes the next block if the last one is over."""
         while self.row >= self._end:
             self._forget(self._end - self._first)
             self._first = self._end
@@ -375,16 +375,16 @@ class Delay:
             self._observations.forget(rows)
             if self._actions is not None:
                 self._actions.forget(rows)
-            # An episode may be older than what is kept; bounded, so that 32 bits hold it.
+            # An episode may be older than the kept rows; bounded, so that it fits 32 bits.
             self._began = (self._began - rows * self._count).clip(-4 * MOST_ROWS * self._count)
 
     def _make_block(self) -> None:
-        """Uploads what the link does in the next rows: where the rows of what is seen, and of what acts, begin."""
+        """Uploads the link's behaviour in the next rows: where rows of seen observations and acting actions begin."""
         schedule, at = self._schedule, self._schedule.row(self._first)
         rows = min(self._room, schedule.rows - at)
         self._end, block = self._first + rows, slice(at, at + rows)
         numbers = np.arange(rows)[:, None]
-        # An action stands a row after its decision, since the idle one stands in the row in which an episode begins.
+        # An action is stored a row after its decision, since the row in which an episode begins holds the idle one.
         first = np.empty((rows, 2, schedule.count), np.intp)
         np.subtract(numbers + self._kept, schedule.seen[block], out=first[:, 0])
         np.multiply(schedule.acts[block], -self._every, out=first[:, 1])

@@ -1,4 +1,4 @@
-"""What was observed or decided in the last rows of a batch of environments."""
+"""The observations or decisions in the last rows of a batch of environments."""
 
 from __future__ import annotations
 
@@ -10,22 +10,22 @@ from .arrays import Tree, cast, changed, copied, each, leaf, namespace, put
 
 
 class History:
-    """Rows of a tree of arrays in the order of time.
+    """Rows of a tree of arrays, in the order of time.
 
-    A *place* is an environment's entry in a row: `count` of them are a row, and those of a newer row are larger. Rows are
-    counted from the first after the last `forget`; those that were kept have numbers below 0.
+    A *place* is the index of an environment's entry: a row has `count` of them, and those of a newer row are larger. Rows
+    are counted from the first after the last `forget`; rows that were kept have negative indices.
 
     Parameters
     ----------
     value : Tree
         Fills all rows; arrays of ``count`` entries.
     kept, room : int
-        Rows that `forget` keeps, and rows that fit behind them.
+        Number of rows that `forget` keeps, and of rows that fit after them.
     count : int
-        Environments.
+        Number of environments.
     spare : int
-        Columns behind those of the value, which is a matrix of NumPy then: `take` has them, with any numbers. Columns are
-        contiguous then, so that each is copied by one loop.
+        Number of columns after those of the value, which then is a NumPy matrix: `take` returns them with arbitrary
+        values. Columns are then contiguous, so that one loop copies each.
     """
 
     def __init__(self, value: Tree, kept: int, room: int, count: int, spare: int = 0) -> None:
@@ -47,12 +47,12 @@ class History:
             self._hold(each(lambda rows, one: put(_wide(rows, one), slot, one), self._rows, value))
 
     def put_where(self, which: Any, row: int, value: Tree, places: Any = None) -> None:
-        """Puts the value in a row, in some environments: by their numbers with NumPy, else where flags say so.
+        """Stores the value in a row for some environments: given by indices with NumPy, else by flags.
 
         Parameters
         ----------
         places : ndarray, optional
-            Of these numbers in the row, where they are known.
+            The places of these environments in the row, if known.
         """
         slot = self._slot(row, row + 1)
         if self._dtype is not None:
@@ -70,7 +70,7 @@ class History:
         return rows.take(places, 0) if self._dtype is not None else each(lambda one: _taken(one, places), rows)
 
     def row(self, row: int) -> Tree:
-        """A whole row, of the episode or not; not to be changed."""
+        """A whole row, of any episode; must not be changed."""
         slot = self._slot(row, row + 1)
         return each(lambda rows: rows[slot], self._rows)
 
@@ -87,7 +87,7 @@ class History:
 
 def _repeated(xp: Any, one: Any, number: int) -> Any:
     rows = xp.concatenate([one] * number)
-    return np.ascontiguousarray(rows) if xp is np else rows  # as ``take`` wants it, whatever the environment has
+    return np.ascontiguousarray(rows) if xp is np else rows  # as ``take`` requires, whatever the environment's layout is
 
 
 def _taken(rows: Any, places: Any) -> Any:
@@ -95,5 +95,5 @@ def _taken(rows: Any, places: Any) -> Any:
 
 
 def _wide(rows: Any, one: Any) -> Any:
-    """The rows, so that they hold a value as it is."""
+    """The rows, widened to a type that represents the value exactly."""
     return rows if rows.dtype == one.dtype else cast(rows, namespace(rows).promote_types(rows.dtype, one.dtype))

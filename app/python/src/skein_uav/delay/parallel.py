@@ -15,16 +15,16 @@ from .spaces import Telling, batched, encoding, idle
 
 
 class DelayParallelEnv(BaseParallelWrapper):
-    """Lets a link and a loop's timing stand between the agents' policies and an environment.
+    """Puts a link and a loop's timing between the agents' policies and an environment.
 
-    Each agent's observations and actions have delays of their own. Over a ``correlated`` link, or one that is busy at
-    times, its state is common to all. Otherwise as `skein_uav.delay.single.DelayEnv`.
+    Each agent's observations and actions have delays of their own. The state of a ``correlated`` link, or of one that is
+    busy at times, is common to all. Otherwise like `skein_uav.delay.single.DelayEnv`.
 
     Parameters
     ----------
     env : ParallelEnv
     step_s, ages, pending, **settings
-        As there, for every agent.
+        As in `DelayEnv`, for every agent.
     """
 
     def __init__(
@@ -51,20 +51,20 @@ class DelayParallelEnv(BaseParallelWrapper):
         self._live: set[Any] = set()
 
     def observation_space(self, agent: Any) -> Any:
-        """Of an agent; always the same object."""
+        """The observation space of an agent; always one object."""
         return self.observation_spaces[agent]
 
     def reset(
         self, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[dict[Any, Any], dict[Any, dict[str, Any]]]:
-        """Begins an episode; a seed is the link's, too."""
+        """Begins an episode; a seed applies to the link, too."""
         observations, infos = self.env.reset(seed=seed, options=options)
         if seed is None:
             seed, self._seed = self._seed, None
         else:
             self._seed = None
         self._live = set()
-        # Who left earlier is as far on the link as the others.
+        # An agent that left earlier has equal progress on the link.
         now = max((one.row for one in self._delays.values()), default=0)
         for one in self._delays.values():
             one.row = now

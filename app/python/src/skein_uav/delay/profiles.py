@@ -1,11 +1,11 @@
-"""How long messages take over one direction of a link.
+"""Delays of messages over one direction of a link.
 
-A profile is a text, as Skein's ``--link`` takes it. It tells round trips; one direction takes half of one:
+A profile is a text, as for Skein's ``--link``. It states round trips; one direction takes half of one:
 
 * ``none``; ``direct``, about 36 ms; ``vpn``, 20 to 200 ms; ``vpn-mixed``, ``vpn`` and ``direct`` in turns;
 * ``constant:200ms``, ``uniform:10ms..40ms``, ``lognormal:36ms,0.3`` (median, deviation of the logarithm);
-* ``file:PATH``, round trips in ms, one a line;
-* ``correlated:250ms,PROFILE``: one sample holds for both directions, and is drawn anew after exponentially
+* ``file:PATH``, round trips in ms, one per line;
+* ``correlated:250ms,PROFILE``: one sample applies to both directions, and is drawn anew after exponentially
   distributed times with this mean, so that the correlation of delays falls as e^(-t/250 ms).
 
 ``direct`` and ``vpn`` are quantiles of the samples that Böhm and Singh measured. As in Skein's forward simulation, a
@@ -42,14 +42,14 @@ _FORMS = (
 
 @dataclass(frozen=True)
 class Trace:
-    """One-way delays as they were measured, in their order, again and again.
+    """Measured one-way delays in their order, repeated.
 
     Parameters
     ----------
     delays_s : array of float, shape (times,) or (times, environments)
-        In s. Of one axis, each environment begins at a random place; of two, each at the begin of its own.
+        Delays in s. With one axis, each environment begins at a random index; with two, at the beginning of its own.
     every_s : float, optional
-        From one to the next, s; by default a step of the environment.
+        Time from one delay to the next, s; by default a step of the environment.
     """
 
     delays_s: NDArray[np.float64]
@@ -63,17 +63,17 @@ class Delays:
     Attributes
     ----------
     busy, quiet : ndarray of float64, shape (1024,)
-        Equally likely one-way delays, ascending, s, of the two states of a link; ``quiet`` is the same where it has one.
+        Equally likely one-way delays, ascending, s, in the link's two states; equal if it has only one state.
     busy_share : float
-        Of the time.
+        Share of the time in which the link is busy.
     mixing_s : float
-        After which the link has forgotten its state but for a share of 1/e; 0: it has one.
+        Time after which the correlation of the link's state has fallen to 1/e, s; 0: it has one state.
     correlation_s : float
-        After which it has forgotten a delay but for a share of 1/e; 0: delays are independent.
+        Time after which the correlation of delays has fallen to 1/e, s; 0: delays are independent.
     trace : ndarray of float64, shape (times,) or (times, environments), optional
-        Delays in s that take the place of all these.
+        Delays in s that replace all of these.
     every_s : float, optional
-        From one of them to the next, s.
+        Time from one delay of the trace to the next, s.
     """
 
     busy: NDArray[np.float64]
@@ -106,7 +106,7 @@ def delays(given: str | float | ArrayLike | Trace | Delays, what: str = "delays"
     Raises
     ------
     ValueError
-        With what was expected, and what came.
+        If the argument is invalid; states what was expected and what was given.
     """
     if isinstance(given, Delays):
         return given

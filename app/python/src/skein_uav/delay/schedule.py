@@ -1,10 +1,10 @@
-"""Which observation is seen and which action acts, step by step: what a link decides, and no environment.
+"""Which observation is seen and which action acts, step by step: this depends on the link, not on the environment.
 
-Delays do not depend on what is sent. So the schedule is made ahead, in blocks of steps, on the host, and for all links at
-once; `skein_uav.delay.Delay` applies it to arrays wherever they are.
+Delays do not depend on the messages' content. So the schedule is made in advance, in blocks of steps, on the host, and
+for all links together; `skein_uav.delay.Delay` applies it to arrays on any device.
 
-A *row* is a step of the wrapped environment, of ``step_s``; row r begins at ``r * step_s``. Rows count on over episodes:
-the link does not begin anew with them.
+A *row* is a step of the wrapped environment, of ``step_s``; row r begins at ``r * step_s``. Row numbers continue over
+episodes: the link does not begin anew with them.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from .profiles import SIZE, Delays
 
 MOST_ROWS = 1000
 _BLOCK = 512
-_TINY = 1e-6  # of a row: what is due so little after its begin is due at it
+_TINY = 1e-6  # of a row: a message due this shortly after its beginning is due at it
 _NEVER = 2**15 - 1
 
 Floats = NDArray[np.float64]
@@ -29,41 +29,41 @@ Timed = tuple[Floats, "NDArray | None"]
 
 
 class Schedule:
-    """Deterministic in its seeds.
+    """The schedule of all links, determined by their seeds.
 
     Parameters
     ----------
     count : int
-        Links.
+        Number of links.
     step_s : float
-        Of a row, s.
+        Duration of a row, s.
     observation, action : Delays
-        The two directions. The very same object twice is one link, of which a correlated delay holds in both.
+        The two directions. One object for both is one link, whose correlated delays apply to both.
     compute_s : float
-        From an observation to the departure of the action chosen upon it, s.
+        Time from an observation to the departure of the action chosen on it, s.
     dropout : float
         Share of observations and of actions that are lost.
     moves_in_flight : int, optional
-        Actions that may be unanswered; others wait, and are superseded by newer ones.
+        Maximum number of unanswered actions; others wait, and are superseded by newer ones.
     every : int
-        Rows from one decision to the next.
+        Number of rows from one decision to the next.
     shares : bool
-        Whether `weights` are told.
+        Whether `weights` are computed.
 
     Attributes
     ----------
     first, rows : int
-        The block's first row, and how many it has.
+        The block's first row, and its number of rows.
     seen : ndarray of int16, shape (rows, count)
-        How many rows ago the newest observation was sampled that has arrived when a row begins.
+        Age in rows of the newest observation that has arrived when a row begins.
     acts : ndarray of int16, shape (rows, count)
-        How many decisions ago the newest action was chosen that has arrived when a row begins; 0: at the last decision.
+        Age in decisions of the newest action that has arrived when a row begins; 0: of the last decision.
     weights : ndarray of float64, shape (rows, decisions, count), optional
-        The share of each row in which the newest decision, the one before it, and so on act.
+        The shares of each row in which the newest decision, the one before it, and so on, act.
     oldest_seen, oldest_acting : int
-        How many rows, and decisions, ago at most; where nothing has arrived yet, one more.
+        Maxima of `seen` and `acts`; one more if nothing has arrived yet.
     action_delay_rows : int
-        From a decision until it acts from the begin of a row on, on the mean.
+        Mean number of rows from a decision to the beginning of the row from which on it acts.
     """
 
     def __init__(
@@ -82,7 +82,7 @@ class Schedule:
         self.count, self.every = count, every
         self.rows = max(_BLOCK // every, 1) * every
         self._moves, self._compute, self._dropout = moves_in_flight, compute_s / step_s, dropout
-        # So many losses in a row are one in 10^9.
+        # This many losses in a row have a probability of 10^-9.
         self._most_lost = math.ceil(-9 / math.log10(dropout)) if dropout else 0
         to, back = self._compute + action.longest_s / step_s, observation.longest_s / step_s
         if moves_in_flight is not None:
@@ -106,9 +106,9 @@ class Schedule:
         Parameters
         ----------
         seeds : sequence of SeedSequence
-            One a link; equal ones give equal delays.
+            One per link; equal seeds give equal delays.
         line : int
-            Which of several vehicles over one link: correlated delays and the link's state are common to all.
+            Index of the vehicle, of several over one link: correlated delays and the link's state are common to all.
         """
         self._links = [np.random.default_rng(spawned(seed, 0)) for seed in seeds]
         self._lines = [np.random.default_rng(spawned(seed, line + 1)) for seed in seeds]
@@ -125,7 +125,7 @@ class Schedule:
         self._make()
 
     def row(self, row: int) -> int:
-        """The place of a row in the block, which is replaced if it is past; rows have to ascend."""
+        """The index of a row in the block, which is replaced if it ends before; rows must ascend."""
         while row >= self.first + self.rows:
             self.first += self.rows
             self._make()
@@ -154,7 +154,7 @@ class Schedule:
         self.weights = self._weights(arrives) if self._shares else None
 
     def _kept(self, line: int, late: NDArray, lost: NDArray[np.bool_] | None) -> NDArray:
-        """What is lost arrives never; not more than so many in a row are."""
+        """Lost messages never arrive; limits the number of losses in a row."""
         if lost is None:
             return late
         numbers = np.arange(len(lost))[:, None]
@@ -164,11 +164,11 @@ class Schedule:
         return np.where(since > 0, math.inf if late.dtype == np.float64 else _NEVER, late)
 
     def _in_order(self, late: Lags) -> Lags:
-        """No action overtakes another: how late each is, in rows, may be by those before it."""
+        """No action overtakes another: an action's lateness, in rows, may be due to those before it."""
         lost = late == _NEVER
         all = np.concatenate([self._before, np.where(lost, 0, late)])
         reach = 1
-        while reach < len(self._before):  # twice as many before it each time
+        while reach < len(self._before):  # the reach doubles each time
             np.maximum(all[reach:], all[:-reach] - np.int16(reach * self.every), out=all[reach:])
             reach *= 2
         self._before = all[len(late) :]
@@ -184,9 +184,9 @@ class Schedule:
         return arrives
 
     def _paced(self, leaves: Floats, to: Floats, answer: Floats) -> Floats:
-        """An action leaves once the one ``moves_in_flight`` before it is answered, unless a newer one is chosen first.
+        """An action is sent once the one ``moves_in_flight`` before it is answered, unless a newer one is chosen first.
 
-        An action is answered when its successor arrives, the newest not at all.
+        An action is answered when its successor arrives; the newest is not answered.
         """
         arrives = np.full_like(to, math.inf)
         for number, chosen in enumerate(leaves[:, 0]):
@@ -204,7 +204,7 @@ class Schedule:
         return arrives
 
     def _newest(self, line: int, late: Lags, every: int) -> Lags:
-        """How old the newest is of what has arrived, row by row; each is so late as told, in rows."""
+        """Age of the newest arrived message, row by row, by the messages' lateness in rows."""
         oldest = len(self._underway[line])
         all = np.concatenate([self._underway[line], late])
         self._underway[line] = all[len(all) - oldest :]
@@ -233,14 +233,14 @@ class Schedule:
 
 
 class _Direction:
-    """Delays of one direction; of the other one as well, where they hold in both.
+    """Delays of one direction; of the other one as well, if they apply to both.
 
     Parameters
     ----------
     lines : int
-        How many messages it carries a row.
+        Number of messages per row.
     link : _Direction, optional
-        Whose state it shares.
+        The direction whose state it shares.
     """
 
     def __init__(self, delays: Delays, count: int, step_s: float, lines: int, link: _Direction | None = None) -> None:
@@ -263,12 +263,12 @@ class _Direction:
         drawn: NDArray[np.uint16],
         dropout: float,
     ) -> tuple[list[Timed], NDArray[np.bool_] | None]:
-        """Of each line the delays, and which of the first one's messages are lost, shape (rows, count).
+        """The delays of each line, and which of the first line's messages are lost, shape (rows, count).
 
         Parameters
         ----------
         drawn : ndarray, shape (draws, rows, count)
-            Random numbers below 2**16; a last one where messages can be lost.
+            Random numbers below 2**16, with an additional draw if messages can be lost.
         """
         delays, h = self._delays, self._step_s
         lost = drawn[-1] < round(dropout * 2**16) if dropout else None
@@ -300,7 +300,7 @@ class _Direction:
     def _state(
         self, name: str, links: list[np.random.Generator], rows: int, over_s: float
     ) -> NDArray[np.float32]:
-        """A number that is drawn anew after exponentially distributed times of this mean, read once a row."""
+        """A number that is drawn anew after exponentially distributed times of this mean, read once per row."""
         uniform = np.stack([one.random((rows, 2), dtype=np.float32) for one in links], axis=-1)
         is_new = uniform[:, 0] < -math.expm1(-self._step_s / over_s)
         last = self._last.get(name)
@@ -319,24 +319,24 @@ def _exact(delays: Timed) -> Floats:
 
 
 def _whole(delays: Timed, more: float = 0.0) -> Lags:
-    """In how many rows a message is there, that leaves so much of a row later."""
+    """Number of rows after which a message has arrived that was sent `more` of a row later."""
     rows, at = delays
     lags = np.ceil(rows + more - _TINY).astype(np.int16)
     return lags if at is None else lags.take(at)
 
 
 def _snapped(rows: Floats) -> Floats:
-    """A millionth of a row beside its begin is at its begin."""
+    """Moves times within a millionth of a row of a row's beginning to that beginning."""
     whole = np.rint(rows)
     with np.errstate(invalid="ignore"):
         return np.where(np.abs(rows - whole) < _TINY, whole, rows)
 
 
 def _drawn(generators: list[np.random.Generator], rows: int, kinds: list[int]) -> list[NDArray[np.uint16]]:
-    """Numbers below 2**16, each of shape (kinds, rows, generators)."""
+    """Random numbers below 2**16, each of shape (kinds, rows, generators)."""
     words, count = [-(-rows * one // 4) for one in kinds], len(generators)
     raw = np.concatenate([one.bit_generator.random_raw(sum(words)) for one in generators]).reshape(count, -1)
-    # By whole words first: numbers one by one would each be far from the next.
+    # By whole words first: single numbers would be scattered in memory.
     parts = np.ascontiguousarray(raw.T).astype("<u8", copy=False).view("<u2").reshape(-1, count, 4)
     numbers = np.ascontiguousarray(parts.swapaxes(1, 2)).reshape(-1, count)
     ends = np.cumsum(words) * 4
@@ -347,5 +347,5 @@ def _drawn(generators: list[np.random.Generator], rows: int, kinds: list[int]) -
 
 
 def spawned(seed: np.random.SeedSequence, number: int) -> np.random.SeedSequence:
-    """A seed that is independent of this one, and of others of it."""
+    """A seed that is independent of this one, and of others spawned from it."""
     return np.random.SeedSequence(seed.entropy, spawn_key=(*seed.spawn_key, number))

@@ -14,29 +14,29 @@ from .spaces import Telling, batched, encoding, idle
 
 
 class DelayEnv(gym.Wrapper, gym.utils.RecordConstructorArgs):
-    """Lets a link and a loop's timing stand between a policy and an environment.
+    """Puts a link and a loop's timing between a policy and an environment.
 
-    Observations come late, the newest that has arrived is seen, its age is told, and actions act once they have arrived.
-    Rewards and the ends of episodes are those of the environment itself, at once. After an end, what was under way is
+    Observations arrive late; the policy sees the newest one, with its age, and actions act once they have arrived. Rewards
+    and the ends of episodes are those of the environment itself, without delay. After an end, messages in transit are
     void.
 
     Parameters
     ----------
     env : gymnasium.Env
-        Whose observations and actions are arrays, numbers, or dicts and tuples of them.
+        An environment whose observations and actions are arrays, numbers, or dicts and tuples of them.
     step_s : float
         Simulated time of a step of the environment, s.
     ages : bool
-        Whether ages are told beside the observation (`skein_uav.delay.spaces.Telling`).
+        Whether the policy's input contains ages (`skein_uav.delay.spaces.Telling`).
     pending : int
-        How many of the last decisions are told as well.
+        Number of last decisions that it contains as well.
     substeps : int
-        Steps of the environment from one decision to the next; rewards are added. What is sent arrives to the step.
+        Number of steps from one decision to the next; rewards are added. Messages arrive at whole steps.
     idle_action : array, number, or a tree of them, optional
-        What acts before an action of the episode has arrived; by default 0, or the nearest action to it.
+        The action that acts before one of the episode has arrived; by default 0, or the nearest action to it.
     **settings
         ``link``, ``observation_delay``, ``action_delay``, ``compute_s``, ``dropout``, ``moves_in_flight``, ``arrival``,
-        ``first``, ``predict`` and ``seed``, as of `skein_uav.delay.Delay`.
+        ``first``, ``predict`` and ``seed``, as in `skein_uav.delay.Delay`.
     """
 
     def __init__(
@@ -65,12 +65,12 @@ class DelayEnv(gym.Wrapper, gym.utils.RecordConstructorArgs):
         self.observation_space = self._telling.space
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
-        """Begins an episode; a seed is the link's, too."""
+        """Begins an episode; a seed applies to the link, too."""
         observation, info = self.env.reset(seed=seed, options=options)
         return self._told(self._delay.begin(batched(observation), seed=[seed], actions=self._like)), info
 
     def step(self, action: Any) -> tuple[Any, SupportsFloat, bool, bool, dict[str, Any]]:
-        """Decides, upon what the last call told."""
+        """Makes a decision on the last returned observation."""
         acting, reward = self._delay.acting(batched(action)), None
         for number in range(self._substeps):
             if number:

@@ -1,4 +1,4 @@
-"""What a policy is told, as a space of Gymnasium."""
+"""A policy's input as a space of Gymnasium."""
 
 from __future__ import annotations
 
@@ -17,27 +17,27 @@ from .core import Seen
 class Telling:
     """Joins observation, age and pending actions.
 
-    Where observations are vectors of floats, the result is one: the observation, its age in s, and the pending actions,
-    the oldest first, those of a ``Discrete`` space as so many 0 and a 1. Other observations become a dict of
-    ``observation``, ``age_s`` and ``pending``. With neither ages nor pending actions they stay as they are.
+    If observations are vectors of floats, the result is one, too: the observation, its age in s, and the pending actions,
+    the oldest first, those of a ``Discrete`` space one-hot encoded. Other observations become a dict of ``observation``,
+    ``age_s`` and ``pending``. With neither ages nor pending actions they stay unchanged.
 
     Parameters
     ----------
     observation, action : Space
-        Of one environment.
+        Spaces of one environment.
     longest_age_s : float
-        In s.
+        Greatest age of an observation, s.
     ages : bool
-        Whether ages are told.
+        Whether the result contains ages.
     pending : int
-        Actions that are told.
+        Number of pending actions that it contains.
 
     Attributes
     ----------
     space : Space
-        Of one environment.
+        Space of the result for one environment.
     spare : int
-        Columns behind an observation that `told` fills, as of `skein_uav.delay.Delay`; 0 without ages.
+        Number of columns after an observation that `told` fills, as in `skein_uav.delay.Delay`; 0 without ages.
     """
 
     def __init__(
@@ -75,7 +75,7 @@ class Telling:
             self.space = Dict(parts)
 
     def told(self, seen: Seen) -> Tree:
-        """For a batch."""
+        """Joins the parts for a batch."""
         observation = seen.observation
         if self.spare and type(observation) is np.ndarray and observation.shape[1] == self._width:
             if self._pending:
@@ -95,10 +95,10 @@ class Telling:
 
 
 def encoding(observation: gym.Space, action: gym.Space) -> Callable[[Tree], Tree] | None:
-    """What is told of pending actions beside such an observation; None: themselves."""
+    """The encoding of pending actions next to such an observation; None: unchanged."""
     if not _is_flat(observation) or not isinstance(action, Discrete):
         return None
-    table = np.eye(action.n, dtype=np.float32) if action.n <= 64 else None  # a table is faster, and larger by the square
+    table = np.eye(action.n, dtype=np.float32) if action.n <= 64 else None  # a table is faster, but grows with the square
     return partial(_one_hot, table, np.arange(action.start, action.start + action.n))
 
 
@@ -114,7 +114,7 @@ def _is_flat(observation: gym.Space) -> bool:
 
 
 def idle(space: gym.Space) -> Any:
-    """The action that stands for none: 0, or the nearest of the space."""
+    """The idle action: 0, or the nearest one of the space."""
     if isinstance(space, Box):
         return np.clip(np.zeros(space.shape, space.dtype), space.low, space.high)
     if isinstance(space, (Discrete, MultiDiscrete)):

@@ -15,18 +15,18 @@ from .spaces import Telling, encoding, idle
 
 
 class DelayVectorEnv(VectorWrapper, gym.utils.RecordConstructorArgs):
-    """Lets a link and a loop's timing stand between a policy and many environments; each has a link of its own.
+    """Puts a link and a loop's timing between a policy and many environments, each with a link of its own.
 
-    As `skein_uav.delay.single.DelayEnv`. In its first episode each environment meets the delays of a single one
-    with its seed. All modes of automatic resets work; ``final_obs`` is what is seen at the end. Arrays may be of NumPy,
-    PyTorch or JAX; what is told is of the environment's kind.
+    Like `skein_uav.delay.single.DelayEnv`. In its first episode each environment has the delays of a single one with
+    its seed. All modes of automatic resets work; ``final_obs`` is the seen observation at the end. Arrays may be of
+    NumPy, PyTorch or JAX; results are of the environment's kind.
 
     Parameters
     ----------
     env : VectorEnv
-        Whose ``metadata["autoreset_mode"]`` says how it begins anew.
+        An environment whose ``metadata["autoreset_mode"]`` states when it is reset.
     step_s, ages, pending, idle_action, **settings
-        As there. Where a decision lasts several steps, wrap each environment before a vector is made of them.
+        As in `DelayEnv`. If a decision lasts several steps, wrap each environment before a vector is made of them.
     """
 
     def __init__(
@@ -63,7 +63,7 @@ class DelayVectorEnv(VectorWrapper, gym.utils.RecordConstructorArgs):
         self._ended: Any = None
 
     def reset(self, *, seed: Any = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
-        """Begins episodes; seeds are the links', too, but beside a ``reset_mask``, where links go on."""
+        """Begins episodes; seeds apply to the links, too, except with a ``reset_mask``, with which links continue."""
         mask = None if options is None else options.get("reset_mask")
         observations, infos = self.env.reset(seed=seed, options=options)
         seeds = None
@@ -77,7 +77,7 @@ class DelayVectorEnv(VectorWrapper, gym.utils.RecordConstructorArgs):
         return self._telling.told(seen), infos
 
     def step(self, actions: Any) -> tuple[Any, Any, Any, Any, dict[str, Any]]:
-        """Decides in every environment, upon what the last call told."""
+        """Makes a decision in every environment on the last returned observations."""
         observations, rewards, terminated, truncated, infos = self.env.step(self._delay.acting(actions))
         if self._resets_next:
             seen = self._delay.seen(observations, self._ended)
@@ -91,7 +91,7 @@ class DelayVectorEnv(VectorWrapper, gym.utils.RecordConstructorArgs):
         return self._telling.told(seen), rewards, terminated, truncated, infos
 
     def _finals(self, observations: Any, done: Any, infos: dict[str, Any]) -> Any:
-        """Where episodes have ended and others have begun within this step."""
+        """Stores the final observations of episodes that other ones followed in this step; returns the first of these."""
         finals = infos["final_obs"]
         is_list = isinstance(finals, np.ndarray) and finals.dtype == object
         last = each(np.copy, observations) if is_list else finals

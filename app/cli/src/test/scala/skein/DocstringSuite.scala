@@ -72,7 +72,7 @@ class DocstringSuite extends munit.FunSuite:
 
   private val Short = 40
 
-  /** Words with several meanings here, and the limit of their number in docstrings. Rewrite a docstring
+  /** Words with several meanings here, and the maximum of their number in docstrings. Rewrite a docstring
     * rather than raise a limit; lower it when there are fewer.
     */
   private val mostOf = Vector(

@@ -51,9 +51,9 @@ final case class House(sources: Vector[House.Source]):
 
 object House:
 
-  /** @param room its package
+  /** @param room the file's package
     * @param defined top-level names
-    * @param imports of ours: package and name, or `*`
+    * @param imports our imported definitions: package and name, or `*`
     * @param qualified names used with their package
     */
   final case class Source(

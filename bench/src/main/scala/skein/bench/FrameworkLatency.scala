@@ -19,11 +19,12 @@ import skein.settings.FlySettings
 import skein.signal.LatencyProfile
 import skein.units.*
 
-/** What does the framework itself add between a reading and the command made from it? The `stream` loop
-  * controls twenty vehicles at 10 Hz against the built-in simulator over loopback, simulator included in the
-  * process. Measured at the client's sockets: from the last bytes that arrived before a command to the write
-  * of the bytes that hold the command; so decoding, joining, deciding and encoding are in it, for all twenty,
-  * from the first decision on. As in `./skein fly`, virtual flights and a rehearsal warm up the code before.
+/** How much time does the framework itself add between a reading and the command made from it? The `stream`
+  * loop controls twenty vehicles at 10 Hz against the built-in simulator over loopback, simulator included in
+  * the process. Measured at the client's sockets: from the last bytes that arrived before a command to the
+  * write of the bytes that hold the command; so it includes decoding, joining, deciding and encoding, for all
+  * twenty, from the first decision on. As in `./skein fly`, virtual flights and a rehearsal warm up the code
+  * before.
   *
   * The witness is the number of commands seen. Arguments: seconds (default 30), pairs of vehicles (default
   * 10), threads that plan continuously meanwhile, as the `plan` loop's do (default 0), virtual flights to
@@ -82,7 +83,7 @@ private final class ObservedTransport(inner: Transport, clock: Clock) extends Tr
     val tcp = inner.connect(to)
     Flow[ByteString]
       .map: bytes =>
-        // The time first: what the measurement itself takes must not be in it.
+        // The time is read first, so that it excludes the cost of the measurement itself.
         val latency = clock.now().since(lastArrival).toNanos
         for _ <- 0 until commandsIn(bytes.toArrayUnsafe()) do latencies.add(latency)
         bytes

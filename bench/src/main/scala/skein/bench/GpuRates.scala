@@ -11,7 +11,7 @@ import skein.units.Vector3
 import skein.vehicle.{Quadrotor, ReducedModel}
 
 /** Forward simulation on a GPU and on this machine's processors, side by side, with comparable witnesses:
-  * differing bits are counted. `bench/gpu` runs this beside Crazyflow on one GPU.
+  * differing bits are counted. `bench/gpu` runs this and Crazyflow in turns on one GPU.
   *
   * Arguments: candidates in each row, and vehicles in the quadrotor's row.
   */

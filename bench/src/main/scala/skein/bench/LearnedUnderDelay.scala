@@ -14,7 +14,7 @@ import skein.training.*
 /** Is a policy trained under a link's timing better over that link, or does training on the paused simulator
   * suffice? One learner trains two policies of each side, on the paused simulator and under `stream` over
   * `vpn`; both are run over `vpn` under `stream` and `predictive` in virtual time, and on the paused
-  * simulator, beside the paper's policy and the best that a search finds: `./skein search --family
+  * simulator, compared with the paper's policy and the best that a search finds: `./skein search --family
   * lead-pursuit --link vpn`, and `--family chauffeur-evader`. Run: `./sbtw "bench/runMain
   * skein.bench.LearnedUnderDelay learned/under-delay 100 evader 2"`, for one side and a seed; results that
   * are in the folder already are continued. The picture is written there, too.
@@ -24,7 +24,7 @@ object LearnedUnderDelay:
 
   private val flown = Vector("paused" -> "none", "stream" -> "vpn", "predictive" -> "vpn")
 
-  /** @param captures flights in which the pursuer came within [[CaptureM]] of the evader */
+  /** @param captures number of flights in which the pursuer came within [[CaptureM]] of the evader */
   private[bench] final case class Row(
       policy: String,
       loop: String,

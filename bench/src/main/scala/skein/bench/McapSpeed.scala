@@ -10,13 +10,14 @@ import java.util.zip.CRC32
 import skein.mcap.*
 import skein.mcap.file.McapFile
 
-/** How fast are MCAP files written and read, beside the official libraries? `bench/mcap` runs this and their
-  * twins over common messages, which `corpus` writes to a separate file: of each message its log time, ns,
-  * and its length as numbers of 8 and 4 bytes, lowest first, then its data.
+/** How fast are MCAP files written and read, compared with the official libraries? `bench/mcap` runs this and
+  * their twins over common messages, which `corpus` writes to a separate file: for each message its log time,
+  * ns, and its length as integers of 8 and 4 bytes, lowest first, then its data.
   *
-  * A row is what, how compressed, megabytes of messages a second of CPU time of the whole process (so threads
-  * of its own do not make it faster), the size of the file, and as witness the CRC32 of all data in the order
-  * read, which is the same in every row of a corpus. All CRCs are written, and held while reading.
+  * A row states the operation, the compression, megabytes of messages per second of CPU time of the whole
+  * process (so further threads do not make it faster), the size of the file, and as witness the CRC32 of all
+  * data in the order read, which is equal in every row of a corpus. All CRCs are written, and checked while
+  * reading.
   */
 object McapSpeed:
   final private case class Message(logTime: Long, data: Array[Byte])

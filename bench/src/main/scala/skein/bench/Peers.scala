@@ -4,11 +4,11 @@ import java.nio.file.{Files, Path}
 import scala.collection.mutable
 import scala.sys.process.*
 
-/** How fast is forward simulation beside its peers? On one machine in one run: a hand-vectorised C kernel of
-  * the yardstick's work, its Numba and JAX twins and ours; the `stream` loop's full event timing; the
-  * quadrotor beside Crazyflow. All sides take turns, round after round, on one thread and on all cores, so
-  * that other load affects all equally; the best round of each counts. Every row prints a witness.
-  * `bench/peers` prepares the tools and runs this.
+/** How fast is forward simulation compared with its peers? On one machine in one run: a hand-vectorised C
+  * kernel of the yardstick's work, its Numba and JAX twins, and Skein's; the `stream` loop's full event
+  * timing; the quadrotor compared with Crazyflow. All sides take turns, round after round, on one thread and
+  * on all cores, so that other load affects all equally; the best round of each counts. Every row prints a
+  * witness. `bench/peers` prepares the tools and runs this.
   *
   * Arguments: rounds, the compiled C program, Python with the twins' packages (`-`: without them), the folder
   * of the peers' programs.
@@ -50,7 +50,7 @@ object Peers:
       take("yardstick, C", threads)(inC(native, threads))
       for work <- ours do
         take(work.name, threads)(work.run(threads))
-        // Measured once more beside its peer, because the ratio compares these two.
+        // Measured once more in turns with its peer, because the ratio compares these two.
         if work == Works.yardstick then take("yardstick, C", threads)(inC(native, threads))
       if python != "-" then
         for (name, program, twin) <- Twins do

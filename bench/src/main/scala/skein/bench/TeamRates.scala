@@ -74,7 +74,7 @@ object TeamRates:
       Vector(Judged(Separation, Reduction.Mean, DurationS - 10))
     )
 
-  /** As examples/chase has it. */
+  /** Equal to that of examples/chase. */
   private case object Chase extends Policy:
     type Memory = Unit
     def start: Unit                                             = ()
@@ -90,7 +90,7 @@ object TeamRates:
 
   private def key(episode: Int) = WorldRandom.key(1, 0, episode)
 
-  /** @param from number of the first episode */
+  /** @param from index of the first episode */
   private final class Worlds(candidates: Vector[TeamCandidate], shared: Boolean, from: Int)
       extends TeamWorlds:
     def size: Int                            = candidates.size

@@ -4,7 +4,7 @@ import java.lang.management.ManagementFactory
 
 /** A piece of work for one thread: its number of steps, and a witness of their result.
   *
-  * @param unit what one step is
+  * @param unit description of one step
   */
 final case class Work(name: String, unit: String)(val of: Int => (Double, Double)):
 
@@ -28,9 +28,9 @@ object Work:
 
 /** Millions of steps.
   *
-  * @param byWall per second of the clock
-  * @param byCpu per second of processor time, which other load on the machine affects less
-  * @param witness of the result
+  * @param byWall millions of steps per second of the clock
+  * @param byCpu millions of steps per second of processor time, which other load on the machine affects less
+  * @param witness a number computed from the result
   */
 final case class Rate(byWall: Double, byCpu: Double, witness: Double):
   /** The better value of each field separately. */

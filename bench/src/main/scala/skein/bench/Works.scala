@@ -91,7 +91,7 @@ object Works:
 
   val duel: Engagement = Engagement.of(PaperDuel().fleet)
 
-  /** The paper's duel with another pursuer, judged as a search for the distance judges it. */
+  /** The paper's duel with another pursuer, scored as in a search for the distance. */
   def team(pursuer: Policy): TeamCandidate =
     TeamCandidate(duel.flownBy(Role.Pursuer, pursuer), DistanceTerm.Last10s.judged(60, 0.1).toVector)
 

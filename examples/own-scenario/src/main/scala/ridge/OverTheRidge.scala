@@ -61,5 +61,6 @@ final case class OverTheRidge(
 final case class View(land: Land) extends Quantity:
   def of(at: Positions): Double = land.clearanceM(at.ned(0), at.ned(1))
 
+/** Distance of the two, m. */
 case object Apart extends Quantity:
   def of(at: Positions): Double = (at.ned(0) - at.ned(1)).norm

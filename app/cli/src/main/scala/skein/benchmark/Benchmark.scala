@@ -10,7 +10,7 @@ import skein.units.Expect
   */
 final class Benchmark(set: BenchmarkSet, seeds: Int)(using Scenarios):
 
-  /** A cell for each task and world, in which the truth is simulated once. */
+  /** A cell for each task and world, in which the paused loop is simulated once. */
   private val truthCells = set.cells.distinctBy(_.ofTruth)
 
   private val (refused, planned) =
@@ -27,7 +27,7 @@ final class Benchmark(set: BenchmarkSet, seeds: Int)(using Scenarios):
   val mistake: Option[String] = refused.collectFirst:
     case (_, entry, why) if entry.policy.isDefined && !planned.exists(_._2.policy == entry.policy) => why
 
-  /** Number of flights that [[fly]] simulates, including those of the truth. */
+  /** Number of flights that [[fly]] simulates, including those of the paused loop. */
   val flights: Int = seeds * (planned.size + truthCells.size)
 
   /** Simulates all flights.

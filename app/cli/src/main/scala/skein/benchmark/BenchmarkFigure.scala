@@ -3,8 +3,8 @@ package skein.benchmark
 import skein.plot.*
 import skein.units.Decimals.signed
 
-/** The deviation of each entry from the truth: a panel for each world, with a row for each entry and a column
-  * for each task and link.
+/** The deviation of each entry from the paused loop: a panel for each world, with a row for each entry and a
+  * column for each task and link.
   */
 object BenchmarkFigure:
   private val cellWidth  = 44.0

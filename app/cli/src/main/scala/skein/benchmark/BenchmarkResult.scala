@@ -5,9 +5,9 @@ import skein.optimise.RunningStats
 
 /** The result of one flight.
   *
-  * @param headline the value of the scenario's first measure; absent where the flight has none
-  * @param ageMs mean age of the own vehicle's reading at a decision
-  * @param errorsM of predictions of the own vehicle
+  * @param headline the value of the scenario's first measure; absent if the flight has none
+  * @param ageMs mean age of the deciding vehicle's own reading
+  * @param errorsM errors of predictions of the deciding vehicle itself
   */
 final case class BenchmarkFlight(
     headline: Option[Double],
@@ -24,9 +24,9 @@ object BenchmarkFlight:
     flown.predictions.fold(Vector.empty)(_.own.samples.map(_._2))
   )
 
-/** The flights of one entry in one cell, and those of the truth.
+/** The flights of one entry in one cell, and those of the paused loop.
   *
-  * @param truths by the paused loop, in the cell's world
+  * @param truths flights by the paused loop, in the cell's world
   * @param notFlown why flights failed
   */
 final case class BenchmarkRow(
@@ -40,7 +40,7 @@ final case class BenchmarkRow(
 
   val truth: Option[Double] = mean(truths.flatMap(_.headline))
 
-  /** Deviation of each flight's measure from the truth's mean, as a share of that mean. */
+  /** Deviation of each flight's measure from the mean of the paused flights, as a share of that mean. */
   val off: Vector[Double] =
     truth.filter(_ != 0).toVector.flatMap(truth => flights.flatMap(_.headline).map(_ / truth - 1))
 
@@ -51,7 +51,7 @@ final case class BenchmarkRow(
   val halfOff: Option[Double] =
     Option.when(off.sizeIs > 1)(RunningStats.of(off.size)(off).studentHalfWidth95)
 
-  /** Mean number of violations per flight, less that of the truth's flights. */
+  /** Mean number of violations per flight, less that of the paused flights. */
   val violations: Double =
     def each(of: Vector[BenchmarkFlight]) = mean(of.map(_.violations.toDouble)).getOrElse(0.0)
     each(flights) - each(truths)

@@ -29,7 +29,7 @@ object BenchmarkSet:
   object Named:
     /** A scenario as a task.
       *
-      * @param name of the scenario's kind, or the text of its file
+      * @param name the name of the scenario's kind, or the text of its file
       */
     def of(name: String): Named =
       Named(ScenarioText.called(name), s"scenario = ${ConfigUtil.quoteString(name)}")
@@ -37,7 +37,7 @@ object BenchmarkSet:
   /** A loop, with the model by which it predicts.
     *
     * @param isInPacket whether each command carries the actions foreseen after it
-    * @param policy that replaces the scenario's, in the text form of `--policy` of `./skein fly`
+    * @param policy the policy that replaces the scenario's, in the text form of `--policy` of `./skein fly`
     */
   final case class Entry(
       name: String,
@@ -53,7 +53,7 @@ object BenchmarkSet:
   val Truth: Entry = Entry("truth", "paused")
 
   final case class Cell(task: Named, world: Named, link: String):
-    /** The part of a cell on which the truth's flights depend: they use no link. */
+    /** The part of a cell on which paused flights depend: they use no link. */
     def ofTruth: (Named, Named) = (task, world)
 
     /** The settings of an entry's flights.

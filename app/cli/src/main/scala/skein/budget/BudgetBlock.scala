@@ -9,8 +9,8 @@ import skein.signal.LatencyDistribution
 
 /** Some cells of a budget's map, which any process with an equal question simulates with identical bits.
   *
-  * @param number of the subject, from 0
-  * @param episodes of each link
+  * @param number index of the subject, from 0
+  * @param episodes number of episodes for each link
   */
 final case class BudgetBlock(number: Int, links: Vector[LatencyDistribution], episodes: Int):
 

@@ -4,8 +4,8 @@ import skein.plot.*
 import skein.search.WholeFlights
 import skein.units.Decimals.significant
 
-/** The objective's deviation from the truth by latency and jitter, one panel per period, with the contour at
-  * the tolerance, and the marked links.
+/** The objective's deviation from the paused loop by latency and jitter, one panel per period, with the
+  * contour at the tolerance, and the marked links.
   */
 object BudgetFigure:
   private val width  = 430.0
@@ -14,7 +14,7 @@ object BudgetFigure:
   private val limit  = Stroke(Colour(0x111111), 1.8)
   private val empty  = Colour(0xf0f0f0)
 
-  /** @param maps of one question at several periods */
+  /** @param maps the maps of one question at several periods */
   def apply(maps: Vector[BudgetMap]): Drawing =
     val (_, unit) = maps.head.tolerance.shown(maps.head.unit)
     val scale     = scaleOf(maps)

@@ -10,8 +10,8 @@ import upickle.default.{ReadWriter, macroRW, write}
 
 /** A map of one loop at one period, with its labels.
   *
-  * @param policy or scenario
-  * @param engine that simulated it
+  * @param policy the policy's or the scenario's label
+  * @param engine the engine that simulated it
   * @param marks named links, with the results over their measured round trips
   */
 final case class BudgetMap(
@@ -91,7 +91,7 @@ enum Legs(val text: String, val perRoundTrip: Double):
 object BudgetMap:
   val CsvHeader = "periodMs,meanMs,jitterMs,objective,sd,episodes,deviation"
 
-  /** All maps as JSON: the question, and for each map the truth and the cells. */
+  /** All maps as JSON: the question, and for each map the paused loop's value and the cells. */
   def json(maps: Vector[BudgetMap]): String = write(maps.map(Shown.of), indent = 1)
 
   private final case class Cell(

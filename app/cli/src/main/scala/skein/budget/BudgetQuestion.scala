@@ -21,8 +21,8 @@ object BudgetQuestion:
 
   /** A question about a policy in the paper's duel.
     *
-    * @param policy and `opponent`: as [[PolicyFile.text]] writes them
-    * @param role of the policy
+    * @param policy the policy as [[PolicyFile.text]] writes it; likewise `opponent`
+    * @param role the policy's role
     */
   final case class OfDuel(
       role: String,

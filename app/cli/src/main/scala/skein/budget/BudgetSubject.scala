@@ -7,12 +7,12 @@ import skein.search.{Conditions, Effort}
 import skein.signal.LatencyDistribution
 import skein.simd.WorldRandom
 
-/** The subject of a budget: its simulation over links yields a number.
+/** The subject of a budget: its simulation over links yields a value.
   *
-  * @param loop by its name
+  * @param loop name of the loop
   * @param vehicles the vehicle model, in a line
-  * @param label of the policy, or of the scenario
-  * @param formula of the number, in `unit`, which may be empty
+  * @param label description of the policy, or of the scenario
+  * @param formula formula of the value, in `unit`, which may be empty
   */
 trait BudgetSubject(
     val loop: String,
@@ -23,7 +23,7 @@ trait BudgetSubject(
     val formula: String,
     val unit: String
 ):
-  /** The number in a world that stands still while the controller decides; Left states why there is none. */
+  /** The value in a world that stands still while the controller decides; Left states why there is none. */
   def truth: Either[String, Double]
 
   def engine(links: Vector[LatencyDistribution]): Engine
@@ -42,8 +42,8 @@ trait BudgetSubject(
 
 /** Cells of a map that are to be simulated.
   *
-  * @param links by their round trips
-  * @param episodes of each
+  * @param links the links' round trips
+  * @param episodes number of episodes for each link
   * @param onProgress called with the number of episodes done
   */
 final case class BudgetCells(
@@ -56,10 +56,10 @@ final case class BudgetCells(
 object BudgetSubject:
   val Stopped = "stopped before the map was whole"
 
-/** A team in forward simulation, whose episodes yield numbers.
+/** A team in forward simulation, whose episodes yield values of an objective.
   *
-  * @param team simulated over links
-  * @param atRest simulated in a world that stands still while the controller decides
+  * @param team the team simulated over links
+  * @param atRest the team simulated in a world that stands still while the controller decides
   * @param effort default number of episodes, by engine
   */
 final class TeamSubject(
@@ -107,8 +107,8 @@ final class TeamSubject(
       BudgetSubject.Stopped
     )
 
-  /** The worlds of cells that are simulated together: every link has the same episodes, and the links follow
-    * each other.
+  /** The worlds of cells that are simulated together: all links share the episodes, and the links follow each
+    * other.
     */
   private final class Worlds(candidate: TeamCandidate, links: Vector[DelayTable], each: Int)
       extends TeamWorlds:

@@ -8,7 +8,7 @@ import skein.signal.LatencyDistribution
 /** Simulates a subject over links of many latencies and jitters, and once without a link in a world that
   * stands still while the controller decides.
   *
-  * @param asked episodes of each cell, if the user chose
+  * @param asked number of episodes for each cell, if the user chose one
   */
 final class BudgetSweep(subject: BudgetSubject, axes: BudgetAxes, tolerance: Tolerance, asked: Option[Int]):
   /** Links of the map's cells, row by row; None for impossible cells. */
@@ -17,7 +17,7 @@ final class BudgetSweep(subject: BudgetSubject, axes: BudgetAxes, tolerance: Tol
 
   private val known = links.flatten.flatten
 
-  /** Episodes of each cell: the user's number, or as many as are simulated within seconds. */
+  /** Number of episodes for each cell: the user's, or as many as are simulated within seconds. */
   lazy val episodes: Int = asked.getOrElse(subject.cellEpisodes(known))
 
   def engine: Engine = subject.engine(known)

@@ -13,8 +13,9 @@ import upickle.default.ReadWriter
 /** A subject simulated by other processes, in blocks of some cells each, with the bits of a run in this
   * process.
   *
-  * @param number of this subject among those of the question
-  * @param blockEpisodes approximate episodes in a block; without it, as many as take seconds at most
+  * @param number index of this subject among those of the question
+  * @param blockEpisodes approximate number of episodes in a block; without it, as many as take seconds at
+  *   most
   */
 final class ClusterSubject(
     here: BudgetSubject,

@@ -53,8 +53,7 @@ final case class ScenarioQuestion(
 
 object ScenarioQuestion:
 
-  /** @param objective a sum of measures by their keys; without it, the first
-    */
+  /** @param objective a sum of measures by their keys; by default the first */
   def of(
       scenario: Scenario,
       objective: Option[String],
@@ -74,8 +73,8 @@ object ScenarioQuestion:
 
 /** A scenario with any measures, which are evaluated on whole flights.
   *
-  * @param over runs the episode of a number on the calling thread: over a link, given by its round trips;
-  *   without one, in a world that stands still while the controller decides
+  * @param over runs an episode, given by its number, on the calling thread: over a link, given by its round
+  *   trips; without one, in a world that stands still while the controller decides
   */
 final class FlownSubject private (
     question: ScenarioQuestion,

@@ -2,9 +2,9 @@ package skein.budget
 
 import skein.units.Decimals.significant
 
-/** The greatest deviation from the truth that counts as tolerated. */
+/** The greatest deviation from the paused loop that counts as tolerated. */
 enum Tolerance:
-  /** A fraction of the truth, for example 0.05 for 5 %. */
+  /** A fraction of the paused loop's value, for example 0.05 for 5 %. */
   case Share(share: Double)
 
   /** A distance in the objective's unit: for objectives that may be 0. */

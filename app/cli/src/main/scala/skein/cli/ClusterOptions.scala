@@ -24,7 +24,7 @@ final case class ClusterOptions(
 ):
   import ClusterOptions.*
 
-  /** The validated options; None where this process computes alone. */
+  /** The validated options; None if this process computes alone. */
   def checked: Either[String, Option[ClusterOptions.Checked]] =
     if workers.isEmpty && cluster.isEmpty then
       Either.cond(

@@ -131,8 +131,8 @@ private[cli] object ClusterRun:
   /** Runs `body` with a coordinator and workers, and stops them afterwards.
     *
     * @param program the class whose `main` starts the commands
-    * @param folder for the ledger and the workers' logs
-    * @param threads of all workers that it starts
+    * @param folder holds the ledger and the workers' logs
+    * @param threads total number of threads of the workers that it starts
     */
   def using[A](
       options: ClusterOptions.Checked,

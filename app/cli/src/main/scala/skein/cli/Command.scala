@@ -69,7 +69,7 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
   /** Names of options that it shares with another command and refuses; help and completion leave them out. */
   protected def refusedAlways: Set[String] = Set.empty
 
-  /** All values of an option, by option name, where the set is known. */
+  /** All values of an option, by option name, if the set is known. */
   protected def known: Map[String, Seq[String]] = Map.empty
 
   final def run(words: Seq[String]): Int =

@@ -7,11 +7,11 @@ import skein.report.TextTable
   */
 private[cli] object Complaint:
 
-  /** Limits of the characters of a word, and of a line, that are shown. */
+  /** Maximum number of shown characters of a word, and of a line. */
   val MostOfAWord = 200
   val MostOfALine = 1000
 
-  /** Limit of the lines that are shown: every setting in a misplaced section is a mistake. */
+  /** Maximum number of shown lines: every setting in a misplaced section is a mistake. */
   val MostLines = 12
 
   /** @param reason a line for each mistake

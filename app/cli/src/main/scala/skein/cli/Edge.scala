@@ -80,7 +80,7 @@ private[cli] object Edge:
       stops.remove(stop): Unit
       removeHook(hook)
 
-  /** @return `false` where the JVM is shutting down already, and accepts no more hooks */
+  /** @return `false` if the JVM is shutting down already, and accepts no more hooks */
   private def added(hook: Thread): Boolean =
     try
       Runtime.getRuntime.addShutdownHook(hook)

@@ -12,7 +12,7 @@ import skein.scenario.Scenarios
 import skein.settings.{ConfigKeys, ConfigMistakes, FlySettings, HoconFile, ScenarioSettings, Wire}
 import skein.units.Expect
 
-/** What to fly; options that are not given are read from the configuration `skein.fly`. */
+/** Options of the flights to fly; options that are not given are read from the configuration `skein.fly`. */
 final case class FlightOptions(
     @arg(doc =
       "paused, sequential, futures, stream, predictive, plan, or a loop of the program's own; can be repeated"
@@ -139,8 +139,7 @@ final case class FlightOptions(
   /** The settings: flags take precedence over the file, the file over defaults. */
   def settings(using Scenarios): Either[String, FlySettings] = settingsOf(mayPause = true)
 
-  /** @param mayPause whether the vehicles' time can be stopped, as far as the command knows
-    */
+  /** @param mayPause whether the vehicles' time can be stopped, as far as known to the command */
   private[cli] def settingsOf(mayPause: Boolean)(using Scenarios): Either[String, FlySettings] =
     configurationOf(mayPause).flatMap(FlySettings.read).map: settings =>
       if settings.loops.contains(LoopKind.Plan) then
@@ -166,8 +165,8 @@ final case class FlightOptions(
       own    <- ofScenario(merged)
     yield own.withFallback(merged).withOnlyPath("skein.fly")
 
-  /** The configuration with loops that do not stop the vehicles' time, where none was chosen and that time is
-    * not ours to stop.
+  /** The configuration with loops that do not stop the vehicles' time, if none was chosen and that time
+    * cannot be stopped here.
     */
   private def looping(told: Config, mayPause: Boolean): Config =
     val wire     = Try(told.getString("skein.fly.wire")).toOption
@@ -252,7 +251,9 @@ object FlightOptions:
 
   private def flagOf(field: String): String = "--" + ConfigKeys.ofField(field)
 
-  /** The key below `skein.fly` that a field sets; absent for what is the scenario's, or stands for others. */
+  /** The key below `skein.fly` that a field sets; absent if the field is the scenario's, or stands for
+    * others.
+    */
   private def keyOf(field: String): Option[String] = field match
     case "loop" | "link"                                                      => Some(s"${field}s")
     case "policy"                                                             => Some("policies")
@@ -260,7 +261,7 @@ object FlightOptions:
     case "asPaper" | "mavlink"                                                => None
     case _ => Some(ConfigKeys.ofField(field))
 
-  /** All values of flags that take no others, by flag name. */
+  /** All values of flags with a known set of values, by flag name. */
   def known(using Scenarios): Map[String, Seq[String]] = Map("loop" -> AnyLoop.names)
 
   private val paperLoops =

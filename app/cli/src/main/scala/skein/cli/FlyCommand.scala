@@ -179,7 +179,7 @@ final class FlyCommand(using Scenarios)
     }
     twice.orElse(there).toLeft(())
 
-  /** @param twins of the live flights; simulated here if there is time */
+  /** @param twins the live flights' twins; simulated here if there is time */
   private def warmUp(settings: FlySettings, twins: Vector[FlightPlan]): Either[String, Preview.Flown] =
     if settings.loops.forall(FlyCommand.warm) then Right(Map.empty)
     else
@@ -318,7 +318,7 @@ private[cli] object FlyCommand:
   /** Refuses flights in which no vehicle was ever read for a decision, unless it failed or was ended by the
     * user.
     *
-    * @param decisions by flight
+    * @param decisions number of decisions by flight
     * @param ended flights that failed, or that the user ended
     */
   def undecided(decisions: Seq[(String, Int)], ended: Set[String]): Either[String, Unit] =

@@ -62,7 +62,7 @@ final case class ForwardOptions(
 
   def threadCount: Either[String, Int] = ForwardOptions.threadCount(threads)
 
-  /** @param role of the policy that is evaluated */
+  /** @param role the role of the policy that is evaluated */
   def opponentOf(role: Role)(using Scenarios): Either[String, PolicyFile] =
     val other = Role.opponentOf(role)
     opponent.fold(Right(PolicyFile.paperOf(other)))(ForwardOptions.policy("--opponent", _, other))

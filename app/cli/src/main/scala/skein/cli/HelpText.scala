@@ -7,7 +7,7 @@ private[cli] object HelpText:
 
   /** A value's placeholder in usage lines.
     *
-    * @param option its name without dashes
+    * @param option the option's name without dashes
     * @param kind the type's name in mainargs
     */
   def placeholder(option: String, kind: String): String =

@@ -42,7 +42,7 @@ final class IdentifyCommand(using scenarios: Scenarios)
       ParserForClass[IdentifyOptions]
     ):
 
-  /** Limit of a figure's panels; a figure with more is omitted. */
+  /** Maximum number of a figure's panels; a figure with more is omitted. */
   private val MostPanels = 16
 
   protected def execute(options: IdentifyOptions): Either[String, Unit] =

@@ -100,7 +100,7 @@ object LatencyCommand
 
   private final class NoAnswer(reason: String) extends RuntimeException(reason)
 
-  /** Quantiles as measured, beside those of the link's profile. */
+  /** Measured quantiles, and those of the link's profile. */
   private def quantileTable(profile: LatencyProfile, samples: Distribution): TextTable =
     val measured = "measured, ms" +: quantiles(samples.quantile)
     val expected = Some(expectedOf(profile)).collect:

@@ -171,7 +171,7 @@ final class LearnCommand(program: String)(using Scenarios)
             .flatMap(_ => Left(reason))
           case None if state.best.isEmpty => Right(shown.tables(Nil, goOn))
           case None                       =>
-            // Before measuring, which may be cut short: a user who stops a run does not wait long.
+            // Before measuring, which may be cut short, since a user who stops a run does not wait long.
             if !isDone then shown.say(goOn)
             conclude(setup, measure, folder, state, if isDone then flights else 0, shown)
 
@@ -263,7 +263,7 @@ final class LearnCommand(program: String)(using Scenarios)
         finally line.end()
 
 object LearnCommand:
-  /** Limit of the fresh episodes that evaluate the best policy of a stopped run. */
+  /** Maximum number of fresh episodes that evaluate the best policy of a stopped run. */
   private val FreshIfStopped = 100
 
   /** The question of the options.

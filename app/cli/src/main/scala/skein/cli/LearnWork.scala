@@ -56,7 +56,7 @@ private[cli] object LearnWork:
     def compute(works: Vector[ArraySeq[Byte]], onAnswer: ArraySeq[Byte] => Unit) =
       run.compute(works.map(work => BlockBytes.of(Block.Episodes(work))), onAnswer)
 
-  /** The flights of the scenario with a policy in place of its own, as the commands run them.
+  /** The flights of the scenario with a policy instead of its own, as the commands run them.
     *
     * @return settings, and a plan for each flight; Left states why there are none
     */

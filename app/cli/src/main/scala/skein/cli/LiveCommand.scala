@@ -13,12 +13,12 @@ import skein.units.Clock
 
 /** Runs the live flights of `./skein fly`.
   *
-  * @param simulator a running one; without it, each flight starts a built-in one
-  * @param shown where flights can be viewed while they run
-  * @param sinks further outputs besides the recordings
-  * @param requests that end or hold flights from outside
+  * @param simulator a running simulator; without it, each flight starts a built-in one
+  * @param shown shows flights while they run
+  * @param sinks outputs in addition to the recordings
+  * @param requests users' requests to pause or end flights
   * @param isMavlinkByTcp see [[FlightAssembler]]
-  * @param ros remappings of topics, if the vehicles are behind ROS 2
+  * @param ros remappings of topics, if the vehicles are reached by ROS 2
   */
 private[cli] final class LiveCommand(
     settings: FlySettings,

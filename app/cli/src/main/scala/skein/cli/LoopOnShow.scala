@@ -11,7 +11,7 @@ import skein.view.{Feed, Gauge, LiveShow, Shows}
   * last took.
   *
   * @param takeNew commands since the last call
-  * @param findings of the observation so far, in words
+  * @param findings the findings so far, in words
   */
 private[cli] final class LoopOnShow(
     takeNew: () => Vector[NewCommands],
@@ -24,11 +24,11 @@ private[cli] final class LoopOnShow(
   private var found  = Vector.empty[String]
   private var nextAt = Instant.Epoch
 
-  /** Whether commands have come since the findings were made. */
+  /** Whether commands have passed since the findings were made. */
   private var isStale = true
   private var isEnded = false
 
-  /** @param what is observed, and `where`, for people */
+  /** @param what the observed program, for people; `where`: its address */
   def show(shows: Shows, what: String, where: String): Unit =
     val now    = clock.now()
     val flight =
@@ -74,7 +74,7 @@ private[cli] object LoopOnShow:
   private val vehicle =
     s"""{"type":"object","properties":{"vehicle":$text,"ageMs":$number,"everyMs":$number,"unanswered":$number}}"""
 
-  /** The largest numbers of each vehicle's commands since the last message, and all findings. */
+  /** The maxima of each vehicle's commands since the last message, and all findings. */
   val topic: Topic = Topic(
     "/skein/observed",
     "skein.observed",

@@ -6,7 +6,7 @@ import skein.scenario.Nearest
 /** Describes mistakes in a command line, a line for each. */
 private object Misuse:
 
-  /** @param options of the command, with their dashes */
+  /** @param options the command's options, with their dashes */
   def text(failure: Result.Failure, options: Seq[String]): String = failure match
     case Result.Failure.MismatchedArguments(missing, unknown, duplicate, incomplete) =>
       // mainargs also reports everything after an unknown word as unknown.
@@ -34,7 +34,7 @@ private object Misuse:
           options.minByOption(Nearest.distance(option, _)).filter(Nearest.distance(option, _) <= MostWrong)
         s"$word: no such option or argument${near.fold("")(one => s"; the nearest is $one")}"
 
-  /** Limit of the differing letters of a word for which a correction is suggested. */
+  /** Maximum number of differing letters for which a correction is suggested. */
   private val MostWrong = 2
 
   /** New names of renamed options: `--model` was both the predictor of flights and the plant of forward

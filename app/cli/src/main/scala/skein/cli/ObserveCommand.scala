@@ -173,7 +173,7 @@ object ObserveCommand
       )
       .map(files => shown.say(s"written: ${files.mkString(", ")}"))
 
-  /** Where a program and its simulator are, and what is between them. */
+  /** The addresses of a program and its simulator, and the link between them. */
   private final case class Wire(
       listenAt: Address,
       simulator: Address,
@@ -184,8 +184,8 @@ object ObserveCommand
 
   /** Observes until the program ends.
     *
-    * @param findings of an observation, for the page
-    * @return Left if it could not begin; else what was observed, and whether the program could be run
+    * @param findings the findings of an observation, for the page
+    * @return Left if it could not begin; else the observations, and whether the program could be run
     */
   private def observe[A](
       analysis: Analysis[A],

@@ -60,8 +60,8 @@ private[cli] object OnShow:
       """"to":{"type":"string"}}}},"controller":{"type":"string"}}}"""
   )
 
-/** A graph's meters for the viewer: asks the interpreter for the graph's parts until they are known, and
-  * reads the meters each time.
+/** A graph's meters for the viewer: queries the interpreter until the graph's parts are known, and reads the
+  * meters each time.
   */
 private[cli] final class GraphGauge:
   val graph: AtomicReference[Option[RunningGraph]] = AtomicReference(None)

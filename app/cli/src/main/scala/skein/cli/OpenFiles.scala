@@ -15,8 +15,8 @@ private[cli] object OpenFiles:
   private val OfAFlight    = 30
   private val OfAFurther   = 24
 
-  /** @param controllers of each flight
-    * @param most limit of the files that this process may open, if it is known
+  /** @param controllers number of controllers of each flight
+    * @param most maximum number of files that this process may open, if known
     */
   def enoughFor(flights: Int, controllers: Int = 1, most: Option[Long] = limit): Either[String, Unit] =
     val needed = OfTheProgram + (OfAFlight + OfAFurther * (controllers - 1)) * flights

@@ -36,7 +36,7 @@ private[cli] object OutFolder:
   /** Creates the folder if necessary and checks that it is writable, so that a command of minutes does not
     * fail at its end.
     *
-    * @param option that names the folder, for example `--out`
+    * @param option the option that names the folder, for example `--out`
     * @return Left states in a line why it cannot be written
     */
   def made(option: String, text: String): Either[String, Path] =

@@ -22,8 +22,8 @@ private[cli] object Preview:
 
   /** Whether a flight would end within [[AtMost]] at the mean speed of the warm-up's flights.
     *
-    * @param flights of the warm-up
-    * @param took time for all of them
+    * @param flights number of flights of the warm-up
+    * @param took duration of all of them
     */
   def fits(flights: Int, took: Span, duration: Span): Boolean =
     val warmed = duration.min(WarmUp.Flown).toSeconds * flights

@@ -4,7 +4,7 @@ import java.io.PrintStream
 
 /** A line with the progress and remaining time of long work: rewritten on a terminal, else printed every 5 s.
   *
-  * @param total of the work
+  * @param total amount of work
   * @param from part that was done before this run
   */
 private[cli] final class ProgressLine(total: Long, out: PrintStream, from: Long = 0):

@@ -62,7 +62,7 @@ final case class RecordOptions(
 object RecordOptions:
   given ParserForClass[RecordOptions] = ParserForClass[RecordOptions]
 
-  /** The scene of a flight, from its recording's parameters; empty where these do not state it. */
+  /** The scene of a flight, from its recording's parameters; empty if these do not state it. */
   def sceneOf(parameters: Map[String, String]): Scene =
     NamedScene.ofRecording(parameters).fold(_ => Scene.Empty, _.scene)
 

@@ -6,7 +6,7 @@ import skein.ros.{RosNode, SimulatedTopics}
 import skein.simulator.{CommandCounts, SimulatorServer}
 import skein.units.Clock
 
-/** The node of `./skein serve --ros`, and what a person learns of it. */
+/** The node of `./skein serve --ros`, and its messages for a person. */
 private[cli] final class RosSide private (node: RosNode, val topics: SimulatedTopics):
   private var said   = Set.empty[String]
   private var counts = (skipped = 0L, images = 0L, refused = 0L, failed = 0L, missed = 0L, late = 0L)

@@ -13,7 +13,7 @@ import skein.vehicle.{Guidance, VehicleKind}
 
 /** The vehicles of `./skein fly --ros`: those behind ROS 2's topics.
   *
-  * @param remappings of topics, by ROS's rules
+  * @param remappings topics' remappings, by ROS's rules
   */
 private[cli] final class RosSource(remappings: Seq[String], clock: Clock)(using system: ActorSystem)
     extends VehicleSource:

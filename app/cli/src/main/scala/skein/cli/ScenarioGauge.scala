@@ -14,8 +14,8 @@ import skein.view.Gauge
   * before; between two of them is a pause of twenty times the last one's duration. Beyond `most` readings,
   * every second one is dropped.
   *
-  * @param vehicles in the scenario's order
-  * @param most readings that are kept
+  * @param vehicles the vehicles' names, in the scenario's order
+  * @param most maximum number of readings kept
   */
 private[cli] final class ScenarioGauge(
     scenario: Scenario,
@@ -52,7 +52,7 @@ private[cli] final class ScenarioGauge(
         at % 2 == 1
     count = seen.values.map(_.size).sum
 
-  /** What has changed since the last call, if anything. */
+  /** The changes since the last call, if there are any. */
   def json(): Option[String] =
     val from = clock.now()
     if from < nextAt || failed.isDefined || scenario.series.isEmpty && scenario.limits.isEmpty then None
@@ -114,10 +114,10 @@ private[cli] object ScenarioGauge:
   /** Number of the tracks' instants from one point to the next. */
   private val PointEvery = 5
 
-  /** Limit of the points in one message: half a minute, the length of the page's plots. */
+  /** Maximum number of points in one message: half a minute, the length of the page's plots. */
   private val MostPoints = 300
 
-  /** Limit of the readings kept: 20 vehicles at 20 Hz for five minutes. */
+  /** Maximum number of readings kept: 20 vehicles at 20 Hz for five minutes. */
   private val MostReadings = 120_000
 
   private val number = """{"type":"number"}"""

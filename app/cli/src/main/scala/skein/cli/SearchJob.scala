@@ -159,5 +159,5 @@ private[cli] final class SearchJob(
 private[cli] object SearchJob:
   private val MostAxes = 4
 
-  /** Limit of the time for which a user who stopped a search waits for its result. */
+  /** Maximum time for which a user who stopped a search waits for its result. */
   private val PatienceNanos = 2_000_000_000L

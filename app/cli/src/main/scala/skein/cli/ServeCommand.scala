@@ -239,7 +239,7 @@ object ServeCommand
       ros.foreach(_.close())
       Edge.await(system.terminate()): Unit
 
-  /** How long clients' moves may hold all workers, as in AirSim. */
+  /** Time for which clients' moves may hold all workers, as in AirSim. */
   private val Patience = Span.ofSeconds(30)
 
   /** Time within which it ends, whatever the simulation does. */

@@ -16,7 +16,7 @@ import skein.scenario.{ScenarioKind, Scenarios}
   * object Patrol extends SkeinApp(ScenarioKind(OverTheRidge()))
   * }}}
   *
-  * @param kinds at least one; the first is the default
+  * @param kinds the kinds of scenarios, at least one; the first is the default
   */
 open class SkeinApp(kinds: ScenarioKind[?]*):
   // First of all: numbers, dates and the libraries' treatment of letters must not depend on the machine's

@@ -71,7 +71,7 @@ final case class SolverSecurity(
 object SolverSecurity:
   given ParserForClass[SolverSecurity] = ParserForClass[SolverSecurity]
 
-  /** @param certificates for a solver behind TCP
+  /** @param certificates the certificates for a solver behind TCP
     * @param kafka settings of Kafka's clients
     */
   final case class Checked(certificates: Option[SSLContext], kafka: Map[String, String])

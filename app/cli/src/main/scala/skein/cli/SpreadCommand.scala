@@ -109,7 +109,7 @@ final class SpreadCommand(program: String)(using Scenarios)
     yield flown
 
 private object SpreadCommand:
-  /** Limit of the flights: their summaries are kept until the last has ended, about 40 kB for each vehicle
-    * and minute.
+  /** Maximum number of flights: their summaries are kept until the last has ended, about 40 kB for each
+    * vehicle and minute.
     */
   private val MostSeeds = 100_000

@@ -31,7 +31,7 @@ private[cli] object SpreadFlights:
     @volatile private var landed = 0
     private def progress()       = s"$landed of $of flights have ended"
 
-    /** Counts one more flight; the counts are printed in order, although flights end on several threads. */
+    /** Counts one more flight; the counts are printed in order even if flights end on several threads. */
     def one: Unit = synchronized:
       landed += 1
       if landed % (of / 20).max(1) == 0 then tell(progress())

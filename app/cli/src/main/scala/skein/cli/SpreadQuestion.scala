@@ -121,5 +121,5 @@ private[cli] object SpreadQuestion:
 
   private val MostReason = 16 << 10
 
-  /** Limit of an encoded answer, in bytes, so that it fits into a message. */
+  /** Maximum size of an encoded answer in bytes, so that it fits into a message. */
   private val MostBytes = 600 << 10

@@ -31,7 +31,7 @@ private[cli] object Terminal:
     '’' -> "'"
   )
 
-  /** Columns of the terminal; None where there is none, or it does not report them. */
+  /** Columns of the terminal; None if there is none, or it does not report them. */
   def width: Option[Int] =
     Option(System.console())
       .filter(_.isTerminal)

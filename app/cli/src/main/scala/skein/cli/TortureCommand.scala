@@ -106,7 +106,7 @@ final class TortureCommand(program: String)(using scenarios: Scenarios)
       .flatMap(_.toRight("no worker is left").map(_ => ()))
 
 object TortureCommand:
-  /** Limit of the seeds with workers: all blocks are listed in advance. */
+  /** Maximum number of seeds with workers: all blocks are listed in advance. */
   private val MostElsewhere = 1_000_000
 
   /** Flights in a block: about half a second of one core. */

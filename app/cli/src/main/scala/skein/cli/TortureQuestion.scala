@@ -12,8 +12,8 @@ import upickle.default.ReadWriter
 
 /** Flights with faults, as workers receive them. A block is a range of seeds.
   *
-  * @param scenario by its name; without one, duels
-  * @param scene as recorded; without one, the scenario's
+  * @param scenario the scenario's name; without one, duels
+  * @param scene the scene as recorded; without one, the scenario's
   */
 private[cli] final case class TortureQuestion(
     durationNanos: Long,
@@ -84,5 +84,5 @@ private[cli] object TortureQuestion:
 
   private val MostLines, MostOfLine = 200
 
-  /** Limit of the seeds in one block. */
+  /** Maximum number of seeds in one block. */
   val MostSeeds = 8

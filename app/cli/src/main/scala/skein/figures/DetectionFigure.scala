@@ -22,8 +22,7 @@ object DetectionFigure:
     val rows = set.flights.flatMap(flight => flight.seeing.flatMap(row(flight, _)))
     Option.when(rows.nonEmpty)(Drawing.stacked(rows*))
 
-  /** A row of a flight's moments; None where nothing was detected, or the scenario does not define its
-    * camera.
+  /** A row of a flight's moments; None if nothing was detected, or the scenario does not define its camera.
     */
   private def row(flight: FlightSummary, seen: SeeingSummary): Option[Drawing] =
     for

@@ -5,7 +5,7 @@ import skein.plot.*
 import skein.record.ClockKind
 import skein.units.Decimals.signed
 
-/** Deviations from the paused truth by link and loop: discs are means, thick lines reach one standard
+/** Deviations from the paused flight by link and loop: discs are means, thick lines reach one standard
   * deviation to either side, thin ones from the least to the most. Live flights have a ring around the disc.
   */
 object DeviationFigure:

@@ -4,10 +4,10 @@ import skein.measure.{Distribution, FlightSet, FlightSummary}
 import skein.plot.*
 import skein.units.Decimals.brief
 
-/** Distance between pursuer and evader over time, one panel per link, the truth in each. At the right of a
-  * panel stand mean and range of the last 10 s of each flight, above its name: ours as a coloured disc, the
-  * paper's as a black diamond. The axis fits our curves; where a range of the paper extends beyond it, an
-  * arrow states how far, or where the mean is.
+/** Distance between pursuer and evader over time, one panel per link, with the paused flight in each. At the
+  * right of a panel stand mean and range of the last 10 s of each flight, above its name: ours as a coloured
+  * disc, the paper's as a black diamond. The axis fits our curves; where a range of the paper extends beyond
+  * it, an arrow states how far, or where the mean is.
   */
 object DistanceFigure:
   private val plotWidth  = 830.0

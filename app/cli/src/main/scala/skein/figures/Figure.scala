@@ -5,14 +5,14 @@ import skein.plot.Drawing
 
 /** A picture of the report.
   *
-  * @param name of its files
+  * @param name the base name of its files
   * @param caption what it shows and how to read it
   */
 final case class Figure(name: String, title: String, caption: String, drawing: Drawing)
 
 object Figure:
 
-  /** Deviations of flights from the paused truth. */
+  /** Deviations of flights from the paused flight. */
   def ofDeviations(deviations: Vector[Deviation]): Vector[Figure] =
     DeviationFigure(deviations).toVector.map: drawing =>
       Figure(
@@ -38,7 +38,7 @@ object Figure:
         drawing
       )
 
-  /** Figures of flights of a pursuer and an evader, beside the paper's. */
+  /** Figures of flights of a pursuer and an evader, with the paper's values. */
   def ofDuels(set: FlightSet): Vector[Figure] = trajectories(set).toVector ++ DistanceFigure(set).map:
     drawing =>
       Figure(

@@ -19,7 +19,7 @@ object FlightTheme:
   /** The colour of a recording's loop; ochre for an unknown one. */
   def of(loop: String): Colour = LoopKind.parse(loop).fold(_ => Colour(0xb58900), of)
 
-  /** The colour of published values, beside our colours. */
+  /** The colour of published values, distinct from ours. */
   val published: Colour = Colour(0x111111)
   val halo: Colour      = Colour(0xffffff)
   val evader: Colour    = Colour(0x8c8c8c)

@@ -23,7 +23,7 @@ object GraphFigure:
     def bottom: Double = top + High
     def centre: Double = top + High / 2
 
-  /** @param graph with at least one part */
+  /** @param graph a graph with at least one part */
   def apply(graph: LoopGraph): Drawing =
     val spots  = GraphLayout.of(graph)
     val placed = boxesOf(spots)

@@ -16,8 +16,8 @@ object LatencyFigure:
 
   /** One panel.
     *
-    * @param title of what was measured
-    * @param link its profile is overlaid, if it has one
+    * @param title the title of the measurement
+    * @param link the link whose profile is overlaid, if it has one
     */
   final case class Measured(title: String, link: String, roundTripsMs: Distribution)
 

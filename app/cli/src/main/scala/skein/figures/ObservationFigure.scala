@@ -5,7 +5,7 @@ import skein.plot.*
 
 /** The paper's bar charts: means of the four observations, grouped by link and loop, a full bar for the
   * evader's decisions and a pale one for the pursuer's, or by a team's roles. Black diamonds are the paper's
-  * means, where there are any; in the charts of ages, outlines are the true ages.
+  * means, if there are any; in the charts of ages, outlines are the true ages.
   */
 object ObservationFigure:
   private val barWidth  = 20.0

@@ -142,9 +142,10 @@ object ScenarioFigure:
       Option.when(broken.exists(altitudeOf(_).isDefined))(brokenItem)
     Drawing.stacked(grid, Legend.rows(52, grid.width - 52, items*))
 
-  /** A scenario's series over time, one panel per link, a line per loop, with the truth in each.
+  /** One of a scenario's series over time: a panel for each link, with a line for each loop and one for the
+    * paused flight.
     *
-    * @param index of the scenario's series
+    * @param index index of the drawn series among the scenario's series
     */
   def series(flown: ScenarioFlights, index: Int): Drawing =
     val links = flown.flights.filter(!flown.truth.contains(_)).map(_.summary.flight.link).distinct match
@@ -247,8 +248,8 @@ object ScenarioFigure:
 
   private val MostInLegend = 12
 
-  /** Limit of the vehicles that a legend lists by name. */
+  /** Maximum number of vehicles that a legend lists by name. */
   private val MostNamed = 8
 
-  /** How much wider the first vehicle's line is than the last one's. */
+  /** Excess width of the first vehicle's line over the last one's. */
   private val WidestMore = 3.0

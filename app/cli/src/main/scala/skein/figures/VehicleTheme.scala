@@ -16,7 +16,7 @@ object VehicleTheme:
   /** Line styles by vehicle. The first vehicle that is alone in its role is grey; the others take colours in
     * turn, then with dashes, then lighter.
     *
-    * @param width of the lines, in the drawing's units
+    * @param width the lines' width, in the drawing's units
     */
   def of(scenario: Scenario, width: Double): Vector[Stroke] =
     val agents = scenario.agents

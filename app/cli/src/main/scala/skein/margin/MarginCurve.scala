@@ -27,8 +27,8 @@ final case class MarginPoint(link: LatencyProfile, runs: Vector[MarginRun]):
 
 /** How a program's result changes with the link's mean round trip.
   *
-  * @param reference without an emulated link
-  * @param points over links, by ascending mean round trips
+  * @param reference the point without an emulated link
+  * @param points the points over links, by ascending mean round trips
   * @param per the unit of deviations: the reference's size, or 1
   */
 final case class MarginCurve private (

@@ -4,18 +4,18 @@ import skein.optimise.ScenarioTerm
 import skein.scenario.{Measure, Scenario, Series, Tracks}
 import skein.units.Vector3
 
-/** The number by which a run is judged.
+/** The score of a run.
   *
   * @param unit may be empty
   */
 enum MarginJudge(val name: String, val unit: String):
-  /** The number in the last line that the program prints. */
+  /** The value in the last line that the program prints. */
   case Printed extends MarginJudge("the printed number", "")
 
-  /** Contacts of all vehicles with objects of the scene. */
+  /** The number of contacts of all vehicles with objects of the scene. */
   case Contacts extends MarginJudge("contacts", "")
 
-  /** A measure of the vehicles' true positions. */
+  /** A scenario's measure of the vehicles' true positions. */
   case Flown(measure: Measure) extends MarginJudge(measure.name, measure.unit)
 
 object MarginJudge:
@@ -24,8 +24,8 @@ object MarginJudge:
   /** Reads `printed`, `contacts`, `separation`, `distance`, `distance:NORTH,EAST,DOWN` or the name of a
     * scenario's measure, with hyphens for blanks.
     *
-    * @param scenario whose first measure is the default
-    * @param vehicles their number
+    * @param scenario the scenario whose first measure is the default
+    * @param vehicles number of vehicles
     * @return Left states what was expected, and the word
     */
   def read(

@@ -6,8 +6,8 @@ import skein.units.Span
 
 /** One run of a program over a link.
   *
-  * @param value by the judge
-  * @param violations of the scenario's limits
+  * @param value the run's score
+  * @param violations number of violations of the scenario's limits
   * @param callMs median round trip of calls that read states
   * @param ageMs mean age of the vehicle's own data at its commands
   */
@@ -21,7 +21,7 @@ final case class MarginRun(
 object MarginRun:
   /** Why a run does not count: the program's fault, or the machine's. */
   enum NoResult(val why: String):
-    /** The program did nothing that could be judged. */
+    /** The program did nothing that could be scored. */
     case OfProgram(reason: String) extends NoResult(reason)
 
     case Starved(reason: String) extends NoResult(reason)
@@ -29,11 +29,11 @@ object MarginRun:
   /** The course of a run, observed from outside.
     *
     * @param exit the program's exit status, if it ended by itself
-    * @param commands to vehicles
+    * @param commands number of commands to vehicles
     * @param silentFor time from the last message to the end
-    * @param lastLine of its standard output, not blank; `lastError`: of its standard error
-    * @param contacts while it was judged
-    * @param tracks of the judged part; absent if that is too short
+    * @param lastLine last non-blank line of its standard output; `lastError`: of its standard error
+    * @param contacts number of contacts in the scored part
+    * @param tracks tracks of the scored part; absent if that is too short
     * @param starved why the machine was too busy, if it was
     */
   final case class Ended(

@@ -7,7 +7,7 @@ import skein.units.Decimals.brief
 /** All runs of a margin, in turns over the links, so that a change of the machine's load affects all links
   * alike.
   *
-  * @param atOnce limit of the runs side by side
+  * @param atOnce maximum number of simultaneous runs
   * @param isStopped whether no further run begins
   * @param onEnded receives a line for each run that has ended
   */
@@ -65,8 +65,8 @@ final class MarginRuns(
     )
 
 object MarginRuns:
-  /** @param points in the order of the links
-    * @param printed each program's output: link, number of the run, text
+  /** @param points the points, in the order of the links
+    * @param printed each program's output: link, index of the run, text
     */
   final case class Flown(points: Vector[MarginPoint], printed: Vector[(String, Int, String)])
 

@@ -19,9 +19,9 @@ import skein.units.*
 /** Runs a program against a simulator of its own, in real time.
   *
   * @param command `{port}` in its words stands for the simulator's port
-  * @param scenario whose vehicles hover at their starts when the program begins
-  * @param lasts most time for a run; a program that still runs is stopped then
-  * @param skip time after the first command that is not judged
+  * @param scenario the scenario whose vehicles hover at their starts when the program begins
+  * @param lasts maximum duration of a run; a program that still runs is stopped then
+  * @param skip time after the first command that is not scored
   */
 final class MarginTrial(
     command: Seq[String],
@@ -53,7 +53,7 @@ final class MarginTrial(
       yield run
 
   /** Calls the simulator through an observer for a while, so that their code is compiled before a run counts,
-    * and then gives the control threads precedence, where the system allows it. Blocks.
+    * and then gives the control threads precedence, if the system allows it. Blocks.
     */
   def warmUp(): Unit =
     simulated(SimulatorSettings(address = AnyPort)): (_, transport, observer) =>

@@ -61,8 +61,8 @@ object ColourScale:
   /** White at zero, blue below and red above (ColorBrewer's RdBu, reversed), symmetric around zero; only one
     * side if all values have one sign.
     *
-    * @param least at most 0
-    * @param most at least 0
+    * @param least the least value, at most 0
+    * @param most the greatest value, at least 0
     */
   def aroundZero(least: Double, most: Double): ColourScale =
     val reach = most.max(-least)

@@ -26,8 +26,8 @@ object Drawing:
 
 /** A place in a drawing, in its units.
   *
-  * @param x to the right from the left edge
-  * @param y downwards from the upper edge
+  * @param x distance from the left edge
+  * @param y distance from the upper edge
   */
 final case class Point(x: Double, y: Double):
   def moved(dx: Double, dy: Double): Point = Point(x + dx, y + dy)
@@ -35,7 +35,7 @@ final case class Point(x: Double, y: Double):
 /** A colour.
   *
   * @param rgb 0xRRGGBB
-  * @param opacity from 0, unseen, to 1
+  * @param opacity 0 (invisible) to 1
   */
 final case class Colour(rgb: Int, opacity: Double = 1):
   def faded(opacity: Double): Colour = copy(opacity = opacity)
@@ -47,12 +47,12 @@ final case class Colour(rgb: Int, opacity: Double = 1):
 
 /** How a line is drawn.
   *
-  * @param width in the drawing's units
+  * @param width the line's width, in the drawing's units
   * @param dash lengths of dash and gap; empty for a solid line
   */
 final case class Stroke(colour: Colour, width: Double, dash: Vector[Double] = Vector.empty):
 
-  /** The stroke with the dash pattern of this number; all patterns differ without colours, too. Beyond
+  /** The stroke with the dash pattern of this index; all patterns differ without colours, too. Beyond
     * [[Stroke.Dashes]] a pattern is a dash and three, four or more dots.
     */
   def dashed(number: Int): Stroke =
@@ -106,7 +106,7 @@ enum Mark:
 
   /** One line of text.
     *
-    * @param at on the baseline, at the text's anchor
+    * @param at the point on the baseline at the text's anchor
     * @param upwards turned by a quarter, reading upwards
     */
   case Text(
@@ -121,7 +121,7 @@ enum Mark:
 
   /** A bitmap, stretched to this size.
     *
-    * @param at its top left corner
+    * @param at the bitmap's top left corner
     * @param png the file
     */
   case Raster(at: Point, width: Double, height: Double, png: Array[Byte])

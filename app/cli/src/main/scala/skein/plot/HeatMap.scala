@@ -4,7 +4,7 @@ package skein.plot
   *
   * @param xs ascending, at least two
   * @param ys ascending, at least two
-  * @param values by y, then by x; a missing one stays empty
+  * @param values the values by y, then by x; missing ones stay empty
   */
 final case class HeatMap(xs: Vector[Double], ys: Vector[Double], values: Vector[Vector[Option[Double]]]):
   require(
@@ -18,7 +18,7 @@ final case class HeatMap(xs: Vector[Double], ys: Vector[Double], values: Vector[
       (row, i) <- values.zipWithIndex
       case (Some(value), j) <- row.zipWithIndex
     yield
-      // Neighbours overlap by half a pixel: where they only touched, the white below would shine through.
+      // Neighbours overlap by half a pixel: if they only touched, the white below would shine through.
       Mark.box(
         panel.atX(edge(xs, j)).max(panel.left),
         panel.atY(edge(ys, i + 1)).max(panel.top),
@@ -32,8 +32,8 @@ final case class HeatMap(xs: Vector[Double], ys: Vector[Double], values: Vector[
     else if index == values.size then values.last + (values.last - values(values.size - 2)) / 2
     else (values(index - 1) + values(index)) / 2
 
-  /** The contour of a level: straight pieces between points of the grid (marching squares); no piece beside a
-    * missing value.
+  /** The contour of a level: straight pieces between points of the grid (marching squares); no piece next to
+    * a missing value.
     */
   def contour(level: Double): Vector[((Double, Double), (Double, Double))] =
     for

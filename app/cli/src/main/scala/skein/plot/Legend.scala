@@ -7,8 +7,8 @@ object Legend:
   private val middle      = 9.0
   private val height      = 24.0
 
-  /** @param width of the mark
-    * @param mark its shapes, given the middle of its left end
+  /** @param width the mark's width
+    * @param mark the mark's shapes, given the middle of its left end
     */
   final case class Item(label: String, width: Double, mark: Point => Vector[Mark])
 
@@ -30,8 +30,8 @@ object Legend:
 
   private def room(item: Item) = item.width + 6 + item.label.length * letterWidth + gap
 
-  /** A panel's drawing with a title above it and the legend beside that, up to the panel's right edge; a
-    * longer legend is set in rows below.
+  /** A panel's drawing with a title above it and the legend to the right of the title, up to the panel's
+    * right edge; a longer legend is set in rows below.
     */
   def titled(panel: Panel, title: String, drawn: Drawing, items: Item*): Drawing =
     val shapes = panel.title(title) +: drawn.shapes

@@ -71,7 +71,7 @@ final case class Panel(x: PlotAxis, y: PlotAxis, left: Double, top: Double, widt
 
   def title(text: String): Mark = title(text, titleSize)
 
-  /** A title that flights' names may make long: smaller where it would be wider than the panel. */
+  /** A title that flights' names may make long: smaller if it would be wider than the panel. */
   def fittedTitle(text: String): Mark =
     title(text, (titleSize * width / (text.length * titleLetter).max(1)).min(titleSize).max(smallSize))
 

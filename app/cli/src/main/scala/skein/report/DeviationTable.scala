@@ -3,7 +3,7 @@ package skein.report
 import skein.measure.Deviation
 import skein.units.Decimals.{fixed, signed}
 
-/** Deviations of the loops from the paused truth, as a table. */
+/** Deviations of the loops from the paused flight, as a table. */
 object DeviationTable:
 
   def of(deviations: Vector[Deviation]): TextTable =

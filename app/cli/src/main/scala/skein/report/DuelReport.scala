@@ -4,7 +4,7 @@ import skein.figures.Figure
 import skein.measure.{FlightSet, FlightSummary}
 import skein.scenario.{PaperDuel, ScenarioKind, Scenarios}
 
-/** The paper's duel with its report: distances beside those that the paper published. */
+/** The paper's duel with its report: distances compared with those that the paper published. */
 object DuelReport extends ScenarioKind(PaperDuel()), ScenarioReport:
   override def results(set: FlightSet): Vector[Section] = Vector(
     Section(

@@ -12,7 +12,7 @@ import skein.units.Decimals.brief
 /** The report as one self-contained page: no script, no font, no external link. */
 object HtmlReport:
 
-  /** @param sections as [[ReportSections.of]] returns them */
+  /** @param sections the report's sections, by [[ReportSections.of]] */
   def render(set: FlightSet, sections: Seq[Section]): String =
     val page = html(
       lang := "en",

@@ -15,7 +15,7 @@ object LoopPictures:
   /** @param isInPacket whether its commands carry plans */
   final case class Loop(kind: AnyLoop, fleet: Fleet, isInPacket: Boolean = false)
 
-  /** Limit of the vehicles of a readable picture. */
+  /** Maximum number of vehicles in a readable picture. */
   private val MostVehicles = 8
 
   /** Pictures of the loops; blocks, since it starts each loop for a moment. */

@@ -33,9 +33,9 @@ object ObservedTables:
 
   private type Columns = Vector[(String, ObservedVehicle => String)]
 
-  /** How old the data behind the commands to each vehicle was.
+  /** The ages of the data behind the commands to each vehicle.
     *
-    * @param unnamed what a vehicle without a name is called
+    * @param unnamed the name for a vehicle without one
     * @param bounds columns behind those of ages
     * @param further columns behind all others
     */
@@ -98,7 +98,7 @@ object ObservedTables:
     Diagnosis.of(observed).map(finding => Vector(finding.name, finding.what, finding.remedy))
   )
 
-  /** A paragraph for each finding, and one for what the observer cannot know. */
+  /** A paragraph for each finding, and one for the limits of the observation. */
   def findings(observed: Observed): Vector[String] =
     val found    = Diagnosis.of(observed)
     val sentence =

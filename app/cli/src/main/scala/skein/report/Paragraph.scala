@@ -5,7 +5,7 @@ object Paragraph:
 
   /** Breaks a text between words. A word that is longer has a line of its own.
     *
-    * @param width of the longest line, in characters
+    * @param width the maximum width of a line, in characters
     */
   def lines(text: String, width: Int): Vector[String] =
     text.split(' ').filter(_.nonEmpty).foldLeft(Vector.empty[String]): (lines, word) =>

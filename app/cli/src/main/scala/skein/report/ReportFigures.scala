@@ -6,7 +6,7 @@ import skein.scenario.Scenarios
 
 /** The pictures of a report, in order; empty ones are left out.
   *
-  * @param failures of scenarios whose pictures are missing, since their code threw
+  * @param failures the failures of scenarios whose pictures are missing because their code threw
   */
 final case class ReportFigures(all: Vector[Figure] = Vector.empty, failures: Vector[String] = Vector.empty)
 

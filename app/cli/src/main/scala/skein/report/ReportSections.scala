@@ -7,7 +7,7 @@ import skein.scenario.Scenarios
 /** The sections of a report, in order; empty ones are left out. */
 object ReportSections:
 
-  /** @param figures as [[ReportFigures.of]] returns them; empty for tables alone */
+  /** @param figures the report's figures, by [[ReportFigures.of]]; empty for tables alone */
   def of(set: FlightSet, figures: ReportFigures = ReportFigures())(using Scenarios): Vector[Section] =
     val results  = orFailures(ScenarioReport.each(set)((report, flights) => report.results(flights)))
     val pictures = figures.all.filterNot(figure => withTables(figure.name)).map(figure =>
@@ -33,8 +33,8 @@ object ReportSections:
       )
     )
 
-  /** A whole report for the terminal: the tables, each loop's deviation from the truth, remarks on single
-    * flights, and whether the timing was good enough.
+  /** A whole report for the terminal: the tables, each loop's deviation from the paused flight, remarks on
+    * single flights, and whether the timing was good enough.
     */
   def text(set: FlightSet)(using Scenarios): String =
     val said = Vector(
@@ -82,7 +82,7 @@ object ReportSections:
       section.table.exists(_.rows.nonEmpty) || section.figures.nonEmpty || section.failure.nonEmpty
     )
 
-  /** Figures that are shown beside a table of their own. */
+  /** Figures that are shown next to a table of their own. */
   private val withTables = Set(TwinFigure.name, DeviationFigure.name, PredictionFigure.name)
 
   private def named(name: String, figures: ReportFigures): Vector[Figure] = figures.all.filter(_.name == name)

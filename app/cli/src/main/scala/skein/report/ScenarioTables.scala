@@ -9,8 +9,8 @@ import skein.units.Decimals.fixed
 /** Tables of a scenario's measures, limits and spreads. */
 object ScenarioTables:
 
-  /** A row per flight: its measures, the first against the paused truth's, and the distance of the vehicles
-    * from their positions in the paused truth at equal times.
+  /** A row per flight: its measures, the deviation of the first measure from that of the paused flight, and
+    * the RMS distance of the vehicles from their positions in the paused flight at equal times.
     */
   def flights(flown: ScenarioFlights): TextTable =
     val names  = flown.scenario.measures.map(_.title)

@@ -7,7 +7,7 @@ import ujson.{Arr, Null, Num, Obj, Str, Value}
   *
   * @param note how to read it; may be empty
   * @param table None for sections of pictures
-  * @param figures on the page only
+  * @param figures the figures, on the page only
   * @param failure why it is empty: the scenario's code threw; on the page only
   */
 final case class Section(

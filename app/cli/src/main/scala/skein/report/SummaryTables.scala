@@ -42,12 +42,12 @@ object SummaryTables:
         Vector(summary.name, summary.flight.link) ++ ours ++ paper
     )
 
-  /** Compares a flight with the truth, or states that it cannot be compared. */
+  /** Compares a flight with the paused flight, or states that it cannot be compared. */
   private[report] def againstTruth(flight: FlightSummary, share: Option[Double]): String =
     if flight.starved.isDefined then "starved" else share.fold("")(share => s"${(share * 100).signed(1)} %")
 
-  /** Ages and times since moves in ms as `mean/p50/p99`, each beside the paper's mean, and the mean true
-    * ages; by the role of the deciding vehicle. Without one of the paper's flights there is no comparison.
+  /** Ages and times since moves in ms as `mean/p50/p99`, each with the paper's mean, and the mean true ages;
+    * by the role of the deciding vehicle. Without one of the paper's flights there is no comparison.
     */
   def observations(set: FlightSet): TextTable =
     val paper = Option.when(set.flights.exists(_.published.nonEmpty))("paper").toVector
@@ -119,8 +119,8 @@ object SummaryTables:
       "Took: duration of recognition. Age: from the exposure to each decision made from the detection. " +
       "Off: distance of the estimate for the moment of the exposure from the truth."
 
-  /** Live flights beside their virtual twins: Kolmogorov-Smirnov distances of the decisions' observations, by
-    * role, and the difference of the converged distances.
+  /** Live flights compared with their virtual twins: Kolmogorov-Smirnov distances of the decisions'
+    * observations, by role, and the difference of the converged distances.
     */
   def twins(set: FlightSet): TextTable =
     val columns = Twin.columns(set.twins)

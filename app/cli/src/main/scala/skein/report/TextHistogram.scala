@@ -7,7 +7,7 @@ import skein.plot.PlotAxis
 object TextHistogram:
   private val widest = 50
 
-  /** @param unit of the samples, for the bins' labels */
+  /** @param unit the samples' unit, for the bins' labels */
   def apply(samples: Distribution, unit: String): String =
     val axis   = PlotAxis.around(unit, samples.least, samples.most, ticks = 16)
     val bins   = axis.ticks.zip(axis.ticks.drop(1))

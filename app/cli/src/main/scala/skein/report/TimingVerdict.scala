@@ -5,16 +5,16 @@ import skein.units.Decimals.fixed
 
 /** Whether the timing of flights is good enough, in one sentence, by the criterion of the AirSim guide.
   *
-  * With a `paused` flight it is measured: a loop may deviate by [[Limit]] from the truth, the margin of
-  * [[skein.optimise.LatencyBudget]]. Without one it is estimated: a vehicle moves from where it was read
+  * With a `paused` flight it is measured: a loop may deviate by [[Limit]] from the paused flight, the margin
+  * of [[skein.optimise.LatencyBudget]]. Without one it is estimated: a vehicle moves from where it was read
   * until the command based on that reading arrives, and this distance may be [[Limit]] of the distance
   * between vehicles. For a loop that predicts, the predictions' median error is taken instead.
   */
 object TimingVerdict:
-  /** A fraction of the truth, or of the distance between vehicles. */
+  /** A fraction of the paused flight's value, or of the distance between vehicles. */
   val Limit = 0.05
 
-  /** The sentence; None where only `paused` was run. */
+  /** The sentence; None if only `paused` was run. */
   def sentence(set: FlightSet): Option[String] =
     val flights = set.flights.filterNot(_.flight.isPaused)
     val all     = flights
@@ -24,11 +24,11 @@ object TimingVerdict:
       .map { case ((name, link), same) => Judged(name, link, of(set, same)) }
     Option.when(all.nonEmpty)(said(all))
 
-  /** The flights of one loop over one link, with the verdict if they can be judged. */
+  /** The flights of one loop over one link, with the verdict if there is one. */
   private final case class Judged(name: String, link: String, verdict: Option[Verdict])
 
-  /** @param share of the truth, or of the distance between vehicles
-    * @param why what the share is, in words
+  /** @param share deviation as a share of the paused flight's value, or of the distance between vehicles
+    * @param why the meaning of the share, in words
     */
   private final case class Verdict(isMeasured: Boolean, share: Double, why: String):
     def word: String = (if isMeasured then "" else "probably ") + (if share > Limit then "bad" else "good")
@@ -58,8 +58,8 @@ object TimingVerdict:
     val first = words.dropRight(1)
     (Option.when(first.nonEmpty)(first.mkString(", ")) ++ words.lastOption).mkString(" and ")
 
-  /** @param same flights of one loop over one link
-    * @return None where a flight has no result, the machine was too busy, or there is too little to judge by
+  /** @param same the flights of one loop over one link
+    * @return None if a flight has no result, the machine was too busy, or there are too few data
     */
   private def of(set: FlightSet, same: Vector[FlightSummary]): Option[Verdict] =
     val one = same.head
@@ -115,7 +115,7 @@ object TimingVerdict:
       yield metres.median
     apart.minOption
 
-  /** Limit of the vehicles of a large team that are compared. */
+  /** Maximum number of vehicles of a large team that are compared. */
   private val MostCompared = 8
 
   private def percent(share: Double) = s"${(100 * share).fixed(1)} %"

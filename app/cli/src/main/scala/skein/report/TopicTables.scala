@@ -4,7 +4,7 @@ import skein.observe.{ObservedTopic, ObservedTopics}
 import skein.report.ObservedTables.{ages, mean, p99, section}
 import skein.units.Decimals.{brief, counted, fixed}
 
-/** Measurements of a loop whose messages are topics', as tables and sentences. */
+/** Measurements of a loop that exchanges messages on topics, as tables and sentences. */
 object TopicTables:
 
   def tables(observed: ObservedTopics): Vector[Section] =
@@ -46,7 +46,7 @@ object TopicTables:
       "message was received."
   )
 
-  /** A paragraph for each finding, and one for what topics leave open. */
+  /** A paragraph for each finding, and one for the limits of an observation by topics. */
   def findings(observed: ObservedTopics): Vector[String] =
     def seconds(ms: Double)          = s"${(ms / 1e3).fixed(2)} s"
     def broken(topic: ObservedTopic) =

@@ -4,7 +4,7 @@ import skein.measure.Deviation
 import skein.record.{ClockKind, LoopKind}
 import skein.units.Decimals.fixed
 
-/** The result of the flights, in a sentence for each link: each loop's deviation from the paused truth. */
+/** The result of the flights, in a sentence for each link: each loop's deviation from the paused flight. */
 object Verdict:
 
   /** One sentence per link and clock with several loops that used the paper's policies, live flights last,

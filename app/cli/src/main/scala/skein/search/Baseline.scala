@@ -4,9 +4,9 @@ import skein.settings.PolicyFile
 
 /** The baseline with which a search's result is compared, on equal episodes.
   *
-  * @param word for its line in the output
-  * @param name for tables
-  * @param parameters one per axis of a space of its own, by their names
+  * @param word the word for its line in the output
+  * @param name the name in tables
+  * @param parameters name and value of each parameter, one per axis of a space of its own
   * @param label name and parameters, for people
   */
 final case class Baseline(word: String, name: String, parameters: Vector[(String, Double)], label: String):

@@ -5,9 +5,9 @@ import skein.optimise.{Evaluator, RunningStats}
 /** Evaluates candidates in other processes, in blocks, with the bits of [[skein.optimise.ValueEvaluator]] in
   * this one. Blocks the calling thread.
   *
-  * @param atMost episodes of a block
-  * @param onWait called several times a second on the waiting thread, with the call's episodes over all
-  *   candidates
+  * @param atMost maximum number of episodes in a block
+  * @param onWait called several times a second on the waiting thread, with the number of the call's episodes
+  *   over all candidates
   */
 final class ClusterEvaluator(elsewhere: BlockExecutor, judge: Judge, atMost: Int, onWait: Long => Unit)
     extends Evaluator:

@@ -15,7 +15,7 @@ import upickle.implicits.key
   *
   * @param plant see [[VehicleChoice.parse]]
   * @param eye a file of [[SensorFile]]: the pursuer observes the evader only through this sensor
-  * @param movesInFlight limit of one vehicle's unanswered moves
+  * @param movesInFlight maximum number of one vehicle's unanswered moves
   */
 final case class Conditions(
     loop: String,

@@ -5,11 +5,11 @@ import skein.settings.VehicleChoice
 
 /** Default numbers of episodes: fewer where an episode costs more.
   *
-  * @param freshEpisodes for evaluating a search's winner
-  * @param landscapeEpisodes for each point of the objective's landscape
-  * @param onMap points on each side of a landscape of two parameters
-  * @param cellEpisodes for each cell of a budget's map
-  * @param onCurve points of a landscape of one parameter
+  * @param freshEpisodes number of episodes for evaluating a search's winner
+  * @param landscapeEpisodes number of episodes for each point of the objective's landscape
+  * @param onMap number of points on each side of a landscape of two parameters
+  * @param cellEpisodes number of episodes for each cell of a budget's map
+  * @param onCurve number of points of a landscape of one parameter
   */
 final case class Effort(
     freshEpisodes: Int,
@@ -37,8 +37,8 @@ object Effort:
 
   /** The effort of duels.
     *
-    * @param together engine of candidates that share their episodes
-    * @param alone engine of worlds with delays of their own
+    * @param together the engine of candidates that share their episodes
+    * @param alone the engine of worlds with delays of their own
     * @param sees whether a vehicle observes the other by a sensor: an episode with images costs several times
     *   one without, and more if each world has its own images
     */

@@ -4,8 +4,8 @@ import skein.optimise.{RunningStats, SearchState}
 
 /** A search's result, evaluated on episodes that the search did not use.
   *
-  * @param fresh of the best candidate
-  * @param baseline of the baseline, on equal episodes
+  * @param fresh statistics of the best candidate
+  * @param baseline statistics of the baseline, on equal episodes
   */
 final case class Found(state: SearchState, best: Vector[Double], fresh: RunningStats, baseline: RunningStats):
 

@@ -1,6 +1,6 @@
 package skein.search
 
-/** What an evaluator evaluates in the course of a search. */
+/** The candidates that an evaluator scores in the course of a search. */
 enum Judge:
   /** Many candidates, all on equal episodes. */
   case Candidates

@@ -7,9 +7,9 @@ import skein.policy.SearchSpace
 /** The objective around a candidate, along one or two axes of the space, with the other parameters at the
   * candidate's values.
   *
-  * @param x number of the axis
-  * @param y number of the second axis, if there is one
-  * @param cells by y, then by x; one row without y. An unfinished map lacks rows at the end
+  * @param x index of the axis
+  * @param y index of the second axis, if there is one
+  * @param cells statistics by y, then by x; one row without y. An unfinished map lacks rows at the end
   */
 final case class Landscape(
     space: SearchSpace,
@@ -43,15 +43,15 @@ final case class Landscape(
     (header +: rows).mkString("", "\n", "\n")
 
 object Landscape:
-  /** Points along the axis of a curve, and along each axis of a map. */
+  /** Number of points along the axis of a curve, and along each axis of a map. */
   val OnCurve = 61
   val OnMap   = 41
 
   private val Probes = 9
 
-  /** @param episodes of every cell
+  /** @param episodes the episodes of every cell
     * @param isStopped checked from time to time, from any thread
-    * @param onMap points along each axis of a map
+    * @param onMap number of points along each axis of a map
     * @param onRow called with the map after each of its rows
     * @return None if it was stopped
     */

@@ -17,7 +17,7 @@ object LandscapeFigure:
   private val plain  = Colour(0x111111)
 
   /** @param value the objective with its unit, for the axis or the scale
-    * @param direction in which the objective improves
+    * @param direction the direction in which the objective improves
     */
   def apply(landscape: Landscape, title: String, value: String, direction: Direction): Drawing =
     if landscape.y.isEmpty then curve(landscape, title, value, direction)

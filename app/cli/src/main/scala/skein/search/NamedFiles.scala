@@ -29,7 +29,7 @@ object NamedFiles:
     before.filter((path, digest) => !digests(Seq(path)).get(path).contains(digest)).keys.toVector.sorted
 
   /** @param before result of [[digests]]
-    * @param began for example `the search`
+    * @param began what has begun, for example `the search`
     * @return Left names the files whose change forbids continuing
     */
   def unchanged(before: Map[String, String], began: String): Either[String, Unit] =

@@ -6,7 +6,7 @@ import skein.optimise.{Evaluator, RunningStats}
 /** Delegates to another evaluator, and records the engine of each candidate: their policies may be of several
   * forms. One call at a time.
   *
-  * @param engine of a candidate
+  * @param engine the engine of a candidate
   */
 final class NotedEvaluator(by: Evaluator, engine: Vector[Double] => Engine) extends Evaluator:
   private val candidates = collection.mutable.LinkedHashMap.empty[Engine, Int].withDefaultValue(0)

@@ -24,7 +24,7 @@ trait Searched:
 
   def name: String
 
-  /** What is searched and its opponent, in a line.
+  /** The searched policies or settings and their opponent, in a line.
     *
     * @param axes the searched parameters
     */
@@ -39,7 +39,7 @@ trait Searched:
 
   /** The vehicles of forward simulation, with their objective.
     *
-    * @param candidate the baseline's if `judge` is the baseline
+    * @param candidate the parameters; the baseline's if `judge` is the baseline
     * @param by the objective of a candidate with default parameters
     */
   def team(candidate: Vector[Double], judge: Judge, by: Objective): (Engagement, Objective)
@@ -50,8 +50,8 @@ trait Searched:
   /** Whether an engine is so fast that the scalar reference checks it. */
   def isFast(engine: Engine): Boolean
 
-  /** @param together engine of the candidates
-    * @param alone engine of the winner
+  /** @param together the candidates' engine
+    * @param alone the winner's engine
     */
   def effort(together: Engine, alone: Engine, by: Conditions.Resolved): Effort
 
@@ -60,9 +60,9 @@ trait Searched:
 
 /** A search whose question is resolved: processes that resolve equal questions evaluate with identical bits.
   *
-  * @param objective of a candidate with default parameters
-  * @param fresh episodes for the winner, if the user chose
-  * @param accelerator that simulates the candidates, if requested
+  * @param objective the objective of a candidate with default parameters
+  * @param fresh number of episodes for the winner, if the user chose one
+  * @param accelerator simulates the candidates, if requested
   */
 final case class ReadySearch(
     question: PosedSearch,
@@ -159,7 +159,7 @@ final case class ReadySearch(
       searched.effort(flown(Judge.Candidates), flown(Judge.Winner), conditions)
     case TeamEngine.Whole(flights) => flights.effort
 
-  /** Episodes of a block of work for other processes: about half a second of one core. */
+  /** Number of episodes in a block of work for other processes: about half a second of one core. */
   def blockEpisodes: Int = flownBy match
     case TeamEngine.Reduced(conditions, _) =>
       Effort.blockEpisodes(searched.isFast(flown(Judge.Candidates)), conditions.vehicle)

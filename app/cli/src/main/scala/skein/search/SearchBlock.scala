@@ -53,13 +53,13 @@ object SearchBlock:
   /** Bytes of one candidate's encoded statistics. */
   private val OfTally = 20
 
-  /** Limit of the bytes of a block's question, and of its answer. */
+  /** Maximum size of a block's question in bytes, and of its answer. */
   private val MostBytes = 512 << 10
 
-  /** Candidates in a block with SIMD: this many, or twice. */
+  /** Number of candidates in a block with SIMD: this, or twice this. */
   private val Lanes = 16
 
-  /** Limit of the episodes in one block. */
+  /** Maximum number of episodes in one block. */
   val MostEpisodes: Int = MostBytes / 8
 
   /** Divides a call into blocks of at most `atMost` episodes, over all their candidates; into at least
@@ -85,7 +85,7 @@ object SearchBlock:
 
   /** Combines the answers of a call's blocks.
     *
-    * @param episodes of the call
+    * @param episodes number of episodes of the call
     * @return statistics for each candidate in order, bit-identical to those of an undivided call; Left states
     *   what was wrong
     */

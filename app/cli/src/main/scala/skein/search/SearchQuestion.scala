@@ -12,10 +12,10 @@ import upickle.default.ReadWriter
 /** The question of a search for a duel's policy.
   *
   * @param opponent a policy as [[PolicyFile.text]] writes it, of the other role
-  * @param candidates approximate number to evaluate
-  * @param episodes of each candidate; when racing, in the first round
-  * @param population of a generation, for methods that have them
-  * @param fresh episodes for the winner; without it, as many as the engine simulates quickly
+  * @param candidates approximate number of candidates to evaluate
+  * @param episodes number of episodes for each candidate; when racing, in the first round
+  * @param population number of candidates in a generation, for methods that have them
+  * @param fresh number of episodes for the winner; without it, as many as the engine simulates quickly
   */
 final case class SearchQuestion(
     family: String,
@@ -97,7 +97,7 @@ object SearchQuestion:
 
 /** A family's policies for one role, against an opponent.
   *
-  * @param duel in which they are evaluated
+  * @param duel the duel in which they are evaluated
   */
 private final class SearchedFamily(
     question: SearchQuestion,

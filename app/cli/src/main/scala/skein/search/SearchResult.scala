@@ -62,7 +62,7 @@ object SearchResult:
   /** Number of the winner's fresh episodes, from the first, that are compared with the scalar reference. */
   val Checked = 8
 
-  /** A warning if the scalar reference differs on equal episodes. Single episodes differ where rounding
+  /** A warning if the scalar reference differs on equal episodes. Single episodes differ when rounding
     * decides at a threshold; means over several hardly do.
     */
   def disagreement(flown: RunningStats, reference: RunningStats, unit: String): Option[String] =
@@ -90,7 +90,7 @@ object SearchResult:
   /** Distance from a limit that counts as at it, as a fraction of the axis. */
   private val NearLimit = 0.01
 
-  /** @param state with a best candidate
+  /** @param state a state with a best candidate
     * @param isCancelled checked from time to time, from any thread
     * @return None if it was cancelled
     */
@@ -115,9 +115,9 @@ object SearchResult:
     s"${Interval.of(tally.mean, tally.halfWidth95).text} $unit".trim
 
   /** The last remarks of a policy file: the question that its policy answers, as it is stored, with its
-    * conditions beside it.
+    * conditions.
     *
-    * @param how it was answered, in place of fields of these names
+    * @param how fields on how it was answered, which replace the question's fields of these names
     */
   def question[Q: Writer](name: String, asked: Q, how: (String, ujson.Value)*): String =
     val fields     = writeJs(asked).obj

@@ -10,17 +10,17 @@ import skein.record.FileReason
 import upickle.default.{ReadWriter, write as writeJson}
 
 /** The state of a long computation as a JSON object on disk. It ends with a CRC-32C of all text before it:
-  * damaged or edited numbers would otherwise be read as valid, and the continued run would end differently
+  * damaged or edited values would otherwise be read as valid, and the continued run would end differently
   * from an uninterrupted one.
   *
-  * @param name of the file, in its folder
-  * @param version of the object, its first field
+  * @param name the file's name in its folder
+  * @param version the object's version, its first field
   * @param what the state belongs to, in words, for example "a search"
   */
 private[skein] final class StateFile[A: ReadWriter](name: String, version: Int, what: String):
   import StateFile.*
 
-  /** The object's text with its checksum. */
+  /** The object's text; its last field is the checksum of all text before. */
   def json(state: A): String =
     val text = writeJson(state).stripSuffix("}")
     s"$text$Seal${sumOf(text)}}"

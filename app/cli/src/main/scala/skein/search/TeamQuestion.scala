@@ -14,12 +14,12 @@ import upickle.default.ReadWriter
 
 /** The question of a search over a scenario's settings.
   *
-  * @param set settings that have one value, by their keys
+  * @param set the settings with fixed values, by key
   * @param objective a sum of the scenario's measures
-  * @param candidates approximate number to evaluate
-  * @param episodes of each candidate; when racing, in the first round
-  * @param population of a generation, for methods that have them
-  * @param fresh episodes for the winner
+  * @param candidates approximate number of candidates to evaluate
+  * @param episodes number of episodes for each candidate; when racing, in the first round
+  * @param population number of candidates in a generation, for methods that have them
+  * @param fresh number of episodes for the winner
   */
 final case class TeamQuestion(
     scenario: String,
@@ -73,8 +73,8 @@ final case class TeamQuestion(
       method <- SearchQuestion.method(method, candidates, episodes, population, vary.size)
     yield ReadySearch(this, SearchedScenario(this, kind, space), by, engine, method, Some(fresh), seed)
 
-  /** Chooses the engine: SIMD, where forward simulation supports the policies and the measures; world by
-    * world, where measures are of whole flights; else flights in virtual time.
+  /** Chooses the engine: SIMD, if forward simulation supports the policies and the measures; world by world,
+    * if measures are of whole flights; else flights in virtual time.
     *
     * @param all the scenario with the plain settings, first, and with the bounds of the searched ones
     */

@@ -51,16 +51,16 @@ final class WholeFlights private (
 
 object WholeFlights:
   /** The value of an episode that never reaches one of its measures, in the objective's unit: worse, and
-    * further from the truth, than that of any episode that does.
+    * further from the paused loop's, than that of any episode that does.
     */
   val Never = 1e6
 
-  /** @return the weighted sum of a flight's measures; None where it never reaches one of them */
+  /** @return the weighted sum of a flight's measures; None if it never reaches one of them */
   def sum(terms: Vector[(Double, Measure)], flown: Tracks): Option[Double] =
     val values = terms.flatMap((weight, measure) => measure.of(flown).map(weight * _))
     Option.when(values.size == terms.size)(values.sum)
 
-  /** Limit of the flights in virtual time in one search: a day of them, at one a second. */
+  /** Maximum number of flights in virtual time in one search: a day of them, at one a second. */
   val MostVirtual = 100_000
 
   /** A scenario for forward simulation.
@@ -168,11 +168,9 @@ object WholeFlights:
       case Some(reason) if isTold => Left(s"--plant: expected $Tilt or $Spatial, came $plant: $reason")
       case Some(_)                => Right(if flown.isTraced then Tilt else Spatial)
 
-  /** @param why no faster engine can be used
-    */
+  /** @param why the reason for which no faster engine can be used */
   def inVirtualTime(why: String): Engine = Engine(Engine.Kind.Flights, s"flights in virtual time: $why")
 
-  /** Episodes as flights in virtual time. */
   def virtual(
       conditions: Conditions,
       loop: LoopKind,
@@ -200,7 +198,7 @@ object WholeFlights:
 
 /** Evaluates candidates by whole flights.
   *
-  * @param scenario of a candidate
+  * @param scenario makes a candidate's scenario
   */
 final class WholeFlightEvaluator(
     flights: WholeFlights,

@@ -7,7 +7,7 @@ import skein.settings.PolicyFile
 
 /** The environment of learning, with its objective.
   *
-  * @param scenario in which flights take place; its other vehicles use its own policies
+  * @param scenario the scenario of the flights; its other vehicles use its own policies
   * @param opponent the policy of the other side of a duel
   */
 final case class LearnGame(objective: Objective, scenario: Scenario, opponent: Option[PolicyFile] = None):

@@ -15,17 +15,17 @@ import upickle.default.ReadWriter
 
 /** A learning task in the user's words: enough to continue it, or to repeat it.
   *
-  * @param conditions of learning and evaluation
+  * @param conditions the conditions of learning and evaluation
   * @param opponent a policy as [[PolicyFile.text]] writes it, of the other role; in the duel
-  * @param objective by which the policy is evaluated from time to time; the reward of learning is a small
-  *   distance, or a great one
-  * @param steps of all environments together
-  * @param environments that run side by side
+  * @param objective the objective by which the policy is evaluated from time to time; the reward of learning
+  *   is a small distance, or a great one
+  * @param steps total number of steps of all environments
+  * @param environments number of environments that run concurrently
   * @param lessonS duration of a learning episode, s
   * @param startLeastM least initial distance of the evader, m
   * @param turnRateRadPerS greatest turn rate of the policy
-  * @param episodes of an evaluation during learning
-  * @param fresh episodes of the final evaluation
+  * @param episodes number of episodes of an evaluation during learning
+  * @param fresh number of episodes of the final evaluation
   */
 final case class LearnQuestion(
     algorithm: String,

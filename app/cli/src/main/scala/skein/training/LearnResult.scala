@@ -72,7 +72,7 @@ final case class LearnResult(
 
 object LearnResult:
   /** @param by evaluates the learned policy, and the paper's policy as the baseline
-    * @param state with a best policy
+    * @param state a state with a best policy
     */
   def measured(setup: LearnSetup, by: Judge => Evaluator, state: LearnState, episodes: Int): LearnResult =
     val policy = setup.policy(state.best.get.weights)

@@ -19,8 +19,8 @@ final case class Learned(state: LearnState, failure: Option[String]):
 
 /** Learns round by round, evaluates the policy from time to time, and keeps its state on disk.
   *
-  * @param judge of policies, by their parameters
-  * @param folder without one, nothing is kept
+  * @param judge evaluates policies, given by their parameters
+  * @param folder directory for its state; without one, nothing is kept
   * @param isElsewhere whether other processes evaluate: then learning continues meanwhile, with an identical
   *   result
   */

@@ -18,8 +18,8 @@ import upickle.default.ReadWriter
 
 /** The progress of learning.
   *
-  * @param rounds that are done
-  * @param scores of the policy, as it improved
+  * @param rounds number of completed rounds
+  * @param scores the policy's scores in the course of learning
   */
 final case class LearnState(
     rounds: Int = 0,
@@ -27,18 +27,18 @@ final case class LearnState(
     best: Option[LearnBest] = None
 ) derives ReadWriter
 
-/** @param steps of all environments before the evaluation
-  * @param mean of the objective over the evaluation's episodes
+/** @param steps total number of steps of all environments before the evaluation
+  * @param mean mean objective over the evaluation's episodes
   */
 final case class LearnScore(steps: Long, mean: Double, sd: Double) derives ReadWriter
 
 /** The policy with the best score so far.
   *
-  * @param weights of a [[skein.policy.LearnedPolicy]]
+  * @param weights the network's weights, for a [[skein.policy.LearnedPolicy]]
   */
 final case class LearnBest(steps: Long, mean: Double, weights: Vector[Double]) derives ReadWriter
 
-/** A learning task on disk: `learn.json` with question and state, and beside it all numbers of the learner.
+/** A learning task on disk: `learn.json` with question and state, and next to it the learner's state.
   *
   * @param files [[NamedFiles.digests]] of the names in the question
   */

@@ -25,7 +25,7 @@ class BenchmarkSimulation extends munit.FunSuite, Unhurried:
     )
   )
 
-  test("each entry is simulated in each cell once per seed, and compared with the truth of the cell's world"):
+  test("each entry is simulated in each cell once per seed, and compared with the cell's paused loop"):
     val benchmark = Benchmark(few, seeds = 2)
     var landed    = 0
     val rows      = benchmark.fly(more => landed += more).fold(fail(_), identity)
@@ -89,7 +89,7 @@ class BenchmarkSimulation extends munit.FunSuite, Unhurried:
       seeds = 2
     ).mistake).exists(_.contains("expected with a scenario of a pursuer")))
 
-  test("the interval is that of the mean over seeds, and a truth of 0 gives no deviation"):
+  test("the interval is that of the mean over seeds, and a mean of 0 in the paused loop gives no deviation"):
     def flights(values: Double*) =
       values.toVector.map(value => BenchmarkFlight(Some(value), violations = 2, None, Vector.empty))
     val cell = few.cells.head

@@ -36,7 +36,7 @@ class BudgetSuite extends munit.FunSuite, Optimised:
 
   private def map(of: BudgetSweep): LatencyBudget = of.map(_ => (), () => false).fold(fail(_), identity)
 
-  test("without latency the map shows the paused truth, and more latency is worse for the paper's pursuer"):
+  test("without latency the map shows the paused value, and more latency is worse for the paper's pursuer"):
     val budget = map(sweep("stream", 16))
     assertEqualsDouble(budget.deviation(0, 0).get, 0, 2e-3)
     val off = budget.meansMs.indices.map(budget.deviation(0, _).get)

@@ -35,10 +35,11 @@ class ScenarioSubjectSimulation extends munit.FunSuite, Optimised:
     val scalar = both.engine(Vector.empty).text
     assertEquals(scalar, "scalar: surrounded-after is of whole flights, not of a quantity by itself")
     for latencyMs <- Seq(0.0, 200.0) do
-      // Tracks are judged every 20 ms, on lines between the places of each period; a quantity once a period.
+      // Tracks are evaluated every 20 ms, on lines between the positions of each period; a quantity once a
+      // period.
       assertEqualsDouble(at(plain, latencyMs), at(both, latencyMs), 0.1 * at(plain, latencyMs))
 
-  test("without latency the result equals the truth, and more latency deviates further"):
+  test("without latency the result equals the paused flight's, and more latency deviates further"):
     val plain = subject(surround)
     val truth = plain.truth.fold(fail(_), identity)
     val off   = Seq(0.0, 200.0, 400.0).map(at(plain, _) - truth).map(_.abs)
@@ -65,7 +66,7 @@ class ScenarioSubjectSimulation extends munit.FunSuite, Optimised:
       () => false
     )).left.exists(_.contains("has no value in the paused truth")))
 
-  test("for a truth of 0 deviations are distances, not fractions"):
+  test("if the paused loop's value is 0, deviations are distances, not fractions"):
     assert(Tolerance.Share(0.05).per(0).left.exists(_.contains("--within")))
     assertEquals(Tolerance.Within(2).per(0), Right(1.0))
     assertEquals((Tolerance.Within(2).text("m"), Tolerance.Share(0.05).text("m")), ("2 m", "5 %"))

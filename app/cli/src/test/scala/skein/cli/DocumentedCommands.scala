@@ -243,7 +243,7 @@ abstract class DocumentedCommands(commands: Seq[String]) extends munit.FunSuite:
         case "sensor.conf"                 => sensor.toString
         case "evader.onnx"                 => s"evader:$onnx"
         case "searches/…/scenario.conf"    => scenario.toString
-        // What one command of a guide writes, a later one reads.
+        // A guide's later commands read what its earlier ones have written.
         case name if Set("flight.mcap", "my-bag", "again.duckdb", "pursuer.conf")(name) =>
           folder.resolve(name).toString
         case model if model.startsWith("mujoco:examples/") =>

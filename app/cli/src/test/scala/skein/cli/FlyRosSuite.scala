@@ -23,7 +23,7 @@ class FlyRosSuite extends munit.FunSuite, TemporaryFolders:
     assume(!Seq("AMENT_PREFIX_PATH", "LD_LIBRARY_PATH").exists(sys.env.contains), "ROS 2 may be here")
     assert(clue(said("--ros", "--link", "none")).contains("ROS 2 was not found"))
 
-  folder.test("loops of a configuration file count where the command names none"): folder =>
+  folder.test("loops of a configuration file count if the command names none"): folder =>
     val file = java.nio.file.Files.writeString(folder.resolve("paused.conf"), "skein.fly.loops = [paused]")
     assert(clue(said("--ros", "--link", "none", "--config", s"$file")).contains("other than paused"))
 

@@ -11,12 +11,12 @@ import skein.cluster.WorkerProcesses
 
 /** A search with two workers, and one with five, whose coordinator is killed twice, and whose workers are
   * killed from time to time; each time it continues with `--resume`. Then its files are compared with those
-  * of one process: `./sbtw "cli/Test/runMain skein.cli.killCoordinator 20000 1 20 5 DIR"`. Fails where they
-  * differ, or where a block counts twice.
+  * of one process: `./sbtw "cli/Test/runMain skein.cli.killCoordinator 20000 1 20 5 DIR"`. Fails if they
+  * differ, or if a block counts twice.
   *
   * @param candidates enough for the search to last for all kills
-  * @param first number of a run, which is its seed; likewise `last`
-  * @param everyS interval of killing a worker; on a busy machine workers take long to start
+  * @param first the first run's number, which is its seed; likewise `last`
+  * @param everyS time between kills of a worker, s; on a busy machine workers take long to start
   */
 @main def killCoordinator(candidates: Int, first: Int, last: Int, everyS: Int, out: String): Unit =
   val question =

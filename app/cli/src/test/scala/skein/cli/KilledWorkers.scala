@@ -8,8 +8,8 @@ import scala.util.Random
 import skein.blocks.Ledger
 
 /** A search with three workers, one of which is killed every 5 s; then an equal search in this process alone:
-  * `./sbtw "cli/Test/runMain skein.cli.killWorkers 60000 20 DIR"`. Fails where their files differ, or where a
-  * block counts twice.
+  * `./sbtw "cli/Test/runMain skein.cli.killWorkers 60000 20 DIR"`. Fails if their files differ, or if a block
+  * counts twice.
   *
   * @param candidates enough for the search to last for all kills
   */

@@ -157,7 +157,7 @@ class LauncherLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders:
       (1, "skein: Skein needs Java 25, and there is none as ./none; set JAVA_HOME\n")
     )
 
-    // The file beside a JVM is believed, and the JVM not started for it.
+    // The `release` file of a JVM is trusted, without starting the JVM.
     Files.createDirectories(folder.resolve("jdk/bin"))
     script(folder.resolve("jdk/bin/java"), "echo started for its version; exit 1")
     for (version, expected) <- Seq(

@@ -204,7 +204,7 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     )
     refused("--batch: expected at most", "--algorithm", "ppo", "--batch", "60000")
 
-  folder.test("on a full disk the learner's previous numbers are kept unchanged"): path =>
+  folder.test("on a full disk the learner's previous file is kept"): path =>
     final class Numbers(isFull: Boolean) extends Learner:
       def actor: Network                                                     = ???
       def begin(round: Long): Unit                                           = ()

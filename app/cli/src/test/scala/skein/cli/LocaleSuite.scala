@@ -89,7 +89,7 @@ class LocaleSuite extends munit.FunSuite:
     try found.iterator.asScala.filter(_.toString.endsWith(".class")).toVector
     finally found.close()
 
-  /** Every call in a class: its place, and the method's name with its type. */
+  /** Every call in a class: its caller, and the method's name with its type. */
   private def calls(file: Path): Seq[(String, String)] =
     for
       method <- ClassFile.of().parse(file).methods.asScala.toSeq

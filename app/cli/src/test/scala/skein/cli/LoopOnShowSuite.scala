@@ -18,7 +18,7 @@ class LoopOnShowSuite extends munit.FunSuite:
     commands = Vector.empty
     found = 0
 
-  test("commands and findings are told once; a vehicle without a name is the first"):
+  test("commands and findings are sent once; a vehicle without a name is the first"):
     val shown = show()
     commands = Vector(NewCommands("", Some(20), None, Some(1)), NewCommands("b", None, Some(50), None))
     assertEquals(

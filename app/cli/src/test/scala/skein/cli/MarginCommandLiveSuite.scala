@@ -19,7 +19,7 @@ class MarginCommandLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, 
   folder.test("a program that connects and prints a number is judged by that number, over each link"): out =>
     val program = "exec 3<>/dev/tcp/127.0.0.1/$SKEIN_PORT; echo hello; echo $(({port} - SKEIN_PORT + 7))"
     val ran     = run(out, once ++ Seq("--judge", "printed", "--", "bash", "-c", program)*)
-    // A busy machine may spoil a run, and says so.
+    // A busy machine may spoil a run, which is reported.
     assume(!ran.said.contains("too busy"), "inconclusive")
     assertEquals(ran.status, 0, ran.said)
     assert(ran.err.contains("constant:20ms, run 1 of 1: the printed number 7"), ran.said)

@@ -14,7 +14,7 @@ import skein.signal.SplitMix64
 import skein.view.RecordedShow
 
 /** Files that users name, each changed in a few places. A reader must accept such a file, or report each
-  * wrong value in a line with its place.
+  * wrong value in a line with its position.
   */
 enum MutatedFiles(val suffix: String, base: => Array[Byte]):
   case Configuration extends MutatedFiles(".conf", MutatedFiles.configuration.getBytes(UTF_8))

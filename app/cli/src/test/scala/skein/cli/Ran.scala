@@ -5,7 +5,7 @@ import java.nio.charset.StandardCharsets.UTF_8
 
 /** The result of a command that ran in this process.
   *
-  * @param status its exit status
+  * @param status exit status
   */
 private[cli] final case class Ran(status: Int, out: String, err: String):
 

@@ -125,7 +125,7 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
 
   flown.test("identify finds the quadrotor's model in a flight over the VPN, and writes a file for fly"):
     folder =>
-      // A program's own structures are all fitted, too, and one that cannot be is named.
+      // A program's own structures are all fitted, too, and one that cannot be fitted is named.
       def own(label: String, parameters: Int)(plant: Vector[Double] => ReducedModel) =
         Structure(label, SearchSpace(Vector.tabulate(parameters)(i => Axis(s"lag-$i-s", 0.02, 30, 1))), plant)
       val plain               = own("plain", 1)(values => ReducedModel.lag(1, values(0), 0))
@@ -178,7 +178,7 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
     assertEquals(status, 1)
     assert(mistake.contains(s"expected every flight once, came the same one in $flight and $copy"), mistake)
 
-  recordings.test("report without --out writes beside the first recording"): folder =>
+  recordings.test("report without --out writes to the folder of the first recording"): folder =>
     assertEquals(run(ReportCommand(), folder.resolve("stream-vpn.duckdb").toString)._1, 0)
     assert(Files.exists(folder.resolve("figures/distance.svg")))
 

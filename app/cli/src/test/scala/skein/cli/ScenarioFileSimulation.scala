@@ -67,7 +67,7 @@ class ScenarioFileSimulation extends munit.FunSuite, TemporaryFolders, Unhurried
     val listed = well("scenarios", ring.toString)
     assert(listed.contains("ring: 6 vehicles, 60 s") && listed.contains("radius of the ring, m"), listed)
 
-  folder.test("a mistake in a scenario's file is one line, with its place"): path =>
+  folder.test("a mistake in a scenario's file is reported in one line, with its position"): path =>
     val wrong = Files.writeString(path.resolve("wrong.scenario"), "skein-scenario 1\nname wrong\n0 add 1 2\n")
     for words <- Seq("fly", "spread", "search", "budget", "torture", "learn") do
       val told = ran(words, "--scenario", wrong.toString)

@@ -10,13 +10,13 @@ import skein.measure.{Distribution, FlightSummary}
 import skein.record.RecordingReader
 import skein.scenario.Scenarios
 
-/** The increase in age at decisions by a solver in another process, by TCP and by Kafka on loopback: `./sbtw
-  * cli/stage "cli/Test/runMain skein.cli.solverHops 40 3 vpn DIR"`. For each a solver is started and then
-  * used by flights one after the other, so that the first one shows a cold start. Each runs `predictive`
+/** The increase in age at decisions by a solver in another process, by TCP and by Kafka on loopback:
+  * `./sbtw cli/stage "cli/Test/runMain skein.cli.solverHops 40 3 vpn DIR"`. For each a solver is started and
+  * then used by flights one after the other, so that the first one shows a cold start. Each runs `predictive`
   * without the hop and with it.
   *
-  * @param seconds of each flight
-  * @param flights of each solver
+  * @param seconds duration of each flight
+  * @param flights number of flights of each solver
   * @param out folder for recordings and logs, which must not exist yet
   */
 @main def solverHops(seconds: Int, flights: Int, link: String, out: String): Unit =

@@ -55,7 +55,7 @@ class BlindPursuitSimulation extends munit.FunSuite, Lengthy, Optimised:
     assert(clue(images) > 150)
     assert(clue(seen.detections.size) > 0.7 * images)
     assert(clue(seen.errorsM.get.median) < 0.25)
-    // Recognition takes 15 to 120 ms, the way to and fro some 100 ms.
+    // Recognition takes 15 to 120 ms, the round trip some 100 ms.
     assert(clue(seen.tookMs.get.least) >= 15 && clue(seen.tookMs.get.most) <= 120)
     assert(clue(seen.agesMs.get.median) > 60)
     assertEquals(seen.decisive.map(_._1).distinct.size, seen.decisive.size)
@@ -88,7 +88,7 @@ class BlindPursuitSimulation extends munit.FunSuite, Lengthy, Optimised:
       assertEquals(verdict.violations, Vector.empty, verdict.faultPlan.toString)
 
   for loop <- Seq(LoopKind.Sequential, LoopKind.Paused) do
-    test(s"${loop.label}: the pursuer approaches the evader by its camera alone"):
+    test(s"${loop.label}: the pursuer approaches the evader using only its camera"):
       val summary = FlightSummary.of(fly(settings(loop, 8)).recorder.recording)
       assert(summary.seeing.exists(_.detections.sizeIs > 20), s"${summary.seeing.map(_.detections.size)}")
       val closest = summary.result.flatMap(_.measured(1).value)

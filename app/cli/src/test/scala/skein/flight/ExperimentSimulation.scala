@@ -46,13 +46,13 @@ class ExperimentSimulation extends munit.FunSuite, Unhurried:
   private def within(value: Double, least: Double, most: Double): Unit =
     assert(value >= least && value <= most, s"expected $least to $most, came $value")
 
-  test("the paused truth converges to 8.31 m after a closest approach of 3.7 m at 6 s"):
+  test("the paused flight converges to 8.31 m after a closest approach of 3.7 m at 6 s"):
     within(truth.lastTenSeconds.get.mean, 8.31 * 0.97, 8.31 * 1.03)
     within(truth.closest._1, 5.7, 6.3)
     within(truth.closest._2, 3.4, 4.0)
 
   for loop <- Seq(LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream, LoopKind.Predictive) do
-    test(s"without a network, ${loop.label} is within 2 % of the truth"):
+    test(s"without a network, ${loop.label} is within 2 % of the paused flight"):
       val ratio = distance(loop, LatencyProfile.none).lastTenSeconds.get.mean / truth.lastTenSeconds.get.mean
       within(ratio, 0.98, 1.02)
 
@@ -69,7 +69,7 @@ class ExperimentSimulation extends munit.FunSuite, Unhurried:
     within(stream.mean, 9.9, 11.0)
     within(stream.sd, 0, 0.3)
 
-  test("over the busy VPN, predictive equals the truth"):
+  test("over the busy VPN, predictive keeps the distance of the paused flight within 4 %"):
     val ratio =
       distance(
         LoopKind.Predictive,

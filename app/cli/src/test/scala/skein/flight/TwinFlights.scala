@@ -30,7 +30,7 @@ object TwinFlights:
 
   /** Runs all flights of the settings, and each again in virtual time. Blocks for the duration of a flight.
     *
-    * @param twins of each live flight
+    * @param twins number of twins of each live flight
     */
   def fly(settings: FlySettings, twins: Int): Either[String, FlightSet] =
     inFolder: folder =>
@@ -62,7 +62,7 @@ object TwinFlights:
       )
 
 /** Checks that live flights and their virtual twins agree: runs `stream` and `predictive` over `direct` and
-  * `vpn` in real time for `seconds` seconds, each again in virtual time with ten seeds, and fails where the
+  * `vpn` in real time for `seconds` seconds, each again in virtual time with ten seeds, and fails if the
   * converged distances differ by more than 2 %. For a quiet machine; 60 s are the experiment's own:
   * `cli/Test/runMain skein.flight.checkTwins 60`.
   */

@@ -30,7 +30,7 @@ class MarginRunSuite extends munit.FunSuite:
 
   private def why(by: MarginJudge, ended: Ended) = MarginRun.judged(by, ended).left.toOption.map(_.why)
 
-  test("a program that still runs at the end is judged by its vehicles' positions"):
+  test("a program that still runs at the end is scored by its vehicles' positions"):
     assertEquals(MarginRun.judged(flown, fine), Right(30.0))
     assertEquals(MarginRun.judged(flown, fine.copy(exit = Some(0))), Right(30.0))
     assertEquals(MarginRun.judged(MarginJudge.Contacts, fine), Right(2.0))

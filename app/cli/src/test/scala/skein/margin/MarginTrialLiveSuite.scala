@@ -45,9 +45,9 @@ class MarginTrialLiveSuite extends munit.FunSuite, Waiting:
   test("a program that connects, commands nothing and does not end is stopped when its time is over"):
     assertEquals(why(run(s"$connect; sleep 1000", 2).run), Some("it connected, and commanded nothing"))
 
-  test("a program is judged from its first command on"):
+  test("a program is scored from its first command on"):
     val ended = run(s"$connect; $hover", 60).run
-    // A busy machine spoils a run, and says so.
+    // A busy machine spoils a run, which is reported.
     assume(ended.value.left.forall(!_.why.contains("too busy")), "inconclusive")
     assertEquals(ended.value, Right(0.0))
 

@@ -10,7 +10,7 @@ class HeatMapSuite extends munit.FunSuite:
     val length = pieces.map((a, b) => math.hypot(a._1 - b._1, a._2 - b._2)).sum
     assertEqualsDouble(length, 2 * math.Pi * 0.55, 0.05)
 
-  test("beside a missing value there is no contour and no colour"):
+  test("next to a missing value there is no contour and no colour"):
     val holed = HeatMap(places, places, places.map(_ => places.map(x => Option.when(x < 0)(x))))
     assertEquals(holed.contour(0.5), Vector.empty)
     assertEquals(holed.contour(-0.55).size, 20)

@@ -12,7 +12,7 @@ class LegendSuite extends munit.FunSuite:
   private def labels(drawing: Drawing) =
     drawing.shapes.collect { case text: Mark.Text if text.content.startsWith("seq") => text.at }
 
-  test("a legend is beside the title, or in rows below if it is too long"):
+  test("a legend is to the right of the title, or in rows below if it is too long"):
     val short = titled(2)
     assertEquals((short.height, labels(short).size), (bare.height, 2))
     assert(labels(short).forall(at => at.y < panel.top && at.x > panel.left + 100))

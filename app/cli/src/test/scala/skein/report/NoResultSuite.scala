@@ -53,7 +53,7 @@ class NoResultSuite extends munit.FunSuite:
       val row  = ages.rows.find(_.head.startsWith("stream")).get
       assertEquals(row(ages.header.indexOf("true own")), "")
 
-  test("a paused flight whose clock runs back, leaps or stands still is no truth"):
+  test("a paused flight whose clock runs back, leaps or stands still is no reference"):
     for
       (clock, why) <- Seq[(Double => Double, String)](
         (s => if s < 6 then s else 12 - s, "ran back by"),
@@ -95,7 +95,7 @@ class NoResultSuite extends munit.FunSuite:
     assert(SummaryTables.remarks(set).exists(_.contains(s"is not compared with other flights: $why")))
     assert(TimingVerdict.sentence(set).exists(_.contains("stream, starved over vpn is not judged")))
 
-  test("one sentence states whether the timing is bad, compared with the truth if there is a paused flight"):
+  test("one sentence states whether the timing is bad, compared with the paused flight if there is one"):
     val deviation = Report.of(Seq(paused, stream)).deviations.head.share.mean.abs
     val said      = TimingVerdict.sentence(Report.of(Seq(paused, stream)))
     val word      = if deviation > 0.05 then "bad" else "good"
@@ -106,7 +106,7 @@ class NoResultSuite extends munit.FunSuite:
     assertEquals(TimingVerdict.sentence(Report.of(Seq(paused))), None)
 
   test(
-    "without a paused flight, timing is judged by the distance flown from a reading to its command's arrival"
+    "without a paused flight, timing is assessed by the distance from a reading to its command's arrival"
   ):
     val none = SyntheticFlight("stream", "none", seed = 3, seconds = 12)
     val said = TimingVerdict.sentence(Report.of(Seq(stream, none))).getOrElse(fail("nothing was said"))

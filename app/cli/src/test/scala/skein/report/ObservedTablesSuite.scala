@@ -44,7 +44,7 @@ class ObservedTablesSuite extends munit.FunSuite:
     assertEquals(line(2), Some("0 s: 2 commands, data of v0 20, v1 21 ms old"))
     assertEquals(line(5), Some("0 s: 5 commands, data of 5 vehicles up to 24 ms old"))
 
-  test("a loop of topics says by which clock it is measured, and scripts get its findings as a table"):
+  test("tables of topics state by which clock the loop is measured, and scripts get its findings as a table"):
     val account = TopicAccount()
     account.reading("a", "/a/odom", Some(at(0)), at(5))
     account.command("a", "/a/cmd_vel", None, at(20))

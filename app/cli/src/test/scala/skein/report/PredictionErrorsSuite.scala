@@ -52,7 +52,7 @@ class PredictionErrorsSuite extends munit.FunSuite, Unhurried:
       case _                                       => false
     val own  = PredictionGroup("predictive", "vpn", measured(20, 40, 60, 120, 140, 160), measured())
     val both = own.copy(others = measured(20, 40, 60))
-    // Of each stretch the median and the 95 % quantile.
+    // The median and the 95 % quantile of each stretch.
     assertEquals((curves(own), curves(both)), (4, 6))
     assert(
       texts(own).exists(_.contains("own vehicle")) && !texts(own).exists(_.contains("others")),
@@ -63,7 +63,7 @@ class PredictionErrorsSuite extends munit.FunSuite, Unhurried:
   test("two ages are no curve, in the picture and in its legend"):
     val shapes =
       PredictionFigure(Vector(PredictionGroup("predictive", "vpn", measured(20, 40), measured()))).get.shapes
-    // Two discs each of the median and of the 95 % quantile, and one each in the legend.
+    // Two discs each for the median and the 95 % quantile, and one each in the legend.
     assertEquals(shapes.count { case _: Mark.Disc => true; case _ => false }, 6)
     val sloped = shapes.collect:
       case Mark.Path(points, Some(stroke), _, false)
@@ -104,7 +104,7 @@ class PredictionErrorsSuite extends munit.FunSuite, Unhurried:
       assert(errors.made >= 50 && errors.unverified == errors.made, s"${errors.made} ${errors.unverified}")
     assertEquals(PredictionTable.of(groups).rows.size, 2)
 
-  test("deviations are relative to the paused truth, by loop, link and clock"):
+  test("deviations are relative to the paused flight, by loop, link and clock"):
     val deviations = Deviation.of(flights)
     assertEquals(
       deviations.map(one => (one.loop, one.link)),

@@ -119,7 +119,7 @@ class ReportSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     assert(HtmlReport.render(set, ReportSections.of(set, ReportFigures.of(set))).contains("Skein"))
     assert(ReportSections.text(set).contains("stream"))
 
-  test("the tables have our values beside the paper's"):
+  test("the tables have our values next to the paper's"):
     val stream = SummaryTables.distances(set).rows.find(row => row(0) == "stream" && row(1) == "vpn").get
     val ours   = set.flights.find(_.flight.id == "stream-vpn").flatMap(_.distance).get.lastTenSeconds.get.mean
     assert(stream.contains(ours.fixed(2)), stream)

@@ -58,7 +58,7 @@ class SummarySuite extends munit.FunSuite:
     assertEqualsDouble(distribution.sd, math.sqrt(125), 1e-12)
 
   test("distances are taken at equal simulator times, interpolated between samples"):
-    // The pursuer goes north at 2 m/s, the evader at 1 m/s from 10 m on, 3 m to the east; sampled in turns.
+    // The pursuer flies north at 2 m/s, the evader at 1 m/s from 10 m on, 3 m to the east; sampled in turns.
     val curve = curveOf(
       (for tick <- 0 to 20 yield seen("Red", tick * 0.5, tick * 1.0, 0)) ++
         (for tick <- 0 to 20 yield seen("Blue", 0.25 + tick * 0.5, 10.25 + tick * 0.5, 3))*
@@ -87,7 +87,7 @@ class SummarySuite extends munit.FunSuite:
     assertEqualsDouble(curve.lastTenSeconds.get.least, 8, 1e-9)
     assertEqualsDouble(curve.lastTenSeconds.get.most, 9, 1e-9)
 
-  test("recorded truth is preferred to readings"):
+  test("recorded true positions are preferred to readings"):
     val readings =
       Seq(seen("Red", 0, 0, 0), seen("Red", 1, 0, 0), seen("Blue", 0, 5, 0), seen("Blue", 1, 5, 0))
     val truths =
@@ -127,7 +127,7 @@ class SummarySuite extends munit.FunSuite:
     assertEquals(table.rows.head.take(4), Vector("stream", "direct", "evader", expected))
     assertNotEquals(quantile(0.99).brief, quantile(0.95).brief)
 
-  test("the deviation from the truth is relative to the paused flight of the same set"):
+  test("a flight's deviation is relative to the paused flight of its set"):
     val stream = SyntheticFlight("stream", "vpn", seed = 2, seconds = 20)
     val paused = SyntheticFlight("paused", "none", seed = 3, seconds = 20)
     val set    = Report.of(Seq(stream, paused))
@@ -149,13 +149,13 @@ class SummarySuite extends munit.FunSuite:
     assertEquals(against(SyntheticFlight("paused", "none", seed = 3, seconds = 15)), None)
     assertEquals(against(flight(paused)(_.copy(period = Span.ofMillis(400)))), None)
 
-  test("a published flight is beside ours of its loop and link, and the paused one beside any"):
+  test("a published flight is next to ours of its loop and link, and the paused one next to any"):
     assertEquals(Published.flight(LoopKind.Stream, "vpn").flatMap(_.distance).map(_.mean), Some(8.5))
     assertEquals(Published.flight(LoopKind.Paused, "none").flatMap(_.distance).map(_.mean), Some(8.53))
     assertEquals(Published.flight(LoopKind.Stream, "none"), None)
 
   test(
-    "a flight shorter than 10 s has no last 10 s; the paper's figures are beside flights of a minute"
+    "a flight shorter than 10 s has no last 10 s; the paper's figures are next to flights of a minute"
   ):
     def rows(seconds: Int) =
       SummaryTables.distances(Report.of(Seq(SyntheticFlight("stream", "direct", 1, seconds))))

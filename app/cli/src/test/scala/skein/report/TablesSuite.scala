@@ -31,7 +31,7 @@ class TablesSuite extends munit.FunSuite:
     val values = table.rows.find(_.head == loop).getOrElse(fail(s"no row of $loop"))
     table.header.map(_.stripPrefix("<")).zip(values).toMap
 
-  test("a loop's spread over its flights is beside the truth of equal policies"):
+  test("a loop's spread over its flights is compared with the paused flight of equal policies"):
     val table = SpreadTable.of(set.flights)
     assertEquals(
       table.rows.map(_.take(3)),
@@ -49,7 +49,7 @@ class TablesSuite extends munit.FunSuite:
     assertEquals(row(table, "paused")("vs paused"), "")
     assertEquals(row(table, "paused")("sd"), "")
 
-  test("the truth has the flight's own clock if possible, else another, and never other settings"):
+  test("the paused flight has the flight's own clock if possible, else another, and never other settings"):
     val Vector(truth, flight)                            = set.flights.take(2): @unchecked
     def by(one: FlightSummary, clock: String)            = one.copy(flight = one.flight.copy(clock = clock))
     def truths(of: FlightSummary, among: FlightSummary*) = Truth.among(among).of(of)
@@ -62,7 +62,7 @@ class TablesSuite extends munit.FunSuite:
     val off = Truth.among(Vector(virtual)).deviation(flight)
     assertEquals(off, flight.headline.map(_ / truth.headline.get - 1))
 
-  test("without a paused flight the truth's column is empty, and captures are counted"):
+  test("without a paused flight its column is empty, and captures are counted"):
     val stream = row(SpreadTable.of(set.flights.tail), "stream")
     assertEquals(stream("vs paused"), "")
     val closest = set.flights.tail.map(_.distance.get.closest._2)
@@ -124,7 +124,7 @@ class TablesSuite extends munit.FunSuite:
 
   private val steady = duel("paused", 1)(_ => 4.02)
 
-  test("distances: duration, closest approach with its time, the last 10 s, and the truth"):
+  test("distances: duration, closest approach with its time, the last 10 s, and the paused flight"):
     val table = SummaryTables.distances(Report.of(Seq(steady, duel("stream", 2)(pass(0)))))
     assertEquals(
       table.rows,
@@ -171,7 +171,7 @@ class TablesSuite extends munit.FunSuite:
     assertEquals(row.takeRight(2), Vector("never", "0.0 %"))
     assertEquals(SpreadTable.of(Report.of(Seq(duel("plan", 2)(_ => 1.5))).flights).rows.head(9), "0")
 
-  test("a live flight is beside its twin with both distances and the difference"):
+  test("a live flight is next to its twin with both distances and the difference"):
     val flown = duel("stream", 2)(pass(0))
     val live  = flown.copy(heading = flown.heading.copy(flight = flown.heading.flight.copy(clock = "real")))
     val table = SummaryTables.twins(Report.of(Seq(live, duel("stream", 3)(pass(1)))))
@@ -206,7 +206,7 @@ class TablesSuite extends munit.FunSuite:
       )
     )
 
-  test("observations are beside the paper's for their role, and true ages are means in ms"):
+  test("observations are next to the paper's for their role, and true ages are means in ms"):
     val recording = SyntheticFlight("stream", "direct", seed = 1)
     val table     = SummaryTables.observations(Report.of(Seq(recording)))
     val paper     = table.header.indices.filter(table.header(_) == "paper")
@@ -255,7 +255,7 @@ class TablesSuite extends munit.FunSuite:
     assert(page.contains("Skein: 1 flight, scenario duel"), page.take(400))
     assert(page.contains("one decision per vehicle every 100 ms; simulator synthetic; virtual clock"))
 
-  test("a set names its scenario only if all flights have that one"):
+  test("a set names its scenario only if all flights have it"):
     val team  = SyntheticFlight("stream", "vpn", seed = 1, seconds = 12)
     val other = team.copy(heading = team.heading.copy(flight = team.heading.flight.copy(scenario = "own")))
     assert(HtmlReport.render(Report.of(Seq(team, other)), Nil).contains("<h1>Skein: 2 flights</h1>"))

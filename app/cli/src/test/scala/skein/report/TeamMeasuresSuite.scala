@@ -12,7 +12,7 @@ import skein.units.*
 class TeamMeasuresSuite extends munit.FunSuite:
   private given Scenarios = DuelReport.scenarios
 
-  /** @param placeM north and east of a vehicle at a time, s */
+  /** @param placeM position of a vehicle at a time, s: north and east, m */
   private def flown(scenario: Scenario, seconds: Int, loop: String = "stream")(
       placeM: (Int, Double) => (Double, Double)
   ): Recording =
@@ -119,7 +119,7 @@ class TeamMeasuresSuite extends munit.FunSuite:
     assertEqualsDouble(value(result, "to goal s"), 8, 0.1)
     assertEqualsDouble(value(result, "per min"), 7.5, 0.1)
 
-  test("a flight is compared with the paused truth of its own scenario, and by its vehicles' positions"):
+  test("a flight is compared with the paused flight of its own scenario, and by its vehicles' positions"):
     val scenario              = Surround(vehicles = 3)
     def ring(radiusM: Double) = (vehicle: Int, _: Double) =>
       (if vehicle == 0 then 0.0 else if vehicle == 1 then radiusM else -radiusM, 0.0)

@@ -31,7 +31,7 @@ class TwinSuite extends munit.FunSuite:
       case others       => fail(s"expected one pair, came ${others.size}")
     assertEquals(twin.virtual.map(_.flight.seed), Vector(2L, 3L))
     assertEquals(twin.seeds, "2 seeds, 2 … 3")
-    // Twins are shown only beside their live flight; a virtual flight without one is an ordinary flight.
+    // Twins are shown only with their live flight; a virtual flight without one is an ordinary flight.
     assertEquals(
       set.flights.map(one => (one.flight.loop, one.flight.link)),
       Vector(("sequential", "direct"), ("stream", "direct"), ("stream", "vpn"))

@@ -52,6 +52,6 @@ class VerdictSuite extends munit.FunSuite:
     assertEquals(said.count(_.contains("in virtual time")), 1)
     assertEquals(said.size, 2)
 
-  test("with a single loop, or without a truth, there is no sentence"):
+  test("with a single loop, or without a paused flight, there is no sentence"):
     assertEquals(Verdict.sentences(Seq(deviation("stream", "vpn", 0.3))), Vector.empty)
     assertEquals(Verdict.sentences(Nil), Vector.empty)

@@ -17,8 +17,8 @@ import skein.testing.Optimised
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** Flights by odometry and `cmd_vel` in virtual time: all of `fly --ros` and `serve --ros` but the
-  * middleware, of whose place a function call takes.
+/** Flights by odometry and `cmd_vel` in virtual time: all of `fly --ros` and `serve --ros` except for the
+  * middleware, which is replaced by a function call.
   */
 class RosFlightSimulation extends munit.FunSuite, Optimised:
   private def settings(loop: LoopKind, seconds: Double) = FlySettings(
@@ -30,7 +30,7 @@ class RosFlightSimulation extends munit.FunSuite, Optimised:
     planning = PlanSettings(horizonSteps = 10, slices = 2, blocksPerSlice = 1)
   )
 
-  /** A vehicle without topics between: the truth is read, and the same velocities are flown. */
+  /** A vehicle without topics between: its true state is read, and it performs equal velocities. */
   private final class Direct(server: SimulatorServer, index: Int, clock: Clock) extends VehiclePort:
     import scala.concurrent.ExecutionContext.parasitic
     private var flying = Promise[Either[VehicleError, Boolean]]()
@@ -61,7 +61,7 @@ class RosFlightSimulation extends munit.FunSuite, Optimised:
       act(Action.Hover, Span.ofSeconds(1)): Unit
       Future.successful(Right(true))
 
-  /** @param byTopics whether odometry and commands go by messages */
+  /** @param byTopics whether odometry and commands are sent as messages */
   private def flown(
       settings: FlySettings,
       byTopics: Boolean = true
@@ -138,7 +138,7 @@ class RosFlightSimulation extends munit.FunSuite, Optimised:
 
   // Odometry is up to 20 ms old, which `predictive` knows of and `stream` does not.
   for (loop, most) <- Seq(LoopKind.Stream -> 0.1, LoopKind.Predictive -> 0.05) do
-    test(s"${loop.label} flies the duel by topics nearly as by the same velocities without them"):
+    test(s"${loop.label} flies the duel by topics nearly as by equal velocities without them"):
       val Seq(topics, direct) = Seq(true, false).map: byTopics =>
         val (outcome, recording) = flown(settings(loop, 40), byTopics).fold(fail(_), identity)
         assertEquals(outcome, FlightOutcome.Completed)

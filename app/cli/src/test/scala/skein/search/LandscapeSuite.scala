@@ -81,7 +81,7 @@ class LandscapeSuite extends munit.FunSuite, Optimised:
       ys = Vector.tabulate(21)(_ / 10.0),
       cells = Vector.fill(21, 21)(RunningStats.of(16)(Vector.fill(16)(random.nextDouble())))
     )
-    // A uniform number's standard deviation is 1/√12, and a quarter of it that of the mean of 16.
+    // A uniform variable's standard deviation is 1/√12, and that of the mean of 16 is a quarter of it.
     assertEqualsDouble(noise.standardError, 1 / math.sqrt(12) / 4, 0.002)
     val texts = LandscapeFigure(noise, "title", "m", Direction.Minimise).shapes.collect {
       case text: Mark.Text =>

@@ -8,7 +8,7 @@ import scala.util.Using
 import skein.testing.{Lengthy, TemporaryFolders}
 
 /** The wheel, installed as by a user into a fresh environment, in which it trains. Skipped without Python, or
-  * if its packages cannot be fetched. The package's own tests take longer, and run where Python has their
+  * if its packages cannot be fetched. The package's own tests take longer, and run if Python has their
   * dependencies.
   */
 class PythonPackageLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:

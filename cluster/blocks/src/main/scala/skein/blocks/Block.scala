@@ -6,8 +6,8 @@ import scala.collection.immutable.ArraySeq
 
 /** A part of a question's work. Computing it is pure: any process, at any time, gets identical bytes.
   *
-  * @param number counted by the coordinator, from 0
-  * @param work input of the computation, in the question solver's encoding
+  * @param number the coordinator's number of the block, from 0
+  * @param work the input of the computation, in the encoding of the question's solver
   */
 final case class Block(number: Long, work: ArraySeq[Byte]):
   val key: BlockKey = BlockKey.of(work)

@@ -6,12 +6,12 @@ import scala.collection.immutable.TreeSet
   * assigned several times; the first answer counts, and later ones are counted as repeats.
   *
   * @param waiting blocks without a worker
-  * @param leases blocks with at least one worker, by their numbers
-  * @param seldom leases of a single worker, the oldest first: assigned again once nothing waits
-  * @param workers by name, including those that have left
-  * @param cores of all current workers
-  * @param patienceNanos after which a block is assigned to others, whatever its worker does
-  * @param slowNanos after which a block may go to a second worker, once nothing waits
+  * @param leases blocks with at least one worker, by number
+  * @param seldom leases of a single worker, the oldest first; they are assigned again once nothing waits
+  * @param workers records of the workers by name, including those that have left
+  * @param cores number of cores of all current workers
+  * @param patienceNanos time after which a block is assigned to others, whatever its worker does
+  * @param slowNanos time after which a block may go to a second worker, once nothing waits
   */
 final case class Coordinator private (
     waiting: Waiting,
@@ -50,7 +50,7 @@ final case class Coordinator private (
     *
     * @param holding numbers of the blocks that it has; a block missing here is lost if it was assigned or
     *   last listed more than [[OnItsWay]] ago
-    * @param nowNanos on any monotonic clock
+    * @param nowNanos the present time, on any monotonic clock
     * @return the assigned block, if there is one
     */
   def asked(worker: String, holding: Set[Long], nowNanos: Long): (Coordinator, Option[Block]) =
@@ -178,7 +178,8 @@ final case class Coordinator private (
         else here.copy(leases = here.leases.updated(number, left), seldom = here.seldom + left.place)
 
 object Coordinator:
-  /** Limit of a worker's blocks for each core: one being computed, and one that waits at the worker. */
+  /** Maximum number of a worker's blocks for each core: one being computed, and one that waits at the worker.
+    */
   val MostHeld = 2
 
   /** Time for which an assigned block, or the answer to one that its worker listed, may still be in transit:
@@ -204,18 +205,18 @@ object Coordinator:
   final case class Lease(block: Block, holders: Map[String, Long]):
     private[blocks] def place: (Long, Long) = (holders.values.min, block.number)
 
-  /** @param accepted blocks whose first answer was received
-    * @param repeated answers that were not the first
-    * @param doubled blocks assigned again since nothing else waited
-    * @param lost blocks that waited again since their worker was gone
-    * @param overdue blocks that waited again since no answer arrived in time
+  /** @param accepted number of blocks whose first answer was received
+    * @param repeated number of answers that were not the first
+    * @param doubled number of blocks assigned again because nothing else waited
+    * @param lost number of blocks that waited again because their worker was lost
+    * @param overdue number of blocks that waited again because no answer arrived in time
     */
   final case class Counts(accepted: Long, repeated: Long, doubled: Long, lost: Long, overdue: Long)
 
 /** A worker's assignments and work.
   *
   * @param holds numbers of its assigned blocks, with the time of assignment or of its last mention
-  * @param busyNanos of computing, over all its answers
+  * @param busyNanos time of computing, over all its answers
   */
 final case class WorkerRecord(
     cores: Int,

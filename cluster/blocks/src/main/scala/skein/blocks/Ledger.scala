@@ -19,7 +19,7 @@ import scala.util.Using
   * CRC-32 of what follows (4 bytes each, big-endian), the block's key (16 bytes), its answer. For one thread.
   *
   * @param index position and length of each block's answer
-  * @param broken bytes of the opened file that belong to no complete record
+  * @param broken number of bytes of the opened file that belong to no complete record
   */
 final class Ledger private (
     file: Path,
@@ -65,7 +65,7 @@ object Ledger:
 
   /** Opens a question's ledger, or creates it.
     *
-    * @param question 32 bytes that identify it
+    * @param question 32 bytes that identify the question
     * @return Left states what prevents it: another question's ledger, or a file that cannot be written
     */
   def open(file: Path, question: ArraySeq[Byte]): Either[String, Ledger] =
@@ -97,9 +97,9 @@ object Ledger:
 
   /** A ledger's content, read from the file alone.
     *
-    * @param blocks records with different keys
-    * @param repeats records whose key occurred before; any such record is an error
-    * @param broken bytes that belong to no complete record
+    * @param blocks number of records with different keys
+    * @param repeats number of records whose key occurred before; any such record is an error
+    * @param broken number of bytes that belong to no complete record
     */
   final case class Audit(blocks: Int, repeats: Int, broken: Long)
 
@@ -110,8 +110,8 @@ object Ledger:
       val found   = scan(channel)((key, _, _) => if !keys.add(key) then repeats += 1)
       Audit(keys.size, repeats, found.broken)
 
-  /** @param end of the last complete record
-    * @param broken bytes between complete records and after the last
+  /** @param end position after the last complete record
+    * @param broken number of bytes between complete records and after the last
     */
   private final case class Scanned(end: Long, broken: Long)
 

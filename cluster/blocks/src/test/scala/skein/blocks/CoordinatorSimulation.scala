@@ -11,8 +11,8 @@ import skein.signal.SplitMix64
 /** Coordinator, ledger and workers over a network that loses, doubles, delays and reorders, on a simulated
   * clock. The ledger is a file; a coordinator that dies loses an unsaved part of it.
   *
-  * @param folder for the ledger
-  * @param meanSeconds of a block, at a speed of 1
+  * @param folder folder of the ledger
+  * @param meanSeconds mean duration of a block, at a speed of 1
   */
 final class CoordinatorSimulation(
     seed: Long,
@@ -200,8 +200,8 @@ final class CoordinatorSimulation(
     * @param deathsAnHour fraction of the workers that die in an hour; each is noticed after 10 s, and another
     *   starts
     * @param cutsAnHour number of times that a worker is cut off in an hour, for 30 s on average
-    * @param splits at these seconds a fifth of all workers is cut off simultaneously, for two minutes
-    * @param restarts of the coordinator, at these seconds
+    * @param splits times, s, at which a fifth of all workers is cut off simultaneously, for two minutes
+    * @param restarts times of the coordinator's restarts, s
     * @param saving whether the ledger is flushed to the disk once a second
     * @param onTick called once a second
     */

@@ -7,13 +7,13 @@ import scala.collection.immutable.ArraySeq
   */
 trait BlockSolver:
 
-  /** @param work in the encoding of the question's coordinator */
+  /** @param work a block's work, in the encoding of the question's coordinator */
   def solve(work: ArraySeq[Byte]): ArraySeq[Byte]
 
 /** Makes solvers from a question's encoded bytes. */
 trait BlockSolverFactory:
 
-  /** @param question as its coordinator encoded it
+  /** @param question the question, as its coordinator encoded it
     * @return a function that makes a solver for each core; Left states in a line why this process cannot
     *   answer the question
     */

@@ -22,7 +22,7 @@ object Certificates:
   /** A host's folder name; `*.workers.lab` stands for all hosts of that domain. */
   def folderOf(host: String): String = host.replace("*", "_")
 
-  /** @param hosts names or addresses, as in `--listen` and `--join`
+  /** @param hosts the hosts' names or addresses, as in `--listen` and `--join`
     * @return Left states which of them is neither
     */
   def checked(hosts: Seq[String]): Either[String, Unit] =
@@ -30,7 +30,7 @@ object Certificates:
 
   /** Makes the certificates. If a host is invalid or already has a certificate, it makes none.
     *
-    * @param hosts names or addresses, as in `--listen` and `--join`
+    * @param hosts the hosts' names or addresses, as in `--listen` and `--join`
     * @return each host's folder; Left states what went wrong
     */
   def make(folder: Path, hosts: Seq[String]): Either[String, Vector[Path]] =

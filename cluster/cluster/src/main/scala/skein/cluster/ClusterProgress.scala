@@ -4,9 +4,9 @@ import skein.blocks.Coordinator
 
 /** The progress of a coordinator's work.
   *
-  * @param done blocks of the current call that have their answers
-  * @param of all blocks of that call
-  * @param resumed blocks, of all calls, whose answers were already in the ledger
+  * @param done number of blocks of the current call that have their answers
+  * @param of total number of blocks of that call
+  * @param resumed number of blocks, in all calls, whose answers were already in the ledger
   * @param died number of times that a worker was lost
   */
 final case class ClusterProgress(
@@ -18,7 +18,7 @@ final case class ClusterProgress(
 ):
   def here: Int = coordinator.workers.values.count(_.isHere)
 
-/** News about a worker, as a line for a person. */
+/** A change of a worker's state, with a line for the user. */
 enum WorkerEvent(val text: String):
   case Joined(worker: String, cores: Int)
       extends WorkerEvent(s"$worker joined, with $cores ${if cores == 1 then "core" else "cores"}")

@@ -13,7 +13,7 @@ import skein.blocks.{AnswerKind, Block, BlockKey, Coordinator, Ledger}
 /** A coordinator's question.
   *
   * @param run identifies this run of the coordinator; not 0
-  * @param build that workers must have
+  * @param build the [[BuildId]] that workers must have
   */
 private[cluster] final case class Job(run: Long, build: String, question: ArraySeq[Byte])
 
@@ -224,7 +224,7 @@ private[cluster] object CoordinatorBehavior:
 
   type Command = ToCoordinator | Local
 
-  /** Limit of the changes that are remembered, so that each is reported only once. */
+  /** Maximum number of changes that are remembered, so that each is reported only once. */
   private val MostTold = 1000
 
   /** Age from which a block goes to a second worker, when nothing else waits. */

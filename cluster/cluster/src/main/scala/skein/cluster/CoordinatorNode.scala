@@ -77,9 +77,9 @@ object CoordinatorNode:
     */
   private val MostClosing = 20.seconds
 
-  /** @param listen port 0 for any that is free
-    * @param ledger of this question
-    * @param tell called with news on a thread of the node's own
+  /** @param listen the endpoint to listen at; port 0 for any that is free
+    * @param ledger the question's ledger
+    * @param tell called with the workers' changes, on a thread of the node's own
     * @return Left states why it cannot listen
     */
   def start(

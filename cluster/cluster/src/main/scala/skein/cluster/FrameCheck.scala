@@ -7,7 +7,7 @@ import java.nio.ByteBuffer
   * below zero or close to 2³¹, and waits for the whole of a frame that is too long. Mutable; one for each
   * connection.
   *
-  * @param most limit of a frame's bytes
+  * @param most maximum number of bytes of a frame
   */
 private[cluster] final class FrameCheck(most: Int):
   private var skips  = FrameCheck.Header

@@ -16,9 +16,9 @@ private[cluster] sealed trait ToWorker extends Product
 private[cluster] enum Message:
   /** A worker has room for blocks. Sent at least once a second.
     *
-    * @param run 0 before it is known
+    * @param run the coordinator's run; 0 before it is known
     * @param build see [[BuildId]]
-    * @param holding the blocks that it has
+    * @param holding numbers of the blocks that it has
     */
   case Ask(
       worker: String,

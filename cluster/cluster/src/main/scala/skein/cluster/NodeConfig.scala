@@ -8,8 +8,8 @@ private[cluster] object NodeConfig:
 
   private val MostFrame = MessageCodec.MostBytes + (64 << 10)
 
-  /** @param listen port 0 for any that is free
-    * @param joins the endpoint that it connects to
+  /** @param listen the endpoint to listen at; port 0 for any that is free
+    * @param joins the endpoint to which it connects
     */
   def of(listen: Endpoint, tls: Option[Tls], joins: Option[Endpoint] = None): Either[String, Config] =
     for

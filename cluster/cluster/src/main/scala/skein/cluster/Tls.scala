@@ -14,8 +14,8 @@ import skein.link.{Address, TlsProbe, TransportError}
 /** Certificates of a node: its own, and those that it trusts. Both sides present theirs, and host names are
   * verified.
   *
-  * @param keyStore PKCS #12, with the node's key and certificate
-  * @param trustStore PKCS #12, with the signer's certificate
+  * @param keyStore a PKCS #12 file with the node's key and certificate
+  * @param trustStore a PKCS #12 file with the signer's certificate
   */
 final case class Tls(keyStore: Path, trustStore: Path, password: String):
 

@@ -12,9 +12,9 @@ import skein.units.Decimals.fixed
   * question before it is a member of the cluster, but blocks only as a member: the loss of any other process
   * would go unnoticed.
   *
-  * @param pool with as many threads as cores
-  * @param tell called with progress, in lines for a person
-  * @param onEnd called with the reason of the end
+  * @param pool threads that compute, as many as cores
+  * @param tell called with progress, in lines for the user
+  * @param onEnd called with the reason for the end
   */
 private[cluster] final class WorkerBehavior private (
     context: ActorContext[WorkerBehavior.Command],
@@ -136,7 +136,7 @@ private[cluster] object WorkerBehavior:
       solvers: BlockSolverFactory,
       startedAt: Long
   ):
-    /** The block's age for a person; it started at `startedAt` by `System.nanoTime`. */
+    /** The time since the block's start, for the user; it started at `startedAt` by `System.nanoTime`. */
     def age: String = s"${((System.nanoTime() - startedAt) * 1e-9).fixed(1)} s after its start"
 
   enum End:

@@ -23,8 +23,8 @@ import skein.link.TlsProbe
 
 /** A process that computes blocks.
   *
-  * @param patience how long it tries to reach a coordinator that it has not reached yet, or has lost
-  * @param tell called with progress, in lines for a person
+  * @param patience time for which it tries to reach a coordinator that it has not reached yet, or has lost
+  * @param tell called with progress, in lines for the user
   */
 final class WorkerNode(
     coordinator: Endpoint,

@@ -12,8 +12,8 @@ import scala.util.Using
   *
   * A process that ends is replaced, unless several in a row computed nothing: they crash, or are refused.
   *
-  * @param command of a worker
-  * @param log of a worker by its number, from 1
+  * @param command the command line that starts a worker
+  * @param log the log file of a worker, by the worker's number from 1
   * @param onEnd called with the name of a worker whose process has ended, on a thread of its own; returns
   *   whether it had computed anything
   * @param onGivenUp called with a reason when no process is left and none is started again

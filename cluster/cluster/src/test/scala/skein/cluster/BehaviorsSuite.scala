@@ -113,7 +113,7 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
     val heard  = Heard[ToCoordinator]()
     val solver = new BlockSolverFactory:
       def of(asked: ArraySeq[Byte]) = Right(() => work => work)
-    // What it reports queues with its requests: one for each beat.
+    // Its reports queue with its requests: one for each beat.
     val worker = system.spawnAnonymous(WorkerBehavior(
       heard.actor,
       WorkerBehavior.Self("anna", 1, "one", solver, System.nanoTime()),

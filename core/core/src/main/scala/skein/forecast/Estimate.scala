@@ -7,7 +7,7 @@ import skein.units.*
   *
   * @param predictedFor the time of the estimate, on the simulator's clock
   * @param readAt the time of the reading on which it is based, on the simulator's clock
-  * @param state numbers of the plant's state, if kinematics describe only a part of it
+  * @param state components of the plant's state, if kinematics describe only a part of it
   */
 final case class Estimate(
     kinematics: Kinematics,

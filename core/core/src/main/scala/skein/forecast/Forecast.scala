@@ -9,7 +9,7 @@ import skein.vehicle.VehicleModel
   *
   * @param models one per vehicle: a model of the vehicle if its commands are known, else
   *   [[skein.vehicle.ConstantVelocity]] or [[skein.vehicle.ConstantTurn]]
-  * @param delays absent before the first reading
+  * @param delays mean one-way delays; None before the first reading
   */
 final case class Forecast private (
     models: Vector[VehicleModel[?]],
@@ -32,7 +32,7 @@ final case class Forecast private (
     * None until every vehicle was read. If a vehicle's newest reading is later than that, its estimate is the
     * reading.
     *
-    * @param now on the controller's clock
+    * @param now the current time, on the controller's clock
     */
   def whenActing(now: Instant): Option[Vector[Estimate]] =
     told
@@ -53,7 +53,7 @@ final case class Forecast private (
 
   /** The vehicles at the times of these estimates, from which further commands can be simulated.
     *
-    * @param estimates result of [[whenActing]], by vehicle
+    * @param estimates the result of [[whenActing]], by vehicle
     * @param now the time passed to [[whenActing]]
     */
   def courses(estimates: Vector[Estimate], now: Instant): Vector[Course[?]] =
@@ -106,7 +106,7 @@ enum ForecastEvent:
 
   case Sent(vehicle: Int, command: Commanded)
 
-  /** A plan was sent to the buffer beside the vehicle.
+  /** A plan was sent to the buffer on the vehicle's side of the link.
     *
     * @param commands its actions, each with the time at which it acts
     */

@@ -6,7 +6,7 @@ import skein.vehicle.{ObservedPlant, ReducedModel}
 /** Plants of one form that differ in named parameters. `skein identify` fits the parameters to flights and
   * writes them to a model file.
   *
-  * @param label as on the command line and in model files, for example `drag`
+  * @param label its name on the command line and in model files, for example `drag`
   * @param space the free parameters: names with units, bounds, and as defaults the values from which a fit
   *   starts
   * @param make creates the plant from one value per axis; a pure function

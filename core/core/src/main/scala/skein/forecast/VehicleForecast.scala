@@ -11,7 +11,8 @@ import skein.vehicle.{Setpoint, VehicleModel}
   * @param readings the newest readings, the newest last
   * @param resting setpoint in effect before the first command
   * @param before the command in effect before the first of `commands`; None for `resting`
-  * @param commands in the order of sending: the one in effect at the newest reading, and all later ones
+  * @param commands sent commands in the order of sending: the one in effect at the newest reading, and all
+  *   later ones
   */
 final case class VehicleForecast[S] private (
     model: VehicleModel[S],
@@ -150,7 +151,7 @@ object VehicleForecast:
   /** Number of stored readings, with which predictions are compared. */
   val ReadingLimit = 8
 
-  /** Number of stored commands, and thus the limit of commands under way. */
+  /** Number of stored commands, and thus the maximum number of commands under way. */
   val CommandLimit = 64
 
   /** Time beyond two round trips after which a command is presumed lost. */

@@ -16,7 +16,7 @@ import skein.formula.Op.*
   * @param target trace of the new expression
   * @param leaf node that replaces an input
   * @param direction cosine and sine of an input that is an angle, if known
-  * @param parameter node of a parameter of the new expression, by its number
+  * @param parameter node of a parameter of the new expression, by its index
   */
 final class Angles(
     source: Trace,

@@ -26,7 +26,7 @@ final class Answer private[formula] (value: Value, lifter: Lifter):
   /** Handles the result by its class. If conditions choose between several classes, the values are combined
     * over them.
     *
-    * @param of the value for one class, from its name and the result as that class
+    * @param of returns the value for one class, from its name and the result as that class
     * @param or combines the values of two branches
     */
   def fold[A](of: (String, Answer) => A)(or: (Node, A, A) => A): A = lifter.settled(value) match

@@ -7,8 +7,8 @@ import scala.jdk.CollectionConverters.*
 import skein.formula.Thing.*
 import skein.formula.Value.*
 
-/** Resolves method calls during tracing: traces into methods, applies closures, and and itself evaluates the
-  * JDK's and Scala's operations on numbers, boxes and arrays.
+/** Resolves method calls during tracing: traces into methods, applies closures, and evaluates the JDK's and
+  * Scala's operations on numbers, boxes and arrays itself.
   *
   * @param enter traces a method
   * @param either joins two values by a condition

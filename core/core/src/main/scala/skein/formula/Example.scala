@@ -25,7 +25,7 @@ final class Example(
   /** The example's numbers, in the order of the inputs. */
   def numbers: Vector[Double] = shape.leaves.map(_.number)
 
-  /** Whether another example differs from this one in numbers alone. */
+  /** Whether another example differs from this one only in its numbers. */
   def isLike(other: Example): Boolean = shape.form == other.shape.form
 
 /** The numbers of an [[Example]], and the constants that all similar examples share. */

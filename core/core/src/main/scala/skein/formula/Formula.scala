@@ -188,7 +188,7 @@ object Formula:
 
   /** Traces an object's method for arguments like the examples.
     *
-    * @param descriptor of the method, as in class files
+    * @param descriptor the method's descriptor, as in class files
     * @param loader finds all classes that the method uses
     * @param read extracts the outputs from the result
     * @return the formula and the result of `read`, or why the method cannot be traced

@@ -318,7 +318,7 @@ private[formula] object Lifter:
   private final class Calling(val code: MethodCode):
     var at = 0
 
-    /** By branch, how many of its conditions are being executed: in a loop, one each round. */
+    /** By branch, the number of its conditions that are being executed: in a loop, one per round. */
     val open: mutable.HashMap[Int, Int] = mutable.HashMap.empty
 
   private final class Frame(val calling: Calling, val locals: Array[Value], var stack: List[Value]):

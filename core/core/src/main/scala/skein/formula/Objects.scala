@@ -27,7 +27,7 @@ private[formula] final class Objects(
   private val inputs  = mutable.HashMap.empty[Path, Node]
   private val unknown = mutable.HashMap.empty[String, String]
 
-  /** Numbers of the objects that were changed, one entry per change. */
+  /** Indices of the objects that were changed, one entry per change. */
   private val changed = mutable.ArrayBuffer.empty[Int]
 
   /** Paths to the doubles that were read from the method's object, in the order of the trace's parameters. */

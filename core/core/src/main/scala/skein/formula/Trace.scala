@@ -5,8 +5,8 @@ import skein.formula.Op.*
 
 /** One number, or one condition, of an expression.
   *
-  * @param value of a [[Op.Const]]
-  * @param index of an [[Op.Input]] or [[Op.Param]]
+  * @param value the value of a [[Op.Const]]
+  * @param index which input or parameter an [[Op.Input]] or [[Op.Param]] is
   */
 final class Node private[formula] (
     val id: Int,
@@ -27,9 +27,9 @@ final class Node private[formula] (
 
 /** A graph of expressions in which equal ones share a node, so that nothing is computed twice. Operations on
   * constants are evaluated immediately, bit-identical to a later evaluation; nothing is rearranged. A node's
-  * arguments have smaller numbers than the node. Not thread-safe.
+  * arguments have smaller `id`s than the node. Not thread-safe.
   *
-  * @param most limit of nodes; beyond it, tracing is refused
+  * @param most maximum number of nodes; beyond it, tracing is refused
   */
 final class Trace(most: Int = 200_000):
   private val known = mutable.HashMap.empty[Trace.Key, Node]
@@ -74,7 +74,8 @@ final class Trace(most: Int = 200_000):
   private def comparison(op: Op, a: Node, b: Node): Node =
     if a.isConst && b.isConst then if Op.holds(op, a.value, b.value) then always else never
     else if op == Lt && a == b then never
-    // What a condition has chosen between known numbers is compared: it is the condition again.
+    // A comparison of a value that a condition chose between known numbers is the condition itself, or its
+    // negation.
     else if b.isConst && ofConsts(a) then chosen(a)(comparison(op, _, b))
     else if a.isConst && ofConsts(b) then chosen(b)(comparison(op, a, _))
     else node(op, a, b)
@@ -98,7 +99,7 @@ final class Trace(most: Int = 200_000):
     if a == b || condition.op == Always then a
     else if isNever(condition) then b
     else if condition.op == Not then where(condition.args(0), b, a)
-    // What the same condition chose before.
+    // A nested choice by the same condition.
     else if a.op == Where && a.args(0) == condition then where(condition, a.args(1), b)
     else if b.op == Where && b.args(0) == condition then where(condition, a, b.args(2))
     else node(Where, condition, a, b)
@@ -122,8 +123,8 @@ final class Trace(most: Int = 200_000):
   /** Whether its value is chosen among few constants, such as the nearest of all vehicles. */
   private def ofConsts(a: Node): Boolean = a.op == Where && withoutConsts(a, Trace.MostChosen) >= 0
 
-  /** What is left of a number of constants after those among which a value is chosen; negative if it is not
-    * chosen among so few.
+  /** `most`, less the number of constants among which a value is chosen; negative if there are more, or if it
+    * is not chosen among constants.
     */
   private def withoutConsts(a: Node, most: Int): Int =
     if most < 0 || a.isConst then most - 1
@@ -158,7 +159,7 @@ final class Trace(most: Int = 200_000):
 object Trace:
   private val MostChosen = 64
 
-  /** Identifies equal nodes: their operation, and their arguments' numbers or their own. */
+  /** Identifies equal nodes: their operation, and the numbers of their arguments or of themselves. */
   private final case class Key(op: Int, first: Long, rest: Long):
     override def hashCode: Int =
       val mixed = (first * 31 + rest) * 0x9e3779b97f4a7c15L + op
@@ -168,8 +169,8 @@ object Trace:
   def needed(of: Seq[Node]): Vector[Node] =
     val seen  = mutable.HashSet.empty[Int]
     val order = Vector.newBuilder[Node]
-    // Expressions may be deeper than a thread's stack: nodes with how many of their arguments have been gone
-    // to.
+    // Expressions may be deeper than a thread's stack: nodes with the number of their arguments that were
+    // visited.
     val walk = mutable.Stack.empty[(Node, Int)]
     for node <- of if seen.add(node.id) do
       walk.push((node, 0))

@@ -25,7 +25,7 @@ private[formula] object Value:
 
   /** An object that existed before tracing.
     *
-    * @param path to it from the object whose method is traced; None for shared objects
+    * @param path how it is reached from the object whose method is traced; None for shared objects
     */
   final case class Known(what: AnyRef, path: Option[Path]) extends Value
 

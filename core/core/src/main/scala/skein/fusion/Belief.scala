@@ -5,7 +5,7 @@ import skein.units.*
 /** The estimate of a vehicle's position and velocity at a moment, in NED, jointly normal: the state of a
   * Kalman filter for constant velocity with white noise as acceleration.
   *
-  * @param at on the clock of the measurements
+  * @param at the moment, on the clock of the measurements
   * @param positionNed mean, m
   * @param velocityNed mean, m/s
   * @param position covariance of the position, m²

@@ -6,8 +6,8 @@ import skein.units.*
   *
   * @param validAt time at which physics was sampled or the image exposed; on one clock for all measurements
   *   of a vehicle
-  * @param positionNed m
-  * @param covariance of the position, NED, m²
+  * @param positionNed the measured position, m
+  * @param covariance the position's covariance, NED, m²
   * @param velocity velocity with its covariance, if it was measured: NED, m/s, m²/s²
   */
 final case class Measurement(
@@ -23,9 +23,9 @@ final case class Measurement(
 
 /** A camera's or lidar's measurement of a detected object, in the sensor's frame (front, right, down).
   *
-  * @param azimuth to the right of straight ahead
-  * @param elevation above straight ahead
-  * @param range along the line of sight
+  * @param azimuth angle to the right of straight ahead
+  * @param elevation angle above straight ahead
+  * @param range distance along the line of sight
   * @param deviation standard deviations of the three, which are independent
   */
 final case class PolarMeasurement(
@@ -40,8 +40,8 @@ final case class PolarMeasurement(
     * standard deviation: Lerro and Bar-Shalom, IEEE Transactions on Aerospace and Electronic Systems 29
     * (1993), 1015.
     *
-    * @param positionNed of the sensor, m
-    * @param orientation from the sensor's frame to world NED
+    * @param positionNed the sensor's position, m
+    * @param orientation rotates from the sensor's frame to world NED
     */
   def seenFrom(validAt: Instant, positionNed: Vector3, orientation: Quaternion): Measurement =
     val (place, covariance) = placedFrom(positionNed, orientation)

@@ -59,8 +59,8 @@ private[skein] final case class SensorFormulas(model: SensorModel):
   /** The inputs of a decision, and the camera's direction after it.
     *
     * @param startNed start of the opponent
-    * @param aheadS time until the command takes effect, if the own position is predicted for that moment;
-    *   else −1
+    * @param aheadS time until the command takes effect, if the vehicle's own position is predicted for that
+    *   moment; else −1
     */
   def decidedUpon(
       known: Believed,

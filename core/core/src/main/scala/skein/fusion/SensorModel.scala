@@ -90,7 +90,7 @@ final case class SensorModel(
 /** An exposed image with its random samples.
   *
   * @param axisRad direction of the camera, from north to the east
-  * @param ownNed own position, m; `opponentNed` likewise
+  * @param ownNed the vehicle's own position, m; `opponentNed` likewise
   * @param found sample that is uniform in [0, 1], like `bearing` and `range`
   */
 final case class Exposure(

@@ -10,7 +10,7 @@ enum Action:
 
   /** Flies with this horizontal velocity and holds an altitude.
     *
-    * @param down negative above the origin
+    * @param down altitude, negative above the origin
     */
   case VelocityAt(northMps: Double, eastMps: Double, down: Metres, yaw: Yaw = Yaw.Still)
 
@@ -33,8 +33,8 @@ enum Action:
 
   /** Flies on a heading and holds an altitude.
     *
-    * @param heading any number of turns
-    * @param down negative above the origin
+    * @param heading heading, any number of turns
+    * @param down altitude, negative above the origin
     */
   case Along(heading: Radians, speed: MetresPerSecond, down: Metres, yaw: Yaw = Yaw.Still)
 
@@ -68,7 +68,8 @@ object Action:
         Action.VelocityAt(speed.value * cos, speed.value * sin, down, yaw)
       case other => other
 
-  /** Whether every number in an action, or in a part of one, is finite, including its speed; false for null.
+  /** Whether every component of an action, or of a part of one, is finite, including its speed; false for
+    * null.
     */
   private[skein] def isFinite(part: Any): Boolean = part match
     case null                                           => false

@@ -1,10 +1,10 @@
 package skein.policy
 
-/** Assigns to every agent an opponent: the nearest of its rivals, and of several equally near the first. Live
+/** Assigns an opponent to every agent: the nearest of its rivals, and of several equally near the first. Live
   * loops, virtual time and forward simulation share this rule. Agents are identified by their index in a
   * scenario.
   *
-  * @param rivals at least one for each agent, in ascending order; an agent with a single rival is assigned
+  * @param rivals indices of each agent's rivals, at least one, ascending; a single rival is assigned
   *   permanently. An agent that flies alone is its own opponent
   */
 final case class Assignment(rivals: Vector[Vector[Int]]):

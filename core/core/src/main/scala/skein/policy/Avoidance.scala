@@ -15,10 +15,10 @@ import skein.policy.Avoidance.*
   *
   * @param goalNorthM north coordinate of the goal, m; `goalEastM` likewise. Within `cruiseMps / arrivePerS`
   *   of it the vehicle slows down in proportion to the distance
-  * @param minimumM smallest separation allowed
+  * @param minimumM smallest separation allowed, m
   * @param marginM added to the minimum; the sum is the sum of the two discs' radii
   * @param horizonS time within which no two vehicles may meet
-  * @param mostMps limit of the commanded speed
+  * @param mostMps maximum commanded speed
   */
 final case class Avoidance(
     goalNorthM: Double,

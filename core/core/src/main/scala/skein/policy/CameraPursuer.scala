@@ -3,12 +3,12 @@ package skein.policy
 import skein.units.*
 
 /** Steers by another policy, and points its camera at the opponent. With a sensor, the estimate of
-  * [[skein.scenario.Eye]] is its only knowledge of the opponent. If the own position is predicted, the
-  * estimate is predicted for that moment too, with constant velocity; otherwise it is used as of the
+  * [[skein.scenario.Eye]] is its only knowledge of the opponent. If the vehicle's own position is predicted,
+  * the estimate is predicted for that moment too, with constant velocity; otherwise it is used as of the
   * exposure. Before the first detection, the opponent is assumed to be at its start.
   *
   * @param steers the other policy; receives the estimate instead of readings
-  * @param sensor None if readings of the opponent are used
+  * @param sensor the sensor's name; None if readings of the opponent are used
   */
 final case class CameraPursuer(steers: HeadingPolicy, sensor: Option[String], opponentStartNed: Vector3)
     extends Policy:
@@ -64,8 +64,8 @@ object CameraPursuer:
 
   /** Position, m, assumed for an object with this estimated position and velocity, m/s.
     *
-    * @param aheadS time from the estimate until the present decision takes effect; None if the own position
-    *   is not predicted either
+    * @param aheadS time from the estimate until the present decision takes effect; None if the vehicle's own
+    *   position is not predicted either
     */
   private[skein] def carried(placeNed: Vector3, velocityNed: Vector3, aheadS: Option[Double]): Vector3 =
     placeNed + velocityNed * aheadS.fold(0.0)(carriedS)

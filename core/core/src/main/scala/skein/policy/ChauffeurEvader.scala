@@ -13,8 +13,8 @@ package skein.policy
   *     centre: a pursuer that turns as hard as it can stays at distance R from there, and must first fly away
   *     (the swerve).
   *   - Elsewhere it runs along the line on which the chase will end: the tangent of the turning circle
-  *     through its place, away from the circle. A pursuer that turns as hard as it can and then dashes ends
-  *     up on that line, whose direction does not change meanwhile.
+  *     through its position, away from the circle. A pursuer that turns as hard as it can and then dashes
+  *     ends up on that line, whose direction does not change meanwhile.
   *
   * Exactly ahead of the pursuer or behind it, the evader chooses the right side. Source of the game, its
   * barrier, turn, dash and swerve: Isaacs, Differential Games (1965); the strategy against the swerve is

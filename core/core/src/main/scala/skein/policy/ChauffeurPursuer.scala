@@ -18,7 +18,8 @@ package skein.policy
   * swerve: Isaacs, Differential Games (1965).
   *
   * @param speedRatio γ, the evader's speed over the pursuer's, in 0 to 1
-  * @param captureRadiusM values below 1.05 times [[HomicidalChauffeur.thresholdM]] count as that
+  * @param captureRadiusM the capture radius; a value below 1.05 times [[HomicidalChauffeur.thresholdM]]
+  *   counts as that
   * @param turnRateRadPerS maximum turn rate: speed over turning radius
   */
 final case class ChauffeurPursuer(

@@ -2,7 +2,7 @@ package skein.policy
 
 /** A network of one output, evaluated by an ordinary loop over arrays, which the SIMD compiler can trace.
   *
-  * @param parameters in the order of [[NeuralShape]]
+  * @param parameters weights and biases in the order of [[NeuralShape]]
   */
 private[policy] final class DenseNetwork(shape: NeuralShape, parameters: Vector[Double]):
   require(
@@ -20,7 +20,7 @@ private[policy] final class DenseNetwork(shape: NeuralShape, parameters: Vector[
 
   /** Evaluates the network.
     *
-    * @param inputs in [[scratch]], which is overwritten
+    * @param inputs the network's inputs, in [[scratch]], which is overwritten
     */
   def output(inputs: Array[Double]): Double =
     var input  = inputs

@@ -6,11 +6,12 @@ import skein.vehicle.VehicleKind
 /** One vehicle and its policy.
   *
   * @param name the simulator's name of the vehicle; in AirSim, that of `settings.json`
-  * @param speed commanded where the policy does not choose one
-  * @param startPositionNed m, in the world frame; it also holds this altitude. A car's is 0
-  * @param startHeading taken as the last commanded heading before the first decision
+  * @param speed the commanded speed where the policy does not choose one
+  * @param startPositionNed the start, m, in the world frame; the vehicle also holds this altitude, which for
+  *   a car is 0
+  * @param startHeading stands for the last commanded heading before the first decision
   * @param policy how it decides
-  * @param kind of vehicle; a car is steered in the plane or stands still
+  * @param kind the kind of vehicle; a car is steered in the plane or stands still
   */
 final case class Agent(
     name: String,
@@ -23,7 +24,7 @@ final case class Agent(
 ):
   /** The velocity to command for a heading, m/s, horizontal, world NED.
     *
-    * @param chosen the speed, where the policy chose one
+    * @param chosen the speed, if the policy chose one
     */
   def velocityNed(headingRad: Double, chosen: Option[MetresPerSecond] = None): Vector3 =
     val commanded = chosen.getOrElse(speed).value
@@ -51,7 +52,7 @@ final case class Fleet(agents: Vector[Agent]):
 
   val assignment: Assignment = Assignment(opponents)
 
-  /** Index of the agent that agent `self` plays against: the nearest of its opponents, the first of equals.
+  /** Index of the opponent of agent `self`: the nearest of its rivals, the first of equals.
     *
     * @param positionNed position of an agent by its index
     */

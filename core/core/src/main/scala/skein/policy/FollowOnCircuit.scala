@@ -1,9 +1,9 @@
 package skein.policy
 
 /** Follows a vehicle round a circuit, at a distance along the circuit. Steers towards the point a fixed
-  * length ahead of its own place ([[LeadOnCircuit]]). Its speed is that of the vehicle ahead, corrected in
-  * proportion to the error of the gap. It never turns back, but waits. A policy for vehicles that cannot turn
-  * on the spot.
+  * length ahead of its own place on it ([[LeadOnCircuit]]). Its speed is that of the vehicle ahead, corrected
+  * in proportion to the error of the gap. It never turns back, but waits. A policy for vehicles that cannot
+  * turn on the spot.
   *
   * @param leader index of the vehicle ahead in the scenario
   * @param aheadM about the distance that the vehicle drives before it follows a command

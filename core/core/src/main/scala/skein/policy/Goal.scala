@@ -8,7 +8,7 @@ trait Goal:
   /** The position, north and east, m, where the vehicle should be after `aheadS` if it were alone. */
   def wanted(seen: Observation, aheadS: Double): (Double, Double)
 
-  /** Limit of the commanded speed, m/s, also in plans. */
+  /** Maximum commanded speed, m/s, also in plans. */
   def mostMps: Double
 
   /** The smallest separation allowed, m; 0 for no limit. */

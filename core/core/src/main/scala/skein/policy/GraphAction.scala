@@ -2,9 +2,9 @@ package skein.policy
 
 import skein.units.*
 
-/** An [[Action]] whose numbers have any type, for example nodes of a formula.
+/** An [[Action]] whose components have any type, for example nodes of a formula.
   *
-  * @param numbers those of the kind, in its order, then that of the yaw, if it has one
+  * @param numbers the components of the kind, in its order, then that of the yaw, if it has one
   */
 private[skein] final case class GraphAction[A](
     kind: GraphAction.Kind,
@@ -33,7 +33,7 @@ private[skein] final case class GraphAction[A](
       case GraphAction.Kind.Land  => Action.Land
 
 private[skein] object GraphAction:
-  /** The kinds of actions, each with its count of numbers.
+  /** The kinds of actions, each with its number of components.
     *
     * @param word the kind's name in a scenario file
     */
@@ -41,7 +41,7 @@ private[skein] object GraphAction:
     // Heading, speed, down.
     case Along extends Kind("along", 3, true)
 
-    // North, east, down: two velocities and a place.
+    // North, east, down: two kinds of velocity, and a position.
     case VelocityAt extends Kind("velocity-at", 3, true)
     case Velocity   extends Kind("velocity", 3, true)
 

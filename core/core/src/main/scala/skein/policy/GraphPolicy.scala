@@ -2,16 +2,16 @@ package skein.policy
 
 import skein.formula.{Evaluation, Node, Op}
 
-/** The decision of a policy as data, for one place in a team.
+/** The decision of a policy as data, for one index in a team.
   *
   * @param inputs meaning of each input of the nodes; the next input is the time ahead of a goal, s
   * @param settings names of the nodes' parameters
-  * @param actions with conditions: the first action whose condition holds is performed; the last one has no
-  *   condition
-  * @param starts numbers of the memory before the first decision; they depend on settings alone
-  * @param next numbers of the next memory
+  * @param actions actions and their conditions: the first action whose condition holds is performed; the last
+  *   one has no condition
+  * @param starts components of the memory before the first decision; they depend on settings alone
+  * @param next components of the next memory
   * @param goal the wanted position, north and east, m; empty for a policy without a goal
-  * @param limits of a goal: maximum speed, m/s, and minimum separation, m; they depend on settings alone
+  * @param limits a goal's maximum speed, m/s, and minimum separation, m; they depend on settings alone
   */
 private[skein] final class PolicyGraph(
     val inputs: Vector[PolicyInput],
@@ -25,7 +25,7 @@ private[skein] final class PolicyGraph(
   require(actions.nonEmpty && actions.last._1.isEmpty, "the last action has no condition")
   require(starts.size == next.size, "each number of the memory has a start and a next value")
 
-  /** Condition and numbers of each action, in turn, and then the next memory. */
+  /** Condition and components of each action, in turn, and then the next memory. */
   val outputs: Vector[Node] = actions.flatMap((when, of) => when ++ of.numbers) ++ next
 
   /** Splits values of [[outputs]].

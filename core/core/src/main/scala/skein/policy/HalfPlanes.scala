@@ -126,7 +126,7 @@ private[policy] object HalfPlanes:
     */
   final case class Nearest(velocity: Velocity, missing: Double)
 
-  /** Limit of the rounds. Only few of a vehicle's neighbours bound its velocity. */
+  /** Maximum number of rounds. Only few of a vehicle's neighbours bound its velocity. */
   val Rounds = 8
 
   /** Largest violation of a half plane that counts as none, m/s: far above rounding of floats, and far below

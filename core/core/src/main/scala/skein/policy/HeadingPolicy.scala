@@ -1,7 +1,7 @@
 package skein.policy
 
-/** A short way to write a policy of two that play against one another: it chooses a heading from what it
-  * knows of its opponent. The vehicle flies at its own speed and the altitude of its start. See
+/** A short way to write the policy of one of two opponents: it chooses a heading from what it knows of its
+  * opponent. The vehicle flies at its own speed and the altitude of its start. See
   * [[HeadingPolicy.Memoryless]] for policies without a memory.
   */
 trait HeadingPolicy extends Policy:

@@ -5,7 +5,7 @@ package skein.policy
   * either side.
   *
   * Its barriers are involutes. A pursuer that turns hard towards the evader's side follows a circle of radius
-  * R about a centre beside it; with ρ the evader's distance from that centre, the evader does best to run
+  * R about a centre to its side; with ρ the evader's distance from that centre, the evader does best to run
   * straight along the tangent of the circle of radius γ·R about the same centre. So it reaches the angle
   * arccos γ to the pursuer's heading, the edge of the usable part, when the pursuer has turned by τ. Its
   * distance is then
@@ -16,7 +16,7 @@ package skein.policy
   * backwards from the edge of the usable part, Isaacs, Differential Games (1965); the involutes of one τ are
   * the level lines of this distance. `HomicidalChauffeurSimulation` simulates it.
   *
-  * @param turningRadiusM R, of the pursuer
+  * @param turningRadiusM R, the pursuer's turning radius
   * @param speedRatio γ, the evader's speed over the pursuer's, between 0 and 1
   */
 final case class HomicidalChauffeur(turningRadiusM: Double, speedRatio: Double):

@@ -30,7 +30,7 @@ final case class KeepSlot(
     val heading                   = circuit.headingRad(place)
     val (cos, sin)                = (StrictMath.cos(heading), StrictMath.sin(heading))
     val (northOffset, eastOffset) = (aheadM * cos - rightM * sin, aheadM * sin + rightM * cos)
-    // Speed at which the place on the circuit moves, while the leader flies beside it.
+    // Speed at which the place on the circuit moves while the leader flies to the side of the circuit.
     val (nearNorth, nearEast) = circuit.point(place)
     val toTheRightM  = -(seen.northM(leader) - nearNorth) * sin + (seen.eastM(leader) - nearEast) * cos
     val curvature    = circuit.curvaturePerM(place)
@@ -72,7 +72,7 @@ final case class KeepSlot(
     (north + aheadM * cos - beside * sin, east + aheadM * sin + beside * cos)
 
 object KeepSlot:
-  /** Lower limit of the share of the radius that scales the speed along the circuit. Near the centre of a
-    * turn the nearest place on the circuit moves ever faster; this limits it to four times the speed.
+  /** Minimum of the share of the radius that scales the speed along the circuit. Near the centre of a turn
+    * the nearest place on the circuit moves ever faster; this limits it to four times the speed.
     */
   private val LeastShare = 0.25

@@ -5,9 +5,9 @@ package skein.policy
   *
   * A decision allocates two arrays as wide as the widest layer, and one for the observation.
   *
-  * @param parameters in the order of [[NeuralShape]]
+  * @param parameters weights and biases in the order of [[NeuralShape]]
   * @param turnRateRadPerS maximum turn rate until the next decision
-  * @param turnRad limit of the turn of one decision, whatever the time since the last
+  * @param turnRad maximum turn of one decision, whatever the time since the last
   */
 final case class LearnedPolicy(
     shape: NeuralShape,

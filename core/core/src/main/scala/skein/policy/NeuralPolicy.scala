@@ -1,12 +1,12 @@
 package skein.policy
 
 /** A small network of neurons with tanh. Its inputs are the opponent's position over [[NeuralPolicy.LengthM]]
-  * and relative velocity over [[NeuralPolicy.SpeedMps]], each ahead and to the right in the frame of the own
-  * heading. Its one output, between −1 and 1, times the maximum turn rate is the turn rate.
+  * and relative velocity over [[NeuralPolicy.SpeedMps]], each ahead and to the right in the frame of this
+  * vehicle's heading. Its one output, between −1 and 1, times the maximum turn rate is the turn rate.
   *
   * A decision allocates two arrays as wide as the widest layer; compiled to SIMD it allocates nothing.
   *
-  * @param parameters in the order of [[NeuralShape]]
+  * @param parameters weights and biases in the order of [[NeuralShape]]
   * @param turnRateRadPerS maximum turn rate
   */
 final case class NeuralPolicy(shape: NeuralShape, parameters: Vector[Double], turnRateRadPerS: Double = 1.0)

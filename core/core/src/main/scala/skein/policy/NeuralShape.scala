@@ -3,8 +3,8 @@ package skein.policy
 /** The layers of a network with one output. Parameters are ordered layer by layer, neuron by neuron: a weight
   * per input, then the bias.
   *
-  * @param hidden number of neurons of each hidden layer
-  * @param activations of each hidden layer, and of the output
+  * @param hidden number of neurons in each hidden layer
+  * @param activations the activation of each hidden layer, and of the output
   */
 final case class NeuralShape(hidden: Vector[Int], inputs: Int, activations: Vector[Activation]):
   require(

@@ -5,17 +5,16 @@ import skein.units.*
 
 /** The input of a policy's decision.
   *
-  * @param self index of the own vehicle in the scenario
+  * @param self index of this vehicle in the scenario
   * @param vehicles estimates of all vehicles, by index
-  * @param opponent index of the opponent; of several, the nearest at this moment; the own index if there is
-  *   none
+  * @param opponent index of the opponent; of several, the nearest at this moment; `self` if there is none
   * @param headings last commanded heading of each vehicle, as far as known, by index; before the first
   *   command, the heading at the start
-  * @param elapsed time since the own previous decision; zero at the first
+  * @param elapsed time since this vehicle's previous decision; zero at the first
   * @param decisions number of earlier decisions for this vehicle
   * @param cruise the vehicle's speed according to the scenario
   * @param startDown altitude of the vehicle's start, down, negative above the origin
-  * @param sensed last readings of the own vehicle's sensors, by name: those that the policy requests
+  * @param sensed last readings of this vehicle's sensors, by name: those that the policy requests
   *   ([[Policy.sensors]]) and that have arrived
   * @param actsIn predicted time until the command takes effect; zero in loops without predictions
   */
@@ -33,7 +32,7 @@ final case class Observation(
 ):
   def own: Seen = vehicles(self)
 
-  /** The number of vehicles, the own one included. */
+  /** The number of vehicles, this one included. */
   def count: Int = vehicles.size
 
   /** A vehicle's position north, m; `eastM` and `downM` likewise. */
@@ -46,12 +45,12 @@ final case class Observation(
 
   def headingRad: Double = headings(self).value
 
-  /** Flight along a heading at the altitude of the own start. */
+  /** Flight along a heading at the altitude of this vehicle's start. */
   def along(headingRad: Double, speedMps: Double): Action =
     Action.Along(Radians(headingRad), MetresPerSecond(speedMps), startDown)
 
-  /** Flight with this velocity, limited to a maximum speed, at the altitude of the own start. A velocity near
-    * zero keeps the heading.
+  /** Flight with this velocity, limited to a maximum speed, at the altitude of this vehicle's start. A
+    * velocity near zero keeps the heading.
     */
   def towards(northMps: Double, eastMps: Double, mostMps: Double): Action =
     val speed = StrictMath.hypot(northMps, eastMps)

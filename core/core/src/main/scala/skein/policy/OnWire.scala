@@ -3,7 +3,7 @@ package skein.policy
 import skein.units.*
 import skein.vehicle.{Setpoint, YawMode}
 
-/** Rounds actions to the precision of AirSim's wire: numbers are 32-bit floats, and yaws are in degrees. */
+/** Rounds actions to the precision of AirSim's wire: values are 32-bit floats, and yaws are in degrees. */
 private[skein] object OnWire:
   def of(action: Action): Action = action match
     case Action.Velocity(velocity, yaw)            => Action.Velocity(of(velocity), yaw)

@@ -7,7 +7,7 @@ package skein.policy
   *
   * @param turnRateRadPerS ω. The paper's constants give (10 / 8)·0.08 rad every 100 ms = 1 rad/s; a turning
   *   circle of 8 m at 10 m/s would be 1.25 rad/s.
-  * @param stepRad when set, every decision turns by s·stepRad independent of the time since the last, as the
+  * @param stepRad if set, every decision turns by s·stepRad whatever the time since the last, as the
   *   published code does (0.1 rad). Then the turn rate grows with the decision rate, which confounds the
   *   published comparison of loops.
   */

@@ -1,15 +1,15 @@
 package skein.policy
 
-/** What a [[HeadingPolicy]] observes of its opponent.
+/** The observation of a [[HeadingPolicy]].
   *
-  * @param dxM opponent's position minus own, north, m
-  * @param dyM opponent's position minus own, east, m
-  * @param dvxMps opponent's velocity minus own, north, m/s
-  * @param dvyMps opponent's velocity minus own, east, m/s
-  * @param ownHeadingRad last commanded heading of the own vehicle
+  * @param dxM the opponent's position minus this vehicle's, north, m
+  * @param dyM the opponent's position minus this vehicle's, east, m
+  * @param dvxMps the opponent's velocity minus this vehicle's, north, m/s
+  * @param dvyMps the opponent's velocity minus this vehicle's, east, m/s
+  * @param ownHeadingRad last commanded heading of this vehicle
   * @param opponentHeadingRad last commanded heading of the opponent, as far as known to this controller
-  * @param elapsedS time since the own previous decision; 0 at the first
-  * @param ownAgeS age of the reading of the own vehicle, s
+  * @param elapsedS time since this vehicle's previous decision; 0 at the first
+  * @param ownAgeS age of the reading of this vehicle, s
   * @param opponentAgeS age of the reading of the opponent, s
   */
 final case class PlanarObservation(
@@ -23,10 +23,10 @@ final case class PlanarObservation(
     ownAgeS: Double,
     opponentAgeS: Double
 ):
-  /** The inputs of learned policies, in a frame whose x-axis is the own last commanded heading: the
-    * opponent's position ahead and to the right, m; its velocity relative to the own, m/s; cosine and sine of
-    * its heading relative to the own; the time since the own previous decision, and the ages of the own and
-    * of the opponent's reading, s.
+  /** The inputs of learned policies, in a frame whose x-axis is this vehicle's last commanded heading: the
+    * opponent's position ahead and to the right, m; its velocity relative to this vehicle's, m/s; cosine and
+    * sine of its heading relative to this vehicle's; the time since this vehicle's previous decision, and the
+    * ages of this vehicle's and of the opponent's reading, s.
     */
   def fromOwnHeading: Array[Double] =
     val cos     = StrictMath.cos(ownHeadingRad)

@@ -21,8 +21,8 @@ trait Policy:
   /** Whether it guarantees to steer in the plane, at the altitude of its vehicle's start. */
   def isPlanar: Boolean = false
 
-  /** This policy as one with rough knowledge assumes it, such as a planner that plays against it: its
-    * parameters deviate by random numbers. By default it is known exactly.
+  /** This policy as an opponent with rough knowledge assumes it, for example a planner: its parameters
+    * deviate by random numbers. By default it is known exactly.
     *
     * @param draw samples of the standard normal distribution, by index
     */

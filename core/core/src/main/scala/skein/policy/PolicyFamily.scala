@@ -5,11 +5,11 @@ import skein.units.OwnFailure
 /** Policies of one form that differ in named parameters: searches choose from them, and policy files name
   * them.
   *
-  * @param name as on the command line and in policy files, for example `paper-pursuer`
-  * @param summary one line for people
-  * @param roles for whom its policies are meant
+  * @param name its name on the command line and in policy files, for example `paper-pursuer`
+  * @param summary one line for users
+  * @param roles the roles for which its policies are meant
   * @param space the parameters, their bounds and defaults
-  * @param make a policy of one value per axis; a pure function
+  * @param make creates a policy from one value per axis; a pure function
   */
 final class PolicyFamily(
     val name: String,
@@ -123,7 +123,7 @@ object PolicyFamily:
     parameters => NeuralPolicy(shape, parameters.init, parameters.last)
   )
 
-  /** Networks as `./skein learn` trains them, named `learned:64x64` as [[LearnedPolicy.label]] says; the
+  /** Networks as `./skein learn` trains them, named like `learned:64x64` ([[LearnedPolicy.label]]); the
     * default's weights are all zero.
     */
   def learned(shape: NeuralShape): PolicyFamily = PolicyFamily(
@@ -164,7 +164,7 @@ object PolicyFamily:
       chauffeurEvader
     )
 
-  /** The family of this name.
+  /** The family of this name, Skein's or the program's own.
     *
     * @param own further families that the program knows
     * @return Left states which names were expected

@@ -4,13 +4,13 @@ import scala.util.control.NonFatal
 import skein.formula.{Answer, Evaluation, Example, Formula, Node, Op, Trace, Untraceable}
 import skein.units.*
 
-/** How a policy decides at one place of a team, as a formula of numbers: [[Policy.choose]], read from its
-  * bytecode. It serves forward simulation, whose vehicles follow velocities, at an altitude or not, so its
-  * actions must be of that kind.
+/** The decision of a policy for one index in a team, as a formula: [[Policy.choose]], read from its bytecode.
+  * Forward simulation uses it; its vehicles follow velocities, with or without an altitude, so the actions
+  * must be of that kind.
   *
   * @param inputs meaning of each of the formula's inputs
   * @param motion nodes of the decided horizontal motion
-  * @param vertical nodes of the decided vertical motion; absent where it is always the altitude of the start
+  * @param vertical nodes of the decided vertical motion; None if it is always the altitude of the start
   * @param memory nodes of the next memory, in the order of [[PolicyInput.Memory]]
   * @param turns whether its actions may turn the vehicle
   */
@@ -29,7 +29,7 @@ final class PolicyFormula private (
   def fits(policy: Policy, assignment: Assignment): Boolean =
     formula.fits(Deciding(policy, assignment)) && (isBegun(policy) || start.isLike(memoryOf(policy)))
 
-  /** The numbers of a policy that [[fits]], as the formula's parameters. */
+  /** The formula's parameters for a policy that [[fits]]. */
   def parametersOf(policy: Policy): Array[Double] =
     formula.parametersOf(Deciding(policy, assignment))
 
@@ -37,12 +37,14 @@ final class PolicyFormula private (
   def startOf(policy: Policy): Array[Double] =
     (if isBegun(policy) then start else memoryOf(policy)).numbers.toArray
 
-  /** Whether its memory begins as that of the formula's own policy: candidates of a search are many. */
+  /** Whether its initial memory is that of the formula's own policy; a shortcut for the many candidates of a
+    * search.
+    */
   private def isBegun(policy: Policy) = start.value.equals(policy.start)
 
   /** Why the policy leaves the altitude of its vehicle's start, if it does.
     *
-    * @param startDown of the vehicle that it controls
+    * @param startDown the start's altitude, of the vehicle that it controls
     */
   def leaves(policy: Policy, startDown: Metres): Option[String] = vertical.flatMap: vertical =>
     val nodes   = Vector(vertical.third, vertical.holds)
@@ -68,7 +70,7 @@ object PolicyFormula:
 
   /** Traces a policy's decision.
     *
-    * @param self the policy's place in its team
+    * @param self the vehicle's index in its team
     * @param isPredicted see [[Seen.isPredicted]]
     * @return Left states why it cannot be traced, with the source line
     */
@@ -157,7 +159,7 @@ object PolicyFormula:
       val inputs             = seen.inputs ++ starts.indices.map(PolicyInput.Memory(_))
       made(formula, inputs, decided, memory, assignment)
 
-  /** A policy's initial memory, as an example and as numbers. */
+  /** A policy's initial memory, as an example and as components. */
   private def startOf(policy: Policy): Either[Untraceable, (Example, Vector[Double])] =
     try
       val memory = memoryOf(policy)

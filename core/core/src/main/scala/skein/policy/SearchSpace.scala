@@ -4,7 +4,7 @@ import skein.signal.SplitMix64
 
 /** One parameter of a policy: the bounds of a search, and the default value.
   *
-  * @param name with its unit, for example `turnRateRadPerS`; used in files and on the command line
+  * @param name its name with the unit, for example `turnRateRadPerS`; used in files and on the command line
   */
 final case class Axis(name: String, least: Double, most: Double, default: Double):
   require(least < most, s"axis $name: the least value $least must be below the most, $most")

@@ -1,10 +1,10 @@
 package skein.policy
 
-/** Keeps a place beside another vehicle, at a fixed offset in the world.
+/** Keeps a fixed offset from another vehicle, in the world frame.
   *
   * @param leader index of the other vehicle in the scenario
   * @param northM offset of the place north of the leader, m; `eastM` likewise
-  * @param mostMps limit of the commanded speed
+  * @param mostMps maximum commanded speed
   */
 final case class Shadowing(
     leader: Int,

@@ -7,8 +7,8 @@ package skein.policy
   * the pursuer of rank k of n gets mean(β) + (k − (n − 1)/2)·2π/n. The slots do not depend on the bearing at
   * which the order begins, so every pursuer computes equal slots by itself.
   *
-  * @param evader its index in the scenario; all other vehicles are pursuers
-  * @param mostMps limit of the commanded speed
+  * @param evader the evader's index in the scenario; all other vehicles are pursuers
+  * @param mostMps maximum commanded speed
   */
 final case class Surrounding(evader: Int, ringM: Double, mostMps: Double, pursuit: Pursuit = Pursuit())
     extends Policy, Goal:
@@ -36,7 +36,7 @@ final case class Surrounding(evader: Int, ringM: Double, mostMps: Double, pursui
       seen.eastM(evader) + seen.eastMps(evader) * aheadS + ringM * StrictMath.sin(slot)
     )
 
-  /** Bearing of the own slot from the evader, from north towards east, rad. */
+  /** Bearing of this vehicle's slot from the evader, from north towards east, rad. */
   private[policy] def slotRad(seen: Observation): Double =
     val n      = seen.count - 1
     val own    = bearing(seen, seen.self)

@@ -41,7 +41,7 @@ final case class Weave(speedMps: Double, turnRadps: Double, leastS: Double, most
 
 object Weave:
   /** @param leftS time left in the arc
-    * @param number of the arc, from 1; 0 before the first decision
+    * @param number the arc's number, from 1; 0 before the first decision
     */
   final case class Arc(headingRad: Double, leftS: Double, number: Double)
 

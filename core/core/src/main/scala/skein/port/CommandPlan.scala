@@ -7,8 +7,8 @@ import skein.units.*
   * whenever it arrives.
   *
   * @param sequence number of the decision; of two plans, that with the greater number is in effect
-  * @param actions with the times from which they act, on the vehicles' clock, ascending; at most
-  *   [[CommandPlan.Most]]. The last action lasts for [[CommandPlan.Hold]]; then the vehicle holds its
+  * @param actions the actions, each with the time from which it acts, on the vehicles' clock, ascending; at
+  *   most [[CommandPlan.Most]]. The last action lasts for [[CommandPlan.Hold]]; then the vehicle holds its
   *   position. A plan without actions changes nothing and only tests whether plans are accepted
   */
 final case class CommandPlan(sequence: Long, actions: Vector[(at: Instant, action: Action)]):

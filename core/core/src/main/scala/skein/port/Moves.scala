@@ -4,12 +4,12 @@ import skein.units.Span
 
 /** How AirSim executes moves of a vehicle, and how loops pace them. */
 object Moves:
-  /** Default limit of unanswered moves of one vehicle: the one in effect and the one that replaces it. A
-    * third move that arrives during the replacement would wait for its end instead of its start.
+  /** Default maximum number of unanswered moves of one vehicle: the one in effect and the one that replaces
+    * it. A third move that arrives during the replacement would wait for its end instead of its start.
     */
   final val InFlight = 2
 
-  /** Maximum of the configurable limit, for flights and forward simulation: half of the commands that a
+  /** Largest allowed value of that setting, for flights and forward simulation: half of the commands that a
     * forecast stores.
     */
   final val MostInFlight = 32
@@ -26,5 +26,5 @@ object Moves:
   /** Pause of a loop after an answer, during which the handover finishes. */
   val HandoverAllowed: Span = Span.ofMillis(0.5)
 
-  /** Default of the interval between two moves of a loop. */
+  /** Default of the minimum interval between two moves of a loop. */
   val LeastInterval: Span = Span.ofMillis(20)

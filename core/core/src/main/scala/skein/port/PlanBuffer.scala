@@ -2,15 +2,15 @@ package skein.port
 
 import skein.units.Instant
 
-/** The buffer beside a vehicle, with the actions that it has received in [[CommandPlan]]s. Pure; plans may
-  * arrive in any order, several times, or never.
+/** The buffer on a vehicle's side of the link, with the actions that it has received in [[CommandPlan]]s.
+  * Pure; plans may arrive in any order, several times, or never.
   *
   * A plan replaces all actions from its first time on. Before that time the older plan continues, and if the
   * new plan never arrives, also afterwards.
   *
   * @tparam A an action, in the form that the vehicle performs
   * @param newest number of the newest plan received
-  * @param actions ascending by their times
+  * @param actions the actions to perform, ascending by their times
   */
 final case class PlanBuffer[A] private (newest: Option[Long], actions: Vector[(at: Instant, action: A)]):
 

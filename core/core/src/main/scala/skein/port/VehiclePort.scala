@@ -12,9 +12,9 @@ trait VehiclePort:
 
   /** Reads position, velocity and attitude, world NED, as estimated by the vehicle.
     *
-    * @return with the valid time on the vehicles' clock, and with the times of request and answer on the
-    *   controller's clock. All vehicles of a flight share one clock; if they do not, their adapter converts
-    *   times (see [[skein.signal.ClockAlignment]])
+    * @return the reading with its valid time on the vehicles' clock, and with the times of request and answer
+    *   on the controller's clock. All vehicles of a flight share one clock; if they do not, their adapter
+    *   converts times (see [[skein.signal.ClockAlignment]])
     */
   def read(): Future[Either[VehicleError, Stamped[Kinematics]]]
 
@@ -24,8 +24,8 @@ trait VehiclePort:
     */
   def act(action: Action, lasts: Span): Future[Either[VehicleError, Boolean]]
 
-  /** Sends a plan to the buffer beside the vehicle, which performs each action at its time: see
-    * [[PlanBuffer]]. Completes with true when the buffer has received it.
+  /** Sends a plan to the buffer on the vehicle's side of the link, which performs each action at its time:
+    * see [[PlanBuffer]]. Completes with true when the buffer has received it.
     *
     * @return [[VehicleError.Unsupported]] or [[VehicleError.Refused]] if there is no such buffer
     */
@@ -41,10 +41,10 @@ trait VehiclePort:
 /** A sensor of a vehicle that policies can read. */
 trait Sensor:
 
-  /** Names of a reading's numbers, with units, such as `altitudeM`. */
+  /** Names of a reading's components, with units, such as `altitudeM`. */
   def columns: Vector[String]
 
-  /** Requests the newest reading: one number per column. */
+  /** Requests the newest reading: one value per column. */
   def read(): Future[Either[VehicleError, Stamped[IArray[Double]]]]
 
 /** A simulator that can be stopped and run in steps, as the loop `paused` requires. */

@@ -6,12 +6,12 @@ import skein.units.Decimals.significant
 import skein.vehicle.{ReducedModel, VehicleKind}
 
 /** Two cars drive round a circuit, one behind the other, and three drones escort them: one ahead of the cars
-  * to their right, one beside them to their left, one behind them. The drones' slots rotate with the road at
-  * the leading car.
+  * to their right, one to their left, one behind them. The drones' slots rotate with the road at the leading
+  * car.
   *
   * @param gapM distance between the two cars, along the circuit
   * @param carMps speed of the leading car
-  * @param mostMps limit of the commanded speed
+  * @param mostMps maximum commanded speed
   * @param straightM length of each of the circuit's two straights
   * @param radiusM radius of the circuit's half turns
   * @param altitudeM altitude of the drones

@@ -13,10 +13,10 @@ import skein.units.Metres
   * @param entryM distance from the first vehicle of a stream to the middle of the crossing, at the start
   * @param laneM distance by which each stream keeps to the right of the middle
   * @param cruiseMps speed of a vehicle that need not avoid any other
-  * @param mostMps limit of the commanded speed
-  * @param minimumM smallest separation allowed, a limit of the scenario
-  * @param marginM distance that the avoidance rule adds to it, because the rule ignores that vehicles lag
-  *   behind their commands
+  * @param mostMps maximum commanded speed
+  * @param minimumM smallest separation allowed, which is a limit of the scenario
+  * @param marginM distance that the avoidance rule adds to the minimum, because the rule ignores that
+  *   vehicles lag behind their commands
   * @param horizonS time ahead for which the avoidance rule plans, s
   * @param altitudeM altitude of all vehicles
   */

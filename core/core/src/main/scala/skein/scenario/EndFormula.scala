@@ -3,11 +3,12 @@ package skein.scenario
 import skein.formula.{Example, Formula, Untraceable}
 import skein.policy.{InputTags, PolicyInput}
 
-/** A scenario's own end as a formula of numbers: [[Scenario.isOver]], read from its bytecode. Its only output
-  * is 0 while the flight goes on.
+/** A scenario's own end as a formula: [[Scenario.isOver]], read from its bytecode. Its only output is 0 while
+  * the flight goes on.
   *
-  * @param formula fits scenarios, whose parameters it knows
-  * @param inputs meaning of each of its inputs; `Elapsed` is the time since the flight's first decision
+  * @param formula the formula, whose parameters are the scenario's
+  * @param inputs meaning of each of the formula's inputs; `Elapsed` is the time since the flight's first
+  *   decision
   */
 private[skein] final class EndFormula(val formula: Formula, val inputs: Vector[PolicyInput])
 

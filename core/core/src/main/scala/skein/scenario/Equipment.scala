@@ -9,7 +9,7 @@ enum Equipment:
 
   /** A lidar that turns around the vehicle's down axis. Policies read it as a sensor with this name. Its
     * columns are its position `northM`, `eastM`, `downM`; then, for each of [[Sectors]] equal sectors of the
-    * compass, clockwise from north, the horizontal distance to the nearest thing, m. Things more than
+    * compass, clockwise from north, the horizontal distance to the nearest surface, m. Surfaces more than
     * [[BandM]] above or below are ignored; an empty sector has the lidar's range.
     *
     * @param verticalFovDeg lower and upper angle; negative is downwards

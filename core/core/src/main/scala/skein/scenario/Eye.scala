@@ -36,7 +36,7 @@ object Eye:
   /** The columns. First the estimate: the target's position and velocity, world NED, and the largest standard
     * deviation of the position along north, east and down. Then the newest detection: its position in the
     * camera's frame, the duration of recognition, and the camera's position and orientation. Last, the number
-    * of images searched until then, and the number of those with a detection.
+    * of images searched until then, and the number of images with a detection.
     */
   val Columns: Vector[String] = Vector(
     "northM",

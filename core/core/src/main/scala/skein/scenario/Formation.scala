@@ -9,7 +9,7 @@ import skein.units.Decimals.significant
   * @param vehicles number of vehicles, the leader included
   * @param spacingM distance from one slot to the next, backwards and sideways
   * @param leaderMps speed of the leader
-  * @param mostMps limit of the followers' commanded speed
+  * @param mostMps maximum commanded speed of the followers
   * @param straightM length of each of the circuit's two straights
   * @param radiusM radius of the circuit's half turns
   * @param lagS time constant with which the policies expect vehicles to follow their commands; for AirSim's

@@ -4,7 +4,7 @@ import skein.formula.{Evaluation, Formula, KnownFormula, Node, Trace}
 
 /** A quantity that is data, for example one traced in Python.
   *
-  * @param places number of the input for each position: north of all vehicles, then east, then down
+  * @param places index of the input for each position: north of all vehicles, then east, then down
   */
 private[scenario] final class QuantityGraph(
     trace: Trace,

@@ -5,8 +5,8 @@ import skein.units.Decimals.significant
 
 /** A condition of the flight: a quantity of some vehicles must stay at or above a value, or at or below it.
   *
-  * @param name of the limit, for example `separation`
-  * @param groups groups of vehicles to which the limit applies, as indices, from the number of vehicles
+  * @param name the limit's name, for example `separation`
+  * @param groups yields, for the range of all vehicles' indices, the groups to which the limit applies
   * @param kept the part of the limit that plans observe, if any
   * @param quantity value for a group at an instant
   */

@@ -1,8 +1,8 @@
 package skein.scenario
 
-/** A number computed from a flight, for example `Measure("out of sight", "s")(tracks => …)`.
+/** A value computed from a flight, for example `Measure("out of sight", "s")(tracks => …)`.
   *
-  * @param unit may be empty
+  * @param unit unit of the value; may be empty
   * @param isCount whether it counts events, which are summed over several flights
   * @param over the part of the flight that is measured; a shorter flight has no value
   * @param reduced the quantity that is reduced, if any; searches can optimise only such measures
@@ -46,7 +46,7 @@ object Measure:
   )(of: (Tracks, Range) => Double): Measure =
     new Measure(name, unit, false, by.over, Some(by), tracks => by.over.of(tracks).map(of(tracks, _)))
 
-/** A quantity over a part of a flight, reduced to one number. */
+/** A quantity over a part of a flight, reduced to one value. */
 final case class OverFlight(quantity: Quantity, reduction: Reduction, over: Window)
 
 /** A quantity over the time of a flight, which reports draw and measures reduce.
@@ -117,7 +117,7 @@ object Series:
 
 /** A value with which a quantity is compared, drawn as a line.
   *
-  * @param name in the legend
+  * @param name its name in the legend
   */
 final case class Bound(name: String, value: Double)
 

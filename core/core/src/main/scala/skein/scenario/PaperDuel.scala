@@ -4,7 +4,7 @@ import skein.policy.*
 import skein.units.*
 
 /** The paper's duel: a pursuer at 10 m/s behind an evader at 5 m/s, both at rest 21 m apart. Several duels
-  * fly side by side, 60 m apart; measures are those of the first.
+  * fly next to each other, 60 m apart; measures are those of the first.
   *
   * @param pairs number of duels; if there are several, their vehicles' names are numbered from 1
   * @param asPublished whether the pursuer turns by a fixed angle per decision, as in the published code,

@@ -33,7 +33,7 @@ case object WidestGap extends Quantity:
       i += 1
     widest.toDegrees
 
-  /** Sorts by exchanging neighbours. The sequence of comparisons does not depend on the numbers, so that SIMD
+  /** Sorts by exchanging neighbours. The sequence of comparisons does not depend on the values, so that SIMD
     * can execute it.
     */
   private def ascend(numbers: Array[Double]): Unit =

@@ -16,7 +16,7 @@ final case class Positions(northM: IArray[Double], eastM: IArray[Double], downM:
   def distanceM(vehicle: Int, north: Double, east: Double): Double =
     StrictMath.hypot(northM(vehicle) - north, eastM(vehicle) - east)
 
-/** A number computed from the positions of all vehicles at one moment. Reports draw it, measures reduce it,
+/** A value computed from the positions of all vehicles at one moment. Reports draw it, measures reduce it,
   * and searches optimise it. Pure. If its method is plain arithmetic, it is compiled to SIMD, as policies are
   * (`docs/guides/formulas.md`).
   */
@@ -33,7 +33,7 @@ object Quantity:
 
   private[skein] def whose(quantity: Quantity): String = OwnFailure.named("quantity", quantity)
 
-/** Reduces a quantity's values over time to one number. */
+/** Reduces a quantity's values over time to one value. */
 enum Reduction:
   case Mean
 

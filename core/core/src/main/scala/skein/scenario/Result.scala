@@ -3,7 +3,7 @@ package skein.scenario
 /** The result of a flight.
   *
   * @param measured all measures; flights are compared by the first
-  * @param violations of all limits, in the order of their times
+  * @param violations the violations of all limits, in the order of their times
   */
 final case class Result(
     scenario: Scenario,

@@ -18,7 +18,7 @@ trait Scenario extends Product:
   /** Quantities that the report draws over time. */
   def series: Vector[Series] = Vector.empty
 
-  /** Numbers that summarise a flight. Flights are compared by the first. */
+  /** Values that summarise a flight. Flights are compared by the first. */
   def measures: Vector[Measure] = Vector.empty
 
   /** Duration of a flight, unless a command sets another. */
@@ -111,7 +111,7 @@ object Scenario:
       Some(s"a finite number as the start's heading, came ${agent.startHeading.value}")
     else None
 
-  /** A message if a number is outside its bounds. */
+  /** A message if a value is outside its bounds. */
   def outside(name: String, value: Int, fewest: Int, most: Int): Option[String] =
     Option.when(value < fewest || value > most)(s"$name: expected $fewest to $most, came $value")
 

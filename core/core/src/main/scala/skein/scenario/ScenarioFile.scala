@@ -6,8 +6,8 @@ import skein.policy.PolicyGraph
 /** A scenario as a file of data, without code; `docs/scenario-file.md` defines its lines. The nodes of
   * vehicles, limits and windows depend on settings alone.
   *
-  * @param text the whole file
-  * @param over condition that ends the flight, which depends on positions, velocities and ages
+  * @param text the text of the whole file
+  * @param over the condition that ends the flight, which depends on positions, velocities and ages
   */
 private[skein] final class ScenarioFile private[scenario] (
     val text: String,
@@ -49,7 +49,7 @@ private[skein] object ScenarioFile:
     */
   final case class Setting(name: String, default: Double, meaning: String)
 
-  /** @param numbers speed, m/s; start north, east and down, m; heading, rad */
+  /** @param numbers nodes of its speed, m/s; its start north, east and down, m; and its heading, rad */
   private[scenario] final case class Vehicle(
       name: String,
       role: String,
@@ -57,7 +57,7 @@ private[skein] object ScenarioFile:
       policy: PolicyGraph
   )
 
-  /** A limit of this kind, with the numbers of the kind. */
+  /** A limit of this kind, with the kind's parameters. */
   private[scenario] final case class Bounded(kind: String, numbers: Vector[Node])
 
   /** A quantity over time.

@@ -8,8 +8,8 @@ import scala.deriving.Mirror
   * val patrol = ScenarioKind(Patrol())   // of: case class Patrol(scouts: Int = 2, heightM: Double = 30) extends Scenario
   * }}}
   *
-  * @param standard with all its defaults; a setting is a `String`, a `Boolean` or a number; its type is that
-  *   of its default
+  * @param standard the scenario with all its defaults; a setting is a `String`, a `Boolean` or a number; its
+  *   type is that of its default
   */
 open class ScenarioKind[A <: Scenario](val standard: A)(using mirror: Mirror.ProductOf[A]):
 
@@ -67,8 +67,8 @@ open class ScenarioKind[A <: Scenario](val standard: A)(using mirror: Mirror.Pro
 
   /** Reads the scenario of a recording.
     *
-    * @param parameters of the recording, by name. A missing setting was introduced after the recording, and
-    *   has its default
+    * @param parameters the recorded settings, by name. A missing setting was introduced after the recording,
+    *   and has its default
     */
   def ofRecording(parameters: Map[String, String]): Either[Seq[String], Scenario] =
     read(settings.flatMap(setting => parameters.get(standard.recordedAs(setting)).map(setting -> _)).toMap)

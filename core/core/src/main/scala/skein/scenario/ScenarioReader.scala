@@ -250,7 +250,7 @@ private[scenario] object ScenarioReader:
   private val MostSeries   = 100
   private val MostMeasures = 200
 
-  /** The kinds of limits, each with its count of numbers; 0 for any number of corners. */
+  /** The kinds of limits, each with its number of parameters; 0 for any number of corners. */
   private val Limits = Vector(
     "separation"            -> 1,
     "horizontal-separation" -> 1,

@@ -10,10 +10,10 @@ trait NamedLoop:
 /** The kinds of scenarios, families of policies, structures of plants, and loops that a program knows by
   * name. It is required wherever settings or recordings are read.
   *
-  * @param kinds the first is the default
-  * @param families of policies, in addition to Skein's
+  * @param kinds the kinds of scenarios; the first is the default
+  * @param families families of policies, in addition to Skein's
   * @param ownStructures structures of plants, in addition to Skein's
-  * @param loops in addition to Skein's
+  * @param loops named loops, in addition to Skein's
   */
 final case class Scenarios(
     kinds: Vector[ScenarioKind[?]],
@@ -60,7 +60,7 @@ final case class Scenarios(
     */
   def firstWithoutGame: Option[String] = Option.when(!kinds.exists(_.standard.isPapersGame))(names.head)
 
-  /** Whether a name with these settings means the paper's game without changes, which every program knows. */
+  /** Whether a name with these settings means the unchanged paper's game, which every program knows. */
   def isPapersGame(name: String, set: Map[String, String]): Boolean =
     set.isEmpty && (kinds ++ Scenarios.ours.kinds).find(_.name == name).exists(_.standard.isPapersGame)
 
@@ -81,8 +81,8 @@ final case class Scenarios(
 
   /** The scenario of a recording.
     *
-    * @param name value of [[Scenario.name]]
-    * @param parameters of the recording, by name
+    * @param name the recorded [[Scenario.name]]
+    * @param parameters the recorded settings, by name
     * @return Left states why this program does not know the scenario
     */
   def ofRecording(name: String, parameters: Map[String, String]): Either[String, Scenario] =

@@ -12,7 +12,7 @@ import skein.units.Decimals.significant
   * @param mostS longest time between two changes, s
   * @param course number of the leader's course; each number has different times
   * @param besideM distance of the place from the leader, to the east
-  * @param mostMps limit of the follower's commanded speed
+  * @param mostMps maximum commanded speed of the follower
   * @param altitudeM altitude of both vehicles
   */
 final case class Shadow(

@@ -56,7 +56,7 @@ final class Tracks private (
   /** Root mean square deviation from another flight at equal times since the start, over all vehicles and
     * instants, m.
     *
-    * @param inSpace whether in three dimensions; otherwise horizontally
+    * @param inSpace whether distances are in three dimensions; otherwise they are horizontal
     */
   def rmsFrom(other: Tracks, inSpace: Boolean): Double =
     val both    = instants.take(other.instants.size)

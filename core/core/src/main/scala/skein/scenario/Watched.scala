@@ -4,7 +4,7 @@ import skein.formula.{Evaluation, Formula, Node, Trace}
 import skein.policy.PolicyInput
 import skein.units.Vector3
 
-/** A number computed from the present knowledge of all vehicles, as data.
+/** A value computed from the present knowledge of all vehicles, as data.
   *
   * @param inputs meaning of the node's inputs: positions, velocities, ages and the time since the first
   *   decision
@@ -18,7 +18,7 @@ private[scenario] final class Watched(trace: Trace, node: Node, val inputs: Vect
     case PolicyInput.Age(vehicle)            => known.vehicles(vehicle).age.toSeconds
     case _                                   => known.elapsed.toSeconds
 
-  /** The number at one instant of a flight's tracks, which have no ages. */
+  /** The value at one instant of a flight's tracks, which have no ages. */
   def apply(tracks: Tracks, instant: Int, values: Array[Double]): Double = at(values):
     case PolicyInput.Position(vehicle, axis) => axisOf(tracks.positionNed(vehicle, instant), axis)
     case PolicyInput.Velocity(vehicle, axis) => axisOf(tracks.velocityNed(vehicle, instant), axis)

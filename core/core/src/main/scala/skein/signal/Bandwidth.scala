@@ -4,8 +4,8 @@ import skein.units.*
 
 /** A rate limit for one direction of a line, preceded by a queue of limited size.
   *
-  * @param bitsPerSecond of payload; the headers of a network's own layers are not counted
-  * @param queueBytes limit of the first-in, first-out queue; bytes that do not fit wait at the sender
+  * @param bitsPerSecond rate of payload; the headers of a network's own layers are not counted
+  * @param queueBytes maximum size of the first-in, first-out queue; bytes that do not fit wait at the sender
   */
 final case class Bandwidth(bitsPerSecond: Long, queueBytes: Int):
   require(bitsPerSecond > 0 && queueBytes > 0, s"a line has a rate and a queue above zero: $this")
@@ -19,7 +19,7 @@ object Bandwidth:
 
   private val LeastQueueBytes = 2 * FrameBytes
 
-  /** Limit of the time in which a full queue is sent; a longer queue would delay everything permanently. */
+  /** Maximum time in which a full queue is sent; a longer queue would delay everything permanently. */
   private val MostQueue = Span.ofSeconds(60)
 
   /** A line with a queue that is sent in 5 ms, but of at least 3,000 bytes. CoDel limits a queue to this

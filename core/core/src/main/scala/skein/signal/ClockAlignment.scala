@@ -131,7 +131,7 @@ object ClockAlignment:
   /** Number of former runs that are stored; more cannot end before a late answer arrives. */
   val FormerRuns = 4
 
-  /** Limit of the drift between the two clocks, seconds per second: about twice that of quartz clocks. */
+  /** Maximum drift between the two clocks, seconds per second: about twice that of quartz clocks. */
   val MaxDrift = 100e-6
 
   /** Longest time for which a running simulator's clock does not advance: three physics steps of AirSim. */

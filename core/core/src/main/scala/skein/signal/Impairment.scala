@@ -10,8 +10,8 @@ enum Impairment:
   /** In each direction a share of all packets is lost, in bursts. The model is the chain of Gilbert,
     * "Capacity of a burst-noise channel", Bell System Technical Journal 39 (1960), which advances with every
     * packet of the direction, as `loss gemodel p r` of Linux's netem does. In its bad state every packet is
-    * lost, in its good state none is. It leaves the bad state with probability r = 1/burst, and enters it
-    * with p = r · share / (1 − share). If `burst` is 1/(1 − share), losses are independent.
+    * lost, in its good state none. It leaves the bad state with probability r = 1/burst, and enters it with p
+    * = r · share / (1 − share). If `burst` is 1/(1 − share), losses are independent.
     *
     * @param burst mean number of successive packets that are lost, at least 1/(1 − share)
     */

@@ -4,10 +4,10 @@ import skein.units.*
 
 /** The position and motion of a vehicle, in the world frame (NED, one origin for all vehicles).
   *
-  * @param positionNed m
-  * @param velocityNed m/s
-  * @param orientation from body FRD to world NED
-  * @param angularVelocityFrd rad/s
+  * @param positionNed position, m
+  * @param velocityNed velocity, m/s
+  * @param orientation rotates from body FRD to world NED
+  * @param angularVelocityFrd angular velocity, rad/s
   */
 final case class Kinematics(
     positionNed: Vector3,

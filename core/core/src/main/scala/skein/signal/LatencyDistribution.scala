@@ -21,7 +21,7 @@ enum LatencyDistribution:
 
   /** The quantile of the round trips, which a share `p` of them does not exceed.
     *
-    * @param p in [0, 1]; a log-normal distribution has no largest value and is cut at 1 − 10^−12^
+    * @param p the share, in [0, 1]; a log-normal distribution has no largest value and is cut at 1 − 10^−12^
     */
   def quantile(p: Double): Span = this match
     case Constant(roundTrip)      => roundTrip

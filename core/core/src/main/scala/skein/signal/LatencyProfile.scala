@@ -85,8 +85,8 @@ object LatencyProfile:
   val vpn: LatencyProfile    = Steady("vpn", LatencyDistribution.Vpn)
 
   /** The paper's VPN over a long time: busy in 393 of 935 samples, otherwise like the direct link. It was
-    * measured only once, with one stretch of each kind, so only the shares are measured; the 95 s of a pair
-    * of stretches are our choice.
+    * measured only once, with one stretch of each kind, so only the shares are measured; the mean duration of
+    * a pair of stretches, 95 s, is an assumption.
     */
   val vpnMixed: Alternating = new Alternating(
     "vpn-mixed",

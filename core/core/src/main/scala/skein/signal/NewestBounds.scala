@@ -6,7 +6,7 @@ import skein.units.*
 /** Bounds of the newest readings, at most [[NewestBounds.Memory]], in sorted arrays. A further reading costs
   * a copy of each array. (Sorting anew at every reading took a sixteenth of a virtual flight.)
   *
-  * @param bounds the newest last
+  * @param bounds bounds of each reading, the newest last
   * @param to negated lower bounds, ns, sorted
   * @param from upper bounds, ns, sorted
   */
@@ -58,7 +58,7 @@ private object NewestBounds:
 
   private def quartile(sorted: Array[Long]) = sorted((sorted.length - 1) / 4)
 
-  /** The index of a number, or the index at which it would be inserted. */
+  /** The index of a value, or the index at which it would be inserted. */
   private def place(sorted: Array[Long], number: Long): Int =
     val found = Arrays.binarySearch(sorted, number)
     if found < 0 then -found - 1 else found
@@ -70,7 +70,7 @@ private object NewestBounds:
     next(at) = one
     next
 
-  /** The sorted numbers with `one` in place of `gone`, which is among them. */
+  /** The sorted values with `one` in place of `gone`, which is among them. */
   private def replaced(sorted: Array[Long], gone: Long, one: Long): Array[Long] =
     if one == gone then sorted
     else

@@ -18,9 +18,9 @@ final case class OneWayDelays private (toSimulator: Span, fromSimulator: Span, r
   /** The simulator's time at which a message arrives that was sent at this controller's time. */
   def expectedArrival(sentAt: Instant): Instant = sentAt + toSimulator
 
-  /** The arrival time of a message whose answer was received. Its round trip contains more information than
-    * the means: if the sum of two independent, equally spread delays is known, the expectation of each is its
-    * own mean plus half of the sum's deviation.
+  /** The expected arrival time of a message whose answer was received. Its round trip contains more
+    * information than the means: given the sum of two independent delays whose distributions differ only in
+    * their means, the expected value of each is its mean plus half of the sum's deviation from its mean.
     */
   def arrivalGiven(sentAt: Instant, answeredAt: Instant): Instant =
     sentAt + toSimulator + (answeredAt.since(sentAt) - roundTrip) / 2

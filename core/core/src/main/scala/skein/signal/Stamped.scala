@@ -12,8 +12,8 @@ import skein.units.*
 final case class Stamped[+A](value: A, validAt: Instant, sentAt: Instant, receivedAt: Instant):
   def map[B](f: A => B): Stamped[B] = copy(value = f(value))
 
-  /** Whether this reading was sampled later than another, judged by the two alone: by the simulator's clock,
-    * or because it was requested after the other was received. Across a restart of the simulator, use
+  /** Whether this reading was sampled later than another, as far as the two alone show: by the simulator's
+    * clock, or because it was requested after the other was received. Across a restart of the simulator, use
     * [[ClockAlignment.isNewer]].
     */
   def isNewerThan(other: Stamped[?]): Boolean =

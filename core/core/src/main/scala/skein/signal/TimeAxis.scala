@@ -15,7 +15,7 @@ import skein.units.Decimals.fixed
   * useless for distances and ages: that is a [[fault]], permanently. Slower changes are reported by
   * [[wandering]].
   *
-  * @param fault what is wrong with the clock, in one line for the user
+  * @param fault description of the clock's fault, in one line for the user
   */
 final case class TimeAxis private (
     private val seen: Map[String, TimeAxis.Seen],
@@ -108,7 +108,7 @@ object TimeAxis:
   /** Duration of the window within which readings are compared, on the controller's clock. */
   val Window: Span = Span.ofSeconds(10)
 
-  /** Limit of the offset's change within the window, a twentieth of the window. A simulator that computes in
+  /** Maximum change of the offset within the window, a twentieth of the window. A simulator that computes in
     * real time stays far below; one on an overloaded machine loses some tenths of a second.
     */
   val Most: Span = Span.ofMillis(500)

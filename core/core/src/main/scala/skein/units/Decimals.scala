@@ -10,7 +10,7 @@ object Decimals:
 
   /** A count with its noun: `1 flight`, `2 flights`.
     *
-    * @param one the singular
+    * @param one the noun in the singular
     */
   def counted(count: Long, one: String): String = if count == 1 then s"1 $one" else s"$count ${one}s"
 

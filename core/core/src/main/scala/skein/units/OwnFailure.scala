@@ -4,7 +4,7 @@ import scala.util.control.ControlThrowable
 
 /** Thrown when user code throws an exception or returns an unusable value.
   *
-  * @param whose origin of the code, for example `the policy of Scout 1`
+  * @param whose the origin of the code, for example `the policy of Scout 1`
   */
 final class OwnFailure(whose: String, reason: String, cause: Throwable | Null = null)
     extends RuntimeException(s"$whose $reason", cause):

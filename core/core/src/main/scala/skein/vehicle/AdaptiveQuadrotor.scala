@@ -46,7 +46,8 @@ object AdaptiveQuadrotor extends VehicleModel[AdaptiveQuadrotor.Learning]:
 
   /** The state of a prediction, and the learned parameters.
     *
-    * @param flights by models with the learned parameters, then with each of them changed
+    * @param flights states by the model with the learned parameters, then by models with each parameter
+    *   changed
     * @param nominalError sum of the squared velocity errors of the nominal model, m²/s², with the time
     *   constant [[MemoryS]]; `learnedError` likewise
     */

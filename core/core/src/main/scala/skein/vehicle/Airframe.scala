@@ -9,16 +9,16 @@ package skein.vehicle
   * @param massKg total mass, motors included
   * @param motorKg mass of one motor, a point at its rotor
   * @param boxFrontM length of the body box along front; `boxRightM` and `boxDownM` likewise
-  * @param armM from the centre of mass to a rotor's axis, in the rotor plane
+  * @param armM distance from the centre of mass to a rotor's axis, in the rotor plane
   * @param rotorDownM the rotor plane's down coordinate in the body
-  * @param rotorDiameterM GWS 9×5 propeller
+  * @param rotorDiameterM diameter of a rotor: a GWS 9×5 propeller
   * @param rotorHeightM height of the cylinder that the rotor sweeps, which has drag sideways
   * @param maxThrustN thrust of one rotor at full control and sea-level density: C_T ρ n² D⁴ with C_T 0.109919
   *   at 6396.667 rpm
   * @param maxTorqueNm torque of one rotor likewise: C_P ρ n² D⁵ / 2π with C_P 0.040164
   * @param rotorTimeConstantS time constant of the first-order lag from control to thrust
-  * @param dragCoefficient a quarter of a blunt body's 1.3, for a streamlined frame
-  * @param dragMinSpeed m/s; a face that moves more slowly along its normal has no drag
+  * @param dragCoefficient coefficient of drag: a quarter of a blunt body's 1.3, for a streamlined frame
+  * @param dragMinSpeed minimum speed with drag, m/s: a face that moves more slowly along its normal has none
   * @param restitution share of the normal speed that remains after a bounce
   * @param friction share of the tangential speed that is lost in a bounce
   */

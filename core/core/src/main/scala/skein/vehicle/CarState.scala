@@ -2,10 +2,10 @@ package skein.vehicle
 
 /** The state of a moving car. Position and velocity are those of its centre of mass.
   *
-  * @param headingRad from north towards east, any number of turns
+  * @param headingRad heading, from north towards east, any number of turns
   * @param frontMps velocity along the heading, negative backwards
   * @param rightMps velocity across the heading
-  * @param yawRadPerS clockwise seen from above
+  * @param yawRadPerS yaw rate, clockwise seen from above
   * @param frontSlipRad deflection angle of the front tyres, positive if they push to the right; `rearSlipRad`
   *   likewise
   * @param steeredRad angle of the front wheels, positive to the right
@@ -26,9 +26,9 @@ final case class CarState(
 
 /** The driver's controls.
   *
-  * @param throttle −1 to 1; negative drives backwards
-  * @param steering −1, full lock to the left, to 1
-  * @param brake 0 to 1
+  * @param throttle throttle, −1 to 1; negative drives backwards
+  * @param steering steering, from −1, full lock to the left, to 1
+  * @param brake brake, 0 to 1
   */
 final case class CarControls(throttle: Double, steering: Double, brake: Double)
 

@@ -9,11 +9,11 @@ final case class AxisGains(first: Pid, second: Pid, third: Pid)
 /** The gains that an AirSim client can set, controller by controller (`set…ControllerGains`). The defaults
   * are those of [[ControllerGains]], whose limits, throttle and discount still apply.
   *
-  * @param rate roll, pitch, yaw: torque command per rad/s. AirSim uses only the proportional gains
-  * @param angle roll, pitch, yaw: share of the maximum rate per rad
-  * @param velocity front, right, down (AirSim's x, y, z): share of the maximum tilt per m/s; down: command
-  *   from −1 to 1 per m/s
-  * @param position north, east, down: share of the maximum speed per m
+  * @param rate gains for roll, pitch, yaw: torque command per rad/s. AirSim uses only the proportional gains
+  * @param angle gains for roll, pitch, yaw: share of the maximum rate per rad
+  * @param velocity gains for front, right, down (AirSim's x, y, z): share of the maximum tilt per m/s; down:
+  *   command from −1 to 1 per m/s
+  * @param position gains for north, east, down: share of the maximum speed per m
   */
 final case class CascadeGains(
     rate: AxisGains = CascadeGains.uniform(Pid(0.25)),

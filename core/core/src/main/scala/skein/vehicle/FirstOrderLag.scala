@@ -4,7 +4,7 @@ package skein.vehicle
   * e^(−t / lag) remains. So the position has changed by u · t + (v − u) · [[carriesS]](t), where v is the
   * initial velocity.
   *
-  * @param lagS s; with 0 the velocity changes immediately
+  * @param lagS time constant, s; with 0 the velocity changes immediately
   */
 final case class FirstOrderLag(lagS: Double):
   require(lagS >= 0, s"a lag must not be negative, came $lagS s")

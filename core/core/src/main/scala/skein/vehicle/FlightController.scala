@@ -5,17 +5,17 @@ import scala.annotation.unused
 /** Gains and limits of AirSim's default flight controller, SimpleFlight (its `Params.hpp`, 1.8). Gains that
   * are zero there have no field here: all derivatives, and all integrals except the vertical velocity's.
   *
-  * @param rateP torque command per rad/s
-  * @param maxRate rad/s
-  * @param angleP share of `maxRate` per rad
-  * @param maxTilt rad; limit of roll and pitch
-  * @param velocityP share of `maxTilt` per m/s
-  * @param verticalP command per m/s, from −1 for full throttle to +1 for none
+  * @param rateP gain: torque command per rad/s
+  * @param maxRate maximum rate of roll, pitch and yaw, rad/s
+  * @param angleP gain: share of `maxRate` per rad
+  * @param maxTilt maximum roll and pitch, rad
+  * @param velocityP gain: share of `maxTilt` per m/s
+  * @param verticalP gain: command per m/s; a command is from −1 for full throttle to +1 for none
   * @param verticalI gain of the integral, per m/s and second
   * @param verticalDiscount factor on the integral term at every update
   * @param minThrottle minimum throttle of a velocity controller, so that a falling vehicle can still tilt
-  * @param positionP share of `maxVelocity` per m
-  * @param maxVelocity m/s
+  * @param positionP gain: share of `maxVelocity` per m
+  * @param maxVelocity maximum velocity that a position error commands, m/s
   * @param minAnglingThrottle throttle below which all rotors receive the throttle alone, without roll, pitch
   *   and yaw
   */
@@ -38,9 +38,9 @@ final case class ControllerGains(
   * command, and the mixer that turns the four commands into rotor controls. It receives the true state.
   *
   * '''The quirk that shapes every flight.''' In velocity mode roll and pitch rotate the ''whole'' goal triple
-  * into the body frame, whatever its third number means. Under [[Setpoint.velocityZ]] that is an altitude, so
-  * a vehicle tilted by α treats sin α · z as a wanted speed and tilts less. The higher it flies, the slower
-  * it responds.
+  * into the body frame, whatever its third component means. Under [[Setpoint.velocityZ]] that is an altitude,
+  * so a vehicle tilted by α treats sin α · z as a wanted speed and tilts less. The higher it flies, the
+  * slower it responds.
   *
   * [[TunedFlightController]] is this cascade with separate gains for every controller.
   *

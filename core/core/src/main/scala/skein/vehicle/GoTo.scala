@@ -11,7 +11,7 @@ object GoTo:
 
   /** The velocity to command, NED, m/s, in the frame of the positions.
     *
-    * @param cruise limit of the speed, m/s
+    * @param cruise maximum speed, m/s
     */
   def velocityNed(
       positionNed: Vector3,

@@ -1,6 +1,6 @@
 package skein.vehicle
 
-/** What is believed of a few parameters: their mean and covariance, as a Kalman filter has them. A value.
+/** An estimate of a few parameters: their mean and covariance, as in a Kalman filter. Immutable.
   *
   * Source of the update: Gelb (ed.), "Applied Optimal Estimation", 1974, section 4.2, for one measurement at
   * a time.
@@ -9,9 +9,9 @@ final case class ParameterBelief private[vehicle] (mean: Vector[Double], covaria
 
   /** Adds a measurement.
     *
-    * @param effects by how much it grows with each parameter
+    * @param effects the measurement's derivative by each parameter
     * @param error measured minus predicted by the mean
-    * @param noise its standard deviation
+    * @param noise the measurement's standard deviation
     */
   def updated(effects: Vector[Double], error: Double, noise: Double): ParameterBelief =
     val spread = covariance.map(row => row.lazyZip(effects).map(_ * _).sum)
@@ -21,10 +21,10 @@ final case class ParameterBelief private[vehicle] (mean: Vector[Double], covaria
       Vector.tabulate(mean.size, mean.size)((i, j) => covariance(i)(j) - gain(i) * spread(j))
     )
 
-  /** Lets parameters have changed in a time, each by a random walk.
+  /** The estimate after `s` seconds in which each parameter changes by a random walk.
     *
-    * @param drifts standard deviations of the changes in a second
-    * @param most standard deviations that none exceeds
+    * @param drifts standard deviations of the changes within a second
+    * @param most maximum standard deviations
     */
   def drifted(drifts: Vector[Double], s: Double, most: Vector[Double]): ParameterBelief =
     val added = Vector.tabulate(mean.size): i =>
@@ -33,12 +33,12 @@ final case class ParameterBelief private[vehicle] (mean: Vector[Double], covaria
       Vector.tabulate(mean.size, mean.size)((i, j) => covariance(i)(j) + (if i == j then added(i) else 0))
     )
 
-  /** Cuts each mean off at its greatest size; the covariance stays. */
+  /** Limits each mean to a maximum magnitude; the covariance is unchanged. */
   def within(most: Vector[Double]): ParameterBelief =
     copy(mean = mean.lazyZip(most).map((x, limit) => x.max(-limit).min(limit)))
 
 object ParameterBelief:
-  /** Means of 0 and independent standard deviations. */
+  /** Means of 0, and independent parameters with these standard deviations. */
   def apply(deviations: Vector[Double]): ParameterBelief = new ParameterBelief(
     deviations.map(_ => 0.0),
     Vector.tabulate(deviations.size, deviations.size): (i, j) =>

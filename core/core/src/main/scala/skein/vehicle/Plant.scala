@@ -14,7 +14,7 @@ trait Plant[S] extends PlantTiming:
   /** The state after `dtS`.
     *
     * @param northMps commanded velocity, constant during the step
-    * @param dtS above 0, at most [[stepS]]
+    * @param dtS duration of the step, s: above 0, at most [[stepS]]
     */
   def step(state: S, northMps: Double, eastMps: Double, dtS: Double): S
 

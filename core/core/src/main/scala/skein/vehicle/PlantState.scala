@@ -1,7 +1,7 @@
 package skein.vehicle
 
-/** Converts states of plants to numbers and back, for storage and messages. States are case classes of
-  * doubles, or of such case classes; the order is that of their fields.
+/** Converts states of plants to their components and back, for storage and messages. States are case classes
+  * of doubles, or of such case classes; the order is that of their fields.
   */
 object PlantState:
   def numbers(state: Any): Vector[Double] = state match
@@ -9,9 +9,9 @@ object PlantState:
     case several: Product => several.productIterator.flatMap(numbers).toVector
     case _                => Vector.empty
 
-  /** The state with these numbers, of the form of `like`.
+  /** The state with these components, of the form of `like`.
     *
-    * @throws IllegalArgumentException if the count of numbers differs, or the state rejects its parts
+    * @throws IllegalArgumentException if the number of components differs, or the state rejects them
     */
   def of[S](like: S, numbers: Vector[Double]): S =
     val expected = PlantState.numbers(like).size

@@ -6,7 +6,7 @@ import skein.units.Vector3
   * `RotorActuator`, SimpleFlight). Immutable: everything that changes is in a [[QuadrotorState]], so that any
   * number of vehicles and threads can share one instance.
   *
-  * @param stepS s; AirSim's is 3 ms
+  * @param stepS duration of a step, s; AirSim's is 3 ms
   * @param cascade gains that a client has set; they replace those of `gains`
   */
 final class Quadrotor(

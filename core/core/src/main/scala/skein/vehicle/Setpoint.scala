@@ -56,7 +56,7 @@ trait Guidance:
   * companion's methods have the names of AirSim's commands.
   *
   * @param first the goal of `horizontal`: roll (rad, rad/s) or north (m, m/s)
-  * @param second pitch or east
+  * @param second the second goal of `horizontal`: pitch or east
   * @param third the goal of `vertical`
   * @param yawGoal the goal of `yaw`
   */

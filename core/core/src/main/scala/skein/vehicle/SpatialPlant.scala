@@ -16,8 +16,8 @@ trait SpatialPlant[S] extends PlantTiming:
   /** The state after `dtS`.
     *
     * @param northMps commanded velocity, constant during the step
-    * @param third if `holds` is 1, the altitude to hold, m down; if it is 0, the velocity down, m/s
-    * @param dtS above 0, at most [[stepS]]
+    * @param third the altitude to hold, m down, if `holds` is 1; if it is 0, the velocity down, m/s
+    * @param dtS duration of the step, s: above 0, at most [[stepS]]
     */
   def step(state: S, northMps: Double, eastMps: Double, third: Double, holds: Double, dtS: Double): S
 

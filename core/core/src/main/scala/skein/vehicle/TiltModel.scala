@@ -18,7 +18,7 @@ package skein.vehicle
   * @param hover throttle at which thrust balances weight
   * @param sideDragPerM deceleration per squared horizontal speed, 1/m
   * @param downDragPerM deceleration per squared speed through the rotors' discs, 1/m
-  * @param deadTimeS replaces the lag of rotors and rotation rates
+  * @param deadTimeS dead time in place of the lag of rotors and rotation rates, s
   */
 final case class TiltModel(
     hover: Double,
@@ -102,7 +102,7 @@ final case class TiltModel(
 
 /** The state of a [[TiltModel]].
   *
-  * @param tiltNorth rad, positive if it accelerates the vehicle to north
+  * @param tiltNorth tilt along north, rad, positive if it accelerates the vehicle to north
   * @param integral integral term of the vertical velocity's controller
   * @param held 1 if the last command held an altitude, else 0
   */

@@ -3,18 +3,19 @@ package skein.vehicle
 import skein.signal.Kinematics
 import skein.units.*
 
-/** What a vehicle may do whose commands are unknown: samples of its next turns, each simulated by a model of
-  * the vehicle. It is taken to be commanded a velocity that turns at one of [[TurnRates.Each]], for a time,
-  * and then at another.
+/** Predicts a vehicle whose commands are unknown, by samples of its next turns, each simulated by a model of
+  * the vehicle. Its commanded velocity is assumed to turn at one of [[TurnRates.Each]] for a time, and then
+  * at another.
   *
   * From velocities and tilts, an extended Kalman filter estimates the commanded velocity: a vehicle that is
-  * commanded to turn tilts before its path bends. [[TurnRates]] says how that velocity turns. A prediction is
-  * the mean of the samples, which is the best one for who pays for the square of its error.
+  * commanded to turn tilts before its path bends. [[TurnRates]] estimates its turn rate. A prediction is the
+  * mean of the samples, which minimises the expected squared error.
   *
-  * Guarded: [[ConstantTurn]] flies beside it, and predicts as long as its velocities were not off by more
-  * over the last [[TurnBelief.MemoryS]]. So a vehicle that is commanded something else is predicted no worse.
+  * [[ConstantTurn]] is evaluated too, and predicts as long as its velocity errors over the last
+  * [[TurnBelief.MemoryS]] are not larger. So a vehicle that is commanded otherwise is predicted no worse than
+  * by that.
   *
-  * @param model of the vehicle, which is commanded velocities
+  * @param model a model of the vehicle, which follows commanded velocities
   */
 final class TurnBelief[S](model: VehicleModel[S]) extends VehicleModel[TurnBelief.Believed[S]]:
   import TurnBelief.*
@@ -33,7 +34,7 @@ final class TurnBelief[S](model: VehicleModel[S]) extends VehicleModel[TurnBelie
       0
     ))
 
-  /** Nothing is known yet but that it goes on. */
+  /** The commanded velocity at first: the vehicle's own velocity, with the maximum uncertainty. */
   private def commandOf(seen: Kinematics): ParameterBelief =
     ParameterBelief(MostOffMps)
       .copy(mean = Vector(seen.velocityNed.x, seen.velocityNed.y, seen.velocityNed.z))
@@ -50,7 +51,7 @@ final class TurnBelief[S](model: VehicleModel[S]) extends VehicleModel[TurnBelie
       plain = ConstantTurn.advanced(state.plain, setpoint, span)
     )
 
-  /** A sample after a time, in which its rate may change once. */
+  /** The sample after this time, within which its rate may change once. */
   private def advanced(sample: Sample[S], span: Span): Sample[S] =
     val s     = span.toSeconds
     val first = turned(sample, sample.rateRadps, s.min(sample.leftS))
@@ -67,7 +68,7 @@ final class TurnBelief[S](model: VehicleModel[S]) extends VehicleModel[TurnBelie
         command = sample.command.turned(rate * s)
       )
 
-  /** Flies under a turning command, in pieces with a constant one. */
+  /** Simulates a flight under a turning command, in pieces with a constant command. */
   private def flown(from: S, command: Command, rate: Double, span: Span): S =
     val pieces = (span.toSeconds / PieceS).ceil.max(1).toInt
     val piece  = span / pieces.toLong
@@ -102,7 +103,7 @@ final class TurnBelief[S](model: VehicleModel[S]) extends VehicleModel[TurnBelie
       val effects   = Vector(moved(0) * cos - moved(1) * sin, moved(0) * sin + moved(1) * cos, moved(2))
       val explained = belief.mean.lazyZip(expected.mean).map(_ - _).lazyZip(effects).map(_ * _).sum
       belief.updated(effects, measured(i) - predicted.head(i) - explained, Noises(i))
-    // Farther from the velocity the vehicle tilts as much as it can: then no reading shows the command.
+    // With a larger difference the vehicle tilts as much as it can, and readings do not show the command.
     val command = explains.copy(mean = Vector.tabulate(3): i =>
       explains.mean(i).max(measured(i) - MostOffMps(i)).min(measured(i) + MostOffMps(i)))
     val after                 = Command.of(command)
@@ -119,7 +120,7 @@ final class TurnBelief[S](model: VehicleModel[S]) extends VehicleModel[TurnBelie
         else state.turns.after(s, after.heading)
     )
 
-  /** Draws the samples anew, evenly, by additive recurrences: equal readings give equal samples. */
+  /** Draws new samples, evenly spread by additive recurrences: equal readings give equal samples. */
   private def sampled(state: Believed[S]): Believed[S] =
     val command = Command.of(state.command)
     val offMps  = StrictMath.hypot(OffMps, command.speed * StrictMath.sqrt(state.turns.offRad2))
@@ -144,7 +145,7 @@ final class TurnBelief[S](model: VehicleModel[S]) extends VehicleModel[TurnBelie
 
   def kinematics(state: Believed[S]): Kinematics = if state.helps then mean(state) else state.plain.now
 
-  /** The mean of the samples; how the vehicle is turned is as under the mean turn. */
+  /** The mean of the samples' positions and velocities; the orientation is that under the mean turn rate. */
   private def mean(state: Believed[S]): Kinematics =
     val all                             = state.samples.map(sample => model.kinematics(sample.flying))
     def mean(of: Kinematics => Vector3) = all.map(of).reduce(_ + _) * (1.0 / all.size)
@@ -158,32 +159,33 @@ object TurnBelief:
   /** Time constant of the errors that the guard compares, s. */
   val MemoryS = 5.0
 
-  /** Longest time for which a turning command is taken as constant, s. */
+  /** Longest time for which a turning command is simulated as constant, s. */
   private val PieceS = 0.05
 
-  /** How far commands are moved to find their effects, and the speed below which a heading means nothing,
-    * m/s.
+  /** The change of a command by which its effect is found, and the speed below which a heading is
+    * meaningless, m/s.
     */
   private val MovedMps = 0.5
   private val StillMps = 0.5
 
-  /** Greatest difference of command and velocity, and its standard deviation before any reading; and standard
-    * deviations of the command's change in a second, besides its turn: north, east, down, m/s.
+  /** Maximum difference between command and velocity, which is also its standard deviation before any
+    * reading; and standard deviations of the command's change within a second, in addition to its turn:
+    * north, east, down, m/s.
     */
   private val MostOffMps = Vector(4.5, 4.5, 2)
   private val DriftsMps  = Vector(3.0, 3, 1)
 
-  /** Standard deviations of what a model that is right predicts wrongly between two readings: of velocities,
+  /** Standard deviations of the errors that even a correct model has between two readings: of velocities,
     * m/s, and of the sines of tilts.
     */
   private val Noises = Vector(0.01, 0.01, 0.01, 0.006, 0.006)
 
-  /** How far the samples' commands are off the estimate along an axis, at most, m/s. With that and
-    * [[TurnRates.HoldsS]], discs that hold nine of ten samples held nine of ten places in flights.
+  /** Maximum deviation of the samples' commands from the estimate along an axis, m/s. With this value and
+    * [[TurnRates.HoldsS]], discs around nine of ten samples contained nine of ten positions in flights.
     */
   private val OffMps = 1.0
 
-  /** A velocity as it is commanded, in the world frame, m/s. */
+  /** A commanded velocity, in the world frame, m/s. */
   final case class Command(north: Double, east: Double, down: Double):
     def speed: Double   = StrictMath.hypot(north, east)
     def heading: Double = StrictMath.atan2(east, north)
@@ -199,17 +201,18 @@ object TurnBelief:
     private[TurnBelief] def of(belief: ParameterBelief): Command =
       Command(belief.mean(0), belief.mean(1), belief.mean(2))
 
-  /** One possible flight.
+  /** One possible flight of the vehicle, with one change of the turn rate.
     *
     * @param leftS time until the rate changes to `nextRadps`
     */
   final case class Sample[S](flying: S, command: Command, rateRadps: Double, leftS: Double, nextRadps: Double)
 
-  /** What is believed of a vehicle.
+  /** The estimate of a vehicle's command, and the predictions.
     *
     * @param command mean and covariance of its commanded velocity at the last reading, m/s
-    * @param flownS time since then
-    * @param flights since then by that command, and by commands moved to north, east and down
+    * @param flownS time since the last reading, s
+    * @param flights the model's states since then under that command, and under commands moved to north, east
+    *   and down
     * @param error sum of the squared errors of the mean velocity, fading, m²/s²; `plainError` likewise that
     *   of `plain`
     */
@@ -223,12 +226,12 @@ object TurnBelief:
       error: Double,
       plainError: Double
   ):
-    /** Whether the samples predict; otherwise the last turn goes on. */
+    /** Whether the samples predict; otherwise [[ConstantTurn]] does. */
     def helps: Boolean = error < plainError
 
   private def same[S](flying: S) = Vector.fill(4)(flying)
 
-  /** The number of the share at which their sum reaches a number from 0 to 1. */
+  /** The index of the share at which the running sum reaches `at`, from 0 to 1. */
   private def drawn(shares: Vector[Double], at: Double): Int =
     val index = shares.scanLeft(0.0)(_ + _).tail.indexWhere(_ >= at)
     if index < 0 then shares.size - 1 else index

@@ -1,17 +1,18 @@
 package skein.vehicle
 
-/** At which rate a heading turns: shares of [[TurnRates.Each]], by Bayes' rule. A rate is held for a while,
-  * then another one is taken, more likely one that was seen before. A value.
+/** An estimate of the rate at which a heading turns: probabilities of [[TurnRates.Each]], by Bayes' rule. A
+  * rate is assumed to be held for a while; then another one is taken, more likely one that was seen before.
+  * Immutable.
   *
-  * A heading is a line of its rate, and what is measured of it is off that line, since commands are steps. So
-  * for each rate a Kalman filter follows the heading, mixed with those of the others as rates may have
-  * changed: the interacting multiple models of Blom and Bar-Shalom, IEEE Transactions on Automatic Control
-  * 33(8), 1988. How far commands are off the line is learned.
+  * At a constant rate the heading is a line in time; measured headings deviate from it, since commands are
+  * steps. For each rate a Kalman filter estimates the heading, and is mixed with the filters of the other
+  * rates, since the rate may have changed: the interacting multiple models of Blom and Bar-Shalom, IEEE
+  * Transactions on Automatic Control 33(8), 1988. The size of the deviations is learned.
   *
-  * @param shares of the rates; they add up to 1
-  * @param headings at each rate, rad; likewise `variances`, rad²
+  * @param shares probabilities of the rates; they add up to 1
+  * @param headings estimated heading for each rate, rad; likewise `variances`, rad²
   * @param offRad2 mean square of a measured heading's deviation from its line, rad²
-  * @param spentS how long each rate was seen, s, fading
+  * @param spentS time for which each rate was seen, s, with fading memory
   */
 final case class TurnRates private (
     shares: Vector[Double],
@@ -22,13 +23,13 @@ final case class TurnRates private (
 ):
   import TurnRates.*
 
-  /** The mean of the rates by their shares, rad/s. */
+  /** The mean of the rates by their probabilities, rad/s. */
   def mean: Double = shares.lazyZip(Each).map(_ * _).sum
 
-  /** The shares of the rates that are taken next. */
+  /** The probabilities of the rates that are taken next. */
   def next: Vector[Double] = normalised(spentS)
 
-  /** Predicts: rates may have changed, and headings have turned. */
+  /** The prediction after `s` seconds: rates may have changed, and headings have turned. */
   def after(s: Double): TurnRates =
     val changed = 1 - StrictMath.exp(-s / HoldsS)
     val middle  = headings(shares.indexOf(shares.max))
@@ -49,7 +50,7 @@ final case class TurnRates private (
       )
     copy(come.lazyZip(stay).map(_ + _), mixed.map(_.heading), mixed.map(_.variance))
 
-  /** Predicts, and weighs the rates by the likelihood of the heading measured then, rad. */
+  /** The prediction after `s` seconds, updated by the likelihood of the heading measured then, rad. */
   def after(s: Double, heading: Double): TurnRates =
     val ahead   = after(s)
     val off     = ahead.headings.map(at => wrapped(heading - at))
@@ -75,10 +76,13 @@ object TurnRates:
   /** Turn rates that a vehicle may be commanded, rad/s. */
   val Each: Vector[Double] = Vector.tabulate(17)(number => 0.2 * (number - 8))
 
-  /** Mean time until a rate is drawn anew, s; where few are usual, often the present one again. */
+  /** Mean time until a rate is drawn anew, s; if few rates are usual, the present one is often drawn again.
+    */
   val HoldsS: Double = 0.8
 
-  /** Weight of the uniform prior of the next rate, as a time, s; and for how long rates are remembered, s. */
+  /** Weight of the uniform prior of the next rate, as a time, s; and the time constant of the memory of
+    * rates, s.
+    */
   private val PriorS     = 1.0
   private val RemembersS = 60.0
 
@@ -88,7 +92,7 @@ object TurnRates:
   private val DriftRad2PerS = 0.01
   private val Floor         = 1e-3
 
-  /** Nothing known of a vehicle but its heading, rad. */
+  /** The estimate for a vehicle of which only the heading, rad, is known. */
   def of(heading: Double): TurnRates =
     val even = Each.map(_ => 1.0 / Each.size)
     TurnRates(even, Each.map(_ => heading), Each.map(_ => 1.0), 0.05 * 0.05, even.map(_ * PriorS))

@@ -24,6 +24,7 @@ trait VehicleModel[S]:
 
   def kinematics(state: S): Kinematics
 
-  /** The state of the vehicle's plant as numbers ([[PlantState]]), if readings lack a part of it; else empty.
+  /** The components of the state of the vehicle's plant ([[PlantState]]), if readings lack a part of it; else
+    * empty.
     */
   def numbers: S => Vector[Double] = _ => Vector.empty

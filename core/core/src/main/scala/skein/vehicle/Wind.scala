@@ -45,7 +45,7 @@ final class WindAlong(wind: Wind, seed: Long):
 
   /** The velocity of the air, NED, m/s, after a further `dtS` of flight at this velocity.
     *
-    * @param heightM above the ground
+    * @param heightM height above the ground
     */
   def met(heightM: Double, velocityNed: Vector3, dtS: Double): Vector3 =
     val steady = wind.steadyAt(heightM)

@@ -34,7 +34,7 @@ class StructureSuite extends munit.FunSuite:
     assertEquals(Structure.Drag.plant(Vector(1, 2, 0.1, 0.01)), ReducedModel(1, 2, 0.1, 2, 0.01))
     assert(refused(Structure.Drag.plant(Vector(1, 2))).contains("structure drag: expected 4 values, came 2"))
 
-  test("a program's own structures are found beside Skein's, and labels must differ"):
+  test("a program's own structures are found in addition to Skein's, and labels must differ"):
     def program(label: String) =
       Scenarios(Scenarios.ours.kinds, ownStructures = Vector(structure(label, Axis("lag-s", 0.1, 2, 1))))
     assertEquals(program("slow").structure("slow").map(_.label), Right("slow"))

@@ -170,7 +170,8 @@ class VehicleForecastSuite extends munit.FunSuite:
     val heading   = (ms: Int) => 0.7 * math.floor(ms / 100.0)
     val setpoint  =
       (ms: Int) => Setpoint.velocityZ(10 * math.cos(heading(ms)), 10 * math.sin(heading(ms)), -20)
-    // What flies at 3 n ms was sent 50 ms before; a reading every 99 ms is used 100 ms after it was sampled.
+    // The command in effect at 3 n ms was sent 50 ms before; a reading every 99 ms is used 100 ms after it
+    // was sampled.
     val truth = Vector.tabulate(2000): n =>
       val before = real.kinematics
       quadrotor.step(real, if 3 * n < 50 then Setpoint.hold(start) else setpoint(3 * n - 50))

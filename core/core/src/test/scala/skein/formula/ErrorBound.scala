@@ -112,6 +112,6 @@ object ErrorBound:
           if ea + eb == 0 || node.args(0) == node.args(1) then 0 else jump(math.abs(a - b), ea + eb, 1, 0)
         case Not      => ea
         case And | Or => math.max(ea, eb)
-      // Nothing times what is unbounded is unbounded.
+      // Zero times an unbounded value is unbounded.
       errors(node.id) = if error.isNaN then Double.PositiveInfinity else error
     ErrorBound(values, errors, margins)

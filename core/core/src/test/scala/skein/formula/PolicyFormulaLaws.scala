@@ -3,8 +3,8 @@ package skein.formula
 import skein.policy.*
 import skein.signal.SplitMix64
 
-/** Every family of policies is a formula, and a formula computes what the policy's own method answers, to the
-  * bit.
+/** Every family of policies is a formula, and a formula computes the result of the policy's own method, to
+  * the bit.
   */
 class PolicyFormulaLaws extends munit.FunSuite:
   private val seed = 20261122L
@@ -23,7 +23,7 @@ class PolicyFormulaLaws extends munit.FunSuite:
     ).asInstanceOf[HeadingPolicy]
 
   for (name, draw) <- policies do
-    test(s"$name: the formula answers to the bit what the method does (seed $seed)"):
+    test(s"$name: the formula returns the method's result, to the bit (seed $seed)"):
       val random  = SplitMix64(seed)
       val formula = Formula.of(draw(random), "decide").fold(throw _, identity)
       assertEquals(formula.inputs.size, 9)
@@ -45,7 +45,7 @@ class PolicyFormulaLaws extends munit.FunSuite:
           )
 
   for name <- Seq("learned:8x8", "learned:6tanhx5clip:clip", "learned::clip") do
-    test(s"$name: the formula of what is seen answers to the bit what the method does (seed $seed)"):
+    test(s"$name: the formula of the observation returns the method's result, to the bit (seed $seed)"):
       val random  = SplitMix64(seed)
       val family  = PolicyFamily.parse(name).fold(fail(_), identity)
       val formula = Formula.of(drawn(family)(random), "decide").fold(throw _, identity)

@@ -53,9 +53,11 @@ class CameraPursuerSuite extends munit.FunSuite:
     assertEqualsDouble(chosen(pursuer, Map.empty).heading, 0, 1e-9)
     assertEqualsDouble(chosen(pursuer, belief(Span.ofMillis(300))).heading, 0, 1e-9)
 
-  test("if the own position is predicted, the estimate is predicted to the time at which the command acts"):
+  test(
+    "if the pursuer's own position is predicted, the estimate is predicted for the time of the command"
+  ):
     val ahead = chosen(pursuer, belief(Span.ofMillis(300)), isPredicted = true)
     assertEqualsDouble(ahead.heading, StrictMath.atan2(5 * 0.5, 8), 1e-9)
-    // What was lost long ago is looked for where it was then expected, not ever farther away.
+    // An opponent that was lost long ago is looked for where it was then expected, not ever farther away.
     val long = chosen(pursuer, belief(Span.ofSeconds(60)), isPredicted = true)
     assertEqualsDouble(long.heading, StrictMath.atan2(5 * 1.5, 8), 1e-9)

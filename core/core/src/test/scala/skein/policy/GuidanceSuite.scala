@@ -111,7 +111,7 @@ class GuidanceSuite extends munit.FunSuite:
 
   test("inside the pursuer's turning circle the chauffeur's evader heads for the centre"):
     for side <- Seq(1, -1) do
-      // The evader is 4 m beside the pursuer, who faces 0.7 rad.
+      // The evader is 4 m to the side of the pursuer, which faces 0.7 rad.
       val evader =
         ChauffeurEvader().heading(side * 4 * math.sin(0.7), -side * 4 * math.cos(0.7), 0, 0, 0, 0.7, 0.1)
       assertEqualsDouble(evader, 0.7 + side * math.Pi / 2, 1e-12)

@@ -5,7 +5,7 @@ import skein.units.*
 
 /** Simulates a team by its policies without delays. Each velocity follows its command with a first-order lag.
   *
-  * @param lagS with 0, velocities equal their commands immediately
+  * @param lagS time constant, s; with 0, velocities equal their commands immediately
   */
 final class TeamFlight(scenario: Fleet, lagS: Double, stepS: Double = 0.05):
   private val agents  = scenario.agents

@@ -101,7 +101,7 @@ class ScenarioKindSuite extends munit.FunSuite:
       ).matches(s"the scenario broken failed: java.lang.$mistake \\(ScenarioKindSuite.scala:\\d+\\)"))
     for place <- Seq("agents", "limits", "duration", "title") do
       isOf(told(broken.read(Map("where" -> place))), s"RuntimeException: in $place")
-    // A search has asked before.
+    // A search has read such a scenario before.
     assertEquals(broken.candidate(Map("where" -> "limits")), Right(Broken("limits")))
     isOf(
       told(broken.read(Map("where" -> "constructor"))),

@@ -3,7 +3,7 @@ package skein.vehicle
 import skein.signal.{Kinematics, SplitMix64}
 import skein.units.*
 
-/** What is believed of vehicles whose commands are hidden. */
+/** Estimates of vehicles whose commands are unknown. */
 class TurnBeliefSimulation extends munit.FunSuite:
   private val quadrotor = QuadrotorModel.AirSim
   private val belief    = TurnBelief(quadrotor)
@@ -40,7 +40,7 @@ class TurnBeliefSimulation extends munit.FunSuite:
       .take(count)
       .toVector
 
-  /** What each model's state is after each reading. */
+  /** The model's state after each reading. */
   private def seen[S](model: VehicleModel[S], readings: Vector[Kinematics]): Vector[S] =
     readings.tail.scanLeft(model.start(readings.head)): (state, reading) =>
       model.corrected(model.advanced(state, unused, tenth), reading, tenth)
@@ -60,7 +60,9 @@ class TurnBeliefSimulation extends munit.FunSuite:
 
   private def rms(of: Vector[Double]) = math.sqrt(of.map(x => x * x).sum / of.size)
 
-  test("a turn is known soon after it begins, and rates that were seen are expected again"):
+  test(
+    "after four steps of a turn its direction is known, and turn rates seen before are the most expected next"
+  ):
     val headings = weaving(1, 400)
     val states   = seen(belief, flown(headings))
     // The heading of the step before a reading, and four before that.
@@ -72,7 +74,7 @@ class TurnBeliefSimulation extends munit.FunSuite:
     assert(next.forall(rate => rate > 0.5 && rate < 1.1), next.toString)
 
   test(
-    "where a vehicle may be covers about nine of ten places, and the mean is nearer than the turn's"
+    "discs of nine tenths of the samples cover about nine of ten positions; the mean beats a constant turn"
   ):
     val readings = flown(weaving(2, 400))
     for steps <- Seq(4, 8) do

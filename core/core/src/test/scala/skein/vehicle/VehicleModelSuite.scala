@@ -27,11 +27,11 @@ class VehicleModelSuite extends munit.FunSuite:
     assertEquals(model.kinematics(pieces).velocityNed, model.kinematics(whole).velocityNed)
     assertClose(model.kinematics(pieces).positionNed, model.kinematics(whole).positionNed, 1e-9)
 
-  test("a corrected model flies as the quadrotor that was read, within millimetres in half a second"):
+  test("after a correction, the model stays within 5 mm of the real quadrotor for half a second"):
     val model    = QuadrotorModel.AirSim
     val real     = quadrotor.hovering(start)
     val commands = Seq(Setpoint.velocityZ(10, 0, -20), Setpoint.velocityZ(0, 10, -20))
-    // The model was told the first command 50 ms late, so that it is off when it is corrected.
+    // The model receives the first command 50 ms late, so that it deviates when it is corrected.
     var flying = model.advanced(model.start(real.kinematics), Setpoint.hold(start), Span.ofMillis(50))
     flying = model.advanced(flying, commands(0), step * 500 - Span.ofMillis(50))
     for _ <- 1 to 500 do quadrotor.step(real, commands(0))

@@ -10,7 +10,7 @@ private[onnx] object DenseGraph:
   /** A network with its parameters, in the order of [[NeuralShape]]. */
   type Network = (NeuralShape, Vector[Double])
 
-  /** The supported operators; those that pass numbers on unchanged are first. */
+  /** The supported operators; those that return their input unchanged are first. */
   val operators: Vector[String] = Vector(
     "Identity",
     "Cast",

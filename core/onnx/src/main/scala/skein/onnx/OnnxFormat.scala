@@ -128,7 +128,7 @@ object OnnxFormat:
         )
       (name, Tensor(dimensions, values))
 
-  /** The numbers of a tensor. Only element types that can represent a network's weights are supported. */
+  /** The values of a tensor. Only element types that can represent a network's weights are supported. */
   private def unpacked(element: Int, raw: Array[Byte]): Vector[Double] =
     val buffer                         = ByteBuffer.wrap(raw).order(ByteOrder.LITTLE_ENDIAN)
     def all(size: Int)(one: => Double) = Vector.fill(raw.length / size)(one)
@@ -171,7 +171,7 @@ object OnnxFormat:
       case (2, in) => value = in.readStringRequireUtf8()
     (key, value)
 
-  /** Writes a model. Numbers become 32-bit floats; those in shapes and indices are not written. */
+  /** Writes a model. Values become 32-bit floats; those in shapes and indices are not written. */
   def write(graph: OnnxGraph): Array[Byte] = message: out =>
     out.writeInt64(1, IrVersion)
     out.writeString(2, "skein")

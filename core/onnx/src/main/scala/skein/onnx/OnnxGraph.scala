@@ -20,7 +20,7 @@ object OnnxGraph:
   /** An operation of the graph.
     *
     * @param inputs names of the input values; an empty name means that the input is omitted
-    * @param attributes by name
+    * @param attributes the operation's attributes, by name
     */
   final case class Node(
       operator: String,
@@ -38,7 +38,7 @@ object OnnxGraph:
 
   /** A constant array of numbers.
     *
-    * @param values the numbers, row by row
+    * @param values the elements, row by row
     */
   final case class Tensor(shape: Vector[Int], values: Vector[Double])
 

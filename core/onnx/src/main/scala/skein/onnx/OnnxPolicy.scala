@@ -14,9 +14,9 @@ import skein.units.Expect
   * single output is a share, −1 to 1, of the largest turn: until the next decision (pursuer) or of one
   * decision (evader).
   *
-  * @param role as the file notes it
-  * @param family `learned:…` where its network is one of ours
-  * @param parameters in the order of the family's axes, for a role
+  * @param role the role that the file notes
+  * @param family `learned:…` if the network is one of Skein's
+  * @param parameters values in the order of the family's axes, for a role
   */
 final case class OnnxPolicy(role: Option[String], family: PolicyFamily, parameters: Role => Vector[Double])
 
@@ -28,7 +28,7 @@ object OnnxPolicy:
 
   private val MostBytes = 64L << 20
 
-  /** Default limit of a pursuer's turn rate, as in environments. */
+  /** Default maximum turn rate of a pursuer, as in environments. */
   private val TurnRateRadPerS = 1.0
 
   private val RoleNote = "skein.role"
@@ -68,7 +68,7 @@ object OnnxPolicy:
 
   /** Writes a network as an ONNX file.
     *
-    * @param role for which it was trained
+    * @param role the role for which it was trained
     * @return Left states why the policy is no network
     */
   def write(policy: Policy, role: String): Either[String, Array[Byte]] =
@@ -206,8 +206,7 @@ object OnnxPolicy:
       case Array(share)                   => Left(s"expected a number from -1 to 1, came $share")
       case others                         => Left(s"expected one number, came ${others.length}")
 
-  /** A policy that a runtime evaluates; thread-safe. Throws where the model fails or its output is not a
-    * number.
+  /** A policy that a runtime evaluates; thread-safe. Throws if the model fails or its output is not a number.
     */
   private final class RunPolicy(
       asked: Array[Float] => Either[String, Array[Float]],

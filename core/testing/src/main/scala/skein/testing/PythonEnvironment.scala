@@ -8,8 +8,8 @@ import munit.Assertions.assume
 import scala.sys.process.{Process, ProcessLogger}
 import scala.util.Using
 
-/** Virtual Python environment with packages from PyPI, kept in the user's cache under a name that lists their
-  * versions.
+/** A virtual Python environment with packages from PyPI, kept in the user's cache under a name that lists
+  * their versions.
   *
   * @param imports modules that Python imports to check that the installation is complete
   * @param scripts a resource in the folder of the test scripts, if there are any
@@ -78,7 +78,7 @@ final class PythonEnvironment(imports: String, scripts: Option[String], installs
 
 object PythonEnvironment:
 
-  /** Environment with AirSim's Python client.
+  /** The environment with AirSim's Python client.
     *
     * @param scripts see [[PythonEnvironment]]
     */

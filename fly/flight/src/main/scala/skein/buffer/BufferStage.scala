@@ -191,10 +191,11 @@ private[buffer] final class BufferStage(judge: BufferStage.Judge)
         proceed()
 
 private[buffer] object BufferStage:
-  /** Limit of the bytes of answers to plans that wait for the client. */
+  /** Maximum number of bytes of answers to plans that wait for the client. */
   val MostOwnBytes: Int = 64 << 10
 
-  /** Limit of a connection's moves whose answers are awaited. Further moves count as answered when they pass.
+  /** Maximum number of a connection's moves whose answers are awaited. Further moves count as answered when
+    * they pass.
     */
   val MostMoves = 1024
 

@@ -6,9 +6,9 @@ import skein.simulator.{PlanCall, PlannedMove}
 import skein.units.*
 import upack.{Bool, Msg}
 
-/** The buffers of plans beside a simulator that has none: decides what happens to each client's call, and
-  * which moves are sent when. Pure: the owner supplies the time, by the machine's clock, and carries out the
-  * orders. A ticket identifies each call until its verdict.
+/** The buffers of plans on the side of a simulator that has none: decides what happens to each client's call,
+  * and which moves are sent when. Pure: the owner supplies the time, by the machine's clock, and carries out
+  * the orders. A ticket identifies each call until its verdict.
   *
   * A plan is answered when it arrives, as by the built-in simulator. Before that, the vehicle is read once,
   * unless the simulator's clock is known from a recent reading. While a plan has unsent moves, the clock is
@@ -39,7 +39,7 @@ private[buffer] final case class Buffers(
 ):
   import Buffers.*
 
-  /** Adds a client's call, which is judged now or later. */
+  /** Adds a client's call, which is accepted or refused, now or later. */
   def received(ticket: Long, wish: Wish, now: Instant): Stepped = (wish match
     case Wish.Plan(Left(mistake)) => refused(ticket, mistake)
     case Wish.Plan(Right(plan))   => planned(ticket, plan, now)
@@ -212,14 +212,14 @@ private[buffer] object Buffers:
   /** Pause after a reading that was not answered, or refused. */
   val FailedPause: Span = Span.ofMillis(100)
 
-  /** Limit of the vehicles with plans; plans for further vehicles are refused. */
+  /** Maximum number of vehicles with plans; plans for further vehicles are refused. */
   val MostVehicles = 256
 
   enum Verdict:
     /** The call goes to the simulator.
       *
-      * @param vehicle that the call moves, if any: [[Buffers.answered]] must be called when the move is
-      *   answered
+      * @param vehicle the vehicle that the call moves, if any: [[Buffers.answered]] must be called when the
+      *   move is answered
       */
     case Pass(vehicle: Option[String])
 

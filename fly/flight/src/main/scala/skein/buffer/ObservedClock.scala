@@ -33,7 +33,7 @@ private[buffer] final case class ObservedClock private (
       val usual    = if math.abs(measured - 1) < Usual then 1.0 else measured
       ObservedClock(next, if apart > Longest then reading else from, usual)
 
-  /** The simulator's time when the machine's clock reads `now`; None if no reading is recent enough. */
+  /** The simulator's time when the machine's clock reads `now`; None if no recent reading is known. */
   def shows(now: Instant): Option[Instant] =
     val age = now.since(alignment.receivedAt)
     Option.when(age <= MostAge)(

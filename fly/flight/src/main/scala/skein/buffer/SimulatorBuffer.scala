@@ -17,9 +17,9 @@ import skein.signal.Stamped
 import skein.simulator.{PlanCall, PlannedMove}
 import skein.units.*
 
-/** A buffer of plans beside a simulator that has none, such as AirSim: takes plans out of its clients'
-  * connections, and performs their moves at their moments by the simulator's ordinary functions, over
-  * connections of its own. It belongs near the simulator, behind the link that delays its clients: see
+/** A buffer of plans on the side of a simulator that has none, such as AirSim: takes plans out of its
+  * clients' connections, and performs their moves at their moments by the simulator's ordinary functions,
+  * over connections of its own. It belongs near the simulator, behind the link that delays its clients: see
   * [[LinkProxy.start]].
   *
   * Moves begin half a round trip to the simulator after their moments, if the machine is fast enough. The
@@ -60,7 +60,7 @@ object SimulatorBuffer:
 
   /** Starts a buffer, which connects to the simulator at the first plan.
     *
-    * @param simulator its address, behind the link
+    * @param simulator the simulator's address, behind the link
     * @param onLost called with a line for each move whose answer was lost
     */
   def start(

@@ -9,7 +9,7 @@ import skein.units.*
   * At most [[Moves.InFlight]] moves are unanswered at the simulator, unless clients sent more themselves.
   *
   * @param begun the newest sent move of the plans in effect
-  * @param ours unanswered moves of the buffer; `theirs`: of clients
+  * @param ours number of unanswered moves of the buffer; `theirs`: of clients
   * @param readyAt earliest time, by the machine's clock, of the move after the last sent or answered one
   * @param held tickets of the clients' moves that wait, the oldest first
   */
@@ -36,7 +36,7 @@ private[buffer] final case class VehicleBuffer(
       begun = None
     )
 
-  /** Ends all plans and forgets their numbers. */
+  /** Ends all plans and forgets their sequence numbers. */
   def forgotten: VehicleBuffer = copy(plans = PlanBuffer.empty, begun = None)
 
   /** Whether some moves of its plans have not been sent yet. */

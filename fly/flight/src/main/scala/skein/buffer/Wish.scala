@@ -11,7 +11,7 @@ private[buffer] enum Wish:
   /** A plan for a vehicle, or the text of the error with which the call is answered. */
   case Plan(call: Either[String, PlanCall])
 
-  /** Moves a vehicle. Its plans end; a later plan may have any number. */
+  /** Moves a vehicle. Its plans end; a later plan may have any sequence number. */
   case Move(vehicle: String)
 
   /** Lets a vehicle hover. Its plans end; older ones that arrive later have no effect. */
@@ -20,14 +20,14 @@ private[buffer] enum Wish:
   /** Ends a vehicle's plans like [[Hover]], by a call that is no move. */
   case Stop(vehicle: String)
 
-  /** Places a vehicle: its plans end, as by [[Move]]. */
+  /** Places a vehicle. Its plans end, as with [[Move]]. */
   case Place(vehicle: String)
 
-  /** Ends the plans of all vehicles, and forgets their numbers. */
+  /** Ends the plans of all vehicles, and forgets their sequence numbers. */
   case Reset
 
 private[buffer] object Wish:
-  /** Limit of a call that is decoded, in bytes. A plan of sixteen velocities takes about 2,000. */
+  /** Maximum size of a call that is decoded, bytes. A plan of sixteen velocities takes about 2,000. */
   val MostBytes: Int = 64 << 10
 
   def of(method: String, params: IndexedSeq[Msg]): Option[Wish] = method match

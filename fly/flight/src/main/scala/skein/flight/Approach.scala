@@ -32,7 +32,7 @@ private[flight] final class Approach(
 
   /** Moves the vehicle until it hovers within `limits` of the goal.
     *
-    * @param goalNed in the frame of `vehicle`
+    * @param goalNed the goal, in the frame of `vehicle`
     * @return the last reading; `Left` if a call failed, or the vehicle did not arrive within the allowed time
     */
   def to(goalNed: Vector3, limits: Limits): Future[Either[String, Kinematics]] =
@@ -122,6 +122,7 @@ private[flight] object Approach:
   /** Time allowed for the way, in addition to twice its duration at cruise speed. */
   private val Patience = Span.ofSeconds(40)
 
-  /** Limit of a hovering vehicle's readings, and how many in a row must be within the tolerances. */
+  /** Maximum number of readings of a hovering vehicle, and how many in a row must be within the tolerances.
+    */
   private val Looks     = 40
   private val GoodLooks = 10

@@ -17,12 +17,12 @@ import skein.scenario.Eye
 import skein.signal.{LatencySampler, SplitMix64, Stamped}
 import skein.units.*
 
-/** The estimate of an [[Eye]] from its vehicle's camera, as a sensor: `frames ~> recognise ~> fuse ~> newest
-  * belief`, beside the loop, which does not wait for it. Images use separate connections. Every image without
-  * a result is recorded as an event.
+/** The estimate of an [[Eye]] from its vehicle's camera, as a sensor:
+  * `frames ~> recognise ~> fuse ~> newest belief`, concurrently with the loop, which does not wait for it.
+  * Images use separate connections. Every image without a result is recorded as an event.
   *
-  * @param eyes of the vehicle
-  * @param seed of the durations of recognition
+  * @param eyes the vehicle's cameras
+  * @param seed seed of the durations of recognition
   * @param seen called with each image; must not block
   */
 private[skein] final class CameraSensor(
@@ -179,10 +179,10 @@ private[skein] object CameraSensor:
 
   /** Counts of an eye's images. After its end, each due image is in one of the other counts.
     *
-    * @param missed due images that were not requested, since others were still on their way
-    * @param lost without a result: the call failed, recognition failed or was late, or a newer one was
-    *   received first
-    * @param searched by recognition, with or without a detection
+    * @param missed number of due images that were not requested, since others were still on their way
+    * @param lost number of images without a result: the call failed, recognition failed or was late, or a
+    *   newer one was received first
+    * @param searched number of images searched by recognition, with or without a detection
     */
   final case class Counts(due: Long, missed: Long, lost: Long, searched: Long):
     def asked: Long = due - missed

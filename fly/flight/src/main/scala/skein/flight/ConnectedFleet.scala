@@ -8,11 +8,11 @@ import skein.signal.ClockAlignment
   *
   * @param where the vehicles are, for a person
   * @param isOther see [[SimulatorWatchdog]]
-  * @param cameras with recognisers
-  * @param films of their other cameras
+  * @param cameras the cameras with recognisers
+  * @param films the vehicles' other cameras
   * @param clocks the vehicles' clock against the controller's, if it is known already
-  * @param apart for each vehicle `self` with its own controller: all vehicles, over that controller's
-  *   connections. `vehicles` are then over the connections of their own controllers
+  * @param apart if each vehicle has its own controller: for a vehicle `self`, all vehicles over that
+  *   controller's connections. `vehicles` are then over the connections of their own controllers
   */
 private[flight] final case class ConnectedFleet(
     vehicles: Vector[VehiclePort],

@@ -8,7 +8,7 @@ import skein.link.Address
 /** Checks with a simulator whether a flight still controls its vehicles: under API control and in the air. It
   * uses a separate connection, since this is not part of the flight.
   *
-  * @param vehicles of the flight
+  * @param vehicles the flight's vehicles
   * @param isLanding whether the flight itself commanded a vehicle to land
   */
 private[flight] final class Custody(
@@ -22,7 +22,7 @@ private[flight] final class Custody(
 
   /** Requests the vehicles' states.
     *
-    * @return `Left` if the simulator did not answer, else why the flight cannot go on, if it cannot
+    * @return `Left` if the simulator did not answer, else why the flight cannot continue, if it cannot
     */
   def ask(): Future[Either[String, Option[String]]] =
     Future
@@ -65,7 +65,7 @@ private[flight] object Custody:
 
   /** The known states of the vehicles.
     *
-    * @param flown vehicles that were observed in the air: a simulator need not report landings
+    * @param flown the vehicles that were observed in the air: a simulator need not report landings
     * @param landed those that stood on the ground at the last answer
     */
   final case class Known(flown: Set[String] = Set.empty, landed: Set[String] = Set.empty):

@@ -28,7 +28,8 @@ private[flight] object Displacement:
       s"$vehicle is ${off.fixed(1)} m from where it can have flown in ${s.fixed(2)} s: the simulator was " +
         "started again, another client reset it or put it elsewhere, or its state is another vehicle's"
 
-  /** Limit of the acceleration: three times gravity; AirSim's multirotor reaches less than two. */
+  /** Greatest plausible acceleration, m/s²: three times gravity; AirSim's multirotor reaches less than two.
+    */
   private val MostAccelerationMps2 = 30.0
 
   /** Tolerance of the distance: covers the jump of a collision, and time stamps that are off by some

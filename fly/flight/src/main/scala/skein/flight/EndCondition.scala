@@ -7,7 +7,7 @@ import skein.scenario.{Known, OwnEnd, Scenario}
 import skein.units.*
 
 /** Passes records on to `recorder`, and evaluates at every decision whether the scenario is over, by the
-  * readings that the decision was made from.
+  * readings that the decision used.
   *
   * @param isPaused whether time stands still during decisions: then ages are zero
   */

@@ -23,7 +23,7 @@ import ujson.{Arr, Num, Obj, Value}
   *
   * It blocks, up to [[EnvironmentProcess.AnswerWithin]] a call. Not thread-safe.
   *
-  * @param names of the vehicles
+  * @param names the vehicles' names
   */
 final class EnvironmentProcess private (socket: ProcessSocket, names: Vector[String]):
   import EnvironmentProcess.*
@@ -81,7 +81,7 @@ object EnvironmentProcess:
 
   /** One vehicle's state.
     *
-    * @param reward of the last step
+    * @param reward the last step's reward
     */
   final case class Agent(kinematics: Kinematics, reward: Double, terminated: Boolean, truncated: Boolean)
 

@@ -152,7 +152,7 @@ object EnvironmentSimulator:
 
   /** Begins an episode; blocks until it has begun.
     *
-    * @param names of the vehicles
+    * @param names the vehicles' names
     * @return Left states why there is none
     */
   def start(

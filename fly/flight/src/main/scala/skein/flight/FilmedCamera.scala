@@ -13,8 +13,8 @@ import skein.rpc.RpcError
 import skein.signal.Stamped
 import skein.units.*
 
-/** A camera whose images are not used by decisions: they are taken beside the loop, which does not wait for
-  * them. Missed images are counted, and reported once a second.
+/** A camera whose images are not used by decisions: they are taken concurrently with the loop, which does not
+  * wait for them. Missed images are counted, and reported once a second.
   *
   * @param seen called with each image that is newer than all before; must not block
   * @param imageless called with the reason, if it is closed and no image was received

@@ -33,7 +33,7 @@ import skein.units.Decimals.brief
   * @param learnsOn threads for policies that learn during the flight; without it, each has its own thread of
   *   low priority
   * @param solvers the links to solvers, for flights that another process decides for
-  * @param calledOff why a flight, by its name, must not go on while its vehicles move to their starts
+  * @param calledOff why a flight, by its name, must stop while its vehicles move to their starts
   * @param isWatched whether its records are shown, so that images and clouds that are not recorded are still
   *   offered
   * @param isMavlinkByTcp whether `simulator`, if it speaks MAVLink, is reached by TCP instead of datagrams
@@ -76,7 +76,6 @@ final class FlightAssembler(
   /** Vehicles, starts and roles, equal in all flights; the policies are the plan's. */
   private val fleet: Fleet = settings.fleet
 
-  /** The header of this flight's recording. */
   def heading(plan: FlightPlan, clockKind: String): RecordingHeader = RecordingHeader(
     FlightRow(
       plan.id,
@@ -276,7 +275,7 @@ final class FlightAssembler(
       case Some(Learning.Beside(explore, begun)) =>
         val on = learnsOn.getOrElse:
           val thread = BackgroundExecutor("skein-learn")
-          // It may hang in a lesson: nobody waits for that.
+          // It may hang in a lesson, which is not awaited.
           opened.closing(ExecutionContext.fromExecutor(thread)): _ =>
             thread.close()
             Future.successful(Done)
@@ -339,7 +338,7 @@ final class FlightAssembler(
           Option.when(plan.policy.exists(_.learning.isDefined)):
             "expected policies that do not learn in flight, which is one learner for all"
 
-  /** Asks the vehicles whether they hold plans, if the flight sends them. */
+  /** Requests whether the vehicles hold plans, if the flight sends them. */
   private def packets(plan: FlightPlan, reached: ConnectedFleet): Future[Unit] =
     if !settings.loopSettings(plan).planInPacket then Future.unit
     else if plan.policy.exists(_.learning.isDefined) then

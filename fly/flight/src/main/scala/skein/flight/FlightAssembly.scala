@@ -41,7 +41,7 @@ final class FlightAssembly private[skein] (
       monitor.offer(Event(clock.now(), EventKind.Continued, None, who))
       hold.release(): Unit
 
-  /** Its progress: in the controller's time, and where time passes in steps, also in the simulator's. */
+  /** Its progress: in the controller's time, and if time passes in steps, also in the simulator's. */
   def progress: FlightProgress =
     val now = clock.now()
     FlightProgress(
@@ -55,7 +55,7 @@ final class FlightAssembly private[skein] (
 
   private def isPaused = plan.loop == LoopKind.Paused
 
-  /** Late control threads do not matter where time stands still. */
+  /** Late control threads do not matter while time stands still. */
   private def starved: Option[String] = if isPaused then None else watchdog.starved
 
   /** Completes when the flight has ended, everything is closed, and all records are written. */

@@ -72,7 +72,7 @@ final class FlightMonitor(
         why  <- Displacement.between(vehicle, last, state)
       do displaced.compareAndSet(None, Some(why)): Unit
 
-  /** Why the flight cannot have a result, judged by its readings and the answers to its moves. */
+  /** Why the flight cannot have a result, by its readings and the answers to its moves. */
   def unsound: Option[Unsound] =
     clocks.get.fault.map(Unsound(EventKind.ClockBroken, _)).orElse(
       displaced.get.orElse(foreignMoves).map(Unsound(EventKind.VehicleTaken, _))
@@ -115,9 +115,9 @@ final class FlightMonitor(
 
 /** Why a flight cannot have a result.
   *
-  * @param kind of the event that shows it
+  * @param kind kind of the event that shows it
   */
 final case class Unsound(kind: EventKind, why: String)
 
-/** The state of a flight in two numbers, for progress displays. */
+/** The state of a flight for progress displays. */
 final case class LastSeen(distance: Option[Metres], age: Span)

@@ -8,8 +8,8 @@ import skein.units.{Instant, Span}
   * over, another client's move replaced it. Pure.
   *
   * @param newest sequence and time of the flight's newest move of the vehicle
-  * @param replaced for each of the last [[ForeignMoves.Judged]] ended moves, whether another client's
-  *   replaced it
+  * @param replaced whether another client's move replaced it, for each of the last [[ForeignMoves.Judged]]
+  *   ended moves
   */
 private[flight] final case class ForeignMoves(
     newest: Option[(Long, Instant)] = None,

@@ -6,8 +6,8 @@ import skein.units.Decimals.fixed
 /** The lateness of the control threads, measured by a timer: on a machine that is too busy they wait for a
   * processor, and a flight then shows the machine and not its loop.
   *
-  * @param ticks so far
-  * @param late of them, by more than [[Lateness.Allowed]]
+  * @param ticks number of ticks so far
+  * @param late number of ticks late by more than [[Lateness.Allowed]]
   * @param most the largest lateness
   */
 private[skein] final case class Lateness(ticks: Int = 0, late: Int = 0, most: Span = Span.Zero):
@@ -32,5 +32,5 @@ private[skein] object Lateness:
   /** Largest share of late ticks in a comparable flight. */
   val MostLate = 0.05
 
-  /** Least number of ticks for a judgement. */
+  /** With fewer ticks than these, a flight counts as comparable. */
   private val LeastTicks = 20

@@ -19,7 +19,7 @@ import skein.units.*
 /** A vehicle behind an emulated link, for adapters without bytes to delay: each call and each answer is
   * delayed by the link's latency, in order; a lost one is sent again, as by TCP.
   *
-  * @param line the vehicle's number among those behind this link
+  * @param line the vehicle's index among those behind this link
   */
 final class LinkedVehicle(
     vehicle: VehiclePort,

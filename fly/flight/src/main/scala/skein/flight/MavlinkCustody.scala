@@ -5,7 +5,7 @@ import java.util.concurrent.atomic.AtomicReference
 /** Checks whether a flight over MAVLink still controls its vehicles, by the state their autopilots send:
   * armed, and in a mode that follows setpoints.
   *
-  * @param vehicles of the flight, each with why it follows no setpoints, if it does not
+  * @param vehicles the flight's vehicles, each with the reason why it follows no setpoints, if it does not
   * @param isLanding whether the flight itself commanded a vehicle to land
   */
 private[flight] final class MavlinkCustody(

@@ -14,7 +14,7 @@ import skein.units.*
 /** A scenario's vehicles over MAVLink, the first with system id 1.
   *
   * @param isDatagrams whether `connect` provides datagrams, and not pieces of a stream
-  * @param calledOff why vehicles must not go on to their starts
+  * @param calledOff why vehicles must no longer move to their starts
   */
 private[flight] final class MavlinkFleet(
     fleet: Fleet,
@@ -86,7 +86,7 @@ private object MavlinkFleet:
   /** Height of the geofence above the highest start, m: vehicles climb to their layers first. */
   private val AboveM = 100.0
 
-  /** Number of TIMESYNCs before the first decision: 3 s of them. */
+  /** Number of TIMESYNCs before the first decision, which take 3 s. */
   private val Exchanges = 300
 
   /** Altitude above the ground from which a vehicle counts as flying, m. */

@@ -13,14 +13,14 @@ import skein.units.*
 /** One flight of a loop with vehicles that have a [[VehiclePort]], live or in virtual time. The vehicles must
   * be at their starts already.
   *
-  * @param id its name in tables and figures
+  * @param id the flight's name in tables and figures
   * @param loop one of Skein's, or a user's own graph
   * @param scenario vehicles, policies and measures
   * @param link name of the network between loop and vehicles, for the report
   * @param simulator name of the vehicles' simulator, for the report
   * @param clockKind real or virtual time; [[clock]] reads it
-  * @param predictor of all vehicles, instead of `settings.model`. The recording keeps it, so that `replay`
-  *   repeats plans made with it
+  * @param predictor the model that predicts all vehicles, instead of `settings.model`. The recording keeps
+  *   it, so that `replay` repeats plans made with it
   * @throws IllegalArgumentException if its loop plans, and planning does not support the vehicles' models
   */
 final case class PortFlight(
@@ -73,7 +73,7 @@ final case class PortFlight(
   /** Starts it. The recorder receives every record to the last, and is then closed.
     *
     * @param vehicles one for each agent of the scenario, in its order
-    * @param time of a simulator that can be stopped and stepped: `paused` needs it
+    * @param time controls a simulator that can be stopped and stepped: `paused` needs it
     * @return the running flight. Its `landed` completes when the vehicles hover and everything is written
     */
   def start(vehicles: Vector[VehiclePort], recorder: Recorder, time: Option[SteppedTime] = None)(using
@@ -102,7 +102,7 @@ final case class PortFlight(
 object PortFlight:
   /** A running flight.
     *
-    * @param landed its end, with its recording
+    * @param landed the flight's end, with its recording
     */
   final case class UnderWay(
       flight: Flight,

@@ -13,7 +13,7 @@ import skein.vehicle.CarControls
 /** Brings a scenario's vehicles to their starts: at rest, hovering, under api control. A scenario's altitudes
   * are above the origin of each vehicle's own frame.
   *
-  * @param calledOff why vehicles must not go on to their starts
+  * @param calledOff why vehicles must no longer move to their starts
   */
 final class Preparation(
     client: AirSimClient,
@@ -43,7 +43,7 @@ final class Preparation(
     * in AirSim if it is. Vehicles on the ground take off.
     *
     * @param at the simulator's address
-    * @param commands which vehicles fly there, by name; all are returned
+    * @param commands selects the vehicles that fly there, by name; all are returned
     */
   def climb(
       fleet: Fleet,
@@ -123,6 +123,6 @@ object Preparation:
   /** Speed below which AirSim's car counts as standing, m/s. */
   private val StillMps = 0.05
 
-  /** Interval and number of the checks whether a car stands. */
+  /** Interval of the checks whether a car stands, and their number. */
   private val Every = Span.ofMillis(100)
   private val Looks = 200

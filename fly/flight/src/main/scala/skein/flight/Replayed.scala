@@ -10,11 +10,11 @@ import skein.units.Expect
 
 /** The result of replaying a recording.
   *
-  * @param decisions in the recording
+  * @param decisions number of decisions in the recording
   * @param decidedAgain the first difference when the decisions are repeated on the recorded readings and
   *   moves
-  * @param flownAgain for a flight in virtual time, of a loop that the program knows and with the built-in
-  *   simulator: the result of repeating it, with physics and network
+  * @param flownAgain the result of repeating the flight with physics and network; only for virtual time, a
+  *   loop that the program knows and the built-in simulator
   */
 final case class Replayed(
     id: String,

@@ -162,9 +162,9 @@ private[flight] object SimulatorWatchdog:
   /** Time without an answer after which a flight ends. */
   val GivesUp: Span = Span.ofSeconds(10)
 
-  /** Limit of the attempts to reach a simulator that is silent when the flight's time is over. Each takes a
-    * time-out of [[skein.forward.Asking.Timeout]] and a pause: 6 s in all, more than an outage of a second
-    * and the waits of TCP after it.
+  /** Maximum number of attempts to reach a simulator that is silent when the flight's time is over. Each
+    * takes a time-out of [[skein.forward.Asking.Timeout]] and a pause: 6 s in all, more than an outage of a
+    * second and the waits of TCP after it.
     */
   private val AttemptsAtEnd = 10
 
@@ -183,7 +183,7 @@ private[flight] object SimulatorWatchdog:
   /** Time from a flight's start to the first check, so that checks coincide with no tick. */
   private val Offset = Span.ofMillis(137)
 
-  /** How long no answer may arrive before the simulator counts as silent: 700 ms, or more with a long period,
+  /** Time without an answer after which the simulator counts as silent: 700 ms, or more with a long period,
     * so that two lost requests in a row do not count as silence.
     */
   def within(period: Span, askTimeout: Span): Span = ToldAfter.max(period * 2 + askTimeout)

@@ -7,8 +7,8 @@ import skein.units.*
 
 /** How flights reach solvers.
   *
-  * @param build of this program; the solver's must be equal
-  * @param link to a solver, or why there is none
+  * @param build this program's build; the solver's must be equal
+  * @param link makes the link to a solver, or states why there is none
   * @param patience longest wait of a flight, before its start, for a solver that accepts it
   * @param toldAfter time after which the user is informed that it waits
   */
@@ -19,7 +19,7 @@ final case class Solvers(
     toldAfter: Span = Span.ofSeconds(2)
 ):
 
-  /** A number that identifies a flight uniquely. */
+  /** An identifier that no other flight has. */
   private[flight] def number(plan: FlightPlan, clock: Clock): Long =
     SplitMix64.seedOf(SplitMix64.seedOf(plan.seed, plan.id.hashCode), clock.now().toNanos)
 

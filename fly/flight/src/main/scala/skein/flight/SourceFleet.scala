@@ -8,7 +8,7 @@ import skein.units.{Clock, Vector3}
 
 /** A scenario's vehicles of a [[VehicleSource]], brought to their starts over the flight's own connection.
   *
-  * @param calledOff why vehicles must not go on to their starts
+  * @param calledOff why vehicles must no longer move to their starts
   */
 private[flight] final class SourceFleet(
     source: VehicleSource,

@@ -10,12 +10,12 @@ import skein.settings.VehicleLink
 import skein.signal.{LatencySampler, PacketLoss, SplitMix64}
 import skein.units.*
 
-/** The messages between the controllers of a flight's vehicles: one of each to each for every reading of its
-  * own vehicle, over a link of its own that delays and loses it. The first from one to another always
-  * arrives: where vehicles start is agreed before.
+/** The messages between the controllers of a flight's vehicles: each sends one to every other for each
+  * reading of its own vehicle, over a link of its own that delays and loses it. The first from one to another
+  * always arrives: the vehicles' starts are agreed before.
   *
-  * @param names of the vehicles, by index
-  * @param sees whether nothing stands between two places; NED, m
+  * @param names the vehicles' names, by index
+  * @param sees whether nothing stands between two positions, NED, m
   * @param recorder gets an event at the end that counts the messages to each vehicle that did not arrive
   */
 private[flight] final class VehicleNetwork(
@@ -29,7 +29,7 @@ private[flight] final class VehicleNetwork(
   import system.dispatcher
   private val begun = clock.now()
 
-  /** Where each vehicle was by its own newest reading. */
+  /** Each vehicle's position at its newest reading. */
   private val places = names.map(_ => AtomicReference(Option.empty[Vector3]))
 
   private val takers           = names.map(_ => AtomicReference((_: Reading) => ()))

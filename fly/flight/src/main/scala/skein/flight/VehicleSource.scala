@@ -11,7 +11,7 @@ import skein.vehicle.Guidance
   * connects to them.
   */
 trait VehicleSource:
-  /** Where the vehicles are, as a word for a person. */
+  /** A word that says where the vehicles are, for messages. */
   def where: String
 
   /** How its vehicles perform an action, for predictions. */
@@ -19,7 +19,7 @@ trait VehicleSource:
 
   /** Connects to the vehicles of a flight.
     *
-    * @param names in the flight's order
+    * @param names the vehicles' names, in the flight's order
     * @return Left states what is missing
     */
   def open(names: Vector[String]): Future[Either[String, VehicleSource.Opened]]

@@ -80,7 +80,7 @@ object VirtualFlights:
 
   /** Simulates a flight.
     *
-    * @param limits of a flight whose time advances
+    * @param limits limits of a flight whose time advances
     */
   private[flight] def fly(
       settings: FlySettings,
@@ -132,7 +132,8 @@ object VirtualFlights:
         processorPerInstant = limits.processorPerInstant + ProcessorPerSecond * seconds
       )
 
-  /** Limit of the tasks a second. A team of 64 with ten readings and commands a second has a tenth of this.
+  /** Maximum number of tasks per second. A team of 64 with ten readings and commands a second has a tenth of
+    * this.
     */
   private val TasksPerSecond = 100_000L
 
@@ -140,7 +141,7 @@ object VirtualFlights:
 
   /** Simulates one flight of a scenario on the calling thread.
     *
-    * @param duration at most; 0 for the scenario's own
+    * @param duration maximum duration; 0 for the scenario's own
     * @return Left states why it failed, or which vehicles were not read
     */
   def result(
@@ -192,8 +193,8 @@ object NotFlown:
   def message(missing: Seq[NotFlown], planned: Int): String =
     (s"${missing.size} of $planned flights could not be flown:" +: missing.map(_.message)).mkString("\n")
 
-  /** What the user can fix, in words: code of the user's own failed, or the program was started without
-    * virtual time's agent, as development environments do.
+  /** The reason of a failure that the user can fix: the user's own code failed, or the program was started
+    * without virtual time's agent, as development environments do.
     */
   private[skein] def mendable(error: Throwable): Option[String] =
     OwnFailure.behind(error).map(_.getMessage).orElse:
@@ -201,7 +202,7 @@ object NotFlown:
         case stopped: VirtualTimeException if stopped.problem.isInstanceOf[Problem.NoAgent] =>
           stopped.getMessage
 
-  /** The exception with its stack and causes; for what the user can fix, the words alone. */
+  /** The exception with its stack and causes; for a failure that the user can fix, only its reason. */
   private[skein] def trace(error: Throwable): String = mendable(error) match
     case Some(reason) => reason
     case None         =>

@@ -38,7 +38,7 @@ object WarmUp:
     * @return number of flights, or why one failed
     */
   def fly(settings: FlySettings, flights: Int, clock: Clock): Either[String, Int] =
-    // For another process virtual time stands still: who is slow would take minutes.
+    // For another process virtual time stands still: a slow one would take minutes.
     val policies = settings.policies.filterNot(OutsidePolicy.decides)
     val short    = settings.copy(
       duration = settings.duration.min(Flown),

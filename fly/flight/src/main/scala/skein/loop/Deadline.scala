@@ -4,8 +4,8 @@ import skein.policy.{Agent, Policy, HoldPosition, KeepHeading, PolicyFamily}
 import skein.scenario.Scenarios
 import skein.units.Span
 
-/** The time-out of a policy's decision, and the fallback. The policy then runs beside the loop, on its own
-  * threads, and late decisions are discarded.
+/** The time-out of a policy's decision, and the fallback. The policy then runs concurrently with the loop, on
+  * its own threads, and late decisions are discarded.
   */
 final case class Deadline(within: Span, otherwise: Fallback):
   require(within > Span.Zero, "a deadline must be positive")

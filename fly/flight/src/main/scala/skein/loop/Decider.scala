@@ -5,13 +5,13 @@ import skein.units.*
 
 /** State of one vehicle's decisions, in addition to the view.
   *
-  * @param held the policy's memory, of its own type
+  * @param held the policy's memory, of a type of its own
   */
 final case class Memory(headingRad: Double, decidedAt: Option[Instant], decisions: Long, held: Any = ())
 
 /** Decisions for one vehicle of a scenario: the pure core of every loop.
   *
-  * @param policy the agent's own, or one instead of it
+  * @param policy the agent's own policy, or a replacement
   */
 final class Decider(fleet: Fleet, self: Int, policy: Policy):
   private val agent = fleet.agents(self)
@@ -23,7 +23,7 @@ final class Decider(fleet: Fleet, self: Int, policy: Policy):
   /** Decides from a complete view.
     *
     * @throws skein.units.OwnFailure if the policy throws, or its answer cannot be commanded
-    * @param now on the clock of the readings' `receivedAt` and of the moves' `sentAt`
+    * @param now the current time, on the clock of the readings' `receivedAt` and of the moves' `sentAt`
     */
   def decide(memory: Memory, view: TeamView, now: Instant): (Memory, Decision) =
     val seen             = observation(memory, view, now)

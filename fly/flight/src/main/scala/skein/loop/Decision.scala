@@ -8,10 +8,10 @@ import skein.units.*
   *
   * @param sequence counts the decisions for this vehicle
   * @param view the controller's knowledge
-  * @param opponent against which it was decided
-  * @param headingBefore last commanded to this vehicle
-  * @param elapsed since this vehicle's last decision; zero at the first
-  * @param action the chosen one
+  * @param opponent the vehicle against which it was decided
+  * @param headingBefore heading of the last command to this vehicle
+  * @param elapsed time since this vehicle's previous decision; zero at the first
+  * @param action the chosen action
   * @param plan this decision's action and the foreseen ones after it, if one command sends them together
   */
 final case class Decision(

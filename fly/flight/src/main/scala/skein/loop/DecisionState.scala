@@ -13,7 +13,6 @@ private final class DecisionState(decider: Decider, memory: Memory):
     val (next, decision) = decider.decide(memory, view, now)
     (DecisionState(decider, next), decision)
 
-  /** Decides once by another decider. */
   def decideBy(one: Decider, view: TeamView, now: Instant): (DecisionState, Decision) =
     val (next, decision) = one.decideInstead(memory, view, now)
     (DecisionState(decider, next), decision)
@@ -32,8 +31,8 @@ private final class JointDecisionState private (
 
   /** Repeats a joint decision.
     *
-    * @param views by vehicle
-    * @param slices of each search
+    * @param views a view for each vehicle
+    * @param slices number of slices of each search
     */
   def decide(
       views: Vector[TeamView],

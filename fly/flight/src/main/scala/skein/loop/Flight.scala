@@ -20,7 +20,7 @@ enum FlightOutcome:
 
   case Stopped
 
-  /** It could not go on; the vehicles were commanded to hover. */
+  /** It could not continue; the vehicles were commanded to hover. */
   case Failed(reason: String)
 
 /** A running flight. However it ends, the vehicles are commanded to hover, and every call has ended when
@@ -37,7 +37,7 @@ final class Flight private (
   /** The outcome as soon as it is decided, before the vehicles hover. */
   def ending: Future[FlightOutcome] = stopping.future
 
-  /** Ends the flight immediately, because it cannot go on. */
+  /** Ends the flight immediately, because it cannot continue. */
   def fail(reason: String): Unit =
     val _ = stopping.trySuccess(FlightOutcome.Failed(reason))
 
@@ -50,16 +50,17 @@ final class Flight private (
 
 object Flight:
 
-  /** Runs a loop for `duration`; for `paused`, of the simulator's time. A failure of the recorder ends the
+  /** Runs a loop for `duration`; for `paused`, by the simulator's clock. A failure of the recorder ends the
     * flight.
     *
-    * @param loop one of Skein's, or a user's own
-    * @param others the controllers of the other vehicles, where each vehicle has one: a graph of its own. The
+    * @param loop one of Skein's loops, or a user's own
+    * @param others the controllers of the other vehicles, if each vehicle has one, in a graph of its own. The
     *   first that ends or fails ends all
     * @param time advances the simulator; only `paused` needs it
     * @param onTime the outcome when its time is over
-    * @param on the materializer of one of Skein's loops, else the system's. A separate one can report the
-    *   graph independently: a stream that ends before it answers delays the report of all on its materializer
+    * @param on the materializer for one of Skein's loops, by default the system's. A separate one can report
+    *   the graph independently: a stream that ends before it answers delays the report of all on its
+    *   materializer
     */
   def start(
       loop: AnyLoop,

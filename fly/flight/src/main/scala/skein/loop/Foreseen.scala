@@ -16,11 +16,11 @@ private final class Foreseen(fleet: Fleet, deciders: IndexedSeq[Decider], period
   import Foreseen.*
 
   /** The next [[CommandPlan.Most]] actions of a vehicle and of every vehicle known to decide as it does, from
-    * the moments of the view's estimates on; none of other vehicles. Cost: as many decisions of each, and the
+    * the time of the view's estimates on; none of other vehicles. Cost: as many decisions of each, and the
     * predicted flight of all.
     *
-    * @param view with estimates
-    * @param minds by vehicle
+    * @param view a view with estimates
+    * @param minds the state with which each vehicle decides
     * @throws skein.units.OwnFailure as [[Decider.decide]]
     */
   def actions(vehicle: Int, view: TeamView, minds: Vector[Mind], now: Instant): Vector[Actions] =
@@ -69,6 +69,6 @@ private object Foreseen:
 
   /** The state with which a vehicle decides.
     *
-    * @param decision that led to this memory, if it was made on the present view
+    * @param decision the decision that led to this memory, if it was made on the present view
     */
   final case class Mind(memory: Memory, decision: Option[Decision])

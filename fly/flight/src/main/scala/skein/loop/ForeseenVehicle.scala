@@ -11,7 +11,6 @@ import scala.util.Try
   */
 private final class ForeseenVehicle(val plant: ObservedPlant[?], carriesS: Double):
 
-  /** The vehicle's state in a view. */
   def at(view: TeamView, vehicle: Int): PredictedVehicle[?] =
     val state = view.estimates.fold(Vector.empty)(_(vehicle).state)
     PredictedVehicle.of(plant, PlantModel.readingOf(view.kinematics(vehicle)), carriesS, state)
@@ -22,8 +21,8 @@ private object ForeseenVehicle:
 
   /** Chooses the plant for a vehicle.
     *
-    * @param model that predicts its readings. For a model without a plant of velocities, plans use AirSim's
-    *   quadrotor at the vehicle's altitude
+    * @param model the model that predicts its readings. For a model without a plant of velocities, plans use
+    *   AirSim's quadrotor at the vehicle's altitude
     * @return Left states why planning does not support it
     */
   def of(agent: Agent, model: VehicleModel[?], settings: PlanSettings): Either[String, ForeseenVehicle] =

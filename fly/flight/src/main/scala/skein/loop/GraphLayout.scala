@@ -2,8 +2,8 @@ package skein.loop
 
 /** The position of a part in a graph's drawing.
   *
-  * @param column from 0, from left to right
-  * @param row from 0, from top to bottom; halves occur, since columns are centred
+  * @param column index from the left, from 0
+  * @param row index from the top, from 0; halves occur, since columns are centred
   */
 final case class Spot(column: Int, row: Double)
 

@@ -25,7 +25,7 @@ private final class Inbox(
     first.trySuccess(message)
     reader.get()(message)
 
-  /** The newest message so far, or else the first to come. */
+  /** The newest message so far; if there is none yet, the first one. */
   def read(): Future[Reading] =
     newest.get.fold(first.future)(Future.successful)
 
@@ -38,5 +38,5 @@ private final class Inbox(
         NotUsed
 
 private object Inbox:
-  /** Most messages that wait for a slow graph; a further one is dropped. */
+  /** Maximum number of messages that wait for a slow graph; a further one is dropped. */
   val Waiting = 64

@@ -10,7 +10,7 @@ import skein.units.*
   *
   * If no search finished for a vehicle during half a horizon, its own policy decides.
   *
-  * @param vehicles by their places in the scenario, at least one
+  * @param vehicles indices in the scenario, at least one
   */
 final class JointPlanning private (val vehicles: Vector[Int], plannings: Vector[Planning]):
   val planner: PlannerSettings = plannings.head.planner
@@ -22,7 +22,7 @@ final class JointPlanning private (val vehicles: Vector[Int], plannings: Vector[
 
   /** The planning problems, by vehicle.
     *
-    * @param views with the estimates for the time at which the commands take effect
+    * @param views the vehicles' views, with the estimates for the time at which the commands take effect
     */
   def pose(memories: Vector[Memory], views: Vector[TeamView], now: Instant): Vector[Part] =
     plannings.indices.toVector.map(index => plannings(index).pose(memories(index), views(index), now))

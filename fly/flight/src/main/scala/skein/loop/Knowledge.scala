@@ -3,13 +3,13 @@ package skein.loop
 import skein.units.Expect
 import skein.vehicle.{CarModel, ConstantTurn, ConstantVelocity, QuadrotorModel, TurnBelief, VehicleModel}
 
-/** What the controller of a vehicle knows of the other ones. */
+/** The knowledge that a vehicle's controller has of the other vehicles. */
 enum Knowledge(val label: String):
   /** Their readings, the commands sent to them, and their policies. */
   case All extends Knowledge("all")
 
-  /** Their readings alone. A policy sees as another's heading the direction in which it moves. Where the loop
-    * predicts, it predicts the others by [[Strangers]].
+  /** Only their readings. A policy sees another vehicle's direction of motion as its heading. A loop that
+    * predicts does so by [[Strangers]].
     */
   case Positions extends Knowledge("positions")
 
@@ -18,7 +18,9 @@ object Knowledge:
 
 /** How a loop predicts the vehicles whose commands are not known. */
 enum Strangers(val label: String):
-  /** The turn of the last two readings goes on; straight on where the own vehicle is predicted so, too. */
+  /** The turn between the last two readings continues; straight on if the deciding vehicle is predicted so,
+    * too.
+    */
   case Turn extends Strangers("turn")
 
   case Straight extends Strangers("straight")
@@ -26,7 +28,7 @@ enum Strangers(val label: String):
   /** Multirotors by [[skein.vehicle.TurnBelief]], cars by their last turn. */
   case Belief extends Strangers("belief")
 
-  /** @param own the model of the vehicle if its commands were known */
+  /** @param own the vehicle's model if its commands were known */
   def model(own: VehicleModel[?]): VehicleModel[?] = this match
     case _ if own == ConstantVelocity => ConstantVelocity
     case Straight                     => ConstantVelocity

@@ -18,7 +18,7 @@ enum LoopEvent:
 
   /** A command was sent.
     *
-    * @param plan the one sent with it
+    * @param plan the plan sent with it
     */
   case Moved(move: SentCommand, plan: Option[CommandPlan] = None)
 

@@ -8,30 +8,31 @@ import skein.vehicle.{Guidance, QuadrotorModel, VehicleModel}
 
 /** How a loop is run.
   *
-  * @param period between decisions for one vehicle
-  * @param window limit of unanswered requests to one vehicle
-  * @param moveDuration of every move command; a vehicle without further commands then holds its position
+  * @param period time between decisions for one vehicle
+  * @param window maximum number of unanswered requests to one vehicle
+  * @param moveDuration duration of every move command; a vehicle without further commands then holds its
+  *   position
   * @param minCommandInterval the rate cap for one vehicle, for all loops
   * @param paceInterval least time of `stream` between two decisions (or commands) for one vehicle; the ticks
   *   keep the period
-  * @param movesInFlight limit of unanswered moves of one vehicle: see [[skein.flow.Steer]]
+  * @param movesInFlight maximum number of unanswered moves of one vehicle: see [[skein.flow.Steer]]
   * @param patience longest time for which `stream` waits for the readings of the other vehicles after the
   *   first
-  * @param spread over which the ticks of the vehicles are spread
+  * @param spread time over which the ticks of the vehicles are spread
   * @param early how `stream` treats a reading that arrives before an older one of its vehicle
   * @param decideThenPace `stream` decides at every view and paces the commands, instead of pacing first and
   *   deciding on the newest view
-  * @param model by which `predictive` and `plan` predict a vehicle from its readings
+  * @param model the model by which `predictive` and `plan` predict a vehicle from its readings
   * @param guidance how vehicles perform an action, for predictions
   * @param planning settings of `plan`
-  * @param seed of its searches
-  * @param deadline of every decision; without one a policy decides on the loop's own thread, which waits for
-  *   it. `paused` has none: its time stands still
-  * @param planInPacket whether `predictive` sends with each action those that it foresees, to a buffer beside
-  *   the vehicle ([[skein.port.PlanBuffer]]). Such commands are answered when they arrive, so `movesInFlight`
-  *   does not limit them, [[skein.port.Moves.MostInFlight]] does
+  * @param seed seed of the searches of `plan`
+  * @param deadline deadline of every decision; without one a policy decides on the loop's own thread, which
+  *   waits for it. `paused` has none: its time stands still
+  * @param planInPacket whether `predictive` sends with each action those that it foresees, to a buffer on the
+  *   vehicle's side of the link ([[skein.port.PlanBuffer]]). Such commands are answered when they arrive, so
+  *   `movesInFlight` does not limit them, [[skein.port.Moves.MostInFlight]] does
   * @param knows what the controller of a vehicle knows of the others; `plan` knows all
-  * @param strangers how `predictive` predicts those whose commands it does not know
+  * @param strangers how `predictive` predicts vehicles whose commands it does not know
   */
 final case class LoopSettings(
     period: Span = Span.ofMillis(100),

@@ -1,14 +1,14 @@
 package skein.loop
 
-/** How the controller of one vehicle learns where the others are, where it does not read them itself: each
-  * controller sends what it reads of its own vehicle to the others.
+/** How one vehicle's controller learns the states of vehicles that it does not read itself: each controller
+  * sends the readings of its own vehicle to the others.
   */
 trait Messages:
 
-  /** Sends a reading of the own vehicle to all others. */
+  /** Sends a reading of this controller's vehicle to all others. */
   def send(reading: Reading): Unit
 
-  /** Sets who is given each message that arrives: the sender's reading, received now, with the number of
+  /** Sets the receiver of each message that arrives: the sender's reading, received now, numbered by
     * [[Reading.relayed]].
     */
   def onReceived(take: Reading => Unit): Unit

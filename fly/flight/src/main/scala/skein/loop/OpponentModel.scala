@@ -13,7 +13,7 @@ object OpponentModel:
       val policy = opponent.policy.guessed(_ => 0)
       Planner.refusal(policy).toLeft(policy)
 
-  /** The vehicles whose decisions plans may predict, by their places. */
+  /** The vehicles whose decisions plans may predict, by their indices. */
   private[loop] def known(fleet: Fleet): Vector[Int] =
     fleet.agents.indices.toVector.filter(vehicle => of(fleet.agents(vehicle)).isRight)
 

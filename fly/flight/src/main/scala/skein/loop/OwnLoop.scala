@@ -30,7 +30,7 @@ object AnyLoop:
 /** A control loop of a user's own: a graph of a [[Team]]'s operators. It is recorded, reported, run in
   * virtual time and replayed like Skein's; [[StreamLoop]] uses these operators and is an example.
   *
-  * @param name in recordings, tables and pictures; not one of Skein's
+  * @param name the loop's name in recordings, tables and pictures; not one of Skein's
   * @param graph ends its sources when the switch is shut down, and completes its future when every command
   *   has ended; after [[OwnLoop.Grace]] it is aborted. In any case the vehicles are commanded to hover
   *   afterwards

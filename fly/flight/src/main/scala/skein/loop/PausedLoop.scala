@@ -12,15 +12,16 @@ import skein.record.EventKind
 import skein.signal.{Stamped, TimeAxis}
 import skein.units.*
 
-/** The paper's model 1, the ground truth: the simulator stands still while every vehicle is read, decided for
-  * and commanded; then it runs exactly one period. Time is the simulator's: no reading has an age.
+/** The paper's model 1, the ground truth: the simulator stands still while every vehicle is read and
+  * commanded; then it runs exactly one period. Time is the simulator's: no reading has an age.
   *
   * While time stands still readings do not age, so this loop waits: a request without an answer is repeated
   * for up to [[PausedLoop.Patience]], and a step whose answer is lost is repeated only if the simulator's
-  * clock shows that it was not made. After that time the flight ends, since a truth with gaps is none. The
-  * length of each step is verified against the simulator's clock; one that took no time, or several periods,
-  * ends the flight. However it ends, the simulator runs again and the vehicles are commanded to hover; both
-  * are tried up to [[UntilCertain.Attempts]] times. While the team is held, no step begins: nothing moves.
+  * clock shows that it was not made. After that time the flight ends, since a reference with gaps is none.
+  * The length of each step is verified against the simulator's clock; one that took no time, or several
+  * periods, ends the flight. However it ends, the simulator runs again and the vehicles are commanded to
+  * hover; both are tried up to [[UntilCertain.Attempts]] times. While the team is held, no step begins:
+  * nothing moves.
   */
 object PausedLoop:
 
@@ -221,5 +222,5 @@ private object PausedFlight:
   /** Interval of checks whether the team is still held. */
   private val LookEvery = 100.millis
 
-/** A loop cannot go on; the message states why. */
+/** A loop cannot continue; the message states why. */
 final class LoopFailed(message: String) extends RuntimeException(message)

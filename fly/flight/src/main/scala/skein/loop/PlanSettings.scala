@@ -8,18 +8,19 @@ import skein.units.*
 
 /** Settings of the loop `plan`.
   *
-  * @param deadline from the tick until the command is sent, with the best plan found by then
-  * @param horizonSteps of `step` each
+  * @param deadline time from the tick until the command is sent, with the best plan found by then
+  * @param horizonSteps number of steps, of duration `step` each
   * @param method `cross-entropy` or `path-integral`
-  * @param behaviours of the opponent, against which every candidate is simulated
-  * @param searches side by side: the number of threads in real time
-  * @param slices of each search in virtual time, where the clock does not end it; several vehicles share
-  *   them, and each gets at least one
-  * @param blocksPerSlice 128 candidates each; between two slices a search checks its time
-  * @param turningRadiusM of a vehicle at the speed that it commands
+  * @param behaviours number of behaviours of the opponent against which every candidate is simulated
+  * @param searches number of concurrent searches: of threads in real time
+  * @param slices number of slices of each search in virtual time, where the clock does not end it; several
+  *   vehicles share them, and each gets at least one
+  * @param blocksPerSlice number of blocks of 128 candidates in a slice; between two slices a search checks
+  *   its time
+  * @param turningRadiusM turning radius of a vehicle at its commanded speed, m
   * @param slowestShare least commanded speed, as a share of the vehicle's; 1: only its heading is planned
-  * @param separationM to be kept from vehicles that are not the opponent; 0: none
-  * @param geofenceM to be kept to north and south, east and west of the origin; 0: none
+  * @param separationM separation to be kept from vehicles other than the opponent, m; 0: none
+  * @param geofenceM greatest distance from the origin to north and south, east and west, m; 0: none
   * @param kept the scenario's limits that plans keep, with the margin [[PlanSettings.Doubt]], or
   *   [[PlanSettings.SpeedDoubt]] of speeds; not part of the text
   */
@@ -121,8 +122,7 @@ object PlanSettings:
   val CrossEntropy = "cross-entropy"
   val PathIntegral = "path-integral"
 
-  /** Limit of the deadline: after a longer search, the data behind a plan would be older than in any other
-    * loop.
+  /** Maximum deadline: after a longer search, the data behind a plan would be older than in any other loop.
     */
   val MostDeadline: Span = Span.ofSeconds(2)
 
@@ -164,7 +164,6 @@ object PlanSettings:
 
   private val mirror = summon[Mirror.ProductOf[PlanSettings]]
 
-  /** All settings, by their names. */
   private val words: Vector[(String, Word[Any])] =
     constValueTuple[mirror.MirroredElemLabels].toList.map(_.toString).toVector.zip(
       summonAll[Tuple.Map[mirror.MirroredElemTypes, Word]].toList.asInstanceOf[List[Word[Any]]]

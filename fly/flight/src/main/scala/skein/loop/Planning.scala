@@ -38,12 +38,11 @@ private abstract class Planning(
   /** The decision of the vehicle's policy instead of the plan. */
   protected def byPolicy(memory: Memory, view: TeamView, now: Instant, part: Part): PlannedMove
 
-  /** Whether speeds are planned too. */
   protected def choosesSpeed: Boolean
 
   /** The decision for the plan found.
     *
-    * @param part whose situation includes the planned tracks of the others
+    * @param part the planning problem, whose situation includes the planned tracks of the others
     * @param isOld whether the vehicle's policy decides instead of the plan
     */
   final def decide(
@@ -63,7 +62,6 @@ private abstract class Planning(
     val (next, decision) = decider.decided(memory, view, now, Action.Along(heading, speed, down))
     (next, PlannedDecision(decision, action, plan, isOld, chosen.map(course(part, _))))
 
-  /** The path along which a manoeuvre leads. */
   private def course(part: Part, manoeuvre: Manoeuvre): PlannedPath =
     val track = ManoeuvreRollout(part.situation, part.objective, planner.dtS).track(manoeuvre)
     val steps = Vector.range(0, track.steps)
@@ -78,7 +76,7 @@ private abstract class Planning(
 /** A planned decision, with the plan's data.
   *
   * @param byPolicy whether the last plan was too old to continue
-  * @param course the planned path; absent where the policy decides instead
+  * @param course the planned path; absent if the policy decides instead
   */
 final case class PlannedDecision(
     decision: Decision,
@@ -89,7 +87,7 @@ final case class PlannedDecision(
 ):
   /** The report of a planned decision.
     *
-    * @param slices that each search has finished
+    * @param slices number of slices each search has finished
     */
   def report(slices: Vector[Int]): PlanReport = PlanReport(
     plan.candidates,
@@ -104,13 +102,14 @@ final case class PlannedDecision(
 
 /** The recorded data of a planned decision.
   *
-  * @param candidates simulated by all searches together
-  * @param slices that each search has finished
-  * @param cost of the plan; absent where none was tried
+  * @param candidates number of candidates that all searches simulated together
+  * @param slices number of slices each search has finished
+  * @param cost cost of the plan; absent if none was simulated
   * @param isSearched whether any search finished a slice for this vehicle
   * @param byPolicy whether the last plan was too old to continue
-  * @param breaches of hard limits within the plan's horizon, of which `breach` is the first
-  * @param course the planned path; absent where the policy decides instead
+  * @param breaches number of violations of hard limits within the plan's horizon, of which `breach` is the
+  *   first
+  * @param course the planned path; absent if the policy decides instead
   */
 final case class PlanReport(
     candidates: Long,
@@ -158,9 +157,9 @@ object Planning:
   private val MostNamed = 8
 
   /** Cost by which a plan must be better than the policy's manoeuvre to be followed. A long search exploits
-    * every small gain of the simple model and of guesses about other vehicles, also where these are wrong;
-    * the policy does not. Vehicles at their goals follow the policy, and plans only where these save some 0.1
-    * m for a second.
+    * every small gain of the simple model and of guesses about other vehicles, even if these are wrong; the
+    * policy does not. Vehicles at their goals follow the policy, and plans only if these save some 0.1 m for
+    * a second.
     */
   private val ClearGain = 0.1
 

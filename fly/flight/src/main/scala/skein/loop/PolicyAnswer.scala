@@ -21,7 +21,7 @@ private object PolicyAnswer:
 
   /** Checks an action or a position.
     *
-    * @throws OwnFailure if there is none, or a number in it is not finite
+    * @throws OwnFailure if there is none, or a component is not finite
     */
   def expectAction(agent: Agent, action: Any): Unit =
     if !Action.isFinite(action) then

@@ -5,8 +5,8 @@ import skein.policy.Fleet
 import skein.units.*
 import skein.vehicle.PlantModel
 
-/** Plans for a pursuer of the paper's game: to be as close to its evader as it can, on the average and at the
-  * end of the horizon, and to capture it.
+/** Plans for a pursuer of the paper's game: to be as close to its evader as it can, on average and at the end
+  * of the horizon, and to capture it.
   *
   * Its turn rate stays below speed / turning radius. The opponent is assumed to follow its policy with its
   * initial memory, if that plays against one vehicle and is a formula ([[OpponentModel]]); else to fly

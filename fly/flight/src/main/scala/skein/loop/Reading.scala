@@ -9,18 +9,23 @@ import skein.units.Instant
   * @param sequence counts the readings of this vehicle in the order of the requests: see [[Reading.number]]
   */
 final case class Reading(vehicle: Int, sequence: Long, state: Stamped[Kinematics]):
-  /** As another vehicle's controller received it in a message: numbered as that controller's own. */
+  /** This reading as another vehicle's controller received it in a message, numbered as that controller's
+    * own.
+    */
   private[skein] def relayed(from: Int, to: Int, receivedAt: Instant): Reading =
     copy(sequence = sequence - from + to, state = state.copy(receivedAt = receivedAt))
 
 object Reading:
-  /** The number of a controller's n-th reading of a vehicle. Of C controllers with a vehicle each, number c
-    * has the numbers c, c + C, c + 2C, …: no two readings have one number, and it says whose a reading is.
+  /** The number of a controller's n-th reading of a vehicle. Of C controllers with a vehicle each, controller
+    * c uses the numbers c, c + C, c + 2C, …: no two readings have one number, and it identifies the
+    * controller.
     */
   private[loop] def number(nth: Long, own: Vector[Int], vehicles: Int): Long =
     if own.sizeIs == vehicles then nth else nth * vehicles + own.head
 
-  /** How many controllers read each vehicle in a recorded flight. The one of `number` is its remainder. */
+  /** Number of controllers that read each vehicle in a recorded flight. The remainder of a reading's number
+    * identifies its controller.
+    */
   private[skein] def controllers(heading: RecordingHeader): Int =
     if heading.parameter("decentralised").contains("true") then heading.vehicles.size else 1
 

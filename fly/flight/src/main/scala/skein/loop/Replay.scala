@@ -15,7 +15,8 @@ import skein.units.*
   * and compared to the last bit: everything else in a decision, above all its opponent and the chosen
   * heading. The memory from decision to decision is the replay's own.
   *
-  * @param settings of the flight; for a loop that does not plan, only its controllers' knowledge matters
+  * @param settings the flight's settings; for a loop that does not plan, only its controllers' knowledge
+  *   matters
   * @throws IllegalArgumentException if planning does not support the recorded models here
   */
 final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = LoopSettings())(using
@@ -94,7 +95,7 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
             (states, Difference.between(withSpeed(recorded), withSpeed(decision)))
       .collectFirst { case (_, Some(difference)) => difference }
 
-  /** A decision with its speed, also where that is the vehicle's own and not recorded. */
+  /** A decision with its speed, even if that is the vehicle's own and not recorded. */
   private def withSpeed(decision: DecisionRow): DecisionRow =
     decision.copy(speed = decision.speed.orElse(indexOf.get(decision.vehicle).map(fleet.agents(_).speed)))
 
@@ -163,7 +164,6 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
       case (Vector(), found) => Right(found)
       case (missing, _)      => Left(missing.head)
 
-  /** The view on which a decision was made. */
   private def view(recorded: DecisionRow, self: Int, regardsTeam: Boolean): Either[Difference, TeamView] =
     for
       other    <- vehicle(recorded, "opponentVehicle", recorded.opponent.vehicle)
@@ -187,7 +187,6 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
         .find(view => fleet.opponentOf(self, view.kinematics(_).positionNed) == other)
         .getOrElse(possible.head)
 
-  /** The sensor readings known at a decision. */
   private def sensed(of: DecisionRow, self: Int): Either[Difference, Map[String, SensorReading]] =
     collected(sensings.getOrElse((of.vehicle, of.sequence), Vector.empty)): sensing =>
       measured
@@ -324,7 +323,7 @@ final class Replay(fleet: Fleet, recording: Recording, settings: LoopSettings = 
 object Replay:
   /** State of the repeated decisions.
     *
-    * @param jointly for vehicles that plan
+    * @param jointly state of vehicles that plan
     * @param decided last joint decision, by vehicle and number
     */
   private final case class Minds(

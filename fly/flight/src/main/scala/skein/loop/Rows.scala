@@ -91,7 +91,7 @@ private final class Rows(fleet: Fleet):
       action = actionColumn(decision.action, fleet.agents(self))
     )
 
-  /** The recorded speed: absent for the vehicle's own, where its policy plays against one opponent. */
+  /** The recorded speed: absent for the vehicle's own, if its policy plays against one opponent. */
   private def speedColumn(action: Action, agent: Agent): Option[MetresPerSecond] = action match
     case Action.Along(_, agent.speed, _, Yaw.Still) if agent.policy.isAgainstOne => None
     case _                                                                       => Some(action.speed)

@@ -4,9 +4,9 @@ import org.apache.pekko.stream.Materializer
 import org.apache.pekko.stream.snapshot.{MaterializerState, RunningInterpreter}
 import scala.concurrent.{ExecutionContext, Future}
 
-/** The parts of a graph and its edges, both by names.
+/** The parts and edges of a graph, by name.
   *
-  * @param stages their names
+  * @param stages names of the parts
   */
 final case class LoopGraph(stages: Vector[String], edges: Vector[(from: String, to: String)])
 
@@ -55,6 +55,6 @@ final class RunningGraph(
     val places = running.logics.zipWithIndex.toMap
     LoopGraph.of(
       running.logics.toVector.map(_.attributes.get[StageMeter].filter(_.of eq meters).map(_.name)),
-      // `in` owns the inlet, and so is where the connection leads to.
+      // `in` owns the inlet, so the connection leads to it.
       running.connections.toVector.flatMap(one => places.get(one.out).zip(places.get(one.in)))
     )

@@ -11,9 +11,10 @@ trait Solver:
     * for these vehicles without an answer.
     *
     * @param deciders a constant group, and no vehicle in two groups
-    * @param remembered the last answer that was used, which tells the solver its memory of these vehicles;
+    * @param remembered the last answer that was used, by which the solver finds its memory of these vehicles;
     *   absent before the first
-    * @param askedAt on the controller's clock, like `until`, after which an answer is discarded
+    * @param askedAt time of the request, on the controller's clock, like `until`, after which an answer is
+    *   discarded
     * @param searching time that the solver has for its search: not counted in [[delay]]
     * @return fails if no answer can be received; never completes if none is received in time
     */
@@ -38,15 +39,16 @@ object Solver:
   *
   * @param solver identifies its start
   * @param question counts the requests for this vehicle
-  * @param askedAt on the controller's clock, like the other instants
-  * @param decidedAt by the estimate of the solver's clock; before there is one, the time of the request
+  * @param askedAt time of the request, on the controller's clock, like the other instants
+  * @param decidedAt time of the decision, by the estimate of the solver's clock; without an estimate,
+  *   `askedAt`
   * @param receivedAt time of receipt
-  * @param thinking from receipt of the request to sending of the answer
+  * @param thinking time from receipt of the request to sending of the answer
   * @param clock the controller's clock minus the solver's, as estimated at the request, with the bound of the
   *   error
   * @param begunAnew whether the solver had lost its memory of these vehicles, so that it decided as for the
   *   first time
-  * @param chosen for each requested vehicle
+  * @param chosen the decision for each requested vehicle
   */
 final case class Solved(
     solver: Long,
@@ -62,6 +64,6 @@ final case class Solved(
 
 /** The decision for one vehicle.
   *
-  * @param plan its data; absent where a policy decided
+  * @param plan the plan's data; absent if a policy decided
   */
 final case class Chosen(action: Action, plan: Option[PlanReport] = None)

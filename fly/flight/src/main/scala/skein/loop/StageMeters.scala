@@ -9,7 +9,7 @@ import skein.units.*
 /** Counts the elements of a named part of a loop's graph. As an attribute of the part's operators, it names
   * them in the running graph ([[RunningGraph]]). One thread counts, any thread may read.
   *
-  * @param of the meters of this graph
+  * @param of all meters of this graph
   */
 final class StageMeter private[loop] (val name: String, private[loop] val of: StageMeters)
     extends Attributes.Attribute:

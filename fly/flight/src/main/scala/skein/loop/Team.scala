@@ -16,7 +16,7 @@ import skein.units.*
   * @param only the vehicle of a controller of its own, which reads all vehicles and commands this one;
   *   without it, all are commanded
   * @param hold while it is held, the vehicles hover without decisions; they are still read
-  * @param messages by which the controller of one vehicle knows the others, instead of reading them
+  * @param messages messages from which one vehicle's controller knows the others, instead of reading them
   */
 final class Team(
     val fleet: Fleet,

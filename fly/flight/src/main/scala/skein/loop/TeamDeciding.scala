@@ -13,7 +13,7 @@ import skein.units.*
 /** Predicts a team's requests for the time at which their commands take effect, decides or plans on them, and
   * records the decisions.
   *
-  * @param deciders by vehicle
+  * @param deciders the decider of each vehicle
   * @param solver decides instead of the policies
   */
 private final class TeamDeciding(
@@ -30,7 +30,7 @@ private final class TeamDeciding(
   /** A view for a decision, with the time of the request. */
   private type Seen = (TeamView, Instant)
 
-  /** The plan is absent where a fallback decided. */
+  /** The plan is absent if a fallback decided. */
   private type Planned = (decision: Decision, plan: Option[PlanReport])
 
   private val foresight =
@@ -170,7 +170,7 @@ private final class TeamDeciding(
     *
     * @param instead decides where the deadline is missed ([[skein.policy.KeepHeading]] repeats the last
     *   decision); without it nothing is sent then, and the vehicle continues its last move until that ends
-    * @param policy from memory, view and the time of the request
+    * @param policy decides from memory, view and the time of the request
     */
   def decideWithin(
       vehicle: Int,

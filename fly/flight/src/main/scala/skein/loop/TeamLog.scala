@@ -62,14 +62,14 @@ final class TeamLog(fleet: Fleet, deciders: IndexedSeq[Decider], clock: Clock, r
 
   /** Records why a call failed.
     *
-    * @param what was called
+    * @param what the call
     */
   def failed(vehicle: Int, what: String, error: VehicleError): Unit =
     failed(vehicle, what, error, None)
 
   /** A request for a vehicle's position was not answered.
     *
-    * @param sequence of the request
+    * @param sequence sequence of the request
     */
   def unread(vehicle: Int, sequence: Long, error: VehicleError): Unit =
     failed(vehicle, s"reading $sequence", error, Some(EventSubject.Reading))

@@ -101,7 +101,7 @@ private final class TeamPlanning(
     PlannedMove(turn, settings.speedMps(action.speed.value), Vector.empty)
 
 private object TeamPlanning:
-  /** Limit of a multirotor's turn in a step. If it were less than the policy's turns, a vehicle could not
+  /** Maximum turn of a multirotor in a step. If it were less than the policy's turns, a vehicle could not
     * turn back in time.
     */
   val MostTurnRad = 1.0

@@ -25,13 +25,13 @@ private final class TeamSensing(
 )(using ExecutionContext):
   private val meters = ports.indices.map(parts.meter("sense", _))
 
-  // `futures` asks one vehicle from several threads at once.
+  // `futures` reads one vehicle from several threads concurrently.
   private val asked = AtomicLongArray(ports.size)
 
-  // Known as answers come, before anything is made of them.
+  // Updated as answers arrive, before they are used.
   private val clocks = AtomicReference(clocksBefore)
 
-  /** Of the vehicles that are not read, but known by messages. */
+  /** The inboxes of vehicles that are known by messages instead of readings. */
   private val inboxes: Map[Int, Inbox] =
     val others = messages.toVector.flatMap(_ => ports.indices.filterNot(own.contains))
     others
@@ -47,7 +47,7 @@ private final class TeamSensing(
       log.read(message)
       inboxes(message.vehicle).put(message)
 
-  /** Learns of the vehicles' clock from a reading, and records a contradiction between the clocks.
+  /** Aligns the vehicles' clock by a reading, and records a contradiction between the clocks.
     *
     * @param isRunning whether the simulator's clock runs by itself
     */
@@ -88,7 +88,7 @@ private final class TeamSensing(
           log.unread(vehicle, sequence, error)
           Left(error)
 
-  /** Whether one answer was sampled later than another, judged by all readings of the team. */
+  /** Whether one answer was sampled later than another, by all readings of the team. */
   def isNewer(one: Stamped[?], other: Stamped[?]): Boolean =
     clocks.get.getOrElse(ClockAlignment.of(one)).isNewer(one, other)
 
@@ -173,8 +173,8 @@ private final class TeamSensing(
           case Right(readings) => sensor.read().map(_.map(readings :+ _))
           case error           => Future.successful(error)
 
-  /** Reads all vehicles in the scenario's order; ends at the first error. Vehicles that are known by messages
-    * are as in the newest when their turn comes, after the own one.
+  /** Reads all vehicles in the scenario's order; ends at the first error. The states of vehicles that are known
+    * by messages are those of the newest message after this controller's own vehicle was read.
     *
     * @param isRunning whether the simulator's clock runs by itself
     */
@@ -190,7 +190,7 @@ private final class TeamSensing(
   def ticks(first: Instant): Source[Int, NotUsed] =
     Source.fromGraph(Metronome(first, settings.period, clock))
 
-  /** The present age of a moment on the vehicles' clock; absent as long as nothing is known of that clock. */
+  /** The present age of a moment on the vehicles' clock; absent until that clock is known. */
   def ageOf(validAt: Option[Instant]): Option[Span] =
     clocks.get
       .zip(validAt)

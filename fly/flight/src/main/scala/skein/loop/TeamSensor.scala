@@ -11,8 +11,8 @@ private final class TeamSensor(val vehicle: Int, val name: String, sensor: Senso
   private val asked   = AtomicLong()
   private val columns = sensor.columns
 
-  /** Reads it; records the answer or the error. An answer is an error if it has not one number for each
-    * column, or a number that is not finite.
+  /** Reads it; records the answer or the error. An answer is an error if it does not have one finite value
+    * for each column.
     */
   def read(): Future[Either[VehicleError, SensorReading]] =
     val sequence = asked.getAndIncrement()

@@ -7,7 +7,8 @@ import skein.units.*
 
 /** A command that was sent to a vehicle, as other vehicles' policies observe it.
   *
-  * @param heading to which the action leads: for one without a heading, that of the command before
+  * @param heading the heading to which the action leads; for an action without one, that of the command
+  *   before
   */
 final case class SentCommand(
     vehicle: Int,
@@ -21,12 +22,12 @@ final case class SentCommand(
   * and the relation of the two clocks.
   *
   * @param sensed the newest reading of each sensor in use, by vehicle
-  * @param forecast present where the loop predicts
-  * @param estimates of every vehicle for the time at which a command decided on this view takes effect;
-  *   absent where none are made
+  * @param forecast present if the loop predicts
+  * @param estimates the estimate of every vehicle for the time at which a command decided on this view takes
+  *   effect; absent if none are made
   * @param knows what policies may see of the other vehicles
-  * @param strangers predicts each vehicle from its readings alone; present where the loop predicts and
-  *   commands of others are not known
+  * @param strangers predicts each vehicle from its readings alone; present if the loop predicts and commands
+  *   of others are not known
   * @param byMessages the vehicles that are known by messages: how long these took says nothing of when a
   *   command acts
   */
@@ -72,11 +73,11 @@ final case class TeamView(
   def ageOf(reading: Stamped[?], now: Instant): Span =
     alignment.flatMap(_.ageOf(reading, now)).getOrElse(reading.ageByArrival(now))
 
-  /** The newest reading of each vehicle that was read, not predicted. */
+  /** The newest readings, not predicted, in the order of vehicles; a vehicle that was not read is missing. */
   def asRead(now: Instant): Vector[Seen] = readings.flatten.map: reading =>
     Seen(reading.state.value, ageOf(reading.state, now), isPredicted = false)
 
-  /** A vehicle's state: as estimated, or else as read. */
+  /** A vehicle's state: the estimate, or else the reading. */
   def kinematics(vehicle: Int): Kinematics =
     estimates.fold(readings(vehicle).get.state.value)(_(vehicle).kinematics)
 
@@ -84,8 +85,8 @@ final case class TeamView(
   def headingRad(vehicle: Int, fleet: Fleet): Double =
     moves(vehicle).fold(fleet.agents(vehicle).startHeading.value)(_.heading.value)
 
-  /** The heading of another vehicle as policies see it, rad: the last commanded, or where commands of others
-    * are not known, the direction in which it moves; of one that stands still, that of the start.
+  /** The heading of another vehicle as policies see it, rad: the last commanded, or, if commands of others
+    * are not known, its direction of motion; at rest, the heading at the start.
     */
   def seenHeadingRad(vehicle: Int, fleet: Fleet): Double = knows match
     case Knowledge.All       => headingRad(vehicle, fleet)

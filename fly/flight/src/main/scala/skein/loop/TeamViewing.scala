@@ -13,7 +13,7 @@ import skein.units.*
 
 /** Folds loop events into team views and emits decision requests.
   *
-  * @param byMessages whether all but the own vehicle are known by messages
+  * @param byMessages whether all vehicles but the controller's own are known by messages
   */
 private final class TeamViewing(
     fleet: Fleet,

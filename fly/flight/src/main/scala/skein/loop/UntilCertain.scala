@@ -8,7 +8,7 @@ import skein.units.*
 /** Repeats a final command of a flight that must not get lost, with pauses, until its answer is certain. */
 private[skein] object UntilCertain:
 
-  /** Limit of the attempts, the first one included. */
+  /** Maximum number of attempts, the first one included. */
   val Attempts = 20
 
   /** Pause between two attempts, by the actor system's clock. */

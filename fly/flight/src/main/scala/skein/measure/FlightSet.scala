@@ -4,7 +4,7 @@ import skein.record.LoopKind
 
 /** Flights that are reported together, in the order of the paper: by link, then by loop.
   *
-  * @param flights without the virtual twins of live flights
+  * @param flights the flights, without the virtual twins of live flights
   * @param twins live flights with their virtual twins
   */
 final case class FlightSet private (flights: Vector[FlightSummary], twins: Vector[Twin]):
@@ -13,7 +13,7 @@ final case class FlightSet private (flights: Vector[FlightSummary], twins: Vecto
 
   def over(link: String): Vector[FlightSummary] = flights.filter(_.flight.link == link)
 
-  /** The paused flight that figures show beside the others. [[Truth]] decides with which flight each is
+  /** The paused flight that figures show with the others. [[Truth]] decides with which flight each is
     * compared.
     */
   val truth: Option[FlightSummary] =

@@ -10,24 +10,24 @@ import skein.units.Decimals.fixed
 /** The summary of one recording.
   *
   * @param simulator its name, its wire protocol if not AirSim's, and its bodies: for people
-  * @param tracks empty where the flight has no result: no clock, or no vehicle, to measure by
+  * @param tracks empty if the flight has no result: no clock, or no vehicle, to measure by
   * @param roles evaders first, as in the paper
-  * @param roundTripsMs of the link's own samples if there are any, else of the readings
+  * @param roundTripsMs round trips of the link's own samples if there are any, else of the readings
   * @param scenario absent if it is not known here
-  * @param cutShort why it ended before its time, if it did
+  * @param cutShort why it ended early, if it did
   * @param policy short name of the policy that replaced the paper's; the flight's scenario says more
   * @param planning absent if nothing was planned
   * @param predictions absent if nothing was predicted
   * @param paused time for which its vehicles hovered on request: included in all times and distances of the
   *   flight
-  * @param seeing of each eye of its scenario, also of one without detections
+  * @param seeing one summary for each eye of its scenario, also for one without detections
   * @param solver absent if the flight's own process decided
   * @param noResult why the flight has no result, if it has none
   * @param starved lateness of control on a machine that was too busy, if it was
-  * @param commandAgesMs of commands that carry out a decision: from the sampling of the vehicle's own physics
-  *   to the sending of the command
+  * @param commandAgesMs ages of commands that carry out a decision: from the sampling of the vehicle's own
+  *   physics to the sending of the command
   * @param imageless its cameras without any of the requested images, each with the reason in a line
-  * @param isInPacket whether its commands carried plans, to a buffer beside the vehicle
+  * @param isInPacket whether its commands carried plans, to a buffer on the vehicle's side of the link
   */
 final case class FlightSummary(
     flight: FlightRow,
@@ -54,7 +54,7 @@ final case class FlightSummary(
     isInPacket: Boolean
 ):
 
-  /** The distance between the first pursuer and the first evader, where all play against one opponent each;
+  /** The distance between the first pursuer and the first evader, if all play against one opponent each;
     * absent if they were not both read.
     */
   val distance: Option[DistanceCurve] =
@@ -111,7 +111,7 @@ final case class FlightSummary(
   *
   * @param opponentTrueAgeMs absent, like other observations of an opponent, if the role's policies consider
   *   the team instead
-  * @param ownTrueAgeMs from the sampling of physics to the decision
+  * @param ownTrueAgeMs time from the sampling of physics to the decision
   */
 final case class RoleSummary(
     role: String,
@@ -175,8 +175,8 @@ object FlightSummary:
         age      <- decision.trueAge if isAge(age.own)
       yield (age.own + command.sentAt.since(decision.decidedAt)).toMillis
 
-  /** Whether an age is valid: recordings of earlier versions have negative ages where the simulator's clock
-    * was reset.
+  /** Whether an age is valid: recordings of earlier versions have negative ages if the simulator's clock was
+    * reset.
     */
   private def isAge(age: Span) = age >= Span.Zero
 

@@ -89,7 +89,7 @@ object LinkFit:
         everyS > 0 && similar > 3 / math.sqrt(pairs.size)
       )(-everyS / StrictMath.log(similar.min(0.999)))
 
-  /** The share of the sorted numbers below one, half of those equal to it included. */
+  /** The share of the sorted values below a value, half of those equal to it included. */
   private def shareBelow(sorted: Vector[Double], value: Double): Double =
     def first(isBeyond: Double => Boolean) =
       var (low, high) = (0, sorted.size)

@@ -5,8 +5,8 @@ import skein.signal.TimeAxis
 
 /** Why a complete flight has no result: its basis of measurement is wrong.
   *
-  * @param what in two or three words
-  * @param why in a line
+  * @param what the fault, in two or three words
+  * @param why the reason, in a line
   */
 final case class NoResult(what: String, why: String)
 

@@ -4,11 +4,11 @@ import skein.record.Recording
 
 /** Statistics of a flight's plans.
   *
-  * @param candidates per plan
-  * @param slices of all vehicles that were planned together
-  * @param tookMs from the request to the decision
-  * @param missed deadlines without any result
-  * @param breached plans that could not keep within a hard limit
+  * @param candidates number of candidates per plan
+  * @param slices number of slices per plan, of all searches and of all vehicles that were planned together
+  * @param tookMs time from the request to the decision
+  * @param missed number of deadlines without any result
+  * @param breached number of plans that could not keep within a hard limit
   */
 final case class PlanningSummary(
     candidates: Distribution,

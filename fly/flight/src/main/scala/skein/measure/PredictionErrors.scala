@@ -6,7 +6,7 @@ import skein.record.Recording
   *
   * @param made number of predictions; those without a sample concern a moment that was never read, or read
   *   with too wide a gap around it
-  * @param samples of verified predictions: age, from the reading to the predicted moment, ms, and error, m
+  * @param samples the verified predictions: age, from the reading to the predicted moment, ms, and error, m
   */
 final case class PredictionErrors(made: Int, samples: Vector[(Double, Double)]):
   def unverified: Int = made - samples.size
@@ -17,7 +17,7 @@ final case class PredictionErrors(made: Int, samples: Vector[(Double, Double)]):
   def errors: Option[Distribution] = Distribution.of(samples.map(_._2))
 
   /** Errors of predictions whose age rounds to `ageMs`, to the nearest multiple of
-    * [[PredictionErrors.BinMs]]; absent where they are fewer than [[PredictionErrors.Fewest]].
+    * [[PredictionErrors.BinMs]]; absent if they are fewer than [[PredictionErrors.Fewest]].
     */
   def around(ageMs: Int): Option[Distribution] = byAge.collectFirst { case (`ageMs`, errors) => errors }
 
@@ -54,7 +54,7 @@ object PredictionErrors:
     val predicted = recording.decisions.filter(_.predicted.nonEmpty)
     val decisions = predicted.groupMapReduce(_.vehicle)(_ => 1)(_ + _)
     // A decider predicts once per decision each vehicle that it predicts at all: itself, and in a duel its
-    // opponent, even where not one of these predictions could be verified.
+    // opponent, even if not one of these predictions could be verified.
     val opponents = if isDuel then predicted.map(one => (one.vehicle, one.opponent.vehicle)) else Vector.empty
     val pairs     = (predicted.map(one => (one.vehicle, one.vehicle)) ++
       opponents ++

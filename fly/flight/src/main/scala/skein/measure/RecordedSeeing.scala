@@ -6,8 +6,8 @@ import skein.scene.Placement
 import skein.scenario.{Equipment, Scenarios}
 import skein.units.*
 
-/** Extracts the detections of the scenario's eyes from a recording, with the truth from the target's own
-  * readings.
+/** Extracts the detections of the scenario's eyes from a recording, with the ground truth from the target's
+  * own readings.
   */
 object RecordedSeeing:
 

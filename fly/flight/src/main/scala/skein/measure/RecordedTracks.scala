@@ -6,8 +6,8 @@ import skein.scenario.Track
 /** Extracts the vehicles' tracks from a recording. */
 object RecordedTracks:
 
-  /** The track of every vehicle that was read: from the recorded truth, if there is any, else from the
-    * readings.
+  /** The track of every vehicle that was read: from the recorded true positions, if there are any, else from
+    * the readings.
     */
   def of(recording: Recording): Vector[Track] =
     val truths   = recording.truths.groupBy(_.vehicle)

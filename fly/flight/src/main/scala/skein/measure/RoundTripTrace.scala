@@ -6,7 +6,7 @@ import skein.units.Expect
 
 /** Requests over a link, in the order of sending.
   *
-  * @param sentAtS of each, since any moment
+  * @param sentAtS time of sending of each request, since any moment
   * @param roundTripsMs None for a request without an answer
   */
 final case class RoundTripTrace(sentAtS: Vector[Double], roundTripsMs: Vector[Option[Double]]):
@@ -58,7 +58,7 @@ object RoundTripTrace:
       _ <- Expect.that(
         last - first < MostSamples
       )(s"expected at most $MostSamples requests, came ${last - first + 1}")
-      // Without a summary, ping was stopped by force: it sends once a second unless told otherwise.
+      // Without a summary, ping was stopped by force: it sends once a second by default.
       everyS = total.filter(_._1 > 1).fold(1.0)((sent, lastsMs) => lastsMs / 1000 / (sent - 1))
     yield RoundTripTrace(
       Vector.tabulate(last - first + 1)(_ * everyS),

@@ -12,7 +12,7 @@ final case class ScenarioFlights(
     withoutResult: Vector[FlightSummary]
 ):
 
-  /** The paused flight that figures show beside the others. [[Truth]] decides with which flight each is
+  /** The paused flight that figures show with the others. [[Truth]] decides with which flight each is
     * compared.
     */
   val truth: Option[ScenarioFlights.Flown] = flights.find(_.summary.flight.isPaused)
@@ -22,8 +22,8 @@ final case class ScenarioFlights(
 
   private lazy val truths = Truth.among(flights.map(_.summary))
 
-  /** Root mean square distance from the positions of its [[Truth]] at equal times, m; absent for the truth
-    * itself, and where the machine was too busy.
+  /** Root mean square distance from the positions of its paused flight ([[Truth]]) at equal times, m; absent
+    * for the paused flight itself, and if the machine was too busy.
     */
   def offTruthM(flight: ScenarioFlights.Flown): Option[Double] =
     truths.of(flight.summary).headOption.filter(_ => flight.summary.starved.isEmpty).flatMap(_.result).map(

@@ -6,11 +6,11 @@ import skein.units.*
 
 /** One detection, with the estimate after it.
   *
-  * @param at the exposure, on the simulator's clock
-  * @param sinceStartS of the flight's readings
-  * @param cameraNed m
-  * @param orientation of the camera
-  * @param azimuthRad measured, to the right of straight ahead; then above straight ahead, and the range
+  * @param at time of the exposure, on the simulator's clock
+  * @param sinceStartS time of the exposure since the start of the flight's readings
+  * @param cameraNed the camera's position, m
+  * @param orientation the camera's orientation
+  * @param azimuthRad measured azimuth, to the right of straight ahead; `elevationRad`: above it
   * @param trueNed the target's position and orientation, by its own readings
   * @param firstUsedMs age at the first decision that used it, if any did
   */
@@ -33,7 +33,7 @@ final case class Detection(
 /** The detections of one of a scenario's eyes.
   *
   * @param images number that was searched until the last detection; absent if nothing was found
-  * @param agesMs of the detections behind decisions, since the exposure
+  * @param agesMs ages of the detections behind decisions, since the exposure
   */
 final case class SeeingSummary(
     eye: Eye,

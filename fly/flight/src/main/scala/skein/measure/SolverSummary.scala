@@ -4,16 +4,16 @@ import skein.record.{EventKind, EventSubject, Recording, SolvedRow}
 
 /** Statistics of a flight whose decisions were made in another process.
   *
-  * @param at address of the solver
-  * @param roundTripsMs from request to answer, of used answers: the transport's part of the decisions' data
-  *   age; absent if none was used
+  * @param at the solver's address
+  * @param roundTripsMs times from request to answer, of used answers: the transport's part of the decisions'
+  *   data age; absent if none was used
   * @param thinkingMs the solver's time for these
-  * @param missed decisions made without an answer
-  * @param late answers after their deadline
-  * @param repeated messages received more than once
-  * @param left requests that the solver skipped for newer ones
+  * @param missed number of decisions made without an answer
+  * @param late number of answers after their deadline
+  * @param repeated number of messages received more than once
+  * @param left number of requests that the solver skipped for newer ones
   * @param lost number of times the connection was lost
-  * @param restarted decisions for which the solver had no memory of those before
+  * @param restarted number of decisions for which the solver had no memory of those before
   */
 final case class SolverSummary(
     at: String,

@@ -16,7 +16,7 @@ import skein.units.*
   * repeat. Then deflated.
   */
 object SummaryBytes:
-  /** Limit of the inflated size, in bytes. */
+  /** Maximum inflated size, bytes. */
   private val MostBytes = 256 << 20
 
   def write(summary: FlightSummary): ArraySeq[Byte] =
@@ -29,7 +29,7 @@ object SummaryBytes:
 
   /** Decodes a summary.
     *
-    * @param scenario of the flight; absent if it is not known
+    * @param scenario the flight's scenario; absent if it is not known
     * @return Left states why these bytes are no summary
     */
   def read(bytes: ArraySeq[Byte], scenario: Option[Scenario]): Either[String, FlightSummary] =

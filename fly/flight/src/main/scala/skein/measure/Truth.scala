@@ -15,14 +15,14 @@ final class Truth private (paused: Map[Truth.Kind, Vector[FlightSummary]]):
   private val means        = paused.map((kind, flights) => kind -> mean(flights))
   private val meansOfClock = ofClock.map((kind, flights) => kind -> mean(flights))
 
-  /** The truths of a flight: equal in scenario and settings, policies, period and duration; with the flight's
-    * own clock if there are any. None for a paused flight.
+  /** The paused flights with which a flight is compared: equal in scenario and settings, policies, period and
+    * duration; those with the flight's own clock if there are any. None for a paused flight.
     */
   def of(flight: FlightSummary): Vector[FlightSummary] =
     found(flight, ofClock, paused).getOrElse(Vector.empty)
 
-  /** A flight's headline ([[FlightSummary.headline]]) relative to the mean of its truths: 0.02 is 2 % more.
-    * Absent for a truth itself, without a truth, and if the truth's value is 0.
+  /** A flight's headline ([[FlightSummary.headline]]) relative to the mean of its paused flights: 0.02 is 2 %
+    * more. Absent for a paused flight itself, without one, and if the mean is 0.
     */
   def deviation(flight: FlightSummary): Option[Double] =
     for
@@ -31,7 +31,7 @@ final class Truth private (paused: Map[Truth.Kind, Vector[FlightSummary]]):
     yield own / truth - 1
 
 object Truth:
-  /** The settings that a flight shares with its truth: scenario, policy, period and duration. */
+  /** The settings that a flight shares with its paused flights: scenario, policy, period and duration. */
   private type Kind = (Option[Scenario], Option[String], Span, Span)
 
   def among(flights: Seq[FlightSummary]): Truth = Truth(

@@ -4,7 +4,7 @@ import skein.units.Decimals.brief
 
 /** A live flight and its virtual twins: flights in virtual time of an equal loop over an equal link.
   *
-  * @param virtual at least one; their samples are combined
+  * @param virtual the twins, at least one; their samples are combined
   */
 final case class Twin(live: FlightSummary, virtual: Vector[FlightSummary]):
 

@@ -12,7 +12,7 @@ import scala.annotation.nowarn
 import scala.deriving.Mirror
 
 /** Maps field names to keys of the configuration: `moves-in-flight` for the field `movesInFlight`, in every
-  * locale (pureconfig's own mapping turns I into a dotless ı where the machine is Turkish).
+  * locale (pureconfig's own mapping turns I into a dotless ı on a Turkish machine).
   */
 private[skein] object ConfigKeys:
 

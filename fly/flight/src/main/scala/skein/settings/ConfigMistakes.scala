@@ -125,7 +125,7 @@ private[skein] object ConfigMistakes:
       case None      =>
         s"${value.origin.description}: no setting '$path'; the nearest is '${Nearest.to(key.take(MostLetters), known)}'"
 
-  /** Limit of a key's length for comparison with known keys. */
+  /** Maximum length of a key that is compared with known keys. */
   private val MostLetters = 100
 
   private val renamed = Map(

@@ -4,10 +4,10 @@ import com.typesafe.config.{Config, ConfigException, ConfigUtil}
 import skein.identify.Fitted
 import skein.units.Expect
 
-/** The common format of files with fitted numbers. */
+/** The common format of files with fitted parameters. */
 private object FittedFile:
 
-  /** A parameter with its interval; a remark says where it is not identified. */
+  /** A parameter with its interval; a remark says if it is not identified. */
   def line(parameter: Fitted, atBound: String): String =
     import parameter.{least, most, name, value}
     val remark = if parameter.atBound then s"  # $atBound" else ""

@@ -21,26 +21,29 @@ import skein.vehicle.VehicleKind
   * ([[RecordedSetting]]).
   *
   * @param scene the built-in simulator's world; by default the scenario's
-  * @param predictor by which `predictive` predicts multirotors; cars are predicted by their own model
-  * @param movesInFlight limit of unanswered moves of one vehicle; more than 2 are for links that never
-  *   deliver several simultaneously: see [[skein.flow.Steer]]
-  * @param planInPacket whether `predictive` sends plans to a buffer beside the vehicle: see [[LoopSettings]]
+  * @param predictor the model by which `predictive` predicts multirotors; cars are predicted by their own
+  *   model
+  * @param movesInFlight maximum number of unanswered moves of one vehicle; more than 2 are for links that
+  *   never deliver several simultaneously: see [[skein.flow.Steer]]
+  * @param planInPacket whether `predictive` sends plans to a buffer on the vehicle's side of the link: see
+  *   [[LoopSettings]]
   * @param knows what the controller of a vehicle knows of the others, in all loops
   * @param strangers how `predictive` predicts vehicles whose commands it does not know
   * @param decentralised whether each vehicle has a controller of its own, with a link of its own; then
-  *   controllers know of the others what they read. `paused`, the truth, has one, which knows positions too,
-  *   and no link
-  * @param only the vehicle that this process flies, in a running simulator, where others fly the rest
+  *   controllers know of the others what they read. `paused`, the ground truth, has a single controller,
+  *   which knows positions too, and no link
+  * @param only the vehicle that this process controls in a running simulator, while other processes control
+  *   the rest
   * @param between with `decentralised`, the link over which controllers send one another what they read of
   *   their own vehicles; then they do not read the others
   * @param plant the built-in simulator's kind of multirotor
-  * @param wire protocol of the vehicles
-  * @param solver a remote solver for additional flights, beside those that decide in this process; a decision
+  * @param wire protocol of the simulator's connection
+  * @param solver a remote solver for flights in addition to those that decide in this process; a decision
   *   then has a deadline, by default the period
   * @param images sources of recorded images and clouds
-  * @param deadline of every decision; without one, the loop waits for its policies
+  * @param deadline deadline of every decision; without one, the loop waits for its policies
   * @param fallback the decision after a missed deadline
-  * @param policies for additional flights of the scenario, beside its own
+  * @param policies policies for flights of the scenario in addition to those with its own
   * @param onlyPolicies whether flights with the scenario's own policies are omitted
   */
 final case class FlySettings(
@@ -110,7 +113,7 @@ final case class FlySettings(
   /** Whether this process flies the vehicle of this name. */
   def commands(vehicle: String): Boolean = only.forall(_ == vehicle)
 
-  /** The vehicles that this process flies, by their places in the scenario. */
+  /** The vehicles that this process flies, by their indices in the scenario. */
   def own: Vector[Int] =
     fleet.agents.indices.toVector.filter(self => commands(fleet.agents(self).name))
 
@@ -133,7 +136,7 @@ final case class FlySettings(
       )
     if scenario.isAsPublished then timely.asPublished else timely
 
-  /** The flights, the truth first, then those with policies of files. The seeds of different loops and links
+  /** The flights, `paused` first, then those with policies of files. The seeds of different loops and links
     * differ, so that their delays differ; flights that differ in the policy alone have equal seeds.
     */
   def plans: Vector[FlightPlan] =
@@ -168,7 +171,7 @@ final case class FlySettings(
 
 /** A policy that replaces the scenario's.
   *
-  * @param name short, in tables; unique within an experiment
+  * @param name short name for tables; unique within an experiment
   * @param learning if it learns during the flight; then the file is its initial network
   */
 final case class ChosenPolicy(name: String, file: PolicyFile, learning: Option[Learning] = None):
@@ -190,8 +193,8 @@ final case class ChosenPolicy(name: String, file: PolicyFile, learning: Option[L
 
 /** One flight of an experiment.
   *
-  * @param policy by default the scenario's
-  * @param solver that decides; by default this process
+  * @param policy the policy; by default the scenario's
+  * @param solver the solver that decides; by default this process
   */
 final case class FlightPlan(
     id: String,
@@ -207,8 +210,8 @@ final case class FlightPlan(
 
   def file(folder: Path): Path = folder.resolve(FlightPlan.fileName(id))
 
-  /** This flight in virtual time, beside the live one: `count` times, first with an equal seed, then with the
-    * following ones.
+  /** This flight in virtual time, in addition to the live one: `count` times, first with an equal seed, then
+    * with the following ones.
     */
   def twins(count: Int): Vector[FlightPlan] =
     Vector.tabulate(count): index =>
@@ -222,7 +225,9 @@ object FlySettings:
     */
   val MostAltitudeM = 1000.0
 
-  /** Most controllers of one flight: each opens five connections, and the built-in simulator takes 256. */
+  /** Maximum number of controllers of one flight: each opens five connections, and the built-in simulator
+    * takes 256.
+    */
   val MostControllers = 50
 
   private val Apart = "paused, sequential, futures, stream, predictive"
@@ -313,7 +318,7 @@ object FlySettings:
     Either.cond(all.isEmpty, settings, all.map(placed(_, config)).mkString("\n"))
 
   /** The mistake of a flight that is too short for its period, at the value that an option gave: the other
-    * may be the scenario's.
+    * value may be the scenario's.
     */
   private def shortMistake(settings: FlySettings, config: Config): String =
     if optionAt("period", config).isDefined && optionAt("duration", config).isEmpty then
@@ -494,7 +499,7 @@ object FlySettings:
 
   private given ConfigReader[PlanSettings] =
     val standard = PlanSettings()
-    // These are not configured: the scenario, and the machine, say them.
+    // These are not configured: the scenario and the machine determine them.
     given ConfigReader[Vector[Kept]] = unread(standard.kept)
     val blocks = ConfigFactory.parseString(s"blocks-per-slice = ${standard.blocksPerSlice}").root
     ConfigKeys.reader[PlanSettings].contramapConfig(_.withFallback(blocks))

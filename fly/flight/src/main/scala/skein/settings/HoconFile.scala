@@ -13,7 +13,7 @@ object HoconFile:
 
   /** Parses a text.
     *
-    * @param path of the text's file, for error messages
+    * @param path path of the text's file, for error messages
     */
   def parse(text: String, path: String): Either[String, Config] =
     try Right(ConfigFactory.parseString(text, ConfigParseOptions.defaults.setOriginDescription(path)))

@@ -14,7 +14,7 @@ enum ImageSource:
 object ImageSource:
   private val SeenWord = "seen"
 
-  /** Limit of the rate, which no simulator's camera exceeds, Hz. */
+  /** Maximum rate, which no simulator's camera exceeds, Hz. */
   val MostHz = 240.0
 
   private val Form = """([^@\s]+)@([0-9]+(?:\.[0-9]+)?)""".r

@@ -10,9 +10,9 @@ import skein.vehicle.{ObservedPlant, ReducedModel}
 /** A fitted model as a HOCON file: `skein.model`, with every fitted structure, its data and its errors.
   *
   * @param use the structure to apply
-  * @param models the values of each one's parameters
-  * @param altitudeM of the fitted flights, if its plant is only valid there, as AirSim's quadrotor is; files
-  *   of older versions lack it
+  * @param models the parameters' values of each structure
+  * @param altitudeM altitude of the fitted flights, if its plant is only valid there, as AirSim's quadrotor
+  *   is; files of older versions lack it
   */
 final case class ModelFile(
     use: Structure,
@@ -42,7 +42,7 @@ object ModelFile:
 
   /** The data of a fit.
     *
-    * @param altitudeM of all flights, if they share one
+    * @param altitudeM altitude of all flights, if they share one
     * @param recordings files, each with its flight
     */
   final case class Provenance(

@@ -5,8 +5,8 @@ import skein.scene.{Scene, SceneFile}
 
 /** A scene with its name.
   *
-  * @param name of a scene that ships, or a file's path
-  * @param text of the file; absent for a scene that ships
+  * @param name name of a built-in scene, or a file's path
+  * @param text the file's text; absent for a built-in scene
   */
 final case class NamedScene private (name: String, text: Option[String], scene: Scene):
   def isEmpty: Boolean = scene.objects.isEmpty
@@ -31,7 +31,7 @@ object NamedScene:
 
   /** Reads the scene of a recording.
     *
-    * @param parameters by name
+    * @param parameters the recording's parameters, by name
     */
   def ofRecording(parameters: Map[String, String]): Either[String, NamedScene] =
     (parameters.get(Name), parameters.get(Text)) match

@@ -4,7 +4,7 @@ import java.nio.ByteBuffer
 import java.util.Base64
 import scala.util.Try
 
-/** Numbers as text, to the bit: doubles, big-endian, in Base64. */
+/** Floating-point values as text, to the bit: doubles, big-endian, in Base64. */
 private object Numbers64:
   def text(numbers: Vector[Double]): String =
     val bytes = ByteBuffer.allocate(8 * numbers.size)

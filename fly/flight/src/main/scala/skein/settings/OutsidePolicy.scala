@@ -18,11 +18,11 @@ import skein.units.{OwnFailure, Span}
   * flights.
   *
   * A decision fails if the policy reports an error, if the number is not finite, if anything but one answer
-  * comes, or if none is complete within [[OutsidePolicy.AnswerWithin]] of real time. After the last two the
-  * policy receives no more requests, and every later decision fails immediately: a surplus answer would be
-  * taken for that to the next request, and all later answers would be off by one.
+  * is received, or if none is complete within [[OutsidePolicy.AnswerWithin]] of real time. After the last two
+  * the policy receives no more requests, and every later decision fails immediately: a surplus answer would
+  * be taken for that to the next request, and all later answers would be off by one.
   *
-  * @param mostTurnRadPerS of a pursuer
+  * @param mostTurnRadPerS largest turn rate of a pursuer
   */
 final class OutsidePolicy private (connection: OutsidePolicy.Connection, role: Role, mostTurnRadPerS: Double)
     extends HeadingPolicy.Memoryless:

@@ -14,7 +14,7 @@ import skein.units.Expect
 /** A policy as a file: the family's name and one value per parameter, in HOCON. Further entries (the
   * objective, how the policy was found) are for people. Or an ONNX file: [[skein.onnx.OnnxPolicy]].
   *
-  * @param parameters in the order of the family's axes
+  * @param parameters the parameters' values, in the order of the family's axes
   */
 final case class PolicyFile(role: Role, family: PolicyFamily, parameters: Vector[Double]):
   def policy: Policy = family.policy(parameters)
@@ -35,7 +35,7 @@ final case class PolicyFile(role: Role, family: PolicyFamily, parameters: Vector
       " "
     )
 
-  /** [[text]] with numbers rounded for people. */
+  /** [[text]] with values rounded for people. */
   def label: String =
     val shown = family.space.axes.zip(parameters).take(PolicyFile.MostShown).map: (axis, value) =>
       s"${axis.name}=${value.significant(4)}"

@@ -20,7 +20,7 @@ enum PredictionModel:
 
   /** A plant of a program's own structure, identified from flights.
     *
-    * @param values of its parameters
+    * @param values the parameters' values
     */
   case Own(structure: Structure, values: Vector[Double])
 

@@ -9,7 +9,7 @@ import skein.units.{Clock, Instant, Span}
 /** A connection to another process, over a Unix socket: requests, and an answer to each. Calls block; a
   * request and its answer together for no longer than `answerWithin` of real time. Not thread-safe.
   *
-  * Every call throws an [[IOException]] where the process has ended or is too late.
+  * Every call throws an [[IOException]] if the process has ended or is too late.
   */
 private[skein] final class ProcessSocket(path: String, answerWithin: Span) extends AutoCloseable:
   private val channel        = SocketChannel.open(UnixDomainSocketAddress.of(path))
@@ -32,7 +32,6 @@ private[skein] final class ProcessSocket(path: String, answerWithin: Span) exten
     await(SelectionKey.OP_READ)
     if channel.read(into) < 0 then throw IOException(ProcessSocket.Ended)
 
-  /** Reads this number of bytes of an answer. */
   def read(bytes: Int): ByteBuffer =
     val buffer = ByteBuffer.allocate(bytes)
     while buffer.hasRemaining do read(buffer)

@@ -34,7 +34,7 @@ object RecordedPlan:
   /** The parameter for the exploration of a policy that learned in flight. */
   private val Explore = "learningExplore"
 
-  /** The word before the number of a decision from which on a policy had other parameters. */
+  /** The prefix of a parameter that names the decision from which on a policy had other parameters. */
   private val Version = "version"
 
   /** The record of a learning policy's update.

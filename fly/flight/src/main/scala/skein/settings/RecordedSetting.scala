@@ -127,7 +127,7 @@ private[settings] object RecordedSetting:
   given RecordedSetting[Scenario] with
     def written(name: String, value: Scenario): Seq[ParameterRow] = ScenarioSettings.recorded(value)
 
-    // The flight's columns say which it is.
+    // The flight's columns name it.
     def read(name: String, parameters: Map[String, String])(using Scenarios) = Right(None)
 
   // These are in columns, or one of them is in a flight's plan.

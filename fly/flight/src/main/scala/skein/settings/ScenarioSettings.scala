@@ -26,7 +26,7 @@ object ScenarioSettings:
       )
     yield scenario
 
-  /** A scenario of these settings, by their keys.
+  /** A scenario with these settings, given by key.
     *
     * @return Left lists every mistake
     */

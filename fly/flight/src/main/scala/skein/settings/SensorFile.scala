@@ -11,7 +11,7 @@ object SensorFile:
 
   /** The text of a file.
     *
-    * @param recordings to which it was fitted
+    * @param recordings the recordings to which it was fitted
     */
   def render(fit: SensorFit, recordings: Vector[String]): String =
     import fit.model

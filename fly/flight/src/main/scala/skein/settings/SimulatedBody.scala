@@ -7,7 +7,7 @@ import skein.vehicle.{Deviation, RotorcraftKind}
 
 /** The bodies of the built-in simulator's multirotors, as users name them.
   *
-  * @param text `airsim`, `airsim:` and how it deviates, or `mujoco:FILE`
+  * @param text `airsim`, `airsim:` and its deviations, or `mujoco:FILE`
   */
 final class SimulatedBody private (
     val text: String,
@@ -20,7 +20,7 @@ final class SimulatedBody private (
 
   /** The kind for the simulator; None means its own. Left states why it cannot be simulated here.
     *
-    * @param seed of the gusts
+    * @param seed seed of the gusts
     */
   def kind(seed: Long): Either[String, Option[RotorcraftKind]] =
     model.map(_.map(MujocoRotorcraft.kind).orElse(deviation.map(_.kind(seed))))

@@ -76,7 +76,7 @@ object VehicleChoice:
 
   /** The vehicle of this name, without a file.
     *
-    * @param altitudeM of its flight
+    * @param altitudeM altitude of its flight
     */
   def named(name: String, altitudeM: Double): Option[VehicleChoice] = all(altitudeM).find(_.name == name)
 
@@ -99,7 +99,7 @@ object VehicleChoice:
   /** Reads one of the names, or a model file: then the structure that the file says to use, or after
     * `reduced:` the file's model of three parameters, which SIMD supports.
     *
-    * @param altitudeM of its flight: the lag of AirSim's vehicles depends on it
+    * @param altitudeM altitude of its flight: the lag of AirSim's vehicles depends on it
     * @return Left states what was expected
     */
   def parse(text: String, altitudeM: Double)(using

@@ -4,10 +4,10 @@ import skein.signal.LatencyProfile
 import skein.units.*
 import skein.units.Decimals.brief
 
-/** The link between two vehicles: messages take half of a sampled round trip, and those that are lost are not
-  * sent again. Where something of the scene stands between the two, none arrives.
+/** The link between two vehicles: messages take half of a sampled round trip, and lost ones are not sent
+  * again. If an object of the scene stands between the two, none arrives.
   *
-  * @param range beyond which none arrives, either; absent: at any distance
+  * @param range distance beyond which none arrives, either; absent: at any distance
   */
 final case class VehicleLink(profile: LatencyProfile, range: Option[Metres]):
   def text: String = range.fold("")(far => s"range:${far.value.brief}m,") + profile.name

@@ -16,7 +16,7 @@ final case class Desk private (vehicles: Vector[Desk.Vehicle], overtaken: Long, 
 
   /** Adds a received request.
     *
-    * @param at on the solver's clock
+    * @param at time of receipt, on the solver's clock
     */
   def offered(question: Question, at: Instant): Desk =
     val known = vehicles(question.vehicle)
@@ -64,7 +64,7 @@ final case class Desk private (vehicles: Vector[Desk.Vehicle], overtaken: Long, 
     )
 
 object Desk:
-  /** Limit of memories kept for answers that may or may not have been in time. */
+  /** Maximum number of memories kept for answers that may or may not have been in time. */
   val MostMemories = 32
 
   def of(vehicles: Int): Desk = Desk(Vector.fill(vehicles)(Vehicle(-1, None, false, Map.empty)), 0, 0)
@@ -78,6 +78,6 @@ object Desk:
   /** The state of one vehicle's requests.
     *
     * @param newest number of the newest request received
-    * @param memories by the request after which they were valid
+    * @param memories the policy's memories, by the request after which they were valid
     */
   final case class Vehicle(newest: Long, waiting: Option[Waiting], isBusy: Boolean, memories: Map[Long, Any])

@@ -10,7 +10,7 @@ import skein.units.*
   * and for the first time. So nothing overtakes: a delayed answer is not used after a newer request.
   *
   * @param solver the last known start of the solver
-  * @param clocks relation of its clock to the controller's
+  * @param clocks relation of the solver's clock to the controller's
   * @param trips the latest round trips of answers that counted, without the time meant for searching, the
   *   newest last
   * @param told the last counts reported by that start of the solver
@@ -35,13 +35,13 @@ final case class Exchange private (
   /** Adds a request.
     *
     * @param searching time that the solver has for its search
-    * @return with the request's number
+    * @return also the request's number
     */
   def asked(vehicle: Int, at: Instant, until: Instant, searching: Span = Span.Zero): (Exchange, Long) =
     val (next, number) = vehicles(vehicle).asked(at, until, searching)
     (copy(vehicles = vehicles.updated(vehicle, next), counts = counts.copy(asked = counts.asked + 1)), number)
 
-  /** Judges an answer.
+  /** Classifies an answer.
     *
     * @param at time of receipt
     */
@@ -61,9 +61,7 @@ final case class Exchange private (
           (heard.copy(trips = lately, counts = counts.copy(used = counts.used + 1)), Verdict.Counts(asked))
         else (heard.copy(counts = counts.copy(late = counts.late + 1)), Verdict.Late(at.since(asked)))
 
-  /** The counts that the solver reports in excess of its last report; to be called after the answer was
-    * judged.
-    */
+  /** The counts that the solver reports in excess of its last report; to be called after [[heard]]. */
   def news(answer: Answer): (Exchange, Told) =
     if !solver.contains(answer.solver) then (this, Told(0, 0))
     else
@@ -88,7 +86,7 @@ object Exchange:
   /** Number of round trips behind the expected delay: of some seconds. */
   val Remembered = 32
 
-  /** Limit of a vehicle's requests whose answers can still be classified as late or repeated. */
+  /** Maximum number of a vehicle's requests whose answers can still be classified as late or repeated. */
   val MostOpen = 64
 
   def of(vehicles: Int): Exchange =
@@ -110,18 +108,18 @@ object Exchange:
 
   /** The solver's counts.
     *
-    * @param overtaken requests that the solver skipped for newer ones
-    * @param repeated requests that it received more than once
+    * @param overtaken number of requests that the solver skipped for newer ones
+    * @param repeated number of requests that it received more than once
     */
   final case class Told(overtaken: Long, repeated: Long)
 
   /** Counts of a flight's requests and answers.
     *
-    * @param used answers that counted
-    * @param repeated answers received more than once
-    * @param foreign answers to no known request
-    * @param overtaken requests that the solver skipped for newer ones
-    * @param repeatedThere requests that the solver received more than once
+    * @param used number of answers that counted
+    * @param repeated number of answers received more than once
+    * @param foreign number of answers to no known request
+    * @param overtaken number of requests that the solver skipped for newer ones
+    * @param repeatedThere number of requests that the solver received more than once
     */
   final case class Counts(
       asked: Long = 0,
@@ -136,8 +134,8 @@ object Exchange:
   /** One vehicle's requests.
     *
     * @param next number of the next request
-    * @param open the newest of those without an answer: time of request, deadline, and the part of that time
-    *   for searching
+    * @param open the newest requests without an answer, by number: time of request, deadline, and the part of
+    *   that time for searching
     */
   final case class Vehicle(next: Long, open: Map[Long, (asked: Instant, until: Instant, searching: Span)]):
     private[Exchange] def asked(at: Instant, until: Instant, searching: Span): (Vehicle, Long) =

@@ -26,7 +26,7 @@ final class FlightDeciders(val fleet: Fleet, plans: Option[FlightDeciders.Plans]
   /** Decides on this thread, or plans until the deadline of plans.
     *
     * @param held the memory of the answer that the request continues; absent if there is none
-    * @param now on the controller's clock
+    * @param now the present time, on the controller's clock
     * @return a decision for each requested vehicle, and the new memory
     */
   def decide(question: Question, held: Option[Any], now: Instant)(using
@@ -67,13 +67,13 @@ object FlightDeciders:
 
   /** The planner of a flight.
     *
-    * @param deadline from a request until the best plan found is used
+    * @param deadline time from a request until the best plan found is used
     */
   final case class Plans(planning: JointPlanning, deadline: Span, workers: PlanWorkers)
 
   /** The deciders of a flight.
     *
-    * @param workers that search for a flight that plans
+    * @param workers the workers that search for a flight that plans
     * @return Left states why this process cannot plan it
     */
   def of(flown: RecordedPlan, workers: PlanSettings => PlanWorkers): Either[String, FlightDeciders] =

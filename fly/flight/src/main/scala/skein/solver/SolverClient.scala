@@ -11,10 +11,10 @@ import skein.units.*
 /** A flight's side: sends requests to a solver over a link, and says hello again whenever the link is lost or
   * the solver restarts.
   *
-  * @param flight a unique number of the flight
+  * @param flight unique identifier of the flight
   * @param vehicles number of vehicles
   * @param note called with records of late, repeated, skipped or lost messages, with the vehicle if it
-  *   concerns one, and with their number if it is not one
+  *   concerns one, and with their count if it is not one
   */
 final class SolverClient(
     link: MessageLink,

@@ -9,14 +9,14 @@ import skein.units.*
 
 /** A solver: decides for every flight that it accepts, over any link.
   *
-  * @param id unique number of this start
-  * @param build of this program; a flight's must be equal
-  * @param decidersOf the deciders for a flight's briefing, or why there are none; may be slow, which the
-  *   flight is informed of
-  * @param clock its own, independent of the controllers'
-  * @param workers execute decisions
-  * @param takes artificial delay of an answer, for trials
-  * @param byVectors whether it searches plans by SIMD, which flights are informed of
+  * @param id unique identifier of this start
+  * @param build this program's build; a flight's must be equal
+  * @param decidersOf the deciders for a flight's briefing, or why there are none; may be slow, of which the
+  *   flight is informed
+  * @param clock the solver's clock, independent of the controllers'
+  * @param workers the threads that execute decisions
+  * @param takes artificial delay of each answer, for trials
+  * @param byVectors whether it searches plans by SIMD, of which flights are informed
   */
 final class SolverDesk(
     id: Long,
@@ -234,15 +234,15 @@ final class SolverDesk(
     next(question.flight, question.vehicle)
 
 object SolverDesk:
-  /** Limit of simultaneous flights; beyond it, the one silent for the longest time is removed. */
+  /** Maximum number of simultaneous flights; beyond it, the one silent for the longest time is removed. */
   val MostFlights = 64
 
   private val MostReason = 4096
 
   /** The solver's counts.
     *
-    * @param flights accepted ones
-    * @param garbled received data that was no message, or no request of its flight
+    * @param flights number of accepted flights
+    * @param garbled number of received pieces that were no message, or no request of their flight
     */
   final case class Stats(flights: Int, answered: Long, refused: Long, garbled: Long)
 

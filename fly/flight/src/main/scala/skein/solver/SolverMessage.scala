@@ -9,7 +9,7 @@ import skein.signal.LatencyProfile
 import skein.units.*
 
 /** A message between a flight and a solver. Instants are the controller's, unless they are marked as the
-  * solver's. A flight is identified by a number that is unique at a solver, and so is each start of a solver.
+  * solver's. Flights and starts of solvers have identifiers that are unique at a solver.
   */
 enum SolverMessage:
   /** A flight requests a solver's decisions. */
@@ -40,7 +40,7 @@ enum SolverMessage:
 
 /** The data of a flight that a solver needs: the header of its recording, as far as it concerns decisions.
   *
-  * @param parameters as in a recording
+  * @param parameters parameters as in a recording
   * @param agents each vehicle and its policy, a line each: equal agents give equal lines in every program
   */
 final case class Briefing(
@@ -98,10 +98,11 @@ object Briefing:
 
 /** A request for decisions.
   *
-  * @param deciders the vehicles to decide for, at least one: by their places, with the state that decisions
+  * @param deciders the vehicles to decide for, at least one: by their indices, with the state that decisions
   *   depend on; the policy's own memory is held by the solver
   * @param number counts the requests for these vehicles; a later one replaces all earlier ones
-  * @param solverClock the start of a solver whose clock is known, and the controller's clock minus that
+  * @param solverClock the start of a solver whose clock is known, and the controller's clock minus the
+  *   solver's
   * @param remembered the last answer that was used, by the solver's start and the request; absent before the
   *   first
   * @param view without its forecast, and with sensors of these vehicles only
@@ -121,11 +122,11 @@ final case class Question(
 /** An answer to a request.
   *
   * @param vehicle the first of the request's vehicles
-  * @param solver this start of it
+  * @param solver this start of the solver
   * @param takenAt when the request was received, on the solver's clock
   * @param answeredAt when the answer was sent, on the solver's clock
-  * @param overtaken requests of this flight so far that were skipped for a newer one
-  * @param repeated requests of this flight so far that were received more than once
+  * @param overtaken number of this flight's requests so far that were skipped for a newer one
+  * @param repeated number of this flight's requests so far that were received more than once
   * @param result the decision, or why there is none
   */
 final case class Answer(
@@ -144,7 +145,7 @@ final case class Answer(
   *
   * @param decidedAt the present time as the policy assumed it
   * @param begunAnew whether the memory of earlier decisions was not available
-  * @param chosen for each requested vehicle
+  * @param chosen the decision for each requested vehicle
   */
 final case class Choice(
     decidedAt: Instant,

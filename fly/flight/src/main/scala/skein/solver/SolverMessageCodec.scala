@@ -14,7 +14,7 @@ object SolverMessageCodec:
   /** Version of the encoding; other versions are refused. */
   val Version = 7
 
-  /** Limit of a message, in bytes: a Kafka broker's default limit, less its own overhead. */
+  /** Maximum size of a message, bytes: a Kafka broker's default limit, less its own overhead. */
   val MostBytes = 900_000
 
   val MostVehicles = 1024

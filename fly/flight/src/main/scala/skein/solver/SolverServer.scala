@@ -12,7 +12,7 @@ import skein.link.{Address, Incoming, Listening, Seats, Transport}
 import skein.units.{Clock, Span}
 
 /** A solver that flights connect to; see [[TcpLink]]. A peer that sends invalid messages, or none at first,
-  * loses its connection without further effect. If all places are taken, a connection without useful messages
+  * loses its connection without further effect. If all seats are taken, a connection without useful messages
   * is closed for another one; its flight, if there is one, connects again.
   */
 final class SolverServer private (listening: Listening, switch: SharedKillSwitch, seats: Seats):
@@ -21,7 +21,7 @@ final class SolverServer private (listening: Listening, switch: SharedKillSwitch
   /** Number of connections without useful messages that were closed for others. */
   def displacedConnections: Long = seats.displacedConnections
 
-  /** Number of connections that were refused for lack of a place. */
+  /** Number of connections that were refused for lack of a seat. */
   def refusedConnections: Long = seats.refusedConnections
 
   /** Accepts no more connections and closes the open ones. */

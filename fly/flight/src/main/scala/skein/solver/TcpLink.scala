@@ -125,7 +125,7 @@ final class TcpLink(
       closed.future
 
 object TcpLink:
-  /** Limit of one side's messages that wait to be sent. */
+  /** Maximum number of one side's messages that wait to be sent. */
   private[solver] val MostWaiting = 256
 
   val AnswerWithin: Span = Span.ofSeconds(10)

@@ -14,7 +14,7 @@ import skein.simulator.{SimulatorServer, SimulatorSettings}
 import skein.testing.Waiting
 import skein.units.*
 
-/** The buffer beside the built-in simulator over real sockets and by the real clock. */
+/** The external buffer in front of the built-in simulator, over real sockets and by the real clock. */
 class BufferLiveSuite extends munit.FunSuite, Waiting:
   private given system: ActorSystem = ActorSystem("BufferLiveSuite")
   import system.dispatcher

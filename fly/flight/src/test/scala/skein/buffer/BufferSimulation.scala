@@ -28,7 +28,7 @@ class BufferSimulation extends munit.FunSuite, Unhurried:
   /** A simulator, a link with a buffer in front of it, and clients of both.
     *
     * @param lan link between the buffer and the simulator
-    * @param speed of the simulator's clock
+    * @param speed rate of the simulator's clock relative to the machine's
     */
   private final class Bench(lan: LatencyProfile, speed: Double)(using val system: ActorSystem):
     val clock           = Clock.ofNanos(VirtualTime.clock(system))

@@ -10,8 +10,8 @@ import upack.{Float32, Int32}
 /** [[Buffers]] with a minimal simulator: it has a clock, answers readings, and answers a move when its time
   * is over, or a handover after the next one arrived.
   *
-  * @param roundTrip between the buffer and the simulator
-  * @param speed of the simulator's clock
+  * @param roundTrip round trip between the buffer and the simulator
+  * @param speed rate of the simulator's clock relative to the machine's
   */
 private[buffer] final class BuffersBench(roundTrip: Span = Span.ofMillis(0.4), speed: Double = 1):
   import BuffersBench.*

@@ -43,7 +43,7 @@ class BuffersSuite extends munit.FunSuite:
       for seed <- 1L to 20 do
         val random = SplittableRandom(seed)
         val bench  = BuffersBench(speed = speed)
-        // What a buffer in the simulator would do, by its own clock.
+        // The moves of a buffer in the simulator, by the simulator's clock.
         var own                       = PlanBuffer.empty[PlannedMove]
         var changes                   = Vector.empty[(Instant, PlannedMove)]
         var arrived                   = Vector.empty[Instant]
@@ -72,7 +72,7 @@ class BuffersSuite extends munit.FunSuite:
         until(bench.simulated)
         assert(bench.mostUnanswered <= 2, s"seed $seed")
         val within =
-          (0.2 + 1.5) * speed.max(1) // half a round trip; the answer of the one before, and its handover
+          (0.2 + 1.5) * speed.max(1) // half a round trip; the previous one's answer, and its handover
         val lasted = changes.zip(changes.drop(1).map(_._1) :+ bench.simulated)
         for ((at, move), end) <- lasted if end.since(at).toMillis > 2 * within do
           val done = bench.performed.find(one => one.move.at == move.at && speedOf(one.move) == speedOf(move))
@@ -82,7 +82,7 @@ class BuffersSuite extends munit.FunSuite:
             s"seed $seed: $late ms, at ${atMs(at)}"
           )
         for one <- bench.performed do
-          // Where a plan arrives at the very moment of an action, the two clocks may differ in what was first.
+          // If a plan arrives exactly at the time of an action, the two clocks may order them differently.
           val isDue  = changes.exists(_._2.at == one.move.at)
           val isEven = arrived.exists: at =>
             val since = at.since(one.move.at).toMillis
@@ -98,7 +98,7 @@ class BuffersSuite extends munit.FunSuite:
     val second             = first.sent(first.next(at(200), now + Span.ofMillis(1)).get, now).ended(now)
     assertEquals(second.next(at(199.5), now + Span.ofMillis(2)), None)
     assertEquals(second.wakeAt(None, maySend = true, now), None)
-    // A newer plan replaces what was sent, from an earlier moment on.
+    // A newer plan replaces the sent moves, from an earlier time on.
     val newer = second.received(2, Vector(north(150, 3)), at(199.5))
     assertEquals(newer.next(at(199.5), now + Span.ofMillis(2)).map(_.move), Some(north(150, 3)))
 
@@ -175,7 +175,7 @@ class BuffersSuite extends munit.FunSuite:
     bench.pass(500)
     assertEquals(flown(bench).map(_._1), Vector(7.0, 0.0, 6.0))
 
-  test("a reset, a cancelled task or a new place ends a vehicle's plans; plans of other vehicles continue"):
+  test("a reset, a cancelled task or a new pose ends a vehicle's plans; plans of other vehicles continue"):
     for wish <- Seq(Wish.Reset, Wish.Stop("Drone"), Wish.Place("Drone")) do
       val bench = BuffersBench()
       bench.plan(7, 100, 200)

@@ -11,7 +11,7 @@ import skein.units.*
 import skein.units.Decimals.{fixed, signed}
 import skein.vehicle.*
 
-/** The link `vpn` with round trips that take as many times as long. */
+/** The link `vpn` with its round trips multiplied by a factor. */
 private def vpnTimes(times: Int): LatencyProfile =
   val trips = Vector.tabulate(200)(i => times * LatencyDistribution.Vpn.quantile((i + 0.5) / 200).toMillis)
   LatencyProfile.Steady(s"vpn-$times", LatencyDistribution.ofSamples(trips))
@@ -74,13 +74,13 @@ private def vpnTimes(times: Int): LatencyProfile =
       f"$s%.1f s  within nine of ten: ${100.0 * in / all.size}%.1f %%, by samples: ${100.0 * by / all.size}%.0f %%"
     )
 
-/** Prints what ways to predict a hidden leader are worth: how far a follower is off the paused truth.
+/** Compares ways to predict a hidden leader: prints a follower's deviation from its paused flight.
   *
   * {{{
   * ./sbtw "flight/Test/runMain skein.flight.beliefFigures 3 2 4"
   * }}}
   *
-  * @param times of the round trips of `vpn`
+  * @param times factors of the round trips of `vpn`
   */
 @main def beliefFigures(seeds: Int, times: Int*): Unit =
   given Scenarios = Scenarios.ours

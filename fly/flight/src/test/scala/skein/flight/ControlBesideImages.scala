@@ -22,10 +22,10 @@ private enum Beside(val name: String):
   case OwnLane     extends Beside("images on their own lane")
   case ControlLane extends Beside("images on control's lane")
 
-/** A control loop of 20 ms (`Sense ~> Pace ~> Decide ~> Steer`) over real sockets, with raw images of 1280 ×
-  * 720 beside it and without, in turns: on loopback at 30 Hz, and over an emulated line of 50 Mbit/s with a
-  * round trip of 20 ms, which carries two images a second. What counts is how old a reading is when its
-  * command leaves, and how long it then had been there:
+/** A control loop of 20 ms (`Sense ~> Pace ~> Decide ~> Steer`) over real sockets, with and without a
+  * concurrent transfer of raw images of 1280 × 720, in turns: on loopback at 30 Hz, and over an emulated line
+  * of 50 Mbit/s with a round trip of 20 ms, which carries two images a second. Prints a reading's age when
+  * its command leaves, and the time since its arrival:
   * `flight/Test/runMain skein.flight.controlBesideImages 20 3`.
   */
 @main def controlBesideImages(seconds: Int, rounds: Int): Unit =

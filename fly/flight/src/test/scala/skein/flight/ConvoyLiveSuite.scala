@@ -39,7 +39,7 @@ class ConvoyLiveSuite extends munit.FunSuite, Lengthy, Waiting:
       val result    = Result.of(Convoy(), Tracks.of(RecordedTracks.of(recording)).get)
       val told      = result.measured.map(one => s"${one.measure.name} ${one.value.getOrElse("none")}")
       println(s"${loop.label}: ${told.mkString(", ")}")
-      // Virtual flights come to 2; a busy machine adds to that.
+      // Virtual flights reach 2; a busy machine adds to that.
       assert(result.value("off places").exists(_ < 4), result.measured)
       assertEqualsDouble(result.value("between cars").get, 12, 3)
       assertEquals(recording.events.filter(_.kind == EventKind.Refused), Vector.empty)

@@ -41,8 +41,8 @@ class DecentralisedSimulation extends munit.FunSuite, TemporaryFolders, Optimise
     assertEquals(flown.landed.outcome, FlightOutcome.Completed)
     flown.recorder
 
-  /** The decisions, with their times and states, but without the numbers of the readings and the commands to
-    * other vehicles, which only a single controller knows.
+  /** The decisions, with their times and states, but without the readings' sequence numbers and the commands
+    * to other vehicles, which only a single controller knows.
     */
   private def decisions(recording: Recording): Vector[DecisionRow] = recording.decisions
     .sortBy(made => (made.vehicle, made.sequence))
@@ -119,7 +119,7 @@ class DecentralisedSimulation extends munit.FunSuite, TemporaryFolders, Optimise
     val traces    = RoundTripTrace.of(recording)
     assertEquals(traces.size, 4)
     assertEquals(traces.flatMap(_.lost).count(identity), 0)
-    // The first ones, before any command: later, one connection carries what the other does not.
+    // Only the first ones, before any command: later, the connections' traffic differs.
     assertEquals(traces.map(_.roundTripsMs.head).distinct.size, 4)
 
   for inPacket <- Seq(false, true) do

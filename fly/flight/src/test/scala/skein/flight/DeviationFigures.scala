@@ -9,7 +9,7 @@ import skein.scenario.Scenarios
 import skein.units.*
 
 /** Prints the effect on the paper's duel if vehicle and air differ from the model: for each predictor the
-  * mean distance over the last 10 s, that of the paused truth, and the errors of predictions after 10 s.
+  * mean distance over the last 10 s, that of the paused flight, and the errors of predictions after 10 s.
   *
   * {{{
   * ./sbtw "flight/Test/runMain skein.flight.deviationFigures 4 airsim airsim:wind=8/0/0"

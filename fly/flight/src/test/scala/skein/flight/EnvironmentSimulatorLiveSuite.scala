@@ -57,7 +57,7 @@ class EnvironmentSimulatorLiveSuite extends munit.FunSuite, Unhurried:
 
   /** Serves one connection.
     *
-    * @param answer to a line; absent to end the process
+    * @param answer answers a line; absent to end the process
     */
   private def served[A](answer: ujson.Value => Option[String])(use: String => A): A =
     val path   = Files.createTempDirectory("environment").resolve("socket")

@@ -58,7 +58,7 @@ class HeldFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimised:
               def pause() =
                 assembly.pause("by the test")
                 assembly.pause("again, which is nothing new")
-              // The paused loop waits for nothing but the simulator, and is over at once.
+              // The paused loop waits for nothing but the simulator, and ends immediately.
               val at = Span.ofSeconds(if loop == LoopKind.Paused then 0 else 3)
               if loop == LoopKind.Paused then pause() else after(at)(pause())
               after(at + Span.ofSeconds(5))(if stopping then assembly.stop("by the test")
@@ -92,7 +92,7 @@ class HeldFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimised:
             made.observations.ownAge < Span.ofMillis(400),
             s"decision ${made.sequence} at ${made.decidedAt.since(to)}"
           )
-        // To hover is to hold the place where that was heard: a fast vehicle comes back to it.
+        // To hover is to hold the position at which the command arrived: a fast vehicle returns to it.
         for name <- recording.heading.vehicles.map(_.name) do
           val held = recording.readings
             .filter(read => read.vehicle == name && read.state.receivedAt > from + Span.ofMillis(200))

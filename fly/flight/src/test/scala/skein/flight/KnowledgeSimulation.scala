@@ -9,7 +9,7 @@ import skein.signal.LatencyProfile
 import skein.testing.{TemporaryFolders, Unhurried}
 import skein.units.*
 
-/** The paper's duel in virtual time, with controllers that know the other's positions alone. */
+/** The paper's duel in virtual time, with controllers that know only the other's positions. */
 class KnowledgeSimulation extends munit.FunSuite, TemporaryFolders, Unhurried:
   private given Scenarios = Scenarios.ours
 
@@ -35,7 +35,7 @@ class KnowledgeSimulation extends munit.FunSuite, TemporaryFolders, Unhurried:
 
   for inPacket <- Seq(false, true) do
     test(
-      s"the own vehicle is predicted by its model, the other from its readings; plans in packets: $inPacket"
+      s"the decider is predicted by its model, the other from its readings; plans in packets: $inPacket"
     ):
       val known                   = settings(LoopKind.Predictive, inPacket).copy(knows = Knowledge.All)
       def errors(of: FlySettings) = PredictionErrors.of(fly(of).recording, isDuel = true).get

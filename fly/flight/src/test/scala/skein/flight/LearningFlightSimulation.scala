@@ -56,7 +56,7 @@ class LearningFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimis
       versions.map(_.detail.takeWhile(_ != ',')),
       versions.indices.map(index => s"version ${index + 1} decides from here").toVector
     )
-    // What was seen, done and reached is what was decided.
+    // Transitions agree with one another and with the recorded decisions.
     val decisions = recording.decisions.filter(_.vehicle == "Pursuer")
     assert(seen.size >= decisions.size - 3, s"${seen.size} of ${decisions.size}")
     for (one, next) <- seen.zip(seen.drop(1)) do assertEquals(one.reached, next.seen)

@@ -6,7 +6,7 @@ import skein.signal.*
 import skein.units.*
 
 /** The duel over AirSim's wire protocol and over MAVLink, in virtual time: mean distance in the second half,
-  * and the deviation of recorded ages from the simulator's truth. Lists are separated by commas.
+  * and the deviation of recorded ages from the simulator's ground truth. Lists are separated by commas.
   */
 @main def mavlinkFigures(wires: String, links: String, loops: String, seconds: Int, seeds: Int): Unit =
   for

@@ -17,7 +17,7 @@ import skein.testing.Unhurried
 import skein.units.*
 import skein.vtime.VirtualTime
 
-/** Flights over MAVLink beside another ground station. */
+/** Flights over MAVLink with a second ground station. */
 class MavlinkTakenSimulation extends munit.FunSuite, Unhurried:
   private given Scenarios = Scenarios.ours
 
@@ -30,7 +30,7 @@ class MavlinkTakenSimulation extends munit.FunSuite, Unhurried:
     wire = Wire.Mavlink
   )
 
-  /** A flight beside another ground station of one of its vehicles, which acts after 5 s. */
+  /** A flight with a second ground station of one of its vehicles, which acts after 5 s. */
   private def flown(acts: MavlinkVehicle => Future[Any]): (FlightOutcome, Recording) = VirtualTime
     .run(seed = 1): system =>
       given ActorSystem = system

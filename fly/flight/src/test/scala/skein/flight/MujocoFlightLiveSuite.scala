@@ -9,8 +9,8 @@ import skein.scenario.Scenarios
 import skein.settings.{FlySettings, SimulatedBody}
 import skein.units.*
 
-/** Flights of `fly --plant mujoco:FILE.xml --clock virtual`, and its refusals. Runs where MuJoCo is
-  * installed, or can be.
+/** Flights of `fly --plant mujoco:FILE.xml --clock virtual`, and its refusals. Runs if MuJoCo is installed,
+  * or can be.
   */
 class MujocoFlightLiveSuite extends MujocoHere:
   import MujocoFlightLiveSuite.*

@@ -10,7 +10,7 @@ import skein.units.*
 import skein.units.Decimals.{fixed, signed}
 
 /** Prints the effect of plans in packets on the paper's duel over links: the deviation of `predictive` from
-  * the paused truth without and with them, by seed and as a mean with half of its 95 % interval.
+  * the paused flight without and with them, by seed and as a mean with half of its 95 % interval.
   *
   * {{{
   * ./sbtw "flight/Test/runMain skein.flight.packetFigures 12 loss:5%/4,outage:1s/10s,vpn"

@@ -47,7 +47,7 @@ class PlanInPacketSimulation extends munit.FunSuite, TemporaryFolders, Unhurried
     distanceM(fly(paused))
 
   test(
-    "over 400 ms with two moves in flight, plans bring predictive from 20 % to within 2 % of the paused truth"
+    "over 400 ms with two moves in flight, plans bring predictive from 20 % to within 2 % of paused"
   ):
     val far = settings(link("constant:400ms"))
     val off = distanceM(fly(far)) / truthM - 1
@@ -55,7 +55,7 @@ class PlanInPacketSimulation extends munit.FunSuite, TemporaryFolders, Unhurried
     val without = distanceM(fly(far.copy(planInPacket = false))) / truthM - 1
     assert(without > 0.15, s"without plans: ${100 * without} %")
 
-  test("through losses and outages, flights complete within 2 % of the truth"):
+  test("through losses and outages, flights complete within 2 % of paused"):
     val offs = Seq(1L, 5L).map: seed =>
       distanceM(fly(settings(lossy), seed)) / truthM - 1
     assert(offs.forall(off => math.abs(off) < 0.02), offs.toString)

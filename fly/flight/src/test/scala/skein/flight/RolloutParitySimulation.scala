@@ -34,7 +34,7 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
     scenario
   )
 
-  /** One event: its vehicle, its index, its time, and its numbers. */
+  /** One event: its vehicle, its index, its time, and its values. */
   private case class Note(vehicle: Int, number: Int, at: Span, values: Double*):
     override def toString =
       f"vehicle $vehicle number $number at ${at.toSeconds}%.9f s: ${values.mkString(", ")}"
@@ -124,7 +124,7 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
       (LoopKind.Stream, "direct", 1),
       (LoopKind.Stream, "vpn", 2),
       (LoopKind.Stream, "vpn-mixed", 3),
-      // Answers overtake one another, come too late, and questions are missed.
+      // Answers overtake one another, arrive too late, and requests are skipped.
       (LoopKind.Stream, "lognormal:150ms,0.8", 1),
       (LoopKind.Predictive, "direct", 1),
       (LoopKind.Predictive, "vpn", 2),
@@ -133,7 +133,7 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
       (LoopKind.Sequential, "loss:5%/4,outage:1s/10s,vpn", 1),
       (LoopKind.Futures, "loss:5%/4,direct", 3),
       (LoopKind.Futures, "outage:1s/10s,vpn", 1),
-      // Time-outs end in the moment of a tick.
+      // Time-outs end at the time of a tick.
       (LoopKind.Stream, "loss:5%/4,vpn", 1),
       (LoopKind.Stream, "loss:5%/4,outage:1s/10s,vpn", 3),
       (LoopKind.Predictive, "loss:5%/4,vpn", 1),
@@ -174,9 +174,9 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
       Span.ofSeconds(3)
     )
 
-  // Everything happens in the same nanosecond as something else: readings, ticks, time-outs of 500 ms. Left
-  // out are futures over none and 50 ms, where tasks of both vehicles end at once and the flight's streams
-  // say who decides first.
+  // Every event coincides, to the nanosecond, with another: readings, ticks, time-outs of 500 ms. Left out
+  // are futures over none and 50 ms, where tasks of both vehicles end simultaneously and the flight's streams
+  // determine which decides first.
   private val ties = Seq(
     LoopKind.Sequential -> Seq("none", "constant:100ms", "constant:400ms", "constant:500ms"),
     LoopKind.Futures    -> Seq("constant:100ms", "constant:400ms", "constant:500ms"),
@@ -230,7 +230,7 @@ class RolloutParitySimulation extends munit.FunSuite, Unhurried:
       assert(sent > 2 && sent < 8, s"it was flown for $sent s")
       assertEqualsDouble(last.toSeconds, sent, 0.1)
 
-  // Where delays are equal in both directions, a flight knows the ages of its readings as they are.
+  // If delays are equal in both directions, a flight knows the true ages of its readings.
   for loop <- Seq(LoopKind.Sequential, LoopKind.Stream) do
     test(s"forward simulation repeats ${loop.label} over 100 ms, with a policy that depends on ages"):
       check(loop, profile("constant:100ms"), 1, AnyPolicies(byAges = true), Span.ofSeconds(6))

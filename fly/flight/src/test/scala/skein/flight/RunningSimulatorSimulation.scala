@@ -264,7 +264,7 @@ class RunningSimulatorSimulation extends munit.FunSuite, Unhurried:
       requests.stop("another", "not this one")
       after(5.seconds)(Future.successful(requests.stop("stream-direct", "ended from the page"))): Unit
       val flown = bench.command(brief, calledOff = requests.calledOff)
-      // Long enough for whatever still moves to show.
+      // Long enough to show any remaining motion.
       bench.watch(flown.flatMap(_ => after(10.seconds)(Future.unit))).zip(flown).map((seen, flown) =>
         (flown, seen)
       )

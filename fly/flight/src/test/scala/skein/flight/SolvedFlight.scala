@@ -13,7 +13,7 @@ import skein.units.*
 
 /** A live duel that only a solver decides: common to tests of the links between the two.
   *
-  * @param link to the solver
+  * @param link the link to the solver
   */
 final class SolvedFlight(
     by: SolverChoice,

@@ -56,7 +56,7 @@ class SolverLiveSuite extends munit.FunSuite, Optimised:
   test(
     "a peer that accepts the connection and sends nothing is reported long before patience ends"
   ):
-    // Backlog: what nobody accepts is connected all the same.
+    // Connections in the backlog are established without being accepted.
     Using.resource(ServerSocket(0, 8, InetAddress.getLoopbackAddress)): silent =>
       val at     = Address("127.0.0.1", silent.getLocalPort)
       val link   = TcpLink(TcpTransport(), at, answerWithin = Span.ofMillis(200))

@@ -17,8 +17,8 @@ import upack.Str
 
 /** A flight in virtual time with the arrival times of its moves at the simulator.
   *
-  * @param startedAt when the loop began, and how long the vehicles had hovered then
-  * @param arrivedAt of each vehicle's moves, in the order of arrival
+  * @param startedAt when the loop began, and for how long the vehicles had hovered by then
+  * @param arrivedAt arrival times of each vehicle's moves, ascending
   */
 final case class TappedFlight(
     recording: Recording,

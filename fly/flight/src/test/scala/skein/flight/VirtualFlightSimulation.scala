@@ -26,7 +26,7 @@ class VirtualFlightSimulation extends munit.FunSuite, Unhurried:
     assert(flown.recorder.records.size > 50)
     flown.recorder.digest
 
-  test("equal flights have equal recordings, repeated and beside another flight on another thread"):
+  test("equal flights have equal recordings, repeated and during another flight on another thread"):
     val plans   = settings.plans
     val alone   = plans.map(digest)
     val threads = Executors.newFixedThreadPool(2)

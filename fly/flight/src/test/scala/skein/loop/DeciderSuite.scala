@@ -97,7 +97,7 @@ class DeciderSuite extends munit.FunSuite:
     val decider = Decider(scenario, 1, Broken)
     intercept[OwnFailure](decider.decide(decider.start, view, millis(200))).getMessage
 
-  test("no vehicle receives an action with a number that is not finite"):
+  test("no vehicle receives an action with a component that is not finite"):
     val actions = Seq(
       Action.Velocity(Vector3(Double.PositiveInfinity, 0, 0)),
       Action.VelocityAt(1, 2, Metres(Double.NaN)),

@@ -70,5 +70,5 @@ class GraphLayoutSuite extends munit.FunSuite:
   test("a part is vertically centred on its predecessors"):
     val sources = Seq("a", "b", "c", "d")
     val placed  = places(sources ++ Seq("m", "n")*)((sources.map(_ -> "n") :+ ("c" -> "m"))*)
-    // n comes of rows 0 to 3, m of row 2.
+    // n follows rows 0 to 3, m row 2.
     assertEquals((placed("n"), placed("m")), ((1, 1.0), (1, 2.0)))

@@ -34,11 +34,11 @@ class OwnControllersSimulation extends munit.FunSuite, Optimised:
       isHovering = true
       port.hover()
 
-  /** @param ports by controller and vehicle */
+  /** @param ports each controller's port of each vehicle */
   private final case class Flown(outcome: FlightOutcome, ports: Vector[Vector[Watched]], recording: Recording)
 
-  /** @param failsAfter decisions of the pursuer, after which its policy throws
-    * @param held from 2 s to 4 s
+  /** @param failsAfter number of the pursuer's decisions after which its policy throws
+    * @param held whether the flight is paused from 2 s to 4 s
     */
   private def fly(kind: LoopKind, failsAfter: Int = Int.MaxValue, held: Boolean = false): Flown = VirtualTime
     .run(seed = 1): system =>

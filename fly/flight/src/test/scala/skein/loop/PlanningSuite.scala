@@ -88,7 +88,7 @@ class PlanningSuite extends munit.FunSuite:
     (made.decision, made)
 
   test(
-    "instead of a plan, a pursuer's policy decides, within the turn limit, at the vehicle's constant speed"
+    "if its policy decides instead of a plan, a pursuer keeps its turn limit and its constant speed"
   ):
     // 10 m/s over 8 m for 0.2 s are 0.25 rad.
     assertEquals(fleet.agents(pursuer).speed.value, 10.0)
@@ -137,7 +137,7 @@ class PlanningSuite extends munit.FunSuite:
     object Lucky extends HeadingPolicy.Memoryless:
       def heading(seen: PlanarObservation): Double = System.nanoTime.toDouble
     assert(target(Lucky).isInstanceOf[Target.Along])
-    // Of those alone that somebody plans against.
+    // Only of vehicles that are opponents in a plan.
     def all(policy: Policy) = Fleet(fleet.agents.map(_.copy(policy = policy)))
     val luckyPursuers       = Fleet(fleet.agents.map(agent =>
       if agent.role == Role.Pursuer then agent.copy(policy = Lucky) else agent.copy(policy = KeepHeading)

@@ -3,10 +3,10 @@ package skein.loop
 import skein.signal.LatencyProfile
 import skein.vehicle.*
 
-/** Prints the deviation of loops and models from the paused truth over the links.
+/** Prints the deviation of loops and models from the paused flight over the links.
   *
-  * @param seeds flights per row
-  * @param over names of links; all by default
+  * @param seeds number of flights per row
+  * @param over the links' names; all by default
   */
 @main def predictionFigures(seeds: Int, over: String*): Unit =
   val truth = VirtualDuel.truth.distanceM

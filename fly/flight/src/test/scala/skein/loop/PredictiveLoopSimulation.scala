@@ -15,13 +15,13 @@ class PredictiveLoopSimulation extends munit.FunSuite, Unhurried:
     duels.foreach(duel => assertEquals(duel.outcome, FlightOutcome.Completed))
     duels.map(_.distanceM).sum / duels.size / VirtualDuel.truth.distanceM - 1
 
-  test("the paused truth is the reference's 8.31 m"):
+  test("the paused flight's distance is the reference's 8.31 m"):
     assertEqualsDouble(VirtualDuel.truth.distanceM, 8.31, 0.05)
 
   for (link, bound) <-
       Seq(LatencyProfile.none -> 0.005, LatencyProfile.direct -> 0.015, LatencyProfile.vpn -> 0.02)
   do
-    test(s"over ${link.name} predictive flies within ${bound * 100} % of the paused truth"):
+    test(s"over ${link.name} predictive flies within ${bound * 100} % of the paused flight"):
       val off = deviation(LoopKind.Predictive, link)
       assert(math.abs(off) < bound, s"seeds $seeds: ${off * 100} %")
 
@@ -34,7 +34,7 @@ class PredictiveLoopSimulation extends munit.FunSuite, Unhurried:
     assert(math.abs(off) < 0.02, s"seeds $seeds: ${off * 100} %")
     assert(without > 0.3, s"seeds $seeds: stream is off by no more than ${without * 100} %")
 
-  test("nine of ten predictions of the own vehicle are within a centimetre, over vpn"):
+  test("nine of ten predictions of the deciding vehicle are within a centimetre, over vpn"):
     for seed <- seeds do
       val errors = VirtualDuel.fly(LoopKind.Predictive, LatencyProfile.vpn, seed).predictionErrors(own = true)
       assert(errors.size > 1000, s"seed $seed: only ${errors.size} predictions were verified")

@@ -95,7 +95,7 @@ class ReplaySimulation extends munit.FunSuite, Optimised:
     val broken    = recording.copy(decisions = recording.decisions.init)
     assertEquals(recording.decisions(last - 1).decidedAt, recording.decisions(last).decidedAt)
     assertEquals(found(team(Slot), broken), None)
-    // What is left of the last is not compared; what was decided before is.
+    // The incomplete last decision is not compared; those before it are.
     assertEquals(found(team(Slot), forged(broken, last - 1)(turned)), None)
     assert(found(team(Slot), forged(broken, last - 4)(turned)).isDefined)
 

@@ -20,7 +20,7 @@ class RunningGraphLiveSuite extends munit.FunSuite, Unhurried:
           "two"
         )).to(Sink.ignore).run()
       val switches = Vector(others, mine).map(run)
-      // A stream that has just been started tells nothing yet.
+      // A stream that has just started reports nothing yet.
       val graph = RunningGraph(mine, Future.successful(SystemMaterializer(system).materializer))
       val found = Iterator.continually(Await.result(graph.shape(), 10.seconds)).flatten.next()
       assertEquals((found.stages.toSet, found.edges), (Set("one", "two"), Vector((from = "one", to = "two"))))

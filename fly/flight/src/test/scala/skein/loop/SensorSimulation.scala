@@ -114,7 +114,7 @@ class SensorSimulation extends munit.FunSuite, Optimised:
           ),
           recording.commands.map(command => (command.vehicle, command.sequence, command.sentAt))
         )
-      // Of a policy that does not ask for it, nothing is read.
+      // Nothing is read for a policy that does not request it.
       val without = fly(kind, fleet = Fleet(fleet.agents.map(_.copy(policy = Hovering))))
       val late    = fly(kind, sensor = Some(Slow(_)))
       assertEquals(without.measurements, Vector.empty)
@@ -130,7 +130,7 @@ class SensorSimulation extends munit.FunSuite, Optimised:
 
   test("a decision records the age of its sensor's reading"):
     val recording = fly(LoopKind.Stream, delay = Span.ofSeconds(3))
-    // Older than the policy flies by: it hovers.
+    // Too old for the policy: it hovers.
     assert(recording.sensings.nonEmpty)
     assert(recording.decisions.forall(_.action.contains(Action.Hover)))
     assertEqualsDouble(lastAltitude(recording, "Evader"), 20, 0.3)

@@ -50,7 +50,7 @@ class SettingsSuite extends munit.FunSuite:
     assertEquals(of(LoopKind.Paused), Some(LoopTiming.Paused(0.2)))
     assertEquals(of(LoopKind.Sequential), Some(LoopTiming.Sequential(0.2, asking, steering)))
     assertEquals(of(LoopKind.Futures), Some(LoopTiming.Futures(0.2, asking, steering)))
-    // What was decided upon is at most a pace old when the period's decision is due.
+    // The view of a decision is at most a pace old when the period's decision is due.
     assertEquals(of(LoopKind.Stream), Some(LoopTiming.Stream(0.2, 0.14, 0.07, false, asking, steering)))
     of(LoopKind.Stream, settings.asPublished) match
       case Some(LoopTiming.Stream(_, wait, patience, decideThenPace, asking, _)) =>

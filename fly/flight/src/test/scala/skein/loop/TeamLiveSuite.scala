@@ -27,7 +27,7 @@ class TeamLiveSuite extends munit.FunSuite, Unhurried:
     def hover(): Future[Either[VehicleError, Boolean]] = Future.successful(Right(true))
 
   test("simultaneous readings of one vehicle by several threads have distinct numbers"):
-    // So many that on a busy machine, too, threads ask at the same instant.
+    // Enough for simultaneous requests even on a busy machine.
     val (threads, each)    = (4, 3_000_000)
     val pool               = Executors.newFixedThreadPool(threads)
     given ExecutionContext = ExecutionContext.fromExecutor(pool)

@@ -30,7 +30,7 @@ class TeamViewSuite extends munit.FunSuite:
 
   private val first = reading(0, 0, 10, 0, 30)
   private val later = reading(0, 1, 110, 100, 130)
-  // Asked for between the two, sampled before the later, come after it.
+  // Requested between the two, sampled before the later one, received after it.
   private val late  = reading(0, 2, 90, 80, 150)
   private val other = reading(1, 0, 10, 0, 20)
 

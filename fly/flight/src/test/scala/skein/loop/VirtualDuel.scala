@@ -11,13 +11,14 @@ import skein.vtime.VirtualTime
 
 /** The paper's duel in virtual time, on [[FarQuadrotors]].
   *
-  * @param distanceM between the vehicles' true positions, horizontally: mean over the last 10 s of physics
+  * @param distanceM horizontal distance between the vehicles' true positions: mean over the last 10 s of
+  *   physics
   */
 final case class VirtualDuel(distanceM: Double, outcome: FlightOutcome, recording: Recording):
 
   /** Prediction errors, ascending, m.
     *
-    * @param own of the deciding vehicle itself, or of its opponent
+    * @param own whether errors are of the deciding vehicle itself, or of its opponent
     */
   def predictionErrors(own: Boolean): Vector[Double] =
     recording.predictions

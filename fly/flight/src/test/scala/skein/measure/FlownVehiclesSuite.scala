@@ -87,7 +87,7 @@ class FlownVehiclesSuite extends munit.FunSuite:
       arrivals(command(1, 50), command(2, 250), ended(1, 310, Superseded), ended(2, 900, Done)),
       Seq(50.0 -> 1.0, 260.0 -> 2.0)
     )
-    // An answer that came before the next command left is not the answer to it.
+    // An answer that arrived before the next command left is not caused by it.
     assertEquals(
       arrivals(command(1, 50), command(2, 250), ended(1, 240, Superseded)),
       Seq(50.0 -> 1.0, 250.0 -> 2.0)
@@ -114,7 +114,7 @@ class FlownVehiclesSuite extends munit.FunSuite:
     assertEquals(flown("stream", command(1, 50), ended(1, 300, Failed("refused"))), Vector.empty)
 
   test("no command arrives before one that was sent earlier"):
-    // The second was answered late: by its round trip alone it would have come 100 ms after the third.
+    // The second was answered late: by its round trip alone it would have arrived 100 ms after the third.
     assertEquals(
       arrivals(command(1, 50), command(2, 250), command(3, 280), ended(1, 550, Superseded)),
       Seq(50.0 -> 1.0, 380.0 -> 2.0, 380.0 -> 3.0)

@@ -35,7 +35,7 @@ class OnnxPolicySuite extends munit.FunSuite, OnnxFiles:
       val random = SplitMix64(seed)
       for _ <- 1 to 50 do
         val what = seen(random, 1)
-        // A neural policy is not told ages.
+        // A neural policy does not observe ages.
         def heading(policy: Policy) = policy.asInstanceOf[HeadingPolicy.Memoryless].heading(what)
         if name.startsWith("learned") then assertEquals(heading(again.policy), heading(policy))
         else assertEqualsDouble(heading(again.policy), heading(policy), 1e-12)
@@ -169,7 +169,7 @@ class OnnxPolicySuite extends munit.FunSuite, OnnxFiles:
     val whole = OnnxPolicy.write(drawn("learned:3"), "pursuer").fold(fail(_), identity)
     for length <- 0 until whole.length by 7 do
       val cut = PolicyFile.read(written(folder, whole.take(length)))
-      // What is cut off at the end of a message is a shorter message: without notes it is still a model.
+      // A message cut at its end is a shorter message: without notes it is still a model.
       assert(cut.isRight || cut.left.exists(_.startsWith(folder.toString)), s"cut at $length: $cut")
     val random = SplitMix64(seed)
     for _ <- 1 to 300 do
@@ -180,5 +180,5 @@ class OnnxPolicySuite extends munit.FunSuite, OnnxFiles:
     assert(refused(folder, "no model".getBytes).contains("expected an ONNX model: it is damaged"))
     assert(PolicyFile.read("nowhere.onnx").left.exists(_.contains("there is no such file")))
 
-  test("what is no network has no ONNX form"):
+  test("a policy that is no network cannot be written as ONNX"):
     assert(OnnxPolicy.write(PaperPursuer(1), "pursuer").left.exists(_.contains("only networks")))

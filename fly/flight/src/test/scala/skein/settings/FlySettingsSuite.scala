@@ -90,7 +90,7 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(read("skein.fly.seed = 1e3").map(_.seed), Right(1000L))
     assert(read("skein.fly { duration = null, deadline = null, solver = null, scene = null }").isRight)
 
-  test("plan is refused where no vehicle plans, and the message lists the policies"):
+  test("plan is refused if no vehicle plans, and the message lists the policies"):
     assertTold(
       "scenario = forest, loops = [stream, plan]",
       "2: skein.fly.loops: plan: expected a multirotor that can plan, by a policy with a Goal or by one that " +
@@ -101,7 +101,7 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
       Right("plan: Pursuer plans; Evader flies by its own policy")
     )
 
-  test("knowledge of positions alone is refused where others' commands or policies are needed"):
+  test("knowledge of positions alone is refused if others' commands or policies are needed"):
     assertTold("knows = some", "2: skein.fly.knows: expected all or positions, came 'some'")
     assertTold(
       "knows = positions, loops = [plan]",
@@ -113,7 +113,7 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
       "2: skein.fly.knows: expected all with a solver, which is told every command, came positions"
     )
 
-  test("how others are predicted is refused where their commands are known"):
+  test("how others are predicted is refused if their commands are known"):
     assertTold(
       "strangers = belief",
       "2: skein.fly.strangers: expected knows positions with it, or decentralised, since otherwise all commands " +
@@ -133,7 +133,7 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
       "2: skein.fly.strangers: expected turn or straight or belief, came 'none'"
     )
 
-  test("decentralised is refused where one controller decides for all, or is told of the others"):
+  test("decentralised is refused if one controller decides for all, or knows the others' commands"):
     def refused(text: String)(why: String) = assertTold(text, s"2: skein.fly.decentralised: expected $why")
     refused("decentralised = true, loops = [stream, plan]"):
       "loops that decide for each vehicle by itself (paused, sequential, futures, stream, predictive), came plan"
@@ -163,7 +163,7 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
       Vector((true, false), (false, true))
     )
 
-  test("plan-in-packet is refused where no plan could be sent"):
+  test("plan-in-packet is refused if no plan could be sent"):
     def refused(text: String)(why: String) = assertTold(text, s"2: skein.fly.plan-in-packet: expected $why")
     refused("plan-in-packet = true, loops = [stream]"):
       "with the loop predictive, which foresees its commands, came without it"
@@ -230,7 +230,7 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
       val said = read(text).left.getOrElse("")
       assert(clue(said).contains("expected a duration with unit, such as 40s, came '40'"))
 
-  test("a scene is one that ships, a file, or else what the scenario says"):
+  test("a scene is one that ships, a file, or else the scenario's"):
     assertEquals(read("").map(_.world.name), Right("empty"))
     assertEquals(read("skein.fly.scenario = forest").map(_.world.name), Right("forest"))
     assertEquals(read("skein.fly { scenario = forest, scene = street }").map(_.world.name), Right("street"))
@@ -255,11 +255,11 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
       ).contains("expected empty, forest, pursuit, street or a file, came 'wood'")
     )
 
-  test("a deadline is one where it is set"):
+  test("without a configured deadline there is none"):
     assertEquals(read("").map(_.deadline), Right(None))
     assertEquals(read("skein.fly.deadline = 20 ms").map(_.deadline), Right(Some(Span.ofMillis(20))))
 
-  test("a scenario's settings are under its name; a setting elsewhere is answered with its new place"):
+  test("a scenario's settings are under its name; for one that has moved, the error states its new name"):
     val flown = read("skein.fly { scenario = surround, surround { ring-m = 10, vehicles = 4 } }")
     assertEquals(flown.map(_.scenario), Right(Surround(vehicles = 4, ringM = 10)))
     assertEquals(read("").map(_.scenario), Right(PaperDuel()))

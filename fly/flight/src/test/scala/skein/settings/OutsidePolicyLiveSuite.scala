@@ -25,14 +25,14 @@ class OutsidePolicyLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders
           case other              => throw other
 
   test(
-    "an answer is the share of the most that the pursuer turns, and what is beyond is taken for the bound"
+    "an answer is the share of the most that the pursuer turns, and values beyond are clipped"
   ):
     assertEquals(
       decided(Peer.number(0.5f), Peer.number(-7), Peer.number(1)),
       Seq(Right(0.5 + 0.05), Right(0.5 - 0.1), Right(0.5 + 0.1))
     )
 
-  test("observations are in the frame of the own heading"):
+  test("observations are in the frame of the vehicle's heading"):
     val straight = seen.copy(ownHeadingRad = 0).fromOwnHeading.toVector
     assertEquals(straight.take(4), Vector(3.0, 4.0, 1.0, -2.0))
     assertEquals(straight.drop(6), Vector(0.1, 0.02, 0.03))

@@ -9,8 +9,8 @@ import java.util.concurrent.atomic.AtomicInteger
 
 /** A policy behind a socket, which a flight cannot distinguish from another process.
   *
-  * @param answer from the number of the request, from 0, and the observation, to bytes; None ends the
-  *   connection
+  * @param answer maps the number of the request, from 0, and the observation to the bytes of the answer; None
+  *   ends the connection
   */
 final class Peer(answer: (Int, Vector[Float]) => Option[Array[Byte]]) extends AutoCloseable:
   private val folder   = Files.createTempDirectory("skein-peer")

@@ -74,7 +74,7 @@ class RecordedPlanSuite extends munit.FunSuite:
     assertEquals(again.settings.copy(plant = set.plant, scene = set.scene), set)
     assertEquals((again.plan.solver, again.plan.policy.map(_.name)), (Some(solver), Some("own")))
 
-  test("a default is stored where older versions store it, and is read back as a default"):
+  test("defaults are recorded only for settings that older versions recorded, and are read back as defaults"):
     val all = RecordedPlan.parameters(usual, plan(usual))
     assertEquals(
       all.drop(PaperDuel().settings.size).map(_.name),

@@ -5,7 +5,7 @@ import skein.signal.LatencyProfile
 
 class SolverChoiceSuite extends munit.FunSuite:
 
-  test("a solver's place is read from its text, and written as that text"):
+  test("a choice of solver is read from its text, and written as that text"):
     for
       (text, choice) <- Seq(
         "tcp://lab:7400"         -> SolverChoice.Tcp(Address("lab", 7400)),

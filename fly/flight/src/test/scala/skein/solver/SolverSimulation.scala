@@ -42,7 +42,7 @@ class SolverSimulation extends munit.FunSuite, Optimised:
       made union trial.byFallback,
       recording.decisions.map(decision => (decision.vehicle, decision.sequence)).toSet
     )
-    // Every answer has one fate; the last may come when the flight has ended.
+    // Every answer has one fate; the last may arrive after the flight's end.
     val unused = trial.counts.used - answers(recording)
     assert(unused >= 0 && unused <= fleet.agents.size, trial.counts)
     assertEquals(trial.counts.late, trial.events(EventKind.LateReply).size.toLong)
@@ -100,7 +100,7 @@ class SolverSimulation extends munit.FunSuite, Optimised:
     val after = trial.recording.decisions.filter(_.sequence > slow)
     assert(after.nonEmpty && after.forall(_.action.contains(Action.Hover)))
     assert(trial.counts.late > 5, trial.counts)
-    // The newest wins: those that waited meanwhile were left.
+    // The newest wins: those that waited meanwhile were skipped.
     assert(trial.counts.overtaken > 0 || trial.questions.size > 60, trial.counts)
 
   test("when a solver dies and is restarted, vehicles hover meanwhile, and fly on"):
@@ -172,7 +172,7 @@ class SolverSimulation extends munit.FunSuite, Optimised:
     )
     assert(trial.counts.late >= 5, trial.counts)
     assert(trial.events(EventKind.SolverRestarted).exists(_.vehicle.contains("Pursuer")))
-    // Without the word of the new start, the replay's memory is another.
+    // Without the record of the restart, the replay's memory differs.
     assertEquals(Replay(team, unsaid(trial.recording)).firstDifference.map(_.column), Some("headingRad"))
 
   private def unsaid(recording: Recording): Recording =
@@ -212,7 +212,7 @@ class SolverSimulation extends munit.FunSuite, Optimised:
       assertEquals(made.map(_.action.contains(Action.Hover)).distinct.size, 1)
     assertEquals(trial.recording.planned.size, trial.recording.solved.size)
     assert(trial.byFallback.nonEmpty)
-    // A plan goes on from the last one that was used, and is another where that is not known.
+    // A plan continues the last one that was used, and differs if that is unknown.
     assert(trial.events(EventKind.SolverRestarted).nonEmpty)
     assert(Replay(
       team,
@@ -234,7 +234,7 @@ class SolverSimulation extends munit.FunSuite, Optimised:
   test("equal seeds give equal recordings"):
     assertEquals(SolverTrial.fly(seed = 3)().recording, SolverTrial.fly(seed = 3)().recording)
 
-  test("over vpn, predictive with its solver behind a separate link flies within 2 % of the paused truth"):
+  test("over vpn, predictive with its solver behind a separate link flies within 2 % of the paused flight"):
     val seeds = 1L to 3L
     for (name, median) <- Seq("a broker's" -> 4.0, "a slower" -> 30.0) do
       val flown = seeds.map: seed =>

@@ -15,7 +15,7 @@ import skein.vtime.VirtualTime
 
 /** A duel in virtual time whose decisions are made by a solver behind a link that a test controls.
   *
-  * @param questions received by a solver, by its start, vehicle and number
+  * @param questions requests that a solver received, by its start, vehicle and number
   */
 final case class SolverTrial(
     outcome: FlightOutcome,

@@ -10,7 +10,7 @@ object KafkaCertificates:
     *
     * @param keyStore PKCS #12, with this side's key and certificate, which a broker may request from clients
     * @param trustStore PKCS #12, with the certificate of the authority
-    * @param password of both, and of the key
+    * @param password the password of both stores and of the key
     * @return `security.protocol` and `ssl.…` of Kafka's configuration
     */
   def settings(keyStore: Path, trustStore: Path, password: String): Map[String, String] = Map(

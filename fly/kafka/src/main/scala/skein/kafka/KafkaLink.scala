@@ -17,8 +17,8 @@ import skein.units.Expect
 final class KafkaLink(topics: KafkaTopics) extends MessageLink:
   private given ExecutionContext = ExecutionContext.parasitic
 
-  /** Many, since messages pass two of Kafka's clients and a broker: before compilation these add 1.5 ms at
-    * the median.
+  /** Many, since messages pass two of Kafka's clients and a broker, which add 1.5 ms at the median before
+    * their code is compiled.
     */
   override def rehearsals: Int = 400
 

@@ -16,7 +16,7 @@ import skein.link.Address
 
 /** The two topics between flights and a solver, one partition each, so that messages keep their order.
   *
-  * @param prefix of their names
+  * @param prefix prefix of the topics' names
   * @param security Kafka's own settings of clients: `security.protocol`, `ssl.…`, `sasl.…`; passwords among
   *   them are shown nowhere
   */

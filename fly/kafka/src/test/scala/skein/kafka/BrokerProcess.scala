@@ -21,7 +21,7 @@ object BrokerProcess:
 
   /** Blocks until it answers.
     *
-    * @param folder for its data; data of an earlier broker is continued
+    * @param folder holds the broker's data; data of an earlier broker is continued
     * @param port 0 for any free one
     */
   def start(folder: Path, port: Int, log: File): BrokerProcess =

@@ -26,10 +26,10 @@ object KafkaBroker:
 
   /** Blocks until it answers.
     *
-    * @param folder for its data; data of an earlier broker is continued
-    * @param at its address, which it advertises to clients; port 0 takes a free one
-    * @param certificates of [[KafkaCertificates]]: it presents its own, and requests those of clients.
-    *   Without them it accepts every client
+    * @param folder holds the broker's data; data of an earlier broker is continued
+    * @param at the broker's address, which it advertises to clients; port 0 takes a free one
+    * @param certificates settings by [[KafkaCertificates]]: it presents its own certificate, and requests
+    *   those of clients. Without them it accepts every client
     * @return Left states why it cannot start
     */
   def start(

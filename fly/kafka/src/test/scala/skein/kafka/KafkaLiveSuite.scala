@@ -106,14 +106,14 @@ class KafkaLiveSuite extends munit.FunSuite, Lengthy:
       val missed   = recording.events
         .filter(event => event.kind == EventKind.DeadlineMissed && event.vehicle.contains(vehicle))
         .flatMap(_.decision)
-      // Every decision has one maker, and who missed a deadline is named.
+      // Every decision has one maker: the solver, or the fallback of a recorded missed deadline.
       assertEquals((bySolver.map(_.decision) ++ missed).sorted, decisions.map(_.sequence))
       for decision <- decisions if missed.contains(decision.sequence) do
         assertEquals(decision.action, Some(Action.Hover), s"$vehicle, decision ${decision.sequence}")
       for one <- bySolver do
         assert(one.receivedAt < killedAt || one.askedAt > backFrom, s"$one crossed a broker that was away")
         assert(one.roundTrip <= period, s"$one came after its deadline")
-      // A command for each decision, sent at once, and none besides.
+      // No decision is commanded twice, and nothing else is commanded.
       val sent = recording.commands.filter(_.vehicle == vehicle).flatMap(_.decision)
       assertEquals(sent, sent.distinct.sorted)
       assertEquals(sent.toSet -- decisions.map(_.sequence), Set.empty)

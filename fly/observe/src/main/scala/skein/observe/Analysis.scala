@@ -3,15 +3,15 @@ package skein.observe
 import org.apache.pekko.util.ByteString
 import skein.units.Instant
 
-/** Analyses what passes between a program and its simulator. Mutable; one thread at a time; in the order in
-  * which it passed. Instants are on the observer's clock.
+/** Analyses the messages between a program and its simulator, in the order in which they passed. Mutable; one
+  * thread at a time. Instants are on the observer's clock.
   *
-  * @tparam A what it observes
+  * @tparam A the type of the observations
   */
 trait Analysis[A]:
   def opened(connection: Int, at: Instant): Unit
 
-  /** Takes bytes of a connection, split anywhere; datagrams come whole.
+  /** Takes bytes of a connection, split anywhere; datagrams arrive whole.
     *
     * @param isFromClient whether the side that connected sent them
     */

@@ -4,7 +4,7 @@ import skein.units.Decimals.{brief, counted, fixed}
 
 /** A fault of a loop's timing, with its remedy.
   *
-  * @param name constant for all loops, for scripts
+  * @param name name for scripts, equal for all loops
   * @param what the observation, with its figures
   * @param remedy what to change
   */
@@ -18,8 +18,8 @@ object Diagnosis:
   /** A delay is reported from this share of a period on. */
   private val Notable = 0.2
 
-  /** Limit of the simultaneous calls that AirSim surely answers: each unanswered move occupies one of its
-    * workers.
+  /** Maximum number of simultaneous calls that AirSim surely answers: each unanswered move occupies one of
+    * its workers.
     */
   private val MostMoves = 2
 

@@ -157,7 +157,8 @@ final class LoopAccount:
   private def ended(pending: Pending, roundTrip: Span, isAlone: Boolean, hasFlown: Boolean): Unit =
     for commanded <- vehicle(pending.vehicle) do
       if isAlone && roundTrip > JoinedFor then commanded.account.joined += 1
-      // A later command has replaced this one in its time; one that was sent before and still flies came after.
+      // A later command has replaced this one in its time; one that was sent before and still runs arrived
+      // after it.
       val isLast = !commanded.inFlight.exists(_.at > pending.at)
       if hasFlown && isLast && !Immediate(pending.method) && commanded.inFlight.exists(_.at < pending.at) then
         commanded.account.overtaken += 1
@@ -188,7 +189,7 @@ final class LoopAccount:
     then
       val end   = at.since(begunAt.get)
       val stall = Stall(end, roundTrip, pending.method)
-      // Calls that began while it lasted are of the same one.
+      // Calls that began during a stall belong to it.
       stalls.lastOption match
         case Some(last) if end - roundTrip < last.at =>
           stalls(stalls.size - 1) = if roundTrip > last.length then stall else last.copy(at = end)
@@ -198,7 +199,6 @@ final class LoopAccount:
 
   private def method(name: String, kind: CallKind): Option[Method] = methods.get(name)(Method(name, kind))
 
-  /** Number of commands to all vehicles. */
   private def commands: Long = vehicles.all.map(_.account.commands).sum
 
   /** The progress, at constant cost for any number of observations. */
@@ -248,7 +248,7 @@ object LoopAccount:
 
   private val MostLost = 100
 
-  /** Limit of a small answer, bytes; larger ones occupy a link for a while. */
+  /** Maximum size of a small answer, bytes; larger ones occupy a link for a while. */
   private val SmallBytes = 16L << 10
 
   /** Duration from which a move counts as awaited by the program. */
@@ -281,7 +281,7 @@ object LoopAccount:
 
   /** A reading that passed.
     *
-    * @param sampledAt on the simulator's clock, if the answer has a time stamp
+    * @param sampledAt time of sampling on the simulator's clock, if the answer has a time stamp
     */
   private final case class Reading(sentAt: Instant, receivedAt: Instant, sampledAt: Option[Instant]):
 

@@ -6,8 +6,8 @@ import skein.mavlink.*
 import skein.units.Instant
 
 /** Analyses a loop from frames of MAVLink 2 between a program and its vehicles. A vehicle is a system, read
-  * by the messages of its autopilot (component 1). Which side of a connection is the vehicles' is seen by the
-  * messages: it is the one that sends no commands.
+  * by the messages of its autopilot (component 1). The vehicles' side of a connection is the one that sends
+  * no commands.
   *
   * Readings are LOCAL_POSITION_NED, GLOBAL_POSITION_INT and ODOMETRY; commands are
   * SET_POSITION_TARGET_LOCAL_NED, SET_POSITION_TARGET_GLOBAL_INT and SET_ATTITUDE_TARGET. A command is
@@ -19,7 +19,7 @@ import skein.units.Instant
   * that of [[TopicAccount]].
   *
   * @param isDatagrams whether each piece is a datagram
-  * @param readings messages to read vehicles by, by their names in MAVLink; without any, those above
+  * @param readings MAVLink names of the messages that count as readings; without any, those above
   */
 final class MavlinkLoop(isDatagrams: Boolean, readings: Set[String] = Set.empty)
     extends Analysis[ObservedTopics]:
@@ -74,7 +74,7 @@ final class MavlinkLoop(isDatagrams: Boolean, readings: Set[String] = Set.empty)
           at
         )
 
-  /** Whether a frame is a vehicle's own, and no program's that speaks beside it, for example of vision. */
+  /** Whether a frame is a vehicle's own, and not of an additional program on it, for example for vision. */
   private def isVehicles(frame: Frame, side: Side) = frame.component == Autopilot && !programs(side)
 
   /** Adds a command; one to system 0 is to all. */

@@ -5,17 +5,17 @@ import skein.units.Span
 
 /** Observations of a loop. Ages are in milliseconds, at the moment at which a command passed.
   *
-  * @param lasted from the first call to the last message
-  * @param vehicles those that were read or commanded, in the order of their first call
-  * @param methods in the order of their first call
+  * @param lasted time from the first call to the last message
+  * @param vehicles the vehicles that were read or commanded, in the order of their first call
+  * @param methods the called methods, in the order of their first call
   * @param periodMs how a period from command to command was spent, on average; empty before the second
   *   command
-  * @param clock of the simulator; absent if no answer had a time stamp
-  * @param stalls in which calls waited for much longer than usual, the longest first
+  * @param clock the simulator's clock; absent if no answer had a time stamp
+  * @param stalls stalls during which calls waited for much longer than usual, the longest first
   * @param smallCallMs round trips of small calls, without and with a simultaneous transfer of an image
-  * @param lost connections whose bytes could not be parsed
-  * @param notKept messages that passed while the observer had no room for them
-  * @param log of the first [[LoopAccount.MostLogged]] commands
+  * @param lost descriptions of connections whose bytes could not be parsed
+  * @param notKept number of messages that passed while the observer had no room for them
+  * @param log the first [[LoopAccount.MostLogged]] commands
   */
 final case class Observed(
     lasted: Span,
@@ -35,13 +35,12 @@ final case class Observed(
 ):
   def commands: Long = vehicles.map(_.commands).sum
 
-/** One command. Ages and times since are in milliseconds; absent where there was no reading or command
-  * before.
+/** One command. Ages and times since are in milliseconds; absent if there was no reading or command before.
   *
-  * @param at since the first call
-  * @param boundMs half width of the own age's uncertainty
-  * @param sinceOwnMs since the last command to the vehicle; `sinceOthersMs`: to any other
-  * @param unanswered calls of any kind without an answer when it passed, itself included; absent where
+  * @param at time since the first call
+  * @param boundMs half width of the uncertainty of `ownAgeMs`
+  * @param sinceOwnMs time since the last command to the vehicle; `sinceOthersMs`: to any other
+  * @param unanswered number of calls of any kind without an answer when it passed, itself included; absent if
   *   nothing is answered
   */
 final case class ObservedCommand(
@@ -57,7 +56,7 @@ final case class ObservedCommand(
     unanswered: Option[Int] = None
 )
 
-/** Some commands to one vehicle: the largest of each number of [[ObservedCommand]]. */
+/** Some commands to one vehicle: the maximum of each value of [[ObservedCommand]]. */
 final case class NewCommands(
     vehicle: String,
     ownAgeMs: Option[Double],
@@ -77,18 +76,19 @@ object NewCommands:
 
 /** The commands to one vehicle.
   *
-  * @param ownAgeMs of its newest reading, since physics was sampled
-  * @param othersAgeMs of the newest reading of each other vehicle, the oldest of them
+  * @param ownAgeMs ages of the vehicle's newest reading, since physics was sampled
+  * @param othersAgeMs ages of the other vehicles' newest readings, the oldest of them
   * @param boundMs half width of the ages' uncertainty
-  * @param everyMs from one command to the next
-  * @param sinceOthersMs since any other vehicle was commanded
-  * @param skewMs between the oldest and the newest reading of all vehicles
-  * @param early commands before a vehicle's clock was compared with ours, whose ages are left out
-  * @param superseded commands replaced by the next before a physics step could apply them
-  * @param overtaken commands that reached the simulator after a later one
+  * @param everyMs times from one command to the next
+  * @param sinceOthersMs times since any other vehicle was commanded
+  * @param skewMs times between the oldest and the newest reading of all vehicles
+  * @param early number of commands before a vehicle's clock was compared with ours, whose ages are left out
+  * @param superseded number of commands replaced by the next before a physics step could apply them
+  * @param overtaken number of commands that reached the simulator after a later one
   * @param mostInFlight largest number of simultaneously unanswered commands
-  * @param joined commands during which their connection sent nothing else: the program waited for their ends
-  * @param leftRunning commands unanswered when their connection closed
+  * @param joined number of commands during which their connection sent nothing else: the program waited for
+  *   their ends
+  * @param leftRunning number of commands unanswered when their connection closed
   */
 final case class ObservedVehicle(
     name: String,
@@ -110,7 +110,7 @@ final case class ObservedVehicle(
 /** The calls of one method.
   *
   * @param roundTripMs absent before the first answer
-  * @param firstError absent where none failed
+  * @param firstError absent if none failed
   */
 final case class ObservedMethod(
     method: String,
@@ -132,12 +132,12 @@ final case class SimulatorClock(rate: Double, backwards: Long, stoodStill: Span)
 
 /** Calls that waited simultaneously.
   *
-  * @param at its end, since the first call
+  * @param at time of the end, since the first call
   */
 final case class Stall(at: Span, length: Span, method: String)
 
 /** The progress of an observation.
   *
-  * @param agesMs mean age of the own data of each vehicle that was read before a command to it
+  * @param agesMs mean age of the vehicle's own data, for each vehicle that was read before a command to it
   */
 final case class Progress(lasted: Span, commands: Long, agesMs: Vector[(vehicle: String, ms: Double)])

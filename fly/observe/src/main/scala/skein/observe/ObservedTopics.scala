@@ -11,11 +11,11 @@ enum TopicKind(val label: String):
 /** Observations of a loop that exchanges messages on topics. Ages are in milliseconds, at the time of a
   * command.
   *
-  * @param lasted from the first message to the last
-  * @param caused commands with the stamp of the reading that caused them
+  * @param lasted time from the first message to the last
+  * @param caused number of commands with the stamp of the reading that caused them
   * @param byOtherClock vehicles whose stamps are not by the clock of the arrival times
-  * @param notKept messages of vehicles or topics beyond the limit
-  * @param log of the first [[LoopAccount.MostLogged]] commands
+  * @param notKept number of messages of vehicles or topics beyond the limit
+  * @param log the first [[LoopAccount.MostLogged]] commands
   * @param simulated present if times are simulated
   */
 final case class ObservedTopics(
@@ -39,8 +39,8 @@ final case class SimulatedTime(step: Span, before: Long)
 
 /** The messages of one topic.
   *
-  * @param intervalMs from one message to the next
-  * @param lateMs from a header's stamp to the arrival of its message; absent where they are on different
+  * @param intervalMs times from one message to the next
+  * @param lateMs times from a header's stamp to the arrival of its message; absent if these are on different
   *   clocks
   * @param gaps number of intervals longer than 2.5 usual ones
   * @param backwards number of messages with an earlier stamp than a previous one

@@ -16,9 +16,9 @@ import skein.units.{Clock, Instant}
 /** A proxy between clients and their simulator that analyses their loop. It changes nothing: bytes pass in
   * their order, none is added, held back or lost, whatever they mean; datagrams as the link lets them.
   *
-  * What passes is looked at elsewhere, one piece after the other. That may lag behind by
-  * [[ObservingProxy.MostWaiting]]; what comes beyond is passed on and not looked at, which is counted, and
-  * its connection is not analysed any more, unless it carries datagrams.
+  * Passed pieces are analysed elsewhere, one after the other. The analysis may lag behind by
+  * [[ObservingProxy.MostWaiting]] bytes; pieces beyond pass without analysis and are counted, and their
+  * connection is not analysed any more, unless it carries datagrams.
   */
 final class ObservingProxy[A] private (
     proxy: LinkProxy,
@@ -39,7 +39,7 @@ final class ObservingProxy[A] private (
   def observed: A = looking.observed
 
   /** Accepts no more connections, closes the open ones, and analyses what has passed until now. Fails if the
-    * analysis has failed, which is a defect; bytes passed all the same.
+    * analysis has failed, which is a defect; bytes passed nevertheless.
     */
   def close(): Future[Done] =
     given ExecutionContext = ExecutionContext.parasitic
@@ -55,7 +55,7 @@ object ObservingProxy:
   val Settings: Config =
     ConfigFactory.parseString("pekko.io.tcp.direct-buffer-size = 1 MiB").withFallback(ConfigFactory.load())
 
-  /** Limit of bytes that have passed and wait for analysis. */
+  /** Maximum number of bytes that have passed and wait for analysis. */
   val MostWaiting: Long = 256L << 20
 
   private enum Piece:
@@ -66,10 +66,10 @@ object ObservingProxy:
 
   /** Starts listening. Fails with a [[TransportError]] if that is not possible.
     *
-    * @param link emulated between the observer and the simulator
+    * @param link the link emulated between the observer and the simulator
     * @param reader executes the analysis; a separate thread in real time
     * @param unreachable called with the reason, if an accepted connection cannot be continued to the
-    *   simulator, or speaks another protocol: see [[LinkProxy]], whose places its connections have
+    *   simulator, or speaks another protocol: see [[LinkProxy]], whose seats its connections take
     * @param isDatagrams whether the transport carries datagrams
     */
   def start[A](

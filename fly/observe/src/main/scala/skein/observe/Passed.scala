@@ -10,16 +10,16 @@ enum Passed:
 
   /** A call on its way to the simulator.
     *
-    * @param id of the call within its connection
+    * @param id identifies the call within its connection
     * @param vehicle its name in the call; empty for the simulator's default vehicle
     */
   case Called(connection: Int, id: Long, method: String, vehicle: String, at: Instant)
 
   /** An answer on its way to the client.
     *
-    * @param error absent where the call succeeded
+    * @param error absent if the call succeeded
     * @param sampledAt the answer's time stamp, on the simulator's clock
-    * @param bytes of the whole answer
+    * @param bytes size of the whole answer
     */
   case Answered(
       connection: Int,

@@ -19,7 +19,7 @@ private[observe] final class Samples:
 
   def added: Long = count
 
-  /** Of the samples so far; more may follow. */
+  /** The distribution of the samples so far; more may follow. */
   def distribution: Option[Distribution] = Distribution.of(kept.take(count.min(Samples.Most).toInt))
 
 private object Samples:

@@ -12,10 +12,10 @@ import skein.units.{Instant, Span}
   * without one, from its arrival.
   *
   * If the first stamp of a vehicle is within [[TopicAccount.SameClock]] of the time at which its message
-  * arrived, stamps are taken as they are. Otherwise they are by another clock, such as simulated time. What
-  * goes there and back relates the two ([[exchanged]]), with a bound; ages from before the first exchange are
-  * left out and counted. Without any, [[skein.signal.FastestMessage]] does: ages lack the way of the fastest
-  * message.
+  * arrived, stamps are taken as they are. Otherwise they are by another clock, such as simulated time.
+  * Messages in both directions relate the two ([[exchanged]]), with a bound; ages from before the first
+  * exchange are left out and counted. Without any, [[skein.signal.FastestMessage]] does: ages lack the
+  * latency of the fastest message.
   *
   * Memory: [[TopicAccount.MostVehicles]] vehicles, [[TopicAccount.MostTopics]] topics, a million samples of
   * each quantity, and [[LoopAccount.MostLogged]] commands.
@@ -34,15 +34,15 @@ final class TopicAccount:
 
   /** Adds a reading that has arrived.
     *
-    * @param stamp of its header
-    * @param at when it arrived
+    * @param stamp its header's stamp
+    * @param at time of arrival
     */
   def reading(vehicle: String, topic: String, stamp: Option[Instant], at: Instant): Unit =
     received(vehicle, topic, TopicKind.Readings, stamp, at).foreach(_.read(stamp, at))
 
   /** Adds a command that was sent; its parameters are those of [[reading]].
     *
-    * @param mayBeNow whether its stamp may say when it was sent, so that it names no reading
+    * @param mayBeNow whether its stamp may be its time of sending, so that it identifies no reading
     */
   def command(
       vehicle: String,
@@ -75,8 +75,8 @@ final class TopicAccount:
 
   /** Compares a vehicle's clock with ours.
     *
-    * @param sentAt when the question passed
-    * @param answeredAt by the vehicle's clock
+    * @param sentAt when the request passed
+    * @param answeredAt time of the answer on the vehicle's clock
     * @param receivedAt when the answer passed
     */
   def exchanged(vehicle: String, sentAt: Instant, answeredAt: Instant, receivedAt: Instant): Unit =
@@ -128,13 +128,13 @@ final class TopicAccount:
   )
 
 object TopicAccount:
-  /** How far a stamp and the time of its message may be apart on one clock. */
+  /** Greatest difference on one clock between a stamp and the time of its message. */
   val SameClock: Span = Span.ofSeconds(10)
 
   private val MostVehicles = 256
   private val MostTopics   = 1024
 
-  /** Readings among which a command's cause is looked for. */
+  /** Number of readings among which a command's cause is sought. */
   private val MostCauses = 256
 
   private def isNear(stamp: Instant, at: Instant): Boolean =
@@ -153,7 +153,7 @@ object TopicAccount:
 
     def isByOtherClock: Boolean = clock.isEmpty && fastest.isDefined
 
-    /** Half width of the uncertainty of ages; absent where the clocks were not compared. */
+    /** Half width of the uncertainty of ages; absent if the clocks were not compared. */
     def boundMs: Option[Double] = clock.map(_.uncertainty.toMillis)
 
     def read(stamp: Option[Instant], at: Instant): Unit =
@@ -163,7 +163,7 @@ object TopicAccount:
         isFirst = false
         val before = fastest
         fastest = fastest.map(_.updated(stamped, at))
-        // A vehicle that was switched on again has begun to count its time anew.
+        // The clock of a restarted vehicle starts anew.
         if before.exists(one => fastest.exists(_.offset > one.offset + FastestMessage.Restart)) then
           newest = None
           stamps.clear()
@@ -208,5 +208,5 @@ object TopicAccount:
         backwards
       )
 
-  /** A gap is an interval of more than this many usual ones. */
+  /** A gap is an interval longer than this multiple of the usual one. */
   private val GapFactor = 2.5

@@ -21,7 +21,7 @@ private[observe] final class VehicleAccount(val name: String):
 
   /** Adds a command.
     *
-    * @param agesMs of the newest reading of each vehicle
+    * @param agesMs age of the newest reading of each vehicle
     * @param isEarly whether a clock behind the ages was not compared with ours: see [[ObservedVehicle.early]]
     */
   def add(command: ObservedCommand, at: Instant, agesMs: Iterable[Double], isEarly: Boolean = false): Unit =
@@ -39,7 +39,7 @@ private[observe] final class VehicleAccount(val name: String):
     worst = None
     taken
 
-  /** Mean age of the own data behind a command, ms. */
+  /** Mean age of the vehicle's own data behind a command, ms. */
   def ownAgeMs: Option[Double] = known.own.mean
 
   private def known = if aligned.isEmpty then early else aligned

@@ -98,7 +98,7 @@ class LoopAccountSuite extends munit.FunSuite:
     assertEqualsDouble(seen.everyMs.get.mean, 100, 1e-6)
 
   test(
-    "without time stamps a reading is as old as half of its round trip says, and the bound says how wrong that may be"
+    "without time stamps a reading's age is half of its round trip, and the bound states the possible error"
   ):
     val program = Program()
     program.called("simGetVehiclePose", "A", 0, 40)
@@ -106,7 +106,7 @@ class LoopAccountSuite extends munit.FunSuite:
     assertEqualsDouble(program.vehicle("A").ownAgeMs.get.mean, 30, 1e-6)
     assertEqualsDouble(program.vehicle("A").boundMs.get, 20, 1e-6)
 
-  test("sequential readings of vehicles are found, and simultaneous ones are not"):
+  test("reading vehicles one after another is reported as a finding; reading them simultaneously is not"):
     def loop(apart: Double) =
       val program = Program()
       for tick <- 0 until 50 do
@@ -167,7 +167,7 @@ class LoopAccountSuite extends munit.FunSuite:
     assert(loop(waits = true).found("waits for each move"))
     assert(!loop(waits = false).found("waits for each move"))
 
-  test("small calls that are slow beside an image, and else quick, mean that images fill the link"):
+  test("small calls that are slow during an image, and else quick, mean that images fill the link"):
     val program = Program()
     for tick <- 0 until 40 do
       val ms = tick * 200.0

@@ -31,7 +31,7 @@ class MavlinkLoopSimulation extends munit.FunSuite, Unhurried:
 
   /** Knows when the vehicles were switched on, and computes the ages by that.
     *
-    * @param bootAt on the observer's clock
+    * @param bootAt time of the vehicles' start, on the observer's clock
     */
   private final class Truth(loop: MavlinkLoop, bootAt: Instant) extends Analysis[ObservedTopics]:
     private val newest  = mutable.HashMap.empty[Int, Long]

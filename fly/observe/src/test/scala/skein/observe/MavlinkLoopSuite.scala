@@ -64,7 +64,7 @@ class MavlinkLoopSuite extends munit.FunSuite:
     assertEquals((vehicle.commands, vehicle.early), (3L, 1L))
     assertEquals(vehicle.ownAgeMs.map(_.sorted.map(_.round.toInt).toVector), Some(Vector(50, 60)))
 
-  test("without it, they lack the way of the fastest message, and that is said"):
+  test("without TIMESYNC, ages lack the fastest message's latency, and a remark states that"):
     val here = Conversation()
     here.position(1, 0, 60)
     here.position(1, 50, 80)
@@ -80,7 +80,7 @@ class MavlinkLoopSuite extends munit.FunSuite:
     here.setpoint(1, 50)
     assertEquals(here.loop.observed.byOtherClock, Vector("system 1"))
 
-  test("what a program sends by the vehicle's number is no reading and no clock of it"):
+  test("a program's messages under the vehicle's number are neither its readings nor its clock"):
     for component <- Seq(1, 191) do
       val here = Conversation()
       here.position(1, 0, 10)
@@ -92,7 +92,7 @@ class MavlinkLoopSuite extends munit.FunSuite:
       assertEquals(here.ages, Vector(Some(10.0), Some(50.0)), s"component $component")
       assertEquals(here.loop.observed.byOtherClock, Vector("system 1"))
 
-  test("a vehicle that was switched on again is read by its new clock"):
+  test("a restarted vehicle is read by its new clock"):
     val here = Conversation()
     here.position(1, 600_000, 600_010)
     here.timesync(600_020, 600_030)
@@ -101,7 +101,7 @@ class MavlinkLoopSuite extends munit.FunSuite:
     here.setpoint(1, 700_120)
     assertEquals(here.ages, Vector(Some(20.0)))
 
-  test("where no vehicle was heard, that is said"):
+  test("if no vehicle was heard, a remark states that"):
     val here = Conversation()
     here.setpoint(1, 10)
     assert(here.loop.remarks.exists(_.startsWith("No vehicle was heard")), here.loop.remarks)
@@ -144,7 +144,7 @@ class MavlinkLoopSuite extends munit.FunSuite:
     here.position(1, 0, 10)
     assertEquals(here.loop.observed.topics.map(_.messages), Vector(1L))
 
-  test("connections beyond the most are counted"):
+  test("connections beyond the limit are counted"):
     val here = Conversation()
     for connection <- 1 to MavlinkLoop.MostConnections do here.loop.opened(connection, Instant.Epoch)
     val frame = ByteString.fromArray(here.bytes(1, LocalPositionNed(0, 0, 0, 0, 0, 0, 0)))

@@ -23,7 +23,7 @@ class ObservingProxySimulation extends munit.FunSuite, Unhurried:
 
   /** The result of an observed flight.
     *
-    * @param ages of the evader's data at each of its commands, ms, by the simulator's own clock
+    * @param ages ages of the evader's data at each of its commands, ms, by the simulator's own clock
     */
   private final case class Flown(observed: Observed, ages: Seq[Double])
 
@@ -57,7 +57,7 @@ class ObservingProxySimulation extends munit.FunSuite, Unhurried:
           evader <- named(client, "Evader")
           _      <- evader.enableApiControl()
           _      <- evader.hoverAt(VehiclePose(Vector3(0, 0, -20), Quaternion.Identity))
-          // Nothing lies between: the answer's time stamp is of now.
+          // Nothing delays the answer: its time stamp is the present time.
           stamped <- beside.kinematics().map(_.fold(error => throw AssertionError(error.message), identity))
           offset = stamped.receivedAt.since(stamped.validAt)
           ages <- Source

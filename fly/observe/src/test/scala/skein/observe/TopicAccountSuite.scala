@@ -58,7 +58,7 @@ class TopicAccountSuite extends munit.FunSuite:
     assertEquals(first.othersAgeMs, Some(25.0))
     assertEquals(second.sinceOthersMs, Some(4.0))
 
-  test("with stamps of simulated time, ages are relative to the fastest message's way"):
+  test("with stamps of simulated time, ages are relative to the fastest message's latency"):
     val graph = Graph(offsetMs = -900_000)
     graph.reading("a", 10, 30)
     graph.reading("a", 60, 65)

@@ -21,7 +21,7 @@ private[rosbag] final class GraphClock:
   /** Adds the time of a message. A time that is older than the newest by up to [[MostLate]] is ignored as
     * late.
     *
-    * @param at when the message arrived
+    * @param at time of arrival
     * @return whether the time begins here: this is the first message, or the time went back
     */
   def add(time: Instant, at: Instant): Boolean =
@@ -62,7 +62,7 @@ private object GraphClock:
 
   val MostRecent: Int = 32
 
-  /** Limit of the lateness of a message: best effort may deliver one after a newer one. A simulation that
-    * begins anew goes back further.
+  /** Maximum lateness of a message: best effort may deliver one after a newer one. A simulation that begins
+    * anew goes back further.
     */
   val MostLate: Span = Span.ofSeconds(1)

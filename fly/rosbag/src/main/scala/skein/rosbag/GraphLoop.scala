@@ -12,9 +12,9 @@ import skein.units.{Clock, Instant}
   * Memory: [[GraphLoop.MostTopics]] topics, the beginnings of 16,384 messages, and that of
   * [[skein.observe.TopicAccount]]. What exceeds it is counted in the [[remarks]].
   *
-  * @param readings topics that vehicles are read by; without any, those of poses whose name sounds like no
-  *   command
-  * @param commands topics of commands; without any, those of twists and poses whose name sounds like one
+  * @param readings topics with vehicles' readings; without any, those of poses whose name does not suggest
+  *   commands
+  * @param commands topics of commands; without any, those of twists and poses whose name suggests commands
   */
 final class GraphLoop private[rosbag] (readings: Set[String], commands: Set[String], graph: RosGraph)
     extends RosWatcher,
@@ -54,8 +54,8 @@ final class GraphLoop private[rosbag] (readings: Set[String], commands: Set[Stri
 
   def observed: ObservedTopics = synchronized(loop.observed)
 
-  /** What was not observed, in a line each: topics that were chosen and did not appear, those that could not
-    * be subscribed to or were too many, and messages that were refused or lost.
+  /** Omissions, in a line each: topics that were chosen and did not appear, those that could not be
+    * subscribed to or were too many, and messages that were refused or lost.
     */
   def remarks: Vector[String] = synchronized:
     val absent = loop.missing(taken).map: topic =>
@@ -67,7 +67,7 @@ final class GraphLoop private[rosbag] (readings: Set[String], commands: Set[Stri
     )
     absent ++ (failed.toVector ++ graph.notes).map(line => s"$line.") ++ more ++ bad ++ lost
 
-  /** Ends the subscriptions; what has arrived before is observed. */
+  /** Ends the subscriptions; messages that arrived before are observed. */
   def close(): Unit =
     graph.close()
     upTo(Instant.ofNanos(Long.MaxValue))
@@ -76,8 +76,8 @@ object GraphLoop:
   private val MostTopics = 256
   private val MostListed = 12
 
-  /** Of a topic, this many messages wait in the middleware for the observer; best effort and volatile match
-    * every publisher.
+  /** For each topic, up to 64 messages wait in the middleware for the observer; best effort and volatile
+    * match every publisher.
     */
   private val Observing = Qos(isReliable = false, depth = 64)
 

@@ -19,7 +19,7 @@ object RosBag:
     * memory.
     *
     * @param folder must be empty, or not exist yet in an existing folder
-    * @return topics with their numbers of messages
+    * @return the number of messages of each topic
     */
   def write(recording: Path, folder: Path): Either[String, VectorMap[String, Long]] =
     for

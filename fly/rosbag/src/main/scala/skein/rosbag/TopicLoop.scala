@@ -12,9 +12,9 @@ import skein.units.Instant
   * If the graph has a `/clock`, all times are on it ([[GraphClock]]). Messages from before its first one, or
   * from before it went back, are counted and left out.
   *
-  * @param readings topics that vehicles are read by; without any, those of poses whose name sounds like no
-  *   command
-  * @param commands topics of commands; without any, those of twists and poses whose name sounds like one
+  * @param readings topics with vehicles' readings; without any, those of poses whose name does not suggest
+  *   commands
+  * @param commands topics of commands; without any, those of twists and poses whose name suggests commands
   */
 private[rosbag] final class TopicLoop(readings: Set[String], commands: Set[String]):
   import TopicLoop.*
@@ -23,7 +23,7 @@ private[rosbag] final class TopicLoop(readings: Set[String], commands: Set[Strin
   private var account = TopicAccount()
   private var before  = 0L
 
-  /** What a topic's messages do here; None if they are of no use.
+  /** The handler of a topic's messages; None if they are of no use.
     *
     * @param messageType such as `nav_msgs/msg/Odometry`
     * @param definition the text of the type's `.msg` file; empty if it is unknown
@@ -66,7 +66,7 @@ private[rosbag] final class TopicLoop(readings: Set[String], commands: Set[Strin
   def observed: ObservedTopics = account.observed.copy(simulated = clock.step.map(SimulatedTime(_, before)))
 
 private[rosbag] object TopicLoop:
-  /** Takes the first [[NeededBytes]] of a message, or more, and when it arrived. */
+  /** Takes the first [[NeededBytes]] of a message, or more, and its time of arrival. */
   type Topic = (Bytes, Instant) => Unit
 
   /** Bytes of a message that are read: those that state its encoding, and a time. */
@@ -87,7 +87,7 @@ private[rosbag] object TopicLoop:
     case Array(first, _, _*) => first
     case _                   => ""
 
-  /** Whether a type begins with a header: by its definition, or by its name where that is unknown. */
+  /** Whether a type begins with a header: by its definition, or by its name if that is unknown. */
   private def beginsWithHeader(messageType: String, definition: String): Boolean =
     val first = definition.linesIterator.map(_.takeWhile(_ != '#').trim)
       .find(line => line.nonEmpty && !line.contains('='))

@@ -22,7 +22,8 @@ class RosbagsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy:
     val lines  = run("read", folder.resolve("bag").toString).linesIterator.toVector.map(_.split(' '))
     assertEquals(lines.map(line => line(0) -> line(2).toLong).toMap, counts.toMap)
     for line <- lines do
-      // Readings come over the link, half a round trip after they were sampled; commands are stamped when they are sent.
+      // Readings arrive over the link half a round trip after they were sampled; commands are stamped when
+      // they are sent.
       val late = line(3).toDouble
       if line(0).endsWith("cmd_vel") then assertEqualsDouble(late, 0, 1e-3)
       else assert(late > 20 && late < 100, late)

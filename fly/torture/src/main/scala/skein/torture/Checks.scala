@@ -6,7 +6,7 @@ import skein.record.{DecisionRow, EventSubject, Recording}
 import skein.units.*
 import skein.units.Decimals.fixed
 
-/** Judges a flight by its [[FlightTrace]], observed from outside. */
+/** Checks a flight by its [[FlightTrace]], observed from outside. */
 object Checks:
 
   /** All violations of a flight's guarantees, a line each. */
@@ -153,7 +153,7 @@ object Checks:
     ).flatten
 
   /** After the last fault, every vehicle must soon be commanded again, on readings since then, and
-    * continuously. Except in the paused truth, which ends at the first error.
+    * continuously. Except in a paused flight, which ends at the first error.
     */
   private def outOfControl(seen: FlightTrace): Vector[String] =
     val due = seen.calmFrom + FaultPlan.ResumesWithin
@@ -234,8 +234,8 @@ object Checks:
 
   private val ImagesOnTheWay = 2
 
-  /** Limit of unanswered moves. After a connection was lost, its last moves may still be at the simulator
-    * when those of the next one arrive.
+  /** Maximum number of unanswered moves. After a connection was lost, its last moves may still be at the
+    * simulator when those of the next one arrive.
     */
   private val MostUnanswered = 4
 

@@ -10,12 +10,12 @@ import skein.units.*
 /** The faults of one flight, all derived from the seed. Times count from the flight's start.
   *
   * @param calmFrom end of the faults
-  * @param faults of the link between controller and simulator
+  * @param faults faults of the link between controller and simulator
   * @param messageFaults faults of single messages until `calmFrom`, as of a broken peer
-  * @param restarts of the simulator; afterwards a supervisor prepares the vehicles again
+  * @param restarts restarts of the simulator; afterwards a supervisor prepares the vehicles again
   * @param stopAt when a user ends the flight early
   * @param clockAhead the simulator's clock less the controller's, until a restart
-  * @param scene of the simulator's world
+  * @param scene the scene of the simulator's world
   * @param looks whether the last vehicle detects the first by a camera, in addition to the scenario's eyes
   */
 final case class FaultPlan(
@@ -154,7 +154,7 @@ object FaultPlan:
       val loop =
         pick(LoopKind.Stream, LoopKind.Stream, LoopKind.Predictive, LoopKind.Futures, LoopKind.Sequential)
       val link = pick(LatencyProfile.none, LatencyProfile.direct, LatencyProfile.vpn, LatencyProfile.vpnMixed)
-      // A loop that asks its vehicles in turn needs a round trip for each.
+      // A loop that reads its vehicles in turn needs a round trip for each.
       val most         = if loop == LoopKind.Sequential || loop == LoopKind.Futures then 3 else 10
       val pairs        = if random.nextDouble() < 0.6 then 1 else 1 + random.nextInt(most)
       val cutsSegments = chance(0.5)

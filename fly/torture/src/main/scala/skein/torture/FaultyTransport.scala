@@ -130,7 +130,7 @@ private object FaultyTransport:
 
   private val Hover = "hover"
 
-  /** Limit of answers that one connection may hold back simultaneously. */
+  /** Maximum number of answers that one connection holds back simultaneously. */
   private val HeldBack = 1024
 
   /** Splits a stream of bytes into messages. */

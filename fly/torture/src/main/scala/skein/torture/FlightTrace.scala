@@ -6,22 +6,22 @@ import skein.record.{Record, RecordError, Recording}
 import skein.rpc.{RpcSettings, RpcStats}
 import skein.units.*
 
-/** External observations of one flight, by which it is judged.
+/** External observations of one flight, by which it is checked.
   *
-  * @param ports by vehicle
-  * @param arrivals at the simulator, in order, of all vehicles
+  * @param ports the observed port of each vehicle
+  * @param arrivals all vehicles' moves as they arrived at the simulator, in order
   * @param mostUnanswered largest number of simultaneously unanswered moves of one vehicle
   * @param mostPending largest number of simultaneously unfinished calls of the client
   * @param lastHovers when, if ever, the simulator last received a command to hover for a vehicle
-  * @param stats after the client was closed
-  * @param offered to the recorder, in order, while it could keep it
+  * @param stats the client's statistics after it was closed
+  * @param offered records offered to the recorder, in order, while it could keep them
   * @param file the content of the recording's file, or why it cannot be read, if a file was written
-  * @param runs of the simulator
-  * @param drifts of each vehicle within [[FlightTrace.Watched]], some time after the end
-  * @param steps calls that advance the simulator's time in steps
+  * @param runs the simulator's runs
+  * @param drifts drift of each vehicle within [[FlightTrace.Watched]], some time after the end
+  * @param steps counts of calls that advance the simulator's time in steps
   * @param callsBeside number of requests for a sign of life
   * @param leftPaused whether the simulator stood still some time after the end
-  * @param images of each eye, after it has ended
+  * @param images each eye's counts of images, after it has ended
   */
 final case class FlightTrace(
     faultPlan: FaultPlan,

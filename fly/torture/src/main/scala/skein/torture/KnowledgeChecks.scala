@@ -6,7 +6,7 @@ import skein.signal.Stamped
 import skein.units.*
 import skein.units.Decimals.fixed
 
-/** Judges the inputs of decisions: they must be the newest data that the vehicles reported, with correct
+/** Checks the inputs of decisions: they must be the newest data that the vehicles reported, with correct
   * ages.
   */
 private[torture] object KnowledgeChecks:
@@ -148,8 +148,8 @@ private[torture] object KnowledgeChecks:
 
   private def where(decision: DecisionRow) = s"decision ${decision.sequence} of ${decision.vehicle}"
 
-  /** Whether one state was truly sampled after another, judged independently of the loop. If the simulator
-    * was restarted between them with nearly the same clock, only if the reports show it.
+  /** Whether one state was truly sampled after another, determined independently of the loop. If the
+    * simulator was restarted between them with a nearly equal clock, only if the reports show it.
     */
   private[torture] def isNewer(runs: Vector[Run])(one: Stamped[?], other: Stamped[?]): Boolean =
     val offsets                               = clockOffset(runs, one).zip(clockOffset(runs, other))

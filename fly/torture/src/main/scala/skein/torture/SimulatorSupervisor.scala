@@ -15,7 +15,7 @@ import skein.units.*
 /** One run of the simulator, until the next.
   *
   * @param from when it had started, on the controller's clock
-  * @param clockOffset controller's clock minus simulator's, while it ran
+  * @param clockOffset the controller's clock minus the simulator's during the run
   */
 final case class Run(from: Instant, clockOffset: Span)
 

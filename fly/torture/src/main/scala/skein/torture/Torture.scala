@@ -36,8 +36,8 @@ object Torture:
 
   /** Runs many seeds on `threads` threads. Blocks.
     *
-    * @param scenario of the flights; by default duels
-    * @param scene of the simulator's world; by default the scenario's
+    * @param scenario the flights' scenario; by default duels
+    * @param scene the scene of the simulator's world; by default the scenario's
     * @param onVerdict called with each result as soon as it is ready, on the calling thread
     */
   def all(

@@ -67,9 +67,9 @@ class FailureTellingSimulation extends munit.FunSuite, Unhurried:
       )
       val world =
         SimulatorSettings(WorldSettings.of(duel), Address("simulator", 41451))
-      // Where a flight begins is not known before; its link is stalled from outside then.
+      // A flight's start is not known in advance, so its link is stalled from outside.
       var gate = Option.empty[Instant]
-      // `paused` has no link of its own: with answers that take no time it would have flown at once.
+      // `paused` has no link of its own: with answers that take no time it would end immediately.
       val between = if loop == LoopKind.Paused then LatencyProfile.direct else LatencyProfile.none
       val network = MemoryNetwork(NetworkPlan(LinkProfile.symmetric(between)), 1, clock)
       var told    = Vector.empty[(Instant, String)]
@@ -150,14 +150,14 @@ class FailureTellingSimulation extends munit.FunSuite, Unhurried:
       s"${loop.label}: a restart of the simulator after ${pause.toMillis} ms fails the flight"
     ):
       val flown = fly(loop, dies = true, restarts = Some(pause))
-      // A simulator that is quick to be back is found out by where its vehicles stand.
+      // A quickly restarted simulator is detected by its vehicles' positions.
       def saysWhy(text: String) =
         text.contains("the simulator at simulator:41451 no longer gives ") ||
           text.contains("from where it can have flown")
       flown.landed.outcome match
         case FlightOutcome.Failed(reason) => assert(saysWhy(reason), reason)
         case other                        => fail(s"it ended as $other")
-      // It is asked once a client that waits up to 2 s between two attempts has found it.
+      // It is checked once the client, which waits up to 2 s between two attempts, is connected.
       val latest = flown.wentWrong + pause + Span.ofSeconds(3)
       assert(flown.told.exists((at, line) => saysWhy(line) && at < latest), flown.told.toString)
       assertEquals(flown.recording.ending.map(_.how), Some(EndingKind.Failed))

@@ -234,7 +234,7 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
       clean.arrivals.filter(arrival => arrival.at < clean.calmFrom || arrival.at >= due)
     )
     assert(found(silent.copy(endedAt = due)).contains("no command came within"))
-    // While the last answers are waited for nothing is commanded.
+    // Nothing is commanded while the last answers are awaited.
     val waited = clean.copy(endedAt = clean.endedAt + Span.ofSeconds(3))
     assert(!found(waited).contains("no command for"), found(waited))
     val begun = clean.copy(arrivals = clean.arrivals.filter(_.at < due))
@@ -278,20 +278,19 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     val wrong = "ms old, told were"
     for seconds <- Seq(100.0, -100.0, 1.0, -1.0) do
       assert(found(restarted(4, Span.ofSeconds(seconds))).contains(wrong), s"$seconds s")
-    // A jump that no answer shows is not judged, and neither is what was read while the old answers may still
-    // come.
+    // A jump that no answer shows is not checked, nor are readings while old answers may still arrive.
     for seconds <- Seq(0.5, -0.5) do
       assert(!found(restarted(4, Span.ofSeconds(seconds))).contains(wrong), s"$seconds s")
     assert(!found(restarted(7.3, Span.ofSeconds(100))).contains(wrong))
     assertEquals(found(restarted(4, Span.Zero)), "")
-    // 0.7 s until questions of the old run are over, and 0.7 s more for the first answer of the new one to be
+    // 0.7 s until requests to the old run are over, and 0.7 s more until the first answer of the new one is
     // known.
     val first = found(restarted(4, Span.ofSeconds(100))) match
       case s"${_}decision $number of $vehicle: ${_}" =>
         clean.recording.decisions.find(one => one.vehicle == vehicle && one.sequence == number.toLong).get
       case other => fail(other)
     assertEqualsDouble(first.decidedAt.since(clean.startedAt).toSeconds, 5.5, 0.1)
-    // Nobody knows the new clock before every vehicle has answered by it.
+    // The new clock is unknown until every vehicle has answered by it.
     val silent = WatchedVehicle(clean.ports.head, Clock.system)(using ExecutionContext.parasitic)
     assert(!found(restarted(4, Span.ofSeconds(100)).copy(ports = clean.ports :+ silent)).contains(wrong))
     // Of three runs only two are alike.

@@ -11,7 +11,7 @@ import skein.lanes.timetable.TimetableAgents;
 import skein.lanes.timetable.TimetableEye;
 import skein.lanes.timetable.TimetableVehicles;
 
-/** One of two that play against one another, in many worlds: decides by the difference of their readings. */
+/** One of two opponents in many worlds: decides by the difference of their readings. */
 final class OpponentAgents extends TimetableAgents implements TeamMember {
   private final LanePolicy policy;
   private final float[] effort;
@@ -19,12 +19,12 @@ final class OpponentAgents extends TimetableAgents implements TeamMember {
   private final int self;
   private final LaneObservation observation;
 
-  /** The camera that is its only knowledge of the opponent, or null. */
+  /** The camera through which alone the vehicle knows its opponent; null if it reads the opponent. */
   private final TimetableEye eye;
 
-  /** @param self the vehicle's number, 0 or 1
+  /** @param self the vehicle's index, 0 or 1
    * @param effort receives the sums of the heading's changes
-   * @param eye the camera that is its only knowledge of the opponent; null if it reads the opponent's state
+   * @param eye the camera through which alone it knows its opponent; null if it reads the opponent
    */
   OpponentAgents(
       int self,
@@ -57,7 +57,7 @@ final class OpponentAgents extends TimetableAgents implements TeamMember {
   @Override
   public void start(Timetable timetable, int worlds) {
     super.start(timetable, worlds);
-    // The timetable keeps the first heading at place 0.
+    // The timetable keeps the first heading in slot 0.
     headings.fill(0, WORLDS, startHeading);
     policy.start(startHeading, worlds);
     if (eye != null) eye.start(worlds);

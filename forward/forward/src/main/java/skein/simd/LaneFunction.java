@@ -20,8 +20,8 @@ public abstract class LaneFunction {
   /** Whether the function is a single pass, whose outputs may overwrite its inputs. */
   public abstract boolean isOnePass();
 
-  /** Index of a world's parameter. Parameters of worlds that are computed together are contiguous, because a
-   * pass over many values that are used once then reads at memory speed.
+  /** Index of a world's parameter. Parameters of worlds that are computed together are contiguous, so that a
+   * pass over many values that are used once reads at memory speed.
    *
    * @param count number of parameters per world
    */
@@ -40,8 +40,8 @@ public abstract class LaneFunction {
    * @param arrays the inputs in their order, then the outputs; unused entries may be null. An output may
    *   overlap an input only if the function {@link #isOnePass is one pass}, or if no other output depends on
    *   that input
-   * @param offsets of each argument in its array
-   * @param parameters by {@link #place}; consecutive if all worlds share them
+   * @param offsets the offset of each argument in its array
+   * @param parameters the parameters, indexed by {@link #place}; consecutive if all worlds share them
    * @param scratch array of {@link #scratch()} floats
    * @param worlds number of worlds to evaluate, from the first
    */

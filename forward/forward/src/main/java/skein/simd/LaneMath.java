@@ -45,8 +45,8 @@ public final class LaneMath {
   private static final float EXP_6 = 1.3981999507e-3f;
   private static final float EXP_7 = 1.9875691500e-4f;
 
-  // For passes in which only a few numbers need an exponential: 2^x = 2^k 2^r. Minimax of 2^r on ±1/2, 1 at
-  // 0, relative error 9.2e-8; the error of x, times ln 2, adds to it.
+  // For passes that need an exponential of only a few values: 2^x = 2^k 2^r. Minimax of 2^r on ±1/2, 1 at 0,
+  // relative error 9.2e-8; the error of x, times ln 2, adds to it.
   public static final float POWER_1 = 0.693147f;
   public static final float POWER_2 = 0.24022242f;
   public static final float POWER_3 = 0.055507336f;

@@ -18,7 +18,7 @@ public final class LaneRandom {
   private static final IntVector MULTIPLIER_2 =
       IntVector.broadcast(INTS, WorldRandom.MULTIPLIER_2);
 
-  /** Computes {@link WorldRandom#bits} at one place of many worlds' sequences.
+  /** Computes {@link WorldRandom#bits} at one index of many worlds' sequences.
    *
    * @param count a multiple of the lane count
    */

@@ -1,7 +1,8 @@
 package skein.simd;
 
-/** Random numbers without state: the number at a place of a world's sequence is a hash of the world's key and
- * the place. It depends on seed, candidate and episode alone, and not on order, batch or number of threads.
+/** Random numbers without state: the number at an index of a world's sequence is a hash of the world's key
+ * and the index. It depends on seed, candidate and episode alone, and not on order, batch or number of
+ * threads.
  *
  * <p>The hash is the two-round 32-bit mixer {@code lowbias32} (Chris Wellons, public domain; bias 0.17). It
  * is for simulation, not for secrets.
@@ -12,7 +13,7 @@ public final class WorldRandom {
   public static final int MULTIPLIER_1 = 0x7feb352d;
   public static final int MULTIPLIER_2 = 0x846ca68b;
 
-  /** Difference between the hash inputs of successive places; odd, so that all places differ. */
+  /** Difference between the hash inputs of successive indices; odd, so that all indices differ. */
   public static final int STRIDE = 0x9e3779b9;
 
   /** The key of the world in which a candidate flies an episode. */
@@ -21,7 +22,7 @@ public final class WorldRandom {
     return (int) (mixed >>> 32);
   }
 
-  /** 32 random bits at a place of a world's sequence. */
+  /** 32 random bits at an index of a world's sequence. */
   public static int bits(int key, int place) {
     int x = key + place * STRIDE;
     x = (x ^ x >>> 16) * MULTIPLIER_1;
@@ -29,7 +30,7 @@ public final class WorldRandom {
     return x ^ x >>> 16;
   }
 
-  /** A random number in [0, 1), with 24 bits, at a place of a world's sequence. */
+  /** A random number in [0, 1), with 24 bits, at an index of a world's sequence. */
   public static double uniform(int key, int place) {
     return (bits(key, place) >>> 8) * 0x1p-24;
   }

@@ -7,7 +7,7 @@ import skein.units.*
 /** A vehicle's estimate of its opponent by a [[SensorModel]] during a simulated flight: takes images and
   * evaluates them. Mutable; allocates.
   *
-  * @param opponent to be detected
+  * @param opponent index of the vehicle to be detected
   */
 private[skein] final class CameraTracker(
     world: RolloutWorld,

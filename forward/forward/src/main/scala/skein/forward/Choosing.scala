@@ -5,7 +5,7 @@ import skein.units.*
 
 /** Evaluates a policy of any kind for one vehicle. Mutable: it contains the policy's memory.
   *
-  * @param by response of the vehicle
+  * @param by how the vehicle responds to commands
   */
 private[skein] final class Choosing(agent: RolloutAgent, by: VelocityResponse):
   private val policy      = agent.policy

@@ -60,8 +60,8 @@ private[skein] final class RolloutView(world: RolloutWorld) extends Grounds:
 /** Decides for one vehicle and commands it, with the timing of `skein.flow.Pace` and `skein.flow.Steer`: the
   * newest observation, at least an interval after the last, whenever a command may be sent.
   *
-  * @param intervalNs between two decisions, or between two commands if it `decidesFirst`
-  * @param decidesFirst decides at every observation; then decisions wait, and not observations
+  * @param intervalNs minimum time between two decisions, or between two commands if it `decidesFirst`
+  * @param decidesFirst whether it decides at every observation; then decisions wait, and not observations
   */
 private[skein] final class Controller(
     world: RolloutWorld,

@@ -10,12 +10,12 @@ trait Delays:
   /** The one-way delay of a message, ns. Some lines keep the order of their messages ([[LoopTiming]]): a
     * message then arrives no earlier than its predecessors, even if its own delay is shorter.
     *
-    * @param worldKey of [[WorldRandom]]
+    * @param worldKey the world's key of [[WorldRandom]]
     * @param line kind and vehicle of the message; see [[Delays.question]] and the following methods
-    * @param step of the loop to which the message belongs
+    * @param step the loop's step to which the message belongs
     * @param number index among the messages of this kind and vehicle, from all senders; an answer has the
     *   index of its request or command
-    * @param sentAtNs since the flight's start
+    * @param sentAtNs time of sending, ns since the flight's start
     */
   def delayNs(worldKey: Int, line: Int, step: Int, number: Int, sentAtNs: Long): Long
 
@@ -56,8 +56,8 @@ object Delays:
 
 /** Recorded delays of one flight, used in every simulated world. A message without a record never arrives.
   *
-  * @param delaysNs by vehicle and kind (request, answer, command, acknowledgement), then by number;
-  *   [[RecordedDelays.Lost]] if the message did not arrive
+  * @param delaysNs delays, ns, by vehicle and kind (request, answer, command, acknowledgement), then by
+  *   message; [[RecordedDelays.Lost]] if the message did not arrive
   */
 final class RecordedDelays(delaysNs: Vector[Vector[Array[Long]]]) extends Delays:
   import RecordedDelays.Lost

@@ -5,7 +5,7 @@ import skein.scenario.PaperDuel
 
 /** A duel of one pursuer and one evader.
   *
-  * @param durationS of an episode
+  * @param durationS duration of an episode
   */
 final case class Duel(pursuer: RolloutAgent, evader: RolloutAgent, durationS: Double = 60.0)
 
@@ -25,12 +25,12 @@ object Duel:
 
 /** The outcome of an episode. Distances are horizontal, taken once a period.
   *
-  * @param captureS when the distance first was at most the capture radius; infinite if never
+  * @param captureS time when the distance first was at most the capture radius; infinite if never
   * @param pursuerEffortRad control effort: the sum of all changes of the commanded heading, by the shorter
   *   way
   * @param evaderEffortRad control effort of the evader
-  * @param decisions of both agents
-  * @param skipped views that a newer one replaced before the agent decided on them
+  * @param decisions number of decisions of both agents
+  * @param skipped number of views that a newer one replaced before the agent decided on them
   */
 final case class DuelOutcome(
     minDistanceM: Double,
@@ -46,7 +46,7 @@ final case class DuelOutcome(
 
 /** The outcome of an episode for one evader. Distances are to the nearest pursuer, once a period.
   *
-  * @param captureS when the distance first was at most the capture radius; infinite if never
+  * @param captureS time when the distance first was at most the capture radius; infinite if never
   */
 final case class EvaderOutcome(
     minDistanceM: Double,

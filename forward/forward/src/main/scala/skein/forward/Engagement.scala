@@ -8,7 +8,7 @@ import skein.vehicle.VehicleKind
   * sides. Depending on its policy, a vehicle considers either the rival that its assignment has for it at
   * that moment, or all others. A captured vehicle continues to fly.
   *
-  * @param roles of the agents, in the order in which a loop reads them
+  * @param roles the agents' roles, in the order in which a loop reads the agents
   * @param isOver whether the engagement ends before its duration; evaluated at every decision
   */
 final case class Engagement(

@@ -25,12 +25,12 @@ private[skein] abstract class ImageTiming(world: RolloutWorld, agent: Int, model
 
   protected def taken(number: Int): Unit
 
-  /** Called when an image's result becomes known; the numbers ascend. */
+  /** Called when an image's result becomes known, in the order of the images' numbers. */
   protected def known(number: Int): Unit
 
   /** Handles an event of an image.
     *
-    * @param kind of the event, a constant of [[RolloutWorld]]
+    * @param kind the kind of the event, a constant of [[RolloutWorld]]
     */
   final def handle(kind: Int, number: Int): Unit = kind match
     case RolloutWorld.Look          => look(number)

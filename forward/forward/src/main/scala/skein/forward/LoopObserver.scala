@@ -32,8 +32,8 @@ trait LoopObserver:
 
   /** Called under `Predictive` when a reading is added to the forecast.
     *
-    * @param atNs now
-    * @param validAtNs when the vehicle was sampled
+    * @param atNs the present time
+    * @param validAtNs the time at which the vehicle was sampled
     * @param legs the vehicle's legs since the previous reading, as known now; empty at the first reading
     */
   private[skein] def entered(

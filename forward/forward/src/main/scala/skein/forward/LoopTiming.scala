@@ -108,10 +108,10 @@ object LoopTiming:
     case stream: LoopTiming.Stream         => stream.steering
     case predictive: LoopTiming.Predictive => predictive.steering
 
-/** How vehicles are read.
+/** How a loop reads vehicles.
   *
-  * @param window limit of unanswered requests to one vehicle; a request that becomes due meanwhile waits, a
-  *   second one is missed
+  * @param window maximum number of unanswered requests to one vehicle; a request that becomes due meanwhile
+  *   waits, a second one is missed
   * @param timeoutS time after which a request has failed
   * @param spreadS time over which the requests to n vehicles are spread: vehicle i is read spreadS · i/n
   *   later than vehicle 0

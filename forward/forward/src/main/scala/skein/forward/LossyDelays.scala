@@ -14,7 +14,7 @@ import skein.units.Span
   * The number of tries is limited, and the last try always succeeds; more tries would be needed with a
   * probability of 10^−5^.
   *
-  * @param share of packets that are lost independently
+  * @param share share of packets that are lost independently
   * @param bursts mean duration of bursts and of the time between them, s
   * @param outages duration of outages, and mean time between them, s
   * @param timeout the first time-out ([[skein.signal.Retransmission.timeout]]), a multiple of
@@ -75,7 +75,7 @@ final class LossyDelays private (
 object LossyDelays:
   private val LowBits = (1 << DelayTable.Drop) - 1
 
-  // Lines without messages: their random numbers decide when everything is lost.
+  // Lines without messages: their random numbers determine when everything is lost.
   private val BurstsToServer = Delays.Stretch + 1
   private val BurstsToClient = Delays.Stretch + 2
   private val Outages        = Delays.Stretch + 3
@@ -87,8 +87,9 @@ object LossyDelays:
   /** Adds losses to a link's delays; without any losses, returns the base itself.
     *
     * @param timeoutS the first time-out
-    * @param packetsPerS of all connections in one direction, which converts the length of bursts from packets
-    *   to time. If packets are sent at equal distances, the chain of losses equals that of a live link
+    * @param packetsPerS packets of all connections in one direction, which converts the length of bursts from
+    *   packets to time. If packets are sent at equal distances, the chain of losses equals that of a live
+    *   link
     */
   def of(
       base: TabledDelays,
@@ -156,7 +157,7 @@ private[skein] final class LossTimes(
 
 /** Stretches of time in which everything is lost, with exponentially distributed times between them.
   *
-  * @param line whose random numbers are used
+  * @param line the line whose random numbers are used
   * @param isFixed whether all stretches have equal length and the flight begins between two of them;
   *   otherwise their lengths are exponentially distributed, and the flight may begin within one
   */

@@ -6,8 +6,8 @@ import skein.units.{Span, Vector3}
 private[skein] trait OpponentView:
   /** The estimate of the opponent.
     *
-    * @param aheadS time until the present decision takes effect, if the own position is predicted for that
-    *   moment
+    * @param aheadS time until the present decision takes effect, if the vehicle's own position is predicted
+    *   for that moment
     */
   def believed(aheadS: Option[Double]): OpponentView.Believed
 

@@ -29,7 +29,7 @@ private[skein] final class PeriodicQuestions(
     world.schedule(offsetNs + question * periodNs, RolloutWorld.Tick, vehicle, question)
 
   /** Whether the reading of `question` is the newest and the last delivered, all requests up to it have
-    * ended, all later ones are unanswered, none waits, and as many were sent as given.
+    * ended, all later ones are unanswered, none waits, and the number sent is `asked`.
     */
   def isUpTo(question: Int, asked: Int): Boolean =
     newest == question && told == question && underWay == asked - 1 - question &&

@@ -48,7 +48,7 @@ final class Rollout(
 
   /** Simulates one episode.
     *
-    * @param worldKey of [[WorldRandom]]: decides all delays
+    * @param worldKey the world's key of [[WorldRandom]], which determines all delays
     */
   def fly(
       worldKey: Int,
@@ -73,7 +73,7 @@ final class Rollout(
 
   /** Handles the events before this time.
     *
-    * @return the time of the next event; [[Rollout.Never]] when the episode is over
+    * @return the time of the next event; [[Rollout.Never]] if the episode is over
     */
   private[skein] def flyUntil(timeNs: Long): Long =
     while !isOver && world.nextNs < timeNs do handle(world.next())
@@ -81,10 +81,10 @@ final class Rollout(
 
   private def isOver: Boolean = tallies(0).count >= scores || world.isOver
 
-  /** The outcome of a team: of all evaders the least of the least distances, the means of the means, and the
+  /** The outcome of a team: the least distance of any evader, the mean over the evaders of each mean, and the
     * time of the last capture; distances are to the nearest pursuer, efforts are summed over a side. In a
-    * team without sides all are judged, by the distance to the nearest other, and the effort is that of the
-    * evaders.
+    * team without sides all vehicles count, with the distance to the nearest other, and the effort is that of
+    * the evaders.
     */
   private[skein] def outcome: DuelOutcome =
     val each    = evaderOutcomes

@@ -6,14 +6,15 @@ import skein.vehicle.VehicleKind
 
 /** One vehicle of a duel or of a team in a rollout.
   *
-  * @param speed of the commanded velocity, unless the policy chooses one, m/s
-  * @param startX north, m
-  * @param startY east, m
+  * @param speed magnitude of the commanded velocity, unless the policy chooses one, m/s
+  * @param startX the start, north, m
+  * @param startY the start, east, m
   * @param altitudeDownM z of the start, and of the whole flight if the vehicle flies level, world NED, m
   * @param startHeadingRad heading assumed as the command before the first decision, from north
   * @param policy must be a pure function; [[VelocityResponse.performs]] limits its actions
   * @param eye camera through which alone the vehicle knows its one opponent, if any
-  * @param kind a car drives like [[CarResponse]], whatever the kind of the other vehicles
+  * @param kind the kind of vehicle; a car drives like [[CarResponse]], whatever the kind of the other
+  *   vehicles
   */
 final case class RolloutAgent(
     speed: Double,

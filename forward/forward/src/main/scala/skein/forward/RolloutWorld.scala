@@ -9,9 +9,10 @@ import skein.vehicle.VehicleKind
 /** The environment of a simulated loop: the vehicles of an engagement, the time, and the messages on their
   * way to and from the vehicles. Mutable; during a flight only the vehicles allocate.
   *
-  * @param keepsAll keeps whole readings, not just positions and velocities
-  * @param asksPolicies or vehicles keep their headings: where only the times of events matter
-  * @param standsStill during decisions
+  * @param keepsAll whether readings are kept whole, not just positions and velocities
+  * @param asksPolicies whether policies decide; if not, vehicles keep their headings, since only the times of
+  *   events matter
+  * @param standsStill whether the world stands still during decisions
   * @param ring [[RolloutWorld.ringOf]]
   */
 private[skein] final class RolloutWorld(
@@ -44,7 +45,7 @@ private[skein] final class RolloutWorld(
   private var time                   = 0L
   private var watching: LoopObserver = LoopObserver.Nobody
 
-  // Readings by vehicle and the question's number, see `slot`: what they showed, and when.
+  // Readings by vehicle and request, see `slot`: what they showed, and when.
   val x, y, vx, vy                          = Array.ofDim[Double](count * ring)
   val sentAtNs, validAtNs, receivedAtNs     = Array.ofDim[Long](count * ring)
   private val kinematics: Array[Kinematics] =
@@ -76,7 +77,7 @@ private[skein] final class RolloutWorld(
   private var begunAtNs = RolloutWorld.NotBegun
   private var ended     = false
 
-  /** Whether the engagement said that it is over. */
+  /** Whether the engagement was over when it was last evaluated. */
   def isOver: Boolean = ended
 
   private def known(upon: Grounds): Known = Known(
@@ -141,7 +142,7 @@ private[skein] final class RolloutWorld(
     if delay > sentAtNs(at) + timeoutNs - time then timeOut(vehicle, number)
     else schedule(time + delay, Answered, vehicle, number)
 
-  /** A time-out comes behind all else of its moment, as in a flight (`skein.rpc.ChannelStage`). */
+  /** Schedules a time-out after all other events of its time, as in a flight (`skein.rpc.ChannelStage`). */
   private def timeOut(vehicle: Int, number: Int): Unit =
     queue.addLast(sentAtNs(slot(vehicle, number)) + timeoutNs, event(TimedOut, vehicle, number))
 
@@ -183,8 +184,8 @@ private[skein] final class RolloutWorld(
     schedule(commandAt(agent), Arrived, agent, number)
     number
 
-  /** The command has reached the vehicle: it takes effect, now or after the handover, and the one before is
-    * answered.
+  /** Called when a command reaches the vehicle: it takes effect now or after the handover, and the previous
+    * command is answered.
     */
   def arrived(agent: Int, number: Int): Unit =
     if number == 0 then acts(agent, number)
@@ -240,15 +241,15 @@ private[skein] object RolloutWorld:
   def vehicleOf(event: Long): Int = (event >>> 32).toInt & 0xff
   def numberOf(event: Long): Int  = event.toInt
 
-  /** Limit of unanswered requests and commands of one vehicle where the vehicles are read in sequence: more
-    * than any window allows.
+  /** Maximum number of unanswered requests and commands of one vehicle if the vehicles are read in sequence:
+    * more than any window allows.
     */
   val Ring = 64
 
   /** Number of the newest requests and commands of a vehicle that must be kept. A task of `Futures` reads all
-    * vehicles in sequence, each within the time-out, and needs its first reading at the end, when each of the
-    * vehicles may have begun a task in every period since. Loops that read every period compare an answer
-    * with the last delivered one, whose request may be as old again.
+    * vehicles in sequence, each within the time-out, and needs its first reading at the end; every vehicle
+    * may have begun a task in every period since. Loops that read every period compare an answer with the
+    * last delivered one, whose request may be as old again.
     */
   def ringOf(timing: LoopTiming, vehicles: Int): Int =
     val asking                 = LoopTiming.askingOf(timing)
@@ -265,5 +266,5 @@ private[skein] object RolloutWorld:
 
   private val MostRing = 1 << 16
 
-  /** Limit of scheduled events of one vehicle. */
+  /** Maximum number of scheduled events of one vehicle. */
   private val MostWaiting = 512

@@ -56,7 +56,9 @@ trait VelocityResponse:
     */
   def isSpatial: Boolean = false
 
-  /** Whether the vehicles perform an action, besides horizontal velocities at the altitude of their start. */
+  /** Whether the vehicles perform an action, in addition to horizontal velocities at the altitude of their
+    * start.
+    */
   def performs: Action => Boolean = _ => isSpatial
 
   /** Whether the vehicles' motion depends on a commanded yaw. */

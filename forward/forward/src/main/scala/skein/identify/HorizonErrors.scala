@@ -52,7 +52,7 @@ object HorizonErrors:
       )
 
   /** Simulates the full quadrotor from hovering at the first sample, with the recorded commands at their
-    * times: the truth that a reduced model approximates. Samples are 0.1 s apart, each at the nearest whole
+    * times: the motion that a reduced model approximates. Samples are 0.1 s apart, each at the nearest whole
     * step.
     */
   def reflown(flown: TimeHistory, quadrotor: Quadrotor = Quadrotor.AirSim): TimeHistory =

@@ -120,7 +120,7 @@ object Identification:
       .map(fitted(structure, solution, _, blocks, samples))
 
   /** A value within this share of the range from a bound counts as at the bound, because a fit whose best
-    * value is the bound stops beside it.
+    * value is the bound stops close to it.
     */
   private val AtBound = 1e-6
 

@@ -12,7 +12,7 @@ private[identify] object LeastSquares:
 
   /** The result of a fit.
     *
-    * @param jacobian at the solution, by parameter, then by residual
+    * @param jacobian the Jacobian at the solution, by parameter, then by residual
     * @param isConverged whether the search ended because no step improved the sum, or because the last step
     *   or its gain was small; false if it ended after [[MostIterations]]
     */

@@ -4,8 +4,8 @@ package skein.identify
 private[skein] object LinearSystem:
   /** Solves A x = b by Gaussian elimination with pivoting.
     *
-    * @param matrix A, n × n, row by row
-    * @param right b
+    * @param matrix the matrix A, n × n, row by row
+    * @param right the vector b
     * @param least a pivot whose magnitude is not above this counts as 0
     * @return x, or None if A has no inverse
     */

@@ -34,7 +34,7 @@ final case class TimeHistory(
 
   /** Predicts from one sample over all later samples within a horizon.
     *
-    * @param state at that sample
+    * @param state the plant's state at that sample
     * @param each called for each later sample with its index, when the prediction has reached its time
     */
   def predict[S](flight: PlantFlight[S], state: S, from: Int, horizonS: Double)(each: Int => Unit): Unit =

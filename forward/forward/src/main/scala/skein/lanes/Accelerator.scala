@@ -24,7 +24,7 @@ trait Accelerator:
 private[lanes] object Accelerator:
   /** The engine that replaces SIMD, or why it does not; None if no accelerator was requested.
     *
-    * @param flights what the accelerator prepared, or why it could not
+    * @param flights the teams that the accelerator prepared, or why it could not
     * @param together whether the candidates share episodes
     */
   def engine(
@@ -42,8 +42,8 @@ private[lanes] object Accelerator:
 private[lanes] trait AcceleratedTeams:
   /** Simulates the candidates that are formulas, unless it is cancelled.
     *
-    * @param worlds of which [[Worlds.episodesOfEach]] is above 0
-    * @param prepared the candidate of a world
+    * @param worlds worlds with a positive [[Worlds.episodesOfEach]]
+    * @param prepared yields the candidate of a world
     */
   def fly(
       worlds: TeamWorlds,
@@ -64,7 +64,7 @@ private[lanes] object Accelerated:
   /** Lets an accelerator simulate worlds before the processors do. It simulates none unless the candidates
     * share their episodes.
     *
-    * @param flights what the accelerator prepared, or why it could not
+    * @param flights the teams that the accelerator prepared, or why it could not
     */
   def first[F](flights: Option[Either[String, F]], worlds: Worlds)(
       fly: F => Accelerated

@@ -3,7 +3,7 @@ package skein.lanes
 /** The engine that simulates worlds. Its text includes the reason why no faster engine is used, and is shown
   * to the user.
   *
-  * @param kind of the engine; if links differ, the slowest of their engines
+  * @param kind the kind of engine; if links differ, the slowest of their engines
   * @param text one line for the user
   * @param sideBySide number of candidates with shared episodes that are simulated in the time of one
   */
@@ -17,7 +17,7 @@ final case class Engine(kind: Engine.Kind, text: String, sideBySide: Int = 1):
 
 object Engine:
   enum Kind:
-    /** Flies each episode in virtual time; a few per second. */
+    /** Flies each episode in virtual time, a few per second. */
     case Flights
 
     /** The scalar reference, which simulates one world at a time. */
@@ -39,7 +39,7 @@ object Engine:
     * @param refusals why SIMD does not support each link; None if it does
     * @param stepped the engine that steps vehicles together, if any
     * @param gpu the engine that replaces SIMD, or why it does not; None if it was not requested
-    * @param sideBySide of the SIMD engine, see [[Engine]]
+    * @param sideBySide that of the SIMD engine, see [[Engine]]
     */
   private[lanes] def of(
       lanes: Either[String, String],

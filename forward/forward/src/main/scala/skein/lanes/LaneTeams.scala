@@ -21,21 +21,21 @@ private[lanes] abstract class LaneTeams(form: TeamForm):
       var self = 0
       while self < members.length do
         val numbers = team.numbers(self)
-        // Candidates often have the very same opponent.
+        // Candidates often have the identical object as their opponent.
         if before == null || (numbers ne before.numbers(self)) then members(self).take(world, numbers)
         self += 1
       if form.hasParameters then scores.take(world, team.ofScores)
 
   /** Simulates one episode in each world.
     *
-    * @param worldOf numbers of these worlds among all
+    * @param worldOf indices of these worlds among all
     * @param filled number of worlds that count, from the first
     */
   def fly(worlds: TeamWorlds, worldOf: Array[Int], filled: Int): Unit
 
   /** Copies the results of the first worlds.
     *
-    * @param worldOf numbers of these worlds among all
+    * @param worldOf indices of these worlds among all
     */
   final def tell(worldOf: Array[Int], filled: Int, into: TeamOutcomes): Unit =
     var score = 0
@@ -52,7 +52,7 @@ private[lanes] abstract class LaneTeams(form: TeamForm):
 private[lanes] object LaneTeams:
   /** The vehicles of worlds that all have one episode.
     *
-    * @param agents of one of these teams, whose vehicles are alike
+    * @param agents the vehicles of one of these teams, which are alike
     */
   def inEpisode(form: TeamForm, agents: Vector[RolloutAgent]): Array[? <: TimetableAgents & TeamMember] =
     form.policies match
@@ -62,7 +62,7 @@ private[lanes] object LaneTeams:
 
 /** Teams whose worlds all have one episode.
   *
-  * @param first one of them, whose vehicles are alike
+  * @param first one of these teams, whose vehicles are alike
   */
 private[lanes] final class EpisodeTeams(
     form: TeamForm,
@@ -83,8 +83,8 @@ private[lanes] final class EpisodeTeams(
 
 /** Teams whose worlds have separate delays.
   *
-  * @param first one of them, whose vehicles are alike
-  * @param maxDelayS of the links
+  * @param first one of these teams, whose vehicles are alike
+  * @param maxDelayS the longest one-way delay of any link
   */
 private[lanes] final class LoopTeams(
     form: TeamForm,

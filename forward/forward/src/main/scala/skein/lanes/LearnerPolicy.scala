@@ -2,10 +2,10 @@ package skein.lanes
 
 import skein.policy.{HeadingPolicy, PlanarObservation}
 
-/** Turns as its memory says, which a caller sets before each decision. Its next memory holds what it
-  * observed: so a learner's vehicle decides and observes by the code of any policy.
+/** Turns by an amount in its memory, which a caller sets before each decision. Its next memory contains its
+  * observation. So a learner's vehicle decides and observes by the code that other policies use.
   *
-  * @param byRate whether it turns by a rate, rad/s, and not by an angle, rad
+  * @param byRate whether the turn is a rate, rad/s; otherwise it is an angle, rad
   */
 final case class LearnerPolicy(byRate: Boolean) extends HeadingPolicy:
   type Memory = LearnerPolicy.Memory
@@ -19,10 +19,10 @@ final case class LearnerPolicy(byRate: Boolean) extends HeadingPolicy:
     )
 
 object LearnerPolicy:
-  /** Count of numbers in an observation, see [[PlanarObservation.fromOwnHeading]]. */
+  /** Number of components of an observation, see [[PlanarObservation.fromOwnHeading]]. */
   final val Fields = 9
 
-  /** The turn to make, to the right, and the numbers of [[PlanarObservation.fromOwnHeading]]. */
+  /** The turn to make, to the right, and the components of [[PlanarObservation.fromOwnHeading]]. */
   final case class Memory(
       turn: Double,
       aheadM: Double,

@@ -7,11 +7,11 @@ import skein.lanes.timetable.{Timetable, TimetableAgents, TimetableKernel, Timet
 import skein.simd.WorldRandom
 import skein.units.Expect
 
-/** Teams with learners in many worlds by one timetable, as [[TeamBatch]] flies them. Allocates nothing after
-  * construction, unless a timetable needs more places than any before.
+/** Teams with learners in many worlds by one timetable, with the results of [[TeamBatch]]. Allocates nothing
+  * after construction, unless a timetable needs more slots than any before.
   *
-  * @param learners vehicles that decide by [[LearnerPolicy]]
-  * @param worlds that count
+  * @param learners indices of the vehicles that decide by [[LearnerPolicy]]
+  * @param worlds number of worlds that count
   */
 final class LearnerTeams private[lanes] (
     form: TeamForm,
@@ -66,7 +66,8 @@ final class LearnerTeams private[lanes] (
       kernel.perform(next)
       next += 1
     dueUntil = next
-    // Several decide together where nothing happens between, and none knows what another is about to.
+    // Several learners decide together if no event lies between their decisions and none knows another's
+    // pending command.
     while dueUntil < timetable.size && learnsAt(dueUntil) && !knowsPending(dueUntil) do dueUntil += 1
     next < timetable.size
 
@@ -85,7 +86,7 @@ final class LearnerTeams private[lanes] (
       before += 1
     false
 
-  /** The place of another vehicle's heading that a decision knows. */
+  /** The slot of another vehicle's heading that a decision knows. */
   private def knownPlace(operation: Int, vehicle: Int) =
     val known = operations(operation * Timetable.Fields + 3)
     if isOfTwo then known else timetable.more.heading(known, vehicle)
@@ -141,20 +142,20 @@ object LearnerTeams:
 
   /** Makes teams under one loop's timing, over one link. Thread-safe.
     *
-    * @param timing of the loop
-    * @param model of the vehicles
+    * @param timing the loop's timing
+    * @param model how the vehicles respond to commands
     */
   final class Maker(timing: LoopTiming, link: Delays, model: VelocityResponse):
     private val forms      = TeamForms(timing, model)
     private val episodes   = Episodes(timing)
     private val timetables = Timetables()
 
-    /** Why SIMD does not fly a team; None if it does. */
+    /** The reason why SIMD does not support a team; None if it does. */
     def refusal(team: TeamCandidate): Option[String] = formOf(team).left.toOption
 
-    /** @param learners vehicles that decide by [[LearnerPolicy]]
+    /** @param learners indices of the vehicles that decide by [[LearnerPolicy]]
       * @param worlds number of worlds, at most [[LearnerWorlds.Most]]
-      * @return Left states why SIMD does not fly them
+      * @return Left states why SIMD does not support them
       */
     def of(team: TeamCandidate, learners: Vector[Int], worlds: Int): Either[String, LearnerTeams] =
       formOf(team).map(form => LearnerTeams(form, team, learners.toArray, worlds, timetableOf(form, _)))

@@ -2,22 +2,22 @@ package skein.lanes
 
 import skein.lanes.timetable.TimetableKernel
 
-/** Worlds of one team that stop whenever learners are to decide. Learners and judged numbers are counted in
-  * the order in which the worlds were made for them. Mutable; one thread at a time.
+/** Worlds of one team that stop whenever learners are to decide. Indices of learners and scores follow the
+  * order in which the worlds were given them. Mutable; one thread at a time.
   */
 trait LearnerWorlds extends AutoCloseable:
   /** Whether a world can be restarted while the others go on. */
   def restartAlone: Boolean
 
-  /** Begins a run, of which nothing is simulated yet; [[restart]] says where its vehicles are.
+  /** Begins a run without simulating anything; [[restart]] sets the vehicles' starts.
     *
-    * @param draw of the messages' delays
+    * @param draw index of the run's sequence of delays
     * @param untilS time of the last score that counts
     */
   def start(draw: Long, untilS: Float): Unit
 
-  /** Restarts a vehicle in one world: it rests at its start, in all readings, also those on their way, and
-    * was commanded along its heading before. Requests and commands on their way stay: the loop runs already.
+  /** Restarts a vehicle in one world: it rests at this position, also in pending readings, and its previous
+    * commands were along this heading. Pending requests and commands stay, as in a loop that runs already.
     */
   def restart(world: Int, vehicle: Int, northM: Float, eastM: Float, headingRad: Float): Unit
 
@@ -31,7 +31,7 @@ trait LearnerWorlds extends AutoCloseable:
     */
   def observe(learner: Int, into: Array[Float]): Unit
 
-  /** Sets how much a learner that is due turns, by world; see [[LearnerPolicy]]. */
+  /** Sets the turns of a learner that is due, by world; see [[LearnerPolicy]]. */
   def turn(learner: Int, numbers: Array[Float]): Unit
 
   /** Makes the due decisions. */
@@ -40,18 +40,18 @@ trait LearnerWorlds extends AutoCloseable:
   /** Time of the last score, since the run's start, s. */
   def scoredAtS: Float
 
-  /** Writes a judged number by world, since [[forgetScores]]: the newest or least value, or the sum of all.
+  /** Writes a score by world, since [[forgetScores]]: the newest or least value, or the sum of all.
     */
   def soFar(number: Int, into: Array[Float]): Unit
 
-  /** Forgets all scores but the newest values. */
+  /** Discards all scores except the newest values. */
   def forgetScores(): Unit
 
-  /** Forgets one world's scores but the newest values, after a restart of that world. */
+  /** Discards one world's scores except the newest values, after a restart of that world. */
   def forgetScores(world: Int): Unit
 
   def close(): Unit = ()
 
 object LearnerWorlds:
-  /** Most worlds that fly together. */
+  /** Maximum number of worlds that are simulated together. */
   val Most: Int = TimetableKernel.WORLDS

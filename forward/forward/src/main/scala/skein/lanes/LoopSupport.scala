@@ -8,7 +8,7 @@ import skein.units.Expect
 private[lanes] object LoopSupport:
   import LoopLanes.{MostS, readingS}
 
-  /** Limit of the total time of a round's or task's requests, each as slow as the link allows, s. */
+  /** Maximum total time of a round's or task's requests, each as slow as the link allows, s. */
   private val MostInTurnS = 3.5
 
   /** The reason why SIMD does not support this loop over a link, for the user; None if it does. */

@@ -5,17 +5,17 @@ import skein.lanes.loop.{LaneAgents, LoopEye, LoopLanes}
 import skein.lanes.policy.{CameraTrackerLanes, LaneObservation, LanePolicy, OpponentLanes}
 import skein.lanes.timetable.{TimetableAgents, TimetableEye}
 
-/** Makes the vehicles of two that play against one another. */
+/** Makes the vehicles of two opponents in many worlds. */
 private[lanes] object Opponents:
   type NewEye =
     (CameraTrackerLanes.Forms, RolloutAgent, RolloutAgent, LoopLanes, LaneAgents, LaneAgents) => LoopEye
 
   def policiesOf(two: OpponentLanes): Vector[LanePolicy] = two.forms.zip(two.withEffort).map(LanePolicy(_, _))
 
-  /** With equal delays in all worlds.
+  /** The two vehicles, with equal delays in all worlds.
     *
-    * @param agents speeds and first headings
-    * @param eyes by vehicle, the camera that is its only knowledge of its opponent
+    * @param agents the vehicles; their speeds and first headings apply to all worlds
+    * @param eyes the camera of each vehicle that knows its opponent through it alone
     */
   def inEpisode(
       agents: Vector[RolloutAgent],
@@ -29,10 +29,10 @@ private[lanes] object Opponents:
   def eyesOf(two: OpponentLanes): Map[Int, TimetableEye] =
     two.cameras.map((self, forms) => self -> TimetableEye(forms, two.agents(self), two.agents(1 - self)))
 
-  /** With separate delays in every world.
+  /** The two vehicles, with separate delays in every world.
     *
-    * @param agents speeds and first headings
-    * @param cameras of one of the two at most
+    * @param agents the vehicles; their speeds and first headings apply to all worlds
+    * @param cameras the vehicles' cameras; at most one of the two has one
     */
   def inLoop(
       agents: Vector[RolloutAgent],

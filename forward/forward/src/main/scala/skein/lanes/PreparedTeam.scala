@@ -8,8 +8,7 @@ import skein.lanes.timetable.Timetable
 
 /** The common properties of teams that are simulated together.
   *
-  * @param efforts for each judged number, the vehicle whose effort it is; None if it is the next of the
-  *   scores
+  * @param efforts the vehicle whose effort each judged value is; None if the value is the next of `scores`
   * @param altitudesDownM altitudes of vehicles that fly level
   */
 private[lanes] final case class TeamForm(
@@ -23,7 +22,7 @@ private[lanes] final case class TeamForm(
 
   export policies.{count, inSpace}
 
-  /** Whether some vehicle knows its opponent by a camera alone. */
+  /** Whether some vehicle knows its opponent through a camera alone. */
   def sees: Boolean = policies.eyes.nonEmpty
 
   /** The reason why a GPU does not support such a team; None if it does. */
@@ -34,7 +33,7 @@ private[lanes] final case class TeamForm(
 
   private lazy val last = Array.ofDim[(RolloutAgent, VehicleNumbers)](policies.count)
 
-  /** The numbers of a vehicle; the previous object if the agent is the identical object. */
+  /** The vehicle's start and policy values; the previous object if the agent is the identical object. */
   def numbersOf(self: Int, agent: RolloutAgent): VehicleNumbers =
     val known = last(self)
     if known != null && (known._1 eq agent) then known._2
@@ -43,7 +42,7 @@ private[lanes] final case class TeamForm(
       last(self) = (agent, numbers)
       numbers
 
-/** A candidate with the numbers that distinguish it from others of its form.
+/** A candidate with the values that distinguish it from others of its form.
   *
   * @param lanes its form, or why SIMD does not support the candidate
   * @param stepped the engine that steps its vehicles together, if any
@@ -59,7 +58,7 @@ private[lanes] final class PreparedTeam(
 
   def vehicles: Vector[RolloutAgent] = candidate.engagement.agents
 
-  /** The numbers of each vehicle; requires a [[form]]. */
+  /** The values of each vehicle; requires a [[form]]. */
   lazy val numbers: Array[VehicleNumbers] =
     Array.tabulate(form.count)(self => form.numbersOf(self, vehicles(self)))
 

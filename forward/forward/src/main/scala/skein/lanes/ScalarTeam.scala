@@ -8,14 +8,14 @@ import skein.scenario.{Positions, Quantity, Reduction}
 
 /** Simulates teams one world at a time: the scalar reference. Mutable.
   *
-  * @param model of the vehicles of one rollout
+  * @param model creates the response of the vehicles of one rollout
   */
 private[skein] final class ScalarTeam(timing: LoopTiming, model: => VelocityResponse):
   private var last: (TeamCandidate, Delays) = (null, null)
   private var rollout: Rollout              = null
   private var tallies: Vector[Tally]        = Vector.empty
 
-  /** Simulates one episode and returns its judged numbers. */
+  /** Simulates one episode and returns its scores. */
   def fly(candidate: TeamCandidate, link: Delays, key: Int): Vector[Double] =
     start(candidate, link, key).flyUntil(Rollout.Never): Unit
     values
@@ -29,7 +29,7 @@ private[skein] final class ScalarTeam(timing: LoopTiming, model: => VelocityResp
     rollout.start(key, 0, Judging(candidate))
     rollout
 
-  /** The judged numbers of the finished episode, in their order. */
+  /** The finished episode's scores, in their order. */
   private[lanes] def values: Vector[Double] =
     val next = tallies.iterator
     last._1.judged.map:
@@ -50,7 +50,7 @@ private[skein] final class ScalarTeam(timing: LoopTiming, model: => VelocityResp
 private[skein] object ScalarTeam:
   private[lanes] val Worlds = 16
 
-/** Computes a judged number of one episode from its values. Mutable. */
+/** Computes a score of one episode from its values. Mutable. */
 private final class Tally(val judged: Judged):
   private val values = ArrayBuilder.ofDouble()
   private var firstS = Double.PositiveInfinity
@@ -59,7 +59,7 @@ private final class Tally(val judged: Judged):
     case OfMoment.FirstWithin(limit) => if value <= limit then firstS = firstS.min(timeS)
     case _                           => values += value
 
-  /** The number from the values so far; NaN if there were none. */
+  /** The score of the values so far; NaN if there were none. */
   def value: Double =
     def all = ArraySeq.unsafeWrapArray(values.result())
     judged.reduction match

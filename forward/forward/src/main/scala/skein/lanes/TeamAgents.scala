@@ -8,26 +8,29 @@ import skein.lanes.timetable.{Timetable, TimetableAgents}
 
 /** One vehicle of a team, simulated in many worlds. */
 private[lanes] trait TeamMember:
-  /** Sets where a world's vehicle starts, and the numbers of its policy, which must be of this form. */
+  /** Sets the start of a world's vehicle, and the parameters and memory of its policy, which must be of this
+    * form.
+    */
   def take(world: Int, numbers: VehicleNumbers): Unit
 
-  /** The effort by world, where it was asked for. */
+  /** The effort by world; empty if it was not requested. */
   def effortRad: Array[Float] = Array.emptyFloatArray
 
-  /** Restarts one world: its vehicle is at its start at rest, and all commands before were along a heading.
+  /** Restarts one world: its vehicle is at its start at rest, and all earlier commands were along this
+    * heading.
     */
   def restart(world: Int, headingRad: Float): Unit =
     throw UnsupportedOperationException("a world that restarts alone needs a timetable")
 
-  /** The policies' memory before the decision, by number, then by world. */
+  /** The policies' memory before the decision, by component, then by world. */
   def memory: Array[Float] = Array.emptyFloatArray
 
-  /** The memory after the decision, or after what is observed only. */
+  /** The memory after the decision, or after an observation without a decision. */
   def nextMemory: Array[Float] = Array.emptyFloatArray
 
 /** A vehicle with equal delays in all worlds.
   *
-  * @param altitudesDownM of all vehicles
+  * @param altitudesDownM altitudes of all vehicles
   */
 private[lanes] class TeamAgents(
     self: Int,
@@ -44,7 +47,7 @@ private[lanes] class TeamAgents(
   private val asksMore             = team.lanes.asksMore(self)
   private var timetable: Timetable = null
 
-  /** The headings of decisions, by their places; null if they are not needed. */
+  /** The headings of decisions, by slot; null if they are not needed. */
   private var told: Directions = null
 
   /** Stores the headings commanded to this vehicle from now on. */
@@ -60,7 +63,7 @@ private[lanes] class TeamAgents(
     decisions.start(worlds)
     if told != null then
       told.reserve(timetable.headings * WORLDS)
-      // The timetable keeps the first heading at place 0.
+      // The timetable keeps the first heading in slot 0.
       note(0)
 
   override def restart(world: Int, headingRad: Float): Unit =
@@ -125,7 +128,7 @@ private[lanes] class TeamAgents(
     Arrays.fill(elapsedS, sinceS)
     if asksMore then learn(all, known / WORLDS)
 
-  /** Copies further numbers of a decision from the timetable. */
+  /** Copies further inputs of a decision from the timetable. */
   private def learn(all: Array[TimetableAgents], decision: Int): Unit =
     val more    = timetable.more
     var vehicle = 0
@@ -189,7 +192,7 @@ private[lanes] final class LoopTeamAgents private (
       vectors: LaneVectors,
       readAt: Array[Array[Int]]
   ): Unit =
-    // What is predicted for one decision is not what is for another.
+    // Predictions differ from decision to decision.
     team.show(if forecast == null then offers.beat else offers.beat * all.length + self)
     if asksMore then learn(all, offers, vectors, readAt)
     decisions.decide(elapsedS, decidedNow, 0)

@@ -13,12 +13,13 @@ import skein.units.Expect
   *
   * Candidates whose policies and quantities are formulas run on SIMD: worlds that share episodes by
   * [[TimetableKernel]], all of an episode by one [[skein.lanes.timetable.Timetable]], which is computed once;
-  * others by [[skein.lanes.loop.LoopKernel]]. Two that play against one another by headings decide by
+  * others by [[skein.lanes.loop.LoopKernel]]. Two opponents that command headings decide by
   * [[skein.lanes.policy.OpponentLanes]], others by [[skein.lanes.policy.TeamLanes]]. Quadrotors and MuJoCo
-  * bodies of other teams are stepped side by side under the scalar loops ([[SteppedRollouts]]). All else runs
-  * on the scalar reference ([[skein.forward.Rollout]]), which the engine's text states. `docs/engines.md` has
-  * the table. The engine of a world depends on its candidate, its link and `shareEpisodes` alone, so results
-  * do not depend on threads, on a call's other worlds or on their order. One call at a time.
+  * bodies of other teams are stepped together under the scalar loops ([[SteppedRollouts]]). Everything else
+  * runs on the scalar reference ([[skein.forward.Rollout]]); the engine's text then states why.
+  * `docs/engines.md` has the table. The engine of a world depends on its candidate, its link and
+  * `shareEpisodes` alone, so results do not depend on threads, on a call's other worlds or on their order.
+  * One call at a time.
   *
   * @param accelerator simulates the candidates of [[Worlds.episodesOfEach]] that are formulas, if it supports
   *   the loop and the vehicles
@@ -46,7 +47,7 @@ final class TeamBatch(
     *
     * @param shareEpisodes see [[TeamWorlds.shareEpisodes]]; on a GPU, only worlds with
     *   [[Worlds.episodesOfEach]] run
-    * @param links of the worlds: SIMD does not support delays that are long for the period, or recorded
+    * @param links the worlds' links: SIMD does not support delays that are long for the period, or recorded
     */
   def engine(candidate: TeamCandidate, shareEpisodes: Boolean, links: Seq[Delays]): Engine =
     val form  = forms.of(candidate)
@@ -57,7 +58,9 @@ final class TeamBatch(
       if engine.fliesByLanes then found = (asked, engine)
       engine
 
-  /** What the last engine was for, of those that fly by lanes: a search wants it of every candidate. */
+  /** The arguments and the result of the last call for SIMD, since a search queries the engine for every
+    * candidate.
+    */
   @volatile private var found: ((Either[String, TeamForm], Boolean, Seq[Delays]), Engine) = (null, null)
 
   private def engineOf(
@@ -71,7 +74,7 @@ final class TeamBatch(
     val worlds                   = if form.exists(together) then "candidates of an episode" else "worlds"
     val byGpu                    = form.toOption.flatMap(_.refusedByGpu).map(Left(_))
     Engine.of(
-      // Refused over the fastest link, it is over any.
+      // A team that SIMD does not support over the fastest link, it does not support over any.
       form.flatMap(_ => refused(DelayTable.none).toLeft(s"${LaneMath.LANES} $worlds at a time")),
       links.map(refused),
       steppedOf(candidate.engagement),
@@ -113,7 +116,7 @@ final class TeamBatch(
     *
     * @param onProgress called with the number of worlds done, after each batch, by one thread at a time
     * @param isCancelled polled before each batch and in between, from any thread; running batches finish, or
-    *   are abandoned where vehicles are stepped side by side
+    *   are abandoned if vehicles are stepped together
     * @throws InterruptedException if the caller is interrupted; running batches have finished then
     */
   def fly(
@@ -146,7 +149,7 @@ final class TeamBatch(
         worker.fly(worlds, prepared, some, outcomes)
     outcomes
 
-  /** Number of worlds that a thread takes together, by one of them. */
+  /** Number of worlds that a thread takes together, given one of them. */
   private def batchOf(team: PreparedTeam): Int =
     if team.form != null then TimetableKernel.WORLDS
     else if team.isStepped then SteppedRollouts.worldsOf(model, team.vehicles.size)
@@ -158,7 +161,7 @@ final class TeamBatch(
     private val stepped = mutable.HashMap.empty[Int, SteppedTeams]
     private val scalar  = ScalarTeam(timing, model)
 
-    // Of the world before: neighbours often have one form and link.
+    // Those of the previous world: neighbours often have one form and link.
     private var lastForm: TeamForm = null
     private var lastLink: Delays   = null
     private var lastFlight: Flight = null
@@ -183,7 +186,7 @@ final class TeamBatch(
       for (count, some) <- unfilled.result().groupBy(prepared(_).vehicles.size) do
         stepped.getOrElseUpdate(count, steppedTeams(prepared(some(0)))).fly(worlds, some, into)
 
-    /** What flies a world by SIMD; null if nothing does. */
+    /** The SIMD simulation for a world; null if SIMD does not support it. */
     private def flightOf(form: TeamForm, team: PreparedTeam, worlds: TeamWorlds, world: Int): Flight =
       val link   = worlds.link(world)
       val shares = worlds.shareEpisodes
@@ -210,14 +213,14 @@ final class TeamBatch(
 
   /** SIMD simulation of candidates of one form.
     *
-    * @param teams that fly worlds, by their numbers
+    * @param teams yields the teams that simulate worlds, given the worlds' indices
     */
   private final class Flight(teams: (TeamWorlds, Array[Int]) => LaneTeams):
     private val worldOf = Array.ofDim[Int](TimetableKernel.WORLDS)
     private val held    = Array.ofDim[PreparedTeam](TimetableKernel.WORLDS)
     private var filled  = 0
 
-    /** @return whether it is the first since the last flight */
+    /** @return whether it is the first world since the last flight */
     def add(world: Int, prepared: PreparedTeam): Boolean =
       worldOf(filled) = world
       held(filled) = prepared
@@ -225,7 +228,7 @@ final class TeamBatch(
       filled == 1
 
     def fly(worlds: TeamWorlds, into: TeamOutcomes): Unit =
-      // Lanes that no world needs fly the last one again.
+      // Unused lanes simulate the last world again.
       for lane <- filled until worldOf.length do
         worldOf(lane) = worldOf(filled - 1)
         held(lane) = held(filled - 1)

@@ -24,13 +24,13 @@ private[lanes] final class TeamViews(val lanes: TeamLanes):
       call.look(all, views, view)
       call.call.apply()
 
-  /** Computes the values from the present readings of all vehicles, in the order of their numbers.
+  /** Computes the values from the present readings of all vehicles, in the order of the vehicles.
     *
-    * @param beat number of the readings
+    * @param beat the number that identifies the readings
     */
   def show(beat: Int): Unit = if isNew(beat) then call.call.apply()
 
-  /** Makes the next view new, whatever it is: some world's readings changed. */
+  /** Discards the values, because some world's readings changed. */
   def forget(): Unit = last = TeamViews.Nothing
 
   private def isNew(view: Int) =
@@ -43,7 +43,7 @@ private object TeamViews:
 
 /** The decisions of one vehicle of a team in many worlds, each with its own start and policy. Mutable.
   *
-  * @param altitudesDownM of all vehicles
+  * @param altitudesDownM altitudes of all vehicles
   */
 private[lanes] final class TeamDecisions(self: Int, team: TeamViews, altitudesDownM: Vector[Double]):
   import TeamDecisions.Never
@@ -55,10 +55,10 @@ private[lanes] final class TeamDecisions(self: Int, team: TeamViews, altitudesDo
   private val startCos, startSin = Array.ofDim[Float](WORLDS)
   private val cruise, startDown  = Array.ofDim[Float](WORLDS)
 
-  // Of the heading before and of the decided one.
+  // Cosine and sine of the previous and of the decided heading.
   private var cos, sin, newCos, newSin = Array.ofDim[Float](WORLDS)
 
-  // What is remembered, by number, then by world: at first, before, and after the decision.
+  // The memory, by component, then by world: initially, before, and after the decision.
   private val initial           = Array.ofDim[Float](lanes.memories(self) * WORLDS)
   private var memory, newMemory = Array.ofDim[Float](initial.length)
   private val remembered        = lanes.remembered(self)
@@ -78,7 +78,7 @@ private[lanes] final class TeamDecisions(self: Int, team: TeamViews, altitudesDo
   /** The calls that read the vehicle's observation. */
   val calls: Seq[ViewCall] = Seq(deciding.call, observing.call)
 
-  /** A call of one of its functions. */
+  /** A call of one of the vehicle's compiled functions. */
   private final class Call(bound: BoundFunction):
     val call: ViewCall                     = ViewCall(bound, lanes.reading)
     private var asksCos, asksSin, asksTime = Never
@@ -141,7 +141,7 @@ private[lanes] final class TeamDecisions(self: Int, team: TeamViews, altitudesDo
     System.arraycopy(startSin, 0, sin, 0, WORLDS)
     System.arraycopy(initial, 0, memory, 0, initial.length)
 
-  /** Restarts one world, which was commanded in a direction before. */
+  /** Restarts one world, whose previous command was in this direction. */
   def restart(world: Int, cosOf: Float, sinOf: Float): Unit =
     team.forget()
     cos(world) = cosOf
@@ -153,7 +153,7 @@ private[lanes] final class TeamDecisions(self: Int, team: TeamViews, altitudesDo
 
   def speedMps(world: Int): Float = cruise(world)
 
-  /** The memory before the decision, by number, then by world, and after it. */
+  /** The memory before the decision and after it, by component, then by world. */
   def memories: (Array[Float], Array[Float]) = (memory, newMemory)
 
   /** Whether it needs another vehicle's commanded heading. */
@@ -165,7 +165,7 @@ private[lanes] final class TeamDecisions(self: Int, team: TeamViews, altitudesDo
 
   /** Decides on the observation that was read.
     *
-    * @param elapsedS since the own last decision, by world
+    * @param elapsedS time since this vehicle's previous decision, by world
     * @param into receives the velocities, m/s, from an offset on
     */
   def decide(elapsedS: Array[Float], into: Directions, at: Int): Unit =
@@ -184,7 +184,7 @@ private[lanes] final class TeamDecisions(self: Int, team: TeamViews, altitudesDo
       number += 1
     call.apply()
 
-  /** Computes the memory that no decision looks at. */
+  /** Computes the memory on which no decision depends. */
   def observe(elapsedS: Array[Float]): Unit =
     observing.look(elapsedS)
     var number = remembered
@@ -198,7 +198,7 @@ private[lanes] final class TeamDecisions(self: Int, team: TeamViews, altitudesDo
     deciding.knows(vehicle, headings, at)
     observing.knows(vehicle, headings, at)
 
-  /** Makes the decisions of all worlds commands. */
+  /** Makes the decisions of all worlds the last commands. */
   def commit(): Unit =
     val (oldCos, oldSin) = (cos, sin)
     cos = newCos; sin = newSin
@@ -208,7 +208,7 @@ private[lanes] final class TeamDecisions(self: Int, team: TeamViews, altitudesDo
       memory = newMemory
       newMemory = before
 
-  /** Makes the decisions of those worlds commands whose time is earlier than another. */
+  /** Makes the decisions the last commands in worlds whose time is earlier than `before`. */
   def commitBefore(times: Array[Int], before: Int): Unit =
     var world = 0
     while world < WORLDS do

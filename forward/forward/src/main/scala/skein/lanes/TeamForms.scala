@@ -6,9 +6,9 @@ import skein.lanes.policy.{OpponentLanes, TeamLanes, TeamPolicies}
 import skein.lanes.score.{Effort, ScoreLanes}
 import skein.units.Expect
 
-/** What teams under one loop's timing have in common by SIMD, or why they do not fly by it. Thread-safe.
+/** The forms of teams under one loop's timing, or why SIMD does not support them. Thread-safe.
   *
-  * @param isReference whether nothing shall fly by SIMD
+  * @param isReference whether SIMD is refused for all teams
   */
 private[lanes] final class TeamForms(
     timing: LoopTiming,
@@ -25,7 +25,7 @@ private[lanes] final class TeamForms(
       vehicles <- LaneDynamics.under(timing, model)
     yield vehicles
 
-  /** One object for each form, which is compared by its reference then. */
+  /** One object for each form, so that forms are compared by reference. */
   private val forms = ConcurrentHashMap[TeamForm, TeamForm]()
 
   def of(candidate: TeamCandidate): Either[String, TeamForm] =

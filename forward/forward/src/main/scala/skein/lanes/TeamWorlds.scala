@@ -11,10 +11,10 @@ trait TeamWorlds extends Worlds:
 
 /** A team as a candidate of a search.
   *
-  * @param judged the numbers to compute; equal in count and form for every candidate, except for numbers in
+  * @param judged the values to compute; equal in count and form for every candidate, except for parameters of
   *   the quantities
-  * @param areAtOnePace whether candidates beside it have its vehicles' speeds and first headings: then two
-  *   that play against one another by headings fly fastest
+  * @param areAtOnePace whether all candidates of a call have these speeds and first headings; then two
+  *   opponents that command headings are simulated fastest
   */
 final class TeamCandidate(
     val engagement: Engagement,
@@ -28,7 +28,7 @@ final class TeamCandidate(
 
 /** The results of each world.
   *
-  * @param values by judged number, then by world; NaN where no value counted
+  * @param values values by score, then by world; NaN where no value counted
   */
 final class TeamOutcomes private[lanes] (val values: Vector[Array[Float]]):
   private var done = 0

@@ -17,8 +17,8 @@ private[lanes] object WorldBatches:
 
   /** Groups worlds into batches that share one key and one link.
     *
-    * @param numbers the worlds to simulate
-    * @param most limit of worlds per batch
+    * @param numbers indices of the worlds to simulate
+    * @param most maximum number of worlds per batch
     */
   def byEpisode(worlds: Worlds, numbers: Array[Int], most: Int): WorldBatches =
     val groups  = java.util.HashMap[(AnyRef, Int), Integer]()

@@ -95,7 +95,7 @@ object CmaEs:
     * @param size σ
     * @param covariance C, row by row
     * @param path p_c, the covariance's evolution path
-    * @param sizePath p_σ, the step size's
+    * @param sizePath p_σ, the step size's evolution path
     */
   final case class State(
       generation: Int,

@@ -9,7 +9,7 @@ trait Evaluator:
     * tally depends only on the candidate and the episodes, to the bit, and not on the other candidates of the
     * call.
     *
-    * @param episodes numbers of the episodes, at least one
+    * @param episodes indices of the episodes, at least one
     */
   def tallies(candidates: Vector[Vector[Double]], episodes: Range): Vector[RunningStats]
 

@@ -8,8 +8,8 @@ import skein.units.*
   * @param meansMs mean round trips, ascending
   * @param jittersMs jitters of the round trip, p99 − p50, ascending
   * @param cells `cells(jitter)(mean)`; None if no log-normal link has such a mean and jitter
-  * @param truth the objective under the paused loop with the same vehicles
-  * @param per unit of deviations: the magnitude of the truth, or 1 for deviations in the objective's own unit
+  * @param truth the objective under the paused loop, with equal vehicles
+  * @param per unit of deviations: the magnitude of `truth`, or 1 for deviations in the objective's own unit
   */
 final case class LatencyBudget(
     meansMs: Vector[Double],
@@ -23,15 +23,15 @@ final case class LatencyBudget(
     s"the truth must be a number, and deviations by more than 0, got $truth, $per"
   )
 
-  /** Relative deviation of a cell from the truth: 0.05 is 5 % more. */
+  /** Relative deviation of a cell from the paused loop's objective: 0.05 is 5 % more. */
   def deviation(jitter: Int, mean: Int): Option[Double] =
     cells(jitter)(mean).map(tally => (tally.mean - truth) / per)
 
-  /** The mean latency up to which, at one jitter, the objective stays within a tolerance of the truth.
-    * Deviations are interpolated linearly between the cells. A cell without a finite value is outside every
-    * tolerance.
+  /** The mean latency up to which, at one jitter, the objective stays within a tolerance of the paused
+    * loop's. Deviations are interpolated linearly between the cells. A cell without a finite value is outside
+    * every tolerance.
     *
-    * @param tolerance limit of the magnitude of [[deviation]], for example 0.05
+    * @param tolerance maximum magnitude of [[deviation]], for example 0.05
     */
   def holdsUpTo(jitter: Int, tolerance: Double): LatencyBudget.Bound = LatencyBudget.holdsUpTo(
     meansMs.indices.flatMap(mean => deviation(jitter, mean).map(meansMs(mean) -> _.abs)).toVector,

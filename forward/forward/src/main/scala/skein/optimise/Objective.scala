@@ -6,9 +6,9 @@ import skein.lanes.score.{Effort, Judged}
 import skein.policy.Role
 import skein.scenario.{Measure, Scenario}
 
-/** The objective of a search: a weighted sum of numbers of a flight, averaged over episodes.
+/** The objective of a search: a weighted sum of values of a flight, averaged over episodes.
   *
-  * @param terms each number with its weight
+  * @param terms each term with its weight
   */
 final case class Objective(terms: Vector[(Double, Term)], direction: Direction):
   require(terms.nonEmpty, "an objective needs at least one term")
@@ -18,15 +18,14 @@ final case class Objective(terms: Vector[(Double, Term)], direction: Direction):
     weight -> measure
   }
 
-  /** The numbers that forward simulation computes for this objective; every term must be one that it
-    * supports.
+  /** The scores that forward simulation computes for this objective; it must support every term.
     */
   def judged(durationS: Double, periodS: Double): Vector[Judged | Effort] =
     terms.map((_, term) => term.judged(durationS, periodS).get)
 
   /** The objective's value in one world.
     *
-    * @param outcomes the numbers of [[judged]]
+    * @param outcomes the values of [[judged]]
     */
   def value(outcomes: TeamOutcomes, world: Int, durationS: Double): Double =
     var sum    = 0.0
@@ -63,7 +62,7 @@ object Objective:
     * optionally preceded by `minimise` or `maximise`. By default, a sum is minimised, and a single term has
     * the role's direction. The evader is vehicle 0.
     *
-    * @param role whose effort is meant
+    * @param role the role to which `effort` refers
     * @return Left states what was expected, what was given, and at which character
     */
   def ofRole(text: String, role: Role): Either[String, Objective] =
@@ -103,8 +102,8 @@ object Objective:
 
   private def call(name: String, arguments: Option[String]) = name + arguments.fold("")(a => s"($a)")
 
-  /** The measures of a scenario that forward simulation supports, which are those of a quantity, by their
-    * keys and in their order.
+  /** The measures of a scenario that forward simulation supports, namely those of a quantity, by key and in
+    * their order.
     */
   def measures(scenario: Scenario): ListMap[String, Measure] =
     byKey(scenario.measures.filter(_.reduced.nonEmpty))

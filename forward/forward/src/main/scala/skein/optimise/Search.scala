@@ -23,7 +23,7 @@ final case class SearchState(
 
 /** The state of a search method between rounds. */
 enum MethodState:
-  /** Grid and random search: number of the round's first candidate. */
+  /** Grid and random search: index of the round's first candidate. */
   case Listed(next: Long)
 
   /** Cross-entropy: the distribution from which the next generation is drawn. */
@@ -47,7 +47,7 @@ enum MethodState:
   * [[step]] is a pure function, so a search that was stopped and resumed ends like one that ran through. Of
   * equal candidates the first wins.
   *
-  * @param seed of the candidates
+  * @param seed seed of the random candidates
   * @param leastPlayOff minimum number of episodes in the play-off
   */
 final class Search(
@@ -90,9 +90,9 @@ final class Search(
 
   /** Advances the search by one step.
     *
-    * @param state of a search that is not done
-    * @param atMost approximate limit of the step's episodes; exceeded if candidates are simulated together.
-    *   The division into steps has no effect on the result.
+    * @param state the state of a search that is not done
+    * @param atMost approximate maximum number of episodes in the step; exceeded if candidates are simulated
+    *   together. The division into steps has no effect on the result.
     * @param isCancelled polled repeatedly, from any thread; a cancelled step leaves the state unchanged
     */
   def step(
@@ -224,7 +224,7 @@ final class Search(
         mean + deviation * NormalQuantile(source.nextDouble().max(1e-12).min(1 - 1e-12)))
 
 object Search:
-  /** Number of candidates in the play-off, besides the distribution's centre and the defaults. */
+  /** Number of candidates in the play-off, in addition to the distribution's centre and the defaults. */
   val MostLeaders = 16
 
   /** First episode of the play-off; all other episodes of a search are below it. */

@@ -30,7 +30,8 @@ enum SearchMethod:
   /** Successive halving (Jamieson, Talwalkar, AISTATS 2016): random candidates run a few episodes, the better
     * half runs as many again, and so on until one is left. So poor candidates stop early.
     *
-    * @param episodes number in the first round; the last candidate runs about `candidates` times as many
+    * @param episodes number of episodes in the first round; the last candidate runs about `candidates` times
+    *   as many
     */
   case Racing(candidates: Int, episodes: Int)
 

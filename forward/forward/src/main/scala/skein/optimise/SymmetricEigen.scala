@@ -13,7 +13,7 @@ private[skein] object SymmetricEigen:
   /** Computes them by cyclic Jacobi rotations (Golub, Van Loan, "Matrix Computations", 8.5): slow for large
     * matrices, exact to rounding, and bit-identical on all machines.
     *
-    * @param matrix row by row; its symmetric part is used
+    * @param matrix the matrix, row by row; its symmetric part is used
     */
   def of(matrix: Array[Array[Double]]): SymmetricEigen =
     val n = matrix.length

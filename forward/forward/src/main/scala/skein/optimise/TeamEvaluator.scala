@@ -6,8 +6,8 @@ import skein.simd.WorldRandom
 
 /** Evaluates a team's candidates by simulation in a [[TeamBatch]].
   *
-  * @param candidate creates a candidate, with the objective's numbers, from parameters; a pure function
-  * @param seed of the delays, which are equal for all candidates
+  * @param candidate creates a candidate, with the objective's scores, from parameters; a pure function
+  * @param seed seed of the delays, which are equal for all candidates
   * @param shareEpisodes see [[skein.lanes.Worlds.shareEpisodes]]; faster for many candidates, slower for a
   *   single one
   * @param usual parameters of a typical candidate, which determine how many candidates run together if they

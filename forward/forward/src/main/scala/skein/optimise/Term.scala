@@ -4,19 +4,19 @@ import skein.forward.Rollout
 import skein.lanes.score.{Effort, Judged, OfMoment}
 import skein.scenario.{Measure, Reduction, Separation, Window}
 
-/** A number of a flight that an objective may contain. */
+/** A value of a flight that an objective may contain. */
 trait Term:
   /** The term's name as users write it in an objective. */
   def key: String
 
   def unit: String
 
-  /** The number that forward simulation computes for this term; None if only a complete flight has it. */
+  /** The score that forward simulation computes for this term; None if only a complete flight has it. */
   def judged(durationS: Double, periodS: Double): Option[Judged | Effort]
 
   /** The term's value in an episode.
     *
-    * @param computed the number described by [[judged]]
+    * @param computed the score described by [[judged]]
     */
   def value(computed: Float, durationS: Double): Double
 
@@ -37,7 +37,7 @@ final case class ScenarioTerm(measure: Measure) extends Term:
 object ScenarioTerm:
   def keyOf(measure: Measure): String = measure.name.replace(' ', '-')
 
-/** A number of a duel that depends on the distance between the two vehicles. */
+/** A value of a duel that depends on the distance between the two vehicles. */
 enum DistanceTerm(val key: String, val unit: String) extends Term:
   case Last10s extends DistanceTerm("last10s", "m")
 

@@ -8,10 +8,10 @@ private[planning] abstract class CandidateBlock(steps: Int):
 
   final val costs: Array[Float] = Array.ofDim(CandidateBlock.Size)
 
-  /** Weighted sums of the actions, by step, then by place in the block. */
+  /** Weighted sums of the actions, by step, then by index in the block. */
   final val turnSums, speedSums: Array[Float] = Array.ofDim(steps * CandidateBlock.Size)
 
-  /** Sums of the candidates' weights, by place in the block. */
+  /** Sums of the candidates' weights, by index in the block. */
   final val weightSums: Array[Float] = Array.ofDim(CandidateBlock.Size)
 
   /** Sets the situation and the objective for all manoeuvres that follow. */

@@ -2,10 +2,11 @@ package skein.planning
 
 /** The limits of a vehicle's commands.
   *
-  * @param minSpeed m/s
-  * @param maxSpeed m/s; if it equals the minimum, only the heading is planned
-  * @param maxTurnRate rad/s
-  * @param turningRadius m; limits the turn rate to speed / radius; 0 for a vehicle that turns on the spot
+  * @param minSpeed minimum speed, m/s
+  * @param maxSpeed maximum speed, m/s; if it equals the minimum, only the heading is planned
+  * @param maxTurnRate maximum turn rate, rad/s
+  * @param turningRadius minimum turning radius, m; limits the turn rate to speed / radius; 0 for a vehicle
+  *   that turns on the spot
   */
 final case class CommandLimits(
     minSpeed: Double,

@@ -12,12 +12,12 @@ object PlanProblem:
 /** Plans for several vehicles of one controller, as an anytime algorithm. Slice by slice the vehicles take
   * turns: each improves its plan against the newest plans of all others (best responses in turn, as in
   * decentralised model predictive control; Richards and How, ''Robust distributed model predictive control'',
-  * Int. J. Control 80, 2007). So no vehicle's track is guessed, and two vehicles do not dodge to one side:
+  * Int. J. Control 80, 2007). So no vehicle's track is guessed, and two vehicles do not evade to one side:
   * the second knows the plan of the first.
   *
-  * A plan is replaced only by a better one, and a separation below the limit costs more than all else. So
-  * plans that keep apart still do so after a part of them was executed, even if a tick has no slice for some
-  * vehicle; the next tick begins with that vehicle. This depends on how well the vehicles follow
+  * A plan is replaced only by a better one, and a separation below the limit costs more than everything else.
+  * So plans that keep apart still keep apart after a part of them was executed, even if a tick has no slice
+  * for some vehicle; the next tick begins with that vehicle. This depends on how well the vehicles follow
   * [[Situation.own]].
   *
   * Equal problems, plans and numbers of slices give equal plans, to the bit. Contains the memory for blocks

@@ -118,8 +118,8 @@ final class ManoeuvreRollout(situation: Situation, objective: PlanCost, dtS: Dou
 
 /** A simulated manoeuvre with its cost.
   *
-  * @param track of the vehicle itself
-  * @param breaches of hard limits
+  * @param track the vehicle's own track
+  * @param breaches breaches of hard limits
   */
 final case class FlownManoeuvre(track: PredictedTrack, cost: Double, breaches: Vector[Breached])
 
@@ -129,13 +129,13 @@ enum Breached:
 
   /** Outside of a geofence.
     *
-    * @param metres by how far
+    * @param metres distance beyond the boundary, m
     */
   case Fence(step: Int, metres: Double)
 
   /** Too near to another vehicle.
     *
-    * @param other index of that vehicle
-    * @param metres missing to the least separation
+    * @param other index of the other vehicle
+    * @param metres what the distance lacks to the minimum separation, m
     */
   case TooNear(step: Int, other: Int, metres: Double)

@@ -24,7 +24,7 @@ private[planning] final class OpponentLanes(steps: Int):
   /** Simulates all steps.
     *
     * @param own the candidates' tracks
-    * @param cos of the headings commanded to them before each step, and `sin`
+    * @param cos cosines of the headings commanded to them before each step; `sin` likewise
     * @param into receives the opponent's tracks
     */
   def fly(

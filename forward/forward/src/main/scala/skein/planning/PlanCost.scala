@@ -22,8 +22,8 @@ final case class Geofence(fence: Fence, marginM: Double = 0):
   *
   * @param minimum least distance, a hard limit, m
   * @param margin width of the zone beyond the minimum in which coming nearer has a cost, m
-  * @param growth of the margin with the time ahead, m/s; later predictions are less certain
-  * @param price per second and per square metre of missing distance
+  * @param growth growth of the margin with the time ahead, m/s; later predictions are less certain
+  * @param price cost per second and per square metre of missing distance
   */
 final case class SeparationCost(
     minimum: Double,
@@ -51,12 +51,12 @@ final case class SeparationCost(
   * @param closest weight of the minimum distance, per metre
   * @param carried weight of the distance after the horizon, per metre
   * @param capture amount subtracted if the minimum distance is below the capture radius
-  * @param captureRadius m
+  * @param captureRadius distance below which the target is captured, m
   * @param turning weight of the squared lateral acceleration (turn rate times commanded speed), per second
   *   and (m/s²)²
   * @param speedChange weight of the squared difference from the cruise speed, per second and (m/s)²
-  * @param softness m: a distance d counts as √(d² + softness²). Distances below it then cost by their square,
-  *   and a vehicle that has nearly arrived does not hurry. Must be 0 if captures count
+  * @param softness length, m: a distance d counts as √(d² + softness²). Distances below it then cost by their
+  *   square, and a vehicle that has nearly arrived does not hurry. Must be 0 if captures count
   */
 final case class PlanCost(
     limits: CommandLimits,
@@ -83,8 +83,8 @@ final case class PlanCost(
   /** The command of a step, with the cost of its effort added.
     *
     * @param headingRad commanded heading before the step
-    * @param turnRate rad/s, for the duration `turnS`
-    * @param speed m/s
+    * @param turnRate turn rate, rad/s, for the duration `turnS`
+    * @param speed commanded speed, m/s
     */
   private[planning] def steered(
       cost: Double,
@@ -168,7 +168,7 @@ object PlanCost:
 
 /** The command of a step.
   *
-  * @param cost total so far
+  * @param cost the total cost so far
   * @param headingRad commanded heading
   * @param cos cosine of the heading
   * @param sin sine of the heading

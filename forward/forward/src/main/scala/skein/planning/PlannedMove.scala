@@ -3,7 +3,7 @@ package skein.planning
 /** The next command of a plan.
   *
   * @param turned angle from the last commanded heading, rad
-  * @param speed m/s
+  * @param speed commanded speed, m/s
   * @param breaches hard limits that the plan could not keep within its horizon
   */
 final case class PlannedMove(turned: Double, speed: Double, breaches: Vector[Breached])
@@ -11,8 +11,8 @@ final case class PlannedMove(turned: Double, speed: Double, breaches: Vector[Bre
 object PlannedMove:
 
   /** The first action of a plan, checked in doubles: speed and turn rate are clamped to the limits, and the
-    * manoeuvre is simulated against geofences and separation. A search that has found a manoeuvre within the
-    * hard limits never returns one beyond them, so a breach means that it found none.
+    * manoeuvre is simulated against geofences and separation. A search that finds a manoeuvre within the hard
+    * limits never returns one beyond them, so a breach means that it found none.
     */
   def of(plan: Plan, situation: Situation, objective: PlanCost, dtS: Double): PlannedMove =
     val limits   = objective.limits

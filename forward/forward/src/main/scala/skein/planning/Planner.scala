@@ -23,12 +23,13 @@ enum PlanMethod:
 
 /** Settings of a planner.
   *
-  * @param steps of the horizon
-  * @param dtS length of a step
-  * @param blocksPerSlice a slice is searched between two checks of the clock; a block has 128 candidates
+  * @param steps number of steps of the horizon
+  * @param dtS length of a step, s
+  * @param blocksPerSlice number of blocks of 128 candidates in a slice, which is searched between two checks
+  *   of the clock
   * @param stepsPerKnot number of steps that share one random turn
-  * @param turnSd initially, rad/s
-  * @param speedSd initially, m/s
+  * @param turnSd initial standard deviation of turn rates, rad/s
+  * @param speedSd initial standard deviation of speeds, m/s
   */
 final case class PlannerSettings(
     steps: Int = 20,
@@ -95,7 +96,7 @@ final class Planner private[planning] (
 
   /** Searches one slice.
     *
-    * @param stream of random numbers: another stream draws other candidates
+    * @param stream number of the random stream: another stream draws other candidates
     */
   def improve(plan: Plan, situation: Situation, stream: Long): Plan =
     block.situate(situation, objective, dtS)
@@ -124,7 +125,8 @@ final class Planner private[planning] (
       case PlanMethod.CrossEntropy(_, smoothing) => eliteSearch(plan.search, smoothing.toFloat)
     Plan(best, bestCost, search, plan.slices + 1, plan.candidates + blocksPerSlice.toLong * size)
 
-  /** Manoeuvres that are always tried: the search's mean, the best, and a pilot's first ideas. */
+  /** Manoeuvres that are always tried: the search's mean, the best, and a few that a pilot would try first.
+    */
   private def known(plan: Plan): Vector[Manoeuvre] =
     val (speed, limit) = (plan.manoeuvre.speeds(0).toDouble, limits.turnRateAt(plan.manoeuvre.speeds(0)))
     Vector(

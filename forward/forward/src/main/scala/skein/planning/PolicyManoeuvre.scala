@@ -7,7 +7,7 @@ import skein.vehicle.PlaneReading
 /** Converts a policy's decisions to a manoeuvre, as a candidate for a search. */
 object PolicyManoeuvre:
 
-  /** Evaluates the policy before each step of the horizon. In these observations the own vehicle has followed
+  /** Evaluates the policy before each step of the horizon. In these observations this vehicle has followed
     * its earlier decisions, and all others fly straight on. Headings are followed as fast as the limits
     * allow.
     *
@@ -43,7 +43,7 @@ object PolicyManoeuvre:
       own = own.flown(speed * StrictMath.cos(heading), speed * StrictMath.sin(heading), dtS)
     Manoeuvre(IArray.unsafeFromArray(turns), IArray.unsafeFromArray(speeds))
 
-  /** The observation after the own vehicle has reached this state, while the others flew straight on. */
+  /** The observation after this vehicle has reached this state, while the others flew straight on. */
   private def later(
       seen: Observation,
       own: PlaneReading,

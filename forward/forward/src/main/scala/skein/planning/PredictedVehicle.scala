@@ -44,7 +44,7 @@ object PredictedVehicle:
 
   /** Creates a vehicle from its reading.
     *
-    * @param state the numbers of the plant's state if the reading lacks a part of it; else empty
+    * @param state the components of the plant's state if the reading lacks a part of it; else empty
     */
   def of[S](
       plant: ObservedPlant[S],

@@ -28,7 +28,7 @@ object PredictedTrack:
 
   /** The track of an object that keeps its speed and turn rate.
     *
-    * @param turnRateRadPerS from north towards east
+    * @param turnRateRadPerS turn rate from north towards east
     */
   def turning(from: PlaneReading, turnRateRadPerS: Double, steps: Int, dtS: Double): PredictedTrack =
     if math.abs(turnRateRadPerS) < 1e-6 then straight(from, steps, dtS)
@@ -49,15 +49,15 @@ object PredictedTrack:
 
 /** The target that a vehicle must approach.
   *
-  * @param carriesS time for which its last velocity carries it ([[PredictedVehicle.carriesS]]); absent: that
-  *   of the vehicle itself
+  * @param carriesS time for which its last velocity carries it ([[PredictedVehicle.carriesS]]); None stands
+  *   for that of the vehicle itself
   */
 enum Target(val carriesS: Option[Double] = None):
-  /** A vehicle that decides at each step by a policy, on present readings of both, and with the heading
-    * commanded to this vehicle before.
+  /** A vehicle that decides at each step by a policy, on present readings of both, and on the last heading
+    * commanded to this vehicle.
     *
-    * @param speed that it commands, m/s
-    * @param headingRad last commanded to it
+    * @param speed the speed that it commands, m/s
+    * @param headingRad the heading last commanded to it
     */
   case Opponent(vehicle: PredictedVehicle[?], speed: Double, headingRad: Double, policy: Policy)
       extends Target(Some(vehicle.carriesS))
@@ -71,9 +71,10 @@ final case class Behaviour(target: Target, weight: Double = 1)
 /** The input of a plan: the joint state at the moment at which the planned command takes effect, after its
   * dead time.
   *
-  * @param headingRad last commanded to this vehicle
-  * @param sinceDecisionS time since then, for which the first step's turn lasts
-  * @param behaviours of the target, equal for all candidates, which makes their costs comparable
+  * @param headingRad the heading last commanded to this vehicle
+  * @param sinceDecisionS time since that command, for which the first step's turn lasts
+  * @param behaviours possible behaviours of the target, equal for all candidates, so that their costs are
+  *   comparable
   * @param others vehicles to keep apart from
   * @param suggested further manoeuvres that every slice tries, at most 16
   */

@@ -5,9 +5,9 @@ import skein.formula.{Node, Op, Trace}
 import skein.simd.{LaneCompiler, LaneFunction}
 
 /** A compiled function and the mapping of its inputs to the expressions' inputs. Expressions that are equal
-  * except for the numbers of their inputs share the code. Parameters are equal in all worlds.
+  * except for the indices of their inputs share the code. Parameters are equal in all worlds.
   *
-  * @param inputs for each input of the function, its number in the expressions
+  * @param inputs the index in the expressions of each input of the function
   * @param nodes the expressions, with their inputs renumbered as in the function
   */
 private[skein] final class BoundFunction private (
@@ -26,7 +26,7 @@ private[skein] object BoundFunction:
 
   /** Compiles expressions; equal ones only once.
     *
-    * @param rowOf row of each input, by its number in the expressions, for inputs that share an array.
+    * @param rowOf row of each input, by its index in the expressions, for inputs that share an array.
     *   [[LaneCall.input]] of the first of them takes the array and the offset of its row 0
     * @param areRows whether the outputs are the rows of one array
     */
@@ -54,7 +54,7 @@ private[skein] object BoundFunction:
 
 /** Calls a [[BoundFunction]] with arrays for its inputs and outputs. Mutable.
   *
-  * @param parameters array that is read at each call
+  * @param parameters the array of parameters, read at each call
   */
 private[skein] final class LaneCall(bound: BoundFunction, parameters: Array[Float] = Array.emptyFloatArray):
   private val arrays   = Array.ofDim[Array[Float]](bound.inputs.length + bound.outputs)

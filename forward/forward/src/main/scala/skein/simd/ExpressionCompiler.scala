@@ -239,7 +239,7 @@ private[skein] abstract class ExpressionCompiler:
 
   /** A polynomial by Horner's rule.
     *
-    * @param coefficients that of the highest power first
+    * @param coefficients the coefficients, that of the highest power first
     */
   private def series(x: Int, coefficients: Float*): Int =
     coefficients.tail.foldLeft(constant(coefficients.head))((sum, each) => fma(sum, x, constant(each)))

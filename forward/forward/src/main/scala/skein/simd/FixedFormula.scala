@@ -4,11 +4,11 @@ import java.util.concurrent.ConcurrentHashMap
 import skein.formula.{Angles, Evaluation, Formula, Fused, Trace, Untraceable}
 import skein.simd.LaneFunction
 
-/** A compiled method of one object. The object's own numbers are parameters, which are equal in all worlds.
+/** A compiled method of one object. The object's own fields are parameters, which are equal in all worlds.
   *
   * @param alike number of the method's last inputs that are also equal in all worlds
   * @param bound computes the result from the inputs and [[parameters]]
-  * @param evaluation computes the parameters from the object's own numbers
+  * @param evaluation computes the parameters from the object's own fields
   */
 private[skein] final class FixedFormula private (
     formula: Formula,
@@ -21,7 +21,7 @@ private[skein] final class FixedFormula private (
 
   def inputs: Vector[String] = formula.inputs
 
-  /** Whether another object's method differs from this formula only in its own numbers. */
+  /** Whether another object's method differs from this formula only in the values of its fields. */
   def fits(other: AnyRef): Boolean = formula.fits(other)
 
   def of(other: AnyRef): FixedFormula =
@@ -98,7 +98,7 @@ private[skein] object FixedFormula:
     /** Sets an input that is equal in all worlds. */
     def everywhere(number: Int, value: Float): Unit = parameters(number - own) = value
 
-    /** Sets the array and offset of an input that has one number per world. */
+    /** Sets the array and offset of an input that has one value per world. */
     def input(number: Int, array: Array[Float], from: Int): Unit =
       if places(number) >= 0 then call.input(places(number), array, from)
 

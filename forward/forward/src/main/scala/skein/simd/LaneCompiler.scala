@@ -7,7 +7,7 @@ import java.lang.reflect.AccessFlag
 import scala.collection.mutable
 import skein.formula.Node
 
-/** Compiles expressions to a [[LaneFunction]]: passes over blocks of worlds, in which a number stays in a
+/** Compiles expressions to a [[LaneFunction]]: passes over blocks of worlds, in which a value stays in a
   * register from its computation to its last use. Elementary functions are the polynomials of [[LaneMath]],
   * written out, so that every lane computes identical bits on every machine; products are fused with sums.
   *
@@ -24,8 +24,8 @@ object LaneCompiler:
     * @param differences number of the first inputs that are differences of two arrays; the subtrahends'
     *   arrays follow those of the outputs
     * @param parameters number of parameters per world; 0 if all worlds share them
-    * @param places number of the array, and row in it, of each input, then of each output; if it ends
-    *   earlier, each of the remaining ones has its own array
+    * @param places index of the array, and row in it, of each input, then of each output; each of those
+    *   beyond its end has its own array
     */
   def compile(
       inputs: Int,
@@ -103,7 +103,7 @@ object LaneCompiler:
             ): Unit
       )
 
-  /** Index in scratch memory of a stored number, by its place. */
+  /** Index in scratch memory of a stored value, by its slot. */
   private[simd] def laidBy(place: Int): Int = LaneFunction.UNUSED + place * LaneFunction.COUNT
 
 private object Names:
@@ -127,7 +127,7 @@ private object Names:
 
 /** Generates the bytecode of one pass. A vector is identified by its local variable.
   *
-  * @param subtrahends number of the first array whose numbers are subtracted from inputs
+  * @param subtrahends index of the first array whose values are subtracted from inputs
   */
 private final class PassCompiler(
     code: CodeBuilder,
@@ -296,7 +296,7 @@ private final class PassCompiler(
     code.astore(place)
     place
 
-  /** Loads numbers of the present worlds from an argument's array, from an index on. */
+  /** Loads values of the present worlds from an argument's array, from an index on. */
   private def loaded(argument: Int, from: Int): Int =
     code.getstatic(math, "SPECIES", species).aload(argument).iload(world).loadConstant(from).iadd()
     code.invokestatic(float, "fromArray", MethodTypeDesc.of(float, species, floats, ConstantDescs.CD_int))

@@ -6,9 +6,9 @@ import skein.formula.{Node, Op}
 /** One loop over the worlds.
   *
   * @param computes nodes to compute, in this order
-  * @param loads nodes that are loaded from scratch, with their places
-  * @param stores nodes that are stored in scratch, with their places
-  * @param outputs nodes with the numbers of the outputs that they are
+  * @param loads nodes that are loaded from scratch, with their slots
+  * @param stores nodes that are stored in scratch, with their slots
+  * @param outputs nodes that are outputs, with the outputs' indices
   */
 private final case class Pass(
     computes: Vector[Node],
@@ -34,7 +34,7 @@ private object Passes:
   private val MostOfRows          = 140
   private val MostConstantsOfRows = 30
 
-  // Costs of a pass and of loading a number, relative to storing one.
+  // Costs of a pass and of loading a value, relative to storing one.
   private val PassCost  = 8.0
   private val FetchCost = 0.5
 
@@ -85,7 +85,7 @@ private object Passes:
     nodes.foreach(find)
     found.toVector
 
-  /** Divides nodes, in this order, into passes that store and load as few numbers as possible.
+  /** Divides nodes, in this order, into passes that store and load as few values as possible.
     *
     * @return the end of each pass, as an index in the order
     */
@@ -127,8 +127,8 @@ private object Passes:
             from(end) = first
     Iterator.iterate(count)(from(_)).takeWhile(_ > 0).toVector.reverse
 
-  /** Assigns a scratch place to each number from its computation to its last use. Places are reused as soon
-    * as they are free, so that all stay in a near cache. A pass loads before it stores.
+  /** Assigns a scratch slot to each value from its computation to its last use. Slots are reused as soon as
+    * they are free, so that all stay in a near cache. A pass loads before it stores.
     */
   private def placed(
       lastUse: collection.Map[Node, Int],

@@ -93,7 +93,7 @@ class EngagementSuite extends munit.FunSuite:
     assert(distance.head(0) < distance.head(1), distance.head)
     assert(distance.last(0) > 0 && distance.exists(_.min < 1.5), distance.map(_.min).min)
 
-  test("an agent that is assigned for good keeps to its rival, however near others come"):
+  test("an agent with a permanent assignment keeps its rival, however near others come"):
     val agents = Vector(
       agent(Role.Evader, 1, 20, 0, LeadAway(0)),
       agent(Role.Evader, 2, 5, 0, LeadAway(math.Pi / 2)),
@@ -125,7 +125,7 @@ class EngagementSuite extends munit.FunSuite:
     assert(flown.captureS.isInfinite && flown.minDistanceM == each(0).minDistanceM, flown)
     assertEqualsDouble(flown.meanDistanceM, (each(0).meanDistanceM + each(1).meanDistanceM) / 2, 1e-12)
 
-  test("every message of up to 64 vehicles has delays of its own, and two vehicles keep the lines they had"):
+  test("every message of up to 64 vehicles has a separate delay, and two vehicles keep their former lines"):
     val all   = 0 until Engagement.Most
     val lines =
       (for
@@ -146,7 +146,7 @@ class EngagementSuite extends munit.FunSuite:
     )
 
   test(
-    "in a team without sides each is judged by the distance to " +
+    "in a team without sides each is scored by the distance to " +
       "the nearest other, and policies choose the speed"
   ):
     // From north to south, towards the middle one, at 1, 2 and 3 m/s.

@@ -105,7 +105,7 @@ class RolloutOracleSuite extends munit.FunSuite:
   // ---- numerics
 
   test(
-    "the quadrotor's integration converges with the first order of its step, for rotors act two steps late"
+    "the quadrotor's integration converges with the first order of its step: rotors act two steps late"
   ):
     def fly(division: Int): (Double, Double) =
       val stepS = Quadrotor.AirSimStepS / division
@@ -125,7 +125,7 @@ class RolloutOracleSuite extends munit.FunSuite:
     val difference = changes.mkString(", ")
     for order <- orders do assertEqualsDouble(order, 1.0, 0.1, s"$orders; differences $difference m")
 
-  test("the reduced model is exact: into how many pieces a flight is cut does not change it"):
+  test("the reduced model is exact: the number of pieces of a flight does not change it"):
     def fly(pieces: Int): Vector[Double] =
       val vehicle = VelocityResponses.lag(gain = 0.8, lagS = 0.5, deadTimeS = 0.12).create()
       vehicle.start(0, 0, -20)

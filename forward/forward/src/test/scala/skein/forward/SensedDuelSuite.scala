@@ -80,7 +80,7 @@ class SensedDuelSuite extends munit.FunSuite:
     assertEqualsDouble(range, 11, 0.04)
     assertEqualsDouble(rangeSd, 0.55, 0.03)
 
-  test("seeing costs: the later and the less, the farther off"):
+  test("a camera costs distance, more with slower recognition, and most if every result is too late"):
     val stream = LoopTiming.stream(0.1)
     val told   = last10s(None, stream, DelayTable.direct)
     val sees   = last10s(Some(camera), stream, DelayTable.direct)
@@ -91,7 +91,7 @@ class SensedDuelSuite extends munit.FunSuite:
         DelayTable.direct
       )
     assert(clue(told) < clue(sees) && sees < clue(slowly))
-    // What is late is not used: nothing is ever known but where it started.
+    // Late results are not used: only the start is ever known.
     val never = last10s(Some(camera.copy(deadlineS = 0.01)), stream, DelayTable.direct)
     assert(clue(never) > slowly)
 
@@ -101,7 +101,7 @@ class SensedDuelSuite extends munit.FunSuite:
     test(
       s"${timing.productPrefix}: worlds with separate delays have equal results by SIMD and the scalar engine"
     ):
-      // Beside the pursuer's way, so that no rounding decides to which side anybody turns.
+      // To the side of the pursuer's way, so that rounding does not decide the side of any turn.
       val seeing = duel(Some(camera))
       val beside = seeing.copy(evader = seeing.evader.copy(startY = 2), durationS = 12)
       val batch  = PairBatch(beside, timing, PlantResponse(ReducedModel.AirSimLag), threads = 1)

@@ -39,7 +39,7 @@ class IdentificationSuite extends munit.FunSuite:
         flight.reading.northMps + noiseMps * normal(),
         flight.reading.eastMps + noiseMps * normal()
       )
-    // What the identification is told of the arrivals is off by the links' jitter.
+    // The arrival times given to the identification deviate by the links' jitter.
     val told = arrivals.map(arrival => arrival.copy(atS = arrival.atS + jitterS * normal()))
     TimeHistory(s"synthetic $seed", samples, told.sortBy(_.atS), -20)
 
@@ -68,7 +68,7 @@ class IdentificationSuite extends munit.FunSuite:
       val value = valuesOf(expected)(parameter.name)
       assertEqualsDouble(parameter.value, value, 1e-4 * (1 + value), s"$structure ${parameter.name}")
 
-  test("the 95 % intervals cover the truth in most repetitions with noise and jitter"):
+  test("the 95 % intervals cover the true values in most repetitions with noise and jitter"):
     val runs      = 30
     val structure = Structure.DragAndTurn
     val covered   = (1 to runs).flatMap: seed =>

@@ -75,7 +75,7 @@ class OwnStructureSuite extends munit.FunSuite:
     val errors = HorizonErrors.of(found.plant, Vector(flown(2, 0)))
     assert(errors.map(_.horizonS) == HorizonErrors.HorizonsS && errors.forall(_.positionP95M < 1e-2), errors)
 
-  test("the 95 % intervals cover the truth in most repetitions with noise"):
+  test("the 95 % intervals cover the true values in most repetitions with noise"):
     val runs    = 30
     val covered = (1 to runs).flatMap: seed =>
       identified(seed, noiseMps = 0.02).parameters.zip(values).map:

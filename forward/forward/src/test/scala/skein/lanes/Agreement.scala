@@ -39,7 +39,7 @@ private[skein] final class Agreement:
 private[skein] object Agreement:
   private val Told = 5
 
-  /** Limit of the rounding of floats that accumulates in the vehicles' motion until a time, m and m/s. It
+  /** Maximum rounding error of floats that accumulates in the vehicles' motion until a time, m and m/s. It
     * applies until decisions differ. At 500 m a float is rounded by up to 3e-5 m, here a dozen times a
     * second.
     */

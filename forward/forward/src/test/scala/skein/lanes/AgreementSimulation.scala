@@ -17,7 +17,7 @@ class AgreementSimulation extends munit.FunSuite, Unhurried:
     */
   private val duel = Duel.paper.copy(evader = Duel.paper.evader.copy(startY = 2), durationS = 10)
 
-  // Of every place within a vector some.
+  // Some worlds at every index within a vector.
   private val many = 0 until worlds by 7
   private val some = 0 until worlds by 19
 
@@ -90,8 +90,8 @@ class AgreementSimulation extends munit.FunSuite, Unhurried:
     timing          <- Seq(LoopTiming.Sequential(), LoopTiming.Futures(), LoopTiming.Stream())
   do
     test(
-      s"with $name, ${timing.productPrefix}, delays of its own in " +
-        "each world: the same decisions in each compared"
+      s"with $name, ${timing.productPrefix}, separate delays in " +
+        "each world: equal decisions in each world compared"
     ):
       for draw <- Seq(drawn(PolicyFamily.paperPursuer), trend) do
         PairAgreement

@@ -50,7 +50,7 @@ class AnyPolicySimulation extends munit.FunSuite, Lengthy, Optimised:
     ))
   )
 
-  /** Candidates with one team each, and the vehicles' final and mean positions as judged numbers. */
+  /** Candidates with one team each, and the vehicles' final and mean positions as scores. */
   private def candidates(draw: SplitMix64 => Fleet, count: Int, durationS: Double): Vector[TeamCandidate] =
     val random = SplitMix64(11)
     Vector.fill(count):

@@ -30,7 +30,7 @@ abstract class CameraTrackerAgreement(isDaily: Boolean) extends munit.FunSuite:
   private val model  = PlantResponse(ReducedModel.AirSimLag)
   private val camera = GuideCamera.model
 
-  // Beside the pursuer's way, so that no rounding decides to which side anybody turns.
+  // To the side of the pursuer's way, so that rounding does not decide the side of any turn.
   private val duel = Duel.paper.copy(
     pursuer = Duel.paper.pursuer.copy(eye = Some(camera)),
     evader = Duel.paper.evader.copy(startY = 2),
@@ -199,7 +199,7 @@ abstract class CameraTrackerAgreement(isDaily: Boolean) extends munit.FunSuite:
         Array(scalar.opponentNed.x, scalar.opponentNed.y, scalar.opponentNed.z, 0.0, 0.0)
     val floats = lanes.inputs.clone
     floats(0) += 2 * math.Pi * math.rint((doubles(0) - floats(0)) / (2 * math.Pi))
-    // Until decisions part, all is where it is in doubles.
+    // Until decisions differ, all positions are those in doubles.
     val away = doubles.zip(floats).map((x, y) => math.abs(x - y))
     assert(away.max < Agreement.mostOff(event.timeS), s"at ${event.timeS} s: ${away.mkString(", ")} off")
     Option.when(isFound != lanes.isFound):
@@ -217,7 +217,7 @@ abstract class CameraTrackerAgreement(isDaily: Boolean) extends munit.FunSuite:
 private object CameraTrackerAgreement:
   /** An image of the SIMD engine in a world.
     *
-    * @param inputs of the sensor's formula, without errors
+    * @param inputs inputs of the sensor's formula, without errors
     */
   final class Looked(
       val by: CameraTrackerLanes.Forms,

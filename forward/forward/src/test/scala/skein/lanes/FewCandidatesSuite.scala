@@ -15,7 +15,7 @@ import skein.vehicle.ReducedModel
   */
 class FewCandidatesSuite extends munit.FunSuite, Unhurried:
   private val many = TimetableKernel.WORLDS
-  // Of a vector and a bit.
+  // A little more than one vector.
   private val few = 17
 
   private val models = Seq(
@@ -69,5 +69,5 @@ class FewCandidatesSuite extends munit.FunSuite, Unhurried:
       assertEquals(teams(timing, model, few), teams(timing, model, many))
 
   for timing <- loops(models.head._2) do
-    test(s"duels of one who sees, ${timing.productPrefix}"):
+    test(s"duels with one camera, ${timing.productPrefix}"):
       assertEquals(duels(seeing, timing, models.head._2, few), duels(seeing, timing, models.head._2, many))

@@ -84,7 +84,7 @@ class FlownByLanesSuite extends munit.FunSuite:
       val said  = table((worlds, nameOf(timing)))(plant)
       for (kind, policy) <- policies do
         val engine = batch.engine(policy, PaperEvader(), shared, Seq(DelayTable.vpn)).text
-        // Quadrotors need no formula to fly side by side.
+        // Quadrotors are stepped together whether or not policies are formulas.
         val expected =
           if kind != "no formula" then said else if plant == "the quadrotor" then "vehicles" else "scalar"
         assertEquals(word(engine), expected, s"$kind: $engine")
@@ -159,7 +159,7 @@ class FlownByLanesSuite extends munit.FunSuite:
       val engine = TeamBatch(timing, model, threads = 1).engine(team, false, Seq(DelayTable.vpn)).text
       assert(engine.startsWith("scalar: the lanes fly steps of"), s"$timing: $engine")
 
-  test("the table has a row for all that the engines fly, and no other"):
+  test("the table has a row for everything that the engines support, and no other"):
     val all =
       for
         worlds <- Seq("shared delays", "own delays")

@@ -118,7 +118,7 @@ class LagPairsSuite extends munit.FunSuite:
 
   private val badLinks = Seq((110.0, 60.0), (215.0, 36.0), (150.0, 150.0), (200.0, 300.0), (300.0, 300.0))
 
-  // There answers overtake one another, questions fail, and vehicles answer in turns.
+  // There answers overtake one another, requests fail, and vehicles answer in turns.
   for (meanMs, jitterMs) <- badLinks do
     val link = DelayTable.of(LatencyBudget.link(meanMs, jitterMs).get)
 

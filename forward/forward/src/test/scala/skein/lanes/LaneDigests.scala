@@ -98,7 +98,7 @@ object LaneDigests:
     out.values.foreach(numbers => bits.take(numbers.toSeq))
     bits
 
-  /** A joint plan of three pursuers of one evader, who keep apart, slice by slice. */
+  /** A joint plan of three pursuers of one evader, which keep apart, slice by slice. */
   private def plan(target: Target): Bits =
     val settings  = PlannerSettings(steps = 20, blocksPerSlice = 2)
     val objective = PlanCost(
@@ -132,7 +132,7 @@ object LaneDigests:
       timing                <- loops(model)
       shared                <- Seq(true, false)
       ((name, pursuer), at) <- pursuers.zipWithIndex
-      // The scalar engine, which knows no lanes, flies the others.
+      // The scalar engine, which has no lanes, simulates the others.
       if PairBatch(
         Duel.paper,
         timing,

@@ -68,12 +68,12 @@ class LanePolicySimulation extends munit.FunSuite:
             assertEqualsDouble(lanes.turned(world), turned, 1e-3)
         agreement.check(s"seed 11, round $round", atLeast = worlds / 2)
 
-  test("what one policy is refused for does not refuse another of its class"):
+  test("the refusal of one policy does not refuse another of its class"):
     assert(PolicyLanes.of(Hasty(true)).isLeft)
     assert(PolicyLanes.of(Hasty(false)).isRight)
     assert(PolicyLanes.of(Hasty(true)).isLeft)
 
-  test("a policy that is no formula says why, and where"):
+  test("a policy that is no formula is refused with the reason and the line"):
     val refused = PolicyLanes.of(Impatient()).fold(_.getMessage, _ => fail("it was compiled"))
     assert(refused.contains("LanePolicySimulation.scala"), refused)
     assert(refused.contains("System.nanoTime"), refused)

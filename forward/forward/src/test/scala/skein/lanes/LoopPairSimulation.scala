@@ -164,7 +164,7 @@ abstract class LoopPairAgreement(isDaily: Boolean) extends munit.FunSuite:
       val most = Steering(mostOutstanding = Moves.MostInFlight)
       agreement(LoopTiming.Stream(0.02, steering = most), link, 5, model).check(name, 0 until worlds by 3)
 
-/** Each vehicle over one link, one vehicle over most, and what is not a combination. */
+/** Each vehicle over one link, one vehicle over most links, and cases that are no combination. */
 class LoopPairSimulation extends LoopPairAgreement(isDaily = true):
   private val unseenPursuers = Seq[(String, Int => Policy)](
     "remembers"                    -> (world => TrendPursuer(2 + 0.02 * world, 0.5, 1)),
@@ -230,7 +230,7 @@ class LoopPairSimulation extends LoopPairAgreement(isDaily = true):
     test(s"a predictive loop $what: the scalar reference's decisions and flight for 10 s"):
       agreement(timing, link, 10, model).check(what, 0 until worlds by 3)
 
-  test("predictive over a constant link whose answers come when it is decided"):
+  test("predictive over a constant link whose answers arrive when decisions are due"):
     for meanMs <- Seq(50, 100, 150, 350, 450) do
       agreement(
         LoopTiming.Predictive(0.1, lag.predictor),
@@ -254,12 +254,12 @@ class LoopPairSimulation extends LoopPairAgreement(isDaily = true):
 
   for periodS <- Seq(0.01, 0.004) do
     test(
-      s"stream every $periodS s, where questions fail after many later ones: the scalar reference's decisions"
+      s"stream every $periodS s, where requests fail after many later ones: the scalar reference's decisions"
     ):
       val timing = LoopTiming.Stream(periodS, periodS / 2, periodS, asking = Asking(window = 16))
       agreement(timing, wild(40, 200), 5, lag).check("slow", 0 until worlds by 9)
 
-  test("predictive with a period of dead time over a link of much jitter: worlds turn at times of their own"):
+  test("predictive with a period of dead time over a link of much jitter: worlds turn at different times"):
     val late   = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.1)
     val timing = LoopTiming.Predictive(0.1, late.predictor)
     for (jitterMs, episode) <- Seq(150.0, 300.0).zipWithIndex do

@@ -6,7 +6,8 @@ import skein.policy.*
 import skein.simd.WorldRandom
 import skein.units.*
 
-/** Which policies fly by the differences of two readings is seen in their formulas, whatever they extend. */
+/** A policy's formula determines whether it decides by the difference of two readings, whatever it extends.
+  */
 class OpponentFormulaSuite extends munit.FunSuite:
   import OpponentFormulaSuite.*
 
@@ -16,17 +17,17 @@ class OpponentFormulaSuite extends munit.FunSuite:
   private def refusal(policy: Policy) =
     PolicyLanes.of(policy).fold(_.getMessage, _ => fail("it was compiled"))
 
-  test("a chase, and a weaver with a memory, do"):
+  test("a chase, and a weaver with a memory, decide by differences"):
     for policy <- Seq(AnyPolicySimulation.Chase, AnyPolicySimulation.Weaving(0.3), Turning(1)) do
       assertEquals(PolicyLanes.of(policy).left.map(_.getMessage).map(_ => ()), Right(()))
 
-  test("who regards a place or a velocity by itself, or decides for another speed or altitude, does not"):
+  test("a policy that reads one position or velocity, or commands another speed or altitude, does not"):
     assert(clue(refusal(AnyPolicySimulation.Ages)).contains("it regards Velocity(1,"))
     assert(clue(refusal(AnyPolicySimulation.Mirror)).contains("another speed than its vehicle's"))
     assert(clue(refusal(Homing(None))).contains("it regards Position(0,"))
     assert(clue(refusal(Homing(Some(3)))).contains("another speed than its vehicle's"))
 
-  test("efforts are summed for them, too"):
+  test("efforts of such policies are summed, too"):
     val batch = PairBatch(short, LoopTiming.Stream(), lag, threads = 1)
     assert(batch.engine(Turning(1), PaperEvader(), true, Seq(DelayTable.vpn)).fliesByLanes)
 
@@ -34,7 +35,9 @@ class OpponentFormulaSuite extends munit.FunSuite:
     timing <- Seq(LoopTiming.Stream(), LoopTiming.Predictive(predictor = lag.predictor))
     shared <- Seq(true, false)
   do
-    test(s"the paper's pursuer, written anew, flies to the bit as ours: $timing, shared episodes: $shared"):
+    test(
+      s"the paper's pursuer, written anew, flies like Skein's, to the bit: $timing, shared episodes: $shared"
+    ):
       def flown(by: Int => Policy) =
         val worlds = new PairWorlds:
           def size: Int                       = 40

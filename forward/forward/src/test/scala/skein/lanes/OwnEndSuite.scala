@@ -85,7 +85,7 @@ class OwnEndSuite extends munit.FunSuite, Optimised:
         val (value, expected) = (fast(number)(world).toDouble, slow(number)(world).toDouble)
         if expected.isNaN then assert(value.isNaN, s"number $number, world $world: $value")
         else assertEqualsDouble(value, expected, 4e-3, s"number $number, world $world")
-      // Worlds end at different times, and some before the last number is judged.
+      // Worlds end at different times, and some before the last score counts.
       assert(slow(2).distinct.length > 5, slow(2).mkString(", "))
       assert(slow(7).exists(_.isNaN), slow(7).mkString(", "))
 

@@ -11,8 +11,8 @@ import skein.policy.{Action, Observation, PlanarObservation, Policy}
   * vehicles' motion is compared to the bit: a decision starts from the heading and memory of the SIMD
   * engine's previous one, and the opponent's heading is that of the decision which the scalar engine knows.
   *
-  * @param lanes by agent, the evader first: the policies of the SIMD engine
-  * @param policies by agent, of one world
+  * @param lanes the SIMD engine's policies, by agent, the evader first
+  * @param policies the policies of one world, by agent
   */
 private[skein] class PairAgreement(
     duel: Duel,
@@ -34,7 +34,7 @@ private[skein] class PairAgreement(
       val events = Events()
       val scalar = duel.copy(duel.pursuer.copy(policy = logs(1)), duel.evader.copy(policy = logs(0)))
       val came   = Rollout(scalar, timing, link(world), model).fly(key(world), captureM, events)
-      // How far directions have been off, each within its bound.
+      // The errors of directions so far, each within its bound.
       var off   = 0.0
       val first = events.all.iterator
         .flatMap:
@@ -119,8 +119,8 @@ private[skein] class PairAgreement(
     same("mean of the last 10 s", flown(PairNumber.MeanLast10s)(world), came.meanLast10sM)
     same("pursuer's effort", flown(PairNumber.PursuerEffort)(world), came.pursuerEffortRad)
     same("evader's effort", flown(PairNumber.EvaderEffort)(world), came.evaderEffortRad)
-    // One captures a period before the other where that period's distance is within what distances may be
-    // off.
+    // One engine captures a period before the other if that period's distance differs from the limit by less
+    // than the error of distances.
     val sooner = math.min(flown(PairNumber.Capture)(world), came.captureS)
     must(
       flown(PairNumber.Capture)(world) == came.captureS.toFloat ||
@@ -137,10 +137,10 @@ private[skein] object PairAgreement:
   /** Rounding of a time, as a share of a second; grains of 4 ns are exact. */
   private val TimeOff = 2e-7
 
-  /** Of a number that is not computed. */
+  /** The value of a number that is not computed. */
   private val AtFirst = 1e-6
 
-  /** Of a policy in doubles, by its form. */
+  /** The decision of a policy in doubles, by its form. */
   private def inputsOf(
       form: PolicyLanes,
       seen: PlanarObservation,
@@ -155,7 +155,7 @@ private[skein] object PairAgreement:
     ) += 2 * math.Pi * math.rint((ours.inputs(Heading)(world) - inputs(Heading)) / (2 * math.Pi))
     inputs
 
-  /** What lanes decided in a world, beside what the policy decides in doubles. */
+  /** The SIMD engine's decisions in a world, compared with the policy's in doubles. */
   def departure(
       agent: Int,
       k: Int,
@@ -217,9 +217,9 @@ private[skein] object PairAgreement:
     val kernel = flownAlone(duel, timing, model, link, key, captureM, lanes)
     PairAgreement(duel, timing, model, link, key, captureM, Vector(evader, pursuer), lanes, kernel)
 
-  /** The same kernel, when it has flown.
+  /** The kernel after its simulation.
     *
-    * @param lanes the evader's and the pursuer's
+    * @param lanes the evader's and the pursuer's policies
     */
   def flownAlone(
       duel: Duel,
@@ -234,7 +234,7 @@ private[skein] object PairAgreement:
     val worlds = Array.range(0, PairKernels.WORLDS)
     PairKernels.alone(duel, timing, model, lanes, worlds.map(link), worlds.map(key), captureM, newEye)
 
-  /** Lanes that fly these, the evader's first. */
+  /** The SIMD policies of these, the evader's first. */
   def taken(pursuer: Int => Policy, evader: Int => Policy): Vector[LoggedPolicy] =
     Vector(evader, pursuer).map: of =>
       val lanes = LoggedPolicy(of(0))
@@ -248,7 +248,9 @@ private[skein] object PairAgreement:
     case Decided(agent: Int, k: Int, timeS: Double, known: Int)
     case Looked(k: Int, timeS: Double, exposure: Exposure)
 
-  /** What the scalar engine decides and looks at, in turn; and how far apart the two are, once a period. */
+  /** The scalar engine's decisions and observations in order; and the distance of the two vehicles, once a
+    * period.
+    */
   final class Events extends LoopObserver:
     val all: ArrayBuffer[Event]                  = ArrayBuffer.empty
     val distances: ArrayBuffer[(Double, Double)] = ArrayBuffer.empty
@@ -269,7 +271,7 @@ private[skein] object PairAgreement:
         x0 = x; y0 = y
       else distances += timeS -> math.hypot(x - x0, y - y0)
 
-  /** Notes what a policy sees, and answers as it does. */
+  /** Records a policy's observations, and decides as it does. */
   final class Log(val policy: Policy) extends Policy:
     type Memory = policy.Memory
     val seen: ArrayBuffer[PlanarObservation] = ArrayBuffer.empty

@@ -35,7 +35,7 @@ class PairBatchSimulation extends munit.FunSuite:
     for world <- 0 until 300 do
       assertEquals(numbers(backwards, 299 - world), numbers(all, world), s"world $world")
 
-  test("worlds whose policies are no formulas fly by the scalar reference, beside the others"):
+  test("worlds whose policies are no formulas use the scalar reference, also among others"):
     val worlds   = mixed(40)
     val outcomes = PairBatch(short, LoopTiming.Stream(), lag).fly(worlds, captureRadiusM = 5)
     for world <- 0 until worlds.size if worlds.evader(world) == Straight do
@@ -55,8 +55,8 @@ class PairBatchSimulation extends munit.FunSuite:
         assertEquals(numbers(flown, world), scalar(worlds, world, timing, model), s"world $world")
 
   test(
-    "over recorded delays, and where a loop is asked as published, the engine says scalar and why; " +
-      "long delays fly, and those that change"
+    "over recorded delays, and if vehicles are read as published, the engine is scalar and states why; " +
+      "long and changing delays are supported by SIMD"
   ):
     val near                      = DelayTable.of(LatencyDistribution.Constant(Span.ofMillis(2)))
     val far                       = DelayTable.of(LatencyDistribution.Constant(Span.ofMillis(60)))
@@ -95,7 +95,7 @@ class PairBatchSimulation extends munit.FunSuite:
     assert(clue(engine(most(1), near)).startsWith("scalar: with 1 move in flight"))
     assert(clue(engine(most(6), near)).startsWith("SIMD"))
 
-  test("progress counts all worlds, and a cancelled call says how many it flew"):
+  test("progress counts all worlds, and a cancelled call reports how many it simulated"):
     val batch = PairBatch(short, LoopTiming.Stream(), lag, threads = 2)
     val seen  = Vector.newBuilder[Int]
     batch.fly(mixed(600), onProgress = seen += _): Unit
@@ -109,11 +109,11 @@ class PairBatchSimulation extends munit.FunSuite:
     val same  = (0 until 600).count(world => numbers(part, world) == numbers(whole, world))
     assertEquals(same, part.flown)
 
-  test("who cancels does not wait for vehicles that are stepped side by side for long"):
+  test("a cancelled call does not wait long for vehicles that are stepped together"):
     val hours = Duel.paper.copy(durationS = 36_000)
     val batch = PairBatch(hours, LoopTiming.Stream(), VelocityResponses.quadrotor(), threads = 1)
     val asked = AtomicInteger()
-    // Asked once before the batch, and then while it flies.
+    // Polled once before the batch, and then during it.
     assertEquals(batch.fly(mixed(8), isCancelled = () => asked.incrementAndGet() > 1).flown, 0)
 
   for timing <-
@@ -179,14 +179,14 @@ class PairBatchSimulation extends munit.FunSuite:
         val near = numbers(all, world).zip(scalar(mixed(count), world, timing, model, offAxis))
         assert(near.forall((a, b) => a == b || (a - b).abs < 2e-2), s"world $world: ours and scalar $near")
 
-  test("low quadrotors fly by the scalar reference, which knows the ground"):
+  test("low quadrotors use the scalar reference, which includes the ground"):
     val batch = PairBatch(Duel.paperAt(4.9, 12), LoopTiming.Stream(), VelocityResponses.quadrotor())
     assertEquals(
       batch.engine(PaperPursuer(), PaperEvader(), shareEpisodes = true, Nil).text,
       "scalar: the lanes know no ground and fly from 5.0 m altitude on"
     )
 
-  test("what a world throws reaches the caller"):
+  test("an exception thrown by a world reaches the caller"):
     val worlds = mixed(300)
     val broken = new PairWorlds:
       export worlds.{evader, key, pursuer, size}
@@ -195,7 +195,7 @@ class PairBatchSimulation extends munit.FunSuite:
     val thrown = intercept[RuntimeException](PairBatch(short, LoopTiming.Stream(), lag).fly(broken): Unit)
     assertEquals(thrown.getMessage, "no such link")
 
-  test("without the vector module the scalar engine flies, and says how to get the other"):
+  test("without the vector module the scalar engine is used, and states how to get SIMD"):
     val binary  = java.nio.file.Path.of(System.getProperty("java.home"), "bin", "java").toString
     val process = ProcessBuilder(
       binary,
@@ -213,7 +213,7 @@ class PairBatchSimulation extends munit.FunSuite:
     assertEquals(lines(1), here.toString)
 
 object PairBatchSimulation:
-  /** Goes straight on, by what is no arithmetic. */
+  /** Goes straight on, by a method that is no arithmetic. */
   val Straight: HeadingPolicy.Memoryless = _.ownHeadingRad.toString.toDouble
 
   val lag: PlantResponse = VelocityResponses.lag(gain = 0.9, lagS = 0.8, deadTimeS = 0.05)

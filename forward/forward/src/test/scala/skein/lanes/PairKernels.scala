@@ -6,7 +6,7 @@ import skein.lanes.policy.{CameraTrackerLanes, LanePolicy}
 import skein.lanes.score.{Judged, Scoreboard, ScoreLanes}
 import skein.lanes.timetable.{Timetable, TimetableEye, TimetableKernel}
 
-/** Numbers of the last flight of a kernel for duels, in each of its worlds. */
+/** Values of the last flight of a kernel for duels, in each of its worlds. */
 final class PairKernel(
     duel: Duel,
     timing: LoopTiming,

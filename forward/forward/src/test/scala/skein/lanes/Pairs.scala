@@ -12,7 +12,7 @@ trait PairWorlds extends Worlds:
   def pursuer(world: Int): Policy
   def evader(world: Int): Policy
 
-/** The numbers of a [[DuelOutcome]]. */
+/** The values of a [[DuelOutcome]]. */
 enum PairNumber(val of: DuelOutcome => Double):
   case MinDistance   extends PairNumber(_.minDistanceM)
   case MeanDistance  extends PairNumber(_.meanDistanceM)
@@ -33,7 +33,7 @@ enum PairNumber(val of: DuelOutcome => Double):
 object PairNumber:
   val all: Set[PairNumber] = values.toSet
 
-/** Each world's numbers; NaN where they were not asked for. */
+/** Each world's values; NaN where they were not requested. */
 final class PairOutcomes(asked: Set[PairNumber], size: Int, of: TeamOutcomes):
   private val places = PairNumber.values.filter(asked).zipWithIndex.toMap
   private val none   = Array.fill(size)(Float.NaN)

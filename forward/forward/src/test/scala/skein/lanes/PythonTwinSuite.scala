@@ -10,8 +10,8 @@ import skein.simd.WorldRandom
 import skein.testing.Unhurried
 import skein.units.*
 
-/** Scenarios written in Python, by the files beside the examples, and the same ones in Scala: equal bits, but
-  * for a network by SIMD. The package's tests hold the files to the Python.
+/** Scenarios written in Python, by the files next to the examples, and equal ones in Scala: equal bits,
+  * except for a network by SIMD. The package's tests compare the files with the Python.
   */
 class PythonTwinSuite extends munit.FunSuite, Unhurried:
   private val root = Iterator
@@ -64,7 +64,7 @@ class PythonTwinSuite extends munit.FunSuite, Unhurried:
     )
 
   for (name, python, scala) <- twins do
-    test(s"$name: vehicles are the same, and decide the same, to the bit"):
+    test(s"$name: vehicles are equal, and decide equally, to the bit"):
       val random = SplitMix64(9)
       for ((one, other), self) <- python.agents.zip(scala.agents).zipWithIndex do
         assertEquals(one.copy(policy = other.policy), other)
@@ -81,7 +81,7 @@ class PythonTwinSuite extends munit.FunSuite, Unhurried:
       (by, pace) <- Seq("the scalar engine" -> true, "SIMD" -> true, "SIMD, at paces of their own" -> false)
     do
       val isReference = by.startsWith("the scalar")
-      test(s"$name, $timing, shared episodes: $share, by $by: the same results"):
+      test(s"$name, $timing, shared episodes: $share, by $by: equal results"):
         val batch               = TeamBatch(timing, lag, threads = 1, isReference = isReference)
         def flown(of: Scenario) =
           val judged =
@@ -102,7 +102,7 @@ class PythonTwinSuite extends munit.FunSuite, Unhurried:
           assert(isReference || engine.startsWith("SIMD"), engine)
           batch.fly(worlds).values.map(_.toVector).toVector
         val (one, other) = (flown(python), flown(scala))
-        // SIMD folds the scales of a network's inputs into weights that are known, but not into a policy's numbers.
+        // SIMD folds the scales of a network's inputs into known weights, but not into a policy's parameters.
         if isReference || !name.contains("network") then assertEquals(one, other)
         else
           for (a, b) <- one.flatten.zip(other.flatten) do assertEqualsFloat(a, b, 1e-4f * b.abs.max(1))

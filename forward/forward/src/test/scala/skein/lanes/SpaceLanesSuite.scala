@@ -106,7 +106,7 @@ object SpaceLanesSuite:
 
   private final case class Phase(angle: Double, timeS: Double)
 
-  /** Flies to the place above another vehicle, according to that vehicle's altitude and sink rate. */
+  /** Flies to the position above another vehicle, according to that vehicle's altitude and sink rate. */
   private final case class Above(other: Int, aboveM: Double) extends Policy:
     type Memory = Unit
     def start: Unit                                             = ()

@@ -146,7 +146,7 @@ object TeamAgreementSimulation:
       val away    = readings.zip(ours).map((x, y) => math.abs(x - y)).max
       munit.Assertions.assert(away < Agreement.mostOff(timeS), s"$where: $away off in a reading")
       munit.Assertions.assertEqualsDouble(now.elapsedS, seen.elapsed.toSeconds, 1e-6, where)
-      // The own direction is that decided before.
+      // The vehicle's own direction is that decided before.
       if made.size == 1 then munit.Assertions.assertEqualsDouble(now.cos(world), cos, 1e-6, where)
       else
         munit.Assertions.assertEquals(now.cos(world), made.head.nextCos(world), where)

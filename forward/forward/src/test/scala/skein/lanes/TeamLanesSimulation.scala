@@ -228,7 +228,7 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
   ): Unit =
     val random = SplitMix64(7)
     val all    = new TeamWorlds:
-      // More than fly together, and not as many again; every fifth has no delays.
+      // More than are simulated together, but less than twice as many; every fifth has no delays.
       private val teams = Vector.fill(worlds + 40):
         val team   = engagement(draw(random), durationS)
         val judged =
@@ -301,8 +301,7 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
           )
 
   test(
-    "numbers that are judged from different times have the results that they have alone, and the scalar " +
-      "engine's"
+    "scores from different start times have the results that they have alone, and the scalar engine's"
   ):
     val random = SplitMix64(9)
     val judged = Vector(
@@ -400,7 +399,7 @@ final case class North(vehicle: Int) extends Quantity:
 final case class East(vehicle: Int) extends Quantity:
   def of(places: Positions): Double = places.eastM(vehicle)
 
-// As docs/guides/search.md has it.
+// Equal to the code in docs/guides/search.md.
 /** Mean distance of the vehicles from their middle, m. */
 case object Spread extends Quantity:
   def of(places: Positions): Double =

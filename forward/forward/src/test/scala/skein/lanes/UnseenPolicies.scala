@@ -31,7 +31,7 @@ final case class AgeAwarePursuer(ownSpeedMps: Double, trust: Double, turnRateRad
 
   def heading(seen: PlanarObservation): Double =
     val (cos, sin) = (StrictMath.cos(seen.ownHeadingRad), StrictMath.sin(seen.ownHeadingRad))
-    // The opponent's own velocity, as far as the own one is as commanded.
+    // The opponent's own velocity, if this vehicle's is as commanded.
     val north = seen.dvxMps + ownSpeedMps * cos
     val east  = seen.dvyMps + ownSpeedMps * sin
     val dx    = seen.dxM + trust * (north * seen.opponentAgeS - ownSpeedMps * cos * seen.ownAgeS)

@@ -22,7 +22,7 @@ class VelocityReadSuite extends munit.FunSuite:
     assert(!needsVelocity(Place))
 
 object VelocityReadSuite:
-  /** Flies along a heading that is a number read of its opponent. */
+  /** Flies along a heading that is a component of its opponent's reading. */
   abstract class Reads extends Policy:
     type Memory = Unit
     def read(rival: Kinematics): Double

@@ -40,7 +40,7 @@ class ObjectiveSuite extends munit.FunSuite:
       ("captureTime(-1)", "character 1", "captureTime(RADIUS_M)")
     )
   do
-    test(s"'$text' is refused, with the place and what was expected"):
+    test(s"'$text' is refused, with the position and what was expected"):
       val mistake = Objective.ofRole(text, Role.Pursuer).left.getOrElse("accepted")
       assert(mistake.contains(place) && mistake.contains(expected), mistake)
 

@@ -73,7 +73,7 @@ class PlanKernelSuite extends munit.FunSuite:
   /** A discontinuity of the cost.
     *
     * @param nearM the distance from it
-    * @param by the largest jump
+    * @param by the size of the largest jump
     */
   private case class Jump(what: String, nearM: Double, by: Double)
 
@@ -161,7 +161,7 @@ class PlanKernelSuite extends munit.FunSuite:
     val closer = evader.copy(vehicle = vehicle(PlaneReading(4, 3, 1, 1)))
     assertAgree(situation(Behaviour(evader, 0.5), Behaviour(track, 0.3), Behaviour(closer, 0.2)), objective)
 
-  test("kernel and scalar reference agree on what it costs to come near others and to leave the geofence"):
+  test("kernel and scalar reference agree on the costs of coming near others and of leaving the geofence"):
     val narrow =
       objective.copy(
         separation = SeparationCost(minimum = 1.5, margin = 2),
@@ -182,7 +182,7 @@ class PlanKernelSuite extends munit.FunSuite:
       assert(scalar.costs.count(_ > 1000) > 10 && scalar.costs.count(_ < 1000) > 10, s"$fence")
       assertAgree(situation(Behaviour(track)), fenced)
 
-  test("a candidate that the kernel finds within the hard limits is so in doubles"):
+  test("a candidate that the kernel finds within the hard limits is within them in doubles"):
     val narrow =
       objective.copy(
         separation = SeparationCost(minimum = 1.5, margin = 0),
@@ -240,7 +240,7 @@ class PlanKernelSuite extends munit.FunSuite:
     assertEqualsDouble(mean, 0, 0.03)
     assertEqualsDouble(drawn.map(value => (value - mean) * (value - mean)).sum / drawn.size, 1, 0.03)
 
-/** A plant whose state is what is read of it. */
+/** A plant whose state is its reading. */
 private final case class Sliding(stepS: Double) extends Plant[PlaneReading]:
   def initial: PlaneReading                   = PlaneReading(0, 0, 0, 0)
   def read(state: PlaneReading): PlaneReading = state

@@ -13,7 +13,7 @@ class LaneCompilerSuite extends munit.FunSuite:
     test(s"no index is the loop's counter alone, with parameters: $parameters"):
       val trace = Trace()
       val root  = trace.unary(Op.Sin, trace.add(trace.param(0), trace.input(0)))
-      // Longer than a pass: the root is laid by for the last.
+      // Longer than a pass: the root is stored for the last.
       var sum = root
       for i <- 1 to 80 do sum = trace.unary(Op.Sqrt, trace.add(trace.unary(Op.Abs, sum), trace.const(i)))
       val bytes    = LaneCompiler.classFile(1, Vector(trace.add(sum, root)), 0, parameters, Vector.empty)

@@ -79,7 +79,7 @@ class LaneMathSuite extends munit.FunSuite:
     val lanes                  = LaneFunction.COUNT
     def one(op: Op, x: Double) = compiled(op, Array.fill(lanes)(x.toFloat)).head
     def two(op: Op, x: Double, y: Double) =
-      // Quotients, which may be no numbers.
+      // Quotients, which may be NaN.
       val of = (trace: Trace, x: Node) =>
         trace.binary(op, trace.div(x, trace.input(1)), trace.div(trace.input(2), trace.input(1)))
       compiled(of, Array.fill(lanes)(x.toFloat), Array.fill(lanes)(1f), Array.fill(lanes)(y.toFloat)).head

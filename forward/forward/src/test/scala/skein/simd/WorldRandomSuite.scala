@@ -17,7 +17,7 @@ class WorldRandomSuite extends munit.FunSuite:
     val chiSquare = counts.map(n => (n - 1000.0) * (n - 1000.0) / 1000).sum
     assert(chiSquare > 30 && chiSquare < 110, chiSquare) // 63 degrees of freedom: 0.1 % on either side
 
-  test("neighbouring episodes and places are uncorrelated"):
+  test("neighbouring episodes and indices are uncorrelated"):
     val n                                         = 20000
     def uniform(key: Int, place: Int)             = (WorldRandom.bits(key, place) >>> 8) / 16777216.0 - 0.5
     def correlation(pairs: Seq[(Double, Double)]) = 12 * pairs.map(_ * _).sum / n

@@ -7,7 +7,7 @@ import java.lang.ref.Cleaner
 
 /** An NVIDIA GPU, used through its driver. GPU memory is freed when its owner becomes unreachable.
   *
-  * @param name as reported by the driver
+  * @param name the GPU's name, as reported by the driver
   */
 private final class CudaGpu private (cuda: Cuda, context: MemorySegment, val name: String) extends Gpu:
   import CudaGpu.*

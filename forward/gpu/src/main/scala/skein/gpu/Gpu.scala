@@ -10,7 +10,7 @@ trait Gpu:
 
   /** Translates a kernel for this GPU.
     *
-    * @throws GpuFailure with the message of the translator, if it rejects the kernel
+    * @throws GpuFailure with the translator's message, if it rejects the kernel
     */
   private[skein] def kernel(module: String, name: String): GpuKernel
 
@@ -26,7 +26,7 @@ trait Gpu:
 private[skein] trait GpuBuffer extends AutoCloseable:
   def address: Long
 
-  /** Copies its numbers from the GPU.
+  /** Copies the array from the GPU.
     *
     * @throws GpuFailure if that fails
     */
@@ -37,7 +37,7 @@ private[skein] trait GpuBuffer extends AutoCloseable:
 private[skein] trait GpuKernel:
   /** Runs the kernel to its end.
     *
-    * @param arguments in the kernel's order, each a [[GpuBuffer]], an Int or a Float
+    * @param arguments the arguments in the kernel's order, each a [[GpuBuffer]], an Int or a Float
     * @throws GpuFailure if the kernel does not finish
     */
   def apply(blocks: Int, threadsOfBlock: Int, arguments: Any*): Unit

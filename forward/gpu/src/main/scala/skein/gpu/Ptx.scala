@@ -7,7 +7,7 @@ import java.util.HexFormat
   * register, unless it assigns a variable. Floats are rounded to nearest and never flushed to zero or
   * implicitly fused, so that they equal a CPU's to the bit. Mutable.
   *
-  * @param parameters of the kernel, by name
+  * @param parameters the kernel's parameters, each with its name
   * @param localBytes size of each thread's own memory
   */
 final class Ptx(name: String, parameters: Seq[(String, Ptx.Kind)], localBytes: Int = 0):

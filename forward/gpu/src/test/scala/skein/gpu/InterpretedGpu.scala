@@ -25,7 +25,7 @@ final class InterpretedGpu extends Gpu:
 
   private[skein] def buffer(words: Long): GpuBuffer =
     val (address, held) = room(words * 4)
-    // Nothing may count on memory that nobody wrote.
+    // No code may rely on memory that was never written.
     for i <- 0L until words do held.putFloat(4 * i.toInt, Float.NaN): Unit
     Buffer(address, held)
   private[skein] def buffer(numbers: Array[Float]): GpuBuffer =
@@ -45,7 +45,7 @@ final class InterpretedGpu extends Gpu:
 
 /** A parsed kernel.
   *
-  * @param parameters by name, in their order
+  * @param parameters the kernel's parameters by name, in their order
   * @param labels index of the instruction after each label, by name
   * @param tables targets of each table of branches
   */
@@ -130,7 +130,7 @@ private final class PtxThread(
     def d(i: Int)         = wide(number(i))
     def p(i: Int)         = conditions(number(i))
     def toFloat(a: Float) = floats(number(0)) = a
-    // What is no number has the bits that a GPU gives it: others than a CPU's.
+    // A NaN has the bits of a GPU's NaN, which differ from a CPU's.
     def rounded(a: Float)       = toFloat(if a.isNaN then java.lang.Float.intBitsToFloat(0x7fffffff) else a)
     def toBits(a: Int)          = bits(number(0)) = a
     def toWide(a: Long)         = wide(number(0)) = a

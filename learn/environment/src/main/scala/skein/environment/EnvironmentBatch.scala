@@ -20,13 +20,13 @@ import skein.units.Expect
   * divided by 10 m. Means of other quantities may be rewarded instead, divided by 10 likewise, or a root mean
   * square: then each reward is a square, divided by 100.
   *
-  * Environments fly by SIMD, up to [[LearnerWorlds.Most]] together, or one by one by the scalar reference;
-  * [[engine]] says by which, and why.
+  * Environments are simulated by SIMD, up to [[LearnerWorlds.Most]] together, or one by one by the scalar
+  * reference; [[engine]] states which, and why.
   *
   * One call at a time. A step by SIMD allocates nothing, except where many groups share the processors.
   *
-  * @param count of environments
-  * @param block of [[EnvironmentBuffers.bytes]]
+  * @param count number of environments
+  * @param block memory of [[EnvironmentBuffers.bytes]] bytes
   */
 final class EnvironmentBatch private (
     side: LearnerSide,
@@ -39,7 +39,7 @@ final class EnvironmentBatch private (
   private var groups  = groupsOf(None)
   private var isReset = false
 
-  /** What flies the environments. */
+  /** The engine that simulates the environments. */
   def engine: Engine = flownBy
 
   private def groupsOf(beside: Option[Policy]): Array[EnvironmentGroup] =
@@ -52,8 +52,8 @@ final class EnvironmentBatch private (
       val stride = side.turns.size
       EnvironmentGroup(side, learning, worlds, autoreset, numbers.head, stride, numbers.size, buffers)
 
-  /** Sets the policy of the other vehicles of a learner's role, where they learn in turns; all environments
-    * must be reset then.
+  /** Sets the policy of the other vehicles of a learner's role, if its vehicles learn in turns; then all
+    * environments must be reset.
     */
   def fly(policy: Policy): Unit = if side.turns.size > 1 then
     close()
@@ -97,14 +97,14 @@ final class EnvironmentBatch private (
       if ended >= 0 then
         throw IllegalStateException(s"environment $ended has ended; reset it before the next step()")
       i += 1
-    // A step lasts microseconds: the common pool hands out its parts without a thread being started or woken
-    // by us.
+    // A step lasts microseconds; the common pool distributes its parts without starting or waking a thread
+    // for each.
     if groups.length < EnvironmentBatch.Together then groups.foreach(_.step())
     else IntStream.range(0, groups.length).parallel().forEach(groups(_).step())
 
 object EnvironmentBatch:
 
-  /** The worlds of `count` environments that an engine flies together. */
+  /** The worlds of `count` environments that an engine simulates together. */
   private[environment] def worlds(
       side: LearnerSide,
       by: Engine,
@@ -118,10 +118,10 @@ object EnvironmentBatch:
 
   val Most = 1 << 20
 
-  /** Groups from which on several threads are used. */
+  /** Minimum number of groups for which several threads are used. */
   private val Together = 4
 
-  /** What flies such environments; Left states what was expected and what was given.
+  /** The engine for such environments; Left states what was expected and what was given.
     *
     * @param beside see [[EnvironmentBatch.fly]]
     */

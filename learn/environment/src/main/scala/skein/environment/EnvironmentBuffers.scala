@@ -3,8 +3,9 @@ package skein.environment
 import java.nio.{ByteBuffer, ByteOrder, FloatBuffer}
 import skein.lanes.LearnerPolicy.Fields
 
-/** What an environment batch shares with who steps it: one block of memory, in the machine's byte order. Of A
-  * learners, in the scenario's order, and n environments, one after the other:
+/** The memory that an environment batch shares with its caller: one block, in the machine's byte order. It
+  * contains the following arrays one after the other, for A learners in the scenario's order and n
+  * environments:
   *
   * | what                                                                | type | shape   |
   * |:--------------------------------------------------------------------|:-----|:--------|

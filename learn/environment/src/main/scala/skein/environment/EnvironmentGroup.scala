@@ -4,15 +4,16 @@ import java.nio.FloatBuffer
 import skein.lanes.{LearnerPolicy, LearnerWorlds}
 import skein.signal.SplitMix64
 
-/** Environments that run side by side over one link: delays and losses of messages are equal in all of them.
-  * Mutable; one thread at a time.
+/** Environments that run simultaneously over one link: delays and losses of messages are equal in all of
+  * them. Mutable; one thread at a time.
   *
-  * They begin a ''run'' together, which lasts as long as an episode. Where an episode ends earlier, by a
+  * They begin a ''run'' together, which lasts as long as an episode. If an episode ends earlier, by a
   * capture, the next begins immediately in the current run, and lasts until the run's end; worlds that cannot
   * restart alone begin a new run.
   *
-  * @param learning the learners' vehicles
-  * @param first of the batch's environments; the others follow by `stride`
+  * @param learning indices of the learners' vehicles
+  * @param first index of the group's first environment in the batch; the others follow at a distance of
+  *   `stride`
   */
 private final class EnvironmentGroup(
     side: LearnerSide,
@@ -63,7 +64,7 @@ private final class EnvironmentGroup(
 
   /** Resets every environment.
     *
-    * @param newSeeds of the whole batch; a negative one continues the environment's own sequence
+    * @param newSeeds seeds of the whole batch; a negative one continues the environment's own sequence
     */
   def reset(newSeeds: Array[Long]): Unit =
     for world <- 0 until count do seed(world, newSeeds(numberOf(world)))
@@ -173,7 +174,7 @@ private final class EnvironmentGroup(
         world += 1
     into.write(into.rewards, agent, first, stride, cost, 0, count)
 
-  /** Judges which episodes have ended. */
+  /** Determines which episodes have ended. */
   private def judge(): Unit =
     val scoredAtS = worlds.scoredAtS
     var world     = 0

@@ -13,23 +13,23 @@ import skein.units.{Expect, Span}
 
 /** Settings of environments, in the user's terms.
   *
-  * @param learners a role of the scenario, such as `pursuer`: one vehicle of it, in the next environment the
-  *   next one; its plural: all of them in one world; `all` (or `both`): all vehicles; or names of vehicles,
-  *   separated by commas
-  * @param opponent a policy file or a family's name, for the evaders without a learner, or the pursuers where
-  *   an evader learns; empty: their own policies
+  * @param learners the vehicles that learn: a role of the scenario, such as `pursuer`, stands for one vehicle
+  *   of the role, in the next environment the next one; its plural for all of them in one world; `all` (or
+  *   `both`) for all vehicles; or names of vehicles, separated by commas
+  * @param opponent a policy file or a family's name, for the evaders without a learner, or for the pursuers
+  *   if an evader learns; empty: their own policies
   * @param plant see [[VehicleChoice.parse]]; empty: `reduced` at the altitude where it was identified, `drag`
   *   at others, `tilt` where a policy may climb
-  * @param altitudeM of all vehicles at the start; 0: that of the scenario
+  * @param altitudeM altitude of all vehicles at the start; 0: that of the scenario
   * @param captureRadiusM distance that ends an episode; 0: none does
-  * @param startWithinM least and greatest initial distance of one of two from the other (of the evader from
-  *   the pursuer), in any direction, each commanded in any direction; of every vehicle of more than two from
-  *   its usual start; both 0: the scenario's start
-  * @param movesInFlight most unanswered moves of one vehicle
-  * @param turnRateRadPerS greatest turn rate of a learner, but of evaders
-  * @param evaderRateRadPerS greatest turn rate of a learning evader; 0: its actions are immediate turns of up
+  * @param startWithinM minimum and maximum initial distance, in a random direction and with a random first
+  *   heading: with two vehicles, the distance of one from the other (of the evader from the pursuer); with
+  *   more, that of every vehicle from its usual start; both 0: the scenario's start
+  * @param movesInFlight maximum number of unanswered moves of one vehicle
+  * @param turnRateRadPerS maximum turn rate of a learner other than an evader
+  * @param evaderRateRadPerS maximum turn rate of a learning evader; 0: its actions are immediate turns by up
   *   to half a turn
-  * @param scenario whose vehicles learn
+  * @param scenario the scenario whose vehicles learn
   * @param set settings of the scenario, by their keys
   * @param objective reward: a sum of the scenario's measures that are means over time, or one root mean
   *   square, over whole episodes; empty: the distance to the nearest opponent, which evaders maximise and
@@ -55,12 +55,13 @@ final case class EnvironmentSettings(
 ):
   import EnvironmentSettings.*
 
-  /** The greatest turn of a learner: rad/s until the next decision, and rad in one instant. */
+  /** The maximum turn of a learner: rad/s until the next decision, and rad in one instant. */
   def mostTurn(role: Role): (Double, Double) =
     if role != Role.Evader then (turnRateRadPerS, 0)
     else (evaderRateRadPerS, if evaderRateRadPerS > 0 then 0 else math.Pi)
 
-  /** The learners of environments, in turns: those of environment n are number n, modulo their count.
+  /** The learners of environments, in turns: those of environment n have the index n modulo the number of
+    * turns.
     *
     * @return Left states what was expected and what was given
     */
@@ -126,8 +127,8 @@ object EnvironmentSettings:
   /** The distance that costs the pursuer, and earns the evader, 1 a period, m. */
   val RewardM = 10f
 
-  /** Time after an episode's end within which a learner is due again, s, unless the vehicles' readings have
-    * ended.
+  /** Time after an episode's end within which every learner is due again, s, unless the readings of vehicles
+    * have ended.
     */
   private[environment] val SpareS = 3.0
 

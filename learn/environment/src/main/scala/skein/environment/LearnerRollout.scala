@@ -52,7 +52,7 @@ private final class LearnerRollout(side: LearnerSide, team: TeamCandidate, learn
 
   def turn(learner: Int, numbers: Array[Float]): Unit = turns(learner) = numbers(0)
 
-  /** [[flyOn]] does. */
+  /** [[flyOn]] makes the decisions. */
   def decide(): Unit = ()
 
   def scoredAtS: Float = lastScoredAtS.toFloat

@@ -12,11 +12,12 @@ import skein.simd.LaneMath
 import skein.units.Expect
 import skein.vehicle.{ReducedModel, VehicleKind}
 
-/** Resolved settings: whose vehicles learn, in what, and what they are rewarded for.
+/** Resolved settings: the vehicles that learn, their team, and their rewards.
   *
-  * @param engagement all vehicles with the policies by which they fly without a learner
-  * @param turns learners of an environment; the next environment has the next ones
-  * @param objectives by vehicle; without one, a small or a great distance to the nearest opponent is rewarded
+  * @param engagement all vehicles, with their policies if they do not learn
+  * @param turns indices of an environment's learners; the next environment has the next entry
+  * @param objectives objective of each vehicle; if None, a small or a great distance to the nearest opponent
+  *   is rewarded
   */
 private[environment] final case class LearnerSide(
     settings: EnvironmentSettings,
@@ -28,7 +29,7 @@ private[environment] final case class LearnerSide(
     link: Delays,
     response: VelocityResponse
 ):
-  /** Makes worlds that SIMD flies. */
+  /** Makes worlds that SIMD simulates. */
   val maker: LearnerTeams.Maker = LearnerTeams.Maker(timing, link, response)
 
   /** Number of learners in an environment. */
@@ -42,15 +43,15 @@ private[environment] final case class LearnerSide(
   /** The opponents of a vehicle, of which the nearest counts. */
   def rivals(vehicle: Int): Vector[Int] = engagement.assignment.rivals(vehicle)
 
-  /** Whether a learner turns by a rate, and the greatest turn: rad/s, or rad. */
+  /** Whether a learner turns by a rate, and the maximum turn: rad/s, or rad. */
   def mostTurn(vehicle: Int): (Boolean, Float) =
     val (rate, angle) = settings.mostTurn(roleOf(vehicle))
     if rate > 0 then (true, rate.toFloat) else (false, angle.toFloat)
 
-  /** An environment's vehicles with its learners. Judged are, for each learner that is [[apart]], the newest
-    * and the least distance to its nearest opponent, and then what costs.
+  /** An environment's vehicles with its learners. Its scores are, for each learner that is [[apart]], the
+    * newest and the least distance to its nearest opponent, and then the costs.
     *
-    * @param beside policy of the other vehicles of a learner's role; without one, their own
+    * @param beside policy of the other vehicles of a learner's role; if None, their own
     */
   def team(learning: Vector[Int], beside: Option[Policy]): TeamCandidate =
     val agents = engagement.agents.zipWithIndex.map: (agent, place) =>
@@ -69,15 +70,14 @@ private[environment] final case class LearnerSide(
         costs
     )
 
-  /** The learners whose distances to their opponents may differ: of two that play against one another the
-    * first.
+  /** The learners whose distances to their opponents may differ; with two vehicles, the first one.
     */
   def apart(learning: Vector[Int]): Vector[Int] =
     if engagement.agents.size == 2 then learning.take(1) else learning
 
   /** The weights of what costs a learner: of values, or of squares where their root mean square is optimised.
     *
-    * @param place among the learners
+    * @param place index among the learners
     */
   def weights(learning: Vector[Int], place: Int): Array[Float] = objectives match
     case Some(all) =>
@@ -92,7 +92,7 @@ private[environment] final case class LearnerSide(
       val those = apart(learning)
       those.indices.map(each => if each == place.min(those.size - 1) then sign else 0f).toArray
 
-  /** What flies the environments.
+  /** The engine that simulates the environments.
     *
     * @param beside see [[team]]
     */
@@ -103,14 +103,14 @@ private[environment] final case class LearnerSide(
 
 private[environment] object LearnerSide:
 
-  /** @param against policy of the vehicles of another role; without one, as the settings name it
+  /** @param against policy of the vehicles of another role; if None, the one that the settings name
     * @return Left states what was expected and what was given
     */
   def of(settings: EnvironmentSettings, against: Option[PolicyFile] = None)(using
       scenarios: Scenarios
   ): Either[String, LearnerSide] =
     for
-      // Every program knows ours.
+      // Every program knows Skein's scenarios.
       kind <- scenarios
         .kind(settings.scenario)
         .left.flatMap(why => Scenarios.ours.kinds.find(_.name == settings.scenario).toRight(why))
@@ -160,7 +160,7 @@ private[environment] object LearnerSide:
   private def levelAt(altitudeM: Double) =
     if altitudeM == ReducedModel.IdentifiedAtM then "reduced" else "drag"
 
-  /** Why some vehicle without a learner may leave its altitude. */
+  /** The reason why some vehicle without a learner may leave its altitude; None if all keep it. */
   private def climbing(engagement: Engagement, turns: Vector[Vector[Int]]): Option[String] =
     val learning = turns.flatten
     val level    = engagement.agents.zipWithIndex.map: (agent, place) =>

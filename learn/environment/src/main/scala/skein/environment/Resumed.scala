@@ -4,7 +4,7 @@ import java.util.concurrent.Semaphore
 import scala.util.control.ControlThrowable
 
 /** A computation that can be suspended and continued. It has a virtual thread of its own, which waits in
-  * between; this thread and the caller's never run at one time.
+  * between; this thread and the caller's never run simultaneously.
   *
   * @param body the computation, which need not end; receives the function that suspends it
   */
@@ -23,7 +23,7 @@ private final class Resumed(body: (() => Unit) => Unit) extends AutoCloseable:
 
   /** Blocks until the computation is suspended or has ended.
     *
-    * @throws Throwable that the computation threw
+    * @throws Throwable if the computation threw it
     */
   def await(): Unit =
     waits.acquireUninterruptibly()

@@ -3,7 +3,8 @@ package skein.environment
 import skein.policy.Role
 import skein.signal.SplitMix64
 
-/** Where vehicles begin an episode, at rest: north and east, m, and the headings taken as commanded. Mutable.
+/** The vehicles' positions at rest when an episode begins, north and east, m, and their assumed commanded
+  * headings. Mutable.
   */
 private final class Starts(side: LearnerSide):
   private val agents        = side.engagement.agents
@@ -13,7 +14,7 @@ private final class Starts(side: LearnerSide):
   val eastM: Array[Float]      = agents.map(_.startY.toFloat).toArray
   val headingRad: Array[Float] = agents.map(_.startHeadingRad.toFloat).toArray
 
-  /** The vehicle of two from which the other one's distance counts. */
+  /** With two vehicles, the index of the one from which the other's distance counts. */
   private val centre = side.engagement.roles.indexOf(Role.Pursuer).max(0)
 
   /** Draws the starts of an episode, see [[EnvironmentSettings.startWithinM]]. */

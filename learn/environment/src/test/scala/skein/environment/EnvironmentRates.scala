@@ -7,9 +7,9 @@ import scala.util.hashing.MurmurHash3
 import skein.lanes.Tower
 import skein.scenario.{ScenarioKind, Scenarios}
 
-/** How fast are environments, and what do they come to? Steps a second of processor time, with a digest of
+/** How fast are environments, and what are their results? Steps a second of processor time, with a digest of
   * all rewards and ends of 300 steps as a witness. Run: `environment/Test/runMain
-  * skein.environment.environmentRates 4096 2000 duel tower`; the words behind the numbers choose rows.
+  * skein.environment.environmentRates 4096 2000 duel tower`; the words after the numbers choose rows.
   */
 @main def environmentRates(count: Int, steps: Int, rows: String*): Unit =
   for name <- RateRow.all.keys if rows.isEmpty || rows.contains(name) do
@@ -21,7 +21,7 @@ import skein.scenario.{ScenarioKind, Scenarios}
         f"median ${rates(3)}%8.3f; ${row.witness}"
     )
 
-/** Steps environments of a row, so often; answers the processor time, ns. */
+/** Steps environments of a row repeatedly; returns the processor time, ns. */
 private[environment] final class RateRow(name: String, count: Int) extends LongUnaryOperator:
   import RateRow.{all, system}
   private val settings = all(name)._2

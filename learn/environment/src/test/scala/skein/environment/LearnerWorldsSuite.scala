@@ -9,7 +9,7 @@ class LearnerWorldsSuite extends munit.FunSuite:
 
   private val all = EnvironmentSettings(startWithinM = (2, 8), episodeS = 6)
 
-  /** What each learner observes at its decisions, and the sums of what is judged, until the last score. */
+  /** Each learner's observations at its decisions, and the sums of the scores, until the last score. */
   private def flown(side: LearnerSide, learning: Vector[Int], worlds: LearnerWorlds) =
     val (starts, seen) = (Starts(side), Array.ofDim[Float](LearnerPolicy.Fields * LearnerWorlds.Most))
     val observed       = Array.fill(learning.size)(Vector.newBuilder[Vector[Float]])
@@ -74,7 +74,7 @@ class LearnerWorldsSuite extends munit.FunSuite:
         )
       for (one, other) <- sums.zip(scalars) do assertEqualsDouble(one, other, toleranceM * 60)
 
-  test("a world that restarts alone is where it was put, with what its vehicles were commanded before"):
+  test("a world that restarts alone has the given positions and previous commands of its vehicles"):
     val settings =
       all.copy(scenario = "surround", learners = "all", loop = "paused", link = "none", plant = "tilt")
     val side                    = LearnerSide.of(settings).fold(fail(_), identity)

@@ -18,9 +18,9 @@ final class DenseKernel {
    * C += A B, with A of {@code rows} times {@code inner} elements, B of {@code inner} times {@code
    * columns}.
    *
-   * @param a element (r, k) stands at {@code aAt + r * aRow + k * aStep}
-   * @param b row by row from {@code bAt}
-   * @param c row by row from {@code cAt}
+   * @param a the matrix A; element (r, k) has the index {@code aAt + r * aRow + k * aStep}
+   * @param b the matrix B, row by row from {@code bAt}
+   * @param c the matrix C, row by row from {@code cAt}
    */
   static void addProduct(
       int rows, int inner, int columns,

@@ -3,9 +3,9 @@ package skein.learn
 import java.util.concurrent.ForkJoinPool
 import java.util.stream.IntStream
 
-/** Threads that share a batch's rows, in parts of a fixed number of rows: so sums over parts have equal bits
-  * on any number of threads. A batch takes less time than starting threads, so they wait for the next one
-  * here.
+/** Threads that share a batch's rows, in parts of a fixed number of rows, so that sums over parts have equal
+  * bits on any number of threads. A batch takes less time than starting threads, so they wait here for the
+  * next one.
   */
 final class BatchThreads(threads: Int) extends AutoCloseable:
   private val pool = Option.when(threads > 1)(ForkJoinPool(threads))

@@ -1,7 +1,7 @@
 package skein.learn
 
 /** Learns a policy from the results of its actions, in rounds. A round's number seeds the learner's random
-  * numbers, and between two rounds its state is exactly what [[Saved.save]] writes.
+  * numbers, and between two rounds [[Saved.save]] writes its complete state.
   */
 trait Learner extends Saved:
   /** The policy: its first outputs, squashed by tanh, are the actions. */

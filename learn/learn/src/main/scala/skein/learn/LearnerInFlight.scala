@@ -8,8 +8,8 @@ import skein.signal.SplitMix64
   * [[SideTask]]: the pursuer is rewarded for a small distance, the evader for a great one. Equal transitions
   * in equal lessons give equal weights.
   *
-  * @param bounds greatest turns of its policies: the last parameters of a [[LearnedPolicy]]
-  * @param updates for each transition
+  * @param bounds maximum turns of its policies: the last parameters of a [[LearnedPolicy]]
+  * @param updates number of updates per transition
   * @param transitionsPerVersion number of transitions after which the newest policy is used
   */
 final class LearnerInFlight private (

@@ -3,13 +3,14 @@ package skein.learn
 /** Settings of a learner.
   *
   * @param hidden widths of the hidden layers of all networks
-  * @param discount of a reward, for each step of delay
-  * @param rate of Adam
-  * @param batch transitions of an update
-  * @param replay limit of the transitions that SAC and DDPG remember
-  * @param updatesPerStep of SAC and DDPG, for each step of one environment
-  * @param randomSteps of all environments together, before SAC and DDPG use their policy
-  * @param horizon steps of each environment between two of PPO's lessons
+  * @param discount factor on a reward for each step of delay
+  * @param rate Adam's step size
+  * @param batch number of transitions in an update
+  * @param replay maximum number of transitions that SAC and DDPG remember
+  * @param updatesPerStep number of updates by SAC and DDPG per step of one environment
+  * @param randomSteps number of random steps, of all environments together, before SAC and DDPG use their
+  *   policy
+  * @param horizon number of steps of each environment between two of PPO's lessons
   * @param epochs number of times that PPO uses the collected steps
   */
 final case class LearnerSettings(

@@ -5,7 +5,7 @@ import skein.signal.SplitMix64
 
 /** A dense network: hidden layers with rectifiers (negative values become 0), and linear outputs. Mutable.
   *
-  * @param widths inputs, hidden layers, outputs
+  * @param widths numbers of inputs, of neurons in each hidden layer, and of outputs
   */
 final class Network(val widths: Vector[Int]) extends Saved:
   require(
@@ -90,7 +90,7 @@ object Network:
 /** Forward and backward computation of a network for some rows of inputs. Different rows may be computed by
   * different threads.
   *
-  * @param widths of the networks that use it
+  * @param widths widths of the networks that use it
   */
 final class Pass(widths: Vector[Int], val rows: Int):
   private val activations = widths.map(width => Array.ofDim[Float](rows * width)).toArray
@@ -112,7 +112,7 @@ final class Pass(widths: Vector[Int], val rows: Int):
     System.arraycopy(seen, from * widths(0), input, from * widths(0), (until - from) * widths(0))
     forward(network, from, until)
 
-  /** @param until row after the last */
+  /** @param until the row after the last */
   def forward(network: Network, from: Int, until: Int): Unit =
     var layer = 0
     while layer < layers do
@@ -146,7 +146,7 @@ final class Pass(widths: Vector[Int], val rows: Int):
 
   /** Computes derivatives after [[forward]].
     *
-    * @param gradient in the parameters' order: the rows' derivatives are added
+    * @param gradient the rows' derivatives are added to it, in the parameters' order
     */
   def backward(network: Network, from: Int, until: Int, gradient: Array[Float]): Unit =
     back(network, from, until): layer =>

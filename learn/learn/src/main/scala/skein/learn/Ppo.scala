@@ -25,7 +25,7 @@ final class Ppo(
   val actor: Network        = Network(actorWidths).draw(initial, LastScale)
   private[learn] val critic = Network(valueWidths).draw(initial)
 
-  /** Logarithms of the standard deviations of an action's numbers. */
+  /** Logarithm of the standard deviation of each component of an action. */
   private[learn] val widths         = Array.fill(actions)(StrictMath.log(FirstDeviation).toFloat)
   private val actorOptimiser        = Adam(actor.parameters.length, settings.rate)
   private val criticOptimiser       = Adam(critic.parameters.length, settings.rate)

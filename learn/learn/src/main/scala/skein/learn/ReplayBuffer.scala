@@ -55,7 +55,7 @@ final class ReplayBuffer(observations: Int, actions: Int, capacity: Int) extends
 
 /** Rows of observations, actions, rewards and reached observations.
   *
-  * @param goesOn 1, or 0 where the episode terminated
+  * @param goesOn 1 if the episode continued, 0 if it terminated
   */
 final class Transitions(observations: Int, acted: Int, val count: Int):
   val seen: Array[Float]    = Array.ofDim(count * observations)

@@ -2,7 +2,7 @@ package skein.learn
 
 /** The newest steps of all environments in order, and the advantage of each.
   *
-  * @param steps of each environment that it holds
+  * @param steps number of steps of each environment that it contains
   */
 private[learn] final class RolloutBuffer(observations: Int, acted: Int, count: Int, val steps: Int):
   val seen: Array[Float]       = Array.ofDim(steps * count * observations)
@@ -24,7 +24,7 @@ private[learn] final class RolloutBuffer(observations: Int, acted: Int, count: I
   def rows: Int       = filled * count
   def clear(): Unit   = filled = 0
 
-  /** @param reachedValues of the states that the step reached */
+  /** @param reachedValues values of the states that the step reached */
   def add(
       seenNow: Array[Float],
       chosen: Array[Float],

@@ -5,7 +5,7 @@ import java.io.{DataInput, DataOutput}
 /** Soft actor-critic: two critics, and a stochastic policy that is rewarded for its entropy, with an adaptive
   * temperature. Source: Haarnoja, Zhou, Hartikainen, Tucker, Ha, Tan, Kumar, Zhu, Gupta, Abbeel, Levine,
   * "Soft actor-critic algorithms and applications", arXiv:1812.05905, with its target entropy of minus one
-  * for each number of an action.
+  * for each component of an action.
   */
 final class Sac(observations: Int, actions: Int, settings: LearnerSettings, seed: Long, workers: BatchThreads)
     extends OffPolicy(observations, actions, settings, seed):
@@ -88,7 +88,7 @@ final class Sac(observations: Int, actions: Int, settings: LearnerSettings, seed
         val at    = row * actions + action
         val mean  = row * 2 * actions + action
         val share = chosen(at).toDouble
-        // With respect to the number before tanh: the log of its derivative has the slope −2 tanh.
+        // With respect to the value before tanh: the log of its derivative has the slope −2 tanh.
         val byRaw   = alpha * 2 * share - slopes(at) * (1 - share * share)
         val output  = pass.output(mean + actions)
         val byWidth = byRaw * StrictMath.exp(logDeviation(output)) * noise(at) - alpha

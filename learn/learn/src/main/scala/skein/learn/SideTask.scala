@@ -8,11 +8,10 @@ import skein.settings.PolicyFile
 import skein.signal.SplitMix64
 
 /** A side of the duel or of another scenario as a learning task, under the loop's timing. Observations are
-  * scaled as [[LearnedPolicy]] scales them, and rewards so that a policy's discounted return is about 1. Of
-  * several vehicles of the side, one of each environment learns; the others use the policy from before the
-  * round.
+  * scaled as [[LearnedPolicy]] scales them, and rewards so that a policy's discounted return is about 1. If a
+  * side has several vehicles, one per environment learns; the others use the policy from before the round.
   *
-  * @param seed of the initial positions and of the messages' delays
+  * @param seed seed of the initial positions and of the messages' delays
   */
 final class SideTask private (
     batch: EnvironmentBatch,
@@ -66,7 +65,7 @@ object SideTask:
   /** The reward of a metre of distance, which environments give once a period. */
   private[learn] val RewardPerM: Double = RewardScale / EnvironmentSettings.RewardM
 
-  /** @param opponent of the other role; None: the one in the settings
+  /** @param opponent policy of the other role; None: the one in the settings
     * @return Left states what was expected and what was given
     */
   def of(

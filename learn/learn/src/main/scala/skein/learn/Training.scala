@@ -3,7 +3,7 @@ package skein.learn
 /** Learning, round by round: in each, every environment is reset and makes a fixed number of steps. Between
   * two rounds it can be saved and continued with identical bits.
   *
-  * @param stepsPerRound of each environment
+  * @param stepsPerRound number of steps of each environment in a round
   */
 final class Training(task: Task, learner: Learner, stepsPerRound: Int):
   private val actions = Array.ofDim[Float](task.count * task.actions)

@@ -66,7 +66,7 @@ class NetworkSuite extends munit.FunSuite:
       for at <- rows.indices do
         assertEqualsDouble(pass.inputError(at).toDouble, slope(rows, at), 2e-3, s"input $at")
 
-  test("rows have the same bits whether they are computed together or one by one"):
+  test("rows have equal bits whether they are computed together or one by one"):
     val random  = SplitMix64(1)
     val network = Network(Vector(9, 64, 64, 2)).draw(random)
     val pass    = Pass(network.widths, 33)

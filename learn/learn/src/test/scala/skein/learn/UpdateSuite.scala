@@ -148,7 +148,7 @@ class UpdateSuite extends munit.FunSuite:
       protected def start(row: Int): Unit  = ()
       def step(chosen: Array[Float]): Unit = ()
     val (task, buffer) = (Three(), RolloutBuffer(1, 1, 1, 4))
-    // Rewards 1 to 4; values 0.5; what is reached is worth 2. The second step terminates, the third is cut
+    // Rewards 1 to 4; values 0.5; reached states are worth 2. The second step terminates, the third is cut
     // off.
     for step <- 0 until 4 do
       task.rewards(0) = (step + 1).toFloat

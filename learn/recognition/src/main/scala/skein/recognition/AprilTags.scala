@@ -14,7 +14,7 @@ import skein.units.*
 
 /** A camera without distortion, like AirSim's.
   *
-  * @param fieldOfView horizontal, AirSim's `FOV_Degrees`
+  * @param fieldOfView horizontal field of view, AirSim's `FOV_Degrees`
   */
 final case class Pinhole(width: Int, height: Int, fieldOfView: Radians):
   require(
@@ -27,9 +27,9 @@ final case class Pinhole(width: Int, height: Int, fieldOfView: Radians):
 
 /** A detected tag.
   *
-  * @param positionFrd of its middle in the camera's frame (front, right, down), m
-  * @param facingFrd direction that it faces: of unit length, away from its carrier
-  * @param deviationPx standard deviation of its edges
+  * @param positionFrd position of its middle in the camera's frame (front, right, down), m
+  * @param facingFrd the direction that it faces: of unit length, away from its carrier
+  * @param deviationPx standard deviation of its edges, in pixels
   */
 final case class Tag(
     id: Long,
@@ -59,7 +59,7 @@ final case class Tag(
 /** Finds AprilTags of the family 36h11 in raw images, by BoofCV. Keeps memory of its own: make one for each
   * thread.
   *
-  * @param size of the tags' black squares, from edge to edge
+  * @param size size of the tags' black squares, from edge to edge
   * @param deviationPx standard deviation with which edges are found; `AprilTagsSuite` checks the default on
   *   rendered images
   */

@@ -9,10 +9,11 @@ import skein.units.*
 
 /** The paper's duel, but the pursuer observes the evader only through its camera.
   *
-  * @param blind false: its policy receives the evader's true position
-  * @param recogniser `tags`: finds AprilTags on the evader's sides; `detector`: the evader has no tags, and
-  *   the detector that comes with this library looks for it; or the file of another ONNX detector, as
-  *   [[VehicleDetector.load]] reads it
+  * @param blind whether it observes through the camera alone; if false, its policy receives the evader's true
+  *   position
+  * @param recogniser the recogniser: `tags` finds AprilTags on the evader's sides; `detector`: the evader has
+  *   no tags, and the detector that comes with this library looks for it; or the file of another ONNX
+  *   detector, as [[VehicleDetector.load]] reads it
   * @param takes duration of recognition: a latency profile, such as `uniform:15ms..120ms`, or `file:PATH`
   *   with measured times
   * @param everyMs period of the images

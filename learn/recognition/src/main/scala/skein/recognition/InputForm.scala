@@ -7,7 +7,7 @@ import skein.airsim.{Image, Pixels}
   * each element, (value − mean) · scale for each channel.
   *
   * @param redFirst whether red is the first channel; else blue is
-  * @param mean of each channel in the model's order, from 0 to 255
+  * @param mean mean of each channel in the model's order, from 0 to 255
   */
 final case class InputForm(
     width: Int,

@@ -6,7 +6,7 @@ import skein.airsim.{Image, Pixels}
 /** An object detected in an image: its bounding box, in the image's pixels.
   *
   * @param kind the number of the object's class, in the model's order
-  * @param score from 0 to 1
+  * @param score the detector's confidence, from 0 to 1
   */
 final case class Box(left: Double, top: Double, right: Double, bottom: Double, kind: Int, score: Double):
   def width: Double  = right - left
@@ -35,9 +35,9 @@ enum BoxForm:
   *
   * @param form the model's input
   * @param boxes the layout of its output
-  * @param leastScore of a detection
-  * @param mostOverlap of two boxes of one kind; of boxes that overlap more, the one of the higher score
-  *   counts
+  * @param leastScore minimum score of a detection
+  * @param mostOverlap maximum overlap of two boxes of one kind; of boxes that overlap more, the one with the
+  *   higher score counts
   */
 final class OnnxDetector(
     model: OnnxModel,

@@ -7,12 +7,12 @@ import scala.jdk.CollectionConverters.*
 import scala.util.Using
 import skein.airsim.Image
 
-/** A model's outputs by name: numbers, row by row, and their shape. */
+/** A model's outputs by name: their elements, row by row, and their shape. */
 type Outputs = Map[String, OnnxModel.Output]
 
 /** Any ONNX model with one input of floats, such as an object detector. Thread-safe.
   *
-  * @param input shape of its input; −1 where it takes any size
+  * @param input shape of its input; −1 for any size
   */
 final class OnnxModel private (session: OrtSession, inputName: String, val input: Vector[Int])
     extends AutoCloseable:
@@ -44,12 +44,13 @@ final class OnnxModel private (session: OrtSession, inputName: String, val input
   def close(): Unit = session.close()
 
 object OnnxModel:
-  /** @param values row by row; integers are converted to floats */
+  /** @param values the elements, row by row; integers are converted to floats */
   final case class Output(shape: Vector[Int], values: Array[Float])
 
   private lazy val environment = OrtEnvironment.getEnvironment()
 
-  /** @param threads that compute one image; several images at a time (`Recognise`) need one each
+  /** @param threads number of threads that compute one image; several images at a time (`Recognise`) need one
+    *   each
     * @return Left states why the file is no such model
     */
   def load(file: Path, threads: Int = 1): Either[String, OnnxModel] =

@@ -1,6 +1,6 @@
 package skein.recognition
 
-/** Finds out whether onnxruntime is available. It is larger than all other libraries, so users of models add
+/** Determines whether onnxruntime is available. It is larger than all other libraries, so users of models add
   * it themselves.
   */
 private[recognition] object OnnxRuntime:

@@ -6,8 +6,8 @@ import skein.fusion.PolarMeasurement
 import skein.scenario.Recogniser
 import skein.units.*
 
-/** Detects a vehicle by its looks: the box with the highest score; it cannot tell several vehicles apart. The
-  * bearing is that of the box's middle; the range follows from the box's width.
+/** Detects a vehicle by its appearance: the box with the highest score; it cannot distinguish several
+  * vehicles. The bearing is that of the box's middle; the range follows from the box's width.
   *
   * @param appearance apparent width of the vehicle
   */

@@ -8,7 +8,7 @@ import skein.units.*
 /** Detects a vehicle by the AprilTags on its four sides, as on the built-in simulator's vehicles: the
   * vehicle's middle lies [[behindM]] behind each. Where two sides are visible, the result is their mean.
   *
-  * @param id of its tags
+  * @param id the number of its tags
   */
 final class VehicleTags(camera: Pinhole, id: Long, size: Metres) extends Recogniser:
   private val tags    = AprilTags(camera, size)

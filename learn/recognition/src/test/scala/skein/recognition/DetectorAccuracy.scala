@@ -5,10 +5,10 @@ import skein.units.*
 
 /** A detector's results in images of a range.
   *
-  * @param plain images with a quadrotor that should be detected
+  * @param plain number of images with a quadrotor that should be detected
   * @param bearingsDeg errors of the detections, ascending
-  * @param ranges measured over true range, ascending
-  * @param inDeviations errors of the range over the measurement's own deviation, ascending
+  * @param ranges measured divided by true range, ascending
+  * @param inDeviations errors of the range divided by the measurement's own deviation, ascending
   */
 final case class DetectorAccuracy(
     plain: Int,
@@ -34,8 +34,8 @@ object DetectorAccuracy:
     def recall: Double    = found.toDouble / byRange.map(_._2.plain).sum
     def precision: Double = found.toDouble / (found + falselyFound)
 
-  /** @param ranges nearest and farthest of each row, m
-    * @param count images of each row
+  /** @param ranges nearest and farthest range of each row, m
+    * @param count number of images of each row
     */
   def measured(ranges: Seq[(Double, Double)], count: Int, seed: Long): Result =
     val detector = OnnxDetector(

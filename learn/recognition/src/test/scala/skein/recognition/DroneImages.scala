@@ -9,8 +9,8 @@ import skein.vehicle.Airframe
 
 /** A camera's image of a quadrotor, with the quadrotor's true position.
   *
-  * @param positionFrd of the quadrotor in the camera's frame, m; None without one
-  * @param box of all its pixels, without occlusion
+  * @param positionFrd position of the quadrotor in the camera's frame, m; None without one
+  * @param box bounding box of all its pixels, without occlusion
   * @param visible fraction of its pixels that are not occluded, from 0 to 1
   */
 final case class DroneImage(

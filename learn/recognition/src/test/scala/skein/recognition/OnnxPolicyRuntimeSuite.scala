@@ -63,8 +63,7 @@ class OnnxPolicyRuntimeSuite extends munit.FunSuite, OnnxFiles, Unhurried:
     assert(PolicyFile.parse(policy.role, policy.text).left.exists(_.contains("came another")))
 
   folder.test("a model that returns NaN ends the flight with that reason, and vehicles hover"): folder =>
-    // Tried before, where it has one: the evader stands ahead, the logarithm of its place to the right is
-    // none.
+    // The trial before the flight has a result, with the evader straight ahead; later observations have none.
     val policy = PolicyFile.read(written(folder, model("Acos"))).fold(fail(_), identity)
     val landed = flown(policy)
     landed.landed.outcome match

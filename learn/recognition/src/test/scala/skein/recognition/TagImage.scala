@@ -8,8 +8,8 @@ import skein.units.*
 object TagImage:
   private val patterns = AprilTags.dictionary()
 
-  /** @param positionFrd of the tag's middle, m
-    * @param turned about its vertical axis; at 0 it faces the camera
+  /** @param positionFrd position of the tag's middle, m
+    * @param turned rotation about its vertical axis; at 0 it faces the camera
     */
   def apply(camera: Pinhole, id: Int, size: Double, positionFrd: Vector3, turned: Double): Image =
     val bytes = Array.tabulate(camera.width * camera.height * 3)(i =>

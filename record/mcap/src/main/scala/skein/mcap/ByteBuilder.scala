@@ -53,7 +53,7 @@ private[mcap] final class ByteBuilder(initial: Int):
     u32(encoded.length)
     raw(encoded, 0, encoded.length)
 
-  /** Writes the length of `body`'s output in bytes, as a number of 4 bytes, and then the output. */
+  /** Writes the length of `body`'s output in bytes, as a 4-byte integer, and then the output. */
   inline def counted(inline body: Unit): Unit =
     val at = size
     u32(0)

@@ -6,7 +6,7 @@ import java.util.Arrays
 
 /** The compression of a chunk's records.
   *
-  * @param name in a chunk's header
+  * @param name its name in a chunk's header
   */
 enum Compression(val name: String):
   case Uncompressed extends Compression("")

@@ -62,8 +62,7 @@ private[mcap] object Lz4Frame:
       while !ended && at < until do frame()
       Bytes.of(if cut then Arrays.copyOf(target, out) else target, 0, out)
 
-    /** Whether `count` bytes are left. If not, reading ends where truncation is allowed, and fails elsewhere.
-      */
+    /** Whether `count` bytes are left. If not, reading ends if truncation is allowed, else fails. */
     private def has(count: Long): Boolean =
       val there = count <= until - at
       if !there then

@@ -5,8 +5,8 @@ import scala.util.control.NoStackTrace
 /** A position in a file.
   *
   * @param offset bytes from the start of the file
-  * @param inChunk in a chunk that starts at `offset`: bytes from the start of its records, uncompressed; -1
-  *   outside of chunks
+  * @param inChunk offset in the uncompressed records of the chunk that starts at `offset`; -1 outside of
+  *   chunks
   */
 final case class Place(offset: Long, inChunk: Int = -1):
   override def toString: String =

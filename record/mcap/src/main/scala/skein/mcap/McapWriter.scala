@@ -45,7 +45,7 @@ final class McapWriter(sink: ByteSink, options: WriterOptions = WriterOptions())
 
   /** Defines a channel; returns its identifier.
     *
-    * @param schemaId of its messages; 0 for none
+    * @param schemaId schema of the channel's messages; 0 for none
     */
   def channel(
       topic: String,

@@ -18,10 +18,10 @@ object Record:
   final case class Footer(summaryStart: Long, summaryOffsetStart: Long, summaryCrc: Int)
       extends Record(Opcode.Footer)
 
-  /** @param encoding of the schema itself, such as `protobuf` or `jsonschema`; empty without one */
+  /** @param encoding language of the schema itself, such as `protobuf` or `jsonschema`; empty without one */
   final case class Schema(id: Int, name: String, encoding: String, data: Bytes) extends Record(Opcode.Schema)
 
-  /** @param schemaId of its messages; 0 without a schema */
+  /** @param schemaId schema of the channel's messages; 0 without one */
   final case class Channel(
       id: Int,
       schemaId: Int,
@@ -49,8 +49,8 @@ object Record:
       records: Bytes
   ) extends Record(Opcode.Chunk)
 
-  /** @param entries for each message of the channel in the preceding chunk: log time, and its start in the
-    *   chunk's records; 8 bytes each
+  /** @param entries one entry of 16 bytes for each message of the channel in the preceding chunk: its log
+    *   time, and its offset in the chunk's records
     */
   final case class MessageIndex(channelId: Int, entries: Bytes) extends Record(Opcode.MessageIndex)
 
@@ -67,7 +67,7 @@ object Record:
       uncompressedSize: Long
   ) extends Record(Opcode.ChunkIndex)
 
-  /** @param crc of all fields before it; computed by the writer */
+  /** @param crc CRC of all fields before it; computed by the writer */
   final case class Attachment(
       logTime: Long,
       createTime: Long,
@@ -87,7 +87,7 @@ object Record:
       mediaType: String
   ) extends Record(Opcode.AttachmentIndex)
 
-  /** @param channelMessageCounts messages by channel; empty if not counted */
+  /** @param channelMessageCounts number of messages by channel; empty if not counted */
   final case class Statistics(
       messageCount: Long,
       schemaCount: Int,
@@ -108,8 +108,7 @@ object Record:
   final case class SummaryOffset(groupOpcode: Int, groupStart: Long, groupLength: Long)
       extends Record(Opcode.SummaryOffset)
 
-  /** @param dataCrc of all bytes of the file before this record
-    */
+  /** @param dataCrc CRC of all bytes of the file before this record */
   final case class DataEnd(dataCrc: Int) extends Record(Opcode.DataEnd)
 
   /** A record of a kind that the specification does not define. */

@@ -4,7 +4,7 @@ import java.nio.{ByteBuffer, ByteOrder}
 
 /** Iterates over consecutive records.
   *
-  * @param offset of the records' start in the file; with `inChunk`, of the start of their chunk
+  * @param offset position of the first record in the file; with `inChunk`, position of its chunk
   * @param cut whether the records may end within one, which is then left out
   */
 private[mcap] final class RecordWalk(records: Bytes, offset: Long, inChunk: Boolean, cut: Boolean = false):

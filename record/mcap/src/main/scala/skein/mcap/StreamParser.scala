@@ -6,7 +6,7 @@ import java.util.zip.CRC32
 /** The result of [[StreamParser.next]]. */
 enum Parsed:
 
-  /** @param length of the whole record, including its kind and length, at its position */
+  /** @param length size of the whole record, bytes, including its kind and length, at its position */
   case Found(record: Record, at: Place, length: Long)
 
   /** All offered bytes are used: offer more, or declare the end. */

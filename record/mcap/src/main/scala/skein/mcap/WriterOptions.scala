@@ -3,13 +3,13 @@ package skein.mcap
 /** Parts that a writer adds to the given records. The defaults are what readers need to find messages by time
   * and topic without reading the whole file.
   *
-  * @param profile of the header: a convention for the file's fields, such as `ros2`; empty for none
-  * @param library of the header: the writing program
+  * @param profile the header's profile: a convention for the file's fields, such as `ros2`; empty for none
+  * @param library the header's library: the writing program
   * @param chunked whether messages are gathered in chunks; otherwise nothing is compressed or indexed
   * @param chunkBytes a chunk ends with the message that makes it this long, uncompressed
   * @param messageIndex whether each chunk is followed by the positions of each channel's messages in it
   * @param chunkIndex whether the summary lists the positions of the chunks
-  * @param statistics whether the summary states the numbers of all kinds of records, and the range of times
+  * @param statistics whether the summary states the number of records of each kind and the range of times
   * @param repeatSchemas whether the summary repeats the schemas; likewise `repeatChannels` the channels,
   *   without which an index is of little use
   * @param attachmentIndex whether the summary lists the positions of attachments; likewise `metadataIndex`

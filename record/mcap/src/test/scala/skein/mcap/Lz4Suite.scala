@@ -80,7 +80,7 @@ class Lz4Suite extends munit.FunSuite:
     Bytes.of(out.array, 0, out.size)
 
   test("a block may refer to fewer bytes than a match is long, and up to 65,535 bytes back"):
-    // A match ends some bytes before its block, as LZ4 asks for.
+    // A match ends some bytes before its block, as LZ4 requires.
     val last  = Array.tabulate[Byte](9)(at => (4 + at).toByte)
     val short = linked(Array[Byte](0x30, 1, 2, 3), Array[Byte](0, 3, 0, -0x70) ++ last)
     assertEquals(

@@ -6,7 +6,7 @@ import skein.mcap.file.McapFile
 import skein.testing.{Lengthy, PythonEnvironment, TemporaryFolders, Waiting}
 
 /** Proof of compatibility in both directions: the official library of PyPI, unmodified, reads our files and
-  * writes others. Runs where Python can install that library; it fetches it once per user.
+  * writes others. Runs if Python can install that library; it fetches it once per user.
   */
 class OfficialPythonLibraryLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
   folder.test("the official library opens every file we write, and reads its content"): folder =>

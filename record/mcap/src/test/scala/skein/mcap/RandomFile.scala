@@ -21,8 +21,7 @@ final case class RandomFile(
 
 object RandomFile:
 
-  /** @param most messages
-    */
+  /** @param most maximum number of messages */
   def draw(seed: Long, most: Int = 60, options: SplittableRandom => WriterOptions = anyOptions): RandomFile =
     val random      = SplittableRandom(seed)
     val chosen      = options(random)
@@ -57,7 +56,7 @@ object RandomFile:
           metadata += record
         case 4 if random.nextInt(4) == 0 => writer.flush()
         case _ if channels.nonEmpty      =>
-          // Mostly forward, sometimes back, and sometimes twice at one time.
+          // Mostly forward, sometimes back, and sometimes two at equal times.
           time = (time + random.nextLong(-300, 1000).max(-time)).max(0)
           val channel = 1 + random.nextInt(channels.size)
           val message = Record.Message(channel, step, time, time - random.nextInt(5), data(random))

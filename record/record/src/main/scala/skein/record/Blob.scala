@@ -8,7 +8,7 @@ import java.util.zip.CRC32
 /** The content of an image or a cloud: immutable bytes, kept as received, or compressed by Zstandard as in
   * recordings. Equal if the bytes are.
   *
-  * @param size of the bytes, uncompressed
+  * @param size number of bytes, uncompressed
   */
 final class Blob private (kept: Array[Byte], isPacked: Boolean, val size: Int):
 
@@ -40,7 +40,7 @@ final class Blob private (kept: Array[Byte], isPacked: Boolean, val size: Int):
   override def toString(): String = s"$size bytes"
 
 object Blob:
-  /** Limit of one content's bytes, more than any image of 8192 × 8192 pixels has. */
+  /** Maximum size of one content in bytes: that of an image of 8192 × 8192 pixels of 4 bytes. */
   val MostBytes: Int = 256 * 1024 * 1024
 
   private val Level = 1

@@ -121,7 +121,7 @@ private[record] object FieldColumns:
 
   given FieldColumns[Simulator] = summon[FieldColumns[String]](_).as(Simulator.ofLabel, _.label)
 
-  /** In formats up to 6, the error's text stands in place of `failed`. */
+  /** In formats up to 6, the error's text replaces `failed`. */
   given FieldColumns[CommandOutcome] = name =>
     given FieldColumns[Option[String]] = error => added(optional(summon[FieldColumns[String]](error)))
     columns[OutcomeCells](name, "error").as(_.outcome, OutcomeCells.of)
@@ -169,8 +169,8 @@ private[record] object FieldColumns:
 
   given FieldColumns[SolverClock] = _ => columns[SolverClock]("solverClockOffset", "solverClockUncertainty")
 
-  /** An action, by its name and numbers. `actionX` to `actionZ` are a velocity (north, east, down; m/s) or a
-    * place (north, east, down; m); the third is an altitude (m) for [[Action.VelocityAt]]. For
+  /** An action, by its name and components. `actionX` to `actionZ` are a velocity (north, east, down; m/s) or
+    * a position (north, east, down; m); the third is an altitude (m) for [[Action.VelocityAt]]. For
     * [[Action.Attitude]] they are roll, pitch and yaw (rad), and `actionAmount` is the thrust; for other
     * actions `actionAmount` is a speed (m/s). `actionYaw` is in rad, or in rad/s for `Turning`.
     */
@@ -212,7 +212,7 @@ private[record] object Columns:
 
   /** The columns of a case class: those of its fields, one after the other.
     *
-    * @param names that replace the fields' own, if any
+    * @param names replacements for the fields' names, if any
     */
   inline def columns[A](names: String*)(using mirror: Mirror.ProductOf[A]): Columns[A] =
     ofFields(

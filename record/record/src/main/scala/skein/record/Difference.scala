@@ -3,7 +3,7 @@ package skein.record
 /** The first value in which two recordings differ.
   *
   * @param where the row, for example `decision 17 of Pursuer`
-  * @param column in the row's table
+  * @param column name of the column in the row's table
   */
 final case class Difference(where: String, column: String, recorded: String, again: String):
   def message: String = s"$where: $column was $recorded, is $again"

@@ -9,13 +9,13 @@ import java.util.HexFormat
 /** A hash of a recording's content, in 64 hexadecimal digits: equal for equal contents, whatever the bytes of
   * the file.
   *
-  * It is the SHA-256 over all rows in the order of their numbers. Each is hashed as the name of its table,
-  * its number, and its columns from left to right; a value as one byte for its kind (0 absent, 1 text, 2
-  * BIGINT, 3 DOUBLE, 4 BLOB) and then eight bytes, big-endian: the integer, the bits of the double, or the
-  * length of the text's UTF-8 or of the BLOB's bytes, uncompressed, that follow. A list of integers counts as
-  * their text with commas between, any other list as its length and its values. An absent value of a column
-  * of format 5 or later is left out. How the flight ended ([[Ending]], the last row) is left out: formats
-  * before 4 did not record it.
+  * It is the SHA-256 over all rows in the order of their row numbers. Each is hashed as the name of its
+  * table, its row number, and its columns from left to right; a value as one byte for its kind (0 absent, 1
+  * text, 2 BIGINT, 3 DOUBLE, 4 BLOB) and then eight bytes, big-endian: the integer, the bits of the double,
+  * or the length of the text's UTF-8 or of the BLOB's bytes, uncompressed, that follow. A list of integers
+  * counts as their text with commas between, any other list as its length and its values. An absent value of
+  * a column of format 5 or later is left out. How the flight ended ([[Ending]], the last row) is left out:
+  * formats before 4 did not record it.
   */
 final case class Digest(hex: String):
   override def toString: String = hex

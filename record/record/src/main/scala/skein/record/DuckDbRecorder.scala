@@ -59,11 +59,11 @@ final class DuckDbRecorder private (
 
 object DuckDbRecorder:
 
-  /** Limit of the records that wait to be written: about a minute at 20 vehicles and 10 Hz. */
+  /** Maximum number of records that wait to be written: about a minute at 20 vehicles and 10 Hz. */
   val defaultCapacity = 65536
 
-  /** Limit of the bytes of waiting images and clouds: two seconds of four cameras of 640 × 480 pixels at 10
-    * Hz. Later ones are dropped, and an event is recorded.
+  /** Maximum number of bytes of waiting images and clouds: two seconds of four cameras of 640 × 480 pixels at
+    * 10 Hz. Later ones are dropped, and an event is recorded.
     */
   val mostWaitingBytes: Long = 96L * 1024 * 1024
 

@@ -40,10 +40,10 @@ object FlightMessage:
 /** Converts the rows of a flight to messages: every row on the topic `/skein/TABLE`, by the names of its
   * columns, and views of the rows by Foxglove's schemas ([[FoxgloveViews]]). Rows must be given in order.
   *
-  * @param from the time of the first rows, which have none
-  * @param offset from the simulator's clock to the controller's until a decision estimates it; None: the
-  *   first reading is assumed to have no latency
-  * @param scene of the flight's world
+  * @param from time that is assigned to the first rows, which have none
+  * @param offset offset from the simulator's clock to the controller's, until a decision estimates it; None:
+  *   the first reading is assumed to have no latency
+  * @param scene the scene of the flight's world
   * @param form encoding of images and clouds
   */
 final class FlightTopics(
@@ -80,7 +80,6 @@ object FlightTopics:
     Table.all.map(table => Topic(ofTable(table), s"skein.${table.name}", JsonRow.schema(table))) ++
       FoxgloveViews.topics(vehicles).map((name, schema) => Topic(name, schema, FoxgloveSchemas.all(schema)))
 
-  /** The topics of a camera or a lidar. */
   def of(sensor: ImagingSensor, form: ImageEncoding = ImageEncoding.Whole): Vector[Topic] =
     def binary(name: String, schema: String) =
       Topic(name, schema, FoxgloveSchemas.binary(schema), isBinary = true, newestOnly = true)

@@ -6,7 +6,7 @@ import skein.units.*
 
 /** A camera or a lidar whose images or clouds are shown.
   *
-  * @param name of the lidar, or of the camera; for another kind of image than `Scene`, a slash and the kind
+  * @param name the lidar's or the camera's name; for image kinds other than `Scene`, a slash and the kind
   *   follow
   */
 final case class ImagingSensor(vehicle: String, name: String, isLidar: Boolean)
@@ -25,8 +25,8 @@ trait ImageEncoding:
   /** The schema of images, a name in [[FoxgloveSchemas.binary]]. */
   def imageSchema: String
 
-  /** @param at its exposure, on the controller's clock
-    * @param frame the camera's: right, down, front
+  /** @param at time of exposure, on the controller's clock
+    * @param frame name of the camera's frame: right, down, front
     */
   def image(image: CameraImage, at: Instant, frame: String): Array[Byte]
 
@@ -56,7 +56,7 @@ object ImageEncoding:
 
   /** `foxglove.CompressedImage`.
     *
-    * @param format for example `jpeg`
+    * @param format encoding of the file, for example `jpeg`
     */
   def compressed(file: Array[Byte], format: String, at: Instant, frame: String): Array[Byte] =
     Protobuf(file.length + 128)

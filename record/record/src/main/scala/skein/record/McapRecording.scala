@@ -30,7 +30,7 @@ object McapRecording:
 
   /** Writes or replaces the file. Blocks; holds the whole recording in memory, images and clouds compressed.
     *
-    * @param scene of the flight's world, by the recording's parameters
+    * @param scene makes the scene of the flight's world from the recording's parameters
     */
   def write(
       recording: Path,
@@ -71,7 +71,7 @@ object McapRecording:
 
   /** The scene of a flight that was recorded in the built-in simulator; an empty scene for other simulators.
     *
-    * @param scene by the recording's parameters
+    * @param scene makes a scene from the recording's parameters
     */
   def sceneOf(rows: Vector[(Long, Record)], scene: Map[String, String] => Scene): Scene =
     val isOurs = rows.exists:
@@ -138,7 +138,7 @@ object McapRecording:
       counts(channel) += 1
 
   /** Makes a recording from the output of `write`, with equal contents, and so an equal [[Digest]]. Blocks;
-    * needs temporary disk space for the rows as text beside the recording.
+    * needs temporary disk space in the recording's folder for the rows as text.
     */
   def read(file: Path, recording: Path): Either[RecordError, Unit] =
     if Files.isDirectory(file) then Left(RecordError.NotAnExport(file, "it is a folder"))
@@ -225,8 +225,8 @@ object McapRecording:
   /** The number of the field `data` in both messages. */
   private val BytesField = ImageEncoding.RawImageData.ensuring(_ == ImageEncoding.PointCloudData)
 
-  /** @param longest line, in bytes, about
-    * @param format of the recording that was exported
+  /** @param longest approximate length of the longest line, bytes
+    * @param format version of the exported recording's tables
     */
   private final case class Gathered(table: Table[?], file: Path, longest: Int, format: Int)
 
@@ -271,7 +271,7 @@ object McapRecording:
           s"columns = $types, maximum_object_size = $longest)"
       )
 
-  /** DuckDB's own limit of a line, bytes. */
+  /** DuckDB's own limit on the length of a line, bytes. */
   private val JsonLine = 16 * 1024 * 1024
 
   private def attempt[A](error: String => RecordError)(action: => A): Either[RecordError, A] =

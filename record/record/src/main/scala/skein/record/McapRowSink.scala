@@ -57,7 +57,7 @@ object McapRowSink:
 
   /** Creates the file, which must not exist yet.
     *
-    * @param scene of the flight's world
+    * @param scene the scene of the flight's world
     */
   def open(
       file: Path,

@@ -82,10 +82,10 @@ final class PostgresRowSink private (connection: Connection, schema: String, tar
     s"""INSERT INTO "$schema".${table.name} VALUES (${Vector.fill(width)("?").mkString(", ")})"""
 
 object PostgresRowSink:
-  /** Limit of the rows that wait: about a minute at 20 vehicles and 10 Hz. */
+  /** Maximum number of rows that wait: about a minute at 20 vehicles and 10 Hz. */
   val Capacity = 65536
 
-  /** Limit of the bytes of waiting images and clouds. */
+  /** Maximum number of bytes of waiting images and clouds. */
   val MostWaitingBytes: Long = 64L * 1024 * 1024
 
   private val BatchSize   = 1024
@@ -166,7 +166,7 @@ private final class StatementRow(insert: PreparedStatement, connection: Connecti
 
 /** The address of a Postgres database.
   *
-  * @param shown without the password
+  * @param shown the address without its password
   */
 private[record] final case class PostgresAddress(jdbc: String, user: String, password: String, shown: String):
   def connect(): Connection = DriverManager.getConnection(jdbc, properties)

@@ -10,14 +10,14 @@ import skein.vehicle.VehicleKind
   * `Mps`, `Rad`, `RadPerS`. `validAt`, `actsAt` and `predictedFor` are on the simulator's clock, all other
   * instants on the controller's.
   *
-  * Every table begins with the column `row`, which the recorder assigns: the place of the record in the order
-  * in which all records of the flight were accepted.
+  * Every table begins with the column `row`, which the recorder assigns: the record's index in the order in
+  * which the flight's records were accepted.
   */
 sealed trait Record extends Recordable:
   def row: Record = this
 
-/** What a recorder takes: a row, or what one is made from by whoever first asks for it. That is the
-  * recorder's writer, behind its queue, so that no command waits until its decision is spread over columns.
+/** What a recorder accepts: a row, or an object that makes its row on first use. The first user is the
+  * recorder's writer, behind its queue, so no command waits until its decision is spread over columns.
   */
 sealed trait Recordable:
   def row: Record
@@ -26,11 +26,11 @@ sealed trait Recordable:
 final class LaterRow(make: => Record) extends Recordable:
   lazy val row: Record = make
 
-/** A decision whose row is made later, with what those need who watch over the flight meanwhile.
+/** A decision whose row is made later, with the facts that monitors of the flight need before.
   *
-  * @param seesOthers whether it was made from more than its own and its opponent's reading
-  * @param asRead the readings from which it was made, not predicted; by the vehicle's number where all were
-  *   read
+  * @param seesOthers whether it used other readings than its own vehicle's and its opponent's
+  * @param asRead the readings that it used, not predicted, in the order of vehicles; a vehicle that was not
+  *   read is missing
   */
 final class LaterDecision(
     val vehicle: String,
@@ -50,14 +50,14 @@ object Record:
     case cloud: Cloud       => Some(cloud.xyz)
     case _                  => None
 
-/** What was flown: exactly one row a recording.
+/** A flight and its conditions: exactly one row per recording.
   *
   * @param loop the label of a [[LoopKind]], or the name of a user's own loop
   * @param id names the flight in tables and pictures, for example `stream-vpn`
   * @param clock the label of a [[ClockKind]]
-  * @param scenario its title, and the policy in the place of its own, if there was one: for people
-  * @param version of the program that recorded
-  * @param scenarioName by which a program knows the scenario; without one, its title is its name
+  * @param scenario for people: the scenario's title, and the policy that replaced its own, if any
+  * @param version version of the program that recorded
+  * @param scenarioName the scenario's name for programs; without one, its title is its name
   */
 final case class FlightRow(
     id: String,
@@ -74,13 +74,14 @@ final case class FlightRow(
     scenarioName: Option[String] = None
 ) extends Record:
 
-  /** Absent for a loop that is none of ours. */
+  /** The kind of one of Skein's own loops; absent for a user's loop. */
   def loopKind: Option[LoopKind] = LoopKind.parse(loop).toOption
 
-  /** Whether it is the truth that others are held against: the simulator stood still while a loop decided. */
+  /** Whether it is a paused flight, a reference for others: the simulator stood still while a loop decided.
+    */
   def isPaused: Boolean = loopKind.contains(LoopKind.Paused)
 
-  /** Whether its world is that of the recording's parameters. */
+  /** Whether it took place in the built-in simulator, in the world of the recording's parameters. */
   def isBuiltIn: Boolean = simulator == Simulator.BuiltIn
 
   def nameOfScenario: String = scenarioName.getOrElse(scenario)
@@ -102,21 +103,21 @@ object VehicleRow:
   def of(agent: Agent): VehicleRow =
     VehicleRow(agent.name, agent.role.toString, agent.speed, agent.startPositionNed)
 
-  /** The parameter that says what a vehicle is, where it is no multirotor. */
+  /** The parameter that states a vehicle's kind; absent for multirotors. */
   def kind(name: String, kind: VehicleKind): Option[ParameterRow] =
     Option.when(kind != VehicleKind.Multirotor)(ParameterRow(s"kind.$name", kind.toString))
 
-/** One answer of the simulator.
+/** One reading of a vehicle's state.
   *
-  * @param sequence counts the readings of this vehicle in the order in which they were asked for
+  * @param sequence counts this vehicle's readings in the order of their requests
   */
 final case class ReadingRow(sequence: Long, vehicle: String, state: Stamped[Kinematics]) extends Record
 
-/** One answer of a sensor.
+/** One measurement of a sensor.
   *
-  * @param sequence counts the answers of this sensor, in the order of the questions
-  * @param quantities names of the numbers, with units
-  * @param numbers as many
+  * @param sequence counts this sensor's answers in the order of their requests
+  * @param quantities names of the measured values, with units
+  * @param numbers the values, one for each quantity
   */
 final case class MeasurementRow(
     sequence: Long,
@@ -131,15 +132,15 @@ final case class MeasurementRow(
 
 /** An image of a vehicle's camera.
   *
-  * @param sequence counts the images of this camera that came
+  * @param sequence counts the received images of this camera
   * @param kind what it shows, by AirSim's name, for example `Scene`
-  * @param encoding `bgr8`: blue, green, red of each pixel; `32FC1`: a number a pixel, 32 bits, the lowest
-  *   first, m
-  * @param fov horizontal; absent where nobody has told
-  * @param positionNed of the camera, world, when it was exposed
-  * @param orientation from the camera's frame (front, right, down) to the world's
-  * @param validAt when it was exposed
-  * @param pixels in rows from the top, without gaps
+  * @param encoding `bgr8`: blue, green, red of each pixel; `32FC1`: a 32-bit float for each pixel,
+  *   little-endian, m
+  * @param fov horizontal field of view; absent if unknown
+  * @param positionNed the camera's position at exposure, world
+  * @param orientation rotation from the camera's frame (front, right, down) to the world's
+  * @param validAt time of exposure
+  * @param pixels rows from top to bottom, without gaps
   */
 final case class CameraImage(
     sequence: Long,
@@ -160,11 +161,11 @@ final case class CameraImage(
 
 /** A scan of a vehicle's lidar.
   *
-  * @param sequence counts the scans of this lidar that came
-  * @param positionNed of the lidar, world
-  * @param orientation from the lidar's frame (front, right, down) to the world's
-  * @param validAt when it was scanned
-  * @param xyz of each point in the lidar's frame, m: three numbers of 32 bits, the lowest byte first
+  * @param sequence counts the received scans of this lidar
+  * @param positionNed the lidar's position, world
+  * @param orientation rotation from the lidar's frame (front, right, down) to the world's
+  * @param validAt time of the scan
+  * @param xyz three 32-bit floats for each point, little-endian, in the lidar's frame, m
   */
 final case class Cloud(
     sequence: Long,
@@ -179,31 +180,30 @@ final case class Cloud(
     xyz: Blob
 ) extends Record
 
-/** A measurement that a decision was made from.
+/** A measurement that a decision used.
   *
-  * @param vehicle that was decided for, and that measured
+  * @param vehicle the vehicle that measured, and whose decision it was
   * @param decision the decision's sequence
   * @param measurement the measurement's sequence
   */
 final case class Sensing(vehicle: String, decision: Long, sensor: String, measurement: Long) extends Record
 
-/** One decision for one vehicle, with everything that it was made from.
+/** One decision for one vehicle, with all its inputs.
   *
   * @param sequence counts the decisions for this vehicle
   * @param own the vehicle's own reading that was used; its columns begin with `own`
   * @param opponent the opponent's reading that was used; its columns begin with `opponent`
   * @param relativeX the evader seen from the pursuer, along the pursuer's commanded heading; for vehicles of
   *   other roles, the opponent seen from the vehicle
-  * @param relativeY the same, to the right of that heading
-  * @param headingBefore commanded last to this vehicle
-  * @param opponentHeading commanded last to the opponent, as far as known
-  * @param heading the one chosen
-  * @param elapsed since this vehicle's last decision; zero at the first
+  * @param relativeY likewise, to the right of that heading
+  * @param headingBefore heading of the last command to this vehicle
+  * @param opponentHeading heading of the last command to the opponent, as far as known
+  * @param heading the chosen heading
+  * @param elapsed time since this vehicle's previous decision; zero at the first
   * @param trueAge absent until the clocks' offset is known
-  * @param predicted the predicted states of both vehicles, if the decision was made from them instead of the
-  *   readings
-  * @param speed the one chosen; absent where the vehicle always commands its own
-  * @param action the action decided; absent where heading and speed say it, at the altitude of the start
+  * @param predicted the predicted states of both vehicles, if the decision used them instead of the readings
+  * @param speed the chosen speed; absent if the vehicle always commands its own speed
+  * @param action the chosen action; absent if heading and speed express it, at the altitude of the start
   */
 final case class DecisionRow(
     sequence: Long,
@@ -224,13 +224,13 @@ final case class DecisionRow(
     action: Option[Action] = None
 ) extends Record
 
-/** What a decision was made from besides its own and its opponent's reading: one row for each other vehicle,
-  * where the policy regards the whole team.
+/** A further reading that a decision used, besides its own vehicle's and its opponent's: one row for each
+  * other vehicle, if the policy considers the whole team.
   *
-  * @param decider the vehicle that was decided for
+  * @param decider the vehicle whose decision it was
   * @param decision the decision's sequence
   * @param reading the sequence of the reading of `vehicle` that was used
-  * @param predicted where it was expected to be, if that was decided upon instead of the reading
+  * @param predicted its predicted motion, if the decision used that instead of the reading
   */
 final case class Sighting(
     decider: String,
@@ -243,14 +243,14 @@ final case class Sighting(
 /** How a decision was planned.
   *
   * @param decision the sequence of the decision of `vehicle`
-  * @param candidates flown by all searches together
-  * @param slices that each of the searches finished before the deadline; all 0 where nothing was ready: then
-  *   the last plan went on, or the policy decided
-  * @param cost of the plan chosen; absent where none was tried
-  * @param took from asking until the decision was there
-  * @param breaches of hard limits within the plan's horizon
-  * @param course where the plan leads; absent where the policy decided in its place
-  * @param states from which it was planned, where readings do not tell all of them
+  * @param candidates number of candidates that all searches simulated together
+  * @param slices number of slices each search finished before the deadline; all 0 if nothing was ready: then
+  *   the last plan continued, or the policy decided
+  * @param cost cost of the chosen plan; absent if none was simulated
+  * @param took time from the request to the decision
+  * @param breaches number of violations of hard limits within the plan's horizon
+  * @param course the planned path; absent if the policy decided instead
+  * @param states initial states of the plan, if readings do not determine them
   */
 final case class Planned(
     vehicle: String,
@@ -264,14 +264,15 @@ final case class Planned(
     states: Option[PlannedStates] = None
 ) extends Record
 
-/** A decision that was made in another process, and the times of its ways there and back.
+/** A decision that was made in another process, with the times of its question and answer.
   *
   * @param decision the sequence of the decision of `vehicle`; the decision says when it was made, by what was
   *   known of the solver's clock
   * @param question counts the questions for `vehicle`; those that are missing here were not answered in time
   * @param askedAt when the question left
-  * @param receivedAt when the answer came
-  * @param thinking from the question's coming to the solver to the answer's leaving, by the solver's clock
+  * @param receivedAt when the answer arrived
+  * @param thinking time from the question's arrival at the solver to the answer's departure, by the solver's
+  *   clock
   * @param clock absent before the first answer of a solver
   */
 final case class SolvedRow(
@@ -284,27 +285,27 @@ final case class SolvedRow(
     clock: Option[SolverClock]
 ) extends Record:
 
-  /** From the question's leaving to the answer's coming. */
+  /** Time from the question's departure to the answer's arrival. */
   def roundTrip: Span = receivedAt.since(askedAt)
 
-/** How the solver's clock stood to the controller's, as was known when a decision was asked for.
+/** The estimated offset of the solver's clock when a decision was requested.
   *
   * @param offset the controller's clock minus the solver's
-  * @param uncertainty the truth lies within ± this
+  * @param uncertainty the true offset lies within ± this
   */
 final case class SolverClock(offset: Span, uncertainty: Span)
 
-/** Where a plan leads: places at the end of each step, world frame, m. The first step begins when the command
-  * acts.
+/** The path of a plan: positions at the end of each step, world frame, m. The first step begins when the
+  * command acts.
   */
 final case class PlannedPath(north: Vector[Double], east: Vector[Double], step: Span)
 
-/** The predicted states of the plants of a vehicle and of its opponent, as numbers; empty where its
-  * kinematics tell all of one.
+/** The predicted states of the plants of a vehicle and its opponent, by component; empty if kinematics
+  * determine the state.
   */
 final case class PlannedStates(own: Vector[Double], opponent: Vector[Double])
 
-/** Where a vehicle was expected to be when the command acts. */
+/** A vehicle's predicted motion at the time at which the command acts. */
 final case class PredictedMotion(positionNed: Vector3, velocityNed: Vector3)
 
 /** The paper's four observations at one decision. Both ages count from the *arrival* of the reading used, as
@@ -317,14 +318,14 @@ final case class Observations(
     sinceOpponentMove: Option[Span]
 )
 
-/** How old the readings used were, from when physics was sampled.
+/** The ages of the readings used, from the sampling of physics.
   *
   * @param clockOffset the controller's clock minus the simulator's, as estimated then
-  * @param uncertainty of the offset, and so of both ages: the truth lies within ± this
+  * @param uncertainty the true offset, and so both true ages, lie within ± this
   */
 final case class TrueAge(own: Span, opponent: Span, clockOffset: Span, uncertainty: Span)
 
-/** The predicted states that a decision was made from instead of the readings.
+/** The predicted states that a decision used instead of the readings.
   *
   * @param actsAt when the command was expected to act, on the simulator's clock
   */
@@ -336,14 +337,14 @@ final case class Predicted(
     opponentVelocityNed: Vector3
 )
 
-/** A prediction whose moment has come and was read.
+/** A prediction whose time has come, compared with readings.
   *
   * @param decider the vehicle for whose decision it was made
-  * @param vehicle whose place was predicted
-  * @param predictedFor on the simulator's clock
-  * @param age from the reading that was carried forward to the moment predicted for
-  * @param positionNed as predicted
-  * @param error distance to where the vehicle was then, between two readings interpolated
+  * @param vehicle the vehicle whose position was predicted
+  * @param predictedFor the predicted time, on the simulator's clock
+  * @param age time from the extrapolated reading to the predicted time
+  * @param positionNed the predicted position
+  * @param error distance to the vehicle's position at that time, interpolated between two readings
   */
 final case class Prediction(
     decider: String,
@@ -355,8 +356,8 @@ final case class Prediction(
     error: Metres
 ) extends Record
 
-/** One velocity command as sent. What became of it is an [[Acknowledgement]] of its own, so that a command is
-  * on disk while its answer is outstanding.
+/** One velocity command as sent. Its outcome is an [[Acknowledgement]] of its own, so that a command is on
+  * disk while its answer is outstanding.
   *
   * @param sequence counts the commands to this vehicle
   * @param decision the sequence of the decision that it carries out; absent for take-off, hover and the like
@@ -377,7 +378,7 @@ final case class CommandRow(
 /** How a command ended.
   *
   * @param command the command's sequence
-  * @param endedAt when the answer came, or when it was given up
+  * @param endedAt when the answer arrived, or when the command was given up
   */
 final case class Acknowledgement(vehicle: String, command: Long, endedAt: Instant, outcome: CommandOutcome)
     extends Record
@@ -386,7 +387,7 @@ final case class Acknowledgement(vehicle: String, command: Long, endedAt: Instan
 enum CommandOutcome:
   case Done
 
-  /** A newer command replaced it, as most are where a loop decides once a period. */
+  /** A newer command replaced it, as is usual in a loop that decides once a period. */
   case Superseded
 
   case Failed(error: String)
@@ -396,12 +397,11 @@ final case class Latency(link: String, sentAt: Instant, roundTrip: Span) extends
 
 /** Something out of the ordinary: every drop, skip, timeout, reconnect, pause.
   *
-  * @param vehicle absent where it concerns all
-  * @param decision where a deadline was missed, the sequence of the decision that the fallback made instead;
-  *   absent where it made none. Where something was learned, or a solver began anew, the sequence of the
-  *   first decision after it
-  * @param about what it is about, where programs count such events
-  * @param count of what it is about, where it is not one
+  * @param vehicle absent if it concerns all
+  * @param decision if a deadline was missed, the sequence of the decision that the fallback made instead, if
+  *   it made one; if a policy learned, or a solver restarted, the sequence of the first decision after it
+  * @param about the event's subject, if programs count such events
+  * @param count number of its subjects, if not one
   */
 final case class Event(
     at: Instant,
@@ -413,40 +413,40 @@ final case class Event(
     count: Option[Long] = None
 ) extends Record
 
-/** Where a vehicle was, where a loop samples that apart from its readings. Distances are computed from these
-  * rows if there are any, else from the readings.
+/** A vehicle's position, in a loop that samples positions apart from its readings. Distances are computed
+  * from these rows if there are any, else from the readings.
   */
 final case class Truth(vehicle: String, validAt: Instant, positionNed: Vector3) extends Record
 
-/** How the flight ended: the last row. There is none where the recording broke off before.
+/** The end of the flight: the last row. Absent if the recording broke off before.
   *
-  * @param reason why it ended before its time
+  * @param reason why it ended early
   */
 final case class Ending(at: Instant, how: EndingKind, reason: Option[String]) extends Record
 
 /** Recorded by name. */
 enum EndingKind:
-  /** It flew its whole time. */
+  /** It lasted for its whole duration. */
   case Completed
 
   /** It was stopped from outside. */
   case Stopped
 
-  /** It could not go on. */
+  /** It could not continue. */
   case Failed
 
 /** What an [[Event]] is about; recorded by name. */
 enum EventSubject:
-  /** A question where a vehicle is, which was not answered. */
+  /** A request for a vehicle's reading that was not answered. */
   case Reading
 
-  /** A camera of which images were wanted, and none came. */
+  /** A camera whose requested images did not arrive. */
   case Camera
 
   /** The solver in another process, its link, and questions to it. */
   case Solver
 
-/** What an [[Event]] tells of; recorded by name. */
+/** The kind of an [[Event]]; recorded by name. */
 enum EventKind:
   /** A newer value replaced one that was not used yet. */
   case Dropped
@@ -463,18 +463,16 @@ enum EventKind:
   /** A policy did not decide in time. */
   case DeadlineMissed
 
-  /** A solver in another process was started again, or another one answers: what policies remember begins
-    * anew.
-    */
+  /** A solver in another process was restarted or replaced: policies' memories start anew. */
   case SolverRestarted
 
-  /** An answer came more than once; it counts once. */
+  /** An answer arrived more than once; it counts once. */
   case Repeated
 
   /** A plan could not keep within a hard limit. */
   case LimitBroken
 
-  /** An answer came after its call had been given up. */
+  /** An answer arrived after its call had been given up. */
   case LateReply
 
   /** The bounds on calls in flight refused a call. */
@@ -486,16 +484,16 @@ enum EventKind:
   /** A connection was lost. */
   case Disconnected
 
-  /** A connection is there again. */
+  /** A lost connection was restored. */
   case Reconnected
 
-  /** Nothing was heard of the simulator for longer than its answers take. */
+  /** No answer of the simulator arrived for longer than its answers take. */
   case SimulatorSilent
 
-  /** The simulator was heard of again. */
+  /** The silent simulator answered again. */
   case SimulatorBack
 
-  /** A step of the paused simulator was not as long as asked for. */
+  /** A step of the paused simulator was not as long as requested. */
   case StepDrift
 
   /** The simulator's clock did not keep pace with the controller's for some seconds. */
@@ -509,7 +507,7 @@ enum EventKind:
     */
   case ClockBroken
 
-  /** Somebody else took a vehicle from the flight or put it elsewhere: the flight has no result. */
+  /** Another client took control of a vehicle or moved it: the flight has no result. */
   case VehicleTaken
 
   /** The machine was too busy to fly: the flight is not compared with others. */
@@ -521,10 +519,12 @@ enum EventKind:
   /** A call was given up because the flight had ended. */
   case Cancelled
 
-  /** A policy that learns in flight has a new version, or what else its learner says. */
+  /** A policy that learns in flight has a new version, or its learner reports something else. */
   case Learned
 
-  /** Somebody paused the flight: its vehicles hover and nobody decides, while its time runs on. */
+  /** The flight was paused from outside: its vehicles hover and no decisions are made, while its time runs
+    * on.
+    */
   case Paused
 
   /** A paused flight was continued from outside. */

@@ -11,9 +11,9 @@ import scala.util.control.NonFatal
   * begins at least `interval` after that one began. Offering a record never waits, not even for a lock that
   * this thread holds while other threads run.
   *
-  * @param capacity limit of the records that wait
-  * @param batchSize limit of a batch's records
-  * @param write a batch; returns false to end
+  * @param capacity maximum number of records that wait
+  * @param batchSize maximum number of records in a batch
+  * @param write writes a batch; returns false to end
   */
 private[record] final class RecordWriter(
     capacity: Int,

@@ -10,7 +10,7 @@ import skein.record.Columns.*
 
 /** A table of a recording: the type of its rows, its name and its columns.
   *
-  * @param rows their class
+  * @param rows class of the rows
   * @param since the first format with this table; files of older ones read as if it had no rows
   */
 private[record] final case class Table[A <: Record](

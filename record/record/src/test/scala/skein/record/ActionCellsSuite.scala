@@ -25,7 +25,7 @@ class ActionCellsSuite extends munit.FunSuite:
       val along = Action.Along(Radians(0.5), MetresPerSecond(4), Metres(-20), yaw)
       assertEquals(ActionCells.of(along).action, along.byVelocity)
 
-  test("numbers that an action lacks are zero, so that equal actions have equal digests"):
+  test("components that an action lacks are zero, so that equal actions have equal digests"):
     def numbers(action: Action) =
       val cells = ActionCells.of(action)
       Seq(cells.x, cells.y, cells.z, cells.amount, cells.yaw)

@@ -6,7 +6,7 @@ import skein.mcap.{OfficialPythonLibrary, Told}
 import skein.mcap.file.McapFile
 import skein.testing.{TemporaryFolders, Unhurried}
 
-/** Proof that other programs read exports: the official library of PyPI, unmodified. Runs where Python can
+/** Proof that other programs read exports: the official library of PyPI, unmodified. Runs if Python can
   * install it.
   */
 class McapRecordingLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:

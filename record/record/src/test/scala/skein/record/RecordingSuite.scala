@@ -66,7 +66,7 @@ class RecordingSuite extends munit.FunSuite, TemporaryFolders:
     val file = folder.resolve("flight.duckdb")
     record(file, Samples.oneOfEach*)
     for
-      // Images and clouds are no part of what is read at once.
+      // Images and clouds are read only on request.
       (table, came) <-
         Seq("solved" -> 6, "sensing" -> 5, "measurement" -> 5, "ending" -> 4, "plan" -> 3, "sighting" -> 3)
       _ = execute(file, s"DROP TABLE $table")

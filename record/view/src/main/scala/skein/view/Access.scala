@@ -7,7 +7,7 @@ package skein.view
   * Headers are compared as texts. So an invalid header counts as foreign, like one with another site's name,
   * and never as absent.
   *
-  * @param port on loopback
+  * @param port the server's port on loopback
   * @param origins other sites whose pages are answered, too, for example `https://app.foxglove.dev`
   */
 final case class Access(port: Int, origins: Set[String] = Set.empty):

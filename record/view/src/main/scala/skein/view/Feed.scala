@@ -7,7 +7,8 @@ import skein.record.{ImagingSensor, Record, Recordable}
 /** Passes a flight's records to viewers. Bounded, and the newest wins; of a camera's images, and of a lidar's
   * clouds, only the newest waits. `offer` takes no lock: a suspended viewer thread cannot delay a flight.
   *
-  * @param capacity records that wait; for a moment, as many more as threads offer concurrently
+  * @param capacity maximum number of waiting records, exceeded briefly by at most one for each thread that
+  *   offers
   */
 final class Feed(capacity: Int = Feed.DefaultCapacity):
   private val queue   = ConcurrentLinkedQueue[Recordable]()

@@ -46,7 +46,7 @@ object HttpPort:
             )))): Unit)
       .run()
 
-  /** One connection, with its place at the port. */
+  /** One connection, with its seat at the port. */
   final class Guest private[HttpPort] (seat: Seats.Seat, switch: SharedKillSwitch):
     // A WebSocket outlives the requests of its connection.
     private val running = AtomicInteger()
@@ -54,7 +54,7 @@ object HttpPort:
     /** Marks the connection as active. */
     def spoke(): Unit = seat.spoke()
 
-    /** A flow during which the connection keeps its place; the flow ends when it loses it. */
+    /** A flow during which the connection keeps its seat; the flow ends when the seat is lost. */
     def during[A, B](flow: Flow[A, B, ?]): Flow[A, B, ?] =
       running.incrementAndGet(): Unit
       flow

@@ -24,8 +24,8 @@ final case class Gauge(topic: Topic, every: Span, json: () => Option[String], se
   * ten a second are shown. Its time begins with the first reading and stops when it has ended, and nothing is
   * shown after that.
   *
-  * @param scene of its world
-  * @param sensors whose images and clouds are shown
+  * @param scene the scene of the flight's world
+  * @param sensors the sensors whose images and clouds are shown
   */
 final class LiveShow(
     heading: RecordingHeader,
@@ -111,5 +111,5 @@ object LiveShow:
 
   private val LookEvery = Span.ofMillis(100)
 
-  /** Limit of one turn's records, so that no turn lasts long. */
+  /** Maximum number of records shown per turn, so that no turn takes long. */
   private val MostAtOnce = 8192

@@ -6,7 +6,7 @@ import scala.collection.immutable.{TreeMap, VectorMap}
   * subscription with too many, then of all. Notices of the server are few, one for each key, and are sent
   * before everything else.
   *
-  * @param lost messages since the viewer connected
+  * @param lost number of messages dropped since the viewer connected
   */
 final case class Outbox[A] private (
     limits: ViewerLimits,
@@ -22,7 +22,7 @@ final case class Outbox[A] private (
   /** Replaces a waiting notice with this key; the new one is sent last. */
   def noticed(key: String, message: A): Outbox[A] = copy(notices = (notices - key).updated(key, message))
 
-  /** @param most messages of this subscription that may wait */
+  /** @param most maximum number of waiting messages of this subscription */
   def offered(subscription: Long, message: A, size: Int, most: Int = limits.waiting): Outbox[A] =
     val places2 = places.updated(subscription, places.getOrElse(subscription, Vector.empty) :+ next)
     copy(
@@ -53,7 +53,7 @@ final case class Outbox[A] private (
 
   private def losing(place: Long) = without(place).copy(lost = lost + 1)
 
-  /** @param place of the first message of its subscription */
+  /** @param place key of the first waiting message of a subscription */
   private def without(place: Long): Outbox[A] =
     val gone = waiting(place)
     val left = places(gone.subscription).tail

@@ -4,10 +4,10 @@ import skein.units.{Instant, Span}
 
 /** The position in a recording that is played: a pure clock that can stop, seek and run at another speed.
   *
-  * @param start of the recording
-  * @param end of the recording, where it stops
-  * @param at the recorded time at `since`
-  * @param since on the caller's clock
+  * @param start the recording's first time
+  * @param end the recording's last time, at which playback stops
+  * @param at position in the recorded time at `since`
+  * @param since the time of that position, on the caller's clock
   * @param speed recorded seconds per second, more than 0
   */
 final case class Playback private (

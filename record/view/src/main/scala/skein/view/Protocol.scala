@@ -39,7 +39,7 @@ object Protocol:
     *
     * @param speed recorded seconds per second
     * @param seeked whether the time has jumped
-    * @param request that this answers; empty without one
+    * @param request identifier of the request that this answers; empty without one
     */
   final case class Playing(status: Status, now: Instant, speed: Double, seeked: Boolean, request: String)
 

@@ -6,8 +6,8 @@ import skein.units.Instant
 
 /** A recording that is played.
   *
-  * @param rows in order, with their numbers
-  * @param scene of its world
+  * @param rows the recording's rows in order, with their numbers
+  * @param scene the scene of the flight's world
   */
 final class RecordedShow(
     id: String,
@@ -97,8 +97,8 @@ object RecordedShow:
         ImagePreviews
       ))
 
-  /** @param rows of one recording, its heading first
-    * @param scene of its world, by the recording's parameters
+  /** @param rows the rows of one recording, its heading first
+    * @param scene makes the scene of the flight's world from the recording's parameters
     */
   def of(
       rows: Vector[(Long, Record)],

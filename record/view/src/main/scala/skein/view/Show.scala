@@ -13,7 +13,7 @@ import skein.units.Instant
   *
   * All methods may be called from any thread; they only wait for each other.
   *
-  * @param id of the flight
+  * @param id the flight's identifier
   */
 abstract class Show private[view] (
     val id: String,

@@ -52,7 +52,7 @@ object ViewServer:
   val DefaultPort = 8765
 
   /** @param port 0 for any that is free
-    * @param threads that it runs on
+    * @param threads the threads that it runs on
     * @param origins other sites whose pages may connect
     * @return fails if it cannot listen
     */

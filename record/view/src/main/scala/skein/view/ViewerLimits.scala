@@ -2,12 +2,12 @@ package skein.view
 
 /** Limits of viewers.
   *
-  * @param connections open at a time; further ones are closed immediately
-  * @param messageBytes of one message of a viewer
-  * @param subscriptions of one viewer
-  * @param refusals invalid messages of one viewer, before it is disconnected
-  * @param waiting messages of each subscription that wait for one viewer
-  * @param waitingBytes of all messages that wait for one viewer
+  * @param connections maximum number of open connections; further ones are closed immediately
+  * @param messageBytes maximum size of one message of a viewer, bytes
+  * @param subscriptions maximum number of subscriptions of one viewer
+  * @param refusals maximum number of invalid messages of one viewer; one more disconnects it
+  * @param waiting maximum number of messages of each subscription that wait for one viewer
+  * @param waitingBytes maximum total size of the messages that wait for one viewer, bytes
   */
 final case class ViewerLimits(
     connections: Int = 32,
@@ -19,7 +19,7 @@ final case class ViewerLimits(
 )
 
 object ViewerLimits:
-  /** Limits for recordings. A seek shows everything before it in one go, which may be 40 s of twenty
+  /** Limits for recordings. A seek shows everything before it in one turn, which may be 40 s of twenty
     * vehicles. Viewers share the bytes.
     */
   val OfRecording: ViewerLimits = ViewerLimits(waiting = 65_536, waitingBytes = 64L * 1024 * 1024)

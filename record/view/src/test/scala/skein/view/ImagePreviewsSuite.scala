@@ -20,7 +20,7 @@ class ImagePreviewsSuite extends munit.FunSuite:
     val off = Seq(16 -> r, 8 -> g, 0 -> b).map((shift, wanted) => ((rgb >> shift & 0xff) - wanted).abs).max
     assert(off < 12, f"$rgb%x, expected $r $g $b")
 
-  test("a large image is shrunk by a whole factor, and its colours keep their places"):
+  test("a large image is shrunk by a whole factor, and its colours keep their positions"):
     val (width, height) = (1280, 720)
     // Blue on the left, red on the right.
     val bytes = Array.tabulate(width * height * 3): at =>

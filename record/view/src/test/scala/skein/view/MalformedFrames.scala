@@ -26,14 +26,14 @@ private[view] final class MalformedFrames(port: Int, path: String, seed: Long):
         out.write(request.getBytes(US_ASCII))
         out.flush()
         handshake(socket.getInputStream)
-        // The server may close at any of them: what it has not read then counts, too, for it had to be dealt
-        // with.
+        // The server may close at any frame; frames that it has not read then count, too, since it had to
+        // handle them.
         val burst = math.min(1 + random.nextInt(400), frames - written)
         for _ <- 1 to burst do
           written += 1
           out.write(frame())
         out.flush()
-      catch case _: IOException => () // It was turned out.
+      catch case _: IOException => () // The server closed the connection.
       finally socket.close()
     connections
 
@@ -79,13 +79,13 @@ private[view] final class MalformedRequests(port: Int, seed: Long):
       val socket = Socket("127.0.0.1", port)
       try
         val out = BufferedOutputStream(socket.getOutputStream)
-        // Answers are few and short; who reads none of them is closed by the server's own limits.
+        // Answers are few and short; a client that reads none is disconnected by the server's limits.
         val burst = math.min(1 + random.nextInt(50), requests - written)
         for _ <- 1 to burst do
           written += 1
           out.write(request())
         out.flush()
-      catch case _: IOException => () // It was turned out.
+      catch case _: IOException => () // The server closed the connection.
       finally socket.close()
     connections
 

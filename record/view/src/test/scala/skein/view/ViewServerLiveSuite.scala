@@ -25,7 +25,7 @@ class ViewServerLiveSuite extends munit.FunSuite:
 
   private def await[A](future: Future[A]): A = Await.result(future, 30.seconds)
 
-  /** @param clock by which silence of connections is measured */
+  /** @param clock measures how long connections are silent */
   private final class Served(limits: ViewerLimits, clock: Clock = Clock.system):
     val done: ConcurrentLinkedQueue[FlightControl] = ConcurrentLinkedQueue()
     val feed: Feed                                 = Feed()

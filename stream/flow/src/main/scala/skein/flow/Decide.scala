@@ -52,8 +52,8 @@ object Decide:
         answered.map(turn.next(working, observation, _, otherwise))
       .collect(Function.unlift(_.result))
 
-  /** @param working completed when the policy may be called again
-    * @param result of this turn; None before the first
+  /** @param working completes when the policy may be called again
+    * @param result the result of this turn; None before the first
     */
   private final case class Turn[M, D](
       memory: M,

@@ -32,9 +32,9 @@ object Frames:
     *   - '''Completes when''' `ticks` has completed and all requested frames have arrived.
     *   - '''Cancels when''' downstream cancels.
     *
-    * @param inFlight limit of the requested frames that have not arrived
-    * @param isNewer whether one frame was exposed later than another: over a restart of the simulator
-    *   [[skein.signal.ClockAlignment.isNewer]] knows better than two frames alone
+    * @param inFlight maximum number of requested frames that have not arrived
+    * @param isNewer whether one frame was exposed later than another: across a restart of the simulator,
+    *   [[skein.signal.ClockAlignment.isNewer]] is more reliable than two frames alone
     * @param ask requests one frame; must complete within its own timeout
     * @param onSkip called for every frame that was due and is not emitted
     */

@@ -4,7 +4,7 @@ import org.apache.pekko.NotUsed
 import org.apache.pekko.stream.scaladsl.Flow
 import scala.concurrent.Future
 
-/** Feeds a stream's elements to a learner beside the stream. */
+/** Feeds a stream's elements to a learner that works concurrently with the stream. */
 object Learn:
 
   /** Passes the elements received so far to `learn`, one lesson at a time; elements received meanwhile wait
@@ -14,9 +14,10 @@ object Learn:
     * `most` waiting elements, the oldest is dropped and reported. '''Completes when''' upstream has completed
     * and the last lesson is over. '''Cancels when''' downstream cancels. '''Fails when''' a lesson does.
     *
-    * @param most elements of a lesson
+    * @param most maximum number of elements in a lesson
     * @param onDropped called for every element that is in no lesson
-    * @param learn from elements in the order of arrival; not on the stream's thread
+    * @param learn processes a lesson, whose elements are in the order of arrival; it must not work on the
+    *   stream's thread
     */
   def apply[A, B](
       most: Int,

@@ -15,7 +15,7 @@ object Predict:
     * when''' downstream backpressures. '''Completes when''' upstream completes. '''Cancels when''' downstream
     * cancels.
     *
-    * @param verified vehicles whose estimates are compared with readings
+    * @param verified selects the vehicles whose estimates are compared with readings
     * @param lead time from the element's arrival until its command is sent, or begins to act; evaluated at
     *   each element
     * @param onVerified called for every prediction that a later reading verifies, with its error
@@ -67,7 +67,7 @@ final case class Unverified private (made: Vector[Unverified.Made]):
 object Unverified:
   val none: Unverified = Unverified(Vector.empty)
 
-  /** Limit of one vehicle's unverified predictions. */
+  /** Maximum number of one vehicle's unverified predictions. */
   val Limit = 32
 
   final case class Made private[Unverified] (vehicle: Int, at: Instant, estimate: Estimate)

@@ -12,8 +12,8 @@ import skein.units.*
 /** The result of recognition in a frame.
   *
   * @param found the result with the frame's times: valid at the frame's exposure
-  * @param startedAt when recognition began, on the controller's clock
-  * @param took its duration
+  * @param startedAt time at which recognition began, on the controller's clock
+  * @param took duration of the recognition
   */
 final case class Recognised[+B](found: Stamped[B], startedAt: Instant, took: Span)
 
@@ -39,10 +39,10 @@ enum Unrecognised[+A]:
   *   - '''Completes when''' upstream has completed and every frame has been emitted or skipped.
   *   - '''Cancels when''' downstream cancels.
   *
-  * @param workers limit of the frames in progress at a time
-  * @param isNewer whether one frame was exposed later than another; where the simulator may restart, use
+  * @param workers maximum number of frames in progress at a time
+  * @param isNewer whether one frame was exposed later than another; if the simulator may restart, use
   *   [[skein.signal.ClockAlignment.isNewer]]
-  * @param deadline for each frame, from its begin
+  * @param deadline maximum duration of each frame's recognition
   * @param recognise begins work on a frame. Calls with equal `worker`, from 0, never overlap, so each worker
   *   may have an object that is not thread-safe. The future must complete by itself, and the work must not be
   *   done on the caller's thread
@@ -145,7 +145,7 @@ object Recognise:
   /** Runs recognition functions on threads: one worker for each function. A function is never called
     * concurrently.
     *
-    * @param threads to run on; at least as many as functions, and not those of the streams
+    * @param threads threads to run on; at least as many as functions, and not those of the streams
     */
   def by[A, B](functions: IndexedSeq[A => B], threads: ExecutionContext)(
       worker: Int,

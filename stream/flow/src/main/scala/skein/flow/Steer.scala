@@ -19,14 +19,14 @@ enum Steered[+C, +R]:
 /** Commands one vehicle without ever overloading its simulator.
   *
   * AirSim's move calls answer when the move ends, and each holds one of the server's workers until then; a
-  * burst of moves freezes the server, and executes out of order. So at most two are outstanding, the one that
-  * flies and the one that replaces it. The next is *pulled* only when the oldest has answered and the rate
+  * burst of moves freezes the server, and executes out of order. So at most two are outstanding, the one in
+  * effect and the one that replaces it. The next is *pulled* only when the oldest has answered and the rate
   * cap allows it: upstream then decides on its newest knowledge ([[Pace]] keeps it the newest), instead of a
   * decision that ages here.
   *
-  * A command whose answer is lost with its connection may fly on, and is no longer counted: with the next two
-  * it would make three at the simulator. So the vehicle is parked first, repeatedly until it confirms; then
-  * the executing command is known. A command that upstream emits meanwhile is sent first.
+  * A command whose answer is lost with its connection may continue to execute, and is no longer counted: with
+  * the next two there would be three at the simulator. So the vehicle is parked first, repeatedly until it
+  * confirms; then the executing command is known. A command that upstream emits meanwhile is sent first.
   *
   * While the vehicle is held ([[Hold]]), it is parked and upstream's commands are not sent.
   *
@@ -38,13 +38,13 @@ enum Steered[+C, +R]:
   *     failed, and every call has ended.
   *   - '''Cancels when''' downstream cancels.
   *
-  * @param minInterval between two commands sent: the rate cap
-  * @param mostOutstanding commands that may be unanswered. More than [[Moves.InFlight]] let a link of a long
-  *   round trip carry more commands than one a round trip; only for links that never deliver several in a
-  *   burst
+  * @param minInterval minimum time between two commands sent: the rate cap
+  * @param mostOutstanding maximum number of unanswered commands. More than [[Moves.InFlight]] let a link with
+  *   a long round trip carry more than one command per round trip; only for links that never deliver several
+  *   in a burst
   * @param parksInDoubt whether the vehicle is parked after a lost answer; needless where commands are
   *   numbered, so that a late command changes nothing
-  * @param send one command; the future ends when the move ends
+  * @param send sends one command; the future ends when the move ends
   * @param park makes the vehicle hover, so that the outstanding moves are answered; sent as the last command,
   *   and after a lost answer
   * @param isCertain whether a result proves that its command neither executes nor is in transit: the
@@ -172,13 +172,13 @@ final class Steer[C, R](
       setHandlers(in, out, this)
 
 object Steer:
-  /** Limit of the events that wait for downstream; at the limit no more commands are taken. */
+  /** Maximum number of events that wait for downstream; at this number no more commands are taken. */
   val EventLimit = 64
 
   /** Pause before parking a vehicle is attempted again. */
   val ParkAgain: Span = Span.ofMillis(100)
 
-  /** Limit of the attempts to park a vehicle at the end. */
+  /** Maximum number of attempts to park a vehicle at the end. */
   val LastAttempts = 10
 
   private case object Later

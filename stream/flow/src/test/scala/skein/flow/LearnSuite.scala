@@ -20,7 +20,7 @@ class LearnSuite extends munit.FunSuite:
         .via(Learn[Int, Vector[Int]](3, element => dropped :+= element): lesson =>
           after(450.millis)(Future.successful(Option.when(!lesson.contains(1))(lesson))))
         .runWith(Sink.seq)
-    // The first lesson lasts from 0 to 450 ms: 2 to 5 come meanwhile.
+    // The first lesson lasts from 0 to 450 ms: 2 to 5 arrive meanwhile.
     assertEquals(lessons.value.head, Vector(3, 4, 5))
     assertEquals(dropped.head, 2)
     assertEquals((lessons.value.flatten ++ dropped).sorted, (2 to 12).toVector)

@@ -16,8 +16,8 @@ private[link] final class Bottleneck(bandwidth: Bandwidth):
   private val queueTime = bandwidth.timeOf(bandwidth.queueBytes)
   private var freeAt    = Span.Zero
 
-  /** Limit of the bytes that a connection hands over in one piece: an eighth of the queue, and at least an
-    * Ethernet frame.
+  /** Maximum number of bytes that a connection hands over in one piece: an eighth of the queue, and at least
+    * an Ethernet frame.
     */
   val pieceBytes: Int = (bandwidth.queueBytes / 8).max(FrameBytes)
 

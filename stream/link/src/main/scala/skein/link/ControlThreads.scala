@@ -40,5 +40,5 @@ object ControlThreads:
       alive.add(thread): Unit
       if haveTheLead then SchedulingPolicy.RealTime.schedule(thread): Unit
 
-  /** Removes the calling thread, which ends. */
+  /** Removes the calling thread, which is about to end. */
   private[link] def leave(): Unit = SchedulingPolicy.thisThread.foreach(alive.remove)

@@ -4,14 +4,14 @@ import java.util.concurrent.atomic.LongAdder
 import skein.signal.LatencySampler
 import skein.units.*
 
-/** Decides when bytes that enter one direction of one connection come out at its far end. All times count
+/** Determines when bytes that enter one direction of one connection come out at its far end. All times count
   * from the link's start. Holds mutable state (earlier bytes delay later ones), one per direction and
   * connection; reads no clock.
   *
-  * @param stalls in the order of their beginnings
+  * @param stalls the stalls, in the order of their beginnings
   * @param break the reset or silence that ends this connection
   * @param stallsMet counts the stalls that delayed something
-  * @param isInOrder whether the order of entry is kept
+  * @param isInOrder whether bytes come out in the order of entry
   */
 private[link] final class Delivery(
     sampler: LatencySampler,
@@ -27,7 +27,7 @@ private[link] final class Delivery(
 
   /** Samples the delay of bytes that enter now.
     *
-    * @param now never smaller than in the previous call
+    * @param now the present time, never smaller than in the previous call
     */
   def delay(now: Span): Span = sampler.oneWay(now)
 

@@ -47,7 +47,7 @@ final class EmulatedLink(
 
     /** The losses, repetitions and duplicates of a connection's packets.
       *
-      * @param index of the direction and connection
+      * @param index number that identifies the direction and connection
       */
     def packets(index: Long, isDatagrams: Boolean): Packets =
       if isDatagrams then

@@ -23,7 +23,7 @@ final case class TimedFault(at: Span, fault: Fault)
 
 /** The faults of a link over its life: those of a schedule, and random ones.
   *
-  * @param schedule in any order
+  * @param schedule scheduled faults, in any order
   * @param stallEvery mean time from a random stall's start to the next's (a Poisson process)
   * @param stallLasts mean length of random stalls, exponentially distributed
   * @param resetEvery mean time between random resets (a Poisson process)

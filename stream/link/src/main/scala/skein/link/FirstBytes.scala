@@ -18,13 +18,13 @@ enum FirstBytes:
     */
   case Undecided
 
-  /** @param what a description for a person: "came …" */
+  /** @param what a description for the user: "came …" */
   case Foreign(what: String)
 
 object FirstBytes:
-  /** Pure; while it is [[Undecided]], to be called again with all bytes so far.
+  /** Recognises the protocol. Pure; while the result is [[Undecided]], call it again with all bytes so far.
     *
-    * @param bytes of the connection, from its beginning
+    * @param bytes the connection's bytes, from its beginning
     * @param own the first bytes of the port's protocol, 0 to 255; empty: any that do not begin another
     *   protocol
     */

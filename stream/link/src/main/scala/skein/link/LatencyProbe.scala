@@ -13,7 +13,7 @@ object LatencyProbe:
     * trips in the order of sending; for a failed request its failure.
     *
     * @param request sends a request and completes with its answer; it has a timeout of its own
-    * @param maxUnanswered limit of the requests in progress; at the limit none is sent
+    * @param maxUnanswered maximum number of requests in progress; at this number none is sent
     */
   def roundTrips(
       request: () => Future[?],

@@ -7,8 +7,8 @@ import skein.signal.LatencyProfile
   * @param toServer delays towards the server; a rate in it ([[LatencyProfile.Limited]]) is that of one line
   *   for all connections
   * @param toClient delays in the opposite direction, which has a line of its own
-  * @param maxBytesInFlight limit of the bytes that one direction of a connection holds (besides the segment
-  *   that exceeds it); then the sender waits, as with TCP's window
+  * @param maxBytesInFlight maximum number of bytes that one direction of a connection holds (in addition to
+  *   the segment that exceeds it); then the sender waits, as with TCP's window
   * @param duplicates share of datagrams that arrive twice, each time with a delay of its own; TCP discards
   *   duplicates, so it has none
   * @param cutsSegments whether bytes arrive in segments that are cut anywhere, for tests of their readers

@@ -29,11 +29,11 @@ final class LinkProxy private (listening: Listening, link: EmulatedLink, switch:
 
 object LinkProxy:
 
-  /** Starts listening. Fails with a [[TransportError]] where that is not possible.
+  /** Starts listening. Fails with a [[TransportError]] if that is not possible.
     *
-    * @param maxConnections limit of the open connections. A further one takes the place of the first without
-    *   any data yet, or of the one that has been silent for longest, if that is at least 5 s; else it is
-    *   closed
+    * @param maxConnections maximum number of open connections. A further one takes the place of the first
+    *   without any data yet, or of the one that has been silent for longest, if that is at least 5 s; else it
+    *   is closed
     * @param unreachable called with the reason when the server of an accepted connection cannot be reached
     * @param isDatagrams whether the transport carries datagrams: see [[EmulatedLink.connection]]
     * @param watching observes each connection's bytes at the client's side of the link, so with the link's

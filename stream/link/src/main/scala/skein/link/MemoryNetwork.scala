@@ -24,8 +24,9 @@ import skein.units.*
   *
   * On one thread the seed determines everything.
   *
-  * @param connectTimeout after this long an attempt to connect that is not answered fails
-  * @param backlog connections that may wait to be accepted by one listener; further attempts are not answered
+  * @param connectTimeout time after which an unanswered attempt to connect fails
+  * @param backlog maximum number of connections that wait to be accepted by one listener; further attempts
+  *   are not answered
   */
 final class MemoryNetwork(
     plan: NetworkPlan,
@@ -44,7 +45,7 @@ final class MemoryNetwork(
   /** The transport for programs on this host. */
   def host(name: String): Transport = hosts.computeIfAbsent(name, Host(_))
 
-  /** Counts of the link from one host to another. */
+  /** Traffic counts of the link between a client's host and a server's, in both directions. */
   def counts(client: String, server: String): LinkCounts = link(client, server).counts
 
   private def link(client: String, server: String): EmulatedLink =

@@ -14,9 +14,9 @@ final case class NetworkFault(where: Where, timed: TimedFault)
 
 /** The links between the hosts of a [[MemoryNetwork]].
   *
-  * @param link between any two hosts without an entry in `links`
-  * @param links by client's and server's host
-  * @param faults in addition to those of the links' own profiles
+  * @param link the link between any two hosts without an entry in `links`
+  * @param links links by the client's and the server's host
+  * @param faults faults in addition to those of the links' own profiles
   */
 final case class NetworkPlan(
     link: LinkProfile = LinkProfile.none,

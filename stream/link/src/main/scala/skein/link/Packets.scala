@@ -16,7 +16,7 @@ private[link] enum Packets:
     * sooner once a later packet is acknowledged, but only when it can no longer be a merely overtaken packet
     * (RFC 8985).
     *
-    * @param timeout the first ([[skein.signal.Retransmission.timeout]])
+    * @param timeout the first time-out ([[skein.signal.Retransmission.timeout]])
     * @param overtaken time from its sending until it counts as lost and not as overtaken
     *   ([[skein.signal.Retransmission.overtaken]])
     */
@@ -35,7 +35,7 @@ private[link] object Packets:
 
 /** Bytes on their way.
   *
-  * @param due when they come out; [[Segment.Never]] while they are lost and not yet sent again
+  * @param due time at which they come out; [[Segment.Never]] while they are lost and not yet sent again
   */
 private[link] final class Segment(val bytes: ByteString, var due: Span):
   private var sentAt   = Span.Zero

@@ -41,7 +41,7 @@ final class PreciseScheduler(
 
   private val onClose = ConcurrentHashMap.newKeySet[Once]()
 
-  /** Limit of one repeating task's executions per second. */
+  /** Maximum number of one repeating task's executions per second. */
   def maxFrequency: Double = 10_000
 
   def scheduleOnce(delay: FiniteDuration, runnable: Runnable)(using executor: ExecutionContext): Cancellable =

@@ -10,8 +10,8 @@ import scala.util.{Try, Using}
   * effect there, and niceness has none on how soon a thread runs that wakes up: it waits until the one on its
   * processor has used up its slice, some 3 to 5 ms. Other systems have no such policies.
   *
-  * @param number in linux/sched.h
-  * @param priority among threads of one policy
+  * @param number the policy's number in linux/sched.h
+  * @param priority priority among threads of one policy
   */
 enum SchedulingPolicy(private val number: Int, priority: Int):
 
@@ -31,7 +31,7 @@ enum SchedulingPolicy(private val number: Int, priority: Int):
 
   /** Applies this policy to one of this process's threads.
     *
-    * @param thread as the system numbers them
+    * @param thread the system's number of the thread
     * @return whether the system applied it
     */
   def schedule(thread: Int): Boolean = SchedulingPolicy.isLinux && Try:
@@ -71,7 +71,7 @@ object SchedulingPolicy:
     else None
 
   /** This process's threads whose names begin with one of these; the system keeps 15 characters of a name.
-    * Empty where the system does not list them.
+    * Empty if the system does not list threads.
     */
   def threadsNamed(beginnings: String*): Vector[Int] =
     if isLinux then

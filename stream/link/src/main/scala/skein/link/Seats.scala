@@ -6,7 +6,7 @@ import skein.units.{Clock, Instant, Span}
 /** A port's [[Places]], shared by its connections, for protocols in which every peer sends from time to time.
   * From any thread.
   *
-  * @param most limit of the open connections
+  * @param most maximum number of open connections
   */
 private[skein] final class Seats(most: Int, private val clock: Clock):
   private val places             = Places(most, Seats.Silent)
@@ -21,7 +21,8 @@ private[skein] final class Seats(most: Int, private val clock: Clock):
 
   /** A seat for one more connection; None if it must be closed immediately.
     *
-    * @param leave closes it when another gets its place; called at most once, on the other's thread
+    * @param leave closes the connection when another gets its place; called at most once, on the other's
+    *   thread
     */
   def enter(leave: () => Unit): Option[Seats.Seat] =
     if places.admit() then

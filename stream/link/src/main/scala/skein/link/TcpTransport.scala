@@ -19,13 +19,12 @@ import skein.units.Span
   *
   * Without certificates each direction closes separately: a side that has finished sending still receives
   * data in transit. With them a connection is TLS 1.3, both sides present theirs, and the server's must name
-  * its host; an open connection may turn out not to be trusted with its first bytes, and either side's end
+  * its host; distrust of an open connection may be reported only with its first bytes, and either side's end
   * closes both directions.
   *
-  * @param connectTimeout after this long without an answer a connection fails with
-  *   [[TransportError.NoAnswer]]
-  * @param backlog connections that may wait to be accepted; the operating system refuses more
-  * @param certificates of this side, and those that it trusts
+  * @param connectTimeout time after which an unanswered connection fails with [[TransportError.NoAnswer]]
+  * @param backlog maximum number of connections that wait to be accepted; the operating system refuses more
+  * @param certificates this side's certificates, and those that it trusts
   */
 final class TcpTransport(
     connectTimeout: Span = Span.ofSeconds(5),

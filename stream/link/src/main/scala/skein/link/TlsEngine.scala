@@ -13,7 +13,7 @@ private[skein] final class TlsEngine(own: SSLEngine, failed: SSLException => Uni
     extends SSLEngine:
   import TlsEngine.*
 
-  /** @param source begins with a record, since a call consumes whole records */
+  /** @param source bytes that begin with a record, since a call consumes whole records */
   def unwrap(source: ByteBuffer, into: Array[ByteBuffer], from: Int, count: Int): SSLEngineResult =
     // The JDK's engine refuses anything but a record by itself, once, and is closed then.
     telling(own.unwrap(if isRecord(source) then source else NoRecord.duplicate(), into, from, count))
@@ -34,7 +34,7 @@ private[skein] final class TlsEngine(own: SSLEngine, failed: SSLException => Uni
     val fits           = source.remaining < Header || (u8(3) << 8 | u8(4)) <= Most
     isOfKnownType && fits
 
-  // An engine that does not pass these on would forget to verify names.
+  // An engine that does not forward these would not verify names.
   override def getSSLParameters: SSLParameters                   = own.getSSLParameters
   override def setSSLParameters(parameters: SSLParameters): Unit = own.setSSLParameters(parameters)
   override def getPeerHost: String                               = own.getPeerHost
@@ -74,5 +74,5 @@ private[skein] object TlsEngine:
 
   private val NoRecord = ByteBuffer.wrap("no record".getBytes("US-ASCII"))
 
-  /** Greatest length of an encrypted record: RFC 8446, 5.2. */
+  /** Maximum length of an encrypted record: RFC 8446, 5.2. */
   private val Most = (1 << 14) + 256

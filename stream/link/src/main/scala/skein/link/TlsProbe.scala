@@ -7,14 +7,14 @@ import javax.net.ssl.SSLContext
 import scala.util.Using
 import skein.units.Span
 
-/** Finds out whether the listener at an address speaks TLS. */
+/** Determines whether the listener at an address speaks TLS. */
 private[skein] object TlsProbe:
   // RFC 8446, 5.1: a record's type, which is an alert or of a handshake, and the version's first byte.
   private val Alert     = 21
   private val Handshake = 22
   private val Version   = 3
 
-  /** Time limit of connecting, and of waiting for the answer: short, since a person waits for the result. */
+  /** Time limit of connecting, and of waiting for the answer: short, since the user waits for the result. */
   val Within: Span = Span.ofSeconds(2)
 
   /** Sends a TLS ClientHello, and returns whether the answer is TLS, whatever its content. Blocks for

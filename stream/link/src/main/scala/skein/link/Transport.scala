@@ -9,7 +9,7 @@ import scala.util.Try
 
 /** A host and port.
   *
-  * @param host a name, or an address; IPv6 without brackets
+  * @param host a host name, or an address; IPv6 without brackets
   */
 final case class Address(host: String, port: Int):
   override def toString: String = s"$uriHost:$port"

@@ -26,8 +26,8 @@ import skein.units.Span
   * `idle`. The end of the other side is not reported, lost datagrams stay lost, and a message too large for a
   * datagram is split. For protocols that find the beginning of a message by themselves, such as MAVLink.
   *
-  * @param mostPeers limit of the peers at one port. A further one takes the place of the one that has been
-  *   silent for longest, if that is at least [[UdpSocket.Silence]]; else its datagrams are dropped
+  * @param mostPeers maximum number of peers at one port. A further one takes the place of the one that has
+  *   been silent for longest, if that is at least [[UdpSocket.Silence]]; else its datagrams are dropped
   */
 final class UdpTransport(mostPeers: Int = 64, idle: Span = Span.ofSeconds(30))(using ActorSystem)
     extends Transport:
@@ -65,8 +65,8 @@ final class UdpTransport(mostPeers: Int = 64, idle: Span = Span.ofSeconds(30))(u
 /** An open UDP port, with a receiving thread of its own.
   *
   * @param speaks whether a datagram belongs to the port's protocol: only such ones make their sender a peer
-  * @param dropped datagrams of peers beyond the limit, of another protocol, or that arrived faster than they
-  *   were handled
+  * @param dropped number of datagrams of peers beyond the limit, of another protocol, or that arrived faster
+  *   than they were handled
   */
 final class UdpSocket private (
     socket: DatagramSocket,
@@ -191,8 +191,8 @@ object UdpSocket:
   /** A peer that was silent for this long makes room for others. */
   val Silence: Span = Span.ofSeconds(2)
 
-  /** Limit of a sent datagram's bytes, which fits into an Ethernet frame. */
+  /** Maximum number of bytes in a sent datagram, which fits into an Ethernet frame. */
   private val MostBytes = 1400
 
-  /** Limit of one peer's received datagrams that wait. */
+  /** Maximum number of one peer's received datagrams that wait. */
   private val Waiting = 256

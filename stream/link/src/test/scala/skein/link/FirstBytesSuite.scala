@@ -34,7 +34,7 @@ class FirstBytesSuite extends munit.FunSuite:
       for length <- method to request.length do
         assert(verdict(ByteString(request.take(length))).isInstanceOf[Foreign], request.take(length))
 
-  test("TLS's first byte is foreign, and 'GETTING', 'AKKA' and a length of four bytes are not foreign"):
+  test("a TLS record is refused at its first byte; 'GETTING', 'AKKA' and a four-byte length are not refused"):
     assertEquals(verdict(hello), Foreign("a greeting of TLS"))
     assertEquals(verdict(hello.take(1)), Foreign("a greeting of TLS"))
     for own <- Seq(ByteString("GETTING"), ByteString("AKKA"), ByteString(0, 0, 0, 10)) do

@@ -78,7 +78,7 @@ class LinkFidelityLiveSuite extends munit.FunSuite, Lengthy, Timing:
 
   /** @param differencesMs measured minus profile from the 10 % to the 99 % quantile, to the server and to the
     *   client
-    * @param latenessMs of the machine during the measurement
+    * @param latenessMs lateness of the machine during the measurement
     */
   private final case class Run(differencesMs: Seq[Seq[Double]], latenessMs: Double):
     def matches: Boolean = differencesMs.flatten.forall(math.abs(_) < 2)

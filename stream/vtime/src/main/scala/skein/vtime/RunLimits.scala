@@ -4,11 +4,11 @@ import scala.concurrent.duration.*
 
 /** Limits of a run.
   *
-  * @param duration of virtual time
-  * @param tasksPerInstant tasks that may run without time advancing
-  * @param processorPerInstant processor time that very many tasks may take without time advancing: one task
-  *   of a stream may handle a thousand elements
-  * @param standstill real time for which the loop's thread may wait in one task
+  * @param duration maximum duration, in virtual time
+  * @param tasksPerInstant maximum number of tasks that run without time advancing
+  * @param processorPerInstant maximum processor time that very many tasks take without time advancing: one
+  *   task of a stream may handle a thousand elements
+  * @param standstill maximum real time for which the loop's thread waits in one task
   */
 final case class RunLimits(
     duration: FiniteDuration = 1.day,

@@ -16,9 +16,9 @@ object VirtualTime:
     *
     * @param seed determines all of Pekko's own randomness. Equal seeds and equal bodies give equal runs, to
     *   the nanosecond.
-    * @throws VirtualTimeException when something escapes virtual time, or the future can never be completed:
+    * @throws VirtualTimeException if something escapes virtual time, or the future can never be completed:
     *   see [[Problem]]
-    * @throws Throwable with which the future failed
+    * @throws Throwable if the future failed with it
     */
   def run[A](seed: Long, limits: RunLimits = RunLimits(), config: Config = ConfigFactory.load())(
       body: ActorSystem => Future[A]

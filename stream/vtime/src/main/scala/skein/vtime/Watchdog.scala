@@ -23,7 +23,7 @@ private final class Watchdog(
   private var stopped = false
   private val watcher = Thread.ofVirtual.start(() => watch())
 
-  /** Stops watching: the loop's thread may wait as long as it likes. */
+  /** Stops watching; from now on the loop's thread may wait without a limit. */
   def stop(): Unit =
     synchronized { stopped = true }
     watcher.interrupt()
@@ -54,8 +54,8 @@ private object Watchdog:
 
   /** One observation of the loop's thread.
     *
-    * @param waits whether it waits now
-    * @param begun tasks begun so far
+    * @param waits whether the thread waits now
+    * @param begun number of tasks begun so far
     * @param processorNanos processor time so far; -1 where the JVM does not report it
     */
   final case class Look(waits: Boolean, begun: Long, processorNanos: Long)

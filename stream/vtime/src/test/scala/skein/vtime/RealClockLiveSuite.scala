@@ -8,7 +8,7 @@ import scala.concurrent.duration.*
 import scala.concurrent.{Await, Future}
 import skein.testing.Unhurried
 
-/** Needs the real clock: shows that real time advances beside virtual time. */
+/** Needs the real clock: shows that real time advances independently of virtual time. */
 class RealClockLiveSuite extends munit.FunSuite, Unhurried:
 
   test("a task that waits for a latch is ended, and its stack is shown"):

@@ -11,7 +11,8 @@ import upickle.default.{Reader, writeMsg}
 /** Calls that concern a whole simulator: the built-in one, AirSim, Colosseum or Cosys-AirSim. Calls that
   * concern one vehicle are in [[Multirotor]].
   *
-  * @param timeout of calls that answer immediately; calls with a duration of their own add it to this
+  * @param timeout time-out of calls that answer immediately; calls with a duration of their own add it to
+  *   this
   */
 final class AirSimClient(val rpc: RpcClient, val timeout: Span = Span.ofSeconds(5)):
   private given ExecutionContext = ExecutionContext.parasitic

@@ -12,8 +12,8 @@ import skein.units.*
 /** A multirotor of AirSim as a loop's vehicle port.
   *
   * [[MoveQueue]] recovers from missed answers: control resumes 0.6 s and one round trip after a lost cancel,
-  * one further round trip later after a lost answer, and another timeout later where the probe or the cancel
-  * is lost too.
+  * one further round trip later after a lost answer, and another timeout later if the probe or the cancel is
+  * lost too.
   *
   * @param onLost called with one line for each missed answer: what happened to it
   */

@@ -10,7 +10,7 @@ import skein.units.*
   */
 trait AttitudeMoves:
 
-  /** Sends a move of four numbers that lasts for `duration`. */
+  /** Sends a move of four values that lasts for `duration`. */
   protected def attitude(method: String, duration: Span, numbers: Double*): Future[Either[RpcError, Boolean]]
 
   /** Converts an altitude goal from world NED to the vehicle's own frame. */

@@ -28,7 +28,7 @@ enum Encoding:
 
 /** A request for one image.
   *
-  * @param camera its name; `0` is the front one
+  * @param camera the camera's name; `0` is the front one
   */
 final case class Shot(camera: String, kind: ImageKind = ImageKind.Scene, encoding: Encoding = Encoding.Raw)
 
@@ -42,8 +42,8 @@ enum Pixels:
 
 /** One image.
   *
-  * @param positionNed of the camera at the exposure, world, m
-  * @param orientation from the camera's frame (front, right, down) to world NED
+  * @param positionNed the camera's position at exposure, world, m
+  * @param orientation rotation from the camera's frame (front, right, down) to world NED
   */
 final case class Image(
     shot: Shot,
@@ -58,8 +58,8 @@ final case class Image(
   *
   * @param points x, y, z of each, m, in the frame that the lidar's settings choose: the lidar's own, or that
   *   of its vehicle's start
-  * @param segmentation id of the object that each point is on; empty where the simulator does not send it
-  * @param positionNed of the lidar, world, m
+  * @param segmentation id of the object that each point is on; empty if the simulator does not send it
+  * @param positionNed the lidar's position, world, m
   */
 final case class Scan(
     points: Array[Float],

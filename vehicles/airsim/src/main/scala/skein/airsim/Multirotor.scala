@@ -184,7 +184,7 @@ final class Multirotor(
     * connection with the fewest calls in flight. The built-in simulator supports this, and `link --buffer` in
     * front of another one.
     *
-    * @param number greater than that of all plans before
+    * @param number sequence number, greater than those of all earlier plans
     * @return None if an action of the plan is not a velocity
     */
   def followPlan(number: Long, plan: CommandPlan): Option[Future[Either[RpcError, Boolean]]] =
@@ -199,7 +199,7 @@ final class Multirotor(
 
   /** Calls a function that moves the vehicle, by its name.
     *
-    * @param params without the vehicle
+    * @param params the function's parameters, without the vehicle
     * @param withdrawn when it completes, the answer is no longer awaited
     */
   def perform(
@@ -210,7 +210,8 @@ final class Multirotor(
   ): Future[Either[RpcError, Boolean]] =
     call(method, params, moving(lasts).copy(withdrawn = Some(withdrawn)))
 
-  /** Ends all plans before this number, even those that arrive later, and lets the vehicle hover. */
+  /** Ends all plans with a smaller sequence number, even those that arrive later, and lets the vehicle hover.
+    */
   def endPlans(number: Long): Future[Either[RpcError, Boolean]] =
     val hover = Arr(Int64(0), Str("hover"), Arr(Seq.empty[Msg]*))
     call("skeinFollowPlan", Seq(Int64(number), Arr(hover)), once)

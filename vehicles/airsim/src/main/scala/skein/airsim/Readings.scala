@@ -6,14 +6,14 @@ import skein.units.*
 /** A vehicle's place and orientation, world NED. */
 final case class VehiclePose(positionNed: Vector3, orientation: Quaternion)
 
-/** A multirotor's state as it estimates it itself, which for AirSim's default vehicle is the truth. */
+/** A multirotor's state as it estimates it itself, which for AirSim's default vehicle is the true state. */
 final case class MultirotorStatus(kinematics: Kinematics, flying: Boolean)
 
 /** The last contact of a vehicle with another object.
   *
-  * @param at on the simulator's clock
-  * @param positionNed of the vehicle at the contact, world, m
-  * @param normalNed of the surface
+  * @param at time of the contact, on the simulator's clock
+  * @param positionNed the vehicle's position at the contact, world, m
+  * @param normalNed the surface's normal
   */
 final case class Collision(at: Instant, positionNed: Vector3, normalNed: Vector3, objectName: String)
 
@@ -27,8 +27,7 @@ final case class ImuReading(orientation: Quaternion, angularVelocityFrd: Vector3
   */
 final case class GpsReading(location: GeoLocation, velocityNed: Vector3, valid: Boolean)
 
-/** @param altitude of the pressure in the standard atmosphere, above sea level
-  */
+/** @param altitude altitude above sea level at which the standard atmosphere has this pressure */
 final case class BarometerReading(altitude: Metres, pressurePa: Double)
 
 /** One rotor's thrust, torque and speed, as AirSim reports them. */

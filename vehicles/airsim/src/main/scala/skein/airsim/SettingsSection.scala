@@ -134,7 +134,7 @@ private[skein] object SettingsSection:
 
   /** The position at which a text ceases to be JSON, and the mistake there.
     *
-    * @param mistake of `ujson`, whose cause states the mistake after the whole path to it
+    * @param mistake the exception of `ujson`, whose cause states the mistake after the whole path to it
     */
   private def notJson(text: String, mistake: Throwable): SettingsError =
     Iterator.iterate(mistake)(_.getCause).takeWhile(_ != null).take(MostCauses).collectFirst {

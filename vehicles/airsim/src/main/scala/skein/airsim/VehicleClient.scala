@@ -30,7 +30,6 @@ abstract class VehicleClient private[airsim] (
 
   val eyes: Eyes = Eyes(client, name, originNed)
 
-  /** This vehicle through another client. */
   def over(client: AirSimClient, originNed: Vector3 = originNed, connectionKey: Int = 0): VehicleClient
 
   // ---- state

@@ -6,12 +6,12 @@ import ujson.Obj
 
 /** A vehicle's settings. Its start is the origin of its own frame.
   *
-  * @param startNed world, m
-  * @param vehicleType in any letter case
+  * @param startNed position of the start, world, m
+  * @param vehicleType kind of vehicle, by AirSim's name, in any letter case
   * @param firstPerson whether the view is its own (`IsFpvVehicle`), which makes it the default vehicle of
   *   calls that name none
-  * @param armed after the start and after a reset (`DefaultVehicleState`)
-  * @param sensors that are switched on, by their names
+  * @param armed whether it is armed after the start and after a reset (`DefaultVehicleState`)
+  * @param sensors the sensors that are switched on, by name
   */
 final case class VehicleSettings(
     name: String,
@@ -31,9 +31,9 @@ final case class VehicleSettings(
   * speed. Everything else in it is ignored. `SimMode` is the type of vehicles that name none; unlike
   * AirSim's, a world may have vehicles of several types. Vehicles with `AutoCreate` false are left out.
   *
-  * @param vehicles in the file's order
-  * @param origin of the world's NED frame
-  * @param text of the file, unchanged
+  * @param vehicles the vehicles, in the file's order
+  * @param origin geographic origin of the world's NED frame
+  * @param text the file's text, unchanged
   * @param addedSensors sensors of a vehicle that is added later (`simAddVehicle`): `DefaultSensors`
   * @param apiPort `ApiServerPort`
   */
@@ -59,10 +59,10 @@ object WorldSettings:
   /** The default vehicle's type and name in AirSim. */
   val SimpleFlight = "SimpleFlight"
 
-  /** AirSim's vehicle type where `SimMode` is `Car`. */
+  /** AirSim's vehicle type if `SimMode` is `Car`. */
   val PhysXCar = "PhysXCar"
 
-  /** AirSim's vehicle type where `SimMode` is `ComputerVision`. */
+  /** AirSim's vehicle type if `SimMode` is `ComputerVision`. */
   val ComputerVision = "ComputerVision"
 
   private val CarMode = "Car"

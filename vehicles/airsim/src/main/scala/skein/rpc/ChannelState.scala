@@ -200,7 +200,7 @@ private[rpc] final class ChannelState(
 
   private def connectionOf(key: Int): Int = Math.floorMod(key, connections.length)
 
-  /** The error of a call that has no place and may not wait for one; None if it may wait. */
+  /** The error of a call that finds no room in a window and may not wait for it; None if it may wait. */
   private def refusal(call: Call): Option[RpcError] =
     val candidates = call.options.key match
       case Some(key) => IndexedSeq(connections(connectionOf(key)))

@@ -6,11 +6,11 @@ import org.apache.pekko.util.ByteString
   *
   * @param frameBytes longest encoded message, bytes
   * @param depth deepest nesting of arrays and maps; the message's own array counts as one
-  * @param elements limit of the values in one message, counting every key, value and array element
-  * @param keys limit of the keys in one map. A peer can choose keys whose hashes are equal; then each key
-  *   added to a map is compared with all before it, so this bounds the comparisons a key costs
-  * @param maps limit of the maps in one message: even an empty one, a single byte, becomes an object of some
-  *   150 bytes
+  * @param elements maximum number of values in one message, counting every key, value and array element
+  * @param keys maximum number of keys in one map. A peer can choose keys whose hashes are equal; then each
+  *   key added to a map is compared with all before it, so this bounds the comparisons a key costs
+  * @param maps maximum number of maps in one message: even an empty one, a single byte, becomes an object of
+  *   some 150 bytes
   */
 final case class FrameLimits(
     frameBytes: Int = 64 << 20,
@@ -57,7 +57,7 @@ final class Framer(limits: FrameLimits = FrameLimits(), keptBytes: Int = Int.Max
   private var frameStart = 0 // where the current value begins in `segment`; 0 if in an earlier one
   private var earlier        = List.empty[Array[Byte]] // latest first
   private var earlierBytes   = 0                       // in `earlier` and `crumbs` together
-  private var passedBytes    = 0L                      // of the current value, looked at and not kept
+  private var passedBytes    = 0L                      // of the current value, parsed and not kept
   private var lastBytes      = 0L
   private val crumbs         = new Array[Byte](CrumbsCapacity)
   private var crumbBytes     = 0
@@ -139,7 +139,7 @@ final class Framer(limits: FrameLimits = FrameLimits(), keptBytes: Int = Int.Max
       headerBytes = 0
       open(header(0) & 0xff, bigEndian(header, 1, headerExpected - 1))
 
-  /** Begins one value: `size` is its header's length field, 0 where it has none. */
+  /** Begins one value: `size` is its header's length field, 0 if it has none. */
   private def open(marker: Int, size: Long): Unit =
     if marker == NeverUsed then throw Refused("byte 0xc1, which MessagePack never uses")
     val children = childCount(marker, size)
@@ -225,7 +225,7 @@ private object Framer:
   private val CrumbsCapacity = 4096
   private val EmptySegment   = Array.emptyByteArray
 
-  // Of decoded values on a 64-bit JVM with compressed pointers, with their place in what holds them.
+  // Sizes of decoded values on a 64-bit JVM with compressed pointers, with the references to them.
   private val BytesPerValue = 32
   private val BytesPerMap   = 160
 

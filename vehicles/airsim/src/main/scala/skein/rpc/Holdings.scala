@@ -25,7 +25,7 @@ private[rpc] final class Holdings(each: Long, common: Long):
   /** One connection's share; for one thread at a time. */
   final class Holding:
     private var held   = 0L
-    private var forced = 0L // of what is beyond its own part: what was not granted
+    private var forced = 0L // bytes beyond its own part that were not granted
 
     /** Changes the bytes held to `to`, unless the common part is too small: then it returns false and changes
       * nothing.

@@ -153,7 +153,7 @@ final class MessageWriter:
     byte(tag)
     bytes(v)
 
-  /** A header with a length: inside the marker below `inMarker`, else in one, two or four bytes; -1 where
+  /** A header with a length: inside the marker below `inMarker`, else in one, two or four bytes; -1 if
     * MessagePack has no such form.
     */
   private def sized(length: Int, fix: Int, inMarker: Int, one: Int, two: Int, four: Int): Unit =

@@ -19,7 +19,7 @@ import upickle.core.{AbortException, TraceVisitor}
   * `pekko.stream.materializer.io.tcp.coalesce-writes = 0`, because they are gathered here already.
   *
   * @param transport opens connections; it bounds the time to connect
-  * @param seed of the jitter in the pauses between attempts to connect
+  * @param seed seed of the jitter in the pauses between attempts to connect
   * @param observer called with every event on the channels' threads, so it must be quick, thread-safe, and
   *   throw nothing
   */

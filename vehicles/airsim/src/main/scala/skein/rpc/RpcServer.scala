@@ -102,5 +102,7 @@ object RpcServer:
     s"rpclib: function '${request.method}' (called with ${request.params.length} " +
       s"arg(s)) threw an exception. The exception contained this information: $text."
 
-  /** Limit of the closed and refused connections that are logged one by one; later ones are only counted. */
+  /** Maximum number of closed and refused connections that are logged one by one; later ones are only
+    * counted.
+    */
   private val MostTold = 20

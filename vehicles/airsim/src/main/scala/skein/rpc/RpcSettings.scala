@@ -16,7 +16,7 @@ enum Channel:
   /** Large messages that may wait: images, point clouds. */
   case Bulk
 
-/** The treatment of a call that finds no free place in the window. */
+/** The treatment of a call that finds no room in the window. */
 enum WhenFull:
   /** The call fails immediately with [[RpcError.Overloaded]]. */
   case Refuse
@@ -28,7 +28,7 @@ enum WhenFull:
 
 /** Options of one call.
   *
-  * @param timeout from the call to its answer, waiting included; then [[RpcError.Timeout]]
+  * @param timeout time from the call to its answer, waiting included; then [[RpcError.Timeout]]
   * @param idempotent whether the call may run twice without harm: then it is sent again, a bounded number of
   *   times, when its connection is lost
   * @param key calls with equal keys use one connection and are sent in the order of the calls
@@ -46,23 +46,25 @@ final case class CallOptions(
 
 /** The bounds of a client. Windows and queue apply to each channel separately.
   *
-  * @param controlConnections connections of [[Channel.Control]], opened with its first call; the paper's pool
-  *   has 5
-  * @param sensorConnections connections of [[Channel.Sensors]], opened with its first call
-  * @param bulkConnections connections of [[Channel.Bulk]], opened with its first call
-  * @param windowPerConnection limit of the calls sent and not yet ended on one connection
-  * @param windowInAll limit of the calls sent and not yet ended on all connections of a channel
-  * @param queue limit of a channel's calls that wait, for a place or for a connection being opened
-  * @param resends limit of the times that one idempotent call is sent again
-  * @param rememberedIds how many timed-out calls a connection remembers, to recognise their late replies
-  * @param strays limit of the values on a connection, since the last expected reply, that answer no call of
-  *   ours; then it is closed as malformed
+  * @param controlConnections number of connections of [[Channel.Control]], opened with its first call; the
+  *   paper's pool has 5
+  * @param sensorConnections number of connections of [[Channel.Sensors]], opened with its first call
+  * @param bulkConnections number of connections of [[Channel.Bulk]], opened with its first call
+  * @param windowPerConnection maximum number of calls sent and not yet ended on one connection
+  * @param windowInAll maximum number of calls sent and not yet ended on all connections of a channel
+  * @param queue maximum number of a channel's calls that wait for room in a window or for a connection being
+  *   opened
+  * @param resends maximum number of times that one idempotent call is sent again
+  * @param rememberedIds number of timed-out calls that a connection remembers, to recognise their late
+  *   replies
+  * @param strays maximum number of values on a connection, since the last expected reply, that answer no call
+  *   of ours; then it is closed as malformed
   * @param messageTime longest time from a message's first byte to its last; then its connection is closed as
   *   malformed
-  * @param openBytes limit of the bytes of unfinished messages on all connections together, beyond 1 MiB on
-  *   each; a connection whose message finds no room is closed as malformed
-  * @param limits of one message on [[Channel.Control]] and [[Channel.Sensors]]
-  * @param bulkLimits of one message on [[Channel.Bulk]]
+  * @param openBytes maximum number of bytes of unfinished messages on all connections together, beyond 1 MiB
+  *   on each; a connection whose message finds no room is closed as malformed
+  * @param limits limits for one message on [[Channel.Control]] and [[Channel.Sensors]]
+  * @param bulkLimits limits for one message on [[Channel.Bulk]]
   */
 final case class RpcSettings(
     controlConnections: Int = 5,

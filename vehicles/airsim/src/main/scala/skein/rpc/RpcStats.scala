@@ -2,13 +2,13 @@ package skein.rpc
 
 import java.util.concurrent.atomic.LongAdder
 
-/** Counts of a client since it was made. Every call ends exactly once: `called = answered + refused +
-  * timedOut + lost + malformed + overloaded + cancelled + unreachable + pending`.
+/** Counts of a client since it was made. Every call ends exactly once:
+  * `called = answered + refused + timedOut + lost + malformed + overloaded + cancelled + unreachable + pending`.
   *
-  * @param sent requests written, including those sent again
-  * @param late replies to calls that had timed out
-  * @param unexpected replies to no known call
-  * @param ignored values that were no replies
+  * @param sent number of requests written, including those sent again
+  * @param late number of replies to calls that had timed out
+  * @param unexpected number of replies to no known call
+  * @param ignored number of values that were no replies
   */
 final case class RpcStats(
     called: Long,

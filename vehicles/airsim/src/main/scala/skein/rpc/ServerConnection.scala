@@ -63,11 +63,11 @@ private[rpc] final class ServerConnection(
       private var heldBack = Option.empty[Array[Byte]]
       private var backFor  = 0
 
-      // What it holds, bytes.
+      // The memory that it holds, bytes.
       private val holding = holdings.Holding()
       private var segment = 0  // of the last segment, while it is not consumed
       private var inHand  = 0L // of requests being handled
-      private var sending = 0  // of replies handed downstream, until it asks for more
+      private var sending = 0  // of replies handed downstream, until it pulls
 
       // Requests that it may have in flight.
       private val turn = turns.Holding()
@@ -189,8 +189,8 @@ private[rpc] final class ServerConnection(
 
       private def underWay: Boolean = inFlight > 0 || sending > 0 || writer.length > 0
 
-      /** Whether the connection may take a request: its memory is granted, or nothing is under way whose end
-        * would free some.
+      /** Whether the connection may take a request: its memory is granted, or it has nothing in progress that
+        * would free memory when it ends.
         */
       private def hasRoom: Boolean = isGranted || !underWay
 
@@ -289,7 +289,7 @@ private[rpc] final class ServerConnection(
 private object ServerConnection:
   private val NoReply = -1L
 
-  /** Memory of a request beside its message, bytes: the objects that track it until its answer. */
+  /** Memory of a request in addition to its message, bytes: the objects that track it until its answer. */
   private val BytesPerRequest = 512
 
   /** The first bytes of an array of three or four elements: the only ones that MessagePack's and AirSim's

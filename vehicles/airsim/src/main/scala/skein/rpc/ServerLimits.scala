@@ -4,15 +4,15 @@ import skein.units.*
 
 /** Limits of one server for its peers. Times are exact to one [[ServerLimits.Watch]].
   *
-  * @param inFlightPerConnection limit of one connection's requests in progress; beyond that its socket is not
-  *   read
-  * @param inFlightAssured requests that each connection may have in progress whatever the others do
-  * @param inFlightInCommon beyond those, for all connections together, first come, first served. Requests in
-  *   progress survive garbage collections: 50,000 requests of 200 greedy connections make its pauses ten
-  *   times as long
+  * @param inFlightPerConnection maximum number of one connection's requests in progress; beyond that its
+  *   socket is not read
+  * @param inFlightAssured number of requests that each connection may have in progress whatever the others do
+  * @param inFlightInCommon number of further requests for all connections together, first come, first served.
+  *   Requests in progress survive garbage collections: 50,000 requests of 200 greedy connections make its
+  *   pauses ten times as long
   * @param unsentBytesPerConnection a connection that has this many bytes of replies to take is not read until
   *   it has taken them
-  * @param connections limit of the open connections. A further one takes the place of the first that has
+  * @param connections maximum number of open connections. A further one takes the place of the first that has
   *   requested nothing yet, or of the one that has been silent for the longest time, if that is at least
   *   `silence`; else it is closed on arrival
   * @param heldBytesPerConnection memory that one connection may always make the server hold: messages under
@@ -20,12 +20,12 @@ import skein.units.*
   * @param heldBytesInCommon memory beyond that, for all connections together. A connection whose requests and
   *   replies hold it is not read until some are answered and taken. One without requests in progress whose
   *   unfinished message exceeds it is closed; a whole request, or a reply, that exceeds it becomes an error
-  * @param strays limit of the values between two requests that are no messages; beyond it the connection is
-  *   closed. Before the first request, the first such value closes it
+  * @param strays maximum number of values between two requests that are no messages; beyond it the connection
+  *   is closed. Before the first request, the first such value closes it
   * @param messageTime longest time from a message's first byte to its last, while the server waits for it
   * @param replyTime longest time without a peer taking any of its waiting replies
-  * @param silence how long a connection must be silent, with nothing in progress, before a new one may take
-  *   its place
+  * @param silence time for which a connection must be silent, with nothing in progress, before a new one may
+  *   take its place
   * @param waiting a peer that sends nothing for this long while it awaits an answer counts as silent from
   *   then on
   * @param idle a connection silent for this long, with nothing in progress, is closed. AirSim's own clients

@@ -4,23 +4,25 @@ import java.util.concurrent.atomic.{AtomicLong, LongAdder}
 
 /** Counts of a server since it was bound.
   *
-  * @param connections open now
-  * @param accepted connections served, closed ones included
-  * @param turnedAway connections beyond the limit
-  * @param closedWithReason connections that ended because of malformed input, a cut message, a limit or a
-  *   failure
-  * @param malformed connections among `closedWithReason` that sent a value that is no message, or exceeds
-  *   [[FrameLimits]]
-  * @param overHeld connections among `closedWithReason` that reached the memory limit
-  * @param tooSlow connections among `closedWithReason` that took too long for a message, or to take replies
-  * @param idle connections among `closedWithReason` that were silent when their place was needed, or for
-  *   [[ServerLimits.idle]]
-  * @param answered replies with a result
-  * @param refused replies with an error
-  * @param lacking requests, replies and dropped notifications that were too large for the memory left
-  * @param ignored values that were no messages
-  * @param dropped requests taken and not run, because their connection had closed before their turn
-  * @param heldBytes bytes held for peers now; see [[ServerLimits.heldBytes]]
+  * @param connections number of open connections
+  * @param accepted number of connections served, closed ones included
+  * @param turnedAway number of connections beyond the limit
+  * @param closedWithReason number of connections that ended because of malformed input, a cut message, a
+  *   limit or a failure
+  * @param malformed number of connections among `closedWithReason` that sent a value that is no message, or
+  *   exceeds [[FrameLimits]]
+  * @param overHeld number of connections among `closedWithReason` that reached the memory limit
+  * @param tooSlow number of connections among `closedWithReason` that took too long for a message, or to take
+  *   replies
+  * @param idle number of connections among `closedWithReason` that were silent when their place was needed,
+  *   or for [[ServerLimits.idle]]
+  * @param answered number of replies with a result
+  * @param refused number of replies with an error
+  * @param lacking number of requests, replies and dropped notifications that were too large for the memory
+  *   left
+  * @param ignored number of values that were no messages
+  * @param dropped number of requests taken and not run, because their connection had closed before their turn
+  * @param heldBytes number of bytes held for peers now; see [[ServerLimits.heldBytes]]
   * @param mostHeldBytes the maximum of `heldBytes`
   */
 final case class ServerStats(

@@ -80,7 +80,7 @@ class ImagesSuite extends munit.FunSuite:
     assert(images(sent(image.copy(width = -4, height = -2)), raw).isLeft)
     assertEquals(images(sent(image), raw, raw), Left("expected 2 images, came 1"))
 
-  test("a scan is read as sent, one number as an empty cloud, and mismatched ids are reported"):
+  test("a scan is read as sent, a single value as an empty cloud, and mismatched ids are reported"):
     val cloud = LidarData(
       at,
       Array(1, 2, 3, 4, 5, 6),
@@ -114,7 +114,7 @@ class ImagesSuite extends munit.FunSuite:
       .toSeq
       .map(metres => math.round(metres * 100) / 100.0)
     assertEquals(near(Quaternion.Identity), Seq(6.0, 5.0, 40.0, 40.0))
-    // Its front to the south-west: what was ahead lies there, what was to the right to the north-west.
+    // Its front to the south-west: the points ahead lie there, those to the right to the north-west.
     val turned = StrictMath.toRadians(225) / 2
     assertEquals(
       near(Quaternion(StrictMath.cos(turned), 0, 0, StrictMath.sin(turned))),

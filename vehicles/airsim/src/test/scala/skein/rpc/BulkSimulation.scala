@@ -10,7 +10,7 @@ import skein.units.*
 import skein.vtime.VirtualTime
 import upack.{Binary, Int32}
 
-/** Images beside control over a line of 50 Mbit/s, in virtual time. */
+/** Images concurrent with control over a line of 50 Mbit/s, in virtual time. */
 class BulkSimulation extends munit.FunSuite:
   private given ExecutionContext = ExecutionContext.parasitic
   private val address            = Address("simulator", 41451)

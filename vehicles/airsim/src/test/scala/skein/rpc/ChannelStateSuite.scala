@@ -105,7 +105,7 @@ class ChannelStateSuite extends munit.FunSuite:
     Seq("a", "b", "c").foreach(l.submit(_))
     assertEquals(l.sent.map(_.id).toSeq, Seq(0L, 1L, 2L))
 
-  test("a full window of all connections refuses calls or lets them wait, until an answer frees a place"):
+  test("a full window of all connections refuses calls or lets them wait, until an answer makes room"):
     val l = channel(perConnection = 9)
     l.open(0, 1)
     Seq("a", "b", "c").foreach(l.submit(_))
@@ -134,7 +134,7 @@ class ChannelStateSuite extends munit.FunSuite:
     l.reply("a")
     assertEquals(l.sentNames, Seq("a", "c", "b"))
 
-  test("a key's calls keep their order even when a place becomes free while others wait"):
+  test("a key's calls keep their order even when there is room again while others wait"):
     val l = channel(perConnection = 1, inAll = 1, queue = 9)
     l.open(0, 1)
     l.submit("a", wait)
@@ -145,7 +145,7 @@ class ChannelStateSuite extends munit.FunSuite:
     assertEquals(l.sentNames, Seq("a", "b", "c", "d"))
     assertEquals(Seq("b", "c").map(l.connectionOf), Seq(1, 1))
 
-  test("a call times out at its deadline and frees its place, and its late reply is reported and dropped"):
+  test("a call times out at its deadline and makes room, and its late reply is reported and dropped"):
     val l = channel(connections = 1, perConnection = 1)
     l.open(0)
     l.submit("a", CallOptions(timeout = Span.ofMillis(500)))
@@ -233,7 +233,7 @@ class ChannelStateSuite extends munit.FunSuite:
     l.open(1)
     l.submit("after")
     assertEquals(l.sentNames, Seq("after"))
-    // Those that failed wait no longer: the queue has place for two others.
+    // Failed calls wait no longer: the queue has room for two others.
     l.submit("second")
     for name <- Seq("third", "fourth", "fifth") do l.submit(name, CallOptions(whenFull = WhenFull.Wait))
     assertEquals(l.sentNames, Seq("after", "second"))

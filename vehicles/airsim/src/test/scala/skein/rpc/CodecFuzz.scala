@@ -93,7 +93,7 @@ object CodecFuzz:
   private def isLimit(reason: String): Boolean =
     Seq("nested", "a message of", "a map of").exists(reason.startsWith)
 
-  /** None where the oracle is stricter about an extension of type -1 (a time stamp) than the format. */
+  /** None if the oracle is stricter about an extension of type -1 (a time stamp) than the format. */
   private def read(frame: Array[Byte]): Option[Value] =
     try Some(Wire.unpack(frame))
     catch case _: MessageFormatException | _: MessagePackException => None

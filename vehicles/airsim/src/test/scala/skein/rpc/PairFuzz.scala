@@ -15,9 +15,10 @@ import upack.{Int32, Msg, Null}
 /** Mutated byte sequences against a live server and a live client, over loopback sockets. */
 object PairFuzz:
 
-  /** @param sequences each on a connection of its own
-    * @param closedWithReason connections that the server closed with a logged reason, as expected for each
-    * @param healthy correct answers to a well-behaved client meanwhile
+  /** @param sequences number of sequences, each on a connection of its own
+    * @param closedWithReason number of connections that the server closed with a logged reason, as expected
+    *   for each
+    * @param healthy number of correct answers to a well-behaved client meanwhile
     */
   final case class ServerFigures(sequences: Int, closedWithReason: Long, replies: Long, healthy: Long)
 
@@ -69,8 +70,8 @@ object PairFuzz:
     Await.result(server.close(), 10.seconds)
     ServerFigures(sequences, reasons, replies, healthy)
 
-  /** @param right results, each sent for exactly this call
-    * @param failed calls that ended with the correct error
+  /** @param right number of results, each sent for exactly this call
+    * @param failed number of calls that ended with the correct error
     */
   final case class ClientFigures(sequences: Int, right: Int, refused: Int, failed: Int)
 

@@ -12,12 +12,12 @@ import skein.vehicle.{GoTo, Setpoint}
   * (`COM_OBL_RC_ACT`).
   *
   * @param system 1 to 255
-  * @param home where it started: the origin of its own frame
+  * @param home position of its start: the origin of its own frame
   * @param anchor the position that its mode flies to, own frame
-  * @param enteredAt when it entered its mode
-  * @param heardAt when the last setpoint was received
-  * @param stillSince since when it stands still while it lands
-  * @param groundedAt since when it is armed and on the ground
+  * @param enteredAt time at which it entered its mode
+  * @param heardAt time at which the last setpoint was received
+  * @param stillSince while it lands, time since which it stands still
+  * @param groundedAt time since which it is armed and on the ground
   * @param hasFlown whether it has flown since it was armed
   */
 final case class Autopilot(
@@ -359,8 +359,8 @@ final case class Autopilot(
 object Autopilot:
   /** The result of a message or of passing time.
     *
-    * @param answers to the sender
-    * @param news to every peer
+    * @param answers messages to the sender
+    * @param news messages to every peer
     * @param interval the message that the sender requests at this interval, µs: −1 never, 0 as usual
     */
   final case class Heard(
@@ -370,9 +370,9 @@ object Autopilot:
       interval: Option[(Int, Double)] = None
   )
 
-  /** A command with its seven numbers; positions in degrees.
+  /** A command with its seven parameters; positions in degrees.
     *
-    * @param frame of its position, if it names one
+    * @param frame the frame of its position, if it names one
     */
   private final case class Order(command: Int, numbers: Vector[Double], frame: Option[Int]):
     def whole(index: Int): Int     = if numbers(index).isFinite then numbers(index).toInt else 0

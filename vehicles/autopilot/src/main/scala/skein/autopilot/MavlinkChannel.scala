@@ -10,7 +10,7 @@ import skein.units.*
   * @param systems the vehicles that it sees
   * @param isDatagrams whether the peer sends datagrams, each of which ends its frames, and not pieces of a
   *   stream
-  * @param mostBytes of a datagram
+  * @param mostBytes maximum size of a datagram
   */
 final class MavlinkChannel(
     val systems: Vector[Int],
@@ -57,7 +57,7 @@ final class MavlinkChannel(
   /** The earliest time at which a message is due. */
   def nextDue: Option[Span] = due.valuesIterator.minOption
 
-  /** Takes the messages that are due, by vehicle and number; each is next due one interval later. */
+  /** Takes the messages that are due, by vehicle and message number; each is next due one interval later. */
   def takeDue(now: Span): Vector[(system: Int, id: Int)] =
     val ready = due.iterator.collect { case (key, at) if at <= now => key }.toVector.sorted
     for key <- ready do
@@ -87,5 +87,5 @@ final class MavlinkChannel(
     piece = Array.emptyByteArray
 
 object MavlinkChannel:
-  /** Limit of the datagrams that wait; they take some 10 ms to encode. */
+  /** Maximum number of datagrams that wait; they take some 10 ms to encode. */
   private val MostWaiting = 64

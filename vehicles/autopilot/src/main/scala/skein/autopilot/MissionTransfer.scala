@@ -7,9 +7,9 @@ import skein.units.*
 /** Upload and download of missions by MAVLink's mission protocol, as a value: messages go in, the vehicle's
   * mission and the answers come out.
   *
-  * @param mission that the vehicle has
-  * @param upload of another mission, which replaces it once all items have been received
-  * @param home of the vehicle: items must be near it
+  * @param mission the vehicle's mission
+  * @param upload the upload of another mission, which replaces it once all items have been received
+  * @param home the vehicle's home: items must be near it
   */
 private[autopilot] final case class MissionTransfer(
     mission: Mission,
@@ -20,7 +20,7 @@ private[autopilot] final case class MissionTransfer(
   import Autopilot.text
 
   /** @param from system and component of the sender
-    * @return None where the message does not belong to the protocol
+    * @return None if the message does not belong to the protocol
     */
   def heard(message: Message, from: (system: Int, component: Int), sinceBoot: Span): Option[Told] =
     message match
@@ -93,8 +93,8 @@ private[autopilot] final case class MissionTransfer(
 private[autopilot] object MissionTransfer:
   /** The result of a message.
     *
-    * @param answers to the sender
-    * @param news to every peer
+    * @param answers messages to the sender
+    * @param news messages to every peer
     */
   final case class Told(
       next: MissionTransfer,
@@ -104,7 +104,7 @@ private[autopilot] object MissionTransfer:
 
 /** A mission being uploaded: items are requested one by one, and again if they are not received.
   *
-  * @param system of the sender
+  * @param system the sender's system number
   * @param askedAt when the next item was last requested
   */
 final case class Upload(

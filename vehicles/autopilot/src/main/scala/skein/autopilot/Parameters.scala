@@ -43,7 +43,7 @@ final case class Parameters(values: Map[String, Double] = Parameters.defaults):
 
 /** A parameter with its default and range.
   *
-  * @param default in the unit of PX4's reference
+  * @param default the default value, in the unit of PX4's reference
   */
 final case class Parameter(
     name: String,

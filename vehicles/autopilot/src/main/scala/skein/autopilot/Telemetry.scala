@@ -3,7 +3,7 @@ package skein.autopilot
 import skein.mavlink.*
 import skein.units.*
 
-/** The messages that an autopilot sends of itself and its vehicle, by their numbers. */
+/** The messages that an autopilot sends of itself and its vehicle, by message number. */
 object Telemetry:
   private val boundedInt = (number: Double) => number.max(Int.MinValue).min(Int.MaxValue).round.toInt
 
@@ -28,7 +28,7 @@ object Telemetry:
   /** The shortest interval at which any message is sent. */
   val Shortest: Span = Span.ofMillis(5)
 
-  /** Encodes a message; None where the number is not one of these messages. */
+  /** Encodes a message; None if the number is not one of these messages. */
   def of(id: Int, autopilot: Status, motion: VehicleMotion): Option[Message] =
     val state  = motion.state
     val bootMs = motion.sinceBoot.toNanos / 1_000_000

@@ -180,7 +180,7 @@ class AutopilotSuite extends munit.FunSuite:
       Vector(MissionAck(245, 190, 4))
     )
 
-  test("a position far from home is refused with the home position and the setting that changes it"):
+  test("a position far from home is refused with a message that names home and the setting that moves it"):
     val zurich  = (latitude = 473_977_420, longitude = 85_455_940)
     val item    = this.item(0, 16, 20, 5).copy(x = zurich.latitude, y = zurich.longitude)
     val mission =

@@ -7,14 +7,14 @@ import skein.vehicle.Setpoint
 
 /** ArduPilot's JSON interface to simulators (its `SIM_JSON`): a datagram with the servos' pulses arrives,
   * physics advances by one frame, and a line with the state is returned. So ArduPilot sets the pace. It
-  * receives the truth and adds its sensors' errors itself; the inertial sensors also have those of
+  * receives the true state and adds its sensors' errors itself; the inertial sensors also have those of
   * [[Sensors]].
   *
   * A frame lasts as long as ArduPilot states, in whole milliseconds. A repeated frame, whose answer was lost,
-  * gets the same bytes again. While ArduPilot is given up, physics follows the clock, and every request is
+  * gets identical bytes again. While ArduPilot is given up, physics follows the clock, and every request is
   * answered with the current state.
   *
-  * @param before how often an autopilot of this vehicle was given up before
+  * @param before number of times that an autopilot of this vehicle was given up before
   */
 final class ArduPilotInterface(sensors: Sensors, from: Span, before: Int = 0) extends AutopilotInterface:
   import ArduPilotInterface.*

@@ -15,10 +15,10 @@ enum AutopilotKind(val label: String):
 
   /** One vehicle's interface.
     *
-    * @param system its number, from 1
-    * @param from when it begins
-    * @param speed of the simulator's clock relative to the real one
-    * @param losses how often an autopilot of this vehicle was given up before
+    * @param system the vehicle's system number, from 1
+    * @param from when the interface begins
+    * @param speed rate of the simulator's clock relative to the real one
+    * @param losses number of times that an autopilot of this vehicle was given up before
     */
   def interface(
       system: Int,

@@ -15,9 +15,9 @@ import skein.vehicle.Setpoint
   * as soon as Betaflight has sent a message.
   *
   * Gyroscope, accelerometer and barometer have their errors; the attitude, which Betaflight takes from the
-  * simulator, is the truth.
+  * simulator, is the true one.
   *
-  * @param speed of the simulator's clock relative to the real one
+  * @param speed rate of the simulator's clock relative to the real one
   */
 final class BetaflightInterface(sensors: Sensors, from: Span, speed: Double = 1) extends AutopilotInterface:
   import AutopilotInterface.Step
@@ -106,8 +106,7 @@ object BetaflightInterface:
   /** Betaflight derives no rate from states this far apart. */
   private val TooFarApart = Span.ofMillis(20)
 
-  /** Limit of the real time between these two states, ms: Betaflight derives no rate from half a second on.
-    */
+  /** Greatest real time between these two states, ms: Betaflight derives no rate from half a second on. */
   private val MostApartRealMs = 400
 
   private[hil] def isPacket(bytes: Array[Byte]): Boolean = bytes.length == ServoLength

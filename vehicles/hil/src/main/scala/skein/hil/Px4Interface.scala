@@ -19,7 +19,7 @@ import skein.vehicle.{Airframe, Setpoint}
   * answered in time for a second, and for longer each further time ([[Trust]]).
   *
   * @param system the system number of sent frames
-  * @param before how often an autopilot of this vehicle was given up before
+  * @param before number of times that an autopilot of this vehicle was given up before
   */
 final class Px4Interface(system: Int, sensors: Sensors, from: Span, before: Int = 0)
     extends AutopilotInterface:
@@ -209,7 +209,7 @@ object Px4Interface:
   private val PeriodUsec    = Period.toNanos / 1000
   private val MostLateUsec  = MostLateTicks * PeriodUsec
 
-  /** Limit of the times that an autopilot that is catching up is waited for again. */
+  /** Maximum number of times that physics waits again for an autopilot that is catching up. */
   private val MostPostponed = 10
 
   private val StateId = 115

@@ -14,7 +14,7 @@ package skein.hil
   * @param pressurePa white noise of each reading of the barometer, Pa: 0.22 m
   * @param pressureDriftPa drift by the weather, Pa: a first-order Gauss-Markov process with a time constant
   *   of an hour. This value is Skein's own: it moves the altitude by 0.3 m in a minute
-  * @param positionM of each satellite fix, horizontally, m: a first-order process with 0.76 of the fix
+  * @param positionM error of each satellite fix, horizontally, m: a first-order process with 0.76 of the fix
   *   before; 1.5 times that vertically
   * @param velocityMps likewise, m/s, with 0.54 of the fix before; 1.2 times that vertically
   */
@@ -31,5 +31,5 @@ final case class SensorNoise(
 )
 
 object SensorNoise:
-  /** Sensors without errors: every reading is the truth. */
+  /** Sensors without errors: every reading is the true value. */
   val None: SensorNoise = SensorNoise(0, 0, 0, 0, 0, 0, 0, 0, 0)

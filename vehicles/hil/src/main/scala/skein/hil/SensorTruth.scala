@@ -6,13 +6,13 @@ import skein.vehicle.Airframe
 
 /** Error-free readings of a vehicle's sensors.
   *
-  * @param at on the simulator's clock
-  * @param up since the simulator's start: the clock of autopilots
-  * @param kinematics in the vehicle's own NED frame, whose origin is its start
+  * @param at sampling time, on the simulator's clock
+  * @param up time since the simulator's start: the clock of autopilots
+  * @param kinematics position and motion in the vehicle's own NED frame, whose origin is its start
   * @param accelerationNed m/s², zero for a vehicle at rest
-  * @param place where it is on the globe
-  * @param pressurePa of the air, Pa
-  * @param temperatureK of the air, K
+  * @param place the vehicle's position on the globe
+  * @param pressurePa pressure of the air, Pa
+  * @param temperatureK temperature of the air, K
   * @param jumped whether it was moved to another place, or back to its start, since the last sensor reading
   */
 final case class SensorTruth(

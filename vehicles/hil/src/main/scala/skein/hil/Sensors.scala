@@ -4,7 +4,7 @@ import skein.signal.{NormalQuantile, SplitMix64}
 import skein.units.*
 
 /** The sensors of one vehicle, with their errors. Readings depend on the seed and on earlier readings; equal
-  * seeds and equal truths give equal readings. Not thread-safe.
+  * seeds and equal input give equal readings. Not thread-safe.
   */
 final class Sensors(seed: Long, noise: SensorNoise = SensorNoise()):
   import Sensors.*

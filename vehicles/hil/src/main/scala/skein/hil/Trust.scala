@@ -5,7 +5,7 @@ package skein.hil
   * time: an autopilot that answers just often enough to be waited for again slows the others little in the
   * long run.
   *
-  * @param before how often a wait for it was in vain before it connected
+  * @param before number of waits for it that were in vain before it connected
   */
 private[hil] final class Trust(before: Int = 0):
   import Trust.*

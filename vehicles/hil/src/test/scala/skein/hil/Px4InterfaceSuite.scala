@@ -52,7 +52,7 @@ class Px4InterfaceSuite extends munit.FunSuite:
     assertEqualsDouble(gps.head.cog.toDouble, 30687, 400)
     assertEquals(gps.head.timeUsec, 1_001_000_000L)
 
-  test("the truth is sent as often as requested, and never without a request"):
+  test("the true state is sent as often as requested, and never without a request"):
     val peer               = Peer()
     def states(s: Double)  = peer.ticks(s).collect { case one: HilStateQuaternion => one }
     def ask(micros: Float) = peer.say(CommandLong(0, 0, 511, 0, 115, micros, 0, 0, 0, 0, 0))

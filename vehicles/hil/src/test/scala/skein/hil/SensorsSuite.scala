@@ -6,7 +6,7 @@ import skein.units.*
 object SensorsSuite:
   private[hil] val home = GeoLocation(47.641468, -122.140165, Metres(122))
 
-  /** The truth of a vehicle at rest, at a time since the start. */
+  /** The true state of a vehicle at rest, at a time since the start. */
   private[hil] def atRest(up: Span, velocityNed: Vector3 = Vector3.Zero): SensorTruth = SensorTruth(
     Instant.ofNanos(1_000_000_000_000L) + up,
     up,
@@ -24,7 +24,7 @@ class SensorsSuite extends munit.FunSuite:
     val mean = values.sum / values.size
     (mean, math.sqrt(values.map(value => (value - mean) * (value - mean)).sum / values.size))
 
-  test("a sensor without noise measures the truth"):
+  test("a sensor without noise measures true values"):
     val sensors = Sensors(1, SensorNoise.None)
     val truth   = atRest(Span.ofSeconds(1))
     val shown   = sensors.inertial(truth, 0.004)

@@ -6,9 +6,9 @@ import scala.compiletime.ops.int.S
 
 /** The wire layout of one field of a message, little-endian.
   *
-  * @param typeName as in the published definitions
-  * @param size of one element, bytes
-  * @param count of elements; 0 if it is not an array
+  * @param typeName name of the type in the published definitions
+  * @param size size of one element, bytes
+  * @param count number of elements; 0 if it is not an array
   * @param isExtension whether it is a later addition: such fields follow all others and are not part of the
   *   message's [[Definition.crcExtra]]
   */

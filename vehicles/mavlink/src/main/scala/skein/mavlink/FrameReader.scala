@@ -4,14 +4,14 @@ import scala.collection.mutable
 
 /** Counts of a reader.
   *
-  * @param frames valid frames of known messages
-  * @param lost frames that are missing according to the sequence numbers
-  * @param unknown frames of unknown messages, which cannot be verified
-  * @param badChecksum damaged frames, or other bytes that looked like one
-  * @param badSignature frames without a signature, with a wrong one, or replayed
-  * @param notUnderstood frames with flags that a receiver must understand
-  * @param version1 frames of MAVLink 1
-  * @param garbageBytes outside of frames
+  * @param frames number of valid frames of known messages
+  * @param lost number of frames that are missing according to the sequence numbers
+  * @param unknown number of frames of unknown messages, which cannot be verified
+  * @param badChecksum number of damaged frames, or other bytes that looked like one
+  * @param badSignature number of frames without a signature, with a wrong one, or replayed
+  * @param notUnderstood number of frames with flags that a receiver must understand
+  * @param version1 number of frames of MAVLink 1
+  * @param garbageBytes number of bytes outside of frames
   */
 final case class ReaderCounts(
     frames: Long = 0,
@@ -27,7 +27,7 @@ final case class ReaderCounts(
 /** Decodes bytes to frames; after invalid input it resumes at the next frame. Holds less than one frame. Not
   * thread-safe.
   *
-  * @param signing with it, a frame without a valid signature is refused
+  * @param signing the key: with it, a frame without a valid signature is refused
   */
 final class FrameReader(signing: Option[Signing] = None):
   import Frame.*

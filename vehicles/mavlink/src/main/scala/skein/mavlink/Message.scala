@@ -203,7 +203,7 @@ final case class CommandInt(
     z: Float
 ) extends Message
 
-/** A command with seven numbers; answered by [[CommandAck]]. */
+/** A command with seven parameters; answered by [[CommandAck]]. */
 final case class CommandLong(
     targetSystem: Int,
     targetComponent: Int,
@@ -410,7 +410,7 @@ final case class HilGps(
     yaw: Int = 0
 ) extends Message
 
-/** The truth of a simulated vehicle: degE7, mm, cm/s, and acceleration in thousandths of gravity. */
+/** The true state of a simulated vehicle: degE7, mm, cm/s, and acceleration in thousandths of gravity. */
 final case class HilStateQuaternion(
     timeUsec: Long,
     attitudeQuaternion: Vector[Float],

@@ -11,8 +11,8 @@ import scala.collection.mutable
   * [[Signing.MostStreams]] streams are kept.
   *
   * @param key 32 bytes, equal at both ends
-  * @param link its number, 0 to 255
-  * @param now in units of 10 µs since the start of 2015, UTC: see [[Signing.timeOf]]
+  * @param link the link's number, 0 to 255
+  * @param now the present time in units of 10 µs since the start of 2015, UTC: see [[Signing.timeOf]]
   */
 final class Signing(key: Array[Byte], link: Int, now: () => Long):
   import Signing.*
@@ -51,7 +51,7 @@ final class Signing(key: Array[Byte], link: Int, now: () => Long):
     sha.digest().take(6)
 
 object Signing:
-  /** Limit of the streams (system, component and link) whose times are remembered. */
+  /** Maximum number of streams (system, component and link) whose times are remembered. */
   val MostStreams = 1024
 
   private val Tolerance = 6_000_000L

@@ -23,7 +23,7 @@ class FuzzSuite extends munit.FunSuite:
         whole += read.count(_ == message)
       assert(whole < 125, s"${definition.name}: $whole of 250 were not damaged")
 
-  test("noise is skipped and counted, in single bytes as well as in one piece"):
+  test("noise gives equal frames and counts whether it is read byte by byte or in one piece"):
     val random = Random(7)
     for _ <- 1 to 200 do
       val noise            = random.nextBytes(random.nextInt(2000))

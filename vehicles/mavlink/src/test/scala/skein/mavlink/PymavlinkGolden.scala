@@ -3,7 +3,7 @@ package skein.mavlink
 import java.util.HexFormat
 import scala.io.Source
 
-/** Frames and values made by pymavlink; `pymavlink.py` beside them makes them. */
+/** Frames and values made by pymavlink; `pymavlink.py`, in their folder, makes them. */
 class PymavlinkGolden extends munit.FunSuite:
   private case class Made(name: String, isSigned: Boolean, bytes: Array[Byte], fields: Vector[String])
 

@@ -10,6 +10,6 @@ private object RandomMessage:
   def draw[A <: Message](definition: Definition[A], random: Random): A =
     val zeros = random.nextInt(definition.length + 1)
     definition.decode(Array.tabulate(definition.length)(index =>
-      // Small bytes are text too, and the floats that they make are numbers.
+      // Small bytes are valid text, and the floats that they form are numbers.
       if index < zeros then random.nextInt(0x7f).toByte else 0
     ))

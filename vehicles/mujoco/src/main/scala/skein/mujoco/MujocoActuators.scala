@@ -2,11 +2,11 @@ package skein.mujoco
 
 /** A model's actuators, and their measured effects.
   *
-  * @param lowest of each control; −∞ where it is unlimited
-  * @param highest of each control; ∞ where it is unlimited
+  * @param lowest lower limit of each control; −∞ if it is unlimited
+  * @param highest upper limit of each control; ∞ if it is unlimited
   * @param resting the value of each control closest to zero
-  * @param effects of each actuator, per unit of its control: upwards, m/s², about front, right and down,
-  *   rad/s²
+  * @param effects acceleration by each actuator per unit of its control: upwards, m/s², about front, right
+  *   and down, rad/s²
   * @param weightMps2 downward acceleration while all controls rest
   */
 private[mujoco] final class MujocoActuators(

@@ -3,8 +3,8 @@ package skein.mujoco
 import java.lang.foreign.ValueLayout.{JAVA_BYTE, JAVA_DOUBLE, JAVA_INT}
 import java.lang.foreign.{Arena, MemorySegment}
 
-/** A batch of simulations of one model: MuJoCo's `mjBatch`, stepped by the calling thread. A row of numbers
-  * is the state of one simulation. Its memory is freed once it is unreachable. Not thread-safe.
+/** A batch of simulations of one model: MuJoCo's `mjBatch`, stepped by the calling thread. The state of one
+  * simulation is a row of values. Its memory is freed once it is unreachable. Not thread-safe.
   */
 private[mujoco] final class MujocoBatch private (batch: MemorySegment, count: Int, arena: Arena):
   import MujocoBatch.*

@@ -7,7 +7,7 @@ import skein.vehicle.ControllerGains
 /** A model's body, as measured.
   *
   * @param stepS duration of a step, s
-  * @param place of the body's position and attitude in a row; likewise the next ones
+  * @param place the part of a row that holds the body's position and attitude; likewise the next ones
   * @param standsAtM the body's height in the model when it stands on the ground, m
   * @param hoveringRow state after a long hover
   * @param standingRow state on the ground

@@ -109,7 +109,7 @@ private object MujocoOracleLiveSuite:
       state.lagged0 = control; state.lagged1 = control; state.lagged2 = control; state.lagged3 = control
       state.thrust0 = control; state.thrust1 = control; state.thrust2 = control; state.thrust3 = control
     else
-      // What Verlet's method takes for the acceleration of the step before the first.
+      // The acceleration that Verlet's method assumes for the step before the first.
       val drag = dragNed(fall.velocityNed, Quaternion.Identity, altitudeM) * (1 / airframe.massKg)
       state.ax = drag.x; state.ay = drag.y; state.az = drag.z + Airframe.Gravity
       state.wxDot =

@@ -6,11 +6,11 @@ import java.nio.file.Path
 import skein.units.Decimals.fixed
 
 /** Steps a second on one thread: vehicles of a model with their flight controllers and a new velocity every
-  * 100 ms, beside MuJoCo's own batch, which makes equally many steps in one call, with rotor-like controls.
-  * The two take turns; the best of several rounds counts for each.
+  * 100 ms, compared with MuJoCo's own batch, which makes equally many steps in one call, with rotor-like
+  * controls. The two take turns; the best of several rounds counts for each.
   *
   * @param file a model
-  * @param vehicles side by side
+  * @param vehicles number of vehicles in the batch
   */
 @main def mujocoRates(file: String, vehicles: Int, steps: Int, rounds: Int): Unit =
   val model = MujocoModel.read(Path.of(file)).fold(sys.error, identity)

@@ -14,7 +14,7 @@ import skein.units.Decimals.fixed
   *   setpoints to stay in place are sent as often, for as long as the link is open. PX4 leaves offboard below
   *   2 Hz
   * @param sampleEvery interval of motion samples that the vehicle is requested to send
-  * @param timeout of every answer
+  * @param timeout time-out of every answer
   * @param farthestM the geofence: greatest horizontal distance from the flight's origin, m; a vehicle that
   *   leaves it holds its position and accepts no further actions
   * @param highestM greatest height above the flight's origin, m
@@ -36,10 +36,10 @@ final case class OffboardSettings(
   * A TIMESYNC follows every setpoint. Its answer confirms the setpoint's receipt and states its time on the
   * vehicle's clock: so an action counts as replaced when the vehicle has its successor.
   *
-  * @param originNed of the vehicle's own frame, in the flight's
+  * @param originNed origin of the vehicle's own frame, in the flight's
   * @param asked actions without an answer, the oldest first
   * @param readers tokens of requests for the next sample
-  * @param firmware by its heartbeat; determines the modes
+  * @param firmware the autopilot's firmware, by its heartbeat; determines the modes
   * @param lastSync the newest TIMESYNC's time; each has a later one
   */
 final case class Control(
@@ -81,8 +81,8 @@ final case class Control(
         Option.when(estimate.newest.isEmpty)("ODOMETRY, or LOCAL_POSITION_NED and ATTITUDE_QUATERNION")
       ).flatten
 
-  /** The reason why the vehicle follows no setpoints: it is disarmed, or in a mode that somebody else chose.
-    * None if it follows them.
+  /** The reason why the vehicle follows no setpoints: it is disarmed, or in a mode that it was switched to by
+    * others. None if it follows them.
     */
   def taken: Option[String] = firmware.toOption.flatMap: own =>
     if !isArmed then Some(s"$name is disarmed")
@@ -344,7 +344,7 @@ object Control:
 
   /** A new state, with messages to send.
     *
-    * @param answers by the tokens of their requests
+    * @param answers the answers, by the tokens of their requests
     */
   final case class Step(
       next: Control,
@@ -363,7 +363,7 @@ object Control:
 
   /** A command in progress.
     *
-    * @param mode that it sets
+    * @param mode the mode that it sets, if any
     */
   final case class Order(
       token: Long,
@@ -381,7 +381,7 @@ object Control:
 
   val Tick: Span = Span.ofMillis(10)
 
-  /** Limit of the times that a command is sent within its timeout. */
+  /** Maximum number of times that a command is sent within its timeout. */
   val MostTries = 8
 
   private val MostReaders = 8

@@ -3,7 +3,7 @@ package skein.offboard
 import skein.mavlink.CommonDialect.ModeFlag
 import skein.mavlink.FlightMode
 
-/** An autopilot's firmware with its numbers of modes.
+/** An autopilot's firmware with its mode numbers.
   *
   * @param offboard the mode in which it follows setpoints, as in its heartbeat
   * @param holding the mode in which it stays in place

@@ -17,7 +17,8 @@ import skein.units.*
   * and a TIMESYNC after every setpoint.
   *
   * @param systems the vehicles' numbers, in the flight's order
-  * @param origin of the flight's frame; without it, the origin of the first vehicle's own frame
+  * @param origin geographic origin of the flight's frame; without it, the origin of the first vehicle's own
+  *   frame
   */
 final class MavlinkLink private (
     systems: Vector[Int],
@@ -144,7 +145,7 @@ object MavlinkLink:
     */
   private val Unneeded = Vector(24, 30, 33)
 
-  /** Limit of the datagrams that wait for the connection. */
+  /** Maximum number of datagrams that wait for the connection. */
   private val Waiting = 256
 
   /** Opens a link and waits for all vehicles.

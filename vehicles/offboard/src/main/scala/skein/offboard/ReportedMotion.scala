@@ -7,7 +7,7 @@ import skein.units.*
 /** A vehicle's motion as it reports it, in its own frame: by ODOMETRY, or else by LOCAL_POSITION_NED and the
   * newest ATTITUDE_QUATERNION.
   *
-  * @param newest with its time on the vehicle's clock
+  * @param newest the newest state, with its time on the vehicle's clock
   */
 final case class ReportedMotion(
     newest: Option[(state: Kinematics, at: Instant)] = None,

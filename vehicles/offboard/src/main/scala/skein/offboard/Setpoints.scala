@@ -12,8 +12,8 @@ private[offboard] object Setpoints:
   /** The setpoint message of an action; None for actions that are modes of the autopilot: hovering and
     * landing.
     *
-    * @param state of the vehicle, in its own frame
-    * @param originNed of that frame, in the flight's
+    * @param state the vehicle's state, in its own frame
+    * @param originNed origin of that frame, in the flight's
     */
   def of(action: Action, state: Kinematics, originNed: Vector3, system: Int): Option[Message] = action match
     case Action.Velocity(v, yaw) =>

@@ -5,9 +5,9 @@ import skein.units.*
 
 /** A vehicle's clock against the controller's, by TIMESYNC.
   *
-  * @param latestLeg of the newest exchange: the vehicle's time of its answer minus the controller's time of
-  *   the request. It contains the clocks' offset
-  * @param exchanges so far
+  * @param latestLeg leg of the newest exchange: the vehicle's time of its answer minus the controller's time
+  *   of the request. It contains the clocks' offset
+  * @param exchanges number of exchanges so far
   */
 final case class VehicleClock(alignment: ClockAlignment, latestLeg: Span, exchanges: Int = 1):
 
@@ -22,13 +22,13 @@ final case class VehicleClock(alignment: ClockAlignment, latestLeg: Span, exchan
     * it was taken. So the request time is never later than the sample, and its delay has the link's true
     * distribution.
     *
-    * @param shift of the vehicle's clock to the flight's
-    * @param doubt of that shift
+    * @param shift the flight's clock minus the vehicle's
+    * @param doubt uncertainty of that shift
     */
   def stamped[A](value: A, sampledAt: Instant, receivedAt: Instant, shift: Span, doubt: Span): Stamped[A] =
     Stamped(value, sampledAt + shift, (sampledAt - latestLeg - doubt).min(receivedAt), receivedAt)
 
-  /** The shift from this clock's times to another's, with its uncertainty. Both are zero where the two may be
+  /** The shift from this clock's times to another's, with its uncertainty. Both are zero if the two may be
     * one clock, as for vehicles of one simulator.
     */
   def shiftTo(other: VehicleClock): (shift: Span, doubt: Span) =

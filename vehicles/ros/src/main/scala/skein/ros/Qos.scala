@@ -4,7 +4,7 @@ package skein.ros
   * every subscription, and a best-effort subscription takes from every publisher.
   *
   * @param isReliable whether lost messages are sent again
-  * @param depth limit of the messages kept for a reader that is behind
+  * @param depth maximum number of messages kept for a reader that is behind
   */
 final case class Qos(isReliable: Boolean, depth: Int):
   require(depth > 0, s"depth: expected at least 1, came $depth")

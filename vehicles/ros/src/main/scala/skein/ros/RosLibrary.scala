@@ -65,7 +65,7 @@ private[ros] final class RosLibrary private (folders: Vector[Path], rcl: SymbolL
 
   /** A function that returns a struct by value.
     *
-    * @param room bytes that it takes at most; more than 16, so that every platform returns it in memory
+    * @param room upper bound of its size, bytes; more than 16, so that every platform returns it in memory
     */
   private def struct(name: String, room: Int): SegmentAllocator => MemorySegment =
     val function = handle(name, FunctionDescriptor.of(words(room / 8)))

@@ -46,7 +46,7 @@ final class RosNode private (
 
   /** Publishes a topic.
     *
-    * @param topic as `/drone_1/odom`
+    * @param topic its name, such as `/drone_1/odom`
     * @return Left if the message's package is not installed, or ROS 2 rejects the topic, with the reason
     */
   def publish[A](topic: String, qos: Qos = Qos.Reliable)(using
@@ -247,8 +247,8 @@ object RosNode:
   private val NumberAt    = 16L
   private val PublisherAt = 40L
 
-  /** Limit of the difference between the middleware's clock and this process's; some middleware states no
-    * time.
+  /** Greatest accepted difference between the middleware's clock and this process's; some middleware states
+    * no time.
     */
   private val MostApart = Span.ofSeconds(10)
 
@@ -263,7 +263,7 @@ object RosNode:
   private val MostChars  = 4096L
   private val MostNotes  = 16
 
-  /** Limit of one topic's messages that are received before another topic's turn. */
+  /** Maximum number of one topic's messages that are received before another topic's turn. */
   private val MostAtOnce = 64
 
   private val Patience   = Span.ofMillis(100)

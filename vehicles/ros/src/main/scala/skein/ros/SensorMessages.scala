@@ -15,7 +15,7 @@ object SensorMessages:
 
   /** Where a camera's optical frame is in the world (x right, y down, z forward; REP 103).
     *
-    * @param orientation from the camera's front, right, down to world NED
+    * @param orientation rotation from the camera's front, right, down to world NED
     */
   def optical(at: Instant, frame: String, positionNed: Ned, orientation: Rotation): TransformStamped =
     VehicleMessages.transform(at, frame, positionNed, RosFrames.toEnu(orientation) * FluFromOptical)
@@ -29,7 +29,7 @@ object SensorMessages:
     pixels.map(image(header, seen.width, seen.height, _, _))
 
   /** @param pixels rows from the top, without gaps
-    * @param encoding by its name in ROS, such as `bgr8`
+    * @param encoding its name in ROS, such as `bgr8`
     */
   def image(header: Header, width: Int, height: Int, encoding: String, pixels: Array[Byte]): Image =
     val step = if height > 0 then pixels.length / height else 0
@@ -58,7 +58,7 @@ object SensorMessages:
       RegionOfInterest(0, 0, 0, 0, false)
     )
 
-  /** A cloud of `count` points; `point` is each one's place in the header's frame, m. */
+  /** A cloud of `count` points; `point` is each one's position in the header's frame, m. */
   def points(header: Header, count: Int)(point: Int => Ned): PointCloud2 =
     val bytes = ByteBuffer.allocate(count * PointBytes).order(ByteOrder.LITTLE_ENDIAN)
     for number <- 0 until count do
@@ -78,7 +78,7 @@ object SensorMessages:
 
   /** A scan as a cloud, in the world's frame or in the lidar's own, and where that is in the world.
     *
-    * @param frame the lidar's
+    * @param frame name of the lidar's frame
     * @param isLocal whether its points are in the lidar's frame, else in the vehicle's world frame
     * @param startNed origin of that frame
     */

@@ -15,13 +15,13 @@ import skein.units.{Clock as OwnClock, Expect, Instant, Radians, Span}
   * `/NAME/CAMERA/camera_info`, both also below `depth` and `segmentation`, all of one instant; and
   * `/NAME/LIDAR/points`; each camera and lidar with its frame in `/tf`. They are requested every 100 ms of
   * simulated time, by AirSim's wire, while something subscribes. If the last image or scan of a sensor has
-  * not come by then, one is left out, and counted.
+  * not arrived by then, one is left out, and counted.
   */
 final class SimulatedSensors private (sensors: Vector[SimulatedSensors.Sensor], end: () => Unit)
     extends AutoCloseable:
   private var nextAt = Instant.Epoch
 
-  /** Images and scans that were left out, because the last one of the sensor had not come. */
+  /** Images and scans that were left out, because the sensor's last one had not arrived. */
   def skipped: Long = sensors.map(_.skipped.get).sum
 
   /** The first failure of each sensor, with its topic. */
@@ -41,8 +41,8 @@ object SimulatedSensors:
 
   /** Opens the topics of the cameras that the settings list, or of `front_center`, and of the lidars.
     *
-    * @param simulator its address
-    * @param frames where transforms go, if they are published
+    * @param simulator the simulator's address
+    * @param frames receives the transforms, if they are published
     * @return Left if ROS 2 cannot publish them
     */
   def open(
@@ -59,8 +59,8 @@ object SimulatedSensors:
 
   /** A vehicle's sensors that are published.
     *
-    * @param cameras their names
-    * @param lidars names, and whether their points are in their own frame
+    * @param cameras names of the cameras
+    * @param lidars names of the lidars, and whether their points are in their own frame
     */
   private[ros] final case class Carried(
       vehicle: VehicleSettings,
@@ -125,7 +125,7 @@ object SimulatedSensors:
 
   /** A kind of images of a camera.
     *
-    * @param below the topics' place below the camera's
+    * @param below path of the topics below the camera's
     */
   private enum Sight(val below: String, val kind: ImageKind, val encoding: Encoding):
     case Colour       extends Sight("", ImageKind.Scene, Encoding.Raw)
@@ -210,7 +210,7 @@ object SimulatedSensors:
     @volatile var failure: Option[String] = None
 
     def look(): Unit =
-      // A publisher in work is not asked, which would wait for it.
+      // A publisher in use is not queried, since that would wait for it.
       if isBusy.get then skipped.incrementAndGet(): Unit
       else if isRead() then
         isBusy.set(true)

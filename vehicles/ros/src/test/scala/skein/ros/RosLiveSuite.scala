@@ -34,7 +34,7 @@ class RosLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
         )
         assert(ended.contains("package tf2_msgs for tf2_msgs/msg/TFMessage, it is not installed"), ended)
 
-  test("with a clock that waits for commands, a node flies equal places twice, at ten times real time"):
+  test("with a clock that waits for commands, a node flies equal tracks twice, at ten times real time"):
     conclusive:
       def flown() =
         var said = ""
@@ -49,7 +49,7 @@ class RosLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
       val ended = serving(speed = 1)(run("see_sensors.py", "5"): Unit)
       assert(ended.contains("notes: \n") && ended.endsWith("ended"), ended)
 
-  test("garbage, foreign frames and foreign types are refused and said, and the vehicles still fly"):
+  test("garbage, foreign frames and foreign types are refused and reported, and the vehicles still fly"):
     conclusive:
       val ended = serving(speed = 1):
         run("disturb.py", "1000"): Unit

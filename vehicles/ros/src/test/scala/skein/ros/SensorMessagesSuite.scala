@@ -58,7 +58,7 @@ class SensorMessagesSuite extends munit.FunSuite:
   private def near(one: Vector3, other: Vector3): Unit =
     assertEqualsDouble((one - other).norm, 0, 1e-5, s"$one, $other")
 
-  test("a lidar's points are where its frame in /tf puts them, and those of the world's where they are"):
+  test("a lidar's points are where its frame in /tf puts them, and points of the world stay unchanged"):
     // It heads east, rolled by a quarter turn, so that its right points down.
     val pose  = Quaternion.ofYaw(math.Pi / 2) * Quaternion(math.sqrt(0.5), math.sqrt(0.5), 0, 0)
     val place = Vector3(3, -2, -5)
@@ -93,7 +93,7 @@ class SensorMessagesSuite extends munit.FunSuite:
     val optical              = Vector3((u - k(2)) / k(0), (v - k(5)) / k(4), 1) * depth
     near(inWorld(frame, optical), RosFrames.swapWorld(place + Vector3(-2, 10, 1)))
 
-  test("sensors whose topics would be one are refused, and one that would take the body's frame"):
+  test("sensors with coinciding topics are refused, and one that would take the body's frame"):
     def mistake(cameras: String, lidar: String) =
       val text = s"""{ "SettingsVersion": 1.2, "Vehicles": { "a": { "VehicleType": "SimpleFlight",
         "Cameras": { $cameras }, "Sensors": { "$lidar": { "SensorType": 6, "Enabled": true } } } } }"""

@@ -43,8 +43,8 @@ private[ros] object ServedProcess:
 
   /** Starts it, and waits until it serves.
     *
-    * @param port of AirSim's wire
-    * @param stepMs after which the clock waits for commands; 0: never
+    * @param port port of AirSim's wire
+    * @param stepMs interval at which the clock waits for commands, ms; 0: never
     */
   def start(variables: Map[String, String], speed: Double, port: Int, stepMs: Int = 0): ServedProcess =
     start(program(variables, "serveOnRos", speed.toString, port.toString, stepMs.toString))

@@ -2,12 +2,12 @@ package skein.scene
 
 import skein.units.{Quaternion, Vector3}
 
-/** Vehicles at their places at one instant, as objects. It stores [[Bodies.Numbers]] numbers for each vehicle
+/** Vehicles at their places at one instant, as objects. It stores [[Bodies.Numbers]] values for each vehicle
   * and makes an object only when one is read, because every image that waits to be drawn holds such a
   * sequence.
   *
-  * @param shapes by vehicle
-  * @param places of each: north, east, down, m, then the orientation's w, x, y, z
+  * @param shapes the shape of each vehicle
+  * @param places position and orientation of each vehicle: north, east, down, m, then w, x, y, z
   */
 final class Bodies(shapes: IndexedSeq[Bodies.Shaped], places: Array[Double]) extends IndexedSeq[SceneObject]:
   require(

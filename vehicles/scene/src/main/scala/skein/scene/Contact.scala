@@ -4,9 +4,9 @@ import skein.units.Vector3
 
 /** The contact of a body with a scene's object.
   *
-  * @param normal of unit length, away from the object
+  * @param normal unit normal, away from the object
   * @param depthM distance along it that ends the contact
-  * @param point of the body's surface, the deepest within the object
+  * @param point the point of the body's surface that is deepest within the object
   */
 final case class Contact(item: Int, normal: Vector3, depthM: Double, point: Vector3)
 
@@ -16,7 +16,7 @@ object Contact:
     * the faces' normals of both, not the edges' products, so that a box counts as touching a little before
     * its edge meets another edge.
     *
-    * @param half of the box's lengths, m
+    * @param half half lengths of the box, m
     */
   def of(scene: Scene, box: Placement, half: Vector3): Option[Contact] =
     scene.solids.iterator.flatMap(touch(_, box, half)).maxByOption(_.depthM)

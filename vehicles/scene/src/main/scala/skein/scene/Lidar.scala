@@ -5,10 +5,10 @@ import skein.units.Vector3
 
 /** A lidar that turns around its down axis. The defaults are AirSim's for multirotors.
   *
-  * @param place on the vehicle
+  * @param place placement on the vehicle
   * @param rangeM objects beyond it give no point
-  * @param horizontalFovDeg from, to, clockwise from the front; other points are dropped, as in AirSim, and
-  *   where both are equal none is dropped
+  * @param horizontalFovDeg first and last angle, clockwise from the front; other points are dropped, as in
+  *   AirSim; none is dropped if both are equal
   * @param noiseM standard deviation of the range
   * @param fresh whether a scan is taken on request, of that instant, instead of once a turn
   */
@@ -57,8 +57,8 @@ final case class Lidar(
   /** The points that a scan from a vehicle at this place in the world hits, with their items.
     *
     * @param except the item that the vehicle is
-    * @param origin in the world of the points' frame; the sensor's own frame without it
-    * @param count of the scan: selects its noise
+    * @param origin origin of the points' frame in the world; unused if points are in the sensor's own frame
+    * @param count index of the scan: selects its noise
     */
   def scan(moment: Moment, vehicle: Placement, except: Int, origin: Vector3, count: Long): Lidar.Points =
     val sensor = vehicle.outside(place)
@@ -93,10 +93,10 @@ final case class Lidar(
     Lidar.Points(java.util.Arrays.copyOf(xyz, 3 * found), java.util.Arrays.copyOf(items, found))
 
 object Lidar:
-  /** Limit of the rays in one scan, as in AirSim. */
+  /** Maximum number of rays in one scan, as in AirSim. */
   val MostRays = 100_000
 
-  /** @param xyz three numbers a point, m
-    * @param items one a point
+  /** @param xyz x, y and z of each point, m
+    * @param items the item that each point is on
     */
   final case class Points(xyz: Array[Float], items: Array[Int])

@@ -7,7 +7,7 @@ import skein.units.Vector3
   */
 final class Moment(val scene: Scene, val vehicles: IndexedSeq[SceneObject]):
 
-  // Made by whoever looks at them: a moment waits to be drawn, with hundreds of others.
+  // Made on first use: hundreds of moments may wait to be drawn.
   private[scene] lazy val solids: Vector[Solid] =
     scene.solids ++ vehicles.zipWithIndex.flatMap((thing, index) => thing.solids(itemOf(index)))
 

@@ -15,13 +15,13 @@ final class Placement(val position: Vector3, val orientation: Quaternion = Quate
   val right: Vector3 = Vector3(2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x))
   val down: Vector3  = Vector3(2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y))
 
-  /** Transforms a position from the own to the outer frame. */
+  /** Transforms a position from this frame to the outer one. */
   def outside(own: Vector3): Vector3 = position + turned(own)
 
-  /** Rotates a direction from the own to the outer frame. */
+  /** Rotates a direction from this frame to the outer one. */
   def turned(own: Vector3): Vector3 = front * own.x + right * own.y + down * own.z
 
-  /** Transforms a position from the outer to the own frame. */
+  /** Transforms a position from the outer frame to this one. */
   def inside(there: Vector3): Vector3 =
     val from = there - position
     Vector3(from.dot(front), from.dot(right), from.dot(down))

@@ -4,8 +4,8 @@ import skein.units.Vector3
 
 /** A named object in the world, made of convex parts.
   *
-  * @param place in the world: north, east, down, m
-  * @param id for segmentation, 0 to 255; None: derived from its name
+  * @param place placement in the world: north, east, down, m
+  * @param id segmentation id, 0 to 255; None: derived from its name
   */
 final case class SceneObject(
     name: String,
@@ -23,7 +23,7 @@ final case class SceneObject(
     parts.map(part => Solid(item, part.shape, place.outside(part.at), part.rgb))
 
 object SceneObject:
-  /** @param at in its object's frame
+  /** @param at placement in its object's frame
     * @param rgb 0xrrggbb
     */
   final case class Part(shape: Shape, at: Placement, rgb: Int)

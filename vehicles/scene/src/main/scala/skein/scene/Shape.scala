@@ -4,13 +4,13 @@ import skein.units.Vector3
 
 /** A convex shape around its own origin: front, right, down, m. */
 enum Shape:
-  /** @param half of the box's lengths, m */
+  /** @param half half lengths of the box, m */
   case Box(half: Vector3)
 
   /** An upright pole with eight sides.
     *
-    * @param radiusM to its edges
-    * @param halfM of its height
+    * @param radiusM radius to its edges, m
+    * @param halfM half of its height, m
     */
   case Pole(radiusM: Double, halfM: Double)
 

@@ -4,7 +4,7 @@ import skein.units.Vector3
 
 /** A convex body in the world, as faces. Immutable.
   *
-  * @param item that it is a part of, by [[Moment]]'s numbers
+  * @param item the item that it is a part of, by [[Moment]]'s numbering
   * @param corners x, y, z of each, NED, m
   */
 final private[skein] class Solid private (
@@ -38,7 +38,7 @@ private[skein] object Solid:
     *
     * @param nx unit normal outwards; inside is where n·p ≤ `d`
     * @param loop corners, counter-clockwise seen from outside
-    * @param rgb in the scene's light, 0xrrggbb
+    * @param rgb colour in the scene's light, 0xrrggbb
     */
   final class Face(
       val nx: Double,
@@ -52,7 +52,7 @@ private[skein] object Solid:
 
   /** Cells painted on a face.
     *
-    * @param origin of the upper left cell's upper left corner
+    * @param origin upper left corner of the upper left cell
     * @param across vector to the next column's corner, divided by the squared length of a cell, so that its
     *   product with a position is the position's column; `down` likewise for rows
     */

@@ -15,7 +15,7 @@ import upack.*
   *   - A string may be sent as str or as bin, which old clients send.
   *   - A map's missing keys keep their defaults and unknown keys are skipped, at any depth; a map with a key
   *     that is no string, or another kind of value in its place, is refused.
-  *   - A refusal is reported as `std::bad_cast`, without its place.
+  *   - A refusal is reported as `std::bad_cast`, without its position.
   *
   * Unlike AirSim's server, this refuses numbers that are not finite, or too large for a 32-bit float
   * argument, or vectors and positions beyond a limit: they would corrupt physics for good.

@@ -8,7 +8,7 @@ import skein.rpc.CallLines
   * less than the machine has processors at a time, and serves the clients in turn, so that no client waits
   * for another's whole queue. The queue is bounded by the calls that a client may have unanswered.
   *
-  * @param threads that may block
+  * @param threads execute the work, which may block
   */
 private[simulator] final class Beside(
     threads: Executor,

@@ -5,7 +5,7 @@ import skein.units.{Quaternion, Vector3}
 
 /** A vehicle's camera: its mount, lens and film.
   *
-  * @param position on the vehicle, front right down, m
+  * @param position mounting position on the vehicle, front right down, m
   * @param orientation relative to the vehicle
   * @param distortion K1, K2, K3, P1, P2 of the Brown-Conrady model
   */

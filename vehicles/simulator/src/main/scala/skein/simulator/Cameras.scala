@@ -5,7 +5,7 @@ import skein.units.{Quaternion, Vector3}
 
 /** The vehicles' cameras: AirSim's and those of the settings, as clients have changed them.
   *
-  * @param equipment of the settings
+  * @param equipment the cameras of the settings
   */
 final private[simulator] class Cameras(equipment: SensorSettings):
   private val changed  = mutable.Map.empty[(Int, String), Camera]
@@ -19,8 +19,7 @@ final private[simulator] class Cameras(equipment: SensorSettings):
       vehicle.cameras.places.contains(own) || equipment.cameras.get(called).exists(_.contains(own))
     )(own)
 
-  /** @param index of the vehicle
-    */
+  /** @param index the vehicle's index */
   def apply(index: Int, vehicle: SimulatedVehicle, name: String): Camera =
     changed.getOrElse((index, name), initial(vehicle, name))
 

@@ -3,7 +3,7 @@ package skein.simulator
 import skein.scene.{Placement, SceneObject, Shape}
 import skein.units.{Quaternion, Vector3}
 
-/** A car's shape: a body and a cabin. Its lengths are a BMW 320i's, as `SingleTrack`'s. */
+/** A car's shape: a body and a cabin. Its dimensions are those of a BMW 320i, as in `SingleTrack`. */
 private[simulator] object CarBody:
   import SceneObject.Part
 

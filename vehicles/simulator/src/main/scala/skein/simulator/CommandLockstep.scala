@@ -5,12 +5,13 @@ import skein.units.*
 
 /** Lets the simulator's clock wait for commands with stamps of it. From the first on, it stops every `step`
   * until each vehicle that was commanded has a command stamped then or later. Commands act at stops, so
-  * neither the machine's load nor the clock's speed changes what is flown. At the first stop it stands for
-  * [[CommandLockstep.Settling]] of real time, in which nodes take what has queued while it ran.
+  * neither the machine's load nor the clock's speed changes the flight. At the first stop it stands for
+  * [[CommandLockstep.Settling]] of real time, in which nodes handle the messages that queued while it ran.
   *
   * A command stamped before another one of its vehicle, by whichever topic, is left out: it is late.
   *
-  * It no longer waits if none has come for [[CommandLockstep.Patience]] of real time, until the next command.
+  * It no longer waits if none has arrived for [[CommandLockstep.Patience]] of real time, until the next
+  * command.
   *
   * @param physics the step of physics, of which the first stop is a whole number after the start
   * @param now the simulator's clock, now at its start
@@ -32,12 +33,12 @@ private[simulator] final class CommandLockstep(step: Span, physics: Span, now: (
   /** Number of stops at which commands were awaited in vain. */
   def missed: Long = abandoned
 
-  /** Number of commands that were left out, since a later stamp had come. */
+  /** Number of commands that were left out, because a later stamp had arrived. */
   def late: Long = overtaken
 
   /** Receives a command with a stamp of the past; `perform` is called at a stop.
     *
-    * @param stamp on the simulator's clock
+    * @param stamp the command's stamp, on the simulator's clock
     */
   def heard(vehicle: Int, stamp: Instant)(perform: => Unit): Unit =
     if newest.get(vehicle).exists(_ > stamp) then overtaken += 1

@@ -14,7 +14,7 @@ private[simulator] final class GridFolder(folder: Path):
 
   private val isBusy = AtomicBoolean()
 
-  /** @param path from a client: a name in the folder, or a path to one
+  /** @param path the client's path: a name in the folder, or a path to one
     * @return the file, or why none is written there
     */
   def file(path: String): Either[String, Path] =
@@ -59,7 +59,7 @@ private[simulator] final class GridFolder(folder: Path):
         files.filter(_.toString.endsWith(Ending)).limit(Most.toLong).count < Most
 
 private[simulator] object GridFolder:
-  /** Limit of the grids in the folder; a grid has a few MB at most. */
+  /** Maximum number of grids in the folder; a grid has a few MB at most. */
   val Most = 100
 
   private val Ending = ".binvox"

@@ -9,7 +9,7 @@ import skein.link.Address
   * @param ports one for each vehicle, in order. PX4's ports use the simulator's own transport, which is TCP
   *   outside tests, the others use UDP. Vehicles without a port have no autopilot
   * @param stateTo address at which Betaflight receives the state
-  * @param seed of the sensors' noise; each vehicle has its own
+  * @param seed seed of the sensors' noise; each vehicle has its own
   */
 final case class HilSettings(
     autopilot: AutopilotKind,

@@ -9,7 +9,7 @@ import skein.vehicle.{PathFollowing, Setpoint}
   * actions until these end, another one replaces them, or a client moves or resets the vehicle. Then, or once
   * no action is left, a vehicle in the air holds its position, as after any move.
   *
-  * @param step after which the clock waits for commands ([[CommandLockstep]]); without one it does not
+  * @param step interval at which the clock waits for commands ([[CommandLockstep]]); without one it does not
   */
 private[simulator] final class InProcess(
     simulation: Simulation,

@@ -4,8 +4,8 @@ import skein.link.Address
 
 /** The ports on which the vehicles speak MAVLink.
   *
-  * @param listen for all vehicles, by the simulator's own transport, which is TCP outside tests
-  * @param udp by datagrams, whatever the transport
+  * @param listen address for all vehicles, by the simulator's own transport, which is TCP outside tests
+  * @param udp ports for datagrams, whatever the transport
   * @param firstSystem the first vehicle's system number
   */
 final case class MavlinkSettings(
@@ -17,7 +17,7 @@ final case class MavlinkSettings(
 /** A UDP port of some vehicles. It answers every peer that sends to it.
   *
   * @param tells a peer that receives messages without having sent one
-  * @param systems of the vehicles; empty: all
+  * @param systems system numbers of the vehicles; empty: all
   */
 final case class MavlinkPort(at: Address, tells: Option[Address] = None, systems: Vector[Int] = Vector.empty)
 
@@ -26,8 +26,8 @@ object MavlinkSettings:
     * 14550, a program vehicle `i` at 14540 + i, both on this machine; and a peer that sends to 18570 reaches
     * all, too.
     *
-    * @param instance the first vehicle's, as PX4 counts: it is added to `i`, to 18570 and to the system
-    *   numbers
+    * @param instance the first vehicle's instance, as PX4 counts: it is added to `i`, to 18570 and to the
+    *   system numbers
     */
   def asPx4(vehicles: Int, host: String = "127.0.0.1", instance: Int = 0): MavlinkSettings = MavlinkSettings(
     udp =

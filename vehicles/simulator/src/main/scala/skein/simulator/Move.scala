@@ -10,7 +10,7 @@ import skein.vehicle.{PathFollowing, Setpoint}
 private[simulator] trait Move:
   /** Runs one iteration of AirSim's loop.
     *
-    * @param elapsed since the move began; zero in the first iteration
+    * @param elapsed time since the move began; zero in the first iteration
     */
   def turn(vehicle: SimulatedMultirotor, elapsed: Span): MoveProgress
 
@@ -71,7 +71,7 @@ private[simulator] object Move:
     val radians = math.toRadians(yaw.yaw_or_rate)
     if yaw.is_rate then goal.withYawRate(radians) else goal.withYaw(radians)
 
-  /** The yaw mode towards the direction of travel, if the drivetrain asks for it. */
+  /** The yaw mode towards the direction of travel, if the drivetrain requires it. */
   def facing(drivetrain: Int, yaw: YawMode, travelNed: Vector3): YawMode =
     if drivetrain != ForwardOnly || yaw.is_rate then yaw
     else if travelNed.norm <= PathFollowing.DistanceAccuracyM then YawMode.Still

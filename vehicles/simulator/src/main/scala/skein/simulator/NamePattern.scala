@@ -25,13 +25,13 @@ final private[simulator] class NamePattern private (pattern: Pattern):
 private[simulator] object NamePattern:
   private val LongestPattern = 1000
 
-  /** Limit of an expression's letters after RE2/J has written out its counted repetitions. */
+  /** Maximum number of an expression's letters after RE2/J has written out its counted repetitions. */
   private val MostWrittenOut = 20_000
 
   /** Greatest nesting of an expression's groups. */
   private val Deepest = 50
 
-  /** Limit of the instructions executed for one request. */
+  /** Maximum number of instructions executed for one request. */
   private val MostEffort = 1_000_000L
 
   private val CodePoint = """(?<!\\)((?:\\\\)*)\\u([0-9A-Fa-f]{4})""".r
@@ -56,7 +56,7 @@ private[simulator] object NamePattern:
       ))
     catch
       case refused: PatternSyntaxException =>
-        // RE2/J finds a parenthesis too many on its stack alone.
+        // RE2/J reports a surplus parenthesis as an internal error of its stack.
         wrong(
           if refused.getDescription.contains("internal") then "unexpected )" else refused.getDescription,
           text

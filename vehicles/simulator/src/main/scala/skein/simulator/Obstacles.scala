@@ -14,9 +14,9 @@ final private[simulator] class Obstacles(startNed: Vector3):
   private var freeAt = Vector3.Zero
   private var freeM  = 0.0
 
-  /** @param centre of the box around the vehicle, in the world
-    * @param half of the box's lengths, m
-    * @param orientation of the vehicle; computed only where something is near
+  /** @param centre centre of the box around the vehicle, in the world
+    * @param half half lengths of the box, m
+    * @param orientation the vehicle's orientation; computed only if something is near
     */
   def touched(scene: Scene, centre: Vector3, half: Vector3)(orientation: => Quaternion): Option[Contact] =
     if (scene eq freeOf) && (centre - freeAt).norm < freeM then None
@@ -28,7 +28,7 @@ final private[simulator] class Obstacles(startNed: Vector3):
 
   /** Converts a contact to the touch that clients receive.
     *
-    * @param positionNed of the vehicle, in its own frame
+    * @param positionNed the vehicle's position, in its own frame
     */
   def told(scene: Scene, contact: Contact, at: Instant, positionNed: Vector3): Touch = Touch(
     at,

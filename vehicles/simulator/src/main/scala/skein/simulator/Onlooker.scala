@@ -9,7 +9,7 @@ trait Onlooker:
   /** Receives the vehicles' true motions every 20 ms of simulated time, at exactly that time. Runs on the
     * simulation's own thread, so it must return soon. It is not called while the simulator is paused.
     *
-    * @param at on the simulator's clock
+    * @param at the present time, on the simulator's clock
     */
   def see(at: Instant, vehicles: Vector[SeenVehicle]): Unit
 

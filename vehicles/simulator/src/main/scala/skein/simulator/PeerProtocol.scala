@@ -6,7 +6,7 @@ import skein.units.Instant
   * come out. Not thread-safe.
   */
 private[simulator] trait PeerProtocol:
-  /** @param systems that the peer sees; empty: all
+  /** @param systems system numbers of the vehicles that the peer sees; empty: all
     * @param isDatagrams whether it sends datagrams, and not a stream
     */
   def join(channel: Long, systems: Vector[Int], isDatagrams: Boolean): Unit

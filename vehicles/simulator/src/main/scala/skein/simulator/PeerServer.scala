@@ -15,8 +15,8 @@ import skein.units.Span
 
 /** The ports of vehicles that speak another protocol than AirSim's.
   *
-  * @param streams by the simulator's own transport, which is TCP outside tests
-  * @param datagrams by datagrams, whatever the transport
+  * @param streams ports for streams, by the simulator's own transport, which is TCP outside tests
+  * @param datagrams ports for datagrams, whatever the transport
   */
 private[simulator] final case class PeerPorts(
     streams: Vector[PeerPort] = Vector.empty,
@@ -25,8 +25,8 @@ private[simulator] final case class PeerPorts(
 
 /** A port of some vehicles. It answers every peer that sends to it.
   *
-  * @param systems of the vehicles, from 1; empty: all
-  * @param mostPeers at a time
+  * @param systems system numbers of the vehicles, from 1; empty: all
+  * @param mostPeers maximum number of simultaneous peers
   * @param tells a peer that receives messages without having sent one
   * @param isOneWay whether only `tells` receives messages, and other senders' datagrams count as its
   * @param speaks whether a datagram, or the bytes of a stream so far, contain a message of the port's
@@ -59,7 +59,7 @@ private[simulator] object PeerPorts:
 
 /** A peer of some vehicles.
   *
-  * @param systems of the vehicles, from 1; empty: all
+  * @param systems system numbers of the vehicles, from 1; empty: all
   * @param isDatagrams whether it sends datagrams, and not a stream
   * @param out receives the bytes for it
   */
@@ -81,7 +81,7 @@ private[simulator] trait Peers:
 
 /** The open ports.
   *
-  * @param addresses with the actual ports: those of streams, then those of datagrams
+  * @param addresses the listening addresses, with the actual ports: those of streams, then those of datagrams
   */
 private[simulator] final class PeerServer(
     val addresses: Vector[Address],
@@ -94,13 +94,13 @@ private[simulator] final class PeerServer(
   def close(): Future[Done] = closing()
 
 private[simulator] object PeerServer:
-  /** Limit of the peers at a time, over all ports; further ones are refused. */
+  /** Maximum number of simultaneous peers over all ports; further ones are refused. */
   val MostPeers = 128
 
-  /** Limit of one datagram port's peers at a time. */
+  /** Maximum number of simultaneous peers of one datagram port. */
   val MostDatagramPeers = 64
 
-  /** Limit of the pieces that wait for one peer; further ones are dropped. */
+  /** Maximum number of pieces that wait for one peer; further ones are dropped. */
   private val Waiting = 256
 
   /** Time without a message after which the only peer that its port allows makes room for another. */
@@ -112,7 +112,8 @@ private[simulator] object PeerServer:
   /** A stream's first message must be recognised within this many bytes; the longest has 280. */
   private val MostBefore = 1024
 
-  /** Limit of the bytes of a stream that are handled in one go. Other clients' calls run in between. */
+  /** Maximum number of bytes of a stream that are handled in one turn. Other clients' calls run in between.
+    */
   private val MostAtOnce = 2048
 
   /** First bytes of MAVLink 2 and MAVLink 1, the only protocol over streams. */

@@ -4,14 +4,14 @@ import java.util.concurrent.atomic.AtomicLong
 
 /** Losses of MAVLink peers and autopilots since the start.
   *
-  * @param damaged messages with a wrong checksum, of an unknown kind or with invalid content
-  * @param dropped pieces for peers that did not take them in time
-  * @param turnedAway peers beyond the limit
-  * @param ignored datagrams of peers beyond a port's limit, of another protocol, or received faster than they
-  *   were handled
-  * @param unanswered how often an autopilot in lockstep did not answer within a second, and physics continued
-  *   without it
-  * @param foreign connections closed because they did not begin as the protocol does
+  * @param damaged number of messages with a wrong checksum, of an unknown kind or with invalid content
+  * @param dropped number of pieces for peers that did not take them in time
+  * @param turnedAway number of peers beyond the limit
+  * @param ignored number of datagrams of peers beyond a port's limit, of another protocol, or received faster
+  *   than they were handled
+  * @param unanswered number of times that an autopilot in lockstep did not answer within a second, and
+  *   physics continued without it
+  * @param foreign number of connections closed because they did not begin as the protocol does
   */
 final case class PeerStats(
     damaged: Long = 0,

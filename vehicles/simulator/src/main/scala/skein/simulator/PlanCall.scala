@@ -6,8 +6,8 @@ import upack.{Arr, Float32, Msg, Str}
 
 /** A call of one of AirSim's functions that move a vehicle, and the time from which it acts.
   *
-  * @param at on the simulator's clock
-  * @param params of the function, without the vehicle
+  * @param at time from which it acts, on the simulator's clock
+  * @param params the function's parameters, without the vehicle
   */
 private[skein] final case class PlannedMove(at: Instant, method: String, params: Vector[Msg]):
 
@@ -54,7 +54,7 @@ private[skein] object PlannedMove:
     case _ => throw BadArgument("expected a moment, a function's name and its parameters")
 
 /** A call that gives a vehicle a plan, read as far as possible without knowing the vehicle. The built-in
-  * simulator accepts it, and so does a buffer beside another simulator.
+  * simulator accepts it, and so does a buffer in front of another simulator.
   */
 private[skein] final case class PlanCall(sequence: Long, moves: Vector[PlannedMove], vehicle: String):
 

@@ -40,7 +40,7 @@ private[simulator] object Scans:
 
 /** A scan that has been taken: everything from which its points are computed, once.
   *
-  * @param origin of the vehicle's own frame in the world
+  * @param origin origin of the vehicle's own frame in the world
   */
 final private[simulator] class Scan(
     val at: Instant,

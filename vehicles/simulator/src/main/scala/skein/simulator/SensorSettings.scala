@@ -7,9 +7,10 @@ import skein.scene.{Lidar, Placement}
   * three more: `RangeNoise` (standard deviation, m), `NoiseSeed`, and `Fresh` (scans are taken on request, of
   * that instant).
   *
-  * @param captures of `CameraDefaults`, by image type
-  * @param lidars by vehicle; those of `DefaultSensors` under [[SensorSettings.Others]] apply to vehicles that
-  *   the file does not list: the default vehicle of a file without vehicles, and those that clients add
+  * @param captures image settings of `CameraDefaults`, by image type
+  * @param lidars the lidars by vehicle; those of `DefaultSensors` under [[SensorSettings.Others]] apply to
+  *   vehicles that the file does not list: the default vehicle of a file without vehicles, and those that
+  *   clients add
   */
 final private[simulator] case class SensorSettings(
     captures: Map[Int, SensorSettings.Capture],
@@ -42,7 +43,7 @@ private[simulator] object SensorSettings:
 
   /** A camera of the settings.
     *
-    * @param place on the vehicle; None: that of the built-in camera of its name
+    * @param place placement on the vehicle; None: that of the built-in camera of its name
     */
   final case class Carried(place: Option[Placement], captures: Map[Int, Capture])
 

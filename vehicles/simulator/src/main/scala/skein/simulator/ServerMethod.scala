@@ -44,7 +44,7 @@ final private[simulator] class ServerMethod(
 
   /** This function with another last argument, which is read and ignored, or with none.
     *
-    * @param last value that the function receives in its place
+    * @param last the value that the function receives instead of that argument
     */
   def closing(last: Any, read: Option[Argument[?]] = None): ServerMethod =
     def own(values: Tuple): Tuple = Tuple.fromArray(values.toArray.take(arity - 1).map(x => x: Any) :+ last)
@@ -109,7 +109,7 @@ private[simulator] object ServerMethod:
       case (index, car: SimulatedCar) => run(index, car)
       case (_, other) => CallOutcome.Threw(s"expected a car, '${other.settings.name}' is a ${other.kind}")
 
-  /** Refuses a place that is outside the limits, else runs `run`. */
+  /** Refuses a position that is outside the limits, else runs `run`. */
   def within(place: Vector3r)(run: => CallOutcome): CallOutcome =
     if place.toVector.norm <= VehicleLimits.FarthestM then run
     else CallOutcome.Threw(s"a place within ${(VehicleLimits.FarthestM / 1000).round} km is wanted")

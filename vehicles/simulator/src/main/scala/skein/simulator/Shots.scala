@@ -41,12 +41,12 @@ final private[simulator] class Shots private (
         Array(grey, grey, grey)
 
 private[simulator] object Shots:
-  /** @param response its fields that are known before drawing */
+  /** @param response the response's fields that are known before drawing */
   final case class Wanted(view: View, kind: Kind, response: ImageResponse)
 
   val MostImages = 64
 
-  /** Limit of one answer's bytes, which Skein's own client accepts. */
+  /** Maximum size of one answer in bytes, which Skein's own client accepts. */
   val MostBytes: Long = 60L << 20
 
   def noCamera(name: String): String = s"No camera with name $name exist on vehicle"

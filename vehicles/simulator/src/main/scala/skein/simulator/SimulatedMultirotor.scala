@@ -6,7 +6,7 @@ import skein.scene.{Contact, Scene, SceneObject}
 import skein.units.*
 import skein.vehicle.*
 
-/** One multirotor: its physics and the state that AirSim's SimpleFlight firmware keeps beside it
+/** One multirotor: its physics and the state that AirSim's SimpleFlight firmware keeps in addition
   * (`OffboardApi`).
   */
 final private[simulator] class SimulatedMultirotor(

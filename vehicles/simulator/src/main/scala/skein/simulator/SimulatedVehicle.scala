@@ -9,7 +9,7 @@ import skein.units.*
   *
   * Only [[World]] changes it.
   *
-  * @param worldOrigin of the world's NED frame, geographic
+  * @param worldOrigin geographic origin of the world's NED frame
   */
 private[simulator] abstract class SimulatedVehicle(val settings: VehicleSettings, worldOrigin: GeoLocation):
   val home: GeoLocation = worldOrigin.locate(settings.startNed)
@@ -73,7 +73,7 @@ private[simulator] abstract class SimulatedVehicle(val settings: VehicleSettings
 
   /** Its shape as parts.
     *
-    * @param number of the vehicle in its world
+    * @param number the vehicle's number in its world
     * @param tagM side of the tags on it; 0 for none
     */
   def parts(number: Int, tagM: Double): Vector[SceneObject.Part]

@@ -295,7 +295,7 @@ object Simulation:
   /** A running simulator is advanced at least this often, so that a call never finds much to compute. */
   private val KeepUp = Span.ofMillis(50)
 
-  /** Limit of the real time that is made up after an autopilot in lockstep was slower than real time. */
+  /** Maximum real time that is made up after an autopilot in lockstep was slower than real time. */
   private val MostMadeUpFor = Span.ofMillis(20)
 
   /** Holding all workers for less than this does not count. */
@@ -307,7 +307,7 @@ object Simulation:
   /** Number of a scene's objects near a vehicle whose check costs as much as the vehicle's step. */
   private val ObjectsOfAStep = 16
 
-  /** Steps computed in one go of a stepped advance: some 4 ms, between which other calls are answered. */
+  /** Steps computed in one part of a stepped advance: some 4 ms, between which other calls are answered. */
   private val LongestStretchSteps = 30_000
 
   final private case class Waiting(call: SimulatorCall, order: Move.Order)

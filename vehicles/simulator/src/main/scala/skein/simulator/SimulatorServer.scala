@@ -47,7 +47,8 @@ final class SimulatorServer private (
   /** The listening address, with the actual port. */
   def address: Address = server.address
 
-  /** The addresses for MAVLink or autopilots, with the actual ports: those of its transport, then datagrams.
+  /** The addresses on which MAVLink peers or external autopilots connect, with the actual ports: stream ports
+    * first, then datagram ports. Empty without either.
     */
   def peerAddresses: Vector[Address] = peers.fold(Vector.empty)(_.addresses)
 
@@ -77,11 +78,12 @@ final class SimulatorServer private (
   /** Lets a multirotor perform an action from now on, if the server has an [[Onlooker]]; it takes off, too. A
     * move that a client has begun ends.
     *
-    * @param vehicle its number in the settings
-    * @param action by the vehicle's present motion, world NED; evaluated every 20 ms of simulated time
+    * @param vehicle the vehicle's index in the settings
+    * @param action the action for the vehicle's present motion, world NED; evaluated every 20 ms of simulated
+    *   time
     * @param lasts simulated time after which a vehicle in the air holds its position; None: until the next
     *   action, or until a client moves or resets it
-    * @param stamp when it was decided, on the simulator's clock, if that is known
+    * @param stamp time of the decision, on the simulator's clock, if known
     */
   def act(
       vehicle: Int,
@@ -99,8 +101,8 @@ final class SimulatorServer private (
 
 object SimulatorServer:
 
-  /** @param at on the simulator's clock
-    * @param vehicles world NED; contacts with objects of the scene since the start
+  /** @param at time of the motion, on the simulator's clock
+    * @param vehicles motion in world NED; number of contacts with objects of the scene since the start
     */
   final case class Truth(
       at: Instant,
@@ -328,8 +330,8 @@ object SimulatorServer:
         case Right(drawing: DeferredResult) =>
           beside.put(call.request.connection)(call.answer.complete(Try(Right(drawing.result()))): Unit)
 
-    /** Runs waiting calls while a worker is free. What is not taken is dropped with its connection. Calls
-      * that never wait behind moves are run in any case.
+    /** Runs waiting calls while a worker is free. Calls that are not taken are dropped with their connection.
+      * Calls that never wait behind moves are run in any case.
       */
     private def takeCalls(): Unit =
       var left = CallsAtOnce

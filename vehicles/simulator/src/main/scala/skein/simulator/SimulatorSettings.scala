@@ -33,7 +33,7 @@ enum Overload:
   * @param scene objects of the world
   * @param mavlink ports on which its vehicles also speak MAVLink
   * @param hil external autopilots that fly its vehicles; then these do not speak MAVLink
-  * @param kind of its multirotors; without one, AirSim's quadrotors
+  * @param kind the kind of its multirotors; without one, AirSim's quadrotors
   * @param grids the folder for voxel grids that clients request; without one, none is written
   */
 final case class SimulatorSettings(

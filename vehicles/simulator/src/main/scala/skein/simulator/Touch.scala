@@ -5,8 +5,8 @@ import skein.units.*
 
 /** A vehicle's contact with something, in its own frame.
   *
-  * @param normal away from the object
-  * @param pointNed of contact
+  * @param normal unit normal, away from the object
+  * @param pointNed point of contact
   */
 final private[simulator] case class Touch(
     at: Instant,

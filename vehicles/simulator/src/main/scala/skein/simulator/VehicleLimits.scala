@@ -4,7 +4,7 @@ import skein.airsim.{VehicleSettings, WorldSettings}
 
 /** Limits on the simulator's vehicles, from its settings and from clients that add some. */
 private[simulator] object VehicleLimits:
-  /** Limit of the vehicles; clients cannot add more. */
+  /** Maximum number of vehicles; clients cannot add more. */
   val MostVehicles = 256
 
   val LongestName = 100

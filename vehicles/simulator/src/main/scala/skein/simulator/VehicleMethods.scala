@@ -6,8 +6,8 @@ import skein.scene.Rays
 import skein.units.*
 import upickle.default.Writer
 
-/** Functions that read or set the state of one vehicle. Sensors report the truth, without noise or delay;
-  * AirSim's GPS reports it 0.2 s late.
+/** Functions that read or set the state of one vehicle. Sensors report true values, without noise or delay;
+  * AirSim's GPS reports them 0.2 s late.
   */
 private[simulator] object VehicleMethods:
   import ServerMethod.*

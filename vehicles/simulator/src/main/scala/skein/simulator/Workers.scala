@@ -72,7 +72,7 @@ final class Workers[Job, Flight](limit: Int, vehicles: Int, handover: Span):
   /** Makes the request just taken a move: its worker is held from now on. True: it has the lock and starts.
     * False: it waits, and the vehicle's current move is to be cancelled.
     *
-    * @param client who made the request
+    * @param client the client that made the request
     * @param isLeft whether the client has left in the meantime
     */
   def acquire(vehicle: Int, flight: Flight, client: Long = 0, isLeft: Boolean = false): Boolean =

@@ -135,7 +135,7 @@ final class World(
     buffer.receive(sequence, plan, clock)
     if buffer.dueAt.exists(_ <= clock) then buffer.turn(multirotor(vehicle), clock)
 
-  /** Forgets the vehicle's plans and their numbers: whoever sends the next may count from anywhere. */
+  /** Forgets the vehicle's plans and their sequence numbers: the next plan may have any number. */
   private[simulator] def forgetPlans(vehicle: Int): Unit = followed.remove(vehicle): Unit
 
   /** Ends the vehicle's plans, and its move, if there is one, with false. */
@@ -251,7 +251,7 @@ object World:
   /** A move that has ended, and the result that its call answers. */
   final case class Ended(vehicle: Int, token: Long, result: Boolean)
 
-  /** The number of all pilots, in place of a vehicle's. */
+  /** Stands for all pilots, instead of a vehicle's index. */
   private val AllPilots = -1
 
   private case class Running(token: Long, move: Move, startedAt: Instant, dueAt: Instant)

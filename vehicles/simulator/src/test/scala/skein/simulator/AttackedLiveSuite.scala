@@ -111,7 +111,7 @@ class AttackedLiveSuite extends munit.FunSuite, Waiting, Unhurried:
         assert(autopilot.getInputStream.read() >= 0)
         assert(isClosed(silent))
         autopilot.close()
-      // A page that comes before the place of the last one is free is turned away.
+      // A page that connects before the last one has made room is refused.
       val stats = server.peerStats
       assert(stats.foreign >= 1L && stats.foreign + stats.turnedAway >= 8L, s"$stats")
 
@@ -130,7 +130,7 @@ class AttackedLiveSuite extends munit.FunSuite, Waiting, Unhurried:
         assertEquals(call("simListSceneObjects", Seq(Str("(.*)*" * 60 + "x"))), Arr())
         assertEquals(call("ping", Nil), Bool(true))
 
-  test("silent connections on all of a port's places make room for an active one"):
+  test("silent connections that fill a port make room for an active one"):
     val limits = SimulatorSettings.Limits.copy(connections = 4)
     serving(SimulatorSettings(address = free, limits = limits)): server =>
       val silent   = Seq.fill(4)(connected(server.address))
@@ -175,7 +175,7 @@ class AttackedLiveSuite extends munit.FunSuite, Waiting, Unhurried:
         seen.containsSlice(Seq(0x94, 1, 12))
       one.close()
 
-  test("UDP peers without a MAVLink message get no place, and silent ones make room"):
+  test("UDP peers without a MAVLink message are not admitted, and silent ones make room"):
     val port    = MavlinkPort(free)
     val mavlink = MavlinkSettings(udp = Vector(port))
     serving(SimulatorSettings(address = free, mavlink = Some(mavlink))): server =>

@@ -7,9 +7,9 @@ import scala.concurrent.duration.*
 import skein.link.PreciseScheduler
 import skein.testing.{Lengthy, Waiting}
 
-/** Real firmware flies the simulator's vehicle: Betaflight's SITL, which is built once per user where Python
-  * and a compiler are installed. At half the real clock's speed, since it has to run 500 iterations in a
-  * second of the simulator's clock; `betaflightHover` flies for longer, at any speed.
+/** Real firmware flies the simulator's vehicle: Betaflight's SITL, which is built once per user if Python and
+  * a compiler are installed. At half the real clock's speed, since it has to run 500 iterations in a second
+  * of the simulator's clock; `betaflightHover` flies for longer, at any speed.
   */
 class BetaflightLiveSuite extends munit.FunSuite, Lengthy, Waiting:
   // Building it on a busy machine takes minutes.
@@ -20,7 +20,7 @@ class BetaflightLiveSuite extends munit.FunSuite, Lengthy, Waiting:
   override def afterAll(): Unit =
     val _ = Await.result(system.terminate(), 20.seconds)
 
-  test("Betaflight arms, takes off and holds a place within 0.3 m for 4 s"):
+  test("Betaflight arms, takes off and holds a position within 0.3 m for 4 s"):
     val firmware = Betaflight.firmware()
     assume(firmware.isRight, s"Betaflight's SITL cannot be built here: ${firmware.swap.getOrElse("")}")
     assume(Betaflight.arePortsFree, "another program has Betaflight's ports")

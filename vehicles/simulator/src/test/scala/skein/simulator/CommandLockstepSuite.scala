@@ -46,7 +46,7 @@ class CommandLockstepSuite extends munit.FunSuite:
     flown.pass(200)
     assertEqualsDouble(flown.clockMs, 2000, 1e-6)
 
-  test("from the first command on, the clock stops every step until each vehicle has a command of then"):
+  test("from the first command on, the clock stops every step until each vehicle has a command of that time"):
     val flown = Flown()
     flown.pass(21)
     flown.command(0, 200)
@@ -71,7 +71,7 @@ class CommandLockstepSuite extends munit.FunSuite:
     assertEquals(flown.seenMs.filter(_ > 200), Vector(300.0, 400.0, 500.0))
     assertEquals(flown.inProcess.commands, CommandCounts.Zero)
 
-  test("what is flown depends neither on the clock's speed nor on when commands arrive"):
+  test("the flight depends neither on the clock's speed nor on when commands arrive"):
     def flown(speed: Double, delayMs: Int => Double) =
       val it = Flown(speed)
       it.pass(30 / speed)
@@ -108,7 +108,7 @@ class CommandLockstepSuite extends munit.FunSuite:
     val (motions, late) = flown(late = true)
     assertEquals((motions, late), (flown(late = false)._1, 2L))
 
-  test("after a second without a command it runs on, and says so; the next command makes it wait again"):
+  test("after a second without a command it runs on, and reports that; the next command makes it wait again"):
     val flown = Flown()
     flown.pass(20)
     flown.command(0, 180)
@@ -122,7 +122,7 @@ class CommandLockstepSuite extends munit.FunSuite:
     flown.pass(500)
     assertEqualsDouble(flown.clockMs, (at / 300).floor * 300 + 300, 1e-6)
 
-  test("a command with a stamp of the future acts as it comes"):
+  test("a command with a stamp of the future acts on arrival"):
     val flown = Flown()
     flown.pass(20)
     flown.command(0, 1e9)

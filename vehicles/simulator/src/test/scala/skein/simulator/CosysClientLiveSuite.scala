@@ -10,7 +10,7 @@ import skein.testing.{Conclusive, Lengthy, PythonEnvironment, Waiting}
 import skein.units.*
 
 /** Cosys-AirSim's client, the unmodified `cosysairsim` package of PyPI, flies the built-in simulator over a
-  * real socket. Runs where Python can install that package; it fetches it once per user.
+  * real socket. Runs if Python can install that package; it fetches it once per user.
   */
 class CosysClientLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
   private given system: ActorSystem = ActorSystem("cosys-client")

@@ -83,7 +83,7 @@ class CosysMethodsSuite extends munit.FunSuite:
 
   test("moveToGPS uses its goal in single precision, as AirSim does"):
     val bench = Bench().hovering(-20)
-    // 47.64157 is 47.641571 as a 32-bit number, and 0.1 m of a degree more is the same number.
+    // 47.64157 is 47.641571 as a 32-bit number, and 0.1 m of a degree more is rounded to this number too.
     def fly(latitude: Double) =
       val begun = Bench().hovering(-20)
       begun.call(

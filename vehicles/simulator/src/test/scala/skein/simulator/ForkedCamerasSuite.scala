@@ -70,6 +70,6 @@ class ForkedCamerasSuite extends munit.FunSuite:
     assertEqualsDouble(fov.get, 60, 1e-3)
     assertEquals(counts, Vector(3, 2, 2, 2, 2))
 
-  test("AirSim's own form is kept where it is accepted, and another error is reported in the server's words"):
+  test("AirSim's own form is kept if it is accepted, and another error is reported in the server's words"):
     assertEquals(asked(takes = 3)._3, Vector(3, 3, 3, 3))
     assertEquals(asked(takes = 5)._1, Vector(false, false, false))

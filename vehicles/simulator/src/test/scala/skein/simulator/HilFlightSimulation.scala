@@ -25,8 +25,8 @@ object HilFlightSimulation:
 
   /** Runs the server, PX4's interface and a small autopilot behind it, in virtual time.
     *
-    * @param speed of the simulator's clock relative to virtual time
-    * @param link between the two
+    * @param speed rate of the simulator's clock relative to virtual time
+    * @param link the link between the two
     */
   def fly(seed: Long, lasting: Span, speed: Double = 1, link: LinkProfile = LinkProfile.none): Flight =
     val began          = System.nanoTime()

@@ -33,13 +33,13 @@ private final class Received:
   def trips: Vector[Double] = synchronized(latencies.toVector)
   def witness: Long         = synchronized(stamps.getValue)
 
-/** Most images of one camera in transit. */
+/** Maximum number of one camera's images in transit. */
 private val MostOnTheWay = 4
 
 /** Raw images of 1280 × 720 from the built-in simulator to a client of the same process, over TCP on
   * loopback: four cameras at 60 Hz each, at most four images of each in transit, one connection for each and
   * one for all; then at the greatest possible rate; then by the official Python client, one call for all
-  * four, where it can be installed: `simulator/Test/runMain skein.simulator.imageThroughput 60`.
+  * four, if it can be installed: `simulator/Test/runMain skein.simulator.imageThroughput 60`.
   *
   * Each row states the requested and the received images, how many images repeated an exposure, and as its
   * witness the CRC of all stamps.
@@ -62,7 +62,8 @@ private val MostOnTheWay = 4
   val process =
     ManagementFactory.getOperatingSystemMXBean.asInstanceOf[com.sun.management.OperatingSystemMXBean]
 
-  /** @param perSecond of each camera; 0: each is requested again when its image has arrived */
+  /** @param perSecond images per second of each camera; 0: each is requested again when its image has arrived
+    */
   def row(name: String, connections: Int, perSecond: Int, lastsS: Double, isShown: Boolean = true): Unit =
     val rpc =
       RpcClient(TcpTransport(), server.address, Clock.system, RpcSettings(bulkConnections = connections))

@@ -12,10 +12,10 @@ import skein.rpc.MessageWriter
 import upack.*
 import upickle.default.writeMsg
 
-/** All known attacks on `./skein serve`, simultaneously and for any duration, beside an honest client that
-  * requests a vehicle's state 20 times a second: its waiting times without attackers, with them, and in the
-  * seconds after they had left. A second honest client, of a second `serve` without attackers, shows what the
-  * machine's load alone does to these times.
+/** All known attacks on `./skein serve`, simultaneously and for any duration, during the calls of an honest
+  * client that requests a vehicle's state 20 times a second: its waiting times without attackers, with them,
+  * and in the seconds after they had left. A second honest client, of a second `serve` without attackers,
+  * shows what the machine's load alone does to these times.
   *
   * Arguments: the ports of RPC, of an autopilot (`--hil px4`), of MAVLink by UDP (`--mavlink`, which is of
   * another `serve`, for one process refuses both) and of `--view`, each 0 for none; seconds of the attack; a
@@ -49,7 +49,7 @@ object LongAttack:
 
   private val loopback = InetAddress.getLoopbackAddress
 
-  /** Connections held open at a time: more than any server lets in. */
+  /** Number of connections held open: more than any server accepts. */
   private val MostHeld = 1500
 
   /** Waiting times in milliseconds, and how many requests were lost with their connection. */
@@ -81,7 +81,7 @@ object LongAttack:
       Thread.sleep(1)
       in.skipNBytes(in.available.toLong)
 
-    /** Asks until `end`, in nanoseconds of `System.nanoTime`. */
+    /** Sends requests until `end`, in nanoseconds of `System.nanoTime`. */
     def phase(end: Long): Unit =
       latest = Waits()
       while System.nanoTime() < end do

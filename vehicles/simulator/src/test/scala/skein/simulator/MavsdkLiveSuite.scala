@@ -12,7 +12,7 @@ import skein.testing.{Conclusive, Lengthy, PythonEnvironment, Waiting}
 import skein.units.*
 
 /** Proof that the built-in simulator's vehicles speak MAVLink: MAVSDK's C++ library, from PyPI, controls
-  * three simultaneously. Runs where Python can install that package; it fetches it once per user.
+  * three simultaneously. Runs if Python can install that package; it fetches it once per user.
   */
 class MavsdkLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
   private given system: ActorSystem = ActorSystem("mavsdk")

@@ -9,7 +9,7 @@ private[simulator] object MutatedSettings:
   /** Counts of the files by their results.
     *
     * @param longestMs greatest processor time for one file
-    * @param slowest its seed
+    * @param slowest seed of that file
     */
   final case class Figures(read: Int, refused: Int, longestMs: Double, slowest: Long)
 

@@ -11,8 +11,8 @@ import skein.testing.{Conclusive, Lengthy, PythonEnvironment, Waiting}
 import skein.units.*
 
 /** Proof that the built-in simulator speaks AirSim's protocol: the official client, the unmodified `airsim`
-  * package of PyPI, flies it over a real socket. Runs where Python can install that package; it fetches it
-  * once per user.
+  * package of PyPI, flies it over a real socket. Runs if Python can install that package; it fetches it once
+  * per user.
   */
 class OfficialPythonClientLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
   private given system: ActorSystem = ActorSystem("official-python-client")
@@ -39,7 +39,7 @@ class OfficialPythonClientLiveSuite extends munit.FunSuite, Conclusive, Lengthy,
   test("the official Python client runs AirSim's examples, and uses scene, cameras and markers"):
     fly("fly_examples.py")
 
-  test("the official Python client drives a car as AirSim's example does, beside a multirotor"):
+  test("the official Python client drives a car as AirSim's example does, in a world with a multirotor"):
     fly("drive_car.py", WorldSettings.of(mixed))
 
   test("the official Python client calls what methods.txt lists"):

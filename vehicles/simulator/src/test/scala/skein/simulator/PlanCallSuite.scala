@@ -5,7 +5,7 @@ import upack.{Float32, Int32, Msg}
 
 class PlanCallSuite extends munit.FunSuite:
 
-  test("the duration or time limit is found among the parameters of every function that moves a vehicle"):
+  test("of every function that moves a vehicle, except hover, the duration or time limit is found"):
     for function <- MoveMethods.all if function.name != "hover" do
       val place = PlannedMove.limits.get(function.name)
       assert(place.exists(_ < function.arity - 1), s"${function.name}: $place")

@@ -8,7 +8,7 @@ import skein.airsim.wire.YawMode
 class PlanMethodsSuite extends munit.FunSuite:
 
   extension (bench: Bench)
-    /** An action that flies north, from so many seconds after the start on. */
+    /** An action that flies north from a time on, s since the start. */
     private def north(fromS: Double, mps: Double, lastsS: Double = 1): Msg =
       val at     = Instant.ofNanos(1_000_000_000L) + Span.ofSeconds(fromS)
       val params = Seq(mps, 0, -20, lastsS).map(number => Float32(number.toFloat)) ++

@@ -17,9 +17,9 @@ import skein.rpc.*
 import skein.units.*
 import upack.{Msg, Null, Str}
 
-/** The built-in simulator besieged over loopback sockets, beside an honest client that polls a vehicle's
-  * state: fuzzing by method first, then each attack separately. Every row states the honest client's waiting
-  * times during the attack, and after the attackers had left.
+/** The built-in simulator besieged over loopback sockets, during the calls of an honest client that polls a
+  * vehicle's state: fuzzing by method first, then each attack separately. Every row states the honest
+  * client's waiting times during the attack, and after the attackers had left.
   *
   * Three processes, since a greedy client is not in the server's: this one is the server (with unlimited
   * workers, since endless moves hold AirSim's workers for ever, by its design) and the honest client, the

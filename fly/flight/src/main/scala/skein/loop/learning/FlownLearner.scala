@@ -3,9 +3,9 @@ package skein.loop.learning
 /** One step of a policy, for learning: observation, action and result. Observations are
   * [[skein.policy.PlanarObservation.fromOwnHeading]].
   *
-  * @param share of the largest turn, −1 to 1
+  * @param share the chosen turn as a share of the largest, −1 to 1
   * @param reached the observation at the next decision
-  * @param distanceM to the opponent then
+  * @param distanceM distance to the opponent at the next decision, m
   */
 final case class Transition(
     seen: Vector[Double],
@@ -14,12 +14,14 @@ final case class Transition(
     distanceM: Double
 )
 
-/** Learns from a flight, beside it. One thread at a time. An exception ends the learning, not the flight. */
+/** Learns from a flight, concurrently with it. One thread at a time. An exception ends the learning, not the
+  * flight.
+  */
 trait FlownLearner:
 
   /** Learns one lesson, or a part of a long one.
     *
-    * @param transitions in the order of the flight
+    * @param transitions the flight's transitions, in order
     * @return new parameters of the policy, if they change, in the order of its family's axes
     */
   def learn(transitions: Vector[Transition]): Option[Vector[Double]]

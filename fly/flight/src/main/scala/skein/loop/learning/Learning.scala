@@ -5,7 +5,7 @@ enum Learning:
   /** Standard deviation of the exploration noise, as a share of the largest turn. */
   def explore: Double
 
-  /** Learns by a learner beside the flight.
+  /** Learns by a learner that runs concurrently with the flight.
     *
     * @param learner makes one for a flight of this seed
     */

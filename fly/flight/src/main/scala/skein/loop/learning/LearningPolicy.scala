@@ -32,7 +32,7 @@ final class LearningPolicy(
 
   override def isPlanar: Boolean = true
 
-  /** Without what it explores. */
+  /** The newest policy, without exploration. */
   override def guessed(draw: Int => Double): Policy = newest
 
   def choose(seen: Observation, memory: Memory): (Action, Memory) =
@@ -42,7 +42,7 @@ final class LearningPolicy(
     val observed = PlanarObservation.of(seen)
     val numbers  = observed.fromOwnHeading.toVector
     memory match
-      // After a decision that somebody else made in its place, nothing is known of what came of its own.
+      // After a decision that something else made instead, the effect of its own decision is unknown.
       case Some(Before(decision, before, share)) if decision + 1 == seen.decisions =>
         lessons.flown(Transition(before, share, numbers, StrictMath.hypot(observed.dxM, observed.dyM)))
       case _ => ()

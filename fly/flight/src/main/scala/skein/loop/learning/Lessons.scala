@@ -13,7 +13,7 @@ trait Lessons:
 
   /** The updates since the last call; called once before each decision. Never blocks.
     *
-    * @param decision its number
+    * @param decision number of the decision
     */
   def news(decision: Long): Vector[LearnerUpdate]
 
@@ -23,13 +23,13 @@ trait Lessons:
 
 /** An update from a learner.
   *
-  * @param text for a person
-  * @param parameters of the policy that decides from now on, if they change
+  * @param text description for a person
+  * @param parameters the policy's parameters from now on, if they change
   */
 final case class LearnerUpdate(text: String, parameters: Option[Vector[Double]] = None)
 
-/** Lessons by a learner beside the flight: it may be slow, hang or fail, and no decision waits for it. Of
-  * several versions between two decisions the last counts.
+/** Lessons by a learner that runs concurrently with the flight: it may be slow, hang or fail, and no decision
+  * waits for it. Of several versions between two decisions the last counts.
   *
   * @param on executes the learner, slice by slice
   */
@@ -99,7 +99,7 @@ final class LessonsBeside(learner: FlownLearner, on: ExecutionContext)(using Act
     val _ = Try(queue.complete())
 
 object LessonsBeside:
-  /** Limit of queued transitions: for one vehicle, almost two minutes at 10 Hz. */
+  /** Maximum number of queued transitions: for one vehicle, almost two minutes at 10 Hz. */
   val MostWaiting = 1024
 
   /** Transitions per slice. Few: a low-priority thread without processor time is replaced between two slices
@@ -110,7 +110,7 @@ object LessonsBeside:
 
 /** Repeats recorded lessons. One thread at a time.
   *
-  * @param recorded the updates, by the decision before which they took effect; where a fallback made that
+  * @param recorded the updates, by the decision before which they took effect; if a fallback made that
   *   decision, before the next
   */
 final class LessonsAgain(recorded: Map[Long, Vector[LearnerUpdate]]) extends Lessons:

@@ -13,10 +13,10 @@ object PlanStage:
 
   /** The result of a search at its deadline.
     *
-    * @param best of all searches; the initial plans where none has finished a slice
-    * @param slices that each search has finished
-    * @param unsearchedS by vehicle, time since any search finished a slice for it: 0 where one did now,
-    *   infinite where none ever did
+    * @param best the best plans of all searches; the initial plans if none has finished a slice
+    * @param slices number of slices each search has finished
+    * @param unsearchedS for each vehicle, time since any search finished a slice for it: 0 if one did now,
+    *   infinite if none ever did
     */
   final case class Answer(best: JointPlan, slices: Vector[Int], unsearchedS: Vector[Double]):
     /** Whether no search finished a slice for a vehicle: its plan is then the remainder of its last one. */
@@ -39,7 +39,7 @@ object PlanStage:
 
   /** Searches until the deadline from the remainder of the last plans, by the workers.
     *
-    * @param planner of the caller, who waits for one search before the next
+    * @param planner the caller's planner; the caller waits for one search before the next
     */
   def searched(
       problem: PlanProblem,
@@ -84,6 +84,6 @@ object PlanStage:
 
   /** State between elements.
     *
-    * @param last result; it and the decision are absent before the first
+    * @param last the last result; it and the decision are absent before the first
     */
   private final case class Turn[M, D](memory: M, last: Option[Answer], decision: Option[D])

@@ -35,7 +35,7 @@ trait PlanSearch:
 /** Searches synchronously on the caller's thread when its result is requested: a configured number of slices,
   * whatever the clock reads. So virtual time is deterministic.
   *
-  * @param slices of each search; for several vehicles rounded up to an equal number for each
+  * @param slices number of slices of each search; for several vehicles rounded up to an equal number for each
   */
 final class CountedPlanWorkers(searches: Int, slices: Int) extends PlanWorkers:
   require(searches > 0 && searches <= PlanProblem.MostSearches, s"1 to ${PlanProblem.MostSearches} searches")

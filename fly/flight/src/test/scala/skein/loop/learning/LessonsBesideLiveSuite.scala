@@ -21,7 +21,7 @@ class LessonsBesideLiveSuite extends munit.FunSuite:
       val transition = Transition(Vector(1), 0, Vector(2), 3)
       lessons.flown(transition)
       assert(began.await(10, TimeUnit.SECONDS))
-      // While it hangs, all that follow return, more than ever wait.
+      // While it hangs, all later calls return, more than the queue holds.
       for _ <- 1 to 5 * LessonsBeside.MostWaiting do lessons.flown(transition)
       val lost = Iterator
         .continually(lessons.news(1))

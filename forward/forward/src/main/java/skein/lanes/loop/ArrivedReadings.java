@@ -27,7 +27,7 @@ final class ArrivedReadings {
     final float[] toS = new float[WORLDS], fromS = new float[WORLDS];
   }
 
-  /** Entry n contains the n-th reading of each world. */
+  /** Entry n contains the n-th reading of each world in the present period. */
   private final ArrayList<Readings> readings = new ArrayList<>();
 
   /** Number of readings of each world in this period. */

@@ -28,7 +28,7 @@ final class ForecastPlants implements ForecastVehicles {
   private final PlantLanes lanes;
   private final FixedFormula.Call correct, step, look;
 
-  /** Number of floats in a plant's state. */
+  /** Number of floats per world in a plant's state. */
   private final int count;
 
   private final boolean remembers;

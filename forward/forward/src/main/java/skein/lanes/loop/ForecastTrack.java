@@ -52,23 +52,23 @@ final class ForecastTrack {
   private final int periodGrains, farRows;
   private final float periodS;
 
-  /** The row in which the newest reading became known, or -1 before the first reading; and its sampling time,
-   * in grains from that row's start.
+  /** The period in which the newest reading became known, or -1 before the first reading; and its sampling
+   * time, in grains from that period's start.
    */
   final int[] knownRow = new int[WORLDS], readAt = new int[WORLDS];
 
   /** 1 in worlds whose newest reading became known in this period, else 0. */
   final int[] fresh = new int[WORLDS];
 
-  // The row of the oldest stored command, which was in effect at the reading; and the direction before it.
+  // The period of the oldest stored command, which was in effect at the reading; and the direction before it.
   private final int[] head = new int[WORLDS];
   private final Directions before, prior;
 
   /** Whether commands have a vertical part. */
   private final boolean inSpace;
 
-  // By row modulo slots: time of the command, NONE without one, and time at which its arrival was known; from
-  // the row's start.
+  // By period modulo slots: time of the command, NONE without one, and time at which its arrival was known;
+  // from the period's start.
   private int slots = 8, oldest;
   private int[] sentAt = new int[slots * WORLDS], answeredAt = new int[slots * WORLDS];
   private Directions sent;
@@ -82,14 +82,14 @@ final class ForecastTrack {
   /** The arrays of {@link #turnS} and {@link #turn}, for copying. */
   private float[][] ofTurns;
 
-  /** Of each vector: index of the first valid turn (earlier places of {@link #held} are unused), and end of
+  /** Of each vector: index of the first valid turn (earlier slots of {@link #held} are unused), and end of
    * the valid turns.
    */
   final int[] heldFrom = new int[WORLDS / LANES], turnsOf = new int[WORLDS / LANES];
 
   int turns;
 
-  /** The row of the first command on the track, of each vector. */
+  /** The period of the first command on the track, of each vector. */
   private final int[] firstOf = new int[WORLDS / LANES];
 
   /** Whether some command on the track may be presumed lost within the next period. */
@@ -105,7 +105,7 @@ final class ForecastTrack {
 
   final ArrivedReadings arrived = new ArrivedReadings();
 
-  /** @param deadS from the arrival of a command until the vehicle is assumed to follow it, s
+  /** @param deadS time from the arrival of a command until the vehicle is assumed to follow it, s
    * @param inSpace whether commands have a vertical part
    */
   ForecastTrack(double periodS, double deadS, boolean inSpace) {
@@ -192,10 +192,10 @@ final class ForecastTrack {
       System.arraycopy(standing[i], 0, ofTurns[i], 0, held * WORLDS);
   }
 
-  /** Records the commands that were sent in a row.
+  /** Records the commands that were sent in a period.
    *
-   * @param times time of sending, in grains from the row's start; {@link LaneOffers#NONE} in worlds without a
-   *   command
+   * @param times time of sending, in grains from the period's start; {@link LaneOffers#NONE} in worlds
+   *   without a command
    * @param answers time at which the answer arrives, likewise; {@link LaneOffers#NONE} if there is none
    */
   void send(int row, LaneVectors vectors, int[] times, int[] answers, Directions directions) {
@@ -256,7 +256,7 @@ final class ForecastTrack {
     }
   }
 
-  /** Time from the newest reading to a moment, s; the moment is in grains from the row's start. */
+  /** Time from the newest reading to a moment, s; the moment is in grains from the period's start. */
   private FloatVector sinceReadingS(int row, int i, IntVector moment) {
     return ((FloatVector) moment.sub(IntVector.fromArray(INTS, readAt, i)).convertShape(I2F, SPECIES, 0))
         .mul(LaneViews.GRAIN_S)
@@ -310,7 +310,7 @@ final class ForecastTrack {
           if (follows.anyTrue()) {
             int oldestAt = since * WORLDS + i;
             FloatVector oldestS = FloatVector.fromArray(SPECIES, turnS, oldestAt);
-            // Drop turns that no world needs: otherwise those that follow in one world would take places in
+            // Drop turns that no world needs: otherwise those that follow in one world would take slots in
             // all.
             boolean isNeeded =
                 oldestAt >= last
@@ -401,9 +401,9 @@ final class ForecastTrack {
 
   /** Computes the track from the newest reading until a command sent at a given moment takes effect.
    *
-   * @param known by world, deadline of the answers to consider, in grains from the row's start
-   * @param when time of sending, in grains from the row's start; {@link LaneOffers#NONE} in worlds without a
-   *   decision
+   * @param known deadline, by world, of the answers to consider, in grains from the period's start
+   * @param when time of sending of the new command, in grains from the period's start; {@link
+   *   LaneOffers#NONE} in worlds without a decision
    * @param isFirst whether it is the first track since readings were added
    */
   void lay(int row, LaneVectors vectors, int[] known, int[] when, MeanDelays delays, boolean isFirst) {
@@ -503,7 +503,7 @@ final class ForecastTrack {
         VectorMask<Float> count = present.cast(SPECIES).andNot(wait.compare(GT, patience).and(unanswered));
         VectorMask<Float> late = present.andNot(later).cast(SPECIES).and(acts.compare(GT, zero));
         if (late.anyTrue()) {
-          // The command acts later than estimated at the reading. The place before it has no turn of its own.
+          // The command acts later than estimated at the reading. The slot before it has no turn of its own.
           at.blend(dead, late).intoArray(turnS, place - WORLDS);
           x.blend(FloatVector.fromArray(SPECIES, before.cos, i), late).intoArray(turnX, place - WORLDS);
           y.blend(FloatVector.fromArray(SPECIES, before.sin, i), late).intoArray(turnY, place - WORLDS);
@@ -538,7 +538,7 @@ final class ForecastTrack {
   /** Reports the sampling time of the newest reading.
    *
    * @param joined set to {@link LaneOffers#NONE} in worlds that have no reading of the vehicle yet
-   * @param into receives the times, in grains from the row's start
+   * @param into receives the times, in grains from the period's start
    */
   void tell(int[] joined, int[] into) {
     System.arraycopy(arrived.newestAt, 0, into, 0, WORLDS);

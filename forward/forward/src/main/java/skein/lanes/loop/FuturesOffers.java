@@ -16,7 +16,7 @@ import skein.forward.TabledDelays;
 
 /** The tasks of the {@code futures} loop. Every period has one task for each vehicle: it reads all vehicles
  * in sequence, and then offers the readings to its own vehicle. Tasks overlap and overtake one another. If n
- * tasks are unfinished, the window's limit, a new task waits until one of them ends.
+ * tasks are unfinished, where n is the window, a new task waits until one of them ends.
  */
 final class FuturesOffers extends LaneOffers {
   private static final int STEP = LaneDelays.placeOf(1);
@@ -55,7 +55,7 @@ final class FuturesOffers extends LaneOffers {
   // By agent: the next offer and the one after it; and the step and the begin of the next one's task.
   private final int[][] soonest, second, stepOf, beginOf;
 
-  // Places of the random numbers, of a drawn step or of this round's offers; and the times at which the
+  // Indices in the random sequences, of a drawn step or of this round's offers; and the times at which the
   // offers' tasks read the next vehicle.
   private final int[] places = new int[WORLDS], goesOn = new int[WORLDS];
 
@@ -183,7 +183,7 @@ final class FuturesOffers extends LaneOffers {
   }
 
   /** Takes an agent's next offers in worlds where no other agent's offer is earlier. Of offers at equal
-   * times, that of the agent with the lower number is first.
+   * times, that of the agent with the lower index is first.
    */
   private boolean take(int agent) {
     int[] own = soonest[agent];

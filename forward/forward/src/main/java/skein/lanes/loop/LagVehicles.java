@@ -22,7 +22,7 @@ import skein.vehicle.FirstOrderLag;
 import skein.vehicle.ReducedModel;
 
 /** The vehicles of one role in many worlds, with first-order lag. Commands take effect, and readings are
- * sampled, at different times in each world. Positions are those at a row's start; a reading includes the
+ * sampled, at different times in each world. Positions are those at a period's start; a reading includes the
  * commands that are in effect at its time.
  *
  * <p>The response to commanded velocities is linear. Position and velocity are those without pending
@@ -37,14 +37,14 @@ import skein.vehicle.ReducedModel;
 public final class LagVehicles extends LaneVehicles {
   private static final float FUTURE = 1e9f;
 
-  /** Longest time by which a reading is sampled before its row's start, s. */
+  /** Longest time by which a reading is sampled before its period's start, s. */
   private final float earliestS;
 
   private final double periodS;
   private final FirstOrderLag lag;
   private final float lagS, speedMps, periodGain, periodDecay;
 
-  // By world, at the row's start: the commanded velocity, and the commanded less the actual velocity.
+  // By world, at the period's start: the commanded velocity, and the commanded less the actual velocity.
   private static final int WANTED_X = OWN,
       WANTED_Y = OWN + WORLDS,
       LACK_X = OWN + 2 * WORLDS,
@@ -58,13 +58,13 @@ public final class LagVehicles extends LaneVehicles {
 
   private static final int NUMBERS = 8;
 
-  /** The row to which the state belongs. */
+  /** The period to which the state belongs. */
   private int row;
 
   private static final int[] AT_BEGIN = new int[WORLDS];
   private static final LaneVectors ALL = LaneVectors.all();
 
-  /** Of each pending command: the time at which it takes effect, s from its row's start; e to the power of
+  /** Of each pending command: the time at which it takes effect, s from its period's start; e to the power of
    * that time over the lag; and the change of the commanded velocity.
    */
   private float[] commands;
@@ -73,20 +73,21 @@ public final class LagVehicles extends LaneVehicles {
   private static final int SLOT = 4 * WORLDS;
 
   // Commands by the round of their decision, modulo slots: the oldest that may act after an early reading,
-  // the first that does not act yet in every world, and the next; with the row of each and the range of times
-  // at which it takes effect.
+  // the first that does not act yet in every world, and the next; with the period of each and the range of
+  // times at which it takes effect.
   private int slots;
   private int oldest, first, next;
   private int[] rowOf;
   private float[] soonest, latest;
 
-  // Of the commands that act before the readings: places, ages, ages at the last simulation, and the shares
-  // of an error that remain after their age.
+  // Of the commands that act before the readings: slots, ages, ages at the last simulation, and the shares of
+  // an error that remain after their age.
   private int near;
   private int[] nearFrom;
   private float[] nearAge, nearYounger, nearAged;
 
-  /** Of each number of rows: their duration, s, and the share of a velocity error that remains after it. */
+  /** Of each number of periods: their duration, s, and the share of a velocity error that remains after
+   * it. */
   private final float[] rowsS, remains;
 
   /** Whether the powers of e fit into floats if commands are pending for up to {@code longestS}. */
@@ -97,7 +98,7 @@ public final class LagVehicles extends LaneVehicles {
   private static final double MOST_LAGS = 80;
 
   /** @param longestS longest time from the decision on a command until it takes effect, s
-   * @param earliestS longest time by which a reading is sampled before its row's start, s
+   * @param earliestS longest time by which a reading is sampled before its period's start, s
    */
   public LagVehicles(
       RolloutAgent agent, ReducedModel model, double periodS, double longestS, double earliestS) {
@@ -212,7 +213,7 @@ public final class LagVehicles extends LaneVehicles {
     if (this.row < row) flyTo(row, ALL, AT_BEGIN);
   }
 
-  /** Simulates to a row, unless the state is already there, and reads the vehicles. */
+  /** Simulates to a period, unless the state is already there, and reads the vehicles. */
   private void flyTo(int row, LaneVectors vectors, int[] sampledAt) {
     boolean fliesOn = this.row < row;
     findNear(row, latestS(sampledAt), fliesOn);
@@ -356,7 +357,7 @@ public final class LagVehicles extends LaneVehicles {
     }
   }
 
-  /** Corrects the readings that were sampled before the row's start. */
+  /** Corrects the readings that were sampled before the period's start. */
   private void lookBack(int[] at, int[] fresh) {
     for (int i = 0; i < WORLDS; i += LANES) {
       long early = IntVector.fromArray(INTS, at, i).compare(LT, 0).toLong();

@@ -37,7 +37,8 @@ public abstract class LaneAgents {
   /** Marks a controller that has not decided yet, in {@link #decidedLong}. */
   private static final int NEVER = 1 << 20;
 
-  /** Smallest limit of unanswered commands: a command is answered only when the next one replaces it. */
+  /** Smallest allowed limit of unanswered commands: a command is answered only when the next one replaces
+   * it. */
   public static final int LEAST_UNDER_WAY = 2;
 
   public final int self;
@@ -91,8 +92,8 @@ public abstract class LaneAgents {
 
   private final int[] drawn = new int[2 * LANES];
 
-  // For links whose tables change or that lose packets: places of random numbers, delays of commands and of
-  // their answers, and arrivals of commands.
+  // For links whose tables change or that lose packets: indices in the random sequence, delays of commands
+  // and of their answers, and arrivals of commands.
   private final int[] drawnAt = new int[WORLDS],
       there = new int[WORLDS],
       back = new int[WORLDS],
@@ -106,7 +107,7 @@ public abstract class LaneAgents {
    */
   public final Directions decided, decidedNow;
 
-  /** @param deadTimeS from the arrival of a command until the vehicle follows it, s */
+  /** @param deadTimeS time from the arrival of a command until the vehicle follows it, s */
   public LaneAgents(int self, LoopLanes loop, double deadTimeS, LaneVehicles vehicles) {
     this.self = self;
     this.vehicles = vehicles;
@@ -155,7 +156,7 @@ public abstract class LaneAgents {
 
   /** Decides in all worlds; fills {@link #decidedNow}.
    *
-   * @param all the controllers by vehicle number, with their vehicles' readings
+   * @param all the controllers, by vehicle, with their vehicles' readings
    * @param readAt sampling times of the present readings, by vehicle; maintained only if {@link #needsAges}
    */
   public abstract void choose(LaneAgents[] all, LaneOffers offers, LaneVectors vectors, int[][] readAt);
@@ -438,7 +439,7 @@ public abstract class LaneAgents {
 
   /** Time of a world's decision, s; infinity without one.
    *
-   * @param rowS time of the period's start
+   * @param rowS time of the period's start, s
    */
   final float decidesS(int world, double rowS) {
     return decides[world] == NONE

@@ -39,8 +39,8 @@ final class LaneDelays {
 
   private int[] keys;
 
-  /** Keys of the links to further pairs of vehicles, by line divided by {@link Delays#Lines}; and the number
-   * of the start for which each entry is valid.
+  /** Keys of the links to further pairs of vehicles, by line divided by {@link Delays#Lines}; and the count
+   * of starts for which each entry is valid.
    */
   private int[][] pairKeys = new int[1][];
 
@@ -63,7 +63,8 @@ final class LaneDelays {
    */
   private boolean changes, loses, losesByTime;
 
-  /** The losses of each world's link, null without losses; and the times in which that link loses everything.
+  /** The losses of each world's link, null without losses; and the times during which that link loses
+   * everything.
    */
   private final LossyDelays[] lossy = new LossyDelays[WORLDS];
 
@@ -167,7 +168,7 @@ final class LaneDelays {
     return step * Delays.Lines() * WorldRandom.STRIDE;
   }
 
-  /** Draws a line's delays in each world, at the world's place in the random sequence.
+  /** Draws a line's delays in each world, at the world's index in the random sequence.
    *
    * @param begin origin of the times, since the episode's start, in grains
    * @param sentAt time of sending, in grains from {@code begin}; arbitrary in worlds without a message
@@ -185,7 +186,7 @@ final class LaneDelays {
     look(vectors, line, begin, sentAt, into);
   }
 
-  /** Draws a line's delays in all worlds, at one place in the random sequence. */
+  /** Draws a line's delays in all worlds, at one index in the random sequence. */
   void draw(int place, int line, long begin, int[] sentAt, int[] into) {
     int[] keys = keysOf(line);
     IntVector there = IntVector.broadcast(INTS, place + placeOfLine(line));
@@ -215,7 +216,7 @@ final class LaneDelays {
     }
   }
 
-  /** Replaces places in the random sequence by delays. */
+  /** Replaces indices in the random sequence by delays. */
   private void look(LaneVectors vectors, int line, long begin, int[] sentAt, int[] values) {
     if (changes) chooseTables(vectors, begin, sentAt);
     IntVector multiplier1 = IntVector.broadcast(INTS, WorldRandom.MULTIPLIER_1),

@@ -22,8 +22,8 @@ import skein.lanes.policy.Directions;
  * grains since the episode's start, modulo 2³²; two compared times never differ by half of that.
  */
 public abstract class LaneFlights extends LaneVehicles {
-  /** Offsets of a piece's numbers: the command's direction north, then east, and in space its vertical part;
-   * further numbers belong to the subclass.
+  /** Offsets in a piece: the command's direction north, then east, and in space its vertical part; further
+   * components belong to the subclass.
    */
   static final int ALONG_X = 0, ALONG_Y = WORLDS, THIRD = 2 * WORLDS, HOLDS = 3 * WORLDS;
 
@@ -38,7 +38,7 @@ public abstract class LaneFlights extends LaneVehicles {
   private int[] begins, rowOf;
   float[] pieces;
 
-  /** Number of slots filled so far; the newest slot is the one before it, modulo their number. */
+  /** Number of slots filled so far; the newest slot is the one before it, modulo the number of slots. */
   private int filled;
 
   /** Times at which vehicles are to be read; the pieces of these times, and the time since each piece's
@@ -54,7 +54,7 @@ public abstract class LaneFlights extends LaneVehicles {
 
   private static final LaneVectors ALL = LaneVectors.all();
 
-  /** @param numbers count of numbers per piece
+  /** @param numbers number of floats per piece and world
    * @param pieceS duration of a piece without a command, s, at most {@link #MOST_PIECE_S}
    */
   LaneFlights(RolloutAgent agent, int numbers, double pieceS, LoopLanes loop, boolean inSpace) {
@@ -133,8 +133,8 @@ public abstract class LaneFlights extends LaneVehicles {
     begin(vectors, fill(row, vectors, until), acts, commanded);
   }
 
-  /** Sets {@link #until} to {@code times}, from the row's start, in worlds whose number is at least {@code
-   * least} and below {@link LaneOffers#NONE}; in other worlds to the start of the newest piece.
+  /** Sets {@link #until} to {@code times}, from the period's start, in worlds where {@code numbers} is at
+   * least {@code least} and below {@link LaneOffers#NONE}; in other worlds to the start of the newest piece.
    */
   private void ask(int row, LaneVectors vectors, int[] times, int[] numbers, int least) {
     int newest = (filled - 1 & slots - 1) * WORLDS;

@@ -71,9 +71,9 @@ public final class LaneForecast {
 
   /** Adds readings, at most one per world. In each world, readings must be added in the order of arrival.
    *
-   * @param whose number of the vehicle that was read, or -1 in worlds without a reading
+   * @param whose index of the vehicle that was read, or -1 in worlds without a reading
    * @param asked time of the request; {@code made} of the sample, {@code received} of the answer: in grains
-   *   from the row's start
+   *   from the period's start
    */
   void enter(LaneVectors vectors, int[] whose, int[] asked, int[] made, int[] received) {
     for (int v = 0; v < tracks.length; v++)
@@ -84,7 +84,8 @@ public final class LaneForecast {
    *
    * @param joinedAt set to {@link #dueGrains} in worlds where all vehicles have been read, else to {@link
    *   LaneOffers#NONE}
-   * @param madeAt receives the sampling time of each vehicle's newest reading, in grains from the row's start
+   * @param madeAt receives the sampling time of each vehicle's newest reading, in grains from the period's
+   *   start
    */
   void tell(int[] joinedAt, int[][] madeAt) {
     Arrays.fill(joinedAt, dueGrains);
@@ -105,8 +106,8 @@ public final class LaneForecast {
 
   /** Predicts the vehicles' states at the time at which a command takes effect.
    *
-   * @param when time at which the command is sent, in grains from the row's start; {@link LaneOffers#NONE} in
-   *   worlds without a decision
+   * @param when time at which the command is sent, in grains from the period's start; {@link LaneOffers#NONE}
+   *   in worlds without a decision
    */
   void predict(LaneVectors vectors, int[] when) {
     boolean isFirst = laidRow < row;
@@ -137,8 +138,8 @@ public final class LaneForecast {
 
   /** Records the commands of a period.
    *
-   * @param times time of sending, in grains from the row's start; {@link LaneOffers#NONE} in worlds without a
-   *   command
+   * @param times time of sending, in grains from the period's start; {@link LaneOffers#NONE} in worlds
+   *   without a command
    * @param answers time at which the answer arrives, likewise
    */
   void send(int vehicle, LaneVectors vectors, int[] times, int[] answers, Directions directions) {

@@ -50,8 +50,8 @@ public abstract class LaneOffers {
    */
   final int[][] fresh;
 
-  /** Of each agent, the place of its command's random numbers: that of the step to which the command belongs,
-   * relative to that of the period.
+  /** Of each agent, the index of its command in the random sequence: that of the step to which the command
+   * belongs, relative to that of the period.
    */
   final int[][] place;
 
@@ -91,7 +91,7 @@ public abstract class LaneOffers {
 
   /** Whether no world has a time in a slot.
    *
-   * @param times by vehicle, slot and world
+   * @param times the times, by vehicle, slot and world
    */
   static boolean isEmpty(int[][][] times, int slot) {
     for (int[][] each : times) if (isBefore(each[slot], NONE)) return false;

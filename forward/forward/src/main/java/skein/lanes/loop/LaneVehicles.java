@@ -24,7 +24,7 @@ public abstract class LaneVehicles {
   /** Offsets in {@link #state}, which is one array because passes over many arrays spend their time on
    * addresses. Position at the period's start, m; then position and velocity of the last reading, m and m/s;
    * each north, then east. In space follow position and velocity down of the last reading, and the position
-   * down at the period's start. Numbers of a subclass begin at {@link #OWN}.
+   * down at the period's start. Components of a subclass begin at {@link #OWN}.
    */
   static final int X = 0,
       Y = WORLDS,
@@ -48,7 +48,7 @@ public abstract class LaneVehicles {
   public final boolean inSpace;
 
 
-  /** @param own count of the subclass's numbers per world, from {@link #OWN} on */
+  /** @param own number of the subclass's floats per world, from {@link #OWN} on */
   LaneVehicles(RolloutAgent agent, int own, boolean inSpace) {
     this.inSpace = inSpace;
     kept = new float[(inSpace ? 6 : 4) * WORLDS];
@@ -82,12 +82,12 @@ public abstract class LaneVehicles {
    *
    * @param vectors the vectors with such a world
    * @param joined time of the view; {@link LaneOffers#NONE} in worlds without a view
-   * @param at time of the reading, in grains from the row's start
+   * @param at time of the reading, in grains from the period's start
    */
   abstract void read(
       int row, LaneVectors vectors, int[] joined, int[] at, int[] fresh, boolean withVelocity);
 
-  /** Simulates up to a row's start.
+  /** Simulates up to a period's start.
    *
    * @param isLookedAt whether the positions at that time are used
    */
@@ -96,7 +96,7 @@ public abstract class LaneVehicles {
   /** Makes commands take effect, in each world no earlier than the previous command.
    *
    * @param vectors the vectors with a command
-   * @param acts time at which it takes effect, in grains from the row's start; {@link LaneOffers#NONE} in
+   * @param acts time at which it takes effect, in grains from the period's start; {@link LaneOffers#NONE} in
    *   worlds without a command
    */
   abstract void act(int row, LaneVectors vectors, int[] acts, Directions commanded);
@@ -104,7 +104,7 @@ public abstract class LaneVehicles {
   /** Returns the vehicles' positions at recent moments, without changing the last readings.
    *
    * @param vectors the vectors with a requested moment
-   * @param at the moment, in grains from the row's start; {@link LaneOffers#NONE} in worlds without one
+   * @param at the moment, in grains from the period's start; {@link LaneOffers#NONE} in worlds without one
    * @param north receives positions north, m; {@code east} those east
    */
   final void look(int row, LaneVectors vectors, int[] at, float[] north, float[] east) {

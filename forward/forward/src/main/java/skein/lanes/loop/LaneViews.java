@@ -19,13 +19,13 @@ import skein.forward.TabledDelays;
 import skein.lanes.policy.LanePolicy;
 import skein.simd.WorldRandom;
 
-/** The views of many worlds under the {@code stream} loop, row by row: row m has the view of request m.
- * Nearly always all its answers arrive before anything of the next row, which SIMD code computes here.
- * Otherwise a {@link ViewSource} computes the world's views one by one, until the regular case returns; a row
- * may then have no view of the world, or several. So a row has one or more rounds, each with at most one view
- * per world.
+/** The views of many worlds under the {@code stream} loop, period by period: period m has the view of request
+ * m. Nearly always all its answers arrive before anything of the next period, which SIMD code computes here.
+ * Otherwise a {@link ViewSource} computes the world's views one by one, until the regular case returns; a
+ * period may then have no view of the world, or several. So a period has one or more rounds, each with at
+ * most one view per world.
  *
- * <p>Times are in grains of 4 ns ({@link DelayTable#GrainNs}) from the row's tick, and equal to those of
+ * <p>Times are in grains of 4 ns ({@link DelayTable#GrainNs}) from the period's tick, and equal to those of
  * {@link Rollout} to the nanosecond.
  */
 public final class LaneViews {
@@ -45,22 +45,22 @@ public final class LaneViews {
   private static final int[] AT_ONCE = new int[WORLDS];
   private static final LaneVectors ALL = LaneVectors.all();
 
-  /** Number of rows that are stored, more than the rows computed ahead. */
+  /** Number of periods that are stored, more than the periods computed ahead. */
   private static final int ROWS = 8;
 
-  /** Maximum number of rows within which a request is answered in the regular case, so that no later row's
-   * request is answered first and the window is never full.
+  /** Maximum number of periods within which a request is answered in the regular case, so that no later
+   * period's request is answered first and the window is never full.
    */
   private static final int MOST_AHEAD = 4;
 
-  /** Number of rows by which a view may be known before its own row. */
+  /** Number of periods by which a view may be known before its own period. */
   static final int ROWS_EARLY = 1;
 
   private final int ahead;
 
   private final long periodNs;
 
-  /** Whether SIMD computes the regular case; otherwise all views are computed one by one. */
+  /** Whether SIMD computes the regular case; if false, all views are computed one by one. */
   private final boolean shortCut;
 
   private final int periodGrains;
@@ -76,8 +76,8 @@ public final class LaneViews {
 
   final LaneDelays delays = new LaneDelays();
 
-  // By row modulo ROWS: times at which the requests reach the vehicles, of the first and the last answer, and
-  // of the next row's last answer.
+  // By period modulo ROWS: times at which the requests reach the vehicles, of the first and the last answer,
+  // and of the next period's last answer.
   private final int[][][] reached;
   private final int[][] first = new int[ROWS][WORLDS],
       last = new int[ROWS][WORLDS],
@@ -89,7 +89,7 @@ public final class LaneViews {
   /** Bit mask of the lanes that {@link #ask} found irregular, for each vector. */
   private final long[] irregularLanes = new long[WORLDS / LANES];
 
-  // Worlds whose views are computed one by one: their rows, from and up to; and their numbers.
+  // Worlds whose views are computed one by one: their periods, from and up to; and their indices.
   private final int[] irregularFrom = new int[WORLDS], irregularUpTo = new int[WORLDS];
   private final int[] irregular = new int[WORLDS];
   private int irregularCount;
@@ -97,8 +97,8 @@ public final class LaneViews {
   /** Whether a world's source has a view that has not been inserted yet. */
   private final boolean[] hasNext = new boolean[WORLDS];
 
-  // The round's views: the time of each and of the world's next; the places of its readings' requests, from
-  // those of the row; and the times of the readings.
+  // The round's views: the time of each and of the world's next; the indices of its readings' requests in the
+  // random sequence, relative to those of the period; and the times of the readings.
   int[] joinedAt, nextAt;
   final int[][] place;
   int[][] sampledAt;
@@ -106,7 +106,7 @@ public final class LaneViews {
   /** Whether some world has no view in this round, or a view with an old reading. */
   boolean hasOld;
 
-  /** Whether some reading of the round was requested in another row. */
+  /** Whether some reading of the round was requested in another period. */
   private boolean hasOther;
 
   /** Of each vehicle, 1 in worlds where the round's view has a new reading of it, else 0. */
@@ -158,7 +158,7 @@ public final class LaneViews {
   /** Computes when request {@code step} reaches each vehicle and when it is answered. Then checks whether the
    * view of the previous step consists exactly of that step's answers; worlds where it does not become
    * irregular. An answer of this step may precede views of earlier steps, but not the view of the present
-   * row.
+   * period.
    */
   private void ask(int step) {
     for (int vehicle = 0; vehicle < vehicles; vehicle += 2) answer(vehicle, step);
@@ -302,7 +302,7 @@ public final class LaneViews {
         && end <= latestGrains;
   }
 
-  /** Moves to the first round of a row; rows are processed in order, from 0. */
+  /** Moves to the first round of a period; periods are processed in order, from 0. */
   void startRow(int number) {
     row = number;
     ask(row + ahead);
@@ -320,7 +320,7 @@ public final class LaneViews {
     }
   }
 
-  /** Moves to the next round of the row, if it has one. */
+  /** Moves to the next round of the period, if it has one. */
   boolean nextBeat() {
     if (!more) return false;
     Arrays.fill(joinedAt, NONE);
@@ -329,7 +329,7 @@ public final class LaneViews {
     return irregularBeat(false);
   }
 
-  /** Inserts the views of irregular worlds into the round. A world without a view in this row may have
+  /** Inserts the views of irregular worlds into the round. A world without a view in this period may have
    * several in the next; then the first of them is inserted here, because an additional round costs all
    * worlds.
    *
@@ -353,7 +353,7 @@ public final class LaneViews {
           nextAt[world] = fromTick(source.joinedAt());
           if (source.row() == row) {
             more = true;
-            // The next row was already checked.
+            // The next period was already checked.
             stayIrregular(world);
           }
         }

@@ -40,7 +40,7 @@ public class LoopEye extends CameraTrackerLanes {
 
   private int row;
 
-  // The images taken in one pass, by world: their number; and for each the image, its time, its errors, and
+  // The images taken in one pass, by world: how many; and for each its number, its time, its errors, and
   // whether an opponent in view is detected.
   private final int[] takes = new int[WORLDS];
   private final int[][] taken = new int[MOST][WORLDS];
@@ -48,7 +48,7 @@ public class LoopEye extends CameraTrackerLanes {
   private final float[][] bearings = new float[MOST][WORLDS], ranges = new float[MOST][WORLDS];
   public final boolean[][] isFound = new boolean[MOST][WORLDS];
 
-  // The images that become known in one pass, by world: their number; and for each the image, and the newer
+  // The images that become known in one pass, by world: how many; and for each its number, and the newer
   // image that was added before it, or -1.
   private final int[] knows = new int[WORLDS];
   private final int[][] known = new int[MOST][WORLDS], newer = new int[MOST][WORLDS];
@@ -117,7 +117,8 @@ public class LoopEye extends CameraTrackerLanes {
    *
    * @param decides time of the decision, in grains from the period's start; {@link LaneOffers#NONE} in worlds
    *   without one
-   * @param own estimated positions of the own vehicles: north from {@code x} on, east from {@code y} on
+   * @param own estimated positions of the vehicles with the camera: north from {@code x} on, east from {@code
+   *   y} on
    * @param actsS time until the decision takes effect, if {@code own} is predicted for that moment; else null
    */
   public void look(LaneVectors vectors, int[] decides, float[] own, int x, int y, float[] actsS) {
@@ -146,7 +147,8 @@ public class LoopEye extends CameraTrackerLanes {
   /** Takes and evaluates all images up to given moments. The camera does not turn between decisions, so all
    * images are taken before any is evaluated.
    *
-   * @param until in grains from the period's start; {@link LaneOffers#NONE} in worlds that stay unchanged
+   * @param until the moments, in grains from the period's start; {@link LaneOffers#NONE} in worlds that stay
+   *   unchanged
    */
   private void see(LaneVectors vectors, int[] until) {
     boolean more = true;

@@ -42,7 +42,7 @@ public final class LoopKernel {
   /** Vectors in which some world has an offer in this round. */
   private final LaneVectors vectors = new LaneVectors();
 
-  /** @param agents in the order of the vehicles' numbers; created with this loop
+  /** @param agents one per vehicle, in the vehicles' order; created with this loop
    * @param scores receives the vehicles' positions
    */
   public LoopKernel(LoopLanes loop, LaneAgents[] agents, Scoreboard scores) {
@@ -71,7 +71,7 @@ public final class LoopKernel {
   /** Simulates one episode in each of {@link #WORLDS} worlds.
    *
    * @param worldKeys {@link skein.simd.WorldRandom#key} of each world
-   * @param links of each world; their longest delay must not exceed that of the loop
+   * @param links the link of each world; their longest delay must not exceed that of the loop
    */
   public void fly(int[] worldKeys, TabledDelays[] links) {
     offers.start(worldKeys, links);
@@ -89,7 +89,7 @@ public final class LoopKernel {
         offers.beat++;
         vectors.take(offers.joinedAt, LaneOffers.NONE);
         for (LaneAgents each : agents) read(row, each);
-        // Some kinds of vehicles are simulated to the row's start by the readings.
+        // Some kinds of vehicles are simulated to the period's start by the readings.
         if (!isScored) score(row);
         isScored = true;
         for (LaneAgents each : turns) if (offers.isFor(each.self)) each.decide(agents, offers, vectors, readAt);
@@ -149,7 +149,7 @@ public final class LoopKernel {
     if (counts) scores.score(timeS);
   }
 
-  /** Time from a row's start to the end of the episode, in grains; {@link Integer#MAX_VALUE} from seven
+  /** Time from a period's start to the end of the episode, in grains; {@link Integer#MAX_VALUE} from seven
    * seconds on.
    */
   private int grainsToEnd(int row) {

@@ -21,9 +21,9 @@ import skein.forward.TabledDelays;
  * vehicles are offered what is known at that time. Answers enter a {@link LaneForecast} in the order of their
  * arrival.
  *
- * <p>If n requests are unanswered, the window's limit, a request waits until one of them ends. A request that
- * becomes due meanwhile is missed. Of events in one nanosecond, the one that was scheduled first is first,
- * and time-outs are last, as in {@code Rollout}.
+ * <p>If n requests are unanswered, where n is the window, a request waits until one of them ends. A request
+ * that becomes due meanwhile is missed. Of events in one nanosecond, the one that was scheduled first is
+ * first, and time-outs are last, as in {@code Rollout}.
  */
 final class PredictiveOffers extends LaneOffers {
   private static final int STEP = LaneDelays.placeOf(1);
@@ -35,32 +35,33 @@ final class PredictiveOffers extends LaneOffers {
   private final LaneForecast forecast;
   private final int periodGrains, timeoutGrains, due, window;
 
-  /** Number of rows that are stored, a power of two: enough for a request that waits and then times out. */
+  /** Number of periods that are stored, a power of two: enough for a request that waits and then times
+   * out. */
   private final int ring;
 
   /** Whether a request may have to wait, on at least one link. */
   private boolean mayWait;
 
-  // By vehicle: places of the next request's random numbers, begin of the last request, and the latest ends
-  // of all requests, the latest first. Each is twice the time from the row's start, plus 1 for events that
-  // come after a request due at that moment: time-outs, and events that were not known when it was scheduled,
-  // one period before.
+  // By vehicle: index of the next request in the random sequence, begin of the last request, and the latest
+  // ends of all requests, the latest first. Each is twice the time from the period's start, plus 1 for events
+  // that come after a request due at that moment: time-outs, and events that were not known when it was
+  // scheduled, one period before.
   private final int[][] places, began;
   private final int[][][] latest;
 
-  // By vehicle and row modulo ring: times of request, reading and answer, from the start of the row. The
-  // answer is NONE if there is none, or if it was taken.
+  // By vehicle and period modulo ring: times of request, reading and answer, from the start of the period.
+  // The answer is NONE if there is none, or if it was taken.
   private final int[][][] asked, read, answered;
 
   private final int[] there = new int[WORLDS], back = new int[WORLDS];
 
-  /** The oldest row whose requests may have pending answers. */
+  /** The oldest period whose requests may have pending answers. */
   private int oldest;
 
   private int row;
 
-  // The taken answers: their code, from row and vehicle; the vehicle; and the times of request, reading and
-  // answer.
+  // The taken answers: their code, from period and vehicle; the vehicle; and the times of request, reading
+  // and answer.
   private final int[] found = new int[WORLDS],
       whose = new int[WORLDS],
       askedAt = new int[WORLDS],

@@ -28,10 +28,11 @@ final class SequentialOffers extends LaneOffers {
 
   private final int periodGrains, timeoutGrains;
 
-  // The next round: its begin, and the places of its random numbers.
+  // The next round: its begin, and its indices in the random sequences.
   private final int[] tick = new int[WORLDS], tickPlace = new int[WORLDS];
 
-  // The next two successful rounds of each world: their ends, the times of the readings, and the places.
+  // The next two successful rounds of each world: their ends, the times of the readings, and the indices in
+  // the random sequence.
   private final int[] end = new int[WORLDS], laterEnd = new int[WORLDS];
   private final int[][] read, laterRead;
   private final int[] places = new int[WORLDS], laterPlaces = new int[WORLDS];

@@ -17,7 +17,7 @@ final class TableCourse {
   private long[] ends = new long[4];
   private int count;
 
-  /** Index of the table of the last requested time: successive times lie close together. */
+  /** Index of the stretch of the last requested time: successive times lie close together. */
   private int at;
 
   /** @param beginOf returns the offset of a table in {@link LaneDelays#delays} */

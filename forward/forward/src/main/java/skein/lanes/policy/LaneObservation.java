@@ -26,7 +26,7 @@ public final class LaneObservation {
 
   private static final float[] ZEROS = new float[WORLDS];
 
-  /** Offsets of the opponent's readings and of the own ones, by row. */
+  /** Offsets of the opponent's readings and of this vehicle's, by row. */
   public final float[][] opponent = new float[READ][], own = new float[READ][];
 
   public final int[] opponentAt = new int[READ], ownAt = new int[READ];
@@ -40,7 +40,7 @@ public final class LaneObservation {
     this(new float[WORLDS]);
   }
 
-  /** @param elapsed maintained by the caller */
+  /** @param elapsed time since the previous decision, s; maintained by the caller */
   public LaneObservation(float[] elapsed) {
     this.elapsed = elapsed;
     Arrays.fill(opponent, ZEROS);
@@ -48,19 +48,19 @@ public final class LaneObservation {
   }
 
   public void see(int what, float[] opponent, int opponentAt, float[] own, int ownAt) {
-    // Nearly always the same ones: to store a reference costs the collector's bookkeeping.
+    // Nearly always unchanged; storing a reference would cost the collector's bookkeeping.
     if (this.opponent[what] != opponent) this.opponent[what] = opponent;
     if (this.own[what] != own) this.own[what] = own;
     this.opponentAt[what] = opponentAt;
     this.ownAt[what] = ownAt;
   }
 
-  /** The opponent's state relative to the own vehicle. */
+  /** The opponent's state relative to this vehicle, which is at 0. */
   public void seeFromOwn(int what, float[] difference) {
     see(what, difference, 0, ZEROS, 0);
   }
 
-  /** The opponent's reading minus the own one. */
+  /** The opponent's reading minus this vehicle's, of one row. */
   public void difference(int what, float[] into) {
     for (int i = 0; i < WORLDS; i += LANES)
       FloatVector.fromArray(SPECIES, opponent[what], opponentAt[what] + i)

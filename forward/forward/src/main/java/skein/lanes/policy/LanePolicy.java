@@ -20,18 +20,19 @@ public class LanePolicy {
   private final LaneFunction function;
   private final float[] parameters, scratch;
 
-  /** Arguments of the compiled function: the inputs, the outputs, the own readings. */
+  /** Arguments of the compiled function: the inputs, the outputs, this vehicle's readings. */
   public final float[][] arrays;
 
   public final int[] offsets;
 
-  /** Those of the function that observes; made when it is first called. */
+  /** Arguments of the function that observes; made when it is first called. */
   private float[][] observing;
 
   private int[] observingAt;
   private float[] observingScratch;
 
-  /** The memory of each world's policy, by number, then by world: initially, now, and after the decision. */
+  /** The memory of each world's policy, by component, then by world: initially, now, and after the
+   * decision. */
   private final float[] initial;
 
   public final float[] memory, newMemory;
@@ -59,7 +60,7 @@ public class LanePolicy {
     function = withEffort ? form.function() : form.functionWithoutEffort();
     parameters = new float[LaneFunction.places(form.parameters())];
     scratch = new float[function.scratch()];
-    // What the own readings tell comes last.
+    // This vehicle's readings are last.
     int unread = form.memories() - form.remembered();
     arrays = new float[form.inputs() + form.outputs().size() - unasked - unread + LaneObservation.READ][];
     offsets = new int[arrays.length];
@@ -96,7 +97,7 @@ public class LanePolicy {
       initial[i * WORLDS + world] = (float) remembered[i];
   }
 
-  /** Sets the numbers of a world's policy, which must be of this form. */
+  /** Sets the parameters and initial memory of a world's policy, which must be of this form. */
   public void put(int world, VehicleNumbers numbers) {
     float[] values = numbers.policy();
     int count = numbers.parameters();
@@ -126,7 +127,7 @@ public class LanePolicy {
 
   /** Decides in all worlds. {@code own} are the last commanded directions, {@code known} those of the
    * opponent; the decided ones are stored in {@code into}. Each begins at its offset. {@link #turned}
-   * receives the change from the own direction.
+   * receives the change from the last commanded direction.
    */
   public void decide(
       LaneObservation observation,
@@ -147,7 +148,7 @@ public class LanePolicy {
     function.apply(arrays, offsets, parameters, scratch, worlds);
   }
 
-  /** Computes the memory that no decision looks at, without deciding. The arguments are those of {@link
+  /** Computes the memory on which no decision depends, without deciding. The arguments are those of {@link
    * #decide}.
    */
   public void observe(
@@ -190,7 +191,7 @@ public class LanePolicy {
   }
 
   private static void set(float[][] arrays, int[] offsets, int place, float[] array, int offset) {
-    // Nearly always the same one: to store a reference costs the collector's bookkeeping.
+    // Nearly always unchanged; storing a reference would cost the collector's bookkeeping.
     if (arrays[place] != array) arrays[place] = array;
     offsets[place] = offset;
   }
@@ -207,7 +208,7 @@ public class LanePolicy {
     for (int i = world; i < memory.length; i += WORLDS) memory[i] = initial[i];
   }
 
-  /** Makes all worlds' decisions commands.
+  /** Makes the decisions of all worlds the last commands.
    *
    * @param effort receives the sums of the heading's changes
    */

@@ -18,14 +18,14 @@ public abstract class PredictedVehicles {
 
   /** Sets all readings of one world's vehicle to its start, at rest.
    *
-   * @param read has the readings
+   * @param read vehicles with the readings
    */
   void restart(int world, TimetableVehicles read) {}
 
   /** Adds a reading to the forecast, if the model's state contains more than a reading.
    *
-   * @param read has the readings
-   * @param sent the commands, by place
+   * @param read vehicles with the readings
+   * @param sent the commands, by slot
    * @param from the index, for the first world, of the previous reading; negative if there is none
    * @param reading the index, for the first world, of this reading
    * @param propagation the steps from the previous reading to this one
@@ -34,8 +34,8 @@ public abstract class PredictedVehicles {
 
   /** Predicts from a reading.
    *
-   * @param read has the readings, and receives the predictions
-   * @param sent the commands, by place
+   * @param read vehicles with the readings, which receive the predictions
+   * @param sent the commands, by slot
    * @param reading the index of the reading, for the first world
    * @param into the index of the prediction, for the first world
    * @param propagation the steps of the prediction

@@ -11,7 +11,7 @@ public abstract class TimetableAgents {
 
   public final TimetableVehicles vehicles;
 
-  /** Decided directions, or velocities over the vehicles' speed, by place. */
+  /** Decided directions, or velocities divided by the vehicles' speed, by slot. */
   public final Directions headings;
 
   public TimetableAgents(TimetableVehicles vehicles) {
@@ -33,11 +33,11 @@ public abstract class TimetableAgents {
 
   /** Decides in all worlds.
    *
-   * @param all agents, by the vehicle's number
-   * @param views of the timetable; that of the decision begins at {@code view}
-   * @param known in a duel, the index, for the first world, of the opponent's last known heading
-   * @param before the index of the own heading before, and {@code after} of the decided one
-   * @param times from {@code number} on, the timetable's numbers of the decision
+   * @param all agents, by vehicle
+   * @param views all views of the timetable; that of the decision begins at {@code view}
+   * @param known the index, for the first world, of the opponent's last known heading in a duel
+   * @param before the index of the vehicle's previous heading, and {@code after} that of the decided one
+   * @param times the decision's times in the timetable, from {@code number} on
    */
   public abstract void decide(
       TimetableAgents[] all,
@@ -58,7 +58,7 @@ public abstract class TimetableAgents {
   /** Takes an image in all worlds, if this vehicle has a camera.
    *
    * @param view the index of the readings that it shows
-   * @param times from {@code number} on, the timetable's numbers of the image
+   * @param times the image's times in the timetable, from {@code number} on
    */
   public void expose(TimetableAgents[] all, int[] views, int view, int image, float[] times, int number) {
     throw new UnsupportedOperationException("a vehicle without eyes");

@@ -7,7 +7,7 @@ import skein.lanes.policy.LanePolicy;
  * its scalar reference.
  *
  * <p>Events have equal times in all lanes, so every time is a constant of the timetable. Allocates nothing
- * after construction, unless a timetable needs more places than any before; one instance per thread.
+ * after construction, unless a timetable needs more slots than any before; one instance per thread.
  */
 public final class TimetableKernel {
   public static final int WORLDS = LanePolicy.WORLDS;
@@ -27,7 +27,7 @@ public final class TimetableKernel {
   private Propagation[] propagations;
   private boolean readsVelocity;
 
-  /** @param agents by the vehicle's number in the timetable */
+  /** @param agents one per vehicle of the timetable, in its order */
   public TimetableKernel(TimetableAgents[] agents, TimetableScores scores) {
     this.agents = agents;
     this.scores = scores;
@@ -38,7 +38,7 @@ public final class TimetableKernel {
 
   /** Simulates {@link #WORLDS} candidates in one episode, by the policies' parameters.
    *
-   * @param timetable of an equal number of vehicles
+   * @param timetable a timetable of an equal number of vehicles
    * @param worlds number of worlds that count, from the first
    */
   public void fly(Timetable timetable, int worlds) {
@@ -58,7 +58,7 @@ public final class TimetableKernel {
     times = timetable.times();
     endAgesS = timetable.endAgesS();
     propagations = timetable.propagations();
-    // Predictions start from velocities, whoever looks at them.
+    // Predictions start from velocities, whatever policies use.
     readsVelocity = withVelocity || propagations.length > 0;
   }
 

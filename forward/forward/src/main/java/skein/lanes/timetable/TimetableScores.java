@@ -10,7 +10,7 @@ public interface TimetableScores {
 
   /** Scores the present positions of all vehicles.
    *
-   * @param agents in the order of the vehicles' numbers
+   * @param agents one per vehicle, in the vehicles' order
    * @param views all views of the timetable; the one to score begins at index {@code view}
    */
   void score(TimetableAgents[] agents, int[] views, int view, float timeS);
@@ -20,11 +20,11 @@ public interface TimetableScores {
     return false;
   }
 
-  /** Ends the worlds in which the flight is over by what is known now.
+  /** Ends the worlds in which the flight is over, given these readings.
    *
    * @param view the index of the newest readings
-   * @param sinceS time since the first decision
-   * @param agesS of the readings, from index {@code ages} on
+   * @param sinceS time since the first decision, s
+   * @param agesS the readings' ages, s, from index {@code ages} on
    */
   default void end(
       TimetableAgents[] agents, int[] views, int view, float timeS, float sinceS, float[] agesS, int ages) {

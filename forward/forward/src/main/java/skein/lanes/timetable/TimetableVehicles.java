@@ -12,7 +12,7 @@ import skein.lanes.policy.VehicleNumbers;
 public abstract class TimetableVehicles {
   public static final int WORLDS = LanePolicy.WORLDS;
 
-  /** The vehicles' readings, by place: positions, m, and velocities, m/s, north and east. */
+  /** The vehicles' readings, by slot: positions, m, and velocities, m/s, north and east. */
   public float[] seenX = {}, seenY = {}, seenVx = {}, seenVy = {};
 
   /** Their positions and velocities down; empty where they fly level. */
@@ -57,7 +57,7 @@ public abstract class TimetableVehicles {
 
   /** Resets to the start of an episode.
    *
-   * @param readings number of places that its timetable needs
+   * @param readings number of slots that its timetable needs
    * @param worlds number of worlds that count, from the first
    */
   public final void start(int readings, int worlds) {
@@ -98,7 +98,7 @@ public abstract class TimetableVehicles {
 
   /** Reads the vehicles.
    *
-   * @param times from {@code at} on, the clock's numbers of this moment
+   * @param times the clock's values for this moment, from {@code at} on
    * @param into the index, for the first world, of the reading
    * @param withVelocity whether velocities are read too
    */

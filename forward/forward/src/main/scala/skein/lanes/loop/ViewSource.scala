@@ -8,7 +8,7 @@ import skein.lanes.timetable.StandingStill
   * computes them ahead. [[LaneViews]] computes the regular views of many worlds by SIMD, and uses this class
   * for the others. Mutable.
   *
-  * @param ahead rows within which the requests of a regular view are answered
+  * @param ahead periods within which the requests of a regular view are answered
   */
 private[lanes] final class ViewSource private (
     timing: LoopTiming.Stream,
@@ -26,7 +26,7 @@ private[lanes] final class ViewSource private (
   /** When the present view was joined, ns; [[ViewSource.Never]] if the flight ends before. */
   var joinedAt = Never
 
-  /** Whether the present view consists of its row's requests, and nothing older is still pending. */
+  /** Whether the present view consists of its period's requests, and nothing older is still pending. */
   var isRegular = false
 
   /** The latest tick at which a request of the view, or of the view before, was sent. */
@@ -111,8 +111,8 @@ private[lanes] object ViewSource:
       keepsAll = false,
       asksPolicies = false,
       standsStill = false,
-      // With a question that takes long, those asked meanwhile, and as many for the one told last, whose
-      // answer may have come as it was asked.
+      // Besides a slow request, those sent meanwhile are pending, and as many for the request of the last
+      // view, which may have been answered when the slow one was sent.
       ring = 2 * (longestS / timing.periodS).ceil.toInt + timing.asking.window + 2
     )
     new ViewSource(timing, world, link, durationS, ahead)

@@ -18,7 +18,7 @@ private[skein] final class LaneQuadrotors private[lanes] (lanes: QuadrotorLanes)
   private val steps   = Array(lanes.step(one, other, goal), lanes.step(other, one, goal))
   private var isOther = false
 
-  // The last position to hover at, and the state there: nearly always it is that of all vehicles.
+  // The last position to hover at, and the state there: nearly always all vehicles hover there.
   private var heldNed                 = Vector3.Zero
   private var holding: Vector[Double] = lanes.numbersOf(lanes.quadrotor.hovering(heldNed))
 
@@ -26,7 +26,7 @@ private[skein] final class LaneQuadrotors private[lanes] (lanes: QuadrotorLanes)
 
   private def rowOf(name: String) = lanes.row(name) * VEHICLES
 
-  /** Indices in [[state]] of the first vehicle's numbers: world NED, m, m/s and m/s². */
+  /** Indices in [[state]] of the first vehicle's components: world NED, m, m/s and m/s². */
   val X: Int  = rowOf("x")
   val Y: Int  = rowOf("y")
   val Z: Int  = rowOf("z")

@@ -7,9 +7,9 @@ import skein.vehicle.PlantTiming
 
 /** Corrects a plant's state by readings, in many worlds by SIMD. Compiled from the method `corrected` of an
   * [[skein.vehicle.ObservedPlant]] or [[skein.vehicle.ObservedSpatialPlant]];
-  * inputs are the state's numbers, then position and velocity.
+  * inputs are the state's components, then position and velocity.
   *
-  * @param count of numbers in the state
+  * @param count number of components of the state
   */
 private[lanes] final class PlantCorrection private (formula: FixedFormula, count: Int):
   import formula.bound
@@ -17,7 +17,7 @@ private[lanes] final class PlantCorrection private (formula: FixedFormula, count
   /** Whether a reading determines the whole state. */
   val isTold: Boolean = bound.inputs.forall(_ >= count)
 
-  /** Whether the state consists of exactly the reading's numbers, in their order. */
+  /** Whether the state consists of exactly the reading's components, in their order. */
   val isReading: Boolean =
     isTold && bound.inputs.toVector == Vector.range(count, count + LaneObservation.READ) &&
       bound.nodes.zipWithIndex.forall((node, i) => node.op == Op.Input && node.index == i)

@@ -4,14 +4,14 @@ import skein.formula.{Angles, Evaluation, Formula, Node, Trace}
 import skein.vehicle.PlantTiming
 
 /** A plant's step, and the reading at its end, as expressions. Their parameters are the speed of a command of
-  * length 1, then the plant's own numbers.
+  * length 1, then the plant's own parameters.
   *
-  * @param first number of the first parameter
-  * @param state the state's numbers at the start of the step
+  * @param first index of the first parameter
+  * @param state the state's components at the start of the step
   * @param north the command's component north, divided by the speed
-  * @param vertical of a command in space, its third number, and whether that is an altitude
+  * @param vertical the third component of a command in space, and whether that is an altitude
   * @param spanS duration of the step
-  * @param taken transforms the numbers of the final state before they are read
+  * @param taken transforms the components of the final state before they are read
   */
 private[lanes] final class PlantExpressions(
     trace: Trace,

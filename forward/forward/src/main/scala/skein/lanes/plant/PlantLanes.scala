@@ -15,7 +15,7 @@ private[skein] final class PlantLanes private (val plant: PlantTiming, form: Pla
   /** Whether commands and readings have a vertical part. */
   val inSpace: Boolean = plant.isInstanceOf[SpatialPlant[?]]
 
-  /** The numbers of the plant's initial state; in space, at z = 0. */
+  /** The components of the plant's initial state; in space, at z = 0. */
   val initial: Array[Float] = initialAt(0)
   if initial.length != count then throw Untraceable(s"a state of $count doubles was expected")
 
@@ -38,16 +38,16 @@ private[skein] final class PlantLanes private (val plant: PlantTiming, form: Pla
       if world == 0 || downM(world) != downM(world - 1) then initial = initialAt(downM(world))
       for i <- 0 until count do array(from + i * downM.length + world) = initial(i)
 
-  /** Writes the numbers of a state at rest, in all worlds. */
+  /** Writes the components of a state at rest, in all worlds. */
   def rest(array: Array[Float], from: Int): Unit =
     val worlds = LaneFunction.COUNT
     for i <- 0 until count do
       Arrays.fill(array, from + i * worlds, from + (i + 1) * worlds, initial(i))
 
-  /** The compiled step: inputs are the state's numbers, then the commanded velocity and the duration. */
+  /** The compiled step: inputs are the state's components, then the commanded velocity and the duration. */
   def step: FixedFormula = form.step.of(plant)
 
-  /** The compiled reading, position and velocity: inputs are the state's numbers. */
+  /** The compiled reading, position and velocity: inputs are the state's components. */
   def read: FixedFormula = form.read.of(plant)
 
   def steps: PlantSteps = form.steps

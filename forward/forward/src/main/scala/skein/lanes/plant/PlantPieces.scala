@@ -5,11 +5,11 @@ import skein.simd.BoundFunction
 import skein.vehicle.PlantTiming
 
 /** A plant's motion during one step, in worlds whose steps begin at different times. Compiled once for all
-  * plants of a form. The stored numbers of a step are: the command north and east, divided by the speed, and
-  * in space its vertical part; the state at the start of the step; and the vehicle's start, unless the state
-  * contains it. A command of NaN makes a vehicle rest.
+  * plants of a form. The stored components of a step are: the command north and east, divided by the speed,
+  * and in space its vertical part; the state at the start of the step; and the vehicle's start, unless the
+  * state contains it. A command of NaN makes a vehicle rest.
   *
-  * @param places indices of the state's numbers that initially equal the vehicle's start, north and east;
+  * @param places indices of the state's components that initially equal the vehicle's start, north and east;
   *   None if there are none
   */
 private[lanes] final class PlantPieces(
@@ -45,7 +45,7 @@ private[lanes] final class PlantPieces(
 
   val kept: Int = firstOfState + count + (if places.isDefined then 0 else 2)
 
-  /** Rows of the stored numbers that initially equal the vehicle's start, north and east. */
+  /** Rows of the stored components that initially equal the vehicle's start, north and east. */
   val starts: Array[Int] = places.getOrElse(Vector(count, count + 1)).map(firstOfState + _).toArray
 
   private val seen =
@@ -70,7 +70,8 @@ private[lanes] final class PlantPieces(
     (plant.stepS +: expressions.parametersOf(plant, speedMps)).map(_.toFloat)
 
 private[lanes] object PlantPieces:
-  /** Inputs of the expressions: the stored numbers, by row, and the time since the start of the step, s. */
+  /** Inputs of the expressions: the stored components, by row, and the time since the start of the step, s.
+    */
   val North: Int = 0
   val East: Int  = 1
   val Third: Int = 2

@@ -10,8 +10,8 @@ import skein.vehicle.PlantTiming
   * are equal in all worlds and passed in. Only the remaining values are computed at each moment. Compiled
   * once for all plants of a form.
   *
-  * The parameters of all functions are the speed of a command of length 1, then the plant's own numbers, then
-  * the values of the time.
+  * The parameters of all functions are the speed of a command of length 1, then the plant's own parameters,
+  * then the values of the time.
   */
 private[lanes] final class PlantStages(stepping: Formula, reading: Formula, inSpace: Boolean):
   import PlantStages.*
@@ -32,9 +32,9 @@ private[lanes] final class PlantStages(stepping: Formula, reading: Formula, inSp
   )
   import expressions.{seen, stepped}
 
-  /** Indices of the state's numbers that equal the vehicle's position, north and east, if no other number
-    * depends on them. These numbers then begin at the vehicle's start; otherwise the start is added to the
-    * readings.
+  /** Indices of the state's components that equal the vehicle's position, north and east, if no other
+    * component depends on them. These components then begin at the vehicle's start; otherwise the start is
+    * added to the readings.
     */
   val places: Option[Vector[Int]] =
     val found = Vector(0, 1).flatMap(placeOf)
@@ -137,7 +137,7 @@ private[lanes] final class PlantStages(stepping: Formula, reading: Formula, inSp
 
 private[lanes] object PlantStages:
   /** Inputs of the expressions: the time, the start, the command divided by the speed with its vertical part,
-    * the state's numbers, and the stored values.
+    * the state's components, and the stored values.
     */
   val Time: Int   = 0
   val StartX: Int = 1
@@ -149,7 +149,7 @@ private[lanes] object PlantStages:
   val State: Int  = 7
   val Kept: Int   = 1 << 16
 
-  /** Rows of inputs: the state's numbers share one array, and so do the stored numbers. */
+  /** Rows of inputs: the state's components share one array, and so do the stored values. */
   private val rowOf: PartialFunction[Int, Int] =
     case kept if kept >= Kept    => kept - Kept
     case state if state >= State => state - State

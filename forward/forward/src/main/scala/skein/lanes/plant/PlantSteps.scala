@@ -7,7 +7,7 @@ import skein.vehicle.Plant
 /** A plant's steps of equal duration, in worlds whose steps begin together, with a reading after each step.
   * Compiled once for all plants of a form.
   *
-  * @param places indices of the state's numbers that initially equal the vehicle's start, north and east;
+  * @param places indices of the state's components that initially equal the vehicle's start, north and east;
   *   None if there are none
   */
 private[skein] final class PlantSteps private[lanes] (
@@ -32,7 +32,7 @@ private[skein] final class PlantSteps private[lanes] (
     if places.isDefined then expressions.seen
     else expressions.seenFrom(trace.input(count + 2), trace.input(count + 3))
 
-  /** Whether the state consists of exactly the reading's numbers, in their order. */
+  /** Whether the state consists of exactly the reading's components, in their order. */
   val isRead: Boolean = seen == expressions.stepped
 
   private lazy val ofState   = bound(expressions.stepped)
@@ -41,7 +41,7 @@ private[skein] final class PlantSteps private[lanes] (
   private def bound(of: Vector[Node]) =
     BoundFunction.of(of, { case number if number < count => number }, areRows = true)
 
-  /** Prepares calls with a plant's numbers.
+  /** Prepares calls with a plant's parameters.
     *
     * @param spanS duration of each step
     * @param reads whether outputs include position and velocity, north and east, in rows after the state

@@ -14,12 +14,12 @@ private[lanes] final class QuadrotorLanes private (
 ):
   import QuadrotorLanes.*
 
-  /** Names of the rows, which are the numbers of a vehicle's state. */
+  /** Names of the rows, which are the components of a vehicle's state. */
   val rows: Vector[String] = formula.inputs.map(_.stripPrefix(State)).take(formula.bound.outputs)
 
   def row(name: String): Int = rows.indexOf(name)
 
-  /** The numbers of a state, in the order of [[rows]]. */
+  /** The components of a state, in the order of [[rows]]. */
   def numbersOf(state: QuadrotorState): Vector[Double] = fields.map(_.getDouble(state))
 
   private lazy val fields = rows.map: name =>

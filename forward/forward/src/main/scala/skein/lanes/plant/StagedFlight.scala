@@ -94,8 +94,8 @@ private[lanes] final class StagedFlight(
 
   /** Simulates up to a time.
     *
-    * @param time array with the time's representation from index `at` on: the number of steps that end until
-    *   then, and the values of the time since the last step
+    * @param time array that represents the time from index `at` on: the number of steps that end until then,
+    *   and the values of the time since the last step
     */
   def flyTo(time: Array[Float], at: Int): Unit =
     var steps = time(at).toInt

@@ -73,7 +73,7 @@ private[lanes] abstract class CameraTrackerLanes(
   /** Simulates images that are taken now, with the given errors. The opponent is detected wherever it is in
     * view.
     *
-    * @param oursX positions of the own vehicles, from `oursAt` on, m
+    * @param oursX positions of the vehicles with the camera, from `oursAt` on, m
     * @param into receives [[CameraTrackerLanes.Detection]] rows; the first row is whether the opponent is
     *   detected, 1 or 0
     */
@@ -102,7 +102,7 @@ private[lanes] abstract class CameraTrackerLanes(
 
   /** Fills [[northM]] and the following arrays, and [[newAxis]], at [[nowS]].
     *
-    * @param x positions of the own vehicles, from `xAt` on, m
+    * @param x positions of the vehicles with the camera, from `xAt` on, m
     */
   protected final def decideUpon(x: Array[Float], xAt: Int, y: Array[Float], yAt: Int): Unit =
     decided.inputs(0, Belief, newest, 0)
@@ -115,7 +115,7 @@ private[lanes] abstract class CameraTrackerLanes(
 private[lanes] object CameraTrackerLanes:
   private val WORLDS = LanePolicy.WORLDS
 
-  /** Numbers of a [[SensorFormulas.Believed]] and of a [[SensorFormulas.Detected]]. */
+  /** Number of components of a [[SensorFormulas.Believed]] and of a [[SensorFormulas.Detected]]. */
   val Belief    = 35
   val Detection = 13
 

@@ -5,12 +5,12 @@ import skein.policy.{Assignment, Policy, PolicyFormula, PolicyInput}
 import skein.policy.PolicyFormula.Motion
 import skein.units.Expect
 
-/** The decision of one of two that play against one another, if it is a heading, flown at the vehicle's own
-  * speed and at the altitude of its start, by what the vehicles' readings differ in: a [[PolicyFormula]] with
-  * its inputs replaced by those of [[OpponentFormula.In]].
+/** The decision of one of two opponents, if it is a heading at the vehicle's own speed and at the altitude of
+  * its start, and depends on the difference of the two readings alone: a [[PolicyFormula]] with its inputs
+  * replaced by those of [[OpponentFormula.In]].
   *
-  * @param heading to command
-  * @param memory before the next decision
+  * @param heading the commanded heading
+  * @param memory the components of the memory after the decision
   */
 private[policy] final class OpponentFormula private (
     formula: PolicyFormula,
@@ -27,12 +27,12 @@ private[policy] final class OpponentFormula private (
   def startOf(policy: Policy): Array[Double] = formula.startOf(policy)
 
 private[policy] object OpponentFormula:
-  /** Two that play against one another. */
+  /** Two vehicles, each the only rival of the other. */
   val Rivals: Assignment = Assignment(Vector(Vector(1), Vector(0)))
 
-  /** The inputs: the opponent's position minus the own one, north and east, m; likewise its velocity, m/s;
-    * the headings commanded last, rad; time since the own last decision, ages of both readings, s; and the
-    * numbers of the memory.
+  /** The inputs: the opponent's position minus this vehicle's, north and east, m; likewise its velocity, m/s;
+    * the headings commanded last, rad; time since this vehicle's previous decision, ages of both readings, s;
+    * and the components of the memory.
     */
   object In:
     final val Dx              = 0
@@ -45,7 +45,7 @@ private[policy] object OpponentFormula:
     final val OpponentAge     = 8
     final val Memory          = 9
 
-  /** @param self the vehicle's place, 0 or 1
+  /** @param self the vehicle's index, 0 or 1
     * @return Left states why it is of another kind
     */
   def of(formula: PolicyFormula, self: Int): Either[Untraceable, OpponentFormula] =

@@ -6,14 +6,13 @@ import skein.policy.Policy
 import skein.simd.{LaneMath, Recent}
 import skein.units.Expect
 
-/** SIMD decisions of two that play against one another by headings: each by the difference of the two
-  * readings ([[OpponentFormula]]), and of directions, not velocities. So they fly faster than by
-  * [[TeamLanes]].
+/** SIMD decisions of two opponents that command headings: each decides by the difference of the two readings
+  * ([[OpponentFormula]]), and yields a direction, not a velocity. This is faster than [[TeamLanes]].
   *
-  * @param forms by vehicle
-  * @param agents by vehicle: their speeds, first headings and cameras; where somebody sees by a camera, their
-  *   starts too
-  * @param withEffort by vehicle, whether its effort is computed
+  * @param forms the policies' forms, by vehicle
+  * @param agents the vehicles: their speeds, first headings and cameras; if one has a camera, their starts
+  *   too
+  * @param withEffort whether a vehicle's effort is computed, by vehicle
   */
 private[lanes] final case class OpponentLanes private (
     forms: Vector[PolicyLanes],
@@ -41,11 +40,11 @@ private[lanes] object OpponentLanes:
 
   private def cameraOf(sensor: SensorModel) = cameras.getOrMake(sensor)(CameraTrackerLanes.of(sensor))
 
-  /** The SIMD code of two opponents; None where they are not two that play against one another by headings.
+  /** The SIMD code of two opponents; None unless they are two opponents that command headings.
     *
-    * @param efforts of which vehicles are computed
+    * @param efforts whether a vehicle's effort is computed, by vehicle
     * @param isPredicted whether readings are predicted
-    * @return Left states why a camera has none
+    * @return Left states why SIMD does not support a camera
     */
   def of(
       engagement: Engagement,

@@ -5,8 +5,8 @@ import skein.lanes.policy.OpponentFormula.In as Seen
 import skein.policy.{GraphPolicy, PlanarObservation, Policy, PolicyFormula}
 import skein.simd.{Forms, LaneCompiler, LaneFunction, Recent}
 
-/** The decision of policies of one form in many worlds by SIMD, compiled from the policy's own method:
-  * [[OpponentFormula]] says of which policies. Those of one form differ in numbers alone.
+/** The decision of policies of one form in many worlds by SIMD, compiled from the policy's own method;
+  * [[OpponentFormula]] defines which policies have one. Policies of one form differ only in parameter values.
   */
 private[skein] final class PolicyLanes private (formula: OpponentFormula):
   import PolicyLanes.*
@@ -60,7 +60,8 @@ private[skein] final class PolicyLanes private (formula: OpponentFormula):
         val (cos, sin) = angles.cosSin(heading)
         Vector(cos, sin, apart(cos, sin)) ++ remembered
 
-  /** Whether it turns from the last commanded heading, and so outputs a heading in addition to its direction.
+  /** Whether it turns from the last commanded heading; then it outputs a heading in addition to its
+    * direction.
     */
   val keepsHeading: Boolean = turn.isDefined
 
@@ -86,8 +87,8 @@ private[skein] final class PolicyLanes private (formula: OpponentFormula):
   /** Number of arrays that it reads. */
   def inputs: Int = In.Memory + memories
 
-  /** Number of values in the memory up to the last one that a decision looks at. The others are there to be
-    * seen from outside.
+  /** Number of components of the memory up to the last one on which a decision depends. The others are only
+    * observed from outside.
     */
   val remembered: Int =
     needed.iterator.filter(node => node.op == Op.Input && node.index >= In.Memory).map(
@@ -100,7 +101,7 @@ private[skein] final class PolicyLanes private (formula: OpponentFormula):
     all.patch(all.size - (outputs.size - decided) + remembered, Nil, memories - remembered)
 
   /** Computes [[outputs]] without the memory that is not [[remembered]], from the inputs of [[In]], the first
-    * of which are passed as the opponent's readings and the own ones.
+    * of which are passed as the opponent's readings and this vehicle's.
     */
   lazy val function: LaneFunction =
     LaneCompiler.compile(inputs, deciding(withEffort = true), LaneObservation.READ, parameters)
@@ -113,7 +114,7 @@ private[skein] final class PolicyLanes private (formula: OpponentFormula):
     parameters
   )
 
-  // But how far the decided heading is from the one before.
+  // All outputs except the change of the heading.
   private def course = outputs.patch(2, Nil, 1)
 
   private[lanes] def nodes(withEffort: Boolean): Vector[Node] = if withEffort then outputs else course
@@ -154,7 +155,7 @@ private[skein] final class PolicyLanes private (formula: OpponentFormula):
       seen.opponentAgeS
     ) ++ numbersOf(memory)
 
-  /** A policy's initial memory, as numbers. */
+  /** The components of a policy's initial memory. */
   def initialOf(policy: Policy): Array[Double] = formula.startOf(policy)
 
   def fits(policy: Policy): Boolean = formula.fits(policy)
@@ -176,8 +177,8 @@ private[skein] final class PolicyLanes private (formula: OpponentFormula):
   private def wrapped(angle: Node): Node =
     if angle.isConst then angle else trace.binary(Op.Remainder, angle, trace.const(2 * math.Pi))
 
-  /** The angle between the own direction and the decided one: two directions a chord apart are 2 arcsin(chord
-    * / 2).
+  /** The angle between this vehicle's last direction and the decided one, 2 arcsin(chord / 2), where the
+    * chord is the distance between the two on the unit circle.
     */
   private def apart(cos: Node, sin: Node): Node =
     val (x, y) = (trace.sub(cos, trace.input(In.OwnCos)), trace.sub(sin, trace.input(In.OwnSin)))
@@ -216,7 +217,7 @@ private[skein] object PolicyLanes:
 
   /** The SIMD code of a policy, or why there is none. Compiled once for each form.
     *
-    * @param self its vehicle's place, 0 or 1
+    * @param self its vehicle's index, 0 or 1
     * @param isPredicted whether readings are predicted
     */
   def of(policy: Policy, self: Int, isPredicted: Boolean): Either[Untraceable, PolicyLanes] =

@@ -10,7 +10,7 @@ import skein.simd.{BoundFunction, Forms, LaneFunction, Recent}
 import skein.units.{Expect, Metres}
 
 /** SIMD decisions of a team's policies in many worlds, compiled from their own methods ([[PolicyFormula]]).
-  * Teams of one form differ in numbers alone.
+  * Teams of one form differ only in parameter values.
   *
   * What several vehicles compute from one view is computed once for all of them: for example the bearings
   * that each pursuer needs.
@@ -108,8 +108,8 @@ private[lanes] final class TeamLanes private (
   private val derived = angles.map(_.derived)
   private val numbers = derived.map(Evaluation(_))
 
-  /** By vehicle: number of values in the memory up to the last one that its decisions look at. The others are
-    * there to be seen from outside.
+  /** By vehicle: number of components of the memory up to the last one on which its decisions depend. The
+    * others are only observed from outside.
     */
   val remembered: Vector[Int] = Vector.tabulate(count): self =>
     Trace.needed(outputs(self)).iterator.filter(node => node.op == Op.Input && node.index >= view)
@@ -136,8 +136,8 @@ private[lanes] final class TeamLanes private (
   /** By vehicle: the function for its own part of the memory that is not [[remembered]]; may be empty. */
   val sights: Vector[BoundFunction] = Vector.tabulate(count)(self => own(observing(self)))
 
-  /** The vehicle and the component of its reading that an input stands for, 0 to 3: position north and east,
-    * velocity north and east; in space, 4 and 5: position and velocity down.
+  /** The vehicle, and the component of its reading, for which an input stands. Components 0 to 3: position
+    * north and east, velocity north and east; in space, 4 and 5: position and velocity down.
     */
   def reading(input: Int): Option[(Int, Int)] =
     Option.when(input < view)((input % count, input / count))
@@ -170,12 +170,12 @@ private[lanes] final class TeamLanes private (
   /** Whether some policy may command its vehicle's yaw. */
   val turns: Boolean = formulas.exists(_.turns)
 
-  /** Whether all decide by positions, velocities, time and the own heading alone. */
+  /** Whether all decide by positions, velocities, time and their own heading alone. */
   private val isPlain: Boolean = !inSpace && formulas.forall(_.memory.isEmpty) && sources.flatten.forall:
     case Source.Cos | Source.Sin | Source.Elapsed | _: (Source.Parameter | Source.Shared) => true
     case _                                                                                => false
 
-  /** Number of values in the memory of a vehicle's policy. */
+  /** Number of components of the memory of a vehicle's policy. */
   def memories(self: Int): Int = formulas(self).memory.size
 
   /** Number of parameters by which a vehicle's policy differs from others of its form. */
@@ -206,7 +206,7 @@ private[lanes] final class TeamLanes private (
   private def ownInput(self: Int, number: Int) = view + self * Stride + number
 
 private[lanes] object TeamLanes:
-  /** Inputs that each vehicle has for itself; some of them exist for each other vehicle. */
+  /** Inputs that each vehicle has separately; some of them exist for each of the other vehicles. */
   private object Own:
     final val Cos        = 0
     final val Sin        = 1
@@ -288,7 +288,7 @@ private[lanes] object TeamLanes:
 
 /** Subexpressions shared by several expressions, which depend on the first inputs alone.
   *
-  * @param nodes those that are worth computing once
+  * @param nodes the subexpressions that are worth computing once
   */
 private final class Common private (val nodes: Vector[Node]):
   private val numbers = nodes.zipWithIndex.toMap
@@ -318,7 +318,7 @@ private object Common:
         part.args.nonEmpty && seen.add(part) &&
           (seen.size >= LeastOperations || part.op.isDear || part.args.exists(isDear))
       isDear(node)
-    // Masks are not laid by, but what they compare.
+    // A condition itself is not stored, but the values that it compares are.
     def numbersOf(node: Node): Vector[Node] =
       if node.op.isCondition then node.args.flatMap(numbersOf) else Vector(node)
     val chosen =

@@ -4,7 +4,7 @@ import skein.forward.RolloutAgent
 import skein.fusion.SensorModel
 import skein.policy.Policy
 
-/** Decides for the vehicles of a team by SIMD. Teams of one form differ in numbers alone. */
+/** Decides for the vehicles of a team by SIMD. Teams of one form differ only in parameter values. */
 private[lanes] trait TeamPolicies:
   def count: Int
 
@@ -22,18 +22,18 @@ private[lanes] trait TeamPolicies:
   /** Number of candidates with shared episodes that are simulated in the time of one. */
   def sideBySide: Int
 
-  /** The numbers that distinguish a vehicle's policy from others of its form. */
+  /** The values that distinguish a vehicle's policy from others of its form. */
   def numbersOf(self: Int, policy: Policy): PolicyNumbers
 
-/** The numbers of one vehicle's policy in a world.
+/** The values that distinguish one vehicle's policy in a world from others of its form.
   *
-  * @param parameters those of its form
-  * @param memory before the first decision
+  * @param parameters values of the form's parameters
+  * @param memory components of the memory before the first decision
   */
 private[lanes] final case class PolicyNumbers(parameters: Array[Double], memory: Array[Double])
 
-/** The numbers that distinguish a vehicle from those of other worlds. Few objects, since every world reads
-  * those of its own vehicle.
+/** The values that distinguish a vehicle from those of other worlds, in few objects, since every world reads
+  * its own.
   *
   * @param policy its parameters, then its memory before the first decision
   */

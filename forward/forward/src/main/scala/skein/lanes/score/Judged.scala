@@ -2,9 +2,9 @@ package skein.lanes.score
 
 import skein.scenario.{Quantity, Reduction}
 
-/** A number computed from a flight.
+/** A score of a flight: a quantity, reduced over time.
   *
-  * @param reduction of the quantity's values, one value per period
+  * @param reduction how the quantity's values, one per period, become one value
   * @param fromS time of the first value that is used
   */
 final case class Judged(quantity: Quantity, reduction: Reduction | OfMoment, fromS: Double):

@@ -8,9 +8,9 @@ import skein.simd.{BoundFunction, Forms}
 import skein.units.Expect
 
 /** Scores flights in many worlds by SIMD. The quantities, compiled from [[Quantity.of]], and their reductions
-  * are one function: from the running numbers of each world and a view it computes their next values. Flights
-  * of one form differ in numbers alone. If the scenario has an end of its own, it is another function, which
-  * computes when each world ended; the running numbers of a world that has ended stay as they are.
+  * are one function: from the accumulators of each world and a view it computes their next values. Flights of
+  * one form differ only in parameter values. If the scenario has an end of its own, another function computes
+  * when each world ended; the accumulators of a world that has ended stay unchanged.
   */
 private[lanes] final class ScoreLanes private (
     quantities: Vector[Formula],
@@ -22,7 +22,7 @@ private[lanes] final class ScoreLanes private (
 
   private val trace = Trace()
 
-  /** Those of the quantities, then that of the end. */
+  /** The formulas of the quantities, then that of the end. */
   private val all = quantities ++ end.map(_.formula)
 
   /** Number of formulas with parameters: the quantities, and the end if there is one. */
@@ -37,7 +37,7 @@ private[lanes] final class ScoreLanes private (
       parameter => trace.input(FirstParameter + number * Stride + parameter)
     )
 
-  /** What an input of the end's formula stands for. */
+  /** The node for an input of the end's formula. */
   private def ofEnd(input: Int): Node = end.get.inputs(input) match
     case PolicyInput.Position(vehicle, axis) => trace.input(axis * count + vehicle)
     case PolicyInput.Velocity(vehicle, axis) => trace.input((3 + axis) * count + vehicle)
@@ -46,8 +46,8 @@ private[lanes] final class ScoreLanes private (
 
   def hasEnd: Boolean = end.isDefined
 
-  /** Offset of each judged number's running numbers; the last entry is their total count. If there is an end,
-    * then follow the time at which the world ended, s, and for each judged number the count of its values.
+  /** Offset of each score's accumulators; the last entry is their total number. If there is an end, these are
+    * followed by the time at which the world ended, s, and by the number of values of each score.
     */
   val places: Vector[Int] = judged.map(initially(_).size).scanLeft(0)(_ + _)
 
@@ -55,11 +55,12 @@ private[lanes] final class ScoreLanes private (
 
   private def countOf(number: Int) = endedAt + 1 + number
 
-  /** Place of the count of a judged number's values in each world, which may end; None if all have one count.
+  /** Index of the number of a score's values in each world; None if worlds do not end and all have an equal
+    * number.
     */
   def counted(number: Int): Option[Int] = Option.when(hasEnd)(countOf(number))
 
-  /** The initial values of the running numbers, by place. */
+  /** The initial values of the accumulators, by index. */
   val initial: Vector[Float] = judged.flatMap(initially) ++
     Vector.from(Option.when(hasEnd)(Float.PositiveInfinity +: judged.map(_ => 0f))).flatten
 
@@ -67,7 +68,7 @@ private[lanes] final class ScoreLanes private (
 
   private def formulaOf(number: Int): Node = angles(number).convert(all(number).outputs(0)._2)
 
-  /** By judged number, the places of its running numbers and their next values. */
+  /** By score, the indices of its accumulators and their next values. */
   private val successors: Vector[Vector[(Int, Node)]] = judged.indices.toVector.map: number =>
     val own = successorsOf(number, formulaOf(number), each => kept(places(number) + each)).zipWithIndex.map:
       (next, each) => (places(number) + each, next)
@@ -83,7 +84,7 @@ private[lanes] final class ScoreLanes private (
     val now    = trace.where(goesOn, trace.const(Double.PositiveInfinity), trace.input(6 * count + Own.Now))
     Ending(endedAt, BoundFunction.of(Vector(trace.binary(Op.Min, kept(endedAt), now))))
 
-  /** What the end depends on. */
+  /** The kind of inputs on which the end depends. */
   val endsBy: Timetable.End =
     if end.isEmpty then Timetable.End.None
     else if asks({ case _: Source.Age | Source.Since => true }) then Timetable.End.ByTime
@@ -98,10 +99,10 @@ private[lanes] final class ScoreLanes private (
   private def asks(what: PartialFunction[Source, Boolean]): Boolean =
     ending.exists(_.function.inputs.exists(input => what.isDefinedAt(source(input))))
 
-  /** The next values of the running numbers. Each may overwrite its predecessor, which no other expression
+  /** The next values of the accumulators. Each may overwrite its predecessor, which no other expression
     * reads.
     *
-    * @param value the quantity now
+    * @param value the quantity's present value
     */
   private def successorsOf(number: Int, value: Node, kept: Int => Node): Vector[Node] =
     val own = trace.param(ownParameter(number))
@@ -122,7 +123,7 @@ private[lanes] final class ScoreLanes private (
   private val derived = angles.map(_.derived)
   private val numbers = derived.map(Evaluation(_))
 
-  /** The functions to use, each from a time until that of the next. */
+  /** The functions to use, each from its time until that of the next. */
   val stages: Vector[Stage] = judged.map(_.fromS).distinct.sorted.map: fromS =>
     val numbers = judged.indices.filter(judged(_).fromS <= fromS).toVector
     Stage(
@@ -132,7 +133,7 @@ private[lanes] final class ScoreLanes private (
       BoundFunction.of(numbers.flatMap(successors(_).map(_._2)))
     )
 
-  /** The source of a function's input: a reading, an altitude, a parameter or a running number. */
+  /** The source of a function's input: a reading, an altitude, a parameter or an accumulator. */
   def source(input: Int): Source =
     if input < 2 * count then Source.Reading(input % count, input / count)
     else if input < 3 * count then Source.Altitude(input - 2 * count)
@@ -146,19 +147,19 @@ private[lanes] final class ScoreLanes private (
       Source.Parameter((input - FirstParameter) / Stride, (input - FirstParameter) % Stride)
     else Source.Kept(input - FirstKept)
 
-  /** Whether a judged number needs the weight of a new value, 1 over the count so far. */
+  /** Whether a score needs the weight of a new value, 1 over the count so far. */
   def hasShare(number: Int): Boolean = judged(number).reduction == Reduction.Sd
 
   /** Number of parameters that distinguish a quantity from others of its form. */
   def parameters(number: Int): Int = derived(number).size
 
-  /** The parameters of each quantity, then of the end, where there is one. */
+  /** The parameters of each quantity, then those of the end, if there is one. */
   def parametersOf(quantities: Vector[Judged], end: Option[OwnEnd]): Array[Array[Double]] =
     val of = quantities.map(_.quantity) ++ end.map(_.scenario)
     Array.tabulate(of.size): number =>
       numbers(number)(Array.emptyDoubleArray, all(number).parametersOf(of(number)))
 
-  /** Whether these judged numbers of this number of vehicles, with this end, have this form. */
+  /** Whether these scores of this number of vehicles, with this end, have this form. */
   def fits(by: Vector[Judged], vehicles: Int, ends: Option[OwnEnd]): Boolean =
     vehicles == count && by.size == judged.size && ends.isDefined == hasEnd && by.indices.forall { number =>
       val (own, other) = (judged(number), by(number))
@@ -170,13 +171,13 @@ private[lanes] object ScoreLanes:
   private final val Stride         = 1 << 18
   private final val FirstKept      = 1 << 30
 
-  /** Indices of the parameters that all worlds share: the time, s; then for each judged number a limit, or
-    * the weight of the new value.
+  /** Indices of the parameters that all worlds share: the time, s; then for each score a limit, or the weight
+    * of the new value.
     */
   final val Time                     = 0
   def ownParameter(number: Int): Int = 1 + number
 
-  /** Inputs that only the end has, by their order. */
+  /** Inputs that only the end has, in their order. */
   private object Own:
     final val Now   = 0
     final val Since = 1
@@ -196,8 +197,8 @@ private[lanes] object ScoreLanes:
 
   /** The function to use from a time on.
     *
-    * @param judged indices of the judged numbers that are updated from then on
-    * @param places place of the running number that each output updates
+    * @param judged indices of the scores that are updated from then on
+    * @param places index of the accumulator that each output updates
     */
   final case class Stage(fromS: Double, judged: Vector[Int], places: Vector[Int], function: BoundFunction):
     /** Samples later than this are scored (exclusive bound). */
@@ -207,7 +208,7 @@ private[lanes] object ScoreLanes:
 
   /** The function that computes when each world ended, s: infinity until then.
     *
-    * @param place of the time among the running numbers
+    * @param place index of the time among the accumulators
     */
   final case class Ending(place: Int, function: BoundFunction)
 
@@ -233,7 +234,7 @@ private[lanes] object ScoreLanes:
 
   /** Compiles scores, once for each form. Left states why SIMD does not support them.
     *
-    * @param end by which the scenario ends before its duration
+    * @param end the condition by which the scenario ends before its duration
     */
   def of(
       judged: Vector[Judged],
@@ -241,9 +242,9 @@ private[lanes] object ScoreLanes:
       end: Option[OwnEnd] = None
   ): Either[Untraceable, ScoreLanes] = known((judged, vehicles, end))
 
-  /** The final value of a judged number; NaN without values.
+  /** The final value of a score; NaN without values.
     *
-    * @param kept its last running number
+    * @param kept its last accumulator
     * @param count number of values
     */
   def value(reduction: Reduction | OfMoment, kept: Float, count: Int): Float = reduction match
@@ -254,7 +255,7 @@ private[lanes] object ScoreLanes:
 
   /** Scores the distance between two vehicles.
     *
-    * @param by reductions of the distance, each from a time on, s
+    * @param by reductions of the distance, each with the time from which values count, s
     */
   def ofDistance(by: (Reduction | OfMoment, Double)*): ScoreLanes =
     of(by.toVector.map(Judged(Separation, _, _)), 2).fold(throw _, identity)

@@ -48,9 +48,9 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
   private val ending: ViewCall =
     lanes.ending.fold(null)(ending => showing(ending.function, Vector(ending.place)))
 
-  /** A call that computes running numbers.
+  /** A call that computes accumulators.
     *
-    * @param places of the function's outputs among them
+    * @param places indices of the function's outputs among the accumulators
     */
   private def showing(function: BoundFunction, places: Vector[Int]): ViewCall =
     val shown = ViewCall(
@@ -84,7 +84,7 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
     for number <- numbers.indices; i <- numbers(number).indices do
       parameters(number)(i * worlds + world) = numbers(number)(i).toFloat
 
-  /** Sets the limit of a judged number with [[OfMoment.FirstWithin]]. */
+  /** Sets the limit of a score with [[OfMoment.FirstWithin]]. */
   def limit(number: Int, most: Float): Unit = shared(ScoreLanes.ownParameter(number)) = most
 
   def start(worlds: Int): Unit =
@@ -101,8 +101,8 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
     counts(number) = 0
     for place <- lanes.places(number) until lanes.places(number + 1) do begin(place)
 
-  /** Forgets one world's score. Its count goes on, so this is not for means and standard deviations at the
-    * end.
+  /** Resets one world's score. The count of values goes on, so final means and standard deviations are then
+    * wrong.
     */
   def forgetIn(world: Int, number: Int): Unit =
     for place <- lanes.places(number) until lanes.places(number + 1) do
@@ -177,14 +177,14 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
 
   private def soFar(number: Int, world: Int): Float = kept((ends(number) - 1) * worlds + world)
 
-  /** Writes the last kept number by world. */
+  /** Writes the last accumulator of a score, by world. */
   def soFar(number: Int, into: Array[Float]): Unit =
     System.arraycopy(kept, (ends(number) - 1) * worlds, into, 0, worlds)
 
-  /** The final values of a judged number in all worlds. */
+  /** The final values of a score in all worlds. */
   def values(number: Int): Array[Float] = Array.tabulate(worlds)(value(number, _))
 
-  /** The final value of a judged number in one world; NaN without values. */
+  /** The final value of a score in one world; NaN without values. */
   def value(number: Int, world: Int): Float =
     val count = lanes.counted(number).fold(counts(number))(place => kept(place * worlds + world).toInt)
     ScoreLanes.value(judged(number).reduction, soFar(number, world), count)
@@ -192,7 +192,7 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
 private[lanes] object Scoreboard:
   /** Scores the distance between two vehicles.
     *
-    * @param by reductions of the distance, each from a time on, s
+    * @param by reductions of the distance, each with the time from which values count, s
     */
   def ofDistance(by: (Reduction | OfMoment, Double)*): Scoreboard =
     Scoreboard(ScoreLanes.ofDistance(by*), Vector(0, 0))

@@ -44,9 +44,9 @@ private[lanes] object CommandPropagator:
   /** A piece of a prediction under the command of one decision; times are s from the reading. */
   final case class Flown(decision: Int, fromS: Double, untilS: Double)
 
-  /** Creates a propagation from pieces, with `perPart` numbers for each.
+  /** Creates a propagation from pieces, with `perPart` values for each.
     *
-    * @param tell writes the numbers of a piece into an array, from an index on
+    * @param tell writes the values of a piece into an array, from an index on
     */
   def told(flown: Vector[Flown], perPart: Int, first: Double = 0, second: Double = 0)(
       tell: (Flown, Array[Float], Int) => Unit

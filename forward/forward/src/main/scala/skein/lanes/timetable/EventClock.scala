@@ -2,19 +2,20 @@ package skein.lanes.timetable
 
 import skein.lanes.plant.PlantLanes
 
-/** Represents the times of events by the numbers that a kind of vehicle needs. Mutable. */
+/** Represents the times of events by the values that a kind of vehicle needs. Mutable. */
 private[skein] trait EventClock:
-  /** Count of the numbers that represent one time. */
+  /** Number of values that represent one time. */
   def numbers: Int
 
-  /** Writes the [[numbers]] that represent a time, s; times must not decrease.
+  /** Writes the [[numbers]] values that represent a time, s; times must not decrease.
     *
     * @param acts whether a command takes effect at that time
     */
   def tell(atS: Double, acts: Boolean, into: Array[Float], at: Int): Unit
 
-/** Represents a time by the number of steps that end until then, and by the numbers of the time since the
-  * last step. A step begins at a command, or at the end of the previous step.
+/** Represents a time by the number of steps that end until then, and by the values that
+  * [[skein.lanes.plant.PlantStages]] needs of the time since the last step. A step begins at a command, or at
+  * the end of the previous step.
   *
   * @param told [[skein.lanes.plant.PlantStages.tell]] of the plant
   * @param pieceS begin of the first step, s
@@ -38,5 +39,5 @@ private[lanes] final class StepClock(
     if acts then pieceS = atS
 
 private[lanes] object StepClock:
-  /** Count of the numbers that represent one time. */
+  /** Number of values that represent one time. */
   def numbers(lanes: PlantLanes): Int = 1 + lanes.stages.times

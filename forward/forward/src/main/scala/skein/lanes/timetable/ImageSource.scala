@@ -77,7 +77,7 @@ private[lanes] object ImageSource:
       keepsAll = false,
       asksPolicies = false,
       standsStill = false,
-      // Nobody is asked.
+      // No vehicle is read.
       ring = 1
     )
     new ImageSource(model, agent, world, link)

@@ -28,10 +28,10 @@ private[lanes] object Note:
     *
     * @param before number of its previous decision; this decision's number is one more
     * @param elapsedS time since the previous decision
-    * @param opponent in a duel, number of the opponent's last known decision; else 0
-    * @param ownAgeS in a duel, age of the own reading; else 0
-    * @param opponentAgeS in a duel, age of the opponent's reading; else 0
-    * @param aheadS with a camera, time by which its estimate is predicted; −1 in loops without predictions
+    * @param opponent number of the opponent's last known decision in a duel; else 0
+    * @param ownAgeS age of the vehicle's own reading in a duel; else 0
+    * @param opponentAgeS age of the opponent's reading in a duel; else 0
+    * @param aheadS time by which a camera's estimate is predicted; −1 in loops without predictions
     * @param more further inputs, for teams that need them
     */
   final case class Decide(
@@ -49,7 +49,7 @@ private[lanes] object Note:
 
   /** Further inputs of a decision.
     *
-    * @param known for each vehicle, number of the last decision that was sent to it
+    * @param known number of the last decision that was sent to each vehicle
     * @param agesS age of each vehicle's reading
     * @param actsInS time until the command takes effect; 0 in loops without predictions
     */
@@ -69,8 +69,8 @@ private[lanes] object Note:
 
   /** A sensor takes an image.
     *
-    * @param bearingError in units of the standard deviation
-    * @param rangeError in units of the standard deviation
+    * @param bearingError error of the bearing, in standard deviations
+    * @param rangeError error of the range, in standard deviations
     * @param isFound whether an opponent in view is detected
     */
   final case class Expose(

@@ -9,7 +9,7 @@ import skein.lanes.policy.Directions
   * the state, that part is simulated from reading to reading. The scalar reference is
   * [[skein.vehicle.PlantModel]], in space [[skein.vehicle.SpatialModel]].
   *
-  * @param correction of the state by a reading
+  * @param correction corrects the state by a reading
   * @param speedMps speed of a command of length 1
   */
 private[lanes] final class PredictedPlants(
@@ -25,7 +25,7 @@ private[lanes] final class PredictedPlants(
   private val count   = lanes.count
   private var startZ  = Array.emptyFloatArray
 
-  /** The state at each reading, by the reading's place; used only if readings lack a part of the state. */
+  /** The state at each reading, by the reading's slot; used only if readings lack a part of the state. */
   private var states = Array.emptyFloatArray
   private val before = Array.ofDim[Float](count * WORLDS)
   correct.inputs(0, count, before, 0)

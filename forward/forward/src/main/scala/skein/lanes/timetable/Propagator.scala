@@ -15,6 +15,6 @@ private[lanes] trait Propagator:
 private[lanes] object Propagator:
   /** The counterpart of a [[skein.forecast.Leg]].
     *
-    * @param decision whose command is in effect; 0 before the first command
+    * @param decision the decision whose command is in effect; 0 before the first command
     */
   final case class Leg(decision: Int, span: Span)

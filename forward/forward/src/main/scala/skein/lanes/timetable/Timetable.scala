@@ -14,21 +14,21 @@ import skein.vehicle.ConstantVelocity
   * effect.
   *
   * @param vehicles number of vehicles
-  * @param operations [[Timetable.Fields]] numbers each: the kind, of [[TimetableKernel]]; the vehicle; then
-  *   places
-  * @param numbers count of `times` per operation
-  * @param times of each operation: of an event of a vehicle, the numbers of its [[EventClock]]; of a
-  *   decision, the time since the one before, and in a duel the ages of the own and of the opponent's
-  *   reading; with a camera, the age of the own reading, the time, and the time for which an estimate is
-  *   predicted ([[TimetableEye.look]]); of an image the arguments of [[TimetableEye.expose]]; of a score, the
-  *   time; s
-  * @param views the inputs of decisions and scores: the places of all vehicles' readings, view by view
-  * @param propagations of predictions, in loops that predict
-  * @param readings number of places that the readings of one vehicle need simultaneously
-  * @param headings number of places for the headings of one vehicle
-  * @param more further inputs of decisions, if requested; then a decision's third place is its number there
-  * @param endAgesS of operations that may end the flight, which have their index here: the ages of all
-  *   vehicles' readings
+  * @param operations [[Timetable.Fields]] integers each: the kind, of [[TimetableKernel]]; the vehicle; then
+  *   slots
+  * @param numbers number of `times` per operation
+  * @param times the times of each operation, s: for an event of a vehicle, the values of its [[EventClock]];
+  *   for a decision, the time since the one before, and in a duel the ages of the vehicle's own and of the
+  *   opponent's reading; with a camera, the age of the vehicle's own reading, the time, and the time for
+  *   which an estimate is predicted ([[TimetableEye.look]]); for an image, the arguments of
+  *   [[TimetableEye.expose]]; for a score, the time
+  * @param views the inputs of decisions and scores: the slots of all vehicles' readings, view by view
+  * @param propagations the steps of predictions, in loops that predict
+  * @param readings number of slots that the readings of one vehicle need simultaneously
+  * @param headings number of slots for the headings of one vehicle
+  * @param more further inputs of decisions, if requested; then a decision's third slot is its index there
+  * @param endAgesS the ages of all vehicles' readings, for operations that may end the flight, which contain
+  *   their index here
   */
 private[skein] final class Timetable private[lanes] (
     val vehicles: Int,
@@ -52,16 +52,17 @@ private[skein] final class Timetable private[lanes] (
 private[skein] object Timetable:
   val Fields: Int = 6
 
-  /** Count of numbers in a reading: position and velocity, north and east. */
+  /** Number of components of a reading: position and velocity, north and east. */
   private[lanes] val Read: Int = LaneObservation.READ
 
-  /** Least count of times per operation: some clocks need more. */
+  /** Minimum number of times per operation: some clocks need more. */
   private[lanes] val LeastNumbers: Int = 4
 
   /** The timetable of a world of this key, for this number of vehicles of this kind.
     *
-    * @param eyes of vehicles with cameras, of two
-    * @param tellsMore see [[Timetable.more]]; not of two that decide by [[skein.lanes.policy.OpponentLanes]]
+    * @param eyes the cameras, by vehicle; only for two vehicles
+    * @param tellsMore see [[Timetable.more]]; not for two vehicles that decide by
+    *   [[skein.lanes.policy.OpponentLanes]]
     * @param end how the flight may end before its duration
     */
   def of(
@@ -100,11 +101,11 @@ private[skein] object Timetable:
     /** Also by the time or the ages of readings. */
     case ByTime
 
-  /** Further inputs of decisions, by number of the decision and of the vehicle.
+  /** Further inputs of decisions, by decision, then by vehicle.
     *
-    * @param headings places of each vehicle's last known commanded heading
-    * @param agesS of the readings, s
-    * @param actsInS by decision: until its command takes effect, s
+    * @param headings slots of each vehicle's last known commanded heading
+    * @param agesS ages of the readings, s
+    * @param actsInS time until the command takes effect, by decision, s
     */
   final class More(vehicles: Int, headings: Array[Int], agesS: Array[Float], val actsInS: Array[Float]):
     def heading(decision: Int, vehicle: Int): Int = headings(decision * vehicles + vehicle)
@@ -114,7 +115,7 @@ private[skein] object Timetable:
   object More:
     val None: More = More(0, Array.emptyIntArray, Array.emptyFloatArray, Array.emptyFloatArray)
 
-/** Sorts events by their times, assigns places to readings and headings until their last use, and encodes the
+/** Sorts events by their times, assigns slots to readings and headings until their last use, and encodes the
   * times for each vehicle.
   */
 private final class TimetableCompiler(
@@ -148,7 +149,7 @@ private final class TimetableCompiler(
   private val views        = Array.newBuilder[Int]
   private var count        = 0
 
-  // What decisions are told besides.
+  // Further inputs of decisions.
   private val knownHeadings  = Array.newBuilder[Int]
   private val agesS, actsInS = Array.newBuilder[Float]
   private var toldDecisions  = 0
@@ -197,7 +198,7 @@ private final class TimetableCompiler(
       decide.more match
         case Some(more) => for each <- 0 until vehicles do headings(each).usedAt(more.known(each), at)
         case None       => if vehicles == 2 then headings(1 - vehicle).usedAt(decide.opponent, at)
-      // Its effort is counted even where nobody uses it.
+      // Its effort is computed from it, even if no other operation uses it.
       headings(vehicle).usedAt(before + 1, at)
     case Note.Act(vehicle, _, decision)         => headings(vehicle).usedAt(decision, at)
     case score: Note.Score                      => usedAt(score.view, at)
@@ -226,7 +227,7 @@ private final class TimetableCompiler(
     val seen = notes.views(view)
     for vehicle <- 0 until vehicles do readings(vehicle).release(seen(vehicle), at)
 
-  /** Index of a view in the timetable; its readings keep their places until its last use. */
+  /** Index of a view in the timetable; its readings keep their slots until its last use. */
   private def tell(view: Int): Int =
     if told(view) < 0 then
       val seen = notes.views(view)
@@ -258,7 +259,7 @@ private final class TimetableCompiler(
         case None                  => 0
       ,
       headings(vehicle).place(before),
-      // Taken before the one before is given back: its effort is counted from there.
+      // Taken before the previous heading's slot is released: the effort is the change from it.
       headings(vehicle).take(before + 1)
     )
     took(
@@ -292,7 +293,7 @@ private final class TimetableCompiler(
       PREDICT,
       vehicle,
       readings(vehicle).place(from),
-      // Taken before the reading is given back: it is carried forward beside it.
+      // Taken before the reading's slot is released: the prediction is computed from it.
       readings(vehicle).take(note.reading),
       placed
     )
@@ -364,14 +365,14 @@ private final class TimetableCompiler(
     clocks(vehicle).tell(atS, acts, times, size * numbers)
     size += 1
 
-  /** Ends any other operation, with these numbers. */
+  /** Ends any other operation, with these times. */
   private def took(first: Double, second: Double = 0, third: Double = 0, fourth: Double = 0): Unit =
     val at = size * numbers
     times(at) = first.toFloat; times(at + 1) = second.toFloat
     times(at + 2) = third.toFloat; times(at + 3) = fourth.toFloat
     size += 1
 
-/** Assigns places to numbered items until their last use; as few places as possible. */
+/** Assigns slots to numbered items until their last use; as few slots as possible. */
 private final class ReusedPlaces(numbers: Int):
   import ReusedPlaces.Released
   private val lastUse = Array.fill(numbers)(-1)
@@ -397,7 +398,7 @@ private final class ReusedPlaces(numbers: Int):
       most += 1
     placeOf(number)
 
-  /** Frees the place if this was its last use. */
+  /** Frees the slot if this was its last use. */
   def release(number: Int, at: Int): Unit =
     if lastUse(number) == at then
       unused(free) = placeOf(number)

@@ -12,9 +12,9 @@ private[skein] trait TimetableDynamics:
 
   def clock(): EventClock
 
-  /** The vehicles with one number in all worlds; the caller sets what differs between worlds.
+  /** The vehicles with one index in all worlds; the caller sets what differs between worlds.
     *
-    * @param agent its speed is that of a direction of length 1
+    * @param agent the vehicle; its speed is that of a direction of length 1
     */
   def vehicles(agent: RolloutAgent): TimetableVehicles
 

@@ -24,8 +24,8 @@ private[lanes] class TimetableEye(forms: CameraTrackerLanes.Forms, own: RolloutA
 
   /** Takes an image.
     *
-    * @param times from index `at` on: the image's time, s; the errors of bearing and range, in standard
-    *   deviations; whether an opponent in view is detected
+    * @param times values from index `at` on: the image's time, s; the errors of bearing and range, in
+    *   standard deviations; whether an opponent in view is detected
     */
   def expose(
       image: Int,

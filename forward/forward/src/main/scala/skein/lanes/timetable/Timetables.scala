@@ -17,7 +17,7 @@ private[lanes] final class Timetables(mostBytes: Long = Timetables.MostBytes):
 
   /** The timetable of a key. Two threads may create it simultaneously, with equal results.
     *
-    * @param of the key: everything on which the timetable depends
+    * @param of everything on which the timetable depends
     */
   def getOrMake(of: Any)(make: => Timetable): Timetable =
     known.synchronized(known.get(of)).getOrElse:
@@ -36,7 +36,7 @@ private[lanes] final class Timetables(mostBytes: Long = Timetables.MostBytes):
     kept.dropRightInPlace(1)
 
 private[lanes] object Timetables:
-  /** Limit of the cache, bytes: one minute of one vehicle takes some 100 kB, one minute of a team of twenty
-    * that predicts takes 40 MB.
+  /** Maximum size of the cache, bytes: one minute of one vehicle takes some 100 kB, one minute of a team of
+    * twenty that predicts takes 40 MB.
     */
   private val MostBytes = (256L << 20).max(Runtime.getRuntime.maxMemory / 8)

@@ -3,10 +3,10 @@ package skein.lanes.timetable
 import skein.lanes.policy.LaneObservation
 import skein.simd.{BoundFunction, LaneCall, LaneFunction}
 
-/** A call of a function whose inputs are fields of a view, or numbers in fixed arrays.
+/** A call of a function whose inputs are fields of a view, or are read from fixed arrays.
   *
-  * @param lanes for an input from a view, its vehicle and field
-  * @param parameters read at each call
+  * @param lanes the vehicle and field of an input that is read from a view
+  * @param parameters the function's parameters, read at each call
   */
 private[lanes] final class ViewCall(
     bound: BoundFunction,

@@ -9,7 +9,9 @@ class StreamOffersSuite extends munit.FunSuite:
   private val worlds    = LaneOffers.WORLDS
   private val durationS = 30.0
 
-  /** A view: its times from the flight's start, in grains, and its places from those of the first request. */
+  /** A view: its times from the flight's start, in grains, and its indices relative to those of the first
+    * request.
+    */
   private final case class Told(
       joinedAt: Long,
       nextAt: Option[Long],
@@ -69,12 +71,13 @@ class StreamOffersSuite extends munit.FunSuite:
   do
     test(s"$vehicles vehicles, $name: views by SIMD equal those computed one by one"):
       val timing = LoopTiming.stream(0.1)
-      // Side by side with links of which nothing is irregular.
+      // In neighbouring lanes with links without any irregularity.
       val links =
         Array.tabulate[TabledDelays](worlds)(world => if world % 3 == 0 then DelayTable.none else bad)
       val byLanes  = views(timing, vehicles, links, shortCut = true)
       val oneByOne = views(timing, vehicles, links, shortCut = false)
-      // Told early, the last ones are told though they are joined when the flight is over.
+      // Views are reported early, so the last ones are reported although they are joined after the flight's
+      // end.
       val within = (durationS - 1) * 1e9 / DelayTable.GrainNs
       for world <- 0 until worlds do
         val (these, those) = (byLanes(world), oneByOne(world))

@@ -8,7 +8,7 @@ import skein.lanes.timetable.Timetable
   *
   * @param shows see [[GpuLayout]]
   * @param threads number of threads that make timetables
-  * @param mostBytes limit of the cache, unless one call needs more
+  * @param mostBytes maximum size of the cache, unless one call needs more
   */
 private[lanes] final class GpuEpisodes(
     gpu: Gpu,

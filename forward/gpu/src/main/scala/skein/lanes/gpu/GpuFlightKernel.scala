@@ -10,9 +10,9 @@ import skein.lanes.timetable.Timetable
   * candidate in one episode; the threads of a block simulate candidates in one episode, so they do not
   * diverge. Expressions and single operations are those of the CPU, so outcomes are identical, to the bit.
   *
-  * @param sides count of numbers that define the policies of each side
-  * @param scores of the flights
-  * @param agents of one candidate; all candidates share their common properties
+  * @param sides number of values that define the policies of each side
+  * @param scores the flights' scores
+  * @param agents the agents of one candidate; all candidates share their common properties
   */
 private[lanes] abstract class GpuFlightKernel(
     gpu: Gpu,
@@ -43,7 +43,7 @@ private[lanes] abstract class GpuFlightKernel(
 
   /** Creates the part of the kernel that depends on the kind of flight.
     *
-    * @param numbers for each side, the register of a number
+    * @param numbers the register of a value, for each side
     */
   protected def body(code: Ptx, numbers: Vector[Int => Int]): Body
 
@@ -51,11 +51,11 @@ private[lanes] abstract class GpuFlightKernel(
 
   protected def moreBytes: Int = 0
 
-  /** Count of results in addition to the scores: efforts, in the order of their judged numbers. */
+  /** Number of results in addition to the scores: efforts, in the order in which they are judged. */
   protected def efforts: Int = 0
 
-  /** For each side, the sets of numbers that define the policies of candidates, concatenated, and the index
-    * of each candidate's set.
+  /** For each side, the sets of values that define the policies of candidates, concatenated, and the index of
+    * each candidate's set.
     */
   def sidesOf(teams: Array[PreparedTeam]): Vector[(Array[Float], Array[Int])]
 
@@ -63,7 +63,7 @@ private[lanes] abstract class GpuFlightKernel(
 
   /** Simulates all candidates in all episodes.
     *
-    * @return the running numbers of the scores, then the efforts; each by episode, then by candidate
+    * @return the accumulators of the scores, then the efforts; each by episode, then by candidate
     */
   def fly(episodes: Vector[GpuEpisodes.Held], teams: Array[PreparedTeam]): Array[Float] =
     val candidates            = teams.length
@@ -85,8 +85,8 @@ private[lanes] abstract class GpuFlightKernel(
     finally buffers.foreach(_.close())
 
   /** The words of all blocks. Each block has the address of its episode's operations, in two words; their
-    * count, and the words per operation; the first world, the count of worlds, and the candidate of the first
-    * world; and an unused word that aligns addresses to eight bytes.
+    * number, and the words per operation; the first world, the number of worlds, and the candidate of the
+    * first world; and an unused word that aligns addresses to eight bytes.
     */
   private def blocksOf(episodes: Vector[GpuEpisodes.Held], candidates: Int): Array[Int] =
     val words = Array.newBuilder[Int]
@@ -101,7 +101,7 @@ private[lanes] abstract class GpuFlightKernel(
       words += 0
     words.result()
 
-  /** Interleaves sets of numbers, so that neighbouring threads read neighbouring words. */
+  /** Interleaves sets of values, so that neighbouring threads read neighbouring words. */
   private def tiled(numbers: Array[Float], count: Int): Array[Float] =
     val sets = if count == 0 then 0 else numbers.length / count
     val made = Array.ofDim[Float]((sets + Tile - 1) / Tile * Tile * count)
@@ -125,7 +125,7 @@ private[lanes] abstract class GpuFlightKernel(
     private val labels                  = GpuTimetable.Labels(layout.vehicles)
     private val kept                    = Variables(code, scores.initial)
 
-    // Number of evaluations of each stage, for judged numbers that need the weight of a value.
+    // Number of evaluations of each stage, for scores that need the weight of a value.
     private val counted = Variables(code, scores.judged.map(_ => 0f))
 
     def module: String =
@@ -184,7 +184,7 @@ private[lanes] abstract class GpuFlightKernel(
       body
       code.go(next)
 
-    /** Register of a number of this thread's candidate. Only few numbers stay in registers. */
+    /** Register of a value of this thread's candidate. Only few values stay in registers. */
     private def numbersOf(side: Int, candidate: Int): Int => Int =
       val set    = code.loadWhole(code.address(code.argument(s"flownBy$side"), candidate))
       val tile   = code.wholes("shr.s32", set, TileBits.toString)
@@ -272,10 +272,10 @@ private[lanes] object GpuFlightKernel:
   private val Tile        = 32
   private val TileBits    = 5
 
-  /** Limit of a side's numbers that are kept in registers; the others are loaded at each use. */
+  /** Maximum number of a side's values that are kept in registers; the others are loaded at each use. */
   private val MostInRegisters = 16
 
-  /** Place of a judged number among a world's results, and its final conversion.
+  /** Index of a score among a world's results, and its final conversion.
     *
     * @param scoredAtS times of the scores, s
     */

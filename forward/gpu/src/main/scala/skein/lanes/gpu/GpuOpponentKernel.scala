@@ -8,10 +8,10 @@ import skein.lanes.{PreparedTeam, TeamForm}
 import skein.lanes.policy.{OpponentLanes, PolicyLanes, VehicleNumbers}
 import skein.lanes.timetable.Timetable
 
-/** Simulates duels on a GPU. Each vehicle is a side: the numbers of its policy, its initial memory, and its
-  * start. If quantities have parameters, these are a further side.
+/** Simulates duels on a GPU. Each vehicle is a side: the parameters of its policy, its initial memory, and
+  * its start. If quantities have parameters, these are a further side.
   *
-  * @param agents of one candidate; other candidates' starts are numbers of their sides
+  * @param agents the agents of one candidate; other candidates' starts are in their sides
   */
 private[lanes] final class GpuOpponentKernel(
     gpu: Gpu,
@@ -38,8 +38,8 @@ private[lanes] final class GpuOpponentKernel(
     Vector(0, 1).map(side(teams, _)) ++ GpuOpponentKernel.ofScores(form).map: _ =>
       (teams.flatMap(_.ofScores.flatten.map(_.toFloat)), teams.indices.toArray)
 
-  /** Numbers of one vehicle's side. Nearly always all candidates share the identical agent, and so one set of
-    * numbers.
+  /** Values of one vehicle's side. Nearly always all candidates share the identical agent, and so one set of
+    * values.
     */
   private def side(teams: Array[PreparedTeam], self: Int): (Array[Float], Array[Int]) =
     val known    = IdentityHashMap[VehicleNumbers, Integer]()
@@ -65,7 +65,7 @@ private[lanes] final class GpuOpponentKernel(
       effort(self).start()
       heading(self).start()
       memory(self).take(Vector.tabulate(forms(self).memories)(i => numbers(self)(forms(self).parameters + i)))
-      // The timetable keeps the first heading at place 0.
+      // The timetable keeps the first heading in slot 0.
       val at         = code.own(code.whole(layout.heading(self, 0)))
       val headingRad = agents(self).startHeadingRad.toFloat.toDouble
       code.storeOwn(code.constant(StrictMath.cos(headingRad).toFloat), at, 0)
@@ -112,6 +112,6 @@ private[lanes] final class GpuOpponentKernel(
 private object GpuOpponentKernel:
   private def numbers(form: PolicyLanes): Int = form.parameters + form.memories + 2
 
-  /** Total count of the quantities' parameters, if they have any. */
+  /** Total number of the quantities' parameters, if they have any. */
   private def ofScores(form: TeamForm): Option[Int] =
     Some(form.scores.judged.indices.map(form.scores.parameters).sum).filter(_ > 0)

@@ -3,7 +3,7 @@ package skein.lanes.gpu
 /** Divides the candidates and episodes of a call into parts that a GPU processes at a time, so that a call
   * can be cancelled and fits in memory.
   *
-  * @param candidates to simulate
+  * @param candidates indices of the candidates to simulate
   * @param each number of episodes per candidate
   */
 private[lanes] final class GpuParts(
@@ -43,5 +43,5 @@ private[lanes] object GpuParts:
   /** Bytes per decision of an episode, of which its operations take about half. */
   private val BytesOfDecision = 512
 
-  /** Limit of the episodes in a GPU's memory, bytes. */
+  /** Maximum size of the episodes in a GPU's memory, bytes. */
   val MostBytes: Long = 1L << 30

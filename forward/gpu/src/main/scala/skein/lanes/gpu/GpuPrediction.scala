@@ -42,26 +42,26 @@ private[lanes] object GpuPrediction:
         case _ => Left("the GPU does not know what the loop predicts by")
     case _ => Right(None)
 
-  /** Largest count of numbers in a record of this propagation. */
+  /** Largest number of values in a record of this propagation. */
   def mostNumbers(of: Propagation): Int =
     2.max(2 * of.perPart)
 
-  /** Writes the numbers of a propagation's first record. */
+  /** Writes the values of a propagation's first record. */
   def tellBegin(of: Propagation, tell: (Int, Float) => Unit): Unit =
     tell(0, of.first)
     tell(1, of.second)
 
-  /** Writes the numbers of a part, and those of the end of the previous part, from which a plant continues.
+  /** Writes the values of a part, and those of the end of the previous part, from which a plant continues.
     */
   def tellPart(of: Propagation, part: Int, tell: (Int, Float) => Unit): Unit =
     for i <- 0 until of.perPart do tell(i, of.numbers(part * of.perPart + i))
     if part > 0 then tellTime(of, part - 1, of.perPart, tell)
 
-  /** Writes the numbers of the end of the last part. */
+  /** Writes the values of the end of the last part. */
   def tellEnd(of: Propagation, tell: (Int, Float) => Unit): Unit =
     if of.commands.nonEmpty then tellTime(of, of.commands.length - 1, 0, tell)
 
-  /** Writes the numbers that represent the time at a part's end, without its number of steps. */
+  /** Writes the values that represent the time at a part's end, without its number of steps. */
   private def tellTime(of: Propagation, part: Int, from: Int, tell: (Int, Float) => Unit): Unit =
     for i <- 1 until of.perPart do tell(from + i - 1, of.numbers(part * of.perPart + i))
 

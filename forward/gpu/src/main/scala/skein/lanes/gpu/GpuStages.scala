@@ -27,14 +27,14 @@ private[lanes] final class GpuStages(
 
   /** Begins the first step, under a command.
     *
-    * @param state register of each number of the state
+    * @param state register of each component of the state
     */
   def begin(north: Int, east: Int, state: Int => Int): Unit =
     kept.take(write(stages.begin, north, east, constantTime, state))
 
   /** Begins the next step under a command.
     *
-    * @param time register of each number that represents the time since the begin of the present step
+    * @param time register of each value that represents the time since the begin of the present step
     */
   def act(north: Int, east: Int, time: Int => Int): Unit = kept.take(write(stages.act, north, east, time))
 
@@ -44,7 +44,7 @@ private[lanes] final class GpuStages(
 
   /** Position and, if requested, velocity during the present step.
     *
-    * @param time register of each number that represents the time since the begin of the step
+    * @param time register of each value that represents the time since the begin of the step
     */
   def look(withVelocity: Boolean, time: Int => Int): Vector[Int] =
     write(if withVelocity then stages.look else stages.position, Nowhere, Nowhere, time)

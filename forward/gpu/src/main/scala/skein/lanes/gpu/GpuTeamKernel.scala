@@ -8,9 +8,9 @@ import skein.lanes.score.ScoreLanes
 import skein.simd.BoundFunction
 
 /** Simulates teams on a GPU. All vehicles are one side: for each vehicle the start, the initial direction and
-  * the numbers of its policy; then the parameters of each quantity.
+  * the values of its policy; then the parameters of each quantity.
   *
-  * @param vehicles of one candidate; other candidates' starts and headings are numbers of their sides
+  * @param vehicles the vehicles of one candidate; other candidates' starts and headings are in their sides
   */
 private[lanes] final class GpuTeamKernel(
     gpu: Gpu,
@@ -89,10 +89,10 @@ private[lanes] final class GpuTeamKernel(
       number(firstQuantity + (0 until of).map(scores.parameters).sum + parameter)
 
 private object GpuTeamKernel:
-  /** Count of the numbers of a vehicle's start: north and east, m, and cosine and sine of its heading. */
+  /** Number of values of a vehicle's start: north and east, m, and cosine and sine of its heading. */
   private val Starts = 4
 
-  /** Offset of each vehicle's numbers in a side; the last entry is that of the quantities' numbers. */
+  /** Offset of each vehicle's values in a side; the last entry is that of the quantities' parameters. */
   private def firstOf(team: TeamLanes): Vector[Int] =
     Vector.range(0, team.count).scanLeft(0)((first, self) => first + Starts + team.parameters(self))
 

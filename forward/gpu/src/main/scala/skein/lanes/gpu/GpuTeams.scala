@@ -56,7 +56,7 @@ private[lanes] final class GpuTeams(
     )
 
   /** @param candidates indices of the teams
-    * @param numbers of the episodes
+    * @param numbers indices of the episodes
     */
   private def fly(
       form: TeamForm,

@@ -4,8 +4,8 @@ import skein.lanes.timetable.{OperationKind, Propagation, Timetable}
 
 /** Layout of each GPU thread's own memory, in bytes, with the readings and commands of its vehicles.
   *
-  * @param readings number of places for readings per vehicle
-  * @param headings number of places for commands per vehicle
+  * @param readings number of slots for readings per vehicle
+  * @param headings number of slots for commands per vehicle
   * @param shows whether several vehicles share computations on a view
   */
 private[lanes] final case class GpuLayout(

@@ -7,7 +7,7 @@ import skein.lanes.plant.QuadrotorLanes
 private[gpu] object QuadrotorExpressions:
   /** Generates one step.
     *
-    * @param state variables of the numbers of [[QuadrotorLanes.rows]]
+    * @param state variables of the components of [[QuadrotorLanes.rows]]
     * @param goal variables of the command: velocity north and east, m/s, and position down, m
     */
   def step(code: Ptx, lanes: QuadrotorLanes, state: Variables, goal: Variables): Unit =

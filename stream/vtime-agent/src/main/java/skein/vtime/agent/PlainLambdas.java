@@ -124,8 +124,8 @@ final class PlainLambdas {
    * Whether the lambda needs nothing of {@code altMetafactory}. A bridge of the lambda's own type is for
    * reflection alone, by structural types.
    *
-   * @param arguments type of the method, implementation, type of the lambda, flags; the number of bridges,
-   *     and their types
+   * @param arguments the arguments' indices: type of the method, implementation, type of the lambda, flags;
+   *     the number of bridges, and their types
    */
   private boolean isReplaceable(int[] arguments) {
     var flags = file.getInt(constants[arguments[3]] + 1);

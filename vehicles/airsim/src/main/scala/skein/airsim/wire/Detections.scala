@@ -4,9 +4,9 @@ import upickle.default.ReadWriter
 
 /** An object in a camera's view.
   *
-  * @param box2D around it in the image, pixels from the upper left corner
-  * @param box3D around it in its own frame, m
-  * @param relative_pose in the camera's frame: front, right, down
+  * @param box2D bounding box in the image, pixels from the upper left corner
+  * @param box3D bounding box in its own frame, m
+  * @param relative_pose its pose in the camera's frame: front, right, down
   */
 final private[skein] case class DetectionInfo(
     name: String,

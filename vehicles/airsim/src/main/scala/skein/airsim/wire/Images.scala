@@ -26,9 +26,9 @@ private[skein] enum ImageType:
   *
   * @param image_data_uint8 a PNG file if `compress`, else three bytes a pixel (blue, green, red), rows from
   *   the top, without gaps; empty if `pixels_as_float`
-  * @param image_data_float one number a pixel, rows from the top; empty unless `pixels_as_float`
-  * @param camera_position in the frame of the camera's vehicle, NED, m
-  * @param time_stamp of the exposure, on the simulator's clock
+  * @param image_data_float one value per pixel, rows from the top; empty unless `pixels_as_float`
+  * @param camera_position the camera's position in the frame of its vehicle, NED, m
+  * @param time_stamp time of exposure, on the simulator's clock
   */
 @serializeDefaults(true)
 final private[skein] case class ImageResponse(

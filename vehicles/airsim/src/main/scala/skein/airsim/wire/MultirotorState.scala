@@ -23,7 +23,7 @@ final private[skein] case class MultirotorState(
     rc_data: RcData
 ) derives ReadWriter
 
-/** `object_id` is −1 where nothing was touched. */
+/** `object_id` is −1 if nothing was touched. */
 final private[skein] case class CollisionInfo(
     has_collided: Boolean,
     penetration_depth: Float,

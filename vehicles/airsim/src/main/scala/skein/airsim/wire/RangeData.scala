@@ -8,9 +8,9 @@ import upickle.implicits.serializeDefaults
 
 /** One lidar scan.
   *
-  * @param time_stamp of the scan, on the simulator's clock
+  * @param time_stamp time of the scan, on the simulator's clock
   * @param point_cloud x, y, z of each point, m, in the frame that the lidar's settings name
-  * @param pose of the lidar, in its vehicle's frame
+  * @param pose the lidar's pose, in its vehicle's frame
   * @param segmentation one id for each point; Cosys-AirSim sends names instead, which are skipped
   */
 @serializeDefaults(true)

@@ -47,5 +47,5 @@ final class CdrWriter:
   def result: Array[Byte] = buffer.array.take(buffer.position)
 
 private object CdrWriter:
-  /** Limit of a message's bytes, half of what an array can hold: an image of 16 K by 16 K pixels. */
+  /** Maximum size of a message in bytes, half of what an array can hold: an image of 16 K by 16 K pixels. */
   val MostBytes: Long = 1L << 30

@@ -32,7 +32,7 @@ class CdrSuite extends munit.FunSuite:
       "expected the message's end, came 4 more bytes"
     )
 
-  test("a message that is cut off anywhere is refused, with the place"):
+  test("a message that is cut off anywhere is refused, with the position"):
     val bytes = Cdr.bytes(mixed)
     for length <- 0 until bytes.length do
       assert(refused[Mixed](bytes.take(length)).startsWith("expected"), length)

@@ -16,7 +16,7 @@ private object MalformedCdr:
         kind.read(bytes) match
           case Right(value) =>
             taken += 1
-            // What is read can be written; the encoding has one form but for byte order and padding.
+            // A value that was read can be written; its encoding is unique except for byte order and padding.
             require(kind.read(Samples.Sample(value.asInstanceOf[Any])(using
               kind.kind.asInstanceOf
             ).written).isRight)

@@ -14,7 +14,7 @@ class MessageGolden extends munit.FunSuite:
     for (name, bytes) <- little do
       val ours = Samples.of(name).written
       assertEquals(ours.length, bytes.length, name)
-      // rclpy leaves whatever was in memory before.
+      // rclpy leaves padding bytes as they were in memory.
       for at <- ours.indices if ours(at) != bytes(at) do assertEquals(ours(at), 0.toByte, s"$name, byte $at")
 
   test("both byte orders are read"):

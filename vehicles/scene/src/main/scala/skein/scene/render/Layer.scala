@@ -61,7 +61,7 @@ private[render] object Layer:
 
     private inline def cell(at: Double): Int = math.max(0, math.min(Cells - 1, at.toInt))
 
-  /** Depth along the camera's axis, m, one number a pixel. */
+  /** Depth along the camera's axis, m, one value per pixel. */
   final class Planar(view: View, surfaces: Surfaces, beyond: Float) extends Layer:
     val metres: Array[Float] = new Array[Float](view.width * view.height)
 
@@ -75,7 +75,7 @@ private[render] object Layer:
           metres(start + from + i) = 1f / (base + slope * i)
           i += 1
 
-  /** Distance from the camera, m, one number a pixel. */
+  /** Distance from the camera, m, one value per pixel. */
   final class Perspective(view: View, surfaces: Surfaces, beyond: Float) extends Layer:
     val metres: Array[Float] = new Array[Float](view.width * view.height)
 

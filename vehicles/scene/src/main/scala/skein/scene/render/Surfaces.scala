@@ -183,5 +183,5 @@ private[render] object Surfaces:
   /** The near plane of the ground, m: a camera that stands on the ground must see it. */
   val GroundNearM = 1e-4
 
-  /** Limit of a face's corners after clipping. */
+  /** Maximum number of a face's corners after clipping. */
   private val MostCorners = 32

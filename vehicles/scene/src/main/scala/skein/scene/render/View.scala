@@ -4,7 +4,7 @@ import skein.scene.Placement
 
 /** A pinhole camera that looks towards the front of its placement.
   *
-  * @param fovDeg horizontal, below 180
+  * @param fovDeg horizontal field of view, below 180
   */
 final case class View(place: Placement, width: Int, height: Int, fovDeg: Double):
   require(width > 0 && height > 0 && fovDeg > 0 && fovDeg < 180, s"no view: $width × $height, $fovDeg°")
