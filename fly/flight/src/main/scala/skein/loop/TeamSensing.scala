@@ -173,8 +173,8 @@ private final class TeamSensing(
           case Right(readings) => sensor.read().map(_.map(readings :+ _))
           case error           => Future.successful(error)
 
-  /** Reads all vehicles in the scenario's order; ends at the first error. The states of vehicles that are known
-    * by messages are those of the newest message after this controller's own vehicle was read.
+  /** Reads all vehicles in the scenario's order; ends at the first error. The states of vehicles that are
+    * known by messages are those of the newest message after this controller's own vehicle was read.
     *
     * @param isRunning whether the simulator's clock runs by itself
     */
