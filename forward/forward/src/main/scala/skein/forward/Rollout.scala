@@ -79,6 +79,9 @@ final class Rollout(
     while !isOver && world.nextNs < timeNs do handle(world.next())
     if isOver then Rollout.Never else world.nextNs
 
+  /** Whether the episode ended before its duration, because the engagement was over. */
+  private[skein] def hasEnded: Boolean = world.isOver
+
   private def isOver: Boolean = tallies(0).count >= scores || world.isOver
 
   /** The outcome of a team: the least distance of any evader, the mean over the evaders of each mean, and the

@@ -5,7 +5,6 @@ import skein.lanes.policy.OpponentLanes
 import skein.lanes.score.{OfMoment, Scoreboard}
 import skein.lanes.timetable.{Timetable, TimetableAgents, TimetableKernel, TimetableScores, Timetables}
 import skein.simd.WorldRandom
-import skein.units.Expect
 
 /** Teams with learners in many worlds by one timetable, with the results of [[TeamBatch]]. Allocates nothing
   * after construction, unless a timetable needs more slots than any before.
@@ -22,7 +21,7 @@ final class LearnerTeams private[lanes] (
 ) extends LearnerWorlds,
       TimetableScores:
   import LearnerTeams.ToleranceS
-  import TimetableKernel.{DECIDE, WORLDS}
+  import TimetableKernel.{DECIDE, END, WORLDS}
 
   private val members = LaneTeams.inEpisode(form, team.engagement.agents)
   private val scores  = Scoreboard(form.scores, form.altitudesDownM)
@@ -68,21 +67,25 @@ final class LearnerTeams private[lanes] (
     dueUntil = next
     // Several learners decide together if no event lies between their decisions and none knows another's
     // pending command.
-    while dueUntil < timetable.size && learnsAt(dueUntil) && !knowsPending(dueUntil) do dueUntil += 1
+    while dueUntil < timetable.size && (isEnd(dueUntil) || learnsAt(dueUntil) && !knowsPending(dueUntil)) do
+      dueUntil += 1
     next < timetable.size
 
   private def learnsAt(operation: Int) =
     val field = operation * Timetable.Fields
     operations(field) == DECIDE && learns(operations(field + 1))
 
+  /** Whether it is only checked whether the flight is over. */
+  private def isEnd(operation: Int) = operations(operation * Timetable.Fields) == END
+
   private def knowsPending(operation: Int): Boolean =
     var before = next
     while before < operation do
       val field   = before * Timetable.Fields
       val vehicle = operations(field + 1)
-      if vehicle == operations(operation * Timetable.Fields + 1) ||
+      val isPending = vehicle == operations(operation * Timetable.Fields + 1) ||
         knownPlace(operation, vehicle) == operations(field + 5)
-      then return true
+      if isPending && !isEnd(before) then return true
       before += 1
     false
 
@@ -96,7 +99,8 @@ final class LearnerTeams private[lanes] (
   private def operationOf(learner: Int): Int =
     var operation = next
     while operation < dueUntil do
-      if operations(operation * Timetable.Fields + 1) == learners(learner) then return operation
+      if !isEnd(operation) && operations(operation * Timetable.Fields + 1) == learners(learner) then
+        return operation
       operation += 1
     -1
 
@@ -112,6 +116,8 @@ final class LearnerTeams private[lanes] (
       kernel.perform(next)
       next += 1
 
+  def hasEnded(world: Int): Boolean = scores.hasEnded(world)
+
   def scoredAtS: Float = scores.scoredAtS
 
   def soFar(number: Int, into: Array[Float]): Unit = scores.soFar(number, into)
@@ -122,12 +128,26 @@ final class LearnerTeams private[lanes] (
       scores.forget(passing(i))
       i += 1
 
-  def forgetScores(world: Int): Unit = for number <- passing do scores.forgetIn(world, number)
+  def forgetScores(world: Int): Unit =
+    for number <- passing do scores.forgetIn(world, number)
+    scores.goOn(world)
 
   def start(worlds: Int): Unit = scores.start(worlds)
 
   def score(all: Array[TimetableAgents], views: Array[Int], view: Int, timeS: Float): Unit =
     if timeS <= untilS + ToleranceS then scores.score(all, views, view, timeS)
+
+  override def needsVelocity: Boolean = scores.needsVelocity
+
+  override def end(
+      all: Array[TimetableAgents],
+      views: Array[Int],
+      view: Int,
+      timeS: Float,
+      sinceS: Float,
+      agesS: Array[Float],
+      ages: Int
+  ): Unit = scores.end(all, views, view, timeS, sinceS, agesS, ages)
 
 object LearnerTeams:
   private val ToleranceS = 1e-4f
@@ -151,18 +171,14 @@ object LearnerTeams:
     private val timetables = Timetables()
 
     /** The reason why SIMD does not support a team; None if it does. */
-    def refusal(team: TeamCandidate): Option[String] = formOf(team).left.toOption
+    def refusal(team: TeamCandidate): Option[String] = forms.of(team).left.toOption
 
     /** @param learners indices of the vehicles that decide by [[LearnerPolicy]]
       * @param worlds number of worlds, at most [[LearnerWorlds.Most]]
       * @return Left states why SIMD does not support them
       */
     def of(team: TeamCandidate, learners: Vector[Int], worlds: Int): Either[String, LearnerTeams] =
-      formOf(team).map(form => LearnerTeams(form, team, learners.toArray, worlds, timetableOf(form, _)))
-
-    private def formOf(team: TeamCandidate) = Expect
-      .that(team.engagement.isOver.isEmpty)("its scenario says itself when it is over")
-      .flatMap(_ => forms.of(team))
+      forms.of(team).map(form => LearnerTeams(form, team, learners.toArray, worlds, timetableOf(form, _)))
 
     private def timetableOf(form: TeamForm, draw: Long): Timetable =
       val key = keyOf(draw)

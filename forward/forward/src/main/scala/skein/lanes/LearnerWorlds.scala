@@ -37,6 +37,9 @@ trait LearnerWorlds extends AutoCloseable:
   /** Makes the due decisions. */
   def decide(): Unit
 
+  /** Whether the scenario was over in a world since its restart, by an end of its own. */
+  def hasEnded(world: Int): Boolean
+
   /** Time of the last score, since the run's start, s. */
   def scoredAtS: Float
 

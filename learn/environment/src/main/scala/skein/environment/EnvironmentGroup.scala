@@ -8,7 +8,7 @@ import skein.signal.SplitMix64
   * them. Mutable; one thread at a time.
   *
   * They begin a ''run'' together, which lasts as long as an episode. If an episode ends earlier, by a
-  * capture, the next begins immediately in the current run, and lasts until the run's end; worlds that cannot
+  * capture or because the scenario is over, the next begins immediately in the current run, and lasts until the run's end; worlds that cannot
   * restart alone begin a new run.
   *
   * @param learning indices of the learners' vehicles
@@ -53,9 +53,6 @@ private final class EnvironmentGroup(
   private val wasDue    = Array.ofDim[Boolean](agents)
   private var runs      = 0L
   private var isOver    = true
-
-  /** Whether the run ended before its time. */
-  private var isEarly = false
 
   /** Whether no decision has been made in this run. */
   private var isFirst = true
@@ -127,9 +124,7 @@ private final class EnvironmentGroup(
       if !isFirst then worlds.forgetScores()
       isFirst = false
       val goesOn = worlds.flyOn()
-      val isLast = worlds.scoredAtS + Tolerance >= settings.episodeS
-      isOver = !goesOn || isLast
-      isEarly = !goesOn && !isLast
+      isOver = !goesOn || worlds.scoredAtS + Tolerance >= settings.episodeS
       agent = 0
       while agent < agents do
         reward(agent)
@@ -188,9 +183,10 @@ private final class EnvironmentGroup(
         begin(world)
         clear(world)
       else
-        into.terminated(number, isCapture(world) || isEarly)
-        into.truncated(number, isOver && !isCapture(world) && !isEarly)
-        isDone(world) = isCapture(world) || isOver
+        val isEnded = isCapture(world) || worlds.hasEnded(world)
+        into.terminated(number, isEnded)
+        into.truncated(number, isOver && !isEnded)
+        isDone(world) = isEnded || isOver
       again |= isDone(world)
       world += 1
     autoreset match

@@ -28,6 +28,7 @@ private final class LearnerRollout(side: LearnerSide, team: TeamCandidate, learn
   private val downM           = Array.ofDim[Double](agents.length)
   private val values          = Array.ofDim[Double](team.quantities.size)
   private var lastScoredAtS   = 0.0
+  private var hasEnded        = false
 
   def restartAlone: Boolean = false
 
@@ -55,6 +56,8 @@ private final class LearnerRollout(side: LearnerSide, team: TeamCandidate, learn
   /** [[flyOn]] makes the decisions. */
   def decide(): Unit = ()
 
+  def hasEnded(world: Int): Boolean = hasEnded
+
   def scoredAtS: Float = lastScoredAtS.toFloat
 
   def soFar(number: Int, into: Array[Float]): Unit = into(0) = values(number).toFloat
@@ -74,6 +77,7 @@ private final class LearnerRollout(side: LearnerSide, team: TeamCandidate, learn
     ask = suspend
     while true do
       isAnew = false
+      hasEnded = false
       lastScoredAtS = 0
       java.util.Arrays.fill(values, Double.NaN)
       forgetScores()
@@ -83,8 +87,9 @@ private final class LearnerRollout(side: LearnerSide, team: TeamCandidate, learn
       try
         northM = agents.map(_.startX)
         eastM = agents.map(_.startY)
-        Rollout(team.engagement.copy(agents = flown), side.timing, side.link, side.response)
-          .fly(key, observer = scores): Unit
+        val rollout = Rollout(team.engagement.copy(agents = flown), side.timing, side.link, side.response)
+        rollout.fly(key, observer = scores): Unit
+        hasEnded = rollout.hasEnded
         due = Nobody
         suspend()
       catch case Anew => ()

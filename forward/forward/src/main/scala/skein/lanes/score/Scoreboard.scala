@@ -44,6 +44,11 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
   /** By vehicle, then by world, ages of the readings from which the decision was made, s. */
   val agesS: Array[Array[Float]] = Array.ofDim[Float](if lanes.needsAges then lanes.count else 0, worlds)
 
+  /** By world, the time since the run's first decision at which its episode began; NaN before its first
+    * decision.
+    */
+  private val begunS = Array.ofDim[Float](worlds)
+
   /** Computes the end; null if there is none. */
   private val ending: ViewCall =
     lanes.ending.fold(null)(ending => showing(ending.function, Vector(ending.place)))
@@ -92,6 +97,7 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
     if ending != null then ending.call.use(worlds)
     shared(ScoreLanes.Time) = 0
     Arrays.fill(counts, 0)
+    Arrays.fill(begunS, Float.NaN)
     for place <- lanes.initial.indices do begin(place)
 
   private def begin(place: Int): Unit =
@@ -126,12 +132,25 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
       ages: Int
   ): Unit =
     Arrays.fill(nowS, timeS)
-    Arrays.fill(this.sinceS, sinceS)
+    var world = 0
+    while world < worlds do
+      if begunS(world).isNaN then begunS(world) = sinceS
+      this.sinceS(world) = sinceS - begunS(world)
+      world += 1
     for vehicle <- this.agesS.indices do Arrays.fill(this.agesS(vehicle), agesS(ages + vehicle))
     ending.look(agents, views, view)
     end()
 
   def hasEnd: Boolean = ending != null
+
+  /** Whether the flight was over in a world, by an end of its own. */
+  def hasEnded(world: Int): Boolean =
+    lanes.ending.exists(ending => kept(ending.place * worlds + world) < Float.PositiveInfinity)
+
+  /** Begins an episode in one world, whose flight goes on. */
+  def goOn(world: Int): Unit = for ending <- lanes.ending do
+    kept(ending.place * worlds + world) = lanes.initial(ending.place)
+    begunS(world) = Float.NaN
 
   def needsAges: Boolean = agesS.nonEmpty
 
