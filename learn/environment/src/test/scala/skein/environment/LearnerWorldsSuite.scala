@@ -6,7 +6,8 @@ import skein.scenario.{Known, Scenario, ScenarioKind, Scenarios, Surround}
 import skein.signal.SplitMix64
 
 class LearnerWorldsSuite extends munit.FunSuite:
-  private given Scenarios = Scenarios(Scenarios.ours.kinds :+ ScenarioKind(Tower()) :+ ScenarioKind(Meeting()))
+  private given Scenarios =
+    Scenarios(Scenarios.ours.kinds :+ ScenarioKind(Tower()) :+ ScenarioKind(Meeting()))
 
   private val all = EnvironmentSettings(startWithinM = (2, 8), episodeS = 6)
 
@@ -108,4 +109,6 @@ class LearnerWorldsSuite extends munit.FunSuite:
 final case class Meeting() extends Scenario:
   def agents: Vector[Agent]                  = Surround(vehicles = 3).agents
   override def isOver(known: Known): Boolean =
-    known.elapsed.toSeconds + 2 * known.vehicles(1).age.toSeconds > 3.2 && known.vehicles.head.age.toSeconds > 0.01
+    known.elapsed.toSeconds + 2 * known.vehicles(
+      1
+    ).age.toSeconds > 3.2 && known.vehicles.head.age.toSeconds > 0.01
