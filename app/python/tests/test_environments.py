@@ -235,6 +235,21 @@ def test_several_of_a_team_learn_in_one_world(backend):
         assert infos["evader"]["distance_m"] > 20
 
 
+def test_names_that_differ_in_case_alone_stay_apart(monkeypatch):
+    pytest.importorskip("pettingzoo")
+    from types import SimpleNamespace
+
+    from skein_uav import parallel
+
+    def agents(*names):
+        batch = SimpleNamespace(learners=list(names), block=None, engine=lambda: "")
+        monkeypatch.setattr(parallel, "open_batch", lambda *_: batch)
+        return parallel.TeamParallelEnv().possible_agents
+
+    assert agents("Red", "red", "Blue") == ["Red", "red", "Blue"]
+    assert agents("Red", "Blue") == ["red", "blue"]
+
+
 def test_the_spaces_of_both_sides_are_told_by_name_too():
     pytest.importorskip("pettingzoo")
     from skein_uav.parallel import TeamParallelEnv

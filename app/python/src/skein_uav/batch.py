@@ -98,13 +98,13 @@ class InProcess:
         jpype = jvm.start()
         self._jpype = jpype
         batches = jpype.JClass("skein.environment.EnvironmentBatch")
-        java = jpype.java.util.HashMap(settings)
-        self.learners = str(self._told(lambda: batches.learners(java))).splitlines()
+        prepared = self._told(lambda: batches.prepare(jpype.java.util.HashMap(settings)))
+        self.learners = str(prepared.learners()).splitlines()
         agents = len(self.learners)
         # Java writes to it for the lifetime of this object.
         self.block = Block(np.zeros(Block.size(agents, count), dtype=np.uint8), agents, count)
         buffer = jpype.nio.convertToDirectBuffer(memoryview(self.block.memory))
-        self._batch = self._told(lambda: batches.make(java, count, autoreset, buffer))
+        self._batch = self._told(lambda: prepared.make(count, autoreset, buffer))
         self._step = self._batch.step
 
     def reset(self, seeds: NDArray[np.int64], mask: Flags | None) -> None:

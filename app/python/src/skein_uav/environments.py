@@ -105,8 +105,9 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
     settings : mapping, optional
         Settings of the scenario, for example ``{"vehicles": 4}``.
     objective : str
-        The reward instead of the distance to the nearest opponent: a sum of means of the scenario's measures, for example
-        ``off-ring``; an evader maximises it and others minimise it, unless ``minimise`` or ``maximise`` precedes it.
+        The reward instead of the distance to the nearest opponent: a sum of the scenario's measures that are means over
+        time, or one root mean square, for example ``off-ring``, by its squares; an evader maximises it and others minimise
+        it, unless ``minimise`` or ``maximise`` precedes it.
     turn_rate_rad_per_s : float, optional
         Greatest turn rate of the learner. By default 1 rad/s; an evader's actions are immediate turns.
     autoreset_mode : AutoresetMode or str

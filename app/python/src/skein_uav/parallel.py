@@ -29,6 +29,8 @@ from .pictures import picture
 class TeamParallelEnv(ParallelEnv[str, Floats, Floats]):
     """One world of a scenario; its agents are the learners' vehicles, by their names in lower case.
 
+    Where two names differ only in case, all agents have the names of the scenario.
+
     Parameters
     ----------
     scenario : str
@@ -67,7 +69,9 @@ class TeamParallelEnv(ParallelEnv[str, Floats, Floats]):
         self._backend = open_batch(texts | others, 1, AutoresetMode.DISABLED, backend)
         self._block = self._backend.block
         self.engine = self._backend.engine()
-        self.possible_agents = [name.lower() for name in self._backend.learners]
+        names = self._backend.learners
+        lowered = [name.lower() for name in names]
+        self.possible_agents = lowered if len(set(lowered)) == len(names) else list(names)
         self.agents: list[str] = []
         self.render_mode = render_mode
         # By name, too, as PettingZoo's wrappers and skrl read them.

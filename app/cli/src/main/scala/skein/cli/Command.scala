@@ -66,6 +66,9 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
   /** Defaults by option name, for options whose own description does not state one. */
   protected def defaults: Map[String, String] = Map.empty
 
+  /** Names of options that it shares with another command and refuses; help and completion leave them out. */
+  protected def refusedAlways: Set[String] = Set.empty
+
   /** All values of an option, by option name, if the set is known. */
   protected def known: Map[String, Seq[String]] = Map.empty
 
@@ -168,7 +171,7 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
   private def operandsAndOptions: Seq[CommandOption] =
     for
       (argument, reader) <- parser.main.flattenedArgSigs
-      name               <- argument.longName(Util.kebabCaseNameMapper)
+      name               <- argument.longName(Util.kebabCaseNameMapper) if !refusedAlways(name)
     yield CommandOption(
       if reader.isLeftover then "" else s"--$name",
       argument.doc.getOrElse(""),

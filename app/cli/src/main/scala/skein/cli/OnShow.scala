@@ -57,7 +57,7 @@ private[cli] object OnShow:
     """{"title":"skein.graph","type":"object","properties":{"stages":{"type":"array","items":{"type":"object","properties":{""" +
       """"name":{"type":"string"},"column":{"type":"integer"},"row":{"type":"number"},"entered":{"type":"integer"},"passed":{"type":"integer"},"unanswered":{"type":"integer"},""" +
       """"ageMs":{"type":"number"}}}},"edges":{"type":"array","items":{"type":"object","properties":{"from":{"type":"string"},""" +
-      """"to":{"type":"string"}}}}}}"""
+      """"to":{"type":"string"}}}},"controller":{"type":"string"}}}"""
   )
 
 /** A graph's meters for the viewer: queries the interpreter until the graph's parts are known, and reads the
@@ -86,4 +86,6 @@ private[cli] final class GraphGauge:
         for age <- meter.age do stage("ageMs") = age.toMillis
       stage
     val arrows = known.edges.map(edge => ujson.Obj("from" -> edge.from, "to" -> edge.to))
-    ujson.Obj("stages" -> ujson.Arr.from(stages), "edges" -> ujson.Arr.from(arrows)).render()
+    val drawn  = ujson.Obj("stages" -> ujson.Arr.from(stages), "edges" -> ujson.Arr.from(arrows))
+    for name <- running.flatMap(_.controller) do drawn("controller") = name
+    drawn.render()

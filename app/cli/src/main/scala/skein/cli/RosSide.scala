@@ -3,13 +3,13 @@ package skein.cli
 import org.apache.pekko.actor.ActorSystem
 import skein.airsim.WorldSettings
 import skein.ros.{RosNode, SimulatedTopics}
-import skein.simulator.SimulatorServer
+import skein.simulator.{CommandCounts, SimulatorServer}
 import skein.units.Clock
 
 /** The node of `./skein serve --ros`, and its messages for a person. */
 private[cli] final class RosSide private (node: RosNode, val topics: SimulatedTopics):
   private var said   = Set.empty[String]
-  private var counts = (skipped = 0L, images = 0L, refused = 0L, failed = 0L, missed = 0L)
+  private var counts = (skipped = 0L, images = 0L, refused = 0L, failed = 0L, missed = 0L, late = 0L)
   private var served = Option.empty[SimulatorServer]
 
   /** Lets the topics fly the vehicles and show their sensors, and prints what is missing. */
@@ -22,12 +22,14 @@ private[cli] final class RosSide private (node: RosNode, val topics: SimulatedTo
 
   /** Lines about what has gone wrong since the last call. */
   def news(): Seq[String] =
-    val now = (
+    val commands = served.fold(CommandCounts.Zero)(_.commands)
+    val now      = (
       skipped = topics.skipped,
       images = topics.skippedImages,
       refused = node.refused,
       failed = node.failed,
-      missed = served.fold(0L)(_.missedCommands)
+      missed = commands.missed,
+      late = commands.late
     )
     val lines = (node.notes ++ topics.notes).filterNot(said)
     val count = Option.when(now != counts):
@@ -36,7 +38,8 @@ private[cli] final class RosSide private (node: RosNode, val topics: SimulatedTo
         now.images  -> "images or scans not published",
         now.refused -> "messages refused",
         now.failed  -> "messages not sent",
-        now.missed  -> "stops of the clock without a command"
+        now.missed  -> "stops of the clock without a command",
+        now.late    -> "commands left out, received after a later one"
       ).collect { case (count, what) if count > 0 => s"$count $what" }.mkString(", ")
     said ++= lines
     counts = now

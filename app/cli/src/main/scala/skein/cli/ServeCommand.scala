@@ -65,7 +65,7 @@ final case class ServeOptions(
       name = "ros-step",
       doc =
         "with --ros: the clock waits for nodes; once a vehicle is commanded, it stops this often, a multiple of 20ms, " +
-          "until each vehicle that is flown has a command stamped then or later"
+          "until each vehicle that is flown has a command stamped then or later; nodes need use_sim_time"
     )
     rosStep: Option[String],
     @arg(doc =

@@ -37,6 +37,8 @@ final class SpreadCommand(program: String)(using Scenarios)
   override protected def defaults: Map[String, String]   = FlightOptions.defaults
   override protected def known: Map[String, Seq[String]] = FlightOptions.known
 
+  override protected def refusedAlways: Set[String] = Set("only", "images")
+
   override protected def check(options: SpreadOptions): Either[String, Unit] =
     options.flights.settings.map(_ => ())
 

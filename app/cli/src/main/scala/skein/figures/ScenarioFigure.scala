@@ -182,13 +182,11 @@ object ScenarioFigure:
       plotHeight
     )
     val lines = flights.flatMap: flight =>
-      val stroke    = strokes(flight.summary.name)
-      val stretches = drawn(flight)._2.stretches
-      (stretches.headOption.map(_.dropWhile(_._2 > panel.y.to)) ++ stretches.drop(1))
-        .filter(_.nonEmpty)
-        .map:
-          case Vector((x, y)) => Mark.Disc(panel.at(x, y), 1.2, None, Some(stroke.colour))
-          case several        => panel.curve(several, stroke)
+      val stroke = strokes(flight.summary.name)
+      drawn(flight)._2.stretches.flatMap:
+        case Vector((x, y)) if y <= panel.y.to =>
+          Vector(Mark.Disc(panel.at(x, y), 1.2, None, Some(stroke.colour)))
+        case several => panel.cut(several, stroke)
     val held  = bound.map(bound => panel.level(bound.value, boundLine))
     val seen  = flights.filter(drawn(_)._2.stretches.nonEmpty)
     val items =
@@ -198,13 +196,13 @@ object ScenarioFigure:
     val plot = Drawing(plotWidth + 76, plotHeight + 84, panel.axes ++ held ++ lines)
     Legend.titled(panel, FlightTheme.link(link), plot, items*)
 
-  /** The greatest value of a curve; for a curve that begins far above all later values, somewhat more than
-    * these.
+  /** The greatest value of a curve. Of one that begins far above its second half, the greatest after it has
+    * fallen to twice that half's: it comes into the picture from above.
     */
   private def highestShown(curve: Vector[(Double, Double)]): Double =
-    val highest = curve.map(_._2).max
     val settled = curve.drop(curve.size / 2).map(_._2).max
-    if highest > 5 * settled then 2 * settled else highest
+    val isAbove = settled >= 0 && curve.map(_._2).max > 5 * settled
+    (if isAbove then curve.dropWhile(_._2 > 2 * settled) else curve).map(_._2).max
 
   private val red       = Colour(0xcc0000)
   private val boundLine = Stroke(red, 1, Vector(4, 3))

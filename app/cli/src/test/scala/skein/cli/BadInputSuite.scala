@@ -327,6 +327,11 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     assert(recorder.writeTo(file).isRight)
     assertRefused(ReplayCommand(), Seq(file.toString), "no vehicles")
 
+  test("spread lists no options that it refuses always"):
+    val listed = SpreadCommand("skein.cli.Main").options.map(_.flag)
+    assert(listed.contains("--between"))
+    assertEquals(listed.filter(Set("--only", "--images")), Seq.empty)
+
   test("an impossible solver is reported before the flight, with what was expected"):
     val virtual = Seq("--clock", "virtual")
     val alone   = Seq("--decentralised", "--only", "Pursuer", "--loop", "stream")

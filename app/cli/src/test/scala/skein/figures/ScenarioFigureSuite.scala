@@ -4,7 +4,7 @@ import skein.measure.{FlightSummary, ScenarioFlights}
 import skein.plot.{Drawing, Mark}
 import skein.policy.Agent
 import skein.report.SyntheticFlight
-import skein.scenario.{Crossing, Limit, Result, Scenario, Track, Tracks}
+import skein.scenario.{Crossing, Limit, Result, Scenario, Series, Track, Tracks}
 import skein.units.*
 
 /** Figures of two vehicles with coinciding trajectories, one above the other, below a ceiling. */
@@ -14,7 +14,9 @@ class ScenarioFigureSuite extends munit.FunSuite:
   private lazy val summary =
     FlightSummary.of(SyntheticFlight("stream", "vpn", seed = 1, 12))(using skein.scenario.Scenarios.ours)
 
-  private def flown(ceilingM: Double) =
+  private def flown(ceilingM: Double): ScenarioFlights = flown(Capped(ceilingM))
+
+  private def flown(scenario: Scenario): ScenarioFlights =
     def track(name: String, upM: Double) = Track.of(
       name,
       "crosser",
@@ -22,8 +24,7 @@ class ScenarioFigureSuite extends munit.FunSuite:
         (Instant.ofNanos(step * 100_000_000L), Vector3(step * 0.5, 0, -upM), Vector3(5, 0, 0))
       )
     )
-    val tracks   = Tracks.of(Vector(track("One", 5), track("Two", 7))).get
-    val scenario = Capped(ceilingM)
+    val tracks = Tracks.of(Vector(track("One", 5), track("Two", 7))).get
     ScenarioFlights(
       scenario,
       Vector(ScenarioFlights.Flown(summary, Result.of(scenario, tracks))),
@@ -57,10 +58,28 @@ class ScenarioFigureSuite extends munit.FunSuite:
     assert(!texts(kept).exists(_.contains("at most")), texts(kept))
     assertEquals((kept.shapes.count(isRed), ScenarioFigure.hasAltitudes(flown(100))), (0, false))
 
+  test("a curve that begins far above comes in from above, and what it does later is in the panel"):
+    // 40 at first, a second of 12, and 1 from then on.
+    def value(timeS: Double): Double =
+      if timeS < 1 then 40 - 39 * timeS else if timeS > 3 && timeS < 4 then 12 else 1
+    val figure         = ScenarioFigure.series(flown(Measured(value)), 0)
+    val lines          = figure.shapes.collect { case Mark.Path(points, Some(_), None, _) => points }
+    val (grid, curves) = lines.partition(_.size == 2)
+    val top            = grid.filter(line => line(0).x == line(1).x).flatten.map(_.y).min
+    assertEquals(curves.size, 1)
+    assertEqualsDouble(curves.head.map(_.y).min, top, 1e-6)
+    assertEqualsDouble(curves.head.head.y, top, 1e-6)
+    val ticks = texts(figure).flatMap(_.toDoubleOption)
+    assert(ticks.max >= 12 && ticks.max < 40, ticks)
+
   test("a geofence is cut to the panel, and in the legend if any part is visible"):
     assert(texts(ScenarioFigure.trajectories(flown(100))).contains("geofence"))
 
 object ScenarioFigureSuite:
+  final case class Measured(value: Double => Double) extends Scenario:
+    def agents: Vector[Agent]           = Crossing(vehicles = 2, streams = 2).agents
+    override def series: Vector[Series] = Vector(Series("off", "m")(tracks => at => value(tracks.timeS(at))))
+
   final case class Capped(ceilingM: Double) extends Scenario:
     def agents: Vector[Agent]          = Crossing(vehicles = 2, streams = 2).agents
     override def limits: Vector[Limit] =

@@ -153,17 +153,7 @@ final class TurnBelief[S](model: VehicleModel[S]) extends VehicleModel[TurnBelie
       .kinematics(state.flights.head)
       .copy(positionNed = mean(_.positionNed), velocityNed = mean(_.velocityNed))
 
-  /** Where the vehicle may be: the samples' places, NED, m, each as likely as another. */
-  def places(state: Believed[S]): Vector[Vector3] =
-    state.samples.map(sample => model.kinematics(sample.flying).positionNed)
-
 object TurnBelief:
-  /** Whether a place is in the disc around the mean of such places that holds a share of them. */
-  def isWithin(places: Vector[Vector3], at: Vector3, share: Double): Boolean =
-    val mean  = places.reduce(_ + _) * (1.0 / places.size)
-    val sizes = places.map(_.horizontalDistance(mean)).sorted
-    at.horizontalDistance(mean) <= sizes((share * places.size).toInt.min(places.size - 1))
-
   val Samples = 32
 
   /** Time constant of the errors that the guard compares, s. */

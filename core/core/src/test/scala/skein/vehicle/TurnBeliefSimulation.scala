@@ -50,6 +50,14 @@ class TurnBeliefSimulation extends munit.FunSuite:
       val ahead = model.kinematics(model.advanced(state, unused, tenth * steps.toLong))
       ahead.positionNed.horizontalDistance(later.positionNed)
 
+  /** Whether a place is in the disc around the samples' mean place that holds a share of the samples. */
+  private def isWithin(state: TurnBelief.Believed[QuadrotorModel.Flying], at: Vector3, share: Double) =
+    val places = state.samples.map(sample => quadrotor.kinematics(sample.flying).positionNed)
+    val mean   = places.reduce(_ + _) * (1.0 / places.size)
+    at.horizontalDistance(
+      mean
+    ) <= places.map(_.horizontalDistance(mean)).sorted.apply((share * places.size).toInt)
+
   private def rms(of: Vector[Double]) = math.sqrt(of.map(x => x * x).sum / of.size)
 
   test(
@@ -72,7 +80,7 @@ class TurnBeliefSimulation extends munit.FunSuite:
     for steps <- Seq(4, 8) do
       val ahead = seen(belief, readings).drop(50).zip(readings.drop(50 + steps)).map: (state, later) =>
         (belief.advanced(state, unused, tenth * steps.toLong), later.positionNed)
-      val within = ahead.count((state, at) => TurnBelief.isWithin(belief.places(state), at, 0.9))
+      val within = ahead.count((state, at) => isWithin(state, at, share = 0.9))
       val share  = within.toDouble / ahead.size
       assert(share > 0.85 && share < 0.97, s"$share within after ${steps * 100} ms")
       val ours    = rms(ahead.map((state, at) => belief.kinematics(state).positionNed.horizontalDistance(at)))

@@ -204,7 +204,11 @@ final class FlightAssembler(
         Right(FlightAssembly(
           plan,
           flight,
-          RunningGraph(teams.head.meters, flight.streams),
+          RunningGraph(
+            teams.head.meters,
+            flight.streams,
+            reached.apart.headOption.map(one => fleet.agents(one.self).name)
+          ),
           hold,
           monitor,
           watchdog,

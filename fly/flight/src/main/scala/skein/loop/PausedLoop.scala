@@ -97,7 +97,7 @@ private final class PausedFlight(
     else if team.hold.isHeld then
       for
         // So that a simulator's silence is noticed.
-        _    <- patiently(team.readAll())
+        _    <- patiently(team.readAll(isRunning = false))
         next <- after(PausedFlight.LookEvery)(next(step))
       yield next
     else fly(step)
@@ -122,7 +122,7 @@ private final class PausedFlight(
   private def fly(step: PausedStep): Future[Option[(PausedStep, Done)]] =
     for
       _        <- if step.number == 0 then patiently(stepper.pause()) else Future.unit
-      readings <- patiently(team.readAll())
+      readings <- patiently(team.readAll(isRunning = false))
       sensed   <- patiently(team.senseAll())
       now  = PausedLoop.newest(readings.map(_.state))
       seen = readings.foldLeft(step.view)((seen, reading) =>
@@ -168,8 +168,9 @@ private final class PausedFlight(
   /** The time at which the simulator stands still, as two readings in a row show it. */
   private def standing(before: Option[Instant]): Future[Instant] =
     for
-      _     <- after(PausedFlight.LookEvery)(Future.unit)
-      at    <- patiently(team.readAll()).map(readings => PausedLoop.newest(readings.map(_.state)))
+      _  <- after(PausedFlight.LookEvery)(Future.unit)
+      at <-
+        patiently(team.readAll(isRunning = false)).map(readings => PausedLoop.newest(readings.map(_.state)))
       still <- if before.contains(at) then Future.successful(at) else standing(Some(at))
     yield still
 

@@ -37,8 +37,13 @@ object LoopGraph:
 /** The graph of a running loop, as its interpreter reports it: the parts with one of these meters.
   *
   * @param streams its materializer, once it runs
+  * @param controller the vehicle whose controller it is, where each vehicle has one
   */
-final class RunningGraph(val meters: StageMeters, streams: Future[Materializer])(using ExecutionContext):
+final class RunningGraph(
+    val meters: StageMeters,
+    streams: Future[Materializer],
+    val controller: Option[String] = None
+)(using ExecutionContext):
 
   /** Requests the graph from the interpreter. Absent while it does not run. */
   def shape(): Future[Option[LoopGraph]] =

@@ -43,13 +43,20 @@ private final class TeamSensing(
 
   for by <- messages do
     by.onReceived: message =>
-      aligned(message.state)
+      align(message, isRunning = true)
       log.read(message)
       inboxes(message.vehicle).put(message)
 
-  /** Aligns the vehicles' clock by a reading; returns the alignment before it. */
-  private def aligned(state: Stamped[?]): Option[ClockAlignment] =
-    clocks.getAndUpdate(known => Some(known.fold(ClockAlignment.of(state))(_.updated(state))))
+  /** Aligns the vehicles' clock by a reading, and records a contradiction between the clocks.
+    *
+    * @param isRunning whether the simulator's clock runs by itself
+    */
+  private def align(reading: Reading, isRunning: Boolean): Unit =
+    import reading.{sequence, state}
+    val before = clocks.getAndUpdate(known => Some(known.fold(ClockAlignment.of(state))(_.updated(state))))
+    if isRunning && before.exists(known => clocks.get.exists(_.restarts > known.restarts)) then
+      for anew <- before.flatMap(_.contradiction(state)) do
+        log.note(EventKind.ClockRestarted, Some(reading.vehicle), s"reading $sequence: $anew")
 
   /** Reads a vehicle; records the answer or the error, and contradictions between the clocks. Thread-safe. */
   def read(vehicle: Int): Future[Either[VehicleError, Reading]] = read(vehicle, isRunning = true)
@@ -69,11 +76,8 @@ private final class TeamSensing(
       .read()
       .map:
         case Right(state) =>
-          val before = aligned(state)
-          if isRunning && before.exists(known => clocks.get.exists(_.restarts > known.restarts)) then
-            for anew <- before.flatMap(_.contradiction(state)) do
-              log.note(EventKind.ClockRestarted, Some(vehicle), s"reading $sequence: $anew")
           val reading = Reading(vehicle, sequence, state)
+          align(reading, isRunning)
           meter.answered()
           meter.pass(ageOf(Some(state.validAt)))
           log.read(reading)
@@ -169,16 +173,17 @@ private final class TeamSensing(
           case Right(readings) => sensor.read().map(_.map(readings :+ _))
           case error           => Future.successful(error)
 
-  /** Reads all vehicles of a simulator that stands still, in the scenario's order; ends at the first error.
-    * The states of vehicles that are known by messages are those of the newest message after this
-    * controller's own vehicle was read.
+  /** Reads all vehicles in the scenario's order; ends at the first error. The states of vehicles that are
+    * known by messages are those of the newest message after this controller's own vehicle was read.
+    *
+    * @param isRunning whether the simulator's clock runs by itself
     */
-  def readAll(): Future[Either[VehicleError, Vector[Reading]]] =
+  def readAll(isRunning: Boolean = true): Future[Either[VehicleError, Vector[Reading]]] =
     val inTurn = if messages.isEmpty then ports.indices else own ++ inboxes.keys.toVector.sorted
     inTurn.foldLeft(Future.successful[Either[VehicleError, Vector[Reading]]](Right(Vector.empty))):
       (soFar, vehicle) =>
         soFar.flatMap:
-          case Right(readings) => read(vehicle, isRunning = false).map(_.map(readings :+ _))
+          case Right(readings) => read(vehicle, isRunning).map(_.map(readings :+ _))
           case error           => Future.successful(error)
 
   /** Emits once a period from an instant on: the number of ticks due since the last. */

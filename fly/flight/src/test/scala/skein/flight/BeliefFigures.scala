@@ -52,6 +52,13 @@ private def vpnTimes(times: Int): LatencyProfile =
   def rms(all: Vector[Double]) = math.sqrt(all.map(x => x * x).sum / all.size)
   def p95(all: Vector[Double]) = all.sorted.apply(all.size * 95 / 100)
   val belief                   = TurnBelief(QuadrotorModel.AirSim)
+  // Whether a place is in the disc around the samples' mean place that holds a share of the samples.
+  def isWithin(state: TurnBelief.Believed[QuadrotorModel.Flying], at: Vector3, share: Double) =
+    val places = state.samples.map(sample => QuadrotorModel.AirSim.kinematics(sample.flying).positionNed)
+    val mean   = places.reduce(_ + _) * (1.0 / places.size)
+    at.horizontalDistance(
+      mean
+    ) <= places.map(_.horizontalDistance(mean)).sorted.apply((share * places.size).toInt)
   for s <- Seq(0.1, 0.2, 0.4, 0.8, 1.2) do
     def line(name: String, off: Vector[Double]) =
       println(
@@ -61,7 +68,7 @@ private def vpnTimes(times: Int): LatencyProfile =
     line("turn", errors(ConstantTurn, s))
     line("belief", errors(belief, s))
     val all = predictions(belief, s)
-    val in  = all.count((state, there) => TurnBelief.isWithin(belief.places(state), there, 0.9))
+    val in  = all.count((state, there) => isWithin(state, there, share = 0.9))
     val by  = all.count((state, _) => state.helps)
     println(
       f"$s%.1f s  within nine of ten: ${100.0 * in / all.size}%.1f %%, by samples: ${100.0 * by / all.size}%.0f %%"

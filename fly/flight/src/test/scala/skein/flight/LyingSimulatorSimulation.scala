@@ -135,16 +135,17 @@ class LyingSimulatorSimulation extends munit.FunSuite, Unhurried:
     test(s"${loop.label}: a clock that runs backwards ends the flight without result"):
       fly(loop, Some(s => -s)).assertNoResult(EventKind.ClockBroken, "the simulator's ")
 
-  test("restarts of the clocks' alignment are recorded as events"):
-    val flown = fly(LoopKind.Stream, Some(_ * 0.98))
-    assertEquals(flown.landed.outcome, FlightOutcome.Completed)
-    assert(flown.count(EventKind.ClockRestarted) > 0)
-    assert(flown.count(EventKind.ClockDrift) > 0)
-    assert(
-      flown.told.exists((_, line) => line.contains("the simulator's clock advanced by")),
-      flown.told.toString
-    )
-    assertEquals(flown.summary.noResult, None)
+  for loop <- Seq(LoopKind.Stream, LoopKind.Sequential, LoopKind.Futures) do
+    test(s"${loop.label}: restarts of the clocks' alignment are recorded as events"):
+      val flown = fly(loop, Some(_ * 0.98))
+      assertEquals(flown.landed.outcome, FlightOutcome.Completed)
+      assert(flown.count(EventKind.ClockRestarted) > 0)
+      assert(flown.count(EventKind.ClockDrift) > 0)
+      assert(
+        flown.told.exists((_, line) => line.contains("the simulator's clock advanced by")),
+        flown.told.toString
+      )
+      assertEquals(flown.summary.noResult, None)
 
   for loop <- LoopKind.values.toSeq.filterNot(_ == LoopKind.Plan) do
     test(s"${loop.label}: with a correct simulator nothing is reported, and the flight has its result"):

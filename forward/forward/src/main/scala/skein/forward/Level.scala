@@ -1,9 +1,8 @@
 package skein.forward
 
-import java.util.concurrent.ConcurrentHashMap
 import skein.formula.Untraceable
 import skein.policy.{Policy, Assignment, PolicyFormula}
-import skein.simd.Forms
+import skein.simd.{Forms, Recent}
 import skein.units.Metres
 
 /** Checks that policies choose only horizontal velocities at the altitude of their vehicle's start, as level
@@ -11,7 +10,7 @@ import skein.units.Metres
   * formula.
   */
 private object Level:
-  private val known = ConcurrentHashMap[(Int, Assignment, Boolean), Forms[Policy, PolicyFormula]]()
+  private val known = Recent[(Int, Assignment, Boolean), Forms[Policy, PolicyFormula]](most = 512)
 
   /** The reason why a policy may choose another action; None if it never does.
     *
@@ -38,10 +37,7 @@ private object Level:
       assignment: Assignment,
       isPredicted: Boolean
   ): Either[Untraceable, PolicyFormula] =
-    val forms = known.computeIfAbsent(
-      (self, assignment, isPredicted),
-      _ =>
-        Forms[Policy, PolicyFormula](_.fits(_, assignment)):
-          PolicyFormula.of(_, self, assignment, isPredicted)
-    )
+    val forms = known.getOrMake((self, assignment, isPredicted)):
+      Forms[Policy, PolicyFormula](_.fits(_, assignment)):
+        PolicyFormula.of(_, self, assignment, isPredicted)
     forms(policy)

@@ -1,6 +1,5 @@
 package skein.simd
 
-import java.util.concurrent.ConcurrentHashMap
 import scala.collection.mutable
 import skein.formula.{Node, Op, Trace}
 import skein.simd.{LaneCompiler, LaneFunction}
@@ -23,7 +22,7 @@ private[skein] final class BoundFunction private (
 
 private[skein] object BoundFunction:
   private type Key = (Vector[(Op, Vector[Int], Long)], Vector[Int], Vector[(Int, Int)])
-  private val compiled = ConcurrentHashMap[Key, LaneFunction]()
+  private val compiled = Recent[Key, LaneFunction](most = 1024)
 
   /** Compiles expressions; equal ones only once.
     *
@@ -47,7 +46,7 @@ private[skein] object BoundFunction:
     val needed   = Trace.needed(own)
     val key: Key = (needed.map(node => (node.op, node.args.map(_.id), leafOf(node))), own.map(_.id), places)
     val function =
-      compiled.computeIfAbsent(key, _ => LaneCompiler.compile(inputs.size, own, places = places))
+      compiled.getOrMake(key)(LaneCompiler.compile(inputs.size, own, places = places))
     BoundFunction(inputs.toArray, own, function)
 
   private def leafOf(node: Node): Long =

@@ -7,12 +7,13 @@ import skein.policy.*
 import skein.scenario.*
 import skein.signal.{Kinematics, SplitMix64}
 import skein.simd.WorldRandom
+import skein.testing.Unhurried
 import skein.units.*
 
 /** Scenarios written in Python, by the files next to the examples, and equal ones in Scala: equal bits,
   * except for a network by SIMD. The package's tests compare the files with the Python.
   */
-class PythonTwinSuite extends munit.FunSuite:
+class PythonTwinSuite extends munit.FunSuite, Unhurried:
   private val root = Iterator
     .iterate(Path.of("").toAbsolutePath)(_.getParent)
     .find(at => Files.exists(at.resolve("sbtw")))

@@ -17,7 +17,8 @@ import skein.units.Expect
   * minus the distances to its nearest opponent scored since the last step (once a period), divided by 10 m,
   * and 10 for a capture; for an evader the opposite. So the pursuer's rewards of an episode of the duel
   * without a capture sum to minus its mean distance, as `./skein search` has it, times the number of periods,
-  * divided by 10 m. Another quantity may be rewarded instead of the distance.
+  * divided by 10 m. Means of other quantities may be rewarded instead, divided by 10 likewise, or a root mean
+  * square: then each reward is a square, divided by 100.
   *
   * Environments are simulated by SIMD, up to [[LearnerWorlds.Most]] together, or one by one by the scalar
   * reference; [[engine]] states which, and why.
@@ -131,13 +132,6 @@ object EnvironmentBatch:
   )(using Scenarios): Either[String, Engine] =
     LearnerSide.of(settings, opponent).map(side => side.engine(beside.filter(_ => side.turns.size > 1)))
 
-  /** The names of an environment's learners, in the order of [[EnvironmentBuffers]]: the first one's, where
-    * they take turns.
-    */
-  private[environment] def learners(settings: EnvironmentSettings)(using
-      Scenarios
-  ): Either[String, Vector[String]] = LearnerSide.of(settings).map(side => side.turns.head.map(side.names))
-
   /** @param opponent policy of the vehicles of another role; without one, as the settings name it
     * @return Left states what was expected and what was given
     */
@@ -148,34 +142,46 @@ object EnvironmentBatch:
       block: ByteBuffer,
       opponent: Option[PolicyFile] = None
   )(using Scenarios): Either[String, EnvironmentBatch] =
-    for
-      side <- LearnerSide.of(settings, opponent)
-      _    <- Expect.that(count >= 1 && count <= Most)(s"num_envs: expected 1 to $Most, came $count")
-      made <- Try(new EnvironmentBatch(side, count, autoreset, block)).toEither.left.map(_.getMessage)
-    yield made
+    LearnerSide.of(settings, opponent).flatMap(Prepared(_).batch(count, autoreset, block))
 
-  /** Makes a batch from names and texts, for callers in other languages.
+  private[environment] def prepared(settings: EnvironmentSettings)(using
+      Scenarios
+  ): Either[String, Prepared] = LearnerSide.of(settings).map(Prepared(_))
+
+  /** Resolves settings, for callers in other languages.
     *
     * @param settings by the names of [[EnvironmentSettings]] in snake case; missing ones have their defaults
     * @throws IllegalArgumentException with what was expected and what was given
     */
-  def make(
-      settings: java.util.Map[String, String],
-      count: Int,
-      autoreset: Int,
-      block: ByteBuffer
-  ): EnvironmentBatch =
-    EnvironmentSettings
-      .read(settings)
-      .flatMap(of(_, count, Autoreset.fromOrdinal(autoreset), block)(using Scenarios.ours))
-      .fold(mistake => throw IllegalArgumentException(mistake), identity)
+  def prepare(settings: java.util.Map[String, String]): Prepared =
+    orThrow(EnvironmentSettings.read(settings).flatMap(prepared(_)(using Scenarios.ours)))
 
-  /** The names of an environment's learners, a line each, for callers in other languages.
-    *
-    * @throws IllegalArgumentException with what was expected and what was given
-    */
-  def learners(settings: java.util.Map[String, String]): String =
-    EnvironmentSettings
-      .read(settings)
-      .flatMap(learners(_)(using Scenarios.ours))
-      .fold(mistake => throw IllegalArgumentException(mistake), _.mkString("\n"))
+  private def orThrow[A](made: Either[String, A]): A =
+    made.fold(mistake => throw IllegalArgumentException(mistake), identity)
+
+  /** Resolved settings. A caller needs the number of learners before it can make the memory of a batch. */
+  final class Prepared private[EnvironmentBatch] (side: LearnerSide):
+    /** Names of an environment's learners, in the order of [[EnvironmentBuffers]]: the first one's, where
+      * they take turns.
+      */
+    private[environment] def names: Vector[String] = side.turns.head.map(side.names)
+
+    private[environment] def batch(
+        count: Int,
+        autoreset: Autoreset,
+        block: ByteBuffer
+    ): Either[String, EnvironmentBatch] =
+      for
+        _    <- Expect.that(count >= 1 && count <= Most)(s"num_envs: expected 1 to $Most, came $count")
+        made <- Try(new EnvironmentBatch(side, count, autoreset, block)).toEither.left.map(_.getMessage)
+      yield made
+
+    /** The learners' names, a line each, for callers in other languages. */
+    def learners: String = names.mkString("\n")
+
+    /** Makes a batch, for callers in other languages.
+      *
+      * @throws IllegalArgumentException with what was expected and what was given
+      */
+    def make(count: Int, autoreset: Int, block: ByteBuffer): EnvironmentBatch =
+      orThrow(batch(count, Autoreset.fromOrdinal(autoreset), block))

@@ -58,13 +58,15 @@ object EnvironmentServer:
     val in    = DataInputStream(Channels.newInputStream(client))
     val out   = DataOutputStream(Channels.newOutputStream(client))
     var words = wordsOf(text(in))
+    var known = Map.empty[Map[String, String], EnvironmentBatch.Prepared]
     while !words.contains("file") do
-      EnvironmentSettings
-        .read(words.asJava)
-        .flatMap(EnvironmentBatch.learners(_)(using Scenarios.ours))
-        .fold(answer(out, 1, _), names => answer(out, 0, names.mkString("\n")))
+      prepared(words) match
+        case Left(mistake) => answer(out, 1, mistake)
+        case Right(made)   =>
+          known = Map(words -> made)
+          answer(out, 0, made.learners)
       words = wordsOf(text(in))
-    opened(words) match
+    opened(words, settings => known.get(settings).fold(prepared(settings))(Right(_))) match
       case Left(mistake) => answer(out, 1, mistake)
       case Right(batch)  =>
         out.write(0)
@@ -93,7 +95,14 @@ object EnvironmentServer:
   private def wordsOf(text: String): Map[String, String] =
     text.linesIterator.map(_.split("=", 2)).collect { case Array(name, value) => name -> value }.toMap
 
-  private def opened(told: Map[String, String]): Either[String, EnvironmentBatch] =
+  private def prepared(settings: Map[String, String]) =
+    EnvironmentSettings.read(settings.asJava).flatMap(EnvironmentBatch.prepared(_)(using Scenarios.ours))
+
+  /** @param resolved the settings, of which those of the text before are known */
+  private def opened(
+      told: Map[String, String],
+      resolved: Map[String, String] => Either[String, EnvironmentBatch.Prepared]
+  ): Either[String, EnvironmentBatch] =
     for
       count     <- told.get("count").flatMap(_.toIntOption).toRight("count: expected a whole number")
       autoreset <- told
@@ -101,15 +110,14 @@ object EnvironmentServer:
         .flatMap(_.toIntOption)
         .filter(Autoreset.values.indices.contains)
         .toRight("autoreset: expected 0, 1 or 2")
-      file     <- told.get("file").toRight("file: expected the path of a file")
-      settings <- EnvironmentSettings.read((told - "count" - "autoreset" - "file").asJava)
-      block    <- Try:
+      file  <- told.get("file").toRight("file: expected the path of a file")
+      made  <- resolved(told - "count" - "autoreset" - "file")
+      block <- Try:
         val channel = FileChannel.open(Path.of(file), StandardOpenOption.READ, StandardOpenOption.WRITE)
         try channel.map(FileChannel.MapMode.READ_WRITE, 0, channel.size)
         finally channel.close()
       .toEither.left.map(reason => s"file: expected one to read and write, came $reason")
-      batch <-
-        EnvironmentBatch.of(settings, count, Autoreset.fromOrdinal(autoreset), block)(using Scenarios.ours)
+      batch <- made.batch(count, Autoreset.fromOrdinal(autoreset), block)
     yield batch
 
   private def seeds(in: DataInputStream, count: Int) = Array.fill(count)(in.readLong())

@@ -31,8 +31,9 @@ import skein.units.{Expect, Span}
   *   to half a turn
   * @param scenario the scenario whose vehicles learn
   * @param set settings of the scenario, by their keys
-  * @param objective reward: a sum of means of the scenario's measures; empty: the distance to the nearest
-  *   opponent, which evaders maximise and others minimise
+  * @param objective reward: a sum of the scenario's measures that are means over time, or one root mean
+  *   square, over whole episodes; empty: the distance to the nearest opponent, which evaders maximise and
+  *   others minimise
   */
 final case class EnvironmentSettings(
     learners: String = "pursuer",

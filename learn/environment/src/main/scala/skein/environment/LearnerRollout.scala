@@ -118,7 +118,7 @@ private final class LearnerRollout(side: LearnerSide, team: TeamCandidate, learn
             case _               =>
               if !value.isFinite then
                 throw OwnFailure(Quantity.whose(judged.quantity), s"answered $value, which is no reward")
-              values(number) += value
+              values(number) += (if judged.reduction == Reduction.Rms then value * value else value)
 
     override def commanded(vehicle: Int, number: Int, atNs: Long, action: Action): Unit =
       if !Action.isFinite(action) then

@@ -4,9 +4,9 @@ import scala.util.Try
 import skein.forward.{Delays, Engagement, LoopTiming, VelocityResponse}
 import skein.lanes.{Engine, LearnerPolicy, LearnerTeams, TeamCandidate}
 import skein.lanes.score.{Judged, OfMoment}
-import skein.optimise.{Objective, ScenarioTerm}
+import skein.optimise.Objective
 import skein.policy.{Policy, Role}
-import skein.scenario.{Reduction, Scenario, Scenarios}
+import skein.scenario.{Measure, Reduction, Scenario, Scenarios}
 import skein.settings.{PolicyFile, ScenarioSettings, VehicleChoice}
 import skein.simd.LaneMath
 import skein.units.Expect
@@ -61,12 +61,13 @@ private[environment] final case class LearnerSide(
       else agent
     val distances = apart(learning).map(learner => Nearest(learner, rivals(learner).toArray))
     val costs     = objectives match
-      case None      => distances
-      case Some(all) => all.head.measures.map(_._2.reduced.get.quantity)
+      case None      => distances.map(Judged(_, Reduction.Mean, 0))
+      case Some(all) =>
+        all.head.measures.flatMap(_._2.reduced).map(each => Judged(each.quantity, each.reduction, 0))
     TeamCandidate(
       engagement.copy(agents = agents),
       distances.flatMap(each => Vector(Judged(each, OfMoment.Newest, 0), Judged(each, Reduction.Least, 0))) ++
-        costs.map(Judged(_, Reduction.Mean, 0))
+        costs
     )
 
   /** The learners whose distances to their opponents may differ; with two vehicles, the first one.
@@ -74,14 +75,18 @@ private[environment] final case class LearnerSide(
   def apart(learning: Vector[Int]): Vector[Int] =
     if engagement.agents.size == 2 then learning.take(1) else learning
 
-  /** The weights of what costs a learner.
+  /** The weights of what costs a learner: of values, or of squares where their root mean square is optimised.
     *
     * @param place index among the learners
     */
   def weights(learning: Vector[Int], place: Int): Array[Float] = objectives match
     case Some(all) =>
       val by = all(learning(place))
-      by.measures.map((weight, _) => (by.direction.sign * weight).toFloat).toArray
+      by.measures
+        .map: (weight, measure) =>
+          val scale = if LearnerSide.isRms(measure) then EnvironmentSettings.RewardM else 1f
+          (by.direction.sign * weight).toFloat / scale
+        .toArray
     case None =>
       val sign  = Objective.naturally(roleOf(learning(place))).sign.toFloat
       val those = apart(learning)
@@ -173,14 +178,18 @@ private[environment] object LearnerSide:
           Objective.ofQuantities(settings.objective, scenario, Objective.naturally(role))
         .left
         .map("objective: " + _)
-      _ <- all.head.measures.map(_._2).find(measure => !isSummed(measure.reduced.get.reduction)).map:
-        measure =>
-          "objective: expected means over time, which can be rewarded " +
-            s"as they come, came ${ScenarioTerm.keyOf(measure)}"
-      .toLeft(())
+      measures = all.head.measures.map(_._2)
+      _ <- measures.find(measure => !isRms(measure) && reductionOf(measure) != Reduction.Mean)
+        .orElse(measures.find(_ => measures.sizeIs > 1 && measures.exists(isRms)))
+        .map: _ =>
+          "objective: expected means over time, or one root mean square alone: " +
+            s"rewards add up to these, came ${all.head.formula}"
+        .toLeft(())
     yield all
 
-  private def isSummed(reduction: Reduction) = reduction == Reduction.Mean || reduction == Reduction.Rms
+  private def reductionOf(measure: Measure) = measure.reduced.get.reduction
+
+  private def isRms(measure: Measure) = reductionOf(measure) == Reduction.Rms
 
   private def refusal(scenario: Scenario, learners: Vector[Int]): Option[String] =
     if learners.exists(scenario.agents(_).kind != VehicleKind.Multirotor) then

@@ -1,11 +1,13 @@
 package skein.environment
 
 import java.nio.ByteBuffer
+import java.nio.file.Files
 import skein.policy.*
 import skein.scenario.*
+import skein.testing.TemporaryFolders
 import skein.units.{MetresPerSecond, OwnFailure, Radians, Vector3}
 
-class EnvironmentGroupSuite extends munit.FunSuite:
+class EnvironmentGroupSuite extends munit.FunSuite, TemporaryFolders:
   private given Scenarios = Scenarios.ours
 
   private val surround = EnvironmentSettings(
@@ -129,6 +131,23 @@ class EnvironmentGroupSuite extends munit.FunSuite:
     episodeS = 6
   )
 
+  test("rewards add up to what is optimised: a mean's values, or the squares of a root mean square"):
+    given Scenarios             = Scenarios(ScenarioKind(Own()))
+    def paid(objective: String) =
+      val settings = own("", "3").copy(objective = objective, link = "none", periodMs = 40)
+      val learner  = Learner(settings, 1, Autoreset.Disabled)
+      learner.batch.reset(Array(1L))
+      val sum = Iterator.continually {
+        learner.act(0, 0)
+        learner.batch.step()
+        learner.reward(0)
+      }.takeWhile(_ => !learner.ended(0)).sum
+      learner.batch.close()
+      sum
+    assert(paid("off") < -10)
+    assertEqualsFloat(paid("off-rms"), paid("off") * 3 / 10, 1e-3f)
+    assertEqualsFloat(paid("2*off-rms"), paid("off") * 2 * 3 / 10, 1e-3f)
+
   test("an exception of a user's policy or quantity is reported with its name"):
     given Scenarios                            = Scenarios(ScenarioKind(Own()))
     def told(policy: String, quantity: String) =
@@ -155,6 +174,11 @@ class EnvironmentGroupSuite extends munit.FunSuite:
     assert(clue(refused(surround.copy(scenario = "surrond"))).contains("the nearest is 'surround'"))
     assert(clue(refused(surround.copy(set = Map("x" -> "1")))).startsWith("set: no setting 'x'"))
     assert(clue(refused(surround.copy(objective = "nearest"))).contains("is told of recorded flights alone"))
+    assertEquals(
+      refused(surround.copy(objective = "off-ring + 0.1*gap")),
+      "objective: expected means over time, or one root mean square alone: rewards add up to these, " +
+        "came off-ring + 0.1*gap"
+    )
     assert(clue(refused(surround.copy(opponent =
       "paper-pursuer"
     ))).startsWith("opponent: family paper-pursuer is"))
@@ -172,11 +196,19 @@ class EnvironmentGroupSuite extends munit.FunSuite:
 
   test("learners are one of a role in turns, all of a role, all, or those of some names"):
     def named(learners: String) =
-      EnvironmentBatch.learners(surround.copy(learners = learners)).fold(fail(_), identity).mkString(" ")
+      EnvironmentBatch.prepared(surround.copy(learners = learners)).fold(fail(_), _.names).mkString(" ")
     assertEquals(named("pursuer"), "Pursuer1")
     assertEquals(named("pursuers"), "Pursuer1 Pursuer2 Pursuer3")
     assertEquals(named("all"), "Evader Pursuer1 Pursuer2 Pursuer3")
     assertEquals(named("Pursuer3,Evader"), "Evader Pursuer3")
+
+  folder.test("settings are resolved once, for the learners' names and for the batch"): folder =>
+    val trips = folder.resolve("trips.csv")
+    Files.writeString(trips, "50\n60\n")
+    val prepared = EnvironmentBatch.prepare(java.util.Map.of("link", s"file:$trips"))
+    assertEquals(prepared.learners, "Pursuer")
+    Files.delete(trips)
+    prepared.make(1, 0, ByteBuffer.allocateDirect(EnvironmentBuffers.bytes(1, 1))).close()
 
 /** A scenario with an evader's policy and a pursuer's quantity that settings choose. */
 final case class Own(policy: String = "", quantity: String = "") extends Scenario:
@@ -184,7 +216,8 @@ final case class Own(policy: String = "", quantity: String = "") extends Scenari
     Agent("Evader", Role.Evader, MetresPerSecond(4), Vector3(30, 0, -5), Radians(0), Away(policy)),
     Agent("Pursuer", Role.Pursuer, MetresPerSecond(8), Vector3(0, 0, -5), Radians(0), Surrounding(0, 8, 8))
   )
-  override def measures: Vector[Measure] = Vector(Series.of("off", "m", Off(quantity)).mean("off"))
+  private def off                        = Series.of("off", "m", Off(quantity))
+  override def measures: Vector[Measure] = Vector(off.mean("off"), off.rms("off rms"))
 
 object Own:
   // No formula.
@@ -193,7 +226,7 @@ object Own:
     how match
       case "throws" => throw IllegalStateException("no such luck")
       case "NaN"    => Double.NaN
-      case _        => 1
+      case _        => how.toDoubleOption.getOrElse(1)
 
 final case class Away(how: String) extends Policy:
   type Memory = Unit

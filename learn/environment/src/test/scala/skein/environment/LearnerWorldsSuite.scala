@@ -6,7 +6,8 @@ import skein.scenario.{Known, Scenario, ScenarioKind, Scenarios, Surround}
 import skein.signal.SplitMix64
 
 class LearnerWorldsSuite extends munit.FunSuite:
-  private given Scenarios = Scenarios(Scenarios.ours.kinds :+ ScenarioKind(Tower()) :+ ScenarioKind(Meeting()))
+  private given Scenarios =
+    Scenarios(Scenarios.ours.kinds :+ ScenarioKind(Tower()) :+ ScenarioKind(Meeting()))
 
   private val all = EnvironmentSettings(startWithinM = (2, 8), episodeS = 6)
 
@@ -41,19 +42,20 @@ class LearnerWorldsSuite extends munit.FunSuite:
 
   for
     (settings, toleranceM) <- Seq(
-      all                                                                                             -> 2e-3,
-      all.copy(learners = "both", loop = "sequential")                                                -> 2e-3,
-      all.copy(scenario = "surround", learners = "pursuers")                                          -> 2e-3,
-      all.copy(scenario = "surround", learners = "all", loop = "paused")                              -> 2e-3,
-      all.copy(scenario = "surround", learners = "evader", loop = "predictive", link = "direct")      -> 2e-3,
-      all.copy(scenario = "surround", learners = "Pursuer2", plant = "quadrotor", altitudeM = 20)     -> 2e-2,
-      all.copy(scenario = "surround", learners = "Pursuer1,Evader", objective = "off-ring + 0.1*gap") -> 2e-2,
-      all.copy(scenario = "formation", learners = "follower")                                         -> 2e-3,
-      all.copy(scenario = "crossing", learners = "all")                                               -> 2e-3,
-      all.copy(scenario = "meeting", learners = "all")                                                -> 2e-3,
-      all.copy(scenario = "meeting", learners = "pursuers", loop = "futures")                         -> 2e-3,
-      all.copy(scenario = "tower", learners = "keeper", objective = "kept")                           -> 2e-2,
-      all.copy(scenario = "tower", learners = "inspectors", objective = "kept", plant = "tilt")       -> 2e-2
+      all                                                                                         -> 2e-3,
+      all.copy(learners = "both", loop = "sequential")                                            -> 2e-3,
+      all.copy(scenario = "surround", learners = "pursuers")                                      -> 2e-3,
+      all.copy(scenario = "surround", learners = "all", loop = "paused")                          -> 2e-3,
+      all.copy(scenario = "surround", learners = "evader", loop = "predictive", link = "direct")  -> 2e-3,
+      all.copy(scenario = "surround", learners = "Pursuer2", plant = "quadrotor", altitudeM = 20) -> 2e-2,
+      all.copy(scenario = "surround", learners = "Pursuer1,Evader", objective = "off-ring")       -> 2e-2,
+      all.copy(scenario = "surround", learners = "Pursuer1,Evader", objective = "gap")            -> 2e-2,
+      all.copy(scenario = "formation", learners = "follower")                                     -> 2e-3,
+      all.copy(scenario = "crossing", learners = "all")                                           -> 2e-3,
+      all.copy(scenario = "meeting", learners = "all")                                            -> 2e-3,
+      all.copy(scenario = "meeting", learners = "pursuers", loop = "futures")                     -> 2e-3,
+      all.copy(scenario = "tower", learners = "keeper", objective = "kept")                       -> 2e-2,
+      all.copy(scenario = "tower", learners = "inspectors", objective = "kept", plant = "tilt")   -> 2e-2
     )
   do
     test(
@@ -107,4 +109,6 @@ class LearnerWorldsSuite extends munit.FunSuite:
 final case class Meeting() extends Scenario:
   def agents: Vector[Agent]                  = Surround(vehicles = 3).agents
   override def isOver(known: Known): Boolean =
-    known.elapsed.toSeconds + 2 * known.vehicles(1).age.toSeconds > 3.2 && known.vehicles.head.age.toSeconds > 0.01
+    known.elapsed.toSeconds + 2 * known.vehicles(
+      1
+    ).age.toSeconds > 3.2 && known.vehicles.head.age.toSeconds > 0.01

@@ -13,15 +13,19 @@ export class Graph {
   constructor(section) {
     this.section = section;
     this.place = section.querySelector("div");
+    this.title = section.querySelector("h2");
     this.key = undefined;
     this.before = undefined;
   }
 
-  /** @param graph stages {name, column, row, entered, passed, unanswered, ageMs} and edges {from, to}; counts since the start
+  /** @param graph stages {name, column, row, entered, passed, unanswered, ageMs} and edges {from, to}; counts since the start.
+   *    Where each vehicle has a controller, the name of the one whose graph it is
    *  @param at seconds */
   draw(graph, at) {
     this.section.hidden = graph.stages.length === 0;
     if (this.section.hidden) return;
+    this.title.textContent = graph.controller
+      ? `The control graph of ${graph.controller}'s controller as it runs; each vehicle has one` : "The control graph as it runs";
     const key = JSON.stringify([graph.stages.map(stage => stage.name), graph.edges]);
     if (key !== this.key) {
       this.key = key;

@@ -8,6 +8,8 @@ import skein.units.*
   * neither the machine's load nor the clock's speed changes the flight. At the first stop it stands for
   * [[CommandLockstep.Settling]] of real time, in which nodes handle the messages that queued while it ran.
   *
+  * A command stamped before another one of its vehicle, by whichever topic, is left out: it is late.
+  *
   * It no longer waits if none has arrived for [[CommandLockstep.Patience]] of real time, until the next
   * command.
   *
@@ -25,23 +27,29 @@ private[simulator] final class CommandLockstep(step: Span, physics: Span, now: (
   private var toldAt    = Option.empty[Instant]
   private var waited    = Span.Zero
   private var abandoned = 0L
+  private var overtaken = 0L
   private var isSettled = true
 
   /** Number of stops at which commands were awaited in vain. */
   def missed: Long = abandoned
+
+  /** Number of commands that were left out, because a later stamp had arrived. */
+  def late: Long = overtaken
 
   /** Receives a command with a stamp of the past; `perform` is called at a stop.
     *
     * @param stamp the command's stamp, on the simulator's clock
     */
   def heard(vehicle: Int, stamp: Instant)(perform: => Unit): Unit =
-    val isStopped = isWaiting
-    newest(vehicle) = newest.get(vehicle).fold(stamp)(_.max(stamp))
-    if isStopped then perform else kept(vehicle) = () => perform
-    if next.isEmpty then
-      next = Some(first)
-      isSettled = false
-    goOn()
+    if newest.get(vehicle).exists(_ > stamp) then overtaken += 1
+    else
+      val isStopped = isWaiting
+      newest(vehicle) = stamp
+      if isStopped then perform else kept(vehicle) = () => perform
+      if next.isEmpty then
+        next = Some(first)
+        isSettled = false
+      goOn()
 
   private def goOn(): Unit =
     if !isWaiting then next = next.map(due => if due <= now() then due + step else due)

@@ -29,8 +29,9 @@ private[simulator] final class InProcess(
   def nextDue: Option[Instant] =
     Option.unless(lockstep.exists(_.isWaiting))(seenAt.fold(world.now)(_ + PathFollowing.Period))
 
-  /** Number of stops at which commands were awaited in vain. */
-  def missed: Long = lockstep.fold(0L)(_.missed)
+  /** What became of the commands that the clock waits for. */
+  def commands: CommandCounts =
+    lockstep.fold(CommandCounts.Zero)(clock => CommandCounts(clock.missed, clock.late))
 
   /** Lets a vehicle perform an action; see [[SimulatorServer.act]]. */
   def act(

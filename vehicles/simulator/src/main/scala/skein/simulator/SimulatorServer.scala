@@ -8,7 +8,7 @@ import org.apache.pekko.actor.typed.{ActorRef, Behavior}
 import org.apache.pekko.dispatch.Dispatchers
 import org.apache.pekko.stream.{BoundedSourceQueue, QueueOfferResult}
 import org.apache.pekko.util.ByteString
-import java.util.concurrent.atomic.{AtomicBoolean, AtomicLong}
+import java.util.concurrent.atomic.{AtomicBoolean, AtomicLong, AtomicReference}
 import scala.collection.mutable
 import scala.concurrent.{ExecutionContext, Future, Promise}
 import scala.util.Try
@@ -41,7 +41,7 @@ final class SimulatorServer private (
     peers: Option[PeerServer],
     counters: PeerCounters,
     heldUp: AtomicBoolean,
-    missed: AtomicLong
+    commanded: AtomicReference[CommandCounts]
 ):
 
   /** The listening address, with the actual port. */
@@ -67,8 +67,7 @@ final class SimulatorServer private (
   /** Whether moves have held all workers for longer than [[SimulatorSettings.patience]]. */
   def hasHeldUp: Boolean = heldUp.get
 
-  /** Stops of the clock at which commands were awaited in vain: see [[SimulatorServer.start]]. */
-  def missedCommands: Long = missed.get
+  def commands: CommandCounts = commanded.get
 
   /** The true motion of all vehicles; does not complete once the server is closed. */
   def truth(): Future[SimulatorServer.Truth] =
@@ -127,7 +126,7 @@ object SimulatorServer:
     given ExecutionContext = ExecutionContext.parasitic
     val behind             = AtomicLong()
     val heldUp             = AtomicBoolean()
-    val missed             = AtomicLong()
+    val commanded          = AtomicReference(CommandCounts.Zero)
     val broken             = Promise[Throwable]()
     val lines              = CallLines[Call](isUrgent = call => Simulation.isControl(call.request.method))
     val work               = AtomicBoolean()
@@ -145,7 +144,7 @@ object SimulatorServer:
         work,
         behind,
         heldUp,
-        missed,
+        commanded,
         broken
       ).behavior)
     )
@@ -181,7 +180,7 @@ object SimulatorServer:
             .recoverWith: error =>
               simulator ! Message.Stop
               rpc.close().transformWith(_ => Future.failed(error))
-    yield SimulatorServer(rpc, simulator, lines, behind, broken.future, open, counters, heldUp, missed)
+    yield SimulatorServer(rpc, simulator, lines, behind, broken.future, open, counters, heldUp, commanded)
 
   private[simulator] enum Message:
     /** Calls wait to be run. */
@@ -215,7 +214,7 @@ object SimulatorServer:
       work: AtomicBoolean,
       behind: AtomicLong,
       heldUp: AtomicBoolean,
-      missed: AtomicLong,
+      commanded: AtomicReference[CommandCounts],
       broken: Promise[Throwable]
   ):
     private val waiting                        = mutable.LongMap.empty[Call]
@@ -238,7 +237,7 @@ object SimulatorServer:
               counters.dropped.incrementAndGet(): Unit
         behind.set(simulation.behind.toNanos)
         heldUp.set(simulation.hasHeldUp)
-        missed.set(inProcess.fold(0L)(_.missed))
+        inProcess.foreach(it => commanded.set(it.commands))
         val now = clock.now()
         val due = (protocol.flatMap(_.nextDue) ++ inProcess.flatMap(_.nextDue)).flatMap(simulation.comesTo)
         for at <- (simulation.nextWake(now) ++ due.map(_.max(now))).minOption if wakeAt.forall(at < _) do

@@ -69,7 +69,7 @@ class CommandLockstepSuite extends munit.FunSuite:
     flown.pass(50)
     assertEqualsDouble(flown.clockMs, 500, 1e-6)
     assertEquals(flown.seenMs.filter(_ > 200), Vector(300.0, 400.0, 500.0))
-    assertEquals(flown.inProcess.missed, 0L)
+    assertEquals(flown.inProcess.commands, CommandCounts.Zero)
 
   test("the flight depends neither on the clock's speed nor on when commands arrive"):
     def flown(speed: Double, delayMs: Int => Double) =
@@ -89,6 +89,25 @@ class CommandLockstepSuite extends munit.FunSuite:
     assertEquals(flown(10, round => 5 + 37 * round % 90), one)
     assertEquals(flown(100, round => 200 + 11 * round % 40), one)
 
+  test("a command that comes after one with a later stamp is left out, and counted"):
+    def flown(late: Boolean) =
+      val it = Flown()
+      it.pass(30)
+      it.command(0, 200)
+      it.pass(600)
+      // The clock stands at 300 ms: these act now.
+      it.command(0, 300, up = 2)
+      if late then it.command(0, 280, up = 9)
+      it.pass(50)
+      // Before the next stop, at which this acts.
+      it.command(0, 390, up = 1)
+      if late then it.command(0, 385, up = 9)
+      it.command(0, 400, up = 3)
+      it.pass(50)
+      (it.motions(fromMs = 300), it.inProcess.commands.late)
+    val (motions, late) = flown(late = true)
+    assertEquals((motions, late), (flown(late = false)._1, 2L))
+
   test("after a second without a command it runs on, and reports that; the next command makes it wait again"):
     val flown = Flown()
     flown.pass(20)
@@ -97,7 +116,7 @@ class CommandLockstepSuite extends munit.FunSuite:
     assertEqualsDouble(flown.clockMs, 300, 1e-6)
     flown.pass(300)
     assert(flown.clockMs > 1000, flown.clockMs)
-    assertEquals(flown.inProcess.missed, 1L)
+    assertEquals(flown.inProcess.commands, CommandCounts(missed = 1, late = 0))
     val at = flown.clockMs
     flown.command(0, at - 10)
     flown.pass(500)

@@ -14,6 +14,8 @@ import skein.simd.LaneFunction;
 public class LanePolicy {
   public static final int WORLDS = LaneObservation.WORLDS;
 
+  private static final PolicyLanes.In$ in = PolicyLanes.In$.MODULE$;
+
   private final PolicyLanes form;
   private final LaneFunction function;
   private final float[] parameters, scratch;
@@ -171,22 +173,21 @@ public class LanePolicy {
       int ownAt,
       Directions known,
       int knownAt) {
-    // In the order of PolicyLanes.In.
     for (int i = 0; i < LaneObservation.READ; i++) {
       set(arrays, offsets, i, observation.opponent[i], observation.opponentAt[i]);
       int last = arrays.length - LaneObservation.READ + i;
       set(arrays, offsets, last, observation.own[i], observation.ownAt[i]);
     }
-    set(arrays, offsets, 4, observation.elapsed, 0);
-    set(arrays, offsets, 5, own.cos, ownAt);
-    set(arrays, offsets, 6, own.sin, ownAt);
-    set(arrays, offsets, 7, known.cos, knownAt);
-    set(arrays, offsets, 8, known.sin, knownAt);
-    set(arrays, offsets, 9, heading, 0);
-    set(arrays, offsets, 10, observation.ownAge, 0);
-    set(arrays, offsets, 11, observation.opponentAge, 0);
+    set(arrays, offsets, in.Elapsed(), observation.elapsed, 0);
+    set(arrays, offsets, in.OwnCos(), own.cos, ownAt);
+    set(arrays, offsets, in.OwnSin(), own.sin, ownAt);
+    set(arrays, offsets, in.KnownCos(), known.cos, knownAt);
+    set(arrays, offsets, in.KnownSin(), known.sin, knownAt);
+    set(arrays, offsets, in.Heading(), heading, 0);
+    set(arrays, offsets, in.OwnAge(), observation.ownAge, 0);
+    set(arrays, offsets, in.OpponentAge(), observation.opponentAge, 0);
     for (int i = 0; i < form.memories(); i++)
-      set(arrays, offsets, 12 + i, memory, i * WORLDS);
+      set(arrays, offsets, in.Memory() + i, memory, i * WORLDS);
   }
 
   private static void set(float[][] arrays, int[] offsets, int place, float[] array, int offset) {

@@ -1,10 +1,9 @@
 package skein.lanes.policy
 
-import java.util.concurrent.ConcurrentHashMap
 import skein.forward.{Engagement, RolloutAgent}
 import skein.fusion.SensorModel
 import skein.policy.Policy
-import skein.simd.LaneMath
+import skein.simd.{LaneMath, Recent}
 import skein.units.Expect
 
 /** SIMD decisions of two opponents that command headings: each decides by the difference of the two readings
@@ -37,9 +36,9 @@ private[lanes] final case class OpponentLanes private (
     PolicyNumbers(forms(self).parametersOf(policy), forms(self).initialOf(policy))
 
 private[lanes] object OpponentLanes:
-  private val cameras = ConcurrentHashMap[SensorModel, Either[String, CameraTrackerLanes.Forms]]()
+  private val cameras = Recent[SensorModel, Either[String, CameraTrackerLanes.Forms]](most = 64)
 
-  private def cameraOf(sensor: SensorModel) = cameras.computeIfAbsent(sensor, CameraTrackerLanes.of)
+  private def cameraOf(sensor: SensorModel) = cameras.getOrMake(sensor)(CameraTrackerLanes.of(sensor))
 
   /** The SIMD code of two opponents; None unless they are two opponents that command headings.
     *

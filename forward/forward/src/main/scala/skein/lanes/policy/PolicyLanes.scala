@@ -1,10 +1,9 @@
 package skein.lanes.policy
 
-import java.util.concurrent.ConcurrentHashMap
 import skein.formula.{Angles, Evaluation, Node, Op, Trace, Untraceable}
 import skein.lanes.policy.OpponentFormula.In as Seen
 import skein.policy.{GraphPolicy, PlanarObservation, Policy, PolicyFormula}
-import skein.simd.{Forms, LaneCompiler, LaneFunction}
+import skein.simd.{Forms, LaneCompiler, LaneFunction, Recent}
 
 /** The decision of policies of one form in many worlds by SIMD, compiled from the policy's own method;
   * [[OpponentFormula]] defines which policies have one. Policies of one form differ only in parameter values.
@@ -211,7 +210,7 @@ private[skein] object PolicyLanes:
   /** A policy's formula, and the SIMD code of those that it [[PolicyFormula.fits]], or why there is none. */
   private final case class Form(formula: PolicyFormula, lanes: Either[Untraceable, PolicyLanes])
 
-  private val known = ConcurrentHashMap[(AnyRef, Int, Boolean), Forms[Policy, Form]]()
+  private val known = Recent[(AnyRef, Int, Boolean), Forms[Policy, Form]](most = 256)
 
   /** After this number of refused policies of a class, all of the class count as refused. */
   private val MostRefused = 16
@@ -225,13 +224,10 @@ private[skein] object PolicyLanes:
     val kind = policy match
       case graph: GraphPolicy => graph.graph
       case _                  => policy.getClass
-    val forms = known.computeIfAbsent(
-      (kind, self, isPredicted),
-      _ =>
-        Forms[Policy, Form](_.formula.fits(_, OpponentFormula.Rivals), MostRefused): one =>
-          for formula <- PolicyFormula.of(one, self, OpponentFormula.Rivals, isPredicted)
-          yield Form(formula, OpponentFormula.of(formula, self).map(PolicyLanes(_)))
-    )
+    val forms = known.getOrMake((kind, self, isPredicted)):
+      Forms[Policy, Form](_.formula.fits(_, OpponentFormula.Rivals), MostRefused): one =>
+        for formula <- PolicyFormula.of(one, self, OpponentFormula.Rivals, isPredicted)
+        yield Form(formula, OpponentFormula.of(formula, self).map(PolicyLanes(_)))
     forms(policy).flatMap(_.lanes)
 
   def of(policy: Policy): Either[Untraceable, PolicyLanes] = of(policy, 0, isPredicted = false)

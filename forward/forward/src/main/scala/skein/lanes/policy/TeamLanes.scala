@@ -1,13 +1,12 @@
 package skein.lanes.policy
 
-import java.util.concurrent.ConcurrentHashMap
 import scala.collection.mutable
 import skein.formula.{Angles, Evaluation, Node, Op, Trace, Untraceable}
 import skein.forward.{Engagement, RolloutAgent}
 import skein.fusion.SensorModel
 import skein.policy.{Action, Assignment, Policy, PolicyFormula, PolicyInput}
 import skein.policy.PolicyFormula.Motion
-import skein.simd.{BoundFunction, Forms, LaneFunction}
+import skein.simd.{BoundFunction, Forms, LaneFunction, Recent}
 import skein.units.{Expect, Metres}
 
 /** SIMD decisions of a team's policies in many worlds, compiled from their own methods ([[PolicyFormula]]).
@@ -260,7 +259,7 @@ private[lanes] object TeamLanes:
 
   private final case class Team(policies: Vector[Policy], assignment: Assignment)
 
-  private val known = ConcurrentHashMap[(Assignment, Boolean, Boolean), Forms[Team, TeamLanes]]()
+  private val known = Recent[(Assignment, Boolean, Boolean), Forms[Team, TeamLanes]](most = 64)
 
   /** The SIMD code of a team, or why there is none. Compiled once for each form.
     *
@@ -273,21 +272,18 @@ private[lanes] object TeamLanes:
       isPredicted: Boolean,
       inSpace: Boolean = false
   ): Either[Untraceable, TeamLanes] =
-    val forms = known.computeIfAbsent(
-      (assignment, isPredicted, inSpace),
-      _ =>
-        Forms[Team, TeamLanes](_.fits(_)): team =>
-          Expect
-            .each(team.policies.zipWithIndex): (policy, self) =>
-              PolicyFormula.of(policy, self, assignment, isPredicted)
-            .flatMap: formulas =>
-              val most = formulas.map(_.memory.size).max
-              Expect
-                .that(most <= MostMemories)(
-                  Untraceable(s"it remembers $most numbers, more than $MostMemories")
-                )
-                .map(_ => TeamLanes(formulas, assignment, inSpace))
-    )
+    val forms = known.getOrMake((assignment, isPredicted, inSpace)):
+      Forms[Team, TeamLanes](_.fits(_)): team =>
+        Expect
+          .each(team.policies.zipWithIndex): (policy, self) =>
+            PolicyFormula.of(policy, self, assignment, isPredicted)
+          .flatMap: formulas =>
+            val most = formulas.map(_.memory.size).max
+            Expect
+              .that(most <= MostMemories)(
+                Untraceable(s"it remembers $most numbers, more than $MostMemories")
+              )
+              .map(_ => TeamLanes(formulas, assignment, inSpace))
     forms(Team(policies, assignment))
 
 /** Subexpressions shared by several expressions, which depend on the first inputs alone.
