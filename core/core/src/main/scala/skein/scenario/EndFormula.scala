@@ -12,6 +12,10 @@ import skein.policy.{InputTags, PolicyInput}
   */
 private[skein] final class EndFormula(val formula: Formula, val inputs: Vector[PolicyInput])
 
+/** A scenario whose end already is a formula, so that its bytecode is not read. */
+private[scenario] trait KnownEnd:
+  def end: EndFormula
+
 private[skein] object EndFormula:
   private val Descriptor = "(Lskein/scenario/Known;)Z"
 
@@ -19,8 +23,8 @@ private[skein] object EndFormula:
     * @return Left states why the method cannot be traced, with the source line
     */
   def of(end: OwnEnd, vehicles: Int): Either[Untraceable, EndFormula] = end.scenario match
-    case file: FileScenario.Ending => Right(file.end)
-    case scenario                  =>
+    case known: KnownEnd => Right(known.end)
+    case scenario        =>
       val tags    = InputTags()
       val known   = Known(tags.span(PolicyInput.Elapsed), Vector.tabulate(vehicles)(tags.seen(_, false)))
       val example = Example("known", known, refused = InputTags.Refused)

@@ -107,8 +107,8 @@ private[skein] object FileScenario:
   /** A file scenario that may end before its duration. It is a separate class because [[OwnEnd]] looks for
     * the class that declares `isOver`.
     */
-  private[scenario] final class Ending(file: ScenarioFile, values: Array[Double], over: Watched)
-      extends FileScenario(file, values):
+  private final class Ending(file: ScenarioFile, values: Array[Double], over: Watched)
+      extends FileScenario(file, values), KnownEnd:
     override def isOver(known: Known): Boolean = over(known, values) != 0
 
     lazy val end: EndFormula = EndFormula(

@@ -28,7 +28,7 @@ public final class PredictedLagVehicles extends PredictedVehicles {
 
   @Override
   void predict(
-      TimetableVehicles read,
+      TimetableReadings read,
       Directions sent,
       int reading,
       int into,

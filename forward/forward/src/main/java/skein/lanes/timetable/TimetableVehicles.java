@@ -2,22 +2,13 @@ package skein.lanes.timetable;
 
 import skein.forward.RolloutAgent;
 import skein.lanes.policy.Directions;
-import skein.lanes.policy.LanePolicy;
 import skein.lanes.policy.VehicleNumbers;
 
 /** The vehicles of one role in many worlds, simulated by a {@link Timetable}: events happen simultaneously in
  * all worlds, so all that depends on time alone is a constant of the timetable, computed by a corresponding
  * {@link EventClock}.
  */
-public abstract class TimetableVehicles {
-  public static final int WORLDS = LanePolicy.WORLDS;
-
-  /** The vehicles' readings, by slot: positions, m, and velocities, m/s, north and east. */
-  public float[] seenX = {}, seenY = {}, seenVx = {}, seenVy = {};
-
-  /** Their positions and velocities down; empty where they fly level. */
-  public float[] seenZ = {}, seenVz = {};
-
+public abstract class TimetableVehicles extends TimetableReadings {
   /** Predicts from their readings, in loops that predict; else null. */
   public PredictedVehicles predicted;
 

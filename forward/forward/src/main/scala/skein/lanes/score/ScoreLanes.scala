@@ -1,7 +1,7 @@
 package skein.lanes.score
 
 import skein.formula.{Angles, Evaluation, Formula, Node, Op, Trace, Untraceable}
-import skein.lanes.timetable.Timetable
+import skein.lanes.timetable.OwnEnds
 import skein.policy.PolicyInput
 import skein.scenario.{EndFormula, OwnEnd, Positions, Quantity, Reduction, Separation}
 import skein.simd.{BoundFunction, Forms}
@@ -85,10 +85,10 @@ private[lanes] final class ScoreLanes private (
     Ending(endedAt, BoundFunction.of(Vector(trace.binary(Op.Min, kept(endedAt), now))))
 
   /** The kind of inputs on which the end depends. */
-  val endsBy: Timetable.End =
-    if end.isEmpty then Timetable.End.None
-    else if asks({ case _: Source.Age | Source.Since => true }) then Timetable.End.ByTime
-    else Timetable.End.ByPlace
+  val endsBy: OwnEnds =
+    if end.isEmpty then OwnEnds.None
+    else if asks({ case _: Source.Age | Source.Since => true }) then OwnEnds.ByTime
+    else OwnEnds.ByPlace
 
   /** Whether the end depends on velocities of readings. */
   def needsVelocity: Boolean = asks({ case _: Source.Velocity => true })

@@ -41,7 +41,7 @@ private[lanes] final class PredictedPlants(
   private def rest(): Unit = if lanes.inSpace then lanes.restInSpace(before, 0, startZ) else lanes.rest(before, 0)
 
   override def enter(
-      read: TimetableVehicles,
+      read: TimetableReadings,
       sent: Directions,
       from: Int,
       reading: Int,
@@ -56,7 +56,7 @@ private[lanes] final class PredictedPlants(
       else System.arraycopy(flight.state, 0, before, 0, before.length)
     take(read, reading, states, reading * count)
 
-  override def restart(world: Int, read: TimetableVehicles): Unit =
+  override def restart(world: Int, read: TimetableReadings): Unit =
     val state = Array.ofDim[Float](before.length)
     rest()
     for reading <- 0 until states.length by state.length do
@@ -64,7 +64,7 @@ private[lanes] final class PredictedPlants(
       for at <- world until state.length by WORLDS do states(reading + at) = state(at)
 
   def predict(
-      read: TimetableVehicles,
+      read: TimetableReadings,
       sent: Directions,
       reading: Int,
       into: Int,
@@ -82,7 +82,7 @@ private[lanes] final class PredictedPlants(
     else flight.look(seenX, seenY, seenVx, seenVy, into, withVelocity)
 
   /** Corrects the simulated state by a reading. */
-  private def take(read: TimetableVehicles, reading: Int, into: Array[Float], at: Int): Unit =
+  private def take(read: TimetableReadings, reading: Int, into: Array[Float], at: Int): Unit =
     correct.input(count, read.seenX, reading)
     correct.input(count + 1, read.seenY, reading)
     correct.input(count + 2, read.seenVx, reading)

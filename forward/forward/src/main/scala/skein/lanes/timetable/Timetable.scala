@@ -74,7 +74,7 @@ private[skein] object Timetable:
       model: TimetableDynamics,
       eyes: Map[Int, SensorModel] = Map.empty,
       tellsMore: Boolean = false,
-      end: End = End.None
+      end: OwnEnds = OwnEnds.None
   ): Timetable =
     val notes = TimetableNotes(vehicles, model, eyes, tellsMore, end)
     Rollout(
@@ -90,16 +90,6 @@ private[skein] object Timetable:
   private def unpredicted(timing: LoopTiming): LoopTiming = timing match
     case predictive: LoopTiming.Predictive => predictive.copy(predictor = ConstantVelocity)
     case other                             => other
-
-  /** How flights may end before their duration. */
-  enum End:
-    case None
-
-    /** By positions and velocities alone. */
-    case ByPlace
-
-    /** Also by the time or the ages of readings. */
-    case ByTime
 
   /** Further inputs of decisions, by decision, then by vehicle.
     *

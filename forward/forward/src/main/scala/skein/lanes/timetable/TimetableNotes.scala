@@ -14,7 +14,7 @@ private[lanes] final class TimetableNotes(
     model: TimetableDynamics,
     eyes: Map[Int, SensorModel],
     tellsMore: Boolean,
-    end: Timetable.End
+    end: OwnEnds
 ) extends LoopObserver:
   val all: mutable.ArrayBuffer[Note] = mutable.ArrayBuffer.empty
 
@@ -112,7 +112,7 @@ private[lanes] final class TimetableNotes(
         Note.More(upon.sentDecision.clone, Array.tabulate(vehicles)(ageS), aheadS.max(0))
     )
     decisions(vehicle) += 1
-    if end != Timetable.End.None then mayEnd(atNs, upon, ageS)
+    if end != OwnEnds.None then mayEnd(atNs, upon, ageS)
 
   /** View of the last note of an end. */
   private var ended = -1
@@ -124,7 +124,7 @@ private[lanes] final class TimetableNotes(
     if begunNs < 0 then begunNs = atNs
     val view = viewOf(Array.tabulate(vehicles)(each => readingOf(each)(upon.reading(each))))
     // Several vehicles often decide on one view.
-    if end == Timetable.End.ByTime || view != ended then
+    if end == OwnEnds.ByTime || view != ended then
       ended = view
       all += Note.End(atNs * 1e-9, view, (atNs - begunNs) * 1e-9, Array.tabulate(vehicles)(ageS))
 

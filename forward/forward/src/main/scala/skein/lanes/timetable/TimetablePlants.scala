@@ -11,7 +11,7 @@ import skein.lanes.policy.Directions
   */
 private[lanes] final class TimetablePlants(agent: RolloutAgent, lanes: PlantLanes)
     extends TimetableVehicles(agent, lanes.inSpace):
-  import TimetableVehicles.WORLDS
+  import TimetableReadings.WORLDS
   private val flight      = StagedFlight(lanes, agent.speed, startX, startY)
   private val resting     = lanes.resting
   private var isCommanded = false

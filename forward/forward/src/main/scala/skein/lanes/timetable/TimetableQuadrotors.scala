@@ -15,7 +15,7 @@ import skein.simd.{BoundFunction, LaneCall}
 private[lanes] final class TimetableQuadrotors(agent: RolloutAgent, flown: LaneQuadrotors)
     extends TimetableVehicles(agent):
   import TimetableQuadrotors.*
-  import TimetableVehicles.WORLDS
+  import TimetableReadings.WORLDS
   private val hold     = flown.holdingAt(agent.altitudeDownM)
   private val carried  = Array.ofDim[Float](2)
   private val position = LaneCall(placed, carried)
