@@ -20,7 +20,7 @@ object Installing extends AutoPlugin {
 
   private val installedBeside = taskKey[Unit]("publishes a part beside the local repository")
 
-  private val ivyHome = Def.setting(ivyPaths.value.ivyHome.getOrElse(sys.error("expected a home of Ivy, came none")))
+  private val ivyHome = Def.setting(ivyPaths.value.ivyHome.getOrElse(sys.error("expected a home of Ivy, got none")))
   private val beside  = Def.setting(ivyHome.value / "local-installing")
 
   /** Settings of the root project. */

@@ -38,7 +38,7 @@ def test_columns_have_names_of_their_own_and_hold_numbers(flights):
     ]
     assert table["vs paused %"].iloc[0] == 30.4 and table["paper m: max"].tolist() == [11.6, 8.6]
     assert table["age ms p99"].iloc[0] == 119
-    with pytest.raises(KeyError, match="expected one of .*, came .*nothing"):
+    with pytest.raises(KeyError, match="expected one of .*, got .*nothing"):
         flights["nothing"]
 
 
@@ -57,7 +57,7 @@ def test_a_recording_says_how_old_each_decision_was(flights):
         assert 60 < decisions.ownTrueAgeMs.mean() < 150
         counted = recording.sql("SELECT count(*) AS n FROM decision WHERE vehicle = ?", ["Pursuer"])
         assert counted.n[0] == (decisions.vehicle == "Pursuer").sum()
-        with pytest.raises(KeyError, match="expected one of .*decision.*, came 'nothing'"):
+        with pytest.raises(KeyError, match="expected one of .*decision.*, got 'nothing'"):
             recording["nothing"]
 
 

@@ -100,30 +100,30 @@ def test_files_hold_round_trips(tmp_path):
     path.write_text("# ms\n10\n\n30\n")
     assert delays(f"file:{path}").longest_s == pytest.approx(0.015, rel=1e-3)
     path.write_text("10\nmany\n")
-    with pytest.raises(ValueError, match="link: expected a round trip in ms in line 2 of .*, came 'many'"):
+    with pytest.raises(ValueError, match="link: expected a round trip in ms in line 2 of .*, got 'many'"):
         delays(f"file:{path}", "link")
 
 
 @pytest.mark.parametrize(
     "given, told",
     [
-        ({"link": "wifi"}, "link: expected none, direct, .*, came 'wifi'"),
+        ({"link": "wifi"}, "link: expected none, direct, .*, got 'wifi'"),
         ({"link": "rate:50mbit,vpn"}, "link: expected a link without a rate"),
         ({"link": "constant:2h"}, "link: expected a time such as 200ms"),
         ({"link": "uniform:40ms..10ms"}, "link: expected the smaller time first"),
         ({"link": "lognormal:36ms,x"}, "link: expected a standard deviation"),
         ({"link": "correlated:0s,vpn"}, "link: expected a time constant of more than 0"),
-        ({"link": -0.1}, r"link: expected delays in s from 0 .*, came -0.1"),
+        ({"link": -0.1}, r"link: expected delays in s from 0 .*, got -0.1"),
         ({"action_delay": [0.1, math.nan]}, "action_delay: expected delays in s"),
         ({"observation_delay": Trace(np.ones(3), 0.0)}, "observation_delay: expected more than 0 s from one"),
-        ({"link": 60.0}, "expected delays of at most 1000 steps of 0.05 s, came up to 60 s"),
-        ({"step_s": 0}, "step_s: expected more than 0 s, came 0"),
-        ({"dropout": 1}, "dropout: expected a share from 0 to 0.9, came 1"),
-        ({"moves_in_flight": 1}, "moves_in_flight: expected None or at least 2, came 1"),
+        ({"link": 60.0}, "expected delays of at most 1000 steps of 0.05 s, got up to 60 s"),
+        ({"step_s": 0}, "step_s: expected more than 0 s, got 0"),
+        ({"dropout": 1}, "dropout: expected a share from 0 to 0.9, got 1"),
+        ({"moves_in_flight": 1}, "moves_in_flight: expected None or at least 2, got 1"),
         ({"moves_in_flight": 2, "dropout": 0.1}, "dropout: expected 0 beside moves_in_flight"),
-        ({"arrival": "soon"}, "arrival: expected 'next' or 'share', came 'soon'"),
-        ({"first": "ones"}, "first: expected 'known' or 'zeros', came 'ones'"),
-        ({"pending": -1}, "pending: expected from 0 to 1000, came -1"),
+        ({"arrival": "soon"}, "arrival: expected 'next' or 'share', got 'soon'"),
+        ({"first": "ones"}, "first: expected 'known' or 'zeros', got 'ones'"),
+        ({"pending": -1}, "pending: expected from 0 to 1000, got -1"),
     ],
 )
 def test_wrong_settings_are_told(given, told):

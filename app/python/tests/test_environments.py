@@ -76,7 +76,7 @@ def test_seeds_of_any_size_repeat_episodes(make):
         assert not np.array_equal(first, env.reset(seed=7)[0])
     one = gym.make("skein_uav/Pursuit-v0", episode_s=2.0)
     assert np.array_equal(one.reset(seed=large)[0], one.reset(seed=large)[0])
-    with pytest.raises(ValueError, match="seed: expected a whole number from 0, came -1"):
+    with pytest.raises(ValueError, match="seed: expected a whole number from 0, got -1"):
         env.reset(seed=[-1, 2])
 
 
@@ -142,7 +142,7 @@ def test_bad_actions_are_refused_and_change_nothing(make):
     for bad, told in [
         (np.full((2, 1), np.nan), "action of environment 0: expected a number"),
         (np.array([[0.0], [np.inf]]), "action of environment 1: expected a number"),
-        (np.zeros(2), r"expected numbers of shape \(2, 1\), came float64 of shape \(2,\)"),
+        (np.zeros(2), r"expected numbers of shape \(2, 1\), got float64 of shape \(2,\)"),
         (np.array([["left"], ["right"]]), "expected numbers of shape"),
         (None, "expected numbers of shape"),
     ]:
@@ -158,7 +158,7 @@ def test_wrong_settings_and_a_closed_environment_are_told(make):
         ({"link": "nowhere"}, "link: "),
         ({"loop": "plan"}, "loop: expected paused, .* which plans"),
         ({"learner": "nobody"}, "learners: expected one of evader, pursuer"),
-        ({"learner": "all"}, "learner: expected one in a world, came Evader, Pursuer"),
+        ({"learner": "all"}, "learner: expected one in a world, got Evader, Pursuer"),
         ({"opponent": "nobody"}, "opponent: "),
         ({"capture_radius_m": -1}, "capture_radius_m: expected"),
         ({"render_mode": "human"}, "render_mode: expected"),

@@ -56,15 +56,15 @@ def test_the_policy_is_called_once_for_all_episodes():
 
 def test_what_a_policy_or_a_caller_gets_wrong_is_told():
     short = dict(link="none", draws=2, episode_s=1.0, last_s=1.0)
-    with pytest.raises(ValueError, match=r"policy: expected numbers of shape \(256,\), came .* of shape \(\)"):
+    with pytest.raises(ValueError, match=r"policy: expected numbers of shape \(256,\), got .* of shape \(\)"):
         skein.evaluate(lambda seen: 0.0, **short)
     with pytest.raises(ValueError, match="action of environment 0: expected a number"):
         skein.evaluate(lambda seen: np.full(len(seen), np.nan), **short)
-    with pytest.raises(ValueError, match=r"candidates: expected shape \(candidates, numbers\), came \(3,\)"):
+    with pytest.raises(ValueError, match=r"candidates: expected shape \(candidates, numbers\), got \(3,\)"):
         skein.evaluate(lead, [1, 2, 3], **short)
-    with pytest.raises(ValueError, match="draws: expected at least 2, came 1"):
+    with pytest.raises(ValueError, match="draws: expected at least 2, got 1"):
         skein.evaluate(paper, draws=1)
-    with pytest.raises(ValueError, match="last_s: expected more than 0 s and at most 5 s, came 10"):
+    with pytest.raises(ValueError, match="last_s: expected more than 0 s and at most 5 s, got 10"):
         skein.evaluate(paper, episode_s=5.0)
     with pytest.raises(TypeError, match="takes no capture_radius_m"):
         skein.evaluate(paper, capture_radius_m=1.0)

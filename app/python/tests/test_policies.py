@@ -35,7 +35,7 @@ def test_a_policy_that_fails_ends_the_flight_with_its_words(tmp_path):
 
     with pytest.raises(skein.SkeinError, match="ZeroDivisionError: no such luck"):
         skein.fly(link="none", duration_s=5, pursuer=broken, out=tmp_path)
-    with pytest.raises(skein.SkeinError, match="expected a number from -1 to 1, came array.*nan"):
+    with pytest.raises(skein.SkeinError, match="expected a number from -1 to 1, got array.*nan"):
         skein.fly(link="none", duration_s=5, evader=lambda seen: np.nan, out=tmp_path / "nan")
 
 

@@ -205,10 +205,10 @@ WRONG = [
     ("x = f.where(seen.own.north_m, 1, 2)", "takes a number for a condition; write a comparison"),
     ("x = f.sin('a') + f.hypot(seen.own.north_m, 'a')", "must be real number"),
     ("x, y = seen.own.north_m", "one number, not several"),
-    ("return seen.own.north_m", "expected an action, such as seen.along\\(heading, speed\\), came Number"),
-    ("return", "expected an action, .* came None; is a return missing\\?"),
+    ("return seen.own.north_m", "expected an action, such as seen.along\\(heading, speed\\), got Number"),
+    ("return", "expected an action, .* got None; is a return missing\\?"),
     ("return seen.along(seen.own.north_m > 3, 1.0)", "py:2: the policy of Own: expected a number as argument 1 .* a condition; write where"),
-    ("return seen.along('north', 1.0)", "py:2: the policy of Own: expected a number as argument 1 of along, came str 'north'"),
+    ("return seen.along('north', 1.0)", "py:2: the policy of Own: expected a number as argument 1 of along, got str 'north'"),
 ]
 
 
@@ -234,11 +234,11 @@ def test_what_an_observation_lacks_is_told_with_what_it_has():
 
 
 def test_a_memory_is_of_one_form_and_belongs_to_one_vehicle():
-    with pytest.raises(Untraceable, match="expected an action and the next memory, came Action"):
+    with pytest.raises(Untraceable, match="expected an action and the next memory, got Action"):
         scenario(lambda seen, memory: seen.along(memory.rad, 1.0), Kept()).text()
-    with pytest.raises(Untraceable, match="a next memory of the form of the first, Kept\\(float\\), came float"):
+    with pytest.raises(Untraceable, match="a next memory of the form of the first, Kept\\(float\\), got float"):
         scenario(lambda seen, memory: (seen.along(0.0, 1.0), memory.rad), Kept()).text()
-    with pytest.raises(Untraceable, match="expected a memory of floats, .* came str 'north'"):
+    with pytest.raises(Untraceable, match="expected a memory of floats, .* got str 'north'"):
         scenario(lambda seen, memory: (seen.along(0.0, 1.0), memory), "north").text()
     kept = []
 
@@ -271,7 +271,7 @@ def test_what_a_scenario_lacks_is_told():
 
     with pytest.raises(Untraceable, match="write where"):
         Odd().text()
-    with pytest.raises(ValueError, match="ends in .scenario, came patrol.txt"):
+    with pytest.raises(ValueError, match="ends in .scenario, got patrol.txt"):
         ring.Ring().write("patrol.txt")
-    with pytest.raises(ValueError, match="last_s or after_s, came both"):
+    with pytest.raises(ValueError, match="last_s or after_s, got both"):
         Series("a", "m", lambda now: 0.0).mean("a", last_s=1, after_s=2)

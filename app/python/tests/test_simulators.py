@@ -105,7 +105,7 @@ def test_mistakes_are_told_to_the_flight_and_to_who_begins():
         assert "expected finite numbers" in flight.ask()["error"]
     with pytest.raises(ValueError, match="step_s: expected more than 0"):
         EnvironmentSimulator(Point(), step_s=0, vehicles={"One": None}, body=body, action=action)
-    with pytest.raises(ValueError, match="expected one, since a Gymnasium environment has one agent, came 2"):
+    with pytest.raises(ValueError, match="expected one, since a Gymnasium environment has one agent, got 2"):
         EnvironmentSimulator(Point(), step_s=1, vehicles={"One": None, "Two": None}, body=body, action=action)
 
 

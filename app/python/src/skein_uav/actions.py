@@ -69,7 +69,7 @@ def cases(of: Any, when: Any) -> list[tuple[Any, Action]]:
         first = [(logical_and(of.condition, condition), action) for condition, action in of.a]
         return first + of.b
     if not isinstance(of, Action):
-        raise refused(f"where takes two actions, came {type(of).__name__}")
+        raise refused(f"where takes two actions, got {type(of).__name__}")
     return [(when, of)]
 
 

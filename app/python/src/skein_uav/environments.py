@@ -158,9 +158,9 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
         backend: str = "process",
     ) -> None:
         if not isinstance(num_envs, int) or num_envs < 1:
-            raise ValueError(f"num_envs: expected a whole number from 1, came {num_envs!r}")
+            raise ValueError(f"num_envs: expected a whole number from 1, got {num_envs!r}")
         if render_mode not in (None, "rgb_array"):
-            raise ValueError(f"render_mode: expected None or 'rgb_array', came {render_mode!r}")
+            raise ValueError(f"render_mode: expected None or 'rgb_array', got {render_mode!r}")
         self.num_envs = num_envs
         self.copy = copy
         self.render_mode = render_mode
@@ -194,7 +194,7 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
         if len(self._backend.learners) > 1:
             self._backend.close()
             raise ValueError(
-                f"learner: expected one in a world, came {', '.join(self._backend.learners)}; "
+                f"learner: expected one in a world, got {', '.join(self._backend.learners)}; "
                 "skein_uav.parallel has several"
             )
         self._observations = self._block.observations[0].T
@@ -259,7 +259,7 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
         chosen = np.asarray(actions)
         if chosen.shape != (self.num_envs, 1) or chosen.dtype.kind not in "fiu":
             raise ValueError(
-                f"actions: expected numbers of shape {(self.num_envs, 1)}, came {chosen.dtype} of shape {chosen.shape}"
+                f"actions: expected numbers of shape {(self.num_envs, 1)}, got {chosen.dtype} of shape {chosen.shape}"
             )
         self._actions[:] = chosen[:, 0]
         self._backend.step()
@@ -334,7 +334,7 @@ class PursuitEnv(gym.Env[Floats, Floats]):
         """Makes one decision."""
         chosen = np.asarray(action)
         if chosen.shape != (1,):
-            raise ValueError(f"action: expected a number of shape (1,), came {chosen.dtype} of shape {chosen.shape}")
+            raise ValueError(f"action: expected a number of shape (1,), got {chosen.dtype} of shape {chosen.shape}")
         seen, reward, terminated, truncated, infos = self._one.step(chosen[None, :])
         return seen[0], float(reward[0]), bool(terminated[0]), bool(truncated[0]), self._info(infos)
 
@@ -355,14 +355,14 @@ def open_batch(settings: dict[str, Any], count: int, autoreset: AutoresetMode, b
     """Opens a batch with its shared memory."""
     altitude_m = settings.get("altitude_m")
     if altitude_m is not None and not altitude_m > 0:
-        raise ValueError(f"altitude_m: expected more than 0 m, came {altitude_m!r}")
+        raise ValueError(f"altitude_m: expected more than 0 m, got {altitude_m!r}")
     texts = {name: str(value) for name, value in settings.items() if value is not None}
     number = [AutoresetMode.NEXT_STEP, AutoresetMode.SAME_STEP, AutoresetMode.DISABLED].index(autoreset)
     if backend == "process":
         return InProcess(texts, count, number)
     if backend == "socket" or backend.startswith("unix:"):
         return Served(texts, count, number, backend[5:] if backend.startswith("unix:") else None)
-    raise ValueError(f"backend: expected 'process', 'socket' or 'unix:PATH', came {backend!r}")
+    raise ValueError(f"backend: expected 'process', 'socket' or 'unix:PATH', got {backend!r}")
 
 
 def seeds_of(
@@ -373,7 +373,7 @@ def seeds_of(
         return np.array([folded(int(seed) + number) for number in range(count)], dtype=np.int64)
     if seed is not None:
         if len(seed) != count:
-            raise ValueError(f"seed: expected {count} of them, came {len(seed)}")
+            raise ValueError(f"seed: expected {count} of them, got {len(seed)}")
         return np.array([-1 if one is None else folded(one) for one in seed], dtype=np.int64)
     if is_reset:
         return np.full(count, -1, dtype=np.int64)
@@ -385,7 +385,7 @@ def _mask(options: dict[str, Any] | None, count: int) -> Flags | None:
         return None
     mask = np.asarray(options["reset_mask"])
     if mask.shape != (count,) or mask.dtype != np.bool_:
-        raise ValueError(f"reset_mask: expected bool of shape {(count,)}, came {mask.dtype} of shape {mask.shape}")
+        raise ValueError(f"reset_mask: expected bool of shape {(count,)}, got {mask.dtype} of shape {mask.shape}")
     return mask
 
 

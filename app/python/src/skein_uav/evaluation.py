@@ -71,12 +71,12 @@ def evaluate(
     if "capture_radius_m" in settings or "autoreset_mode" in settings:
         raise TypeError("evaluate() scores whole episodes; it takes no capture_radius_m and no autoreset_mode")
     if draws < 2:
-        raise ValueError(f"draws: expected at least 2, came {draws}")
+        raise ValueError(f"draws: expected at least 2, got {draws}")
     if not 0 < last_s <= episode_s:
-        raise ValueError(f"last_s: expected more than 0 s and at most {episode_s:g} s, came {last_s:g}")
+        raise ValueError(f"last_s: expected more than 0 s and at most {episode_s:g} s, got {last_s:g}")
     rows = None if candidates is None else np.asarray(candidates)
     if rows is not None and (rows.ndim != 2 or not len(rows)):
-        raise ValueError(f"candidates: expected shape (candidates, numbers), came {rows.shape}")
+        raise ValueError(f"candidates: expected shape (candidates, numbers), got {rows.shape}")
     places, seeds = _layout(1 if rows is None else len(rows), draws, seed)
     asked = places[:, 0] if rows is None else places
     with_candidates = () if rows is None else (rows,)
@@ -133,5 +133,5 @@ def _layout(candidates: int, draws: int, seed: int) -> tuple[np.ndarray[Any, Any
 def _numbers(answer: Any, shape: tuple[int, ...]) -> np.ndarray[Any, Any]:
     numbers = np.asarray(answer)
     if numbers.shape != shape or numbers.dtype.kind not in "fiu":
-        raise ValueError(f"policy: expected numbers of shape {shape}, came {numbers.dtype} of shape {numbers.shape}")
+        raise ValueError(f"policy: expected numbers of shape {shape}, got {numbers.dtype} of shape {numbers.shape}")
     return numbers

@@ -32,7 +32,7 @@ def _function(op: str, plain: Callable[..., Any], name: str, text: str) -> Any:
         if any(isinstance(one, Symbol) for one in args):
             made = operation(op, *args)
             if made is NotImplemented:
-                raise refused(f"{name} takes numbers, came {', '.join(type(one).__name__ for one in args)}")
+                raise refused(f"{name} takes numbers, got {', '.join(type(one).__name__ for one in args)}")
             return made
         return plain(*args)
 
@@ -139,7 +139,7 @@ def where(condition: Any, a: Any, b: Any) -> Any:
         return a
     made = operation("where", condition, a, b)
     if made is NotImplemented:
-        raise refused(f"where takes two of one kind, came {type(a).__name__} and {type(b).__name__}")
+        raise refused(f"where takes two of one kind, got {type(a).__name__} and {type(b).__name__}")
     return made
 
 

@@ -62,7 +62,7 @@ class TeamParallelEnv(ParallelEnv[str, Floats, Floats]):
         **others: Any,
     ) -> None:
         if render_mode not in (None, "rgb_array"):
-            raise ValueError(f"render_mode: expected None or 'rgb_array', came {render_mode!r}")
+            raise ValueError(f"render_mode: expected None or 'rgb_array', got {render_mode!r}")
         within = others.pop("start_within_m", (0.0, 0.0))
         texts = {"scenario": scenario, "learners": learners, "start_most_m": within[1], "start_least_m": within[0]}
         texts |= {f"set.{name}": value for name, value in (settings or {}).items()}
@@ -111,11 +111,11 @@ class TeamParallelEnv(ParallelEnv[str, Floats, Floats]):
             raise SkeinError("the episode has ended, or was not begun: reset() begins one")
         for number, agent in enumerate(self.possible_agents):
             if agent not in actions:
-                raise ValueError(f"actions: expected one of {agent}, came {', '.join(actions) or 'none'}")
+                raise ValueError(f"actions: expected one of {agent}, got {', '.join(actions) or 'none'}")
             chosen = np.asarray(actions[agent])
             if chosen.shape != (1,) or chosen.dtype.kind not in "fiu":
                 raise ValueError(
-                    f"action of {agent}: expected a number of shape (1,), came {chosen.dtype} of shape {chosen.shape}"
+                    f"action of {agent}: expected a number of shape (1,), got {chosen.dtype} of shape {chosen.shape}"
                 )
             self._block.actions[number, 0] = chosen[0]
         self._backend.step()

@@ -73,7 +73,7 @@ def _answer(policy: Policy, question: bytes) -> bytes:
         seen = np.frombuffer(question, dtype=">f4").astype(np.float32)
         action = np.asarray(policy(seen))
         if action.size != 1 or action.dtype.kind not in "fiu" or not np.isfinite(action).all():
-            raise ValueError(f"expected a number from -1 to 1, came {action!r}")
+            raise ValueError(f"expected a number from -1 to 1, got {action!r}")
         return struct.pack(">bf", 0, min(max(float(action.reshape(())), -1.0), 1.0))
     except Exception as mistake:
         told = f"{type(mistake).__name__}: {mistake}".encode()[:_MOST_TEXT]

@@ -42,19 +42,19 @@ class Recording(Mapping[str, pd.DataFrame]):
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self.path = Path(path)
         if not self.path.is_file():
-            raise SkeinError(f"expected a recording, came {self.path}, which is no file")
+            raise SkeinError(f"expected a recording, got {self.path}, which is no file")
         try:
             self._database = duckdb.connect(str(self.path), read_only=True)
             self._names = [name for (name,) in self._database.execute("SHOW TABLES").fetchall()]
         except duckdb.Error as mistake:
-            raise SkeinError(f"expected a recording, came {self.path}: {str(mistake).splitlines()[0]}") from None
+            raise SkeinError(f"expected a recording, got {self.path}: {str(mistake).splitlines()[0]}") from None
         if "decision" not in self._names:
             self.close()
-            raise SkeinError(f"expected a recording, came {self.path}, a database without a table 'decision'")
+            raise SkeinError(f"expected a recording, got {self.path}, a database without a table 'decision'")
 
     def __getitem__(self, table: str) -> pd.DataFrame:
         if table not in self._names:
-            raise KeyError(f"expected one of {', '.join(self._names)}, came '{table}'")
+            raise KeyError(f"expected one of {', '.join(self._names)}, got '{table}'")
         return self._database.execute(f'SELECT * FROM "{table}" ORDER BY row').df()
 
     def __iter__(self) -> Iterator[str]:

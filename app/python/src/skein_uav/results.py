@@ -66,7 +66,7 @@ class Flights:
     def __getitem__(self, title: str) -> pd.DataFrame:
         """The table of this title."""
         if title not in self.tables:
-            raise KeyError(f"expected one of {', '.join(map(repr, self.tables))}, came {title!r}")
+            raise KeyError(f"expected one of {', '.join(map(repr, self.tables))}, got {title!r}")
         return self.tables[title]
 
     def __repr__(self) -> str:

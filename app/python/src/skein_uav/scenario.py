@@ -271,7 +271,7 @@ class Series:
 
     def _reduced(self, name: str, by: str, last_s: Any = None, after_s: Any = None) -> Measure:
         if last_s is not None and after_s is not None:
-            raise ValueError("expected last_s or after_s, came both")
+            raise ValueError("expected last_s or after_s, got both")
         window = ("last", last_s) if last_s is not None else ("after", after_s) if after_s is not None else None
         return Measure(name, self, by, window)
 
@@ -375,7 +375,7 @@ class Scenario:
         """Writes `text` to a file, whose name ends in ``.scenario``."""
         path = Path(file)
         if path.suffix != ".scenario":
-            raise ValueError(f"expected a file that ends in .scenario, came {path}")
+            raise ValueError(f"expected a file that ends in .scenario, got {path}")
         path.write_text(self.text(), encoding="utf-8")
         return path
 

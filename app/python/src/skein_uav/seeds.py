@@ -30,7 +30,7 @@ def folded(seed: SupportsIndex) -> int:
     """
     rest = operator.index(seed)
     if rest < 0:
-        raise ValueError(f"seed: expected a whole number from 0, came {rest}")
+        raise ValueError(f"seed: expected a whole number from 0, got {rest}")
     one = 0
     while rest:
         one ^= rest & ((1 << _BITS) - 1)

@@ -63,11 +63,11 @@ class EnvironmentSimulator:
         seed: int = 0,
     ) -> None:
         if not step_s > 0:
-            raise ValueError(f"step_s: expected more than 0, came {step_s}")
+            raise ValueError(f"step_s: expected more than 0, got {step_s}")
         self.env, self.step_s, self.vehicles, self.seed = env, step_s, dict(vehicles), seed
         self._single = not hasattr(env, "possible_agents")
         if self._single and len(self.vehicles) != 1:
-            raise ValueError(f"vehicles: expected one, since a Gymnasium environment has one agent, came {len(self.vehicles)}")
+            raise ValueError(f"vehicles: expected one, since a Gymnasium environment has one agent, got {len(self.vehicles)}")
         self._body, self._action = body, action
         self._folder = tempfile.TemporaryDirectory(prefix="skein-")
         self.path = Path(self._folder.name) / "environment"
@@ -140,6 +140,6 @@ class EnvironmentSimulator:
         body = self._body(agent, self._seen[agent])
         numbers = [*map(float, body.position_ned), *map(float, body.velocity_ned), float(body.heading_rad)]
         if len(numbers) != 7 or not all(map(math.isfinite, numbers)):
-            raise ValueError(f"body: expected finite numbers, three, three and one, came {body}")
+            raise ValueError(f"body: expected finite numbers, three, three and one, got {body}")
         terminated, truncated = self._ended[agent]
         return {"body": numbers, "reward": self._rewards[agent], "terminated": terminated, "truncated": truncated}

@@ -37,7 +37,7 @@ class Writer:
             if isinstance(value, float) or (isinstance(value, int) and each.type in (float, "float")):
                 value = float(value)
                 if not math.isfinite(value):
-                    raise ValueError(f"{each.name}: expected a finite number, came {value}")
+                    raise ValueError(f"{each.name}: expected a finite number, got {value}")
                 key = _key(each.name)
                 self.settings.append((key, value, each.metadata.get("meaning", "")))
                 object.__setattr__(self.scenario, each.name, self.graph.leaf("setting", key))
@@ -56,7 +56,7 @@ class Writer:
         if over is not False:
             if not isinstance(over, Condition):
                 place = _place(self.scenario.is_over)
-                raise Untraceable(f"{place}: expected a condition from is_over, came {_came(over)}")
+                raise Untraceable(f"{place}: expected a condition from is_over, got {_came(over)}")
             self.add("over", over)
         return self.file()
 
@@ -70,15 +70,15 @@ class Writer:
             if hasattr(value, "item") and getattr(value, "shape", None) == ():
                 return self.number(value.item(), what, where_)
             instead = "; write where(condition, a, b)" if isinstance(value, Condition) else ""
-            raise Untraceable(f"{_at(where_)}expected a number as {what}, came {_came(value)}{instead}")
+            raise Untraceable(f"{_at(where_)}expected a number as {what}, got {_came(value)}{instead}")
         if not math.isfinite(value):
-            raise Untraceable(f"{_at(where_)}expected a finite number as {what}, came {value}")
+            raise Untraceable(f"{_at(where_)}expected a finite number as {what}, got {value}")
         return constant(self.graph, float(value))
 
     def fixed(self, value: Any, what: str) -> Number:
         number = self.number(value, what)
         if number.of is not None:
-            raise Untraceable(f"expected a number of settings alone as {what}, came one of a decision")
+            raise Untraceable(f"expected a number of settings alone as {what}, got one of a decision")
         return number
 
     def known(self, place: int, of: object) -> Known:
@@ -97,7 +97,7 @@ class Writer:
 
     def vehicle(self, place: int, vehicle: Vehicle, all_: Sequence[Vehicle]) -> None:
         if len(vehicle.start_ned_m) != 3:
-            raise ValueError(f"{vehicle.name}: expected north, east and down as its start, came {vehicle.start_ned_m}")
+            raise ValueError(f"{vehicle.name}: expected north, east and down as its start, got {vehicle.start_ned_m}")
         what = f"the {{}} of {vehicle.name}"
         self.add(
             "vehicle",
@@ -126,17 +126,17 @@ class Writer:
             answer, place_ = _answered(vehicle.policy, seen, _filled(vehicle.memory, held))
             where_ = f"{place_}: the policy of {vehicle.name}"
             if not isinstance(answer, tuple) or len(answer) != 2:
-                raise Untraceable(f"{where_}: expected an action and the next memory, came {_came(answer)}")
+                raise Untraceable(f"{where_}: expected an action and the next memory, got {_came(answer)}")
             decided, memory = answer
             if _form(memory) != _form(vehicle.memory):
                 raise Untraceable(
                     f"{where_}: expected a next memory of the form of the first, {_form(vehicle.memory)}, "
-                    f"came {_form(memory)}"
+                    f"got {_form(memory)}"
                 )
             after = _leaves(memory, where_)
         if not isinstance(decided, (Action, Choice)):
             raise Untraceable(
-                f"{where_}: expected an action, such as seen.along(heading, speed), came {_came(decided)}"
+                f"{where_}: expected an action, such as seen.along(heading, speed), got {_came(decided)}"
             )
         listed = cases(decided, True)
         for number, (condition, action) in enumerate(listed):
@@ -269,7 +269,7 @@ def _leaves(memory: Any, where_: str) -> list[Any]:
         return [leaf for each in memory for leaf in _leaves(each, where_)]
     if isinstance(memory, (int, float, Number, Condition)):
         return [memory]
-    raise Untraceable(f"{where_}: expected a memory of floats, in dataclasses, tuples or lists, came {_came(memory)}")
+    raise Untraceable(f"{where_}: expected a memory of floats, in dataclasses, tuples or lists, got {_came(memory)}")
 
 
 def _filled(memory: Any, held: Any) -> Any:

@@ -140,7 +140,7 @@ class Delay:
             ("every", every >= 1, "at least 1", every),
         ):
             if not is_right:
-                raise ValueError(f"{what}: expected {expected}, came {came!r}")
+                raise ValueError(f"{what}: expected {expected}, got {came!r}")
         if moves_in_flight is not None and dropout:
             raise ValueError("dropout: expected 0 beside moves_in_flight, since a lost action is never answered")
         both = delays(link, "link")

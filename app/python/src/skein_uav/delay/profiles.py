@@ -117,10 +117,10 @@ def delays(given: str | float | ArrayLike | Trace | Delays, what: str = "delays"
     if values.ndim > 2 or values.size == 0 or not np.all((values >= 0) & (values <= LONGEST_S)):
         raise ValueError(
             f"{what}: expected delays in s from 0 to {LONGEST_S:g}, as one number or of shape (times,) or (times, "
-            f"environments), came {_short(given)}"
+            f"environments), got {_short(given)}"
         )
     if trace.every_s is not None and not 0 < trace.every_s < math.inf:
-        raise ValueError(f"{what}: expected more than 0 s from one delay to the next, came {trace.every_s!r}")
+        raise ValueError(f"{what}: expected more than 0 s from one delay to the next, got {trace.every_s!r}")
     if values.ndim == 0:
         return _steady(np.full(SIZE, float(values)))
     none = np.zeros(SIZE)
@@ -156,37 +156,37 @@ def _parsed(text: str, what: str) -> Delays:
     if kind == "correlated" and "," in rest:
         over, _, latency = rest.partition(",")
         if latency.startswith("correlated:"):
-            raise ValueError(f"{what}: expected one time constant, came {text!r}")
+            raise ValueError(f"{what}: expected one time constant, got {text!r}")
         one = _parsed(latency, what)
         seconds = _seconds(over, what)
         if seconds == 0:
-            raise ValueError(f"{what}: expected a time constant of more than 0, came {over!r}")
+            raise ValueError(f"{what}: expected a time constant of more than 0, got {over!r}")
         return Delays(one.busy, one.quiet, one.busy_share, one.mixing_s, seconds)
     if kind == "constant":
         return _steady(np.full(SIZE, _seconds(rest, what) / 2))
     if kind == "uniform" and ".." in rest:
         least, most = (_seconds(one, what) for one in rest.split("..", 1))
         if least > most:
-            raise ValueError(f"{what}: expected the smaller time first, came {rest!r}")
+            raise ValueError(f"{what}: expected the smaller time first, got {rest!r}")
         return _steady((least + (most - least) * _MIDDLES) / 2)
     if kind == "lognormal" and "," in rest:
         median, sigma = rest.split(",", 1)
         if not re.fullmatch(r"\s*\d+(\.\d+)?\s*", sigma) or not 0 <= float(sigma) <= 3:
-            raise ValueError(f"{what}: expected a standard deviation of the logarithm from 0 to 3, came {sigma!r}")
+            raise ValueError(f"{what}: expected a standard deviation of the logarithm from 0 to 3, got {sigma!r}")
         normal = np.array([NormalDist().inv_cdf(share) for share in _MIDDLES])
         return _steady(_seconds(median, what) * np.exp(float(sigma) * normal) / 2)
     if kind == "file":
         return _read(rest, what)
     if kind == "rate":
-        raise ValueError(f"{what}: expected a link without a rate, since messages have no size here, came {text!r}")
-    raise ValueError(f"{what}: expected {_FORMS}, came {text!r}")
+        raise ValueError(f"{what}: expected a link without a rate, since messages have no size here, got {text!r}")
+    raise ValueError(f"{what}: expected {_FORMS}, got {text!r}")
 
 
 def _seconds(text: str, what: str) -> float:
     match = _TIME.fullmatch(text)
     seconds = float(match[1]) * {"us": 1e-6, "ms": 1e-3, "s": 1.0}[match[2]] if match else -1.0
     if not 0 <= seconds <= LONGEST_S:
-        raise ValueError(f"{what}: expected a time such as 200ms, of at most an hour, came {text!r}")
+        raise ValueError(f"{what}: expected a time such as 200ms, of at most an hour, got {text!r}")
     return seconds
 
 
@@ -199,7 +199,7 @@ def _read(path: str, what: str) -> Delays:
             except ValueError:
                 samples.append(math.nan)
             if not 0 <= samples[-1] <= LONGEST_S * 1000:
-                raise ValueError(f"{what}: expected a round trip in ms in line {number} of {path}, came {line!r}")
+                raise ValueError(f"{what}: expected a round trip in ms in line {number} of {path}, got {line!r}")
     if not samples:
-        raise ValueError(f"{what}: expected round trips in ms in {path}, came none")
+        raise ValueError(f"{what}: expected round trips in ms in {path}, got none")
     return _steady(_quantiles(np.linspace(0, 1, len(samples)), np.sort(samples)))

@@ -91,7 +91,7 @@ class Schedule:
         self.oldest_acting = math.ceil(to / every - _TINY) + self._most_lost
         if max(self.oldest_seen, self.oldest_acting * every) > MOST_ROWS:
             raise ValueError(
-                f"expected delays of at most {MOST_ROWS} steps of {step_s:g} s, came up to "
+                f"expected delays of at most {MOST_ROWS} steps of {step_s:g} s, got up to "
                 f"{observation.longest_s:g} s for observations and {action.longest_s:g} s for actions"
             )
         self.action_delay_rows = round(action.mean_of(lambda delay: np.ceil(delay / step_s + self._compute - _TINY)))
@@ -247,7 +247,7 @@ class _Direction:
         self._delays, self._count, self._step_s, self._lines, self._link = delays, count, step_s, lines, link
         self.draws = 0 if delays.is_constant or delays.trace is not None or delays.correlation_s else lines
         if delays.trace is not None and delays.trace.ndim == 2 and delays.trace.shape[1] != count:
-            raise ValueError(f"expected delays of shape (times,) or (times, {count}), came {delays.trace.shape}")
+            raise ValueError(f"expected delays of shape (times,) or (times, {count}), got {delays.trace.shape}")
 
     def seed(self, links: list[np.random.Generator]) -> None:
         self._last: dict[str, NDArray[np.float32]] = {}

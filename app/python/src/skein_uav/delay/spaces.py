@@ -44,7 +44,7 @@ class Telling:
         self, observation: gym.Space, action: gym.Space, longest_age_s: float, ages: bool, pending: int
     ) -> None:
         if pending and not isinstance(action, (Box, Discrete)):
-            raise ValueError(f"pending: expected 0 with actions that are no Box and no Discrete, came {pending}")
+            raise ValueError(f"pending: expected 0 with actions that are no Box and no Discrete, got {pending}")
         self._ages, self._pending = ages, pending
         self._is_flat = _is_flat(observation)
         self.spare = 0

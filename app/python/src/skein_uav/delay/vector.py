@@ -46,7 +46,7 @@ class DelayVectorEnv(VectorWrapper, gym.utils.RecordConstructorArgs):
         if "substeps" in settings or "every" in settings:
             raise ValueError("substeps: wrap each environment in DelayEnv before a vector is made of them")
         if env.metadata.get("autoreset_mode") is None:
-            raise ValueError("env: expected metadata['autoreset_mode'], of gymnasium.vector.AutoresetMode, came none")
+            raise ValueError("env: expected metadata['autoreset_mode'], of gymnasium.vector.AutoresetMode, got none")
         mode = AutoresetMode(env.metadata["autoreset_mode"])
         self._resets, self._resets_next = mode is not AutoresetMode.DISABLED, mode is AutoresetMode.NEXT_STEP
         self._idle = idle(env.single_action_space) if idle_action is None else idle_action

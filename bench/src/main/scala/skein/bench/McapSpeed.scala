@@ -25,7 +25,7 @@ object McapSpeed:
   def main(args: Array[String]): Unit = args.toList match
     case "corpus" :: kind :: path :: Nil        => corpus(kind, Path.of(path))
     case "run" :: rounds :: kind :: path :: Nil => run(rounds.toInt, kind, Path.of(path))
-    case other => sys.error(s"expected corpus KIND PATH or run ROUNDS KIND PATH, came $other")
+    case other => sys.error(s"expected corpus KIND PATH or run ROUNDS KIND PATH, got $other")
 
   /** `poses`: 1,000,000 messages of 96 bytes, times and doubles of a vehicle that circles in gusts. `images`:
     * 900 images of 256 × 144 × 3 bytes, a sky, a ground and 40 boxes that drift, with the noise of a sensor
@@ -38,7 +38,7 @@ object McapSpeed:
       kind match
         case "poses"  => (0 until 1_000_000).foreach(tick => put(out, tick * 1_000_000L, pose(tick, random)))
         case "images" => (0 until 900).foreach(tick => put(out, tick * 33_000_000L, image(tick, random)))
-        case other    => sys.error(s"expected poses or images, came $other")
+        case other    => sys.error(s"expected poses or images, got $other")
     finally out.close()
 
   private def put(out: DataOutputStream, time: Long, data: Array[Byte]): Unit =
@@ -101,7 +101,7 @@ object McapSpeed:
         // The first rounds warm up the compiler.
         val times = Vector.fill(rounds + 3)(round(file, messages, compression)).drop(3)
         val sums  = times.map(_._3).toSet
-        require(sums.size == 1, s"every round reads the same, came $sums")
+        require(sums.size == 1, s"every round reads the same, got $sums")
         row("skein write", kind, name, megabytes / times.map(_._1).min, Files.size(file), sums.head)
         row("skein read", kind, name, megabytes / times.map(_._2).min, Files.size(file), sums.head)
     finally Files.delete(file)

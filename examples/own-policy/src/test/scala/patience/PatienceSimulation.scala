@@ -31,7 +31,7 @@ class PatienceSimulation extends munit.FunSuite:
     val patient                           = Patient(metres = 8, trustS = 0.2)
     def northMps(age: Span, held: Double) = patient.choose(seen(age), held)._1 match
       case Action.Velocity(velocity, _) => velocity.x
-      case other                        => fail(s"came $other")
+      case other                        => fail(s"got $other")
     assertEqualsDouble(northMps(Span.Zero, 0), 4, 1e-9)
     assertEqualsDouble(northMps(Span.ofMillis(200), 0.2), 2, 1e-9)
 

@@ -86,12 +86,12 @@ class CommandsSimulation extends munit.FunSuite:
       "fly",
       "--set",
       "side-m=wide"
-    )._2).contains("--set side-m: expected a number, came 'wide'"))
+    )._2).contains("--set side-m: expected a number, got 'wide'"))
     assert(clue(run(
       "fly",
       "--scenario",
       "duel"
-    )._2).contains("scenario: expected over-the-ridge, came 'duel'"))
+    )._2).contains("scenario: expected over-the-ridge, got 'duel'"))
     assert(clue(run(
       "fly",
       "--vehicles",

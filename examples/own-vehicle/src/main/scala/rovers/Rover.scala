@@ -53,7 +53,7 @@ final class Rover(transport: Transport, address: Address, clock: Clock)(using sy
     case Action.Velocity(velocity, _)         => drive(velocity.x, velocity.y, lasts)
     case Action.VelocityAt(north, east, _, _) => drive(north, east, lasts)
     case Action.Hover                         => hover()
-    case other => Future.successful(Left(Unsupported(s"a robot on wheels drives and stops; came $other")))
+    case other => Future.successful(Left(Unsupported(s"a robot on wheels drives and stops; got $other")))
 
   def hover(): Future[Either[VehicleError, Boolean]] = done(ask("stop", Patience))
 
@@ -66,7 +66,7 @@ final class Rover(transport: Transport, address: Address, clock: Clock)(using sy
 
   private def wrong(expected: String, came: List[String]): Left[VehicleError, Nothing] = came match
     case "no" :: why => Left(Refused(why.mkString(" ")))
-    case other       => Left(Malformed(s"expected $expected from $address, came '${other.mkString(" ")}'"))
+    case other       => Left(Malformed(s"expected $expected from $address, got '${other.mkString(" ")}'"))
 
   private def ask(words: String, within: Span): Future[Answer] =
     val number = numbers.incrementAndGet().toString

@@ -55,8 +55,8 @@ final class RoverSimulator(northM: Double, eastM: Double, clock: Clock, start: I
           s"$number done $done"
         )
       case number :: rest =>
-        Future.successful(s"$number no expected read, stop or drive, came '${rest.mkString(" ")}'")
-      case Nil => Future.successful("0 no expected a number and a word, came nothing")
+        Future.successful(s"$number no expected read, stop or drive, got '${rest.mkString(" ")}'")
+      case Nil => Future.successful("0 no expected a number and a word, got nothing")
 
   private def replace(now: Span, north: Double, east: Double): Promise[Boolean] =
     driving.trySuccess(false): Unit

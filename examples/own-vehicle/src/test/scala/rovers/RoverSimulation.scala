@@ -189,7 +189,7 @@ class RoverSimulation extends munit.FunSuite:
     assertEquals(PredictionModel.parse(path).map(_.at(0)), Right(PlantModel(read)))
     assertEquals(VehicleChoice.parse(path, 20).map(_.response), Right(PlantResponse(read)))
     val said = ModelFile.read(path)(using Scenarios.ours).left.getOrElse("")
-    assert(said.contains("expected a structure (lag, turn, drag, drag-and-turn), came 'rover'"), said)
+    assert(said.contains("expected a structure (lag, turn, drag, drag-and-turn), got 'rover'"), said)
 
   private def inVirtualTime[A](body: ActorSystem ?=> (MemoryNetwork, Clock) => Future[A]): A =
     VirtualTime

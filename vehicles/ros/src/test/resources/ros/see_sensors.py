@@ -25,7 +25,7 @@ until = time.monotonic() + 60
 while time.monotonic() < until and any(len(got) < wanted for got in seen.values()):
     rclpy.spin_once(node, timeout_sec=0.1)
 for name, got in seen.items():
-    assert len(got) >= wanted, f"{name}: expected {wanted} messages within 60 s, came {len(got)}"
+    assert len(got) >= wanted, f"{name}: expected {wanted} messages within 60 s, got {len(got)}"
 
 
 def stamp(message):

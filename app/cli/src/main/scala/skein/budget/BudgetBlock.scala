@@ -22,7 +22,7 @@ final case class BudgetBlock(number: Int, links: Vector[LatencyDistribution], ep
     */
   def answer(subjects: Vector[BudgetSubject]): Either[String, ArraySeq[Byte]] =
     for
-      one <- subjects.lift(number).toRight(s"expected one of ${subjects.size} subjects, came number $number")
+      one <- subjects.lift(number).toRight(s"expected one of ${subjects.size} subjects, got number $number")
       tallies <- one.tallies(BudgetCells(links, episodes))
     yield BlockBytes.of(tallies)
 
@@ -30,7 +30,7 @@ final case class BudgetBlock(number: Int, links: Vector[LatencyDistribution], ep
   def tallies(answer: ArraySeq[Byte]): Either[String, Vector[RunningStats]] =
     BlockBytes
       .read[Vector[RunningStats]](answer, "an answer to a block of a budget")
-      .filterOrElse(_.size == links.size, s"expected an answer for ${links.size} cells, came one for others")
+      .filterOrElse(_.size == links.size, s"expected an answer for ${links.size} cells, got one for others")
 
 object BudgetBlock:
   private given Codec[LatencyDistribution] = Codec.derived

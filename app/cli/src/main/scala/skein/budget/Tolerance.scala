@@ -42,13 +42,13 @@ object Tolerance:
         Either.cond(
           distance > 0 && distance.isFinite,
           Tolerance.Within(distance),
-          s"--within: expected a number above 0, came $distance"
+          s"--within: expected a number above 0, got $distance"
         )
       case (share, None) =>
         val percent = share.getOrElse(5.0)
         Either.cond(
           percent > 0 && percent <= 1000,
           Tolerance.Share(percent / 100),
-          s"--tolerance: expected more than 0 %, came $percent"
+          s"--tolerance: expected more than 0 %, got $percent"
         )
       case _ => Left("--tolerance, --within: expected one of them")

@@ -15,10 +15,10 @@ private[cli] object Arguments:
       told <- Expect.all(texts): text =>
         text.split("=", 2) match
           case Array(name, value) if name.nonEmpty => Right(ConfigKeys.ofField(name) -> value)
-          case _ => Left(s"--set: expected NAME=VALUE, for example vehicles=8, came '$text'")
+          case _ => Left(s"--set: expected NAME=VALUE, for example vehicles=8, got '$text'")
       _ <- Expect.all(told.map(_._1).distinct): key =>
         val values = told.collect { case (`key`, value) => value }
-        Expect.that(values.size == 1)(s"--set: expected '$key' once, came ${values.mkString(" and ")}")
+        Expect.that(values.size == 1)(s"--set: expected '$key' once, got ${values.mkString(" and ")}")
     yield told
 
   /** The options that differ from their defaults, including those of option groups. An option given its
@@ -41,7 +41,7 @@ private[cli] object Arguments:
     val others = told(options) -- may - "--resume"
     Expect.that(others.isEmpty):
       s"--resume: everything but $what is taken from the folder; expected no " +
-        s"other option, came ${others.toSeq.sorted.mkString(", ")}"
+        s"other option, got ${others.toSeq.sorted.mkString(", ")}"
 
   def latency(text: String): Either[String, LatencyProfile] =
     LatencyProfile.parse(text, TextFile.read).left.map(_.message)

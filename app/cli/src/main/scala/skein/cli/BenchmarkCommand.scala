@@ -45,7 +45,7 @@ final class BenchmarkCommand(using Scenarios)
     val all = BenchmarkSet.Published
     for
       _ <- Expect.that(options.seeds >= 1 && options.seeds <= BenchmarkCommand.MostSeeds):
-        s"--seeds: expected 1 to ${BenchmarkCommand.MostSeeds}, came ${options.seeds}"
+        s"--seeds: expected 1 to ${BenchmarkCommand.MostSeeds}, got ${options.seeds}"
       tasks <- chosen("--task", options.task, all.tasks)(_.name)
       own   <- Expect.all(options.scenario)(name =>
         summon[Scenarios].kind(name).left.map("--scenario: " + _).map(_ => BenchmarkSet.Named.of(name))
@@ -87,7 +87,7 @@ final class BenchmarkCommand(using Scenarios)
   ): Either[String, Vector[A]] =
     for _ <- Expect.all(names)(came =>
         Expect.that(all.exists(name(_) == came))(
-          s"$option: expected ${all.map(name).mkString(", ")}, came '$came'"
+          s"$option: expected ${all.map(name).mkString(", ")}, got '$came'"
         )
       )
     yield all.filter(each => names.isEmpty || names.contains(name(each)))

@@ -77,7 +77,7 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
       _          <- Expect.that(options.atJitter.isEmpty || atJitterMs <= axes.jittersMs.last):
         s"--at-jitter: expected what the map has, up to ${(axes.jittersMs.last / legs.perRoundTrip).significant(3)} ms"
       _ <- Expect.that(options.episodes.forall(count => count >= 1 && count <= MostEpisodes)):
-        s"--episodes: expected 1 to $MostEpisodes, came ${options.episodes.getOrElse(0)}"
+        s"--episodes: expected 1 to $MostEpisodes, got ${options.episodes.getOrElse(0)}"
       periods <- Expect.all(options.period)(Span.parse(_).left.map("--period: " + _))
         .map(periods => if periods.isEmpty then Seq(BudgetCommand.Period) else periods)
       threads   <- options.forward.threadCount
@@ -180,10 +180,10 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
       (means, jitters) = scenario(options).fold((40, 20))(_ => (10, 5)) match
         case (means, jitters) => (options.means.getOrElse(means), options.jitters.getOrElse(jitters))
       _ <- Expect.that(means >= 2 && jitters >= 2 && means.toLong * jitters <= MostCells):
-        s"--means, --jitters: expected 2 or more each and at most $MostCells cells, came $means and $jitters"
+        s"--means, --jitters: expected 2 or more each and at most $MostCells cells, got $means and $jitters"
       _ <- Expect.that(mean > 0 && mean <= 500 && jitter > 0 && jitter <= 500):
         "--most-mean, --most-jitter: expected round trips of more " +
-          s"than 0 and up to 500 ms, came $mean and $jitter ms"
+          s"than 0 and up to 500 ms, got $mean and $jitter ms"
     yield BudgetAxes.of(mean, means, jitter, jitters)
 
   private def fly(

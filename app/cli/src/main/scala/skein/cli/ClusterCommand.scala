@@ -39,4 +39,4 @@ object ClusterCommand
         )
     case words =>
       val came = if words.isEmpty then "nothing" else words.mkString("'", " ", "'")
-      Left(s"expected ./skein cluster certificates FOLDER, came $came")
+      Left(s"expected ./skein cluster certificates FOLDER, got $came")

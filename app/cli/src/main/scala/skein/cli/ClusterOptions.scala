@@ -35,9 +35,9 @@ final case class ClusterOptions(
     else
       for
         _ <- Expect.that(workers.forall(count => count >= 1 && count <= MostWorkers)):
-          s"--workers: expected 1 to $MostWorkers, came ${workers.getOrElse(0)}"
+          s"--workers: expected 1 to $MostWorkers, got ${workers.getOrElse(0)}"
         _ <- Expect.that(block.forall(size => size >= 1 && size <= SearchBlock.MostEpisodes)):
-          s"--block: expected 1 to ${SearchBlock.MostEpisodes}, came ${block.getOrElse(0)}"
+          s"--block: expected 1 to ${SearchBlock.MostEpisodes}, got ${block.getOrElse(0)}"
         listen <- cluster.fold(Right(Loopback))(endpoint("--cluster", _))
         tls    <- tls.fold(Right(None))(folder => Tls.of(Path.of(folder)).map(Some(_)))
       yield Some(Checked(workers.getOrElse(0), listen, block, tls))

@@ -29,7 +29,7 @@ private[cli] object Complaint:
   def ofWord(word: String): Option[String] =
     Option.when(word.exists(_.isControl)):
       val shown = word.map(letter => if letter.isControl then f"\\u${letter.toInt}%04x" else letter.toString)
-      s"expected no line breaks or other control characters, came '${shown.mkString}'"
+      s"expected no line breaks or other control characters, got '${shown.mkString}'"
 
   private def words(line: String): String =
     if line.length <= MostOfAWord then line

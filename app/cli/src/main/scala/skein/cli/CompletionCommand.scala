@@ -19,5 +19,5 @@ final class CompletionCommand(commands: => Seq[Command])
       case Seq("zsh")  => Right(Completion.zsh("skein", commands))
       case other       =>
         val came = if other.isEmpty then "nothing" else other.mkString(" ")
-        Left(s"expected one of ${Completion.Shells.mkString(", ")}, came $came")
+        Left(s"expected one of ${Completion.Shells.mkString(", ")}, got $came")
     ).map(Console.out.println)

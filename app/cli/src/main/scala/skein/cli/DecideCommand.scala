@@ -54,7 +54,7 @@ final class DecideCommand(using scenarios: Scenarios)
         case SolverChoice.Link(_)      =>
           Left(
             "--at: expected tcp://HOST:PORT, such as " +
-              s"tcp://127.0.0.1:7400, or kafka://HOST:PORT/PREFIX, came ${options.at}"
+              s"tcp://127.0.0.1:7400, or kafka://HOST:PORT/PREFIX, got ${options.at}"
           )
     yield ()
 

@@ -25,6 +25,6 @@ object DigestCommand
       files.map(file => Digest.ofFile(Path.of(file)).map(digest => s"$digest  $file")).partitionMap(identity)
     digests.foreach(line => Console.out.println(line))
     for
-      _ <- Expect.that(files.nonEmpty)("expected recordings, came none: ./skein digest FILE…")
+      _ <- Expect.that(files.nonEmpty)("expected recordings, got none: ./skein digest FILE…")
       _ <- Expect.that(unread.isEmpty)(unread.map(_.message).mkString("\n"))
     yield ()

@@ -34,9 +34,9 @@ object ExportCommand
     for
       file <- options.file.value match
         case Seq(one) => Right(Path.of(one))
-        case others   => Left(s"expected one recording, came ${others.size}: $usage")
+        case others   => Left(s"expected one recording, got ${others.size}: $usage")
       _ <- Expect.that(Seq(options.parquet, options.mcap, options.rosbag).exists(_.nonEmpty)):
-        s"expected what to write, came nothing: $usage"
+        s"expected what to write, got nothing: $usage"
       _ <- options.parquet.fold(Right(()))(parquet(file, _))
       _ <- options.mcap.fold(Right(()))(mcap(file, _))
       _ <- options.rosbag.fold(Right(()))(rosbag(file, _))
@@ -55,7 +55,7 @@ object ExportCommand
     for
       _ <- OutFolder.isThere("--mcap", text)
       _ <- Expect.that(!isSame(file, Path.of(text))):
-        s"--mcap: expected another file than the recording, came $text"
+        s"--mcap: expected another file than the recording, got $text"
       _ <- McapRecording.write(file, Path.of(text), RecordOptions.sceneOf).left.map(_.message)
     yield Console.out.println(s"recording in $text")
 
@@ -63,7 +63,7 @@ object ExportCommand
     for
       _ <- OutFolder.isThere("--rosbag", text)
       _ <- Expect.that(Files.notExists(Path.of(text))):
-        s"--rosbag: expected a folder that is not there yet, came $text"
+        s"--rosbag: expected a folder that is not there yet, got $text"
       topics <- RosBag.write(file, Path.of(text))
     yield
       for (topic, count) <- topics do Console.out.println(s"$topic: $count messages")

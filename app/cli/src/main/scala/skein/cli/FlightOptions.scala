@@ -157,7 +157,7 @@ final case class FlightOptions(
   private def merged(mayPause: Boolean)(using Scenarios): Either[String, Config] =
     for
       _ <- Expect.that(loop.isEmpty || !asPaper.value):
-        s"--as-paper flies the paper's loops: expected no --loop beside it, came ${loop.mkString(", ")}"
+        s"--as-paper flies the paper's loops: expected no --loop beside it, got ${loop.mkString(", ")}"
       file <- config.fold(Right(ConfigFactory.empty))(FlightOptions.read)
       told = FlightOptions.hovering(looping(flags.withFallback(file), mayPause))
       merged <- FlightOptions.scenarioRead(told.withFallback(ConfigFactory.load()).resolve())
@@ -207,7 +207,7 @@ final case class FlightOptions(
       keys = kind.settings.map(ConfigKeys.ofField)
       _ <- Expect.all((short ++ told).groupBy(_._2).values.filter(_.sizeIs > 1).toVector): twice =>
         Left(s"${twice.map((flag, _, _) => flag).mkString(" and ")}: expected '${twice.head._2}' once, " +
-          s"came ${twice.map((_, _, value) => value).mkString(" and ")}")
+          s"got ${twice.map((_, _, value) => value).mkString(" and ")}")
       known <- Expect.all(short ++ told): (flag, key, value) =>
         Either.cond(
           keys.contains(key),

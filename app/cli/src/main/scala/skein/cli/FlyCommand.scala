@@ -93,7 +93,7 @@ final class FlyCommand(using Scenarios)
       _ <- Expect.that(settings.only.isEmpty || simulator.isDefined && options.twins.forall(_ == 0)):
         "--only: expected with --simulator, where other processes fly the rest, and without --twins"
       twins = options.twins.getOrElse(if settings.only.isEmpty then FlyCommand.Twins else 0)
-      _     <- Expect.that(twins >= 0)(s"--twins: expected 0 or more, came $twins")
+      _     <- Expect.that(twins >= 0)(s"--twins: expected 0 or more, got $twins")
       _     <- options.view.mistake.toLeft(())
       clock <- ClockKind.parse(options.clock).left.map("--clock: " + _)
       _     <- Expect.that(

@@ -103,7 +103,7 @@ object ForwardOptions:
   /** Number of threads: the number of cores by default. */
   def threadCount(told: Option[Int]): Either[String, Int] =
     val count = told.getOrElse(Runtime.getRuntime.availableProcessors)
-    Either.cond(count >= 1 && count <= 1024, count, s"--threads: expected 1 to 1024, came $count")
+    Either.cond(count >= 1 && count <= 1024, count, s"--threads: expected 1 to 1024, got $count")
 
   /** Refuses options that only apply to duels. */
   def ofDuels(others: (String, Option[?])*)(options: ForwardOptions): Either[String, Unit] =
@@ -114,7 +114,7 @@ object ForwardOptions:
     ))
       .collect { case (flag, Some(_)) => flag }
     Expect.that(told.isEmpty):
-      s"--scenario: expected settings of the scenario, came ${told.mkString(", ")}, which is a duel's"
+      s"--scenario: expected settings of the scenario, got ${told.mkString(", ")}, which is a duel's"
 
   /** Reads a policy file, or a family with its defaults. */
   def policy(option: String, text: String, role: Role)(using Scenarios): Either[String, PolicyFile] =

@@ -50,14 +50,14 @@ final class IdentifyCommand(using scenarios: Scenarios)
       files <- Either.cond(
         options.files.value.nonEmpty,
         options.files.value.toVector,
-        "expected recordings, came none: ./skein identify FILE…"
+        "expected recordings, got none: ./skein identify FILE…"
       )
       out <-
         OutFolder.made("--out", options.out.getOrElse(OutFolder.of(Path.of(files.head))))
       use     <- scenarios.structure(options.structure).left.map("--structure: " + _)
       horizon <- Span.parse(options.horizon).left.map("--horizon: " + _)
       _       <- Expect.that(horizon.toSeconds >= 0.2):
-        s"--horizon: expected 200ms or more, came ${options.horizon}"
+        s"--horizon: expected 200ms or more, got ${options.horizon}"
       recordings <- read(files)
       _          <- once(files)
       flights    <- chosen(recordings.flatMap(FlownVehicles.of), options.vehicle)
@@ -97,7 +97,7 @@ final class IdentifyCommand(using scenarios: Scenarios)
         digests <- Expect.each(files)(file => Digest.ofFile(Path.of(file)).left.map(_.message))
         same = files.zip(digests).groupMap(_._2)(_._1).values.find(_.sizeIs > 1)
         _ <- Expect.that(same.isEmpty):
-          s"expected every flight once, came the same one in ${same.get.mkString(" and ")}"
+          s"expected every flight once, got the same one in ${same.get.mkString(" and ")}"
       yield ()
 
   private def chosen(
@@ -109,9 +109,9 @@ final class IdentifyCommand(using scenarios: Scenarios)
     Either.cond(
       wanted.nonEmpty,
       wanted,
-      if flights.isEmpty then "expected recordings with commands to vehicles, came none"
+      if flights.isEmpty then "expected recordings with commands to vehicles, got none"
       else
-        s"--vehicle: expected one of ${flights.map(_.name.split(", ").last).distinct.mkString(", ")}, came ${vehicles.mkString(", ")}"
+        s"--vehicle: expected one of ${flights.map(_.name.split(", ").last).distinct.mkString(", ")}, got ${vehicles.mkString(", ")}"
     )
 
   private def fit(

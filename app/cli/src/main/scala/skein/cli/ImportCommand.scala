@@ -25,7 +25,7 @@ object ImportCommand
       file <- options.file.value match
         case Seq(one) => Right(Path.of(one))
         case others   =>
-          Left(s"expected one MCAP file, came ${others.size}: ./skein import FILE --recording FILE")
+          Left(s"expected one MCAP file, got ${others.size}: ./skein import FILE --recording FILE")
       _ <- OutFolder.isThere("--recording", options.recording)
       recording = Path.of(options.recording)
       _      <- McapRecording.read(file, recording).left.map(_.message)

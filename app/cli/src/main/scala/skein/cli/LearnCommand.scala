@@ -94,7 +94,7 @@ final class LearnCommand(program: String)(using Scenarios)
     for
       threads <- options.forward.threadCount
       _       <- Expect.that(flights >= 0 && flights <= 10_000):
-        s"--flights: expected 0 to 10000, came $flights"
+        s"--flights: expected 0 to 10000, got $flights"
       cluster <- options.cluster.checked
       begun   <- options.resume.fold(begin(options))(resume(options, _))
       (folder, question, state) = begun
@@ -339,7 +339,7 @@ object LearnCommand:
     text.split("\\.\\.", -1).map(_.toDoubleOption) match
       case Array(Some(least), Some(most)) if least >= 0 && most >= least && most <= 1000 =>
         Right((least, most))
-      case _ => Left(s"--start: expected LEAST..MOST in metres, for example 3..30, came '$text'")
+      case _ => Left(s"--start: expected LEAST..MOST in metres, for example 3..30, got '$text'")
 
   /** Evaluates learned policies.
     *

@@ -59,12 +59,12 @@ final case class LearnInFlight(
       _ <- Expect.that(!settings.loops.contains(LoopKind.Plan)):
         "--learn: in the loop plan no policy decides; expected other loops"
       _ <- Expect.that(settings.policies.isEmpty):
-        "--learn: expected no --policy beside it, came one; fly it apart"
+        "--learn: expected no --policy beside it, got one; fly it apart"
       file  <- LearnFile.read(folder).left.map("--learn: " + _)
       setup <- file.question.setup.left.map(mistake => s"--learn: $folder: $mistake")
       count = settings.fleet.agents.count(_.role == setup.role)
       _ <- Expect.that(count == 1):
-        s"--learn: expected a scenario with one ${PolicyFile.name(setup.role)}, who learns, came $count"
+        s"--learn: expected a scenario with one ${PolicyFile.name(setup.role)}, who learns, got $count"
       begun = (seed: Long) =>
         LearnerInFlight.of(
           setup.algorithm,
@@ -88,4 +88,4 @@ object LearnInFlight:
 
   private def within(option: String, value: Double, least: Double, most: Double): Either[String, Unit] =
     Expect.that(value >= least && value <= most):
-      s"$option: expected ${least.significant(4)} to ${most.significant(4)}, came $value"
+      s"$option: expected ${least.significant(4)} to ${most.significant(4)}, got $value"

@@ -89,7 +89,7 @@ object LinkCommand
     case Some(_) if !options.udp.value => Left("--duplicate: expected with --udp; TCP discards duplicates")
     case Some(text)                    => Impairment.percent(text)
         .filter(share => share >= 0 && share <= 1)
-        .toRight(s"--duplicate: expected a share from 0% to 100% such as 1%, came '$text'")
+        .toRight(s"--duplicate: expected a share from 0% to 100% such as 1%, got '$text'")
 
   private def latency(
       flag: String,
@@ -108,7 +108,7 @@ object LinkCommand
   private def every(text: Option[String]): Either[String, Option[Span]] = text match
     case None       => Right(None)
     case Some(text) =>
-      Span.parse(text).filterOrElse(_ > Span.Zero, s"expected more than 0, came '$text'").map(Some(_))
+      Span.parse(text).filterOrElse(_ > Span.Zero, s"expected more than 0, got '$text'").map(Some(_))
 
   private def serve(
       listenAt: Address,

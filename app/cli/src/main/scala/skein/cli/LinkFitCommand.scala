@@ -34,7 +34,7 @@ object LinkFitCommand
     for
       file <- options.file.value match
         case Seq(one) => Right(one)
-        case others   => Left(s"expected one file, came ${others.size}: ./skein link-fit FILE")
+        case others   => Left(s"expected one file, got ${others.size}: ./skein link-fit FILE")
       traces <- read(file)
       trips = traces.flatMap(_.answered)
       fit   = LinkFit.of(traces)
@@ -48,7 +48,7 @@ object LinkFitCommand
     if Seq(".duckdb", ".mcap").exists(file.endsWith) then
       for
         recording <- RecordingReader.read(Path.of(file)).left.map(_.message)
-        _         <- Expect.that(recording.readings.nonEmpty)(s"$file: expected readings, came none")
+        _         <- Expect.that(recording.readings.nonEmpty)(s"$file: expected readings, got none")
       yield RoundTripTrace.of(recording)
     else TextFile.read(file).flatMap(RoundTripTrace.parse(_).left.map(s"$file: " + _)).map(Vector(_))
 

@@ -106,7 +106,7 @@ final class MarginCommand(using scenarios: Scenarios)
       _     <- within("--seconds", options.seconds, 1, 3600)
       skip  <- Span.parse(options.skip).left.map("--skip: " + _)
       _     <- Expect.that(skip.toSeconds < options.seconds)(
-        s"--skip: expected less than the ${options.seconds} s of --seconds, came '${options.skip}'"
+        s"--skip: expected less than the ${options.seconds} s of --seconds, got '${options.skip}'"
       )
       tolerance <- Tolerance.read(options.tolerance, options.within)
       _         <- within("--at-once", options.atOnce.getOrElse(1), 1, 64)
@@ -123,7 +123,7 @@ final class MarginCommand(using scenarios: Scenarios)
     )
 
   private def within(option: String, value: Int, least: Int, most: Int) =
-    Expect.that(value >= least && value <= most)(s"$option: expected $least to $most, came $value")
+    Expect.that(value >= least && value <= most)(s"$option: expected $least to $most, got $value")
 
   private def scenarioOf(options: MarginOptions): Either[String, Option[Scenario]] = options.scenario match
     case None =>
@@ -153,10 +153,10 @@ final class MarginCommand(using scenarios: Scenarios)
         case _            => Right(Vector.empty)
       all = (links ++ delays).toVector
       _ <- Expect.that(all.distinct.size == all.size)(
-        s"--link, --delays: expected each link once, came '${all.diff(all.distinct).head.name}' twice"
+        s"--link, --delays: expected each link once, got '${all.diff(all.distinct).head.name}' twice"
       )
       _ <-
-        Expect.that(all.size <= MostLinks)(s"--link, --delays: expected $MostLinks at most, came ${all.size}")
+        Expect.that(all.size <= MostLinks)(s"--link, --delays: expected $MostLinks at most, got ${all.size}")
     yield all.filterNot(_ == LatencyProfile.none)
 
   protected def execute(options: MarginOptions): Either[String, Unit] =

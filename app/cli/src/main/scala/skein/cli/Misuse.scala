@@ -13,7 +13,7 @@ private object Misuse:
       val all = missing.map(option => s"${name(option)}: expected, but not given") ++
         unknown.take(1).map(noSuch(_, options)) ++
         duplicate.map((option, words) =>
-          s"${name(option)}: expected once, came ${words.mkString(" and ")}"
+          s"${name(option)}: expected once, got ${words.mkString(" and ")}"
         ) ++
         incomplete.map(option => s"${name(option)}: expected a value behind it")
       all.mkString("\n")
@@ -47,7 +47,7 @@ private object Misuse:
       case "int" | "long"     => "a whole number that is not too large"
       case "float" | "double" => "a number"
       case other              => s"a $other"
-    s"${name(option)}: expected $wanted, came ${words.mkString("'", "' '", "'")}"
+    s"${name(option)}: expected $wanted, got ${words.mkString("'", "' '", "'")}"
 
   /** The name of an option value's type in mainargs. */
   def kind(reader: TokensReader[?]): String = reader match

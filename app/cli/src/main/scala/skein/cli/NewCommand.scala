@@ -30,18 +30,18 @@ object NewCommand
     case Seq(name) =>
       for
         _ <- Expect.that(name.matches("[a-z][a-z0-9]*(-[a-z][a-z0-9]*)*")):
-          s"expected words of small letters and digits, joined by dashes, each begun by a letter, came '$name'"
+          s"expected words of small letters and digits, joined by dashes, each begun by a letter, got '$name'"
         _ <- taken(name).toLeft(())
         folder = Path.of(options.out.getOrElse(name))
         _ <-
-          Expect.that(!Files.exists(folder))(s"expected a folder that is not there yet, came '$folder'")
+          Expect.that(!Files.exists(folder))(s"expected a folder that is not there yet, got '$folder'")
         _ <- OutFolder.made("--out", folder.toString)
         _ <- write(folder, name)
       yield
         Console.out.println(s"written: $folder")
         Console.out.println(s"fly it: cd ${Typed.path(folder)} && ./skein fly --clock virtual")
         Console.out.println("It builds from what ./sbtw installLocal has put on this machine.")
-    case words => Left(s"expected one name, came ${words.size}: ./skein new NAME")
+    case words => Left(s"expected one name, got ${words.size}: ./skein new NAME")
 
   private def className(name: String)   = name.split('-').map(_.capitalize).mkString
   private def packageName(name: String) = name.replace("-", "")
@@ -52,7 +52,7 @@ object NewCommand
     // Ignores members of other names, and string literals.
     val isUsed = s"""(?<![.\"\\w])${className(name)}\\b""".r.findFirstIn(sources).isDefined
     Option.when(isUsed || Reserved(packageName(name)))(
-      s"expected a name that means nothing else in Scala, came '$name'; for example $name-flight"
+      s"expected a name that means nothing else in Scala, got '$name'; for example $name-flight"
     )
 
   /** Scala's keywords, and packages that the sources need. */

@@ -35,7 +35,7 @@ object ObserveCommand
       Option.when(options.command.words.nonEmpty)("a program")
     for
       _ <- Expect.that(others.isEmpty):
-        s"--bag: the bag is measured, and no program; came ${others.mkString(", ")} too"
+        s"--bag: the bag is measured, and no program; got ${others.mkString(", ")} too"
       folder   <- folderOf(options)
       observed <- BagLoop(options.readings.toSet, options.commands.toSet).observed(bag)
       _        <- show(observed, TopicTables.findings(observed), folder, options)
@@ -44,7 +44,7 @@ object ObserveCommand
   private def observeGraph(options: ObserveOptions): Either[String, Unit] =
     for
       _ <- Expect.that(options.ofWire.isEmpty):
-        s"--ros: topics are measured, and no simulator's wire; came ${options.ofWire.mkString(", ")} too"
+        s"--ros: topics are measured, and no simulator's wire; got ${options.ofWire.mkString(", ")} too"
       _      <- RosNode.missing.toLeft(()).left.map("--ros: " + _)
       folder <- folderOf(options)
       shows = Shows()
@@ -109,7 +109,7 @@ object ObserveCommand
         "--readings: expected with --bag, --ros or --mavlink alone"
       _ <- Expect.that(options.commands.isEmpty)("--commands: expected with --bag or --ros alone")
       _ <- Expect.that(!isMavlink || unknown.isEmpty):
-        s"--readings: expected ${MavlinkLoop.Readings.mkString(", ")}, came ${unknown.get}"
+        s"--readings: expected ${MavlinkLoop.Readings.mkString(", ")}, got ${unknown.get}"
       usual = if isMavlink then (14680, 14580) else (41452, 41451)
       listenAt  <- address("--listen", options.listen, usual._1)
       simulator <-
@@ -120,7 +120,7 @@ object ObserveCommand
         )
       there <- Reachable.from(simulator).toRight(s"--simulator: the host ${simulator.host} is not known")
       _     <- Expect.that(listenAt.port == 0 || !Reachable.from(listenAt).contains(there)):
-        s"--listen: expected another address than the simulator's, came $listenAt twice"
+        s"--listen: expected another address than the simulator's, got $listenAt twice"
       profile <- Arguments.latency(options.link).left.map("--link: " + _)
       folder  <- folderOf(options)
       shows = Shows()

@@ -21,7 +21,7 @@ private[cli] object OpenFiles:
   def enoughFor(flights: Int, controllers: Int = 1, most: Option[Long] = limit): Either[String, Unit] =
     val needed = OfTheProgram + (OfAFlight + OfAFurther * (controllers - 1)) * flights
     Expect.that(most.forall(_ >= needed)):
-      s"expected room for $needed open files for $flights flights in real time, came ${most.getOrElse(0)}; " +
+      s"expected room for $needed open files for $flights flights in real time, got ${most.getOrElse(0)}; " +
         s"ulimit -n $needed gives it"
 
   private def limit: Option[Long] = ManagementFactory.getOperatingSystemMXBean match

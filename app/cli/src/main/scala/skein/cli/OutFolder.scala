@@ -40,7 +40,7 @@ private[cli] object OutFolder:
     * @return Left states in a line why it cannot be written
     */
   def made(option: String, text: String): Either[String, Path] =
-    if text.isEmpty then Left(s"$option: expected a folder, came ''")
+    if text.isEmpty then Left(s"$option: expected a folder, got ''")
     else
       val folder = Path.of(text)
       try
@@ -106,7 +106,7 @@ private[cli] object OutFolder:
   /** Checks that the folder of a file named by an option exists. */
   def isThere(option: String, file: String): Either[String, Unit] =
     for
-      _ <- Expect.that(file.nonEmpty)(s"$option: expected a file, came ''")
+      _ <- Expect.that(file.nonEmpty)(s"$option: expected a file, got ''")
       _ <- Expect.that(Files.isDirectory(Path.of(file).toAbsolutePath.getParent)):
-        s"$option: expected a file in a folder that is there, came $file"
+        s"$option: expected a file in a folder that is there, got $file"
     yield ()

@@ -32,7 +32,7 @@ final class PolicyCommand(using Scenarios)
       file <- options.file.value match
         case Seq(one) => Right(one)
         case others   =>
-          Left(s"expected one policy file, came ${others.size}: ./skein policy FILE --onnx OUT.onnx")
+          Left(s"expected one policy file, got ${others.size}: ./skein policy FILE --onnx OUT.onnx")
       policy <- PolicyFile.read(file)
       role  = PolicyFile.name(policy.role)
       shown = Shown(options.json.value)

@@ -32,4 +32,4 @@ private[cli] object QuestionKind:
       case Some(Learn)   => LearnWork.solvers.of(theirs)
       case None          =>
         val known = values.map(_.name).mkString(", ")
-        Left(s"expected a question of one of $known, came one of '${told.take(40)}'")
+        Left(s"expected a question of one of $known, got one of '${told.take(40)}'")

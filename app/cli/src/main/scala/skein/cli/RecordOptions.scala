@@ -21,7 +21,7 @@ final case class RecordOptions(
       .find(one => one != "mcap" && !isPostgres(one))
       .map(other =>
         "--record: expected mcap or " +
-          s"postgres://USER:PASSWORD@HOST:PORT/DATABASE, came '${withoutSecrets(other)}'"
+          s"postgres://USER:PASSWORD@HOST:PORT/DATABASE, got '${withoutSecrets(other)}'"
       )
     val untaken = Option.when(clock == ClockKind.Virtual && record.exists(isPostgres))(
       "--record: flights in virtual time are not written to Postgres; expected mcap"

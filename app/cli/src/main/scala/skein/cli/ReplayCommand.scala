@@ -26,7 +26,7 @@ final class ReplayCommand(using Scenarios)
 
   protected def execute(options: ReplayOptions): Either[String, Unit] =
     for
-      _ <- Expect.that(options.files.value.nonEmpty)("expected recordings, came none: ./skein replay FILE…")
+      _ <- Expect.that(options.files.value.nonEmpty)("expected recordings, got none: ./skein replay FILE…")
       _ <- options.view.mistake.toLeft(())
       _ <- if options.view.view.value then play(options) else replayAll(options.files.value)
     yield ()

@@ -26,7 +26,7 @@ final class ReportCommand(using Scenarios)
   protected def execute(options: ReportOptions): Either[String, Unit] =
     val files = options.files.value.map(Path.of(_))
     for
-      first <- files.headOption.toRight("expected recordings, came none: ./skein report FILE…")
+      first <- files.headOption.toRight("expected recordings, got none: ./skein report FILE…")
       read  <- Report.readOnce(files).left.map(_.map(_.message).mkString("\n"))
       set = read.flights
       out    <- OutFolder.made("--out", options.out.getOrElse(OutFolder.of(first)))

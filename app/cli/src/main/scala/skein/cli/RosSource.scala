@@ -52,8 +52,8 @@ private[cli] object RosSource:
         _ <-
           Expect.that(!paused)("expected loops other than paused, whose simulator stands still between steps")
         _ <- Expect.that(others.isEmpty):
-          s"expected links without a rate, since messages have no known size, came ${others.map(_.name).mkString(", ")}"
-        _ <- Expect.that(cars.isEmpty)(s"expected multirotors alone, came the car ${cars.mkString(", ")}")
+          s"expected links without a rate, since messages have no known size, got ${others.map(_.name).mkString(", ")}"
+        _ <- Expect.that(cars.isEmpty)(s"expected multirotors alone, got the car ${cars.mkString(", ")}")
         _ <- Expect.that(settings.images.isEmpty)("expected no --images")
         _ <- Expect.that(!settings.decentralised)("not together with --decentralised")
         _ <- Expect.that(settings.scene.isEmpty && settings.plant.isAirSim):

@@ -95,7 +95,7 @@ object ServeCommand
     for
       overload <- overloadOf(options.workers)
       _        <- Expect.that(options.speed > 0 && options.speed <= MostSpeed):
-        s"--speed: expected more than 0 and up to ${MostSpeed.toInt}, came ${options.speed}"
+        s"--speed: expected more than 0 and up to ${MostSpeed.toInt}, got ${options.speed}"
       file <- options.settings.fold(Right(SettingsFile(WorldSettings.Default, Vector.empty)))(fileOf)
       world = file.world
       address   <- addressOf(options.listen, world)
@@ -114,7 +114,7 @@ object ServeCommand
       flies = if options.ros.value then "--ros" else if autopilot.isDefined then "--hil" else "--mavlink"
       other = world.vehicles.find(vehicle => vehicle.isCar || vehicle.isCamera)
       _ <- Expect.that(autopilot.isEmpty && !options.mavlink.value && !options.ros.value || other.isEmpty):
-        s"$flies: expected multirotors alone, came ${other.fold("")(it =>
+        s"$flies: expected multirotors alone, got ${other.fold("")(it =>
             s"the ${if it.isCar then "car" else "camera"} ${it.name}"
           )}"
       _ <- Expect.that(options.mavlinkInstance.isEmpty || options.mavlink.value):
@@ -122,7 +122,7 @@ object ServeCommand
       instance     = options.mavlinkInstance.getOrElse(0)
       mostInstance = MavlinkSettings.MostSystems - world.vehicles.size
       _ <- Expect.that(!options.mavlink.value || instance >= 0 && instance <= mostInstance):
-        s"--mavlink-instance: expected 0 to $mostInstance, came $instance"
+        s"--mavlink-instance: expected 0 to $mostInstance, got $instance"
       mavlink =
         Option.when(options.mavlink.value)(MavlinkSettings.asPx4(world.vehicles.size, address.host, instance))
       hil = autopilot.map(HilSettings.usual(_, world.vehicles.size, address.host))
@@ -167,23 +167,23 @@ object ServeCommand
       number.toIntOption
         .filter(_ > 0)
         .map(Overload.Workers(_))
-        .toRight(s"--workers: expected a number, vehicles+4 or unlimited, came '$number'")
+        .toRight(s"--workers: expected a number, vehicles+4 or unlimited, got '$number'")
 
   private def autopilotOf(label: String): Either[String, AutopilotKind] =
     AutopilotKind.values
       .find(_.label == label)
-      .toRight(s"--hil: expected ${AutopilotKind.values.map(_.label).mkString(", ")}, came '$label'")
+      .toRight(s"--hil: expected ${AutopilotKind.values.map(_.label).mkString(", ")}, got '$label'")
 
   private def stepOf(text: String): Either[String, Span] =
     for
       step <- Span.parse(text).left.map("--ros-step: " + _)
       _    <- Expect.that(step > Span.Zero && step.toNanos % StepsOf.toNanos == 0):
-        s"--ros-step: expected a multiple of ${StepsOf.toMillis.toInt}ms, came $text"
+        s"--ros-step: expected a multiple of ${StepsOf.toMillis.toInt}ms, got $text"
     yield step
 
   private def gridsOf(folder: String): Either[String, Path] =
     val path = Path.of(folder)
-    Expect.that(Files.isDirectory(path))(s"--grids: expected a folder, came '$folder'").map(_ => path)
+    Expect.that(Files.isDirectory(path))(s"--grids: expected a folder, got '$folder'").map(_ => path)
 
   private[cli] def fileOf(name: String): Either[String, SettingsFile] =
     for

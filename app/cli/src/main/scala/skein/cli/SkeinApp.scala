@@ -147,8 +147,8 @@ open class SkeinApp(kinds: ScenarioKind[?]*):
   private def wrongName(mistake: InvalidPathException): String =
     if mistake.getReason.contains("unmappable") then
       s"the locale's letters, ${sys.props("sun.jnu.encoding")}, cannot encode a file's name, " +
-        s"came '${mistake.getInput}'; a locale with UTF-8, such as LC_ALL=C.UTF-8, can"
-    else s"expected the name of a file or folder, came '${mistake.getInput}': ${mistake.getReason}"
+        s"got '${mistake.getInput}'; a locale with UTF-8, such as LC_ALL=C.UTF-8, can"
+    else s"expected the name of a file or folder, got '${mistake.getInput}': ${mistake.getReason}"
 
   private def help: String =
     val width = commands.map(_.name.length).maxOption.getOrElse(0)

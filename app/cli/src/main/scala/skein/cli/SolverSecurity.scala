@@ -32,7 +32,7 @@ final case class SolverSecurity(
     case Some(SolverChoice.Tcp(at)) =>
       for
         _ <- Expect.that(kafkaSecurity.isEmpty):
-          s"--kafka-security: expected with a solver behind a Kafka broker, came with tcp://$at"
+          s"--kafka-security: expected with a solver behind a Kafka broker, got with tcp://$at"
         read <- tls match
           case Some(folder) => Tls.of(Path.of(folder)).flatMap(_.context).map(Some(_))
           case None         =>
@@ -91,7 +91,7 @@ object SolverSecurity:
       read.load(StringReader(Files.readString(file)))
       val all = read.asScala.toMap
       all.keys.find(key => !Kinds.exists(key.startsWith(_))) match
-        case Some(other) => wrong(s"expected ${Kinds.mkString("…, ")}…, came '$other'")
+        case Some(other) => wrong(s"expected ${Kinds.mkString("…, ")}…, got '$other'")
         case None if !all.contains("security.protocol") =>
           wrong("expected security.protocol, for example SSL,")
         case None => Right(all)

@@ -50,11 +50,11 @@ final class SpreadCommand(program: String)(using Scenarios)
       _        <- Expect.that(settings.images.isEmpty):
         "--images: expected with fly alone; spread keeps no recordings"
       _ <- Expect.that(options.seeds >= 1 && options.seeds <= SpreadCommand.MostSeeds):
-        s"--seeds: expected 1 to ${SpreadCommand.MostSeeds}, came ${options.seeds}"
+        s"--seeds: expected 1 to ${SpreadCommand.MostSeeds}, got ${options.seeds}"
       cluster <- options.cluster.checked
       _       <- Expect.that(cluster.flatMap(_.block).forall(_ == 1)):
         "--block: expected 1, since each flight is a block of its " +
-          s"own, came ${options.cluster.block.getOrElse(0)}"
+          s"own, got ${options.cluster.block.getOrElse(0)}"
       out <- options.out
         .orElse(cluster.map(_ => OutFolder.dated("spread")))
         .fold(Right(None))(OutFolder.made("--out", _).map(Some(_)))

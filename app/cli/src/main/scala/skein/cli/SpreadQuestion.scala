@@ -94,7 +94,7 @@ private[cli] object SpreadQuestion:
       val (place, seed) = BlockBytes
         .read[(Int, Long)](block, "a flight's place and seed")
         .fold(wrong => throw IllegalArgumentException(wrong), identity)
-      require(plans.isDefinedAt(place), s"expected one of ${plans.size} plans, came $place")
+      require(plans.isDefinedAt(place), s"expected one of ${plans.size} plans, got $place")
       BlockBytes.of:
         SpreadFlights.one(settings, plans(place).copy(seed = seed)) match
           case Left(missing)  => FlightAnswer.NotFlown(missing.reason.take(MostReason))

@@ -51,22 +51,22 @@ final class TortureCommand(program: String)(using scenarios: Scenarios)
         .parse(options.duration)
         .filterOrElse(
           _ >= FaultPlan.Shortest,
-          s"expected ${FaultPlan.Shortest.toSeconds} s or more, came ${options.duration}"
+          s"expected ${FaultPlan.Shortest.toSeconds} s or more, got ${options.duration}"
         )
         .left
         .map(mistake => s"--duration: $mistake")
       threads <- ForwardOptions.threadCount(options.threads)
-      _       <- Expect.that(options.seeds > 0)(s"--seeds: expected 1 or more, came ${options.seeds}")
+      _       <- Expect.that(options.seeds > 0)(s"--seeds: expected 1 or more, got ${options.seeds}")
       mostFirst = Long.MaxValue - options.seeds + 1
       _ <- Expect.that(options.first <= mostFirst):
-        s"--first: expected up to $mostFirst, since the other seeds follow it, came ${options.first}"
+        s"--first: expected up to $mostFirst, since the other seeds follow it, got ${options.first}"
       cluster <- options.cluster.checked
       _       <- Expect.that(cluster.flatMap(_.block).forall(_ <= TortureQuestion.MostSeeds)):
         s"--block: expected 1 to ${TortureQuestion.MostSeeds} " +
-          s"flights, came ${options.cluster.block.getOrElse(0)}"
+          s"flights, got ${options.cluster.block.getOrElse(0)}"
       _ <- Expect.that(cluster.isEmpty || options.seeds <= TortureCommand.MostElsewhere):
         s"--seeds: expected 1 to ${TortureCommand.MostElsewhere} with --workers or --cluster, " +
-          s"came ${options.seeds}"
+          s"got ${options.seeds}"
       _ <- Expect.that(cluster.isDefined || options.out.isEmpty):
         "--out: expected with --workers or --cluster, for what they computed"
       shown = Shown(options.json.value)

@@ -28,7 +28,7 @@ private[cli] final case class TortureQuestion(
       task <- scenario.fold(Right(None))(TortureQuestion.standard(_).map(Some(_)))
       _    <- Expect.that(task.forall(_.agents.forall(_.kind == VehicleKind.Multirotor))):
         s"--scenario ${scenario.getOrElse("")}: expected multirotors, " +
-          "came cars, whose commands torture does not follow"
+          "got cars, whose commands torture does not follow"
       scene <- scene.fold(Right(None))(NamedScene.ofRecording(_).map(Some(_)).left.map("--scene: " + _))
     yield TortureQuestion.Ready(Span.ofNanos(durationNanos), task, scene)
 

@@ -67,11 +67,11 @@ final case class ViewOptions(
     alone("--view-port", viewPort.isDefined)
       .orElse(alone("--view-origin", viewOrigin.nonEmpty))
       .orElse(viewPort.filter(port => port < 0 || port > 65535).map(port =>
-        s"--view-port: expected 0 to 65535, came $port"
+        s"--view-port: expected 0 to 65535, got $port"
       ))
       .orElse(viewOrigin.find(!_.matches(ViewOptions.Site)).map(came =>
         "--view-origin: expected a site as browsers name it, for " +
-          s"example https://app.foxglove.dev, came '$came'"
+          s"example https://app.foxglove.dev, got '$came'"
       ))
 
 object ViewOptions:

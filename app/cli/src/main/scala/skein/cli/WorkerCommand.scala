@@ -49,7 +49,7 @@ final class WorkerCommand(using Scenarios)
       threads  <- ForwardOptions.threadCount(options.threads)
       patience <- Span.parse(options.patience).left.map("--patience: " + _)
       _        <- Expect.that(patience <= LongestPatience):
-        s"--patience: expected a week at most, came ${options.patience}"
+        s"--patience: expected a week at most, got ${options.patience}"
       _ <- Expect.that(join.isLoopback || options.listen.isDefined):
         s"--listen: expected where the coordinator at $join reaches this worker, for example ${"HOST"}:25521"
       node = WorkerNode(join, listen, tls, threads, QuestionKind.solvers, patience.toNanos.nanos)(say)

@@ -53,7 +53,7 @@ object DetectionFigure:
         val file =
           Renderer.draw(Moment(scene.scene, Vector(thing)), view, Set(Kind.Scene), _ => 0)(Kind.Scene) match
             case Raster.Bytes(bgr) => PngEncoder.encode(bgr, camera.width, camera.height)
-            case other             => throw IllegalStateException(s"expected colours, came $other")
+            case other             => throw IllegalStateException(s"expected colours, got $other")
         val scale = shownPx / camera.width
         val x     = (camera.width / 2.0 + view.focalPx * StrictMath.tan(detection.azimuthRad)) * scale
         val y     =

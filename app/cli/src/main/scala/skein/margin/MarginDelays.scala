@@ -10,7 +10,7 @@ object MarginDelays:
 
   /** @return Left states the expected form and the given text */
   def read(text: String): Either[String, Vector[LatencyProfile]] =
-    def wrong = s"expected $form, came '$text'"
+    def wrong = s"expected $form, got '$text'"
     text match
       case s"$from..$to/$count" =>
         for

@@ -38,9 +38,9 @@ object MarginJudge:
     def pair(measure: Measure) = Either.cond(
       vehicles >= 2,
       Flown(measure),
-      s"expected two vehicles or more for ${text.getOrElse("")}, came $vehicles"
+      s"expected two vehicles or more for ${text.getOrElse("")}, got $vehicles"
     )
-    def expected(came: String) = Left(s"expected one of ${names.mkString(", ")}, came $came")
+    def expected(came: String) = Left(s"expected one of ${names.mkString(", ")}, got $came")
     text match
       case None       => own.headOption.fold(expected("nothing"))(first => Right(Flown(first)))
       case Some(word) =>

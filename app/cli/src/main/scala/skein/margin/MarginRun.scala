@@ -84,7 +84,7 @@ object MarginRun:
       ended.lastLine
         .flatMap(_.toDoubleOption)
         .filter(_.isFinite)
-        .toRight(s"expected a number as the last line that it prints, came $came")
+        .toRight(s"expected a number as the last line that it prints, got $came")
     case MarginJudge.Contacts       => Right(ended.contacts.toDouble)
     case MarginJudge.Flown(measure) =>
       ended.tracks.flatMap(measure.of).toRight(

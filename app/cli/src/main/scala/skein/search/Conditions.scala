@@ -37,11 +37,11 @@ final case class Conditions(
     for
       kind <- LoopKind.parse(loop).left.map("--loop: " + _)
       _    <- Expect.that(altitudeM > 0 && altitudeM <= FlySettings.MostAltitudeM):
-        s"--altitude: expected more than 0 and up to ${FlySettings.MostAltitudeM} m, came $altitudeM"
+        s"--altitude: expected more than 0 and up to ${FlySettings.MostAltitudeM} m, got $altitudeM"
       _ <- Expect.that(periodMs >= 1 && periodMs <= 10_000):
-        s"--period: expected 1 ms to 10 s, came $periodMs ms"
+        s"--period: expected 1 ms to 10 s, got $periodMs ms"
       _ <- Expect.that(durationS >= 10 && durationS <= 3600):
-        s"--duration: expected 10 s to an hour, since the last 10 s are judged, came $durationS s"
+        s"--duration: expected 10 s to an hour, since the last 10 s are judged, got $durationS s"
       _ <- Moves.mistake(movesInFlight).map("--moves-in-flight: " + _).toLeft(())
     yield kind
 

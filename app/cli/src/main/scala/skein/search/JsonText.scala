@@ -18,4 +18,4 @@ private[skein] object JsonText:
   /** Parses a value from a text, in the manner of `read`. */
   def parse[A: Reader](text: String, what: String): Either[String, A] =
     try Right(readJson[A](text))
-    catch case mistake: Exception => Left(s"expected $what, came: ${mistake.getMessage}")
+    catch case mistake: Exception => Left(s"expected $what, got: ${mistake.getMessage}")

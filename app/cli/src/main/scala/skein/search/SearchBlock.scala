@@ -37,7 +37,7 @@ final case class SearchBlock(
           case Answer.Tallies(of) => isWhole && of.size == candidates.size
           case Answer.Values(of)  => !isWhole && of.size == episodes.size
         },
-        s"expected the answer to $candidates on $episodes, came ${answer.length} bytes of another"
+        s"expected the answer to $candidates on $episodes, got ${answer.length} bytes of another"
       )
 
 object SearchBlock:
@@ -118,5 +118,5 @@ object SearchBlock:
           from >= 0 && until > from && until - from <= MostEpisodes &&
           candidates.nonEmpty && candidates.forall(_.size == candidates.head.size)
         ,
-        s"expected a block of a search, came ${bytes.length} bytes that are none"
+        s"expected a block of a search, got ${bytes.length} bytes that are none"
       )

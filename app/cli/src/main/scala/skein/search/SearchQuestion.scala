@@ -44,7 +44,7 @@ final case class SearchQuestion(
         .left
         .map("--opponent: " + _)
       _ <- Expect.that(fresh.forall(count => count >= 2 && count <= SearchQuestion.MostEpisode)):
-        s"--fresh: expected 2 to ${SearchQuestion.MostEpisode}, came ${fresh.getOrElse(0)}"
+        s"--fresh: expected 2 to ${SearchQuestion.MostEpisode}, got ${fresh.getOrElse(0)}"
       method <- SearchQuestion.method(method, candidates, episodes, population, family.space.dimension)
     yield
       val searched = SearchedFamily(this, family, role, flown.game, opponent)
@@ -64,11 +64,11 @@ object SearchQuestion:
       dimension: Int
   ): Either[String, SearchMethod] =
     for
-      _ <- Expect.that(candidates >= 4)(s"--candidates: expected 4 or more, came $candidates")
+      _ <- Expect.that(candidates >= 4)(s"--candidates: expected 4 or more, got $candidates")
       _ <- Expect.that(episodes >= 1 && episodes <= MostEpisode):
-        s"--episodes: expected 1 to $MostEpisode, came $episodes"
+        s"--episodes: expected 1 to $MostEpisode, got $episodes"
       _ <- Expect.that(population >= 4 && population <= candidates):
-        s"--population: expected 4 to the number of candidates, $candidates, came $population"
+        s"--population: expected 4 to the number of candidates, $candidates, got $population"
       generations = (candidates / population).max(1)
       method <- name match
         case "grid" =>
@@ -76,7 +76,7 @@ object SearchQuestion:
           Either.cond(
             perAxis >= 2,
             SearchMethod.Grid(perAxis, episodes),
-            s"--candidates: a grid over $dimension parameters needs 2^$dimension or more, came $candidates"
+            s"--candidates: a grid over $dimension parameters needs 2^$dimension or more, got $candidates"
           )
         case "random"        => Right(SearchMethod.Random(candidates, episodes))
         case "cross-entropy" => Right(SearchMethod.CrossEntropy(population, generations, episodes))
@@ -85,14 +85,14 @@ object SearchQuestion:
           val race = SearchMethod.Racing(candidates, episodes)
           for
             _ <- Expect.that(candidates <= MostRacing):
-              s"--candidates: a race takes at most $MostRacing, came $candidates"
+              s"--candidates: a race takes at most $MostRacing, got $candidates"
             _ <- Expect.that(race.mostOfOne <= Search.PlayOffFrom):
               s"--episodes: the last of $candidates candidates in a race may fly at most " +
                 s"${Search.PlayOffFrom} episodes, and came to ${race.mostOfOne}, " +
                 s"${race.mostOfOne / episodes} times those of the first round: expected at " +
-                s"most ${Search.PlayOffFrom / (race.mostOfOne / episodes)}, came $episodes"
+                s"most ${Search.PlayOffFrom / (race.mostOfOne / episodes)}, got $episodes"
           yield race
-        case other => Left(s"--method: expected one of $Methods, came '$other'")
+        case other => Left(s"--method: expected one of $Methods, got '$other'")
     yield method
 
 /** A family's policies for one role, against an opponent.

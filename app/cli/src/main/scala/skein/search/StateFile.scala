@@ -29,9 +29,9 @@ private[skein] final class StateFile[A: ReadWriter](name: String, version: Int, 
   def parse(text: String): Either[String, A] =
     val at = text.lastIndexOf(Seal)
     text match
-      case Versioned(came) if came != version.toString   => Left(s"expected version $version, came $came")
+      case Versioned(came) if came != version.toString   => Left(s"expected version $version, got $came")
       case Versioned(_) if at < 0 || !text.endsWith("}") =>
-        Left(s"expected the state of $what with its checksum at the end, came a file that is cut off")
+        Left(s"expected the state of $what with its checksum at the end, got a file that is cut off")
       case Versioned(_) if text.substring(at + Seal.length, text.length - 1) != sumOf(text.take(at)) =>
         Left(
           s"expected the state of $what as it was written; its " +
@@ -50,13 +50,13 @@ private[skein] final class StateFile[A: ReadWriter](name: String, version: Int, 
       val within = Iterator.iterate(folder.toAbsolutePath)(_.getParent).takeWhile(_ != null)
       if Files.exists(file) && !Files.isRegularFile(file) then Left(s"$file: expected a file")
       else if within.exists(Files.isRegularFile(_)) then
-        Left(s"$folder: expected the folder of $what, came a file")
+        Left(s"$folder: expected the folder of $what, got a file")
       else parse(Files.readString(file)).left.map(mistake => s"$file: $mistake")
     catch
       case _: (NoSuchFileException | FileNotFoundException) =>
         Left(s"there is no $file; expected the folder of $what")
       case _: java.nio.charset.MalformedInputException =>
-        Left(s"$file: expected the state of $what, came no text")
+        Left(s"$file: expected the state of $what, got no text")
       case failed: IOException => Left(s"cannot read $file, the state of $what: ${FileReason.of(failed)}")
 
   /** Replaces the file atomically: a crash leaves the old or the new content.

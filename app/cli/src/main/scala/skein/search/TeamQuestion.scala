@@ -42,7 +42,7 @@ final case class TeamQuestion(
       ready <- read(plantIsTold = conditions.plant != Plant)
       _     <- Expect.that(!ready.isVirtual || ready.search.expected <= WholeFlights.MostVirtual):
         s"--candidates, --episodes: expected at most ${WholeFlights.MostVirtual} " +
-          s"flights in virtual time, came some ${ready.search.expected}"
+          s"flights in virtual time, got some ${ready.search.expected}"
     yield ready
 
   /** Resolves the question like `setup`, but with any number of flights.
@@ -58,14 +58,14 @@ final case class TeamQuestion(
       _     <- Expect.that(!vary.exists(each => set.contains(each.key))):
         s"--set: ${vary.map(_.key).filter(set.contains).mkString(", ")} is searched by --vary; expected one of both"
       _ <- Expect.that(axes.map(_.name).distinct.size == axes.size):
-        s"--vary: expected every setting once, came ${vary.map(_.key).mkString(", ")}"
+        s"--vary: expected every setting once, got ${vary.map(_.key).mkString(", ")}"
       space = SearchSpace(axes)
       // A setting's bounds may be invalid only in combination with another's.
       corners <-
         Expect.each(
           space.grid(2)
         )(corner => ScenarioSettings.ofKeys(kind, settings(set, space, corner))).left.map("--vary: " + _)
-      _  <- Expect.that(fresh >= 2 && fresh <= MostFresh)(s"--fresh: expected 2 to $MostFresh, came $fresh")
+      _  <- Expect.that(fresh >= 2 && fresh <= MostFresh)(s"--fresh: expected 2 to $MostFresh, got $fresh")
       by <- Objective.ofScenario(objective, plain).left.map("--objective: " + _)
       // A measure's name may contain a setting's value.
       _      <- Expect.each(corners)(Objective.ofScenario(objective, _)).left.map("--objective, --vary: " + _)
@@ -126,7 +126,7 @@ object TeamQuestion:
         Right(Axis(varied.key, varied.least, varied.most, default.max(varied.least).min(varied.most)))
       case None if defaults.contains(varied.key) =>
         Left(
-          s"--vary: expected a setting that measures something, came '${varied.key}', which counts or chooses"
+          s"--vary: expected a setting that measures something, got '${varied.key}', which counts or chooses"
         )
       case None =>
         Left(

@@ -21,10 +21,10 @@ object Varied:
     case Form(key, NumberOf(least), NumberOf(most)) if least < most =>
       Expect
         .that(least.abs.max(most.abs) <= MostBound):
-          s"expected bounds from -1e9 to 1e9, came '$text'"
+          s"expected bounds from -1e9 to 1e9, got '$text'"
         .map(_ => Varied(key, least, most))
     case _ =>
-      Left(s"expected a setting and its bounds, the lower one first, for example ring-m=4..12, came '$text'")
+      Left(s"expected a setting and its bounds, the lower one first, for example ring-m=4..12, got '$text'")
 
   private object NumberOf:
     def unapply(text: String): Option[Double] = text.toDoubleOption

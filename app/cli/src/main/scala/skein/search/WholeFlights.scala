@@ -141,8 +141,8 @@ object WholeFlights:
   /** Why a scenario needs whole flights, world by world; None if its quantities suffice. */
   def whole(flown: Engagement, objective: Objective): Option[String] =
     def keysWhere(is: Measure => Boolean) = objective.measures.map(_._2).filter(is).map(ScenarioTerm.keyOf)
-    val plain  = keysWhere(_.reduced.isEmpty)
-    val partly = keysWhere(_.over != Window.Whole)
+    val plain                             = keysWhere(_.reduced.isEmpty)
+    val partly                            = keysWhere(_.over != Window.Whole)
     if plain.nonEmpty then
       Some(s"${plain.mkString(", ")} is of whole flights, not of a quantity by itself")
     else
@@ -165,7 +165,7 @@ object WholeFlights:
     climbs match
       case None                                                     => Right(plant)
       case Some(_) if isTold && (plant == Spatial || plant == Tilt) => Right(plant)
-      case Some(reason) if isTold => Left(s"--plant: expected $Tilt or $Spatial, came $plant: $reason")
+      case Some(reason) if isTold => Left(s"--plant: expected $Tilt or $Spatial, got $plant: $reason")
       case Some(_)                => Right(if flown.isTraced then Tilt else Spatial)
 
   /** @param why the reason for which no faster engine can be used */

@@ -67,11 +67,11 @@ final case class LearnQuestion(
       _      <- learner.mistake.map(asOption).toLeft(())
       _      <- Expect.that(algorithm != Algorithm.Ppo || learner.batch <= learner.horizon * environments):
         "--batch: expected at most the " +
-          s"${learner.horizon * environments} steps of a lesson of ppo, came ${learner.batch}"
+          s"${learner.horizon * environments} steps of a lesson of ppo, got ${learner.batch}"
       setup = LearnSetup(this, algorithm, role, game, flown, delays)
       most  = Int.MaxValue * setup.stepsOfRound
       _ <- Expect.that(steps <= most):
-        s"--steps: expected at most $most, which are ${Int.MaxValue} lessons in each environment, came $steps"
+        s"--steps: expected at most $most, which are ${Int.MaxValue} lessons in each environment, got $steps"
     yield setup
 
   private def duel(role: Role)(using Scenarios): Either[String, LearnGame] =
@@ -104,10 +104,10 @@ object LearnQuestion:
   ): Either[String, Unit] =
     Expect.that(value >= least && value <= most):
       s"$option: expected ${least.significant(4)} to " +
-        s"${most.significant(4)}$unit, came ${value.significant(4)}$unit"
+        s"${most.significant(4)}$unit, got ${value.significant(4)}$unit"
 
   private def whole(option: String, value: Long, least: Long, most: Long): Either[String, Unit] =
-    Expect.that(value >= least && value <= most)(s"$option: expected $least to $most, came $value")
+    Expect.that(value >= least && value <= most)(s"$option: expected $least to $most, got $value")
 
   /** Renames a mistake's subject to its option: `learning rate: …` becomes `--learning-rate: …`. */
   private def asOption(mistake: String) =

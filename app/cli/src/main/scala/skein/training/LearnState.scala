@@ -77,7 +77,7 @@ object LearnFile:
       catch
         case _: NoSuchFileException =>
           Left(s"there is no $file; expected the learner's numbers there, beside $Name")
-        case _: EOFException => Left(s"$file: expected the learner's numbers, came a file that is cut off")
+        case _: EOFException     => Left(s"$file: expected the learner's numbers, got a file that is cut off")
         case failed: IOException =>
           Left(s"$file: expected the numbers of such a learner: ${failed.getMessage}")
 

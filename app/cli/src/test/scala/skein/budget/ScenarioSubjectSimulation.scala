@@ -76,14 +76,14 @@ class ScenarioSubjectSimulation extends munit.FunSuite, Optimised:
       question(surround, Some("speed"), Conditions("stream", "drag", 100, 20), 1).map(_.objective.formula),
       Left(
         "--objective: objective 'speed', at character 1: expected one of " +
-          "off-ring, ring, nearest, gap, surrounded-after, came 'speed'"
+          "off-ring, ring, nearest, gap, surrounded-after, got 'speed'"
       )
     )
     assert(
       question(Drift(), None, Conditions("stream", "drag", 100, 20), 1)
         .flatMap(_.subject(plantIsTold = true))
         .left
-        .exists(_.startsWith("--plant: expected tilt or quadrotor, came drag: "))
+        .exists(_.startsWith("--plant: expected tilt or quadrotor, got drag: "))
     )
 
 /** Flies north until it is far enough, climbing: late commands overshoot. */

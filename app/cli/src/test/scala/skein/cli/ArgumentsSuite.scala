@@ -21,7 +21,7 @@ class ArgumentsSuite extends munit.FunSuite:
       Arguments.resumed(options, may, "--threads"),
       Left(
         "--resume: everything but --threads is taken from the folder; " +
-          "expected no other option, came --plant, --steps, --turn-rate"
+          "expected no other option, got --plant, --steps, --turn-rate"
       )
     )
     assertEquals(Arguments.resumed(options.cluster, may, "--threads"), Right(()))

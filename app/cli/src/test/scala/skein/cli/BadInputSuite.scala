@@ -31,7 +31,7 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     )
     for command <- commands do
       assertRefused(command, Seq("--out", s"$file/in"), "--out: cannot write into the folder")
-      assertRefused(command, Seq("--out", ""), "--out: expected a folder, came ''")
+      assertRefused(command, Seq("--out", ""), "--out: expected a folder, got ''")
 
   folder.test("an exception of a scenario's own code is reported in a line, and leaves no folder"): path =>
     final case class Broken(where: String = "") extends Scenario:
@@ -65,16 +65,16 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     assert(!ran.said.contains("nothing was decided"))
 
   test("a certificates' folder without a name, and more flights than can be kept, are refused"):
-    assertRefused(ClusterCommand, Seq("certificates", ""), "certificates: expected a folder, came ''")
+    assertRefused(ClusterCommand, Seq("certificates", ""), "certificates: expected a folder, got ''")
     assertRefused(
       SpreadCommand("skein.cli.Main"),
       Seq("--seeds", "100001"),
-      "--seeds: expected 1 to 100000, came 100001"
+      "--seeds: expected 1 to 100000, got 100001"
     )
     assertRefused(
       TortureCommand("skein.cli.Main"),
       Seq("--seeds", "1000001", "--workers", "1"),
-      "--seeds: expected 1 to 1000000 with --workers or --cluster, came 1000001"
+      "--seeds: expected 1 to 1000000 with --workers or --cluster, got 1000001"
     )
 
   test("seeds beyond the largest number are refused"):
@@ -89,7 +89,7 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     def refused(expected: String)(arguments: String*) =
       assertRefused(FlyCommand(), arguments ++ Seq("--out", out.toString), expected)
     refused("--view-port: expected with --view")("--view-port", "9000")
-    refused("--view-port: expected 0 to 65535, came 65536")("--view", "--view-port", "65536")
+    refused("--view-port: expected 0 to 65535, got 65536")("--view", "--view-port", "65536")
     refused("./skein replay --view FILE")("--view", "--clock", "virtual")
     assertRefused(
       ReplayCommand(),
@@ -104,7 +104,7 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     assertRefused(
       FlyCommand(),
       Seq("--as-paper", "--loop", "plan"),
-      "--as-paper flies the paper's loops: expected no --loop beside it, came plan"
+      "--as-paper flies the paper's loops: expected no --loop beside it, got plan"
     )
     assertRefused(FlyCommand(), Seq("--duration=-5s"), "--duration: expected a duration that is not negative")
     assertRefused(
@@ -115,18 +115,18 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     assertRefused(
       FlyCommand(),
       Seq("--period", "1min"),
-      "skein fly: --period: expected half the duration (30000.0 ms) or less, came 60000.0 ms"
+      "skein fly: --period: expected half the duration (30000.0 ms) or less, got 60000.0 ms"
     )
     assertRefused(
       FlyCommand(),
       Seq("--period", "1min", "--duration", "90s"),
-      "skein fly: --duration: expected two periods (120000.0 ms) or more, came 90000.0 ms"
+      "skein fly: --duration: expected two periods (120000.0 ms) or more, got 90000.0 ms"
     )
     assertRefused(FlyCommand(), Seq("--deadline", "0s"), "skein fly: --deadline: expected more than 0")
     assertRefused(FlyCommand(), Seq("--scenario", "convoi"), "skein fly: --scenario: expected duel, ")
 
   test("import and export report a missing folder"):
-    val told = "expected a file in a folder that is there, came no/such/file"
+    val told = "expected a file in a folder that is there, got no/such/file"
     assertRefused(ExportCommand, Seq("x", "--mcap", "no/such/file"), s"skein export: --mcap: $told")
     assertRefused(ImportCommand, Seq("x", "--recording", "no/such/file"), s"skein import: --recording: $told")
 
@@ -142,12 +142,12 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     assertRefused(
       TortureCommand("skein.cli.Main"),
       cars,
-      "--scenario convoy: expected multirotors, came cars"
+      "--scenario convoy: expected multirotors, got cars"
     )
     assertRefused(
       FlyCommand(),
       cars :+ "--mavlink",
-      "--mavlink: expected multirotors alone over MAVLink, came the car Lead"
+      "--mavlink: expected multirotors alone over MAVLink, got the car Lead"
     )
     assertRefused(
       FlyCommand(),
@@ -159,19 +159,19 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     assertRefused(
       ObserveCommand,
       Seq("--bag", "walk.mcap", "--link", "vpn", "--seed", "2"),
-      "skein observe: --bag: the bag is measured, and no program; came --link, --seed too"
+      "skein observe: --bag: the bag is measured, and no program; got --link, --seed too"
     )
     assertRefused(
       ObserveCommand,
       Seq("--bag", "walk.mcap", "--ros", "--", "true"),
-      "skein observe: --bag: the bag is measured, and no program; came --ros, a program too"
+      "skein observe: --bag: the bag is measured, and no program; got --ros, a program too"
     )
 
   test("options of observe that have no effect with --ros are refused"):
     assertRefused(
       ObserveCommand,
       Seq("--ros", "--link", "vpn", "--listen", "127.0.0.1:0"),
-      "skein observe: --ros: topics are measured, and no simulator's wire; came --listen, --link too"
+      "skein observe: --ros: topics are measured, and no simulator's wire; got --listen, --link too"
     )
     assertRefused(
       ObserveCommand,
@@ -187,7 +187,7 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       ObserveCommand,
       Seq("--mavlink", "--readings", "POSITION"),
       "--readings: expected GLOBAL_POSITION_INT, LOCAL_POSITION_NED, ODOMETRY, ATTITUDE, ATTITUDE_QUATERNION, " +
-        "came POSITION"
+        "got POSITION"
     )
     assertRefused(
       ObserveCommand,
@@ -202,12 +202,12 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     assertRefused(
       ObserveCommand,
       Seq("--listen", "0.0.0.0:41451"),
-      "--listen: expected another address than the simulator's, came"
+      "--listen: expected another address than the simulator's, got"
     )
     assertRefused(
       ObserveCommand,
       Seq("--mavlink", "--listen", "127.0.0.1:14580"),
-      "--listen: expected another address than the simulator's, came 127.0.0.1:14580 twice"
+      "--listen: expected another address than the simulator's, got 127.0.0.1:14580 twice"
     )
 
   test("options that only MAVLink uses are refused without it"):
@@ -215,13 +215,13 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     assertRefused(
       FlyCommand(),
       Seq("--mavlink", "--simulator", "tcp://127.0.0.1"),
-      "expected HOST:PORT, for example 127.0.0.1:41451, came '127.0.0.1'"
+      "expected HOST:PORT, for example 127.0.0.1:41451, got '127.0.0.1'"
     )
     assertRefused(ServeCommand, Seq("--mavlink-instance", "1"), "expected together with --mavlink")
     assertRefused(
       ServeCommand,
       Seq("--mavlink", "--mavlink-instance", "250"),
-      "--mavlink-instance: expected 0 to 249, came 250"
+      "--mavlink-instance: expected 0 to 249, got 250"
     )
 
   test("an infinite tolerance is refused"):
@@ -229,14 +229,14 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       assertRefused(
         BudgetCommand("skein.cli.Main"),
         Seq("--within", value),
-        "--within: expected a number above 0, came"
+        "--within: expected a number above 0, got"
       )
 
   folder.test(
     "a configuration that is a folder, is missing, is nested too deeply or has unknown keys is refused"
   ): path =>
     def config(text: String) = Files.writeString(path.resolve("fly.conf"), text).toString
-    assertRefused(FlyCommand(), Seq("--config", path.toString), "expected a file, came the folder")
+    assertRefused(FlyCommand(), Seq("--config", path.toString), "expected a file, got the folder")
     assertRefused(FlyCommand(), Seq("--config", path.resolve("none").toString), "there is no file")
     assertRefused(FlyCommand(), Seq("--config", config("a = " + "[" * 200_000)), "nested too deeply")
     assertRefused(FlyCommand(), Seq("--config", config("skein.fly.seedd = 1")), "the nearest is 'seed'")
@@ -253,7 +253,7 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       ran.said.replace(file, "fly.conf")
     assertEquals(
       told("skein.fly { scenario = surround, surround { ring-m = null } }"),
-      "skein fly: fly.conf: 1: skein.fly.surround.ring-m: expected a value, came null\n"
+      "skein fly: fly.conf: 1: skein.fly.surround.ring-m: expected a value, got null\n"
     )
     assertEquals(told("skein = 5").linesIterator.size, 1)
     assertEquals(told("skein.fly = [1]").linesIterator.size, 1)
@@ -272,7 +272,7 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     assertRefused(
       FlyCommand(),
       Seq("--out", "a\nb"),
-      "skein fly: expected no line breaks or other control characters, came 'a\\u000ab'"
+      "skein fly: expected no line breaks or other control characters, got 'a\\u000ab'"
     )
     assertEquals(Complaint.text("a short line\nand another"), "a short line\nand another")
     val many = (1 to 40).map(number => s"mistake $number").toVector
@@ -295,11 +295,11 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       path.resolve("policy.conf"),
       "family = lead-pursuit\nparameters { turnRateRadPerS = 1e999, lead = 1, speedRatio = 0.5 }"
     )
-    assertRefused(FlyCommand(), Seq("--policy", file.toString), "expected a finite number, came 'Infinity'")
+    assertRefused(FlyCommand(), Seq("--policy", file.toString), "expected a finite number, got 'Infinity'")
 
   test("a simulator of infinite speed is refused"):
     for speed <- Seq("Infinity", "NaN", "0", "1e9") do
-      assertRefused(ServeCommand, Seq("--speed", speed), "--speed: expected more than 0 and up to 1000, came")
+      assertRefused(ServeCommand, Seq("--speed", speed), "--speed: expected more than 0 and up to 1000, got")
 
   folder.test("a recording that cannot be read or written is reported in a line"): path =>
     val unreadable = Path.of("/proc/self/mem")
@@ -317,7 +317,7 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     do
       val ran = Ran.of(FlyCommand().run(Seq("--record", one, "--out", path.resolve("flights").toString)))
       assert(ran.status != 0)
-      assert(clue(ran.err).contains(s"came '${one.takeWhile(_ != ':')}:…'"))
+      assert(clue(ran.err).contains(s"got '${one.takeWhile(_ != ':')}:…'"))
       assert(!ran.said.contains("secret"))
 
   folder.test("a recording without vehicles is not replayed"): path =>
@@ -358,13 +358,13 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
         (
           FlyCommand(),
           virtual ++ Seq("--solver", "link:vpn", "--loop", "paused"),
-          "came with paused alone"
+          "got with paused alone"
         ),
         (
           FlyCommand(),
           virtual ++ Seq("--solver", "link:vpn", "--loop", "plan", "--deadline", "50ms"),
           "deadline: expected more than planning.deadline, for which a " +
-            "solver searches its plans, 60.0 ms; came 50.0 ms"
+            "solver searches its plans, 60.0 ms; got 50.0 ms"
         ),
         (
           FlyCommand(),

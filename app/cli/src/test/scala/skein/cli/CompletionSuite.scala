@@ -52,6 +52,6 @@ class CompletionSuite extends munit.FunSuite:
   test("an unknown shell is refused with a list of known ones"):
     assertEquals(
       printed("completion", "fish"),
-      (1, "skein completion: expected one of bash, zsh, came fish\n")
+      (1, "skein completion: expected one of bash, zsh, got fish\n")
     )
-    assertEquals(printed("completion"), (1, "skein completion: expected one of bash, zsh, came nothing\n"))
+    assertEquals(printed("completion"), (1, "skein completion: expected one of bash, zsh, got nothing\n"))

@@ -41,7 +41,7 @@ class FlyRosSuite extends munit.FunSuite, TemporaryFolders:
         Seq("--ros", "--loop", "stream", "--link", "rate:50mbit,vpn"),
         "expected links without a rate"
       ),
-      ("cars", possible ++ Seq("--scenario", "convoy"), "expected multirotors alone, came the car"),
+      ("cars", possible ++ Seq("--scenario", "convoy"), "expected multirotors alone, got the car"),
       ("images", possible ++ Seq("--images", "front_center@5"), "expected no --images"),
       ("a scene", possible ++ Seq("--scene", "forest"), "--scene and --plant are for the built-in simulator")
     )

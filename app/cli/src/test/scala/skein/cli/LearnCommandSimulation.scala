@@ -89,7 +89,7 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     assertEquals(same, 0, told)
     val (refused, why) = flown(flight ++ Seq("--learn-noise", "2", "--out", folder.resolve("not").toString)*)
     assertEquals(refused, 1, why)
-    assert(why.contains("--learn-noise: expected 0.0 to 1, came 2.0"), why)
+    assert(why.contains("--learn-noise: expected 0.0 to 1, got 2.0"), why)
 
   test("learning that is stopped and continued has the result of an uninterrupted run, to the bit"):
     val question = LearnCommand
@@ -175,16 +175,16 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
       assert(status != 0)
       assert(clue(err).contains(expected))
       assertEquals(err.linesIterator.size, 1)
-    refused("--algorithm: expected sac, ddpg, ppo, came 'td3'", "--algorithm", "td3")
+    refused("--algorithm: expected sac, ddpg, ppo, got 'td3'", "--algorithm", "td3")
     refused("--scenario: expected duel, surround", "--scenario", "surrond")
     refused(
       "--objective: expected a sum of the measures of surround: off-ring, gap",
       "--scenario",
       "surround"
     )
-    refused("expected settings of the scenario, came --altitude", "--scenario", "surround", "--altitude", "9")
+    refused("expected settings of the scenario, got --altitude", "--scenario", "surround", "--altitude", "9")
     def team(scenario: String, objective: String) = Seq("--scenario", scenario, "--objective", objective)
-    refused("expected one of off-ring, gap, came 'ring'", team("surround", "ring")*)
+    refused("expected one of off-ring, gap, got 'ring'", team("surround", "ring")*)
     refused("learners: expected one of leader, follower", team("formation", "slot-rms")*)
     refused("no measure of a quantity", team("blind-pursuit", "distance")*)
     refused("--side: expected pursuer or evader", "--side", "both")
@@ -192,14 +192,14 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     refused("discount: expected 0 up to less than 1", "--discount", "NaN")
     refused("--learning-rate: expected", "--learning-rate", "-1")
     refused("--start: expected LEAST..MOST", "--start", "30..3")
-    refused("--steps: expected 1 to 1000000000000, came 0", "--steps", "0")
-    refused("--environments: expected 1 to 65536, came 65537", "--environments", "65537")
+    refused("--steps: expected 1 to 1000000000000, got 0", "--steps", "0")
+    refused("--environments: expected 1 to 65536, got 65537", "--environments", "65537")
     refused(
-      "--steps: expected at most 21474836470, which are 2147483647 lessons in each environment, came 30000000000",
+      "--steps: expected at most 21474836470, which are 2147483647 lessons in each environment, got 30000000000",
       "--steps 30000000000 --environments 1 --lesson 1s".split(' ').toSeq*
     )
     refused(
-      "--set: expected 'vehicles' once, came 4 and 6",
+      "--set: expected 'vehicles' once, got 4 and 6",
       team("surround", "off-ring") ++ "--set vehicles=4 --set vehicles=6".split(' ')*
     )
     refused("--batch: expected at most", "--algorithm", "ppo", "--batch", "60000")
@@ -235,7 +235,7 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     Files.writeString(folder.resolve(LearnFile.Name), "{}"): Unit
     for below <- Seq(LearnFile.Name, s"${LearnFile.Name}/in") do
       assert(clue(LearnFile.read(folder.resolve(below))).left.exists(_.endsWith(
-        "expected the folder of learning, of ./skein learn, came a file"
+        "expected the folder of learning, of ./skein learn, got a file"
       )))
     assert(LearnFile.read(folder).left.exists(_.contains("expected the state of learning")))
     val question = LearnCommand.question(LearnOptionsOf(short)).fold(fail(_), identity)

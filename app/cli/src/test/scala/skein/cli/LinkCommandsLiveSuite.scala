@@ -64,11 +64,11 @@ class LinkCommandsLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders:
   test("a mistake in an option is reported with the option and what was expected"):
     assertEquals(
       run(LatencyCommand, "--period", "soon")._3.trim,
-      "skein latency: --period: expected a duration with unit, such as 100ms, came 'soon'"
+      "skein latency: --period: expected a duration with unit, such as 100ms, got 'soon'"
     )
     assertEquals(
       run(LinkCommand, "--listen", "here", "--to", "127.0.0.1:41451")._3.trim,
-      "skein link: --listen: expected HOST:PORT, for example 127.0.0.1:41451, came 'here'"
+      "skein link: --listen: expected HOST:PORT, for example 127.0.0.1:41451, got 'here'"
     )
     val between = Seq("--listen", "127.0.0.1:0", "--to", "127.0.0.1:1")
     assertEquals(

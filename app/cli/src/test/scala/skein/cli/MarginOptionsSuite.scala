@@ -20,11 +20,11 @@ class MarginOptionsSuite extends munit.FunSuite:
         Seq("--scenario", "duel") -> "expected a program behind --, for example -- python my.py {port}",
         (Seq("--set", "pairs=2") ++ program)   -> "--set: expected with --scenario, whose settings they are",
         (Seq("--judge", "closest") ++ program) ->
-          "--judge: expected one of printed, contacts, separation, distance, distance:NORTH,EAST,DOWN, came 'closest'",
+          "--judge: expected one of printed, contacts, separation, distance, distance:NORTH,EAST,DOWN, got 'closest'",
         (Seq(
           "--judge",
           "distance"
-        ) ++ program) -> "--judge: expected two vehicles or more for distance, came 1",
+        ) ++ program) -> "--judge: expected two vehicles or more for distance, got 1",
         (Seq(
           "--scenario",
           "duel",
@@ -32,13 +32,13 @@ class MarginOptionsSuite extends munit.FunSuite:
           "x.json"
         ) ++ program) -> "--settings: expected without --scenario",
         (Seq("--scenario", "duel", "--link", "vpn", "--link", "vpn") ++ program) ->
-          "--link, --delays: expected each link once, came 'vpn' twice",
-        (Seq("--scenario", "duel", "--repeats", "0") ++ program) -> "--repeats: expected 1 to 100, came 0",
+          "--link, --delays: expected each link once, got 'vpn' twice",
+        (Seq("--scenario", "duel", "--repeats", "0") ++ program) -> "--repeats: expected 1 to 100, got 0",
         (Seq("--scenario", "duel", "--skip", "60s") ++ program)  ->
-          "--skip: expected less than the 60 s of --seconds, came '60s'",
+          "--skip: expected less than the 60 s of --seconds, got '60s'",
         (Seq("--scenario", "duel", "--tolerance", "5", "--within", "1") ++ program) ->
           "--tolerance, --within: expected one of them",
         (Seq("--scenario", "duel", "--delays", "1..2") ++ program) ->
-          "--delays: expected FROM..TO/COUNT, for example 50ms..200ms/4, came '1..2'"
+          "--delays: expected FROM..TO/COUNT, for example 50ms..200ms/4, got '1..2'"
       )
     do assertEquals(mistake(words*), Some(line))

@@ -17,12 +17,12 @@ class MisuseSuite extends munit.FunSuite:
         (
           SearchCommand("skein.cli.Main"),
           Seq("--candidates", "x"),
-          "--candidates: expected a whole number that is not too large, came 'x'"
+          "--candidates: expected a whole number that is not too large, got 'x'"
         ),
         (
           BudgetCommand("skein.cli.Main"),
           Seq("--tolerance", "much"),
-          "--tolerance: expected a number, came 'much'"
+          "--tolerance: expected a number, got 'much'"
         ),
         (FlyCommand(), Seq("--model", "drag"), "--model: no such option any more; it is --predictor now"),
         (
@@ -39,7 +39,7 @@ class MisuseSuite extends munit.FunSuite:
         (
           SearchCommand("skein.cli.Main"),
           Seq("--seed", "1", "--seed", "2"),
-          "--seed: expected once, came 1 and 2"
+          "--seed: expected once, got 1 and 2"
         ),
         (
           SearchCommand("skein.cli.Main"),

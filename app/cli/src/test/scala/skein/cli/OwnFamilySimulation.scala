@@ -65,7 +65,7 @@ class OwnFamilySimulation extends munit.FunSuite, TemporaryFolders, Lengthy, Opt
     val (status, said) = run(Main, s"fly --clock virtual --policy $policy --out $folder/refused")
     assertEquals(status, 1, said)
     assert(
-      said.contains("expected a family of policies (paper-pursuer") && said.contains("came 'doubting'"),
+      said.contains("expected a family of policies (paper-pursuer") && said.contains("got 'doubting'"),
       said
     )
 

@@ -64,7 +64,7 @@ class OwnPlantSimulation extends munit.FunSuite, TemporaryFolders, Lengthy, Opti
     // Skein's own program lacks the structure: both in a file, and in a recording.
     val (status, said) = run(Main, s"search --plant $model --candidates 4")
     assertEquals(status, 1)
-    assert(said.contains("expected a structure (lag, turn, drag, drag-and-turn), came 'leaning'"), said)
+    assert(said.contains("expected a structure (lag, turn, drag, drag-and-turn), got 'leaning'"), said)
     val (again, why) = run(Main, s"replay $flown")
     assertEquals(again, 1)
-    assert(why.contains("expected a model's name or five numbers, came 'leaning "), why)
+    assert(why.contains("expected a model's name or five numbers, got 'leaning "), why)

@@ -39,7 +39,7 @@ class PolicyCommandSuite extends munit.FunSuite, TemporaryFolders:
       (words, expected) <- Seq(
         Seq(written(folder, "paper-pursuer"), "--onnx", folder.resolve("x.onnx").toString) -> "only networks",
         Seq("nowhere.onnx") -> "there is no such file",
-        Seq.empty           -> "expected one policy file, came 0"
+        Seq.empty           -> "expected one policy file, got 0"
       )
     do
       val (status, said) = run(words*)

@@ -145,7 +145,7 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
       assertEquals(file.models.keySet, Structure.ours.toSet + plain)
       val model = file.plant match
         case model: ReducedModel => model
-        case other               => fail(s"expected a reduced model, came $other")
+        case other               => fail(s"expected a reduced model, got $other")
       assertEqualsDouble(model.gain, named.gain, 0.1, file.toString)
       assertEqualsDouble(model.lagS, named.lagS, 0.1 * named.lagS, file.toString)
       assertEqualsDouble(model.deadTimeS, named.deadTimeS, 0.04, file.toString)
@@ -176,7 +176,7 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
     val copy                 = Files.copy(flight, folder.resolve("copy.duckdb"))
     val (status, _, mistake) = run(IdentifyCommand(), flight.toString, copy.toString)
     assertEquals(status, 1)
-    assert(mistake.contains(s"expected every flight once, came the same one in $flight and $copy"), mistake)
+    assert(mistake.contains(s"expected every flight once, got the same one in $flight and $copy"), mistake)
 
   recordings.test("report without --out writes to the folder of the first recording"): folder =>
     assertEquals(run(ReportCommand(), folder.resolve("stream-vpn.duckdb").toString)._1, 0)
@@ -259,7 +259,7 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
     assertEquals(status, 1)
     assert(
       err.contains(
-        "expected what to write, came nothing: ./skein export FILE --parquet DIR, --mcap FILE, or --rosbag DIR"
+        "expected what to write, got nothing: ./skein export FILE --parquet DIR, --mcap FILE, or --rosbag DIR"
       ),
       err
     )
@@ -267,4 +267,4 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
   recordings.test("export takes exactly one recording"): folder =>
     val (status, _, err) = run(ExportCommand, "--parquet", folder.toString)
     assertEquals(status, 1)
-    assert(err.contains("expected one recording, came 0"), err)
+    assert(err.contains("expected one recording, got 0"), err)

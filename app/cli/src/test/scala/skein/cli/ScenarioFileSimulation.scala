@@ -74,7 +74,7 @@ class ScenarioFileSimulation extends munit.FunSuite, TemporaryFolders, Unhurried
       assertEquals(told.status, 1, told.said)
       assertEquals(
         told.said.trim,
-        s"skein $words: --scenario: $wrong: line 3: expected a number's node of an earlier line, of which there is none, came '1'"
+        s"skein $words: --scenario: $wrong: line 3: expected a number's node of an earlier line, of which there is none, got '1'"
       )
     val absent = ran("fly", "--scenario", s"$path/no.scenario")
     assert(absent.err.startsWith(s"skein fly: --scenario: there is no file $path/no.scenario"), absent.err)

@@ -31,8 +31,8 @@ class ServeRosSuite extends munit.FunSuite, TemporaryFolders:
   test("a name that is invalid in a topic is refused before ROS 2 is searched for"):
     val line = said("--ros", "--settings", settings("Drone 1"))
     assert(line.contains("expected vehicles' names of letters, digits and single _"), line)
-    assert(line.contains("came 'Drone 1'"), line)
+    assert(line.contains("got 'Drone 1'"), line)
 
   test("cars are refused"):
     val line = said("--ros", "--settings", settings("Car1", "PhysXCar"))
-    assert(line.contains("--ros: expected multirotors alone, came the car Car1"), line)
+    assert(line.contains("--ros: expected multirotors alone, got the car Car1"), line)

@@ -45,6 +45,6 @@ class SolverSecuritySuite extends munit.FunSuite, TemporaryFolders:
       read("# a broker's\nsecurity.protocol=SSL\nssl.truststore.location=/t.p12\n"),
       Right(Map("security.protocol" -> "SSL", "ssl.truststore.location" -> "/t.p12"))
     )
-    assert(clue(read("security.protocol=SSL\nacks=0\n")).left.exists(_.contains("came 'acks'")))
+    assert(clue(read("security.protocol=SSL\nacks=0\n")).left.exists(_.contains("got 'acks'")))
     assert(clue(read("ssl.protocol=TLSv1.3\n")).left.exists(_.contains("expected security.protocol")))
     assert(clue(read("a=\\u00")).left.exists(_.contains("cannot read")))

@@ -18,9 +18,9 @@ class ViewOptionsSuite extends munit.FunSuite:
     for port <- Seq(0, 65535) do
       assertEquals(told(view = true, Some(port), "https://app.foxglove.dev", "http://localhost:8080"), None)
     for port <- Seq(-1, 65536) do
-      assertEquals(told(view = true, Some(port)), Some(s"--view-port: expected 0 to 65535, came $port"))
+      assertEquals(told(view = true, Some(port)), Some(s"--view-port: expected 0 to 65535, got $port"))
     for site <- Seq("app.foxglove.dev", "https://app.foxglove.dev/", "", "*") do
       assert(
-        told(view = true, None, "http://one", site).exists(_.endsWith(s"app.foxglove.dev, came '$site'")),
+        told(view = true, None, "http://one", site).exists(_.endsWith(s"app.foxglove.dev, got '$site'")),
         site
       )

@@ -61,11 +61,11 @@ class AltitudeSimulation extends munit.FunSuite, Unhurried, TemporaryFolders:
       assert(settings(fine).isRight, settings(fine))
       for hocon <- Seq("skein.fly.scenario = formation", "skein.fly.duel.altitude-m = 5") do
         val told = settings(s"$fine\n$hocon").left.getOrElse(fail(s"$hocon was taken"))
-        assert(told.contains("flights at 5 m altitude") && told.contains("came one of 20 m"), told)
+        assert(told.contains("flights at 5 m altitude") && told.contains("got one of 20 m"), told)
       for model <- Seq(path.toString, s"reduced:$path") do
         assert(Conditions("stream", model, 100, 60).resolved.isRight, model)
         val told = Conditions("stream", model, 100, 60, altitudeM = 5).resolved.left.getOrElse("")
-        assert(told.startsWith("--plant") && told.contains("came one of 20 m"), told)
+        assert(told.startsWith("--plant") && told.contains("got one of 20 m"), told)
 
   test("forward simulation accepts an altitude, and reports which model is valid only at 20 m"):
     val told = Conditions("stream", "reduced", 100, 60, altitudeM = 5).resolved.left.getOrElse("")

@@ -44,7 +44,7 @@ class ExperimentSimulation extends munit.FunSuite, Unhurried:
   private lazy val truth = distance(LoopKind.Paused, LatencyProfile.none)
 
   private def within(value: Double, least: Double, most: Double): Unit =
-    assert(value >= least && value <= most, s"expected $least to $most, came $value")
+    assert(value >= least && value <= most, s"expected $least to $most, got $value")
 
   test("the paused flight converges to 8.31 m after a closest approach of 3.7 m at 6 s"):
     within(truth.lastTenSeconds.get.mean, 8.31 * 0.97, 8.31 * 1.03)

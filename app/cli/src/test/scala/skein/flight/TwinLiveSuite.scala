@@ -42,7 +42,7 @@ class TwinLiveSuite extends munit.FunSuite, Lengthy, Timing:
     println(SummaryTables.twins(flights).render)
     val twin = flights.twins match
       case Vector(twin) => twin
-      case others       => fail(s"expected one flight with its twins, came ${others.size}")
+      case others       => fail(s"expected one flight with its twins, got ${others.size}")
     val ages     = twin.compared.filter(_.quantity == Twin.Age)
     val excessMs = ages.map(age => age.live.mean - age.virtual.mean).max.max(0)
     assertEquals(twin.compared.size, 4)

@@ -61,9 +61,9 @@ class MarginRunSuite extends munit.FunSuite:
     assertEquals(MarginRun.judged(MarginJudge.Printed, printed("4.25")), Right(4.25))
     assertEquals(
       why(MarginJudge.Printed, printed("done")),
-      Some("expected a number as the last line that it prints, came 'done'")
+      Some("expected a number as the last line that it prints, got 'done'")
     )
-    assert(why(MarginJudge.Printed, printed("NaN")).exists(_.contains("came 'NaN'")))
+    assert(why(MarginJudge.Printed, printed("NaN")).exists(_.contains("got 'NaN'")))
     assert(why(MarginJudge.Printed, fine.copy(lastLine = Some("4"))).exists(_.contains("still ran")))
 
   test("a judge is one of the scenario's measures, or built in"):
@@ -75,7 +75,7 @@ class MarginRunSuite extends munit.FunSuite:
     assertEquals(read("distance:0,0").isLeft, true)
     assert(read("speed").left.exists(_.contains("expected one of last-10-s, sd, closest, at, printed")))
     assert(read("separation", vehicles = 1).left.exists(_.contains("two vehicles or more")))
-    assert(MarginJudge.read(None, None, 1).left.exists(_.contains("came nothing")))
+    assert(MarginJudge.read(None, None, 1).left.exists(_.contains("got nothing")))
 
   test("delays are read as evenly spaced steps"):
     assertEquals(
@@ -86,5 +86,5 @@ class MarginRunSuite extends munit.FunSuite:
     for wrong <- Seq("50ms", "200ms..50ms/4", "50ms..200ms/0", "50..200/4", "50ms..200ms/x") do
       assertEquals(
         MarginDelays.read(wrong),
-        Left(s"expected FROM..TO/COUNT, for example 50ms..200ms/4, came '$wrong'")
+        Left(s"expected FROM..TO/COUNT, for example 50ms..200ms/4, got '$wrong'")
       )

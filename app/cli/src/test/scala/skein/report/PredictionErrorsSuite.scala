@@ -88,7 +88,7 @@ class PredictionErrorsSuite extends munit.FunSuite, Unhurried:
   test("every prediction of a flight is counted: verified with its error, or unverified"):
     val group = PredictionGroup.of(flights) match
       case Vector(group) => group
-      case others        => fail(s"expected predictions of one loop, came ${others.size}")
+      case others        => fail(s"expected predictions of one loop, got ${others.size}")
     assertEquals((group.name, group.link), ("predictive", "direct"))
     for errors <- Seq(group.own, group.others) do
       assert(

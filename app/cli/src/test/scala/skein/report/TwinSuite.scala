@@ -28,7 +28,7 @@ class TwinSuite extends munit.FunSuite:
     )
     val twin = set.twins match
       case Vector(twin) => twin
-      case others       => fail(s"expected one pair, came ${others.size}")
+      case others       => fail(s"expected one pair, got ${others.size}")
     assertEquals(twin.virtual.map(_.flight.seed), Vector(2L, 3L))
     assertEquals(twin.seeds, "2 seeds, 2 … 3")
     // Twins are shown only with their live flight; a virtual flight without one is an ordinary flight.

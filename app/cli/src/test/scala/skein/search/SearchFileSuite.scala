@@ -178,7 +178,7 @@ class SearchFileSuite extends munit.FunSuite, TemporaryFolders, Optimised:
         "{}"                                            -> "begins with its version",
         "nonsense"                                      -> "state of a search",
         "[" * 100_000                                   -> "state of a search",
-        """{"version":99,"state":{}}"""                 -> "expected version 2, came 99",
+        """{"version":99,"state":{}}"""                 -> "expected version 2, got 99",
         whole.dropRight(30)                             -> "cut off",
         whole.dropRight(1)                              -> "cut off",
         whole.replace("\"mean\":[", "\"mean\":[1,")     -> "damaged or edited",

@@ -91,7 +91,7 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
     assert(ready.engines.startsWith("SIMD, "), ready.engines)
     val plant =
       high.copy(conditions = high.conditions.copy(plant = "reduced")).setup.swap.getOrElse("it was taken")
-    assert(plant.startsWith("--plant: expected tilt or quadrotor, came reduced: "), plant)
+    assert(plant.startsWith("--plant: expected tilt or quadrotor, got reduced: "), plant)
     // Even if it is the default plant.
     assert(clue(high.read(plantIsTold =
       true
@@ -122,27 +122,27 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
     )
     assertEquals(
       mistake(question.copy(vary = Vector(Varied("vehicles", 4, 12)))),
-      "--vary: expected a setting that measures something, came 'vehicles', which counts or chooses"
+      "--vary: expected a setting that measures something, got 'vehicles', which counts or chooses"
     )
     assertEquals(
       mistake(question.copy(vary = Vector(Varied("ring-m", -1, 12)))),
-      "--vary: ring-m: expected more than 0, came -1.0"
+      "--vary: ring-m: expected more than 0, got -1.0"
     )
     assertEquals(
       mistake(question.copy(objective = "surrounded")),
       "--objective: objective 'surrounded', at character 1: expected one of " +
-        s"${Surround().measures.map(ScenarioTerm.keyOf).mkString(", ")}, came 'surrounded'"
+        s"${Surround().measures.map(ScenarioTerm.keyOf).mkString(", ")}, got 'surrounded'"
     )
     assertEquals(
       Varied.parse("ring-m=12..4"),
       Left(
         "expected a setting and its bounds, the lower one first, " +
-          "for example ring-m=4..12, came 'ring-m=12..4'"
+          "for example ring-m=4..12, got 'ring-m=12..4'"
       )
     )
     assertEquals(Varied.parse("ring-m=-1e-1..1.2E+1"), Right(Varied("ring-m", -0.1, 12)))
     for text <- Seq("ring-m=4..1e308", "ring-m=4..1e999", "ring-m=-2000000000..4") do
-      assertEquals(Varied.parse(text), Left(s"expected bounds from -1e9 to 1e9, came '$text'"))
+      assertEquals(Varied.parse(text), Left(s"expected bounds from -1e9 to 1e9, got '$text'"))
 
 object TeamSearchSimulation:
   import skein.forward.{Engagement, LoopObserver, Rollout}

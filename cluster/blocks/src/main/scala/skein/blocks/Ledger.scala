@@ -70,7 +70,7 @@ object Ledger:
     */
   def open(file: Path, question: ArraySeq[Byte]): Either[String, Ledger] =
     import StandardOpenOption.*
-    require(question.length == Question, s"a question's name has $Question bytes, came ${question.length}")
+    require(question.length == Question, s"a question's name has $Question bytes, got ${question.length}")
     try
       val channel = FileChannel.open(file, CREATE, READ, WRITE)
       val size    = channel.size

@@ -9,7 +9,7 @@ import java.nio.file.Files
   * a bit from that of one process, or whose ledger does not have every block exactly once.
   */
 @main def coordinatorSeeds(seeds: Int): Unit =
-  require(seeds > 0, s"expected a number of seeds, came $seeds")
+  require(seeds > 0, s"expected a number of seeds, got $seeds")
   val blocks = 60
   val alone  = CoordinatorSimulation.alone(blocks)
   val folder = Files.createTempDirectory("seeds")

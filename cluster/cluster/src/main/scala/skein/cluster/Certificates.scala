@@ -26,7 +26,7 @@ object Certificates:
     * @return Left states which of them is neither
     */
   def checked(hosts: Seq[String]): Either[String, Unit] =
-    hosts.find(!isHost(_)).toLeft(()).left.map(host => s"expected a host's name or address, came '$host'")
+    hosts.find(!isHost(_)).toLeft(()).left.map(host => s"expected a host's name or address, got '$host'")
 
   /** Makes the certificates. If a host is invalid or already has a certificate, it makes none.
     *

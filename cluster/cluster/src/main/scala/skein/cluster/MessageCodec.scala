@@ -35,7 +35,7 @@ private[cluster] final class MessageCodec(
     try
       Codec.message[Message](bytes).flatMap:
         case Message.Ask(_, cores, _, _, _, _) if cores < 1 || cores > MostCores =>
-          Left(s"expected 1 to $MostCores cores, came $cores")
+          Left(s"expected 1 to $MostCores cores, got $cores")
         case read => Right(read)
     catch case wrong: IllegalArgumentException => Left(s"expected an actor's address: ${wrong.getMessage}")
 

@@ -18,9 +18,9 @@ final class MessageSerializer(system: ExtendedActorSystem) extends SerializerWit
 
   def toBinary(message: AnyRef): Array[Byte] = message match
     case ours: Message => codec.bytes(ours)
-    case other => throw NotSerializableException(s"expected a message of the cluster, came ${other.getClass}")
+    case other => throw NotSerializableException(s"expected a message of the cluster, got ${other.getClass}")
 
   def fromBinary(bytes: Array[Byte], manifest: String): AnyRef =
     if manifest != "1" then
-      throw NotSerializableException(s"expected messages of version 1, came '$manifest'")
+      throw NotSerializableException(s"expected messages of version 1, got '$manifest'")
     codec.message(bytes).fold(wrong => throw NotSerializableException(wrong), identity)

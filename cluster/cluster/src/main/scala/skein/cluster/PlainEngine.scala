@@ -41,7 +41,7 @@ private[cluster] final class PlainEngine(mostFrame: Int) extends SSLEngine:
       val seen  = source.duplicate().position(begun).limit(begun + moved)
       for length <- check.refused(seen) do
         isInOver = true // Pekko calls once more before it ends.
-        throw SSLException(s"expected a frame of $mostFrame bytes at most, came one of $length")
+        throw SSLException(s"expected a frame of $mostFrame bytes at most, got one of $length")
       val status = if moved == 0 then Status.BUFFER_OVERFLOW else Status.OK
       SSLEngineResult(status, getHandshakeStatus, moved, moved)
 

@@ -38,7 +38,7 @@ class BehaviorsSuite extends munit.FunSuite, TemporaryFolders:
 
   private def run(asked: ToCoordinator) = asked match
     case ask: Message.Ask => ask.run
-    case other            => fail(s"expected an Ask, came $other")
+    case other            => fail(s"expected an Ask, got $other")
 
   test("a worker prepares its question before it is a member, and requests blocks once it is"):
     val heard  = Heard[ToCoordinator]()

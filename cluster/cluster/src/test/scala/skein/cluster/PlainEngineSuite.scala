@@ -46,7 +46,7 @@ class PlainEngineSuite extends munit.FunSuite:
       val into   = ByteBuffer.allocate(20)
       assert(!engine.isInboundDone)
       val error = intercept[SSLException](engine.unwrap(connection(length), into))
-      assertEquals(error.getMessage, s"expected a frame of 100 bytes at most, came one of $length")
+      assertEquals(error.getMessage, s"expected a frame of 100 bytes at most, got one of $length")
       assertEquals(told(engine.unwrap(connection(3), into)), (Status.CLOSED, ready, 0, 0))
       assert(engine.isInboundDone && !engine.isOutboundDone)
 

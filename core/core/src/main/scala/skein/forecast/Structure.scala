@@ -15,7 +15,7 @@ final class Structure(val label: String, val space: SearchSpace, make: Vector[Do
   for name <- label +: names do
     require(
       name.matches("[A-Za-z][A-Za-z0-9-]*"),
-      s"structure $label: expected letters, digits and dashes as a name, came '$name'"
+      s"structure $label: expected letters, digits and dashes as a name, got '$name'"
     )
   require(!Structure.keys(label), s"expected another label of a structure: '$label' is a key of model files")
   for name <- names do
@@ -30,7 +30,7 @@ final class Structure(val label: String, val space: SearchSpace, make: Vector[Do
   def plant(values: Vector[Double]): ObservedPlant[?] =
     require(
       values.size == space.dimension,
-      s"structure $label: expected ${space.dimension} values, came ${values.size}"
+      s"structure $label: expected ${space.dimension} values, got ${values.size}"
     )
     make(values)
 

@@ -58,7 +58,7 @@ private[formula] final class Arithmetic(trace: Trace, assumed: Assumptions, refu
     case Time(seconds)         => seconds
     case Long(nanos)           => trace.const(nanos * 1e-9)
     case OneOf(holds, yes, no) => trace.where(holds, seconds(yes), seconds(no))
-    case other                 => throw IllegalStateException(s"a length of time was expected, came $other")
+    case other                 => throw IllegalStateException(s"a length of time was expected, got $other")
 
   private def nanosOf(value: Value): Node = settled(value) match
     case Time(seconds) =>
@@ -190,13 +190,13 @@ private[formula] final class Arithmetic(trace: Trace, assumed: Assumptions, refu
   def number(value: Value): Node = settled(value) match
     case Number(node)          => node
     case OneOf(holds, yes, no) => trace.where(holds, number(yes), number(no))
-    case other                 => throw IllegalStateException(s"a number was expected, came $other")
+    case other                 => throw IllegalStateException(s"a number was expected, got $other")
 
   def whole(value: Value): Node = settled(value) match
     case Whole(node)           => node
     case OneOf(holds, yes, no) => trace.where(holds, whole(yes), whole(no))
     case _: Compared           => refuse("it keeps the order of two numbers instead of asking for it")
-    case other                 => throw IllegalStateException(s"a whole number was expected, came $other")
+    case other                 => throw IllegalStateException(s"a whole number was expected, got $other")
 
   def long(value: Value): scala.Long = decided(value) match
     case Long(number) => number
@@ -204,7 +204,7 @@ private[formula] final class Arithmetic(trace: Trace, assumed: Assumptions, refu
         "it computes with a length of time that depends on what is observed; of those, formulas know sums, " +
           "differences, comparisons and toSeconds"
       )
-    case other => throw IllegalStateException(s"a long was expected, came $other")
+    case other => throw IllegalStateException(s"a long was expected, got $other")
 
   def known(value: Value, what: String): Int =
     val node = whole(value)

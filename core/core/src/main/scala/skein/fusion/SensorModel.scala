@@ -34,16 +34,16 @@ final case class SensorModel(
     deadlineS: Double = 0.3,
     fusion: FusionSettings = FusionSettings()
 ):
-  require(everyS >= 0.001, s"expected a millisecond or more between images, came $everyS s")
-  require(takes.quantile(0) >= Span.Zero, s"expected a recognition that takes no negative time, came $takes")
-  require(fovRad > 0 && fovRad < math.Pi, s"expected a field of view between 0 and π, came $fovRad rad")
-  require(farthestM > 0, s"expected a positive largest range, came $farthestM m")
-  require(detection >= 0 && detection <= 1, s"expected a detection between 0 and 1, came $detection")
-  require(bearingSdRad > 0, s"expected a positive standard deviation of the bearing, came $bearingSdRad rad")
-  require(rangeBias > 0, s"expected a positive bias of the range, of 1 where it is exact, came $rangeBias")
-  require(rangeSd > 0, s"expected a positive standard deviation of the range, came $rangeSd")
-  require(workers > 0, s"expected at least one worker, came $workers")
-  require(deadlineS > 0, s"expected a positive deadline, came $deadlineS s")
+  require(everyS >= 0.001, s"expected a millisecond or more between images, got $everyS s")
+  require(takes.quantile(0) >= Span.Zero, s"expected a recognition that takes no negative time, got $takes")
+  require(fovRad > 0 && fovRad < math.Pi, s"expected a field of view between 0 and π, got $fovRad rad")
+  require(farthestM > 0, s"expected a positive largest range, got $farthestM m")
+  require(detection >= 0 && detection <= 1, s"expected a detection between 0 and 1, got $detection")
+  require(bearingSdRad > 0, s"expected a positive standard deviation of the bearing, got $bearingSdRad rad")
+  require(rangeBias > 0, s"expected a positive bias of the range, of 1 where it is exact, got $rangeBias")
+  require(rangeSd > 0, s"expected a positive standard deviation of the range, got $rangeSd")
+  require(workers > 0, s"expected at least one worker, got $workers")
+  require(deadlineS > 0, s"expected a positive deadline, got $deadlineS s")
 
   /** The measurement from an image, if the opponent is detected in it. */
   def measured(at: Instant, image: Exposure): Option[Measurement] =

@@ -13,7 +13,7 @@ final case class Assignment(rivals: Vector[Vector[Int]]):
       mine.nonEmpty && mine.forall(other =>
         (other != self || rivals.size == 1) && rivals.indices.contains(other)
       ),
-      s"agent $self needs rivals among the others of ${rivals.size}, came ${mine.mkString(", ")}"
+      s"agent $self needs rivals among the others of ${rivals.size}, got ${mine.mkString(", ")}"
     )
 
   private val byAgent = rivals.map(_.toArray).toArray

@@ -26,8 +26,8 @@ package skein.policy
   */
 final case class ChauffeurEvader(turningRadiusM: Double = 8.0, speedRatio: Double = 0.5, dodgeM: Double = 4.0)
     extends HeadingPolicy.Memoryless:
-  require(turningRadiusM > 0, s"the turning radius must be positive, came $turningRadiusM m")
-  require(speedRatio >= 0 && speedRatio <= 1, s"the ratio of speeds must be in 0 to 1, came $speedRatio")
+  require(turningRadiusM > 0, s"the turning radius must be positive, got $turningRadiusM m")
+  require(speedRatio >= 0 && speedRatio <= 1, s"the ratio of speeds must be in 0 to 1, got $speedRatio")
 
   /** The smallest angle that the evader keeps to the pursuer's heading while dodging, rad. */
   private val leastAside = StrictMath.acos(speedRatio)

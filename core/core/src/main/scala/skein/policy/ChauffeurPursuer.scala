@@ -28,7 +28,7 @@ final case class ChauffeurPursuer(
     captureRadiusM: Double = 1.5,
     turnRateRadPerS: Double = 1.25
 ) extends HeadingPolicy.Memoryless:
-  require(turnRateRadPerS > 0, s"the turn rate must be positive, came $turnRateRadPerS rad/s")
+  require(turnRateRadPerS > 0, s"the turn rate must be positive, got $turnRateRadPerS rad/s")
 
   private val game  = HomicidalChauffeur(turningRadiusM, speedRatio)
   private val most  = math.max(captureRadiusM, 1.05 * game.thresholdM)

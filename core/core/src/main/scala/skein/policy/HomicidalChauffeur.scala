@@ -20,8 +20,8 @@ package skein.policy
   * @param speedRatio γ, the evader's speed over the pursuer's, between 0 and 1
   */
 final case class HomicidalChauffeur(turningRadiusM: Double, speedRatio: Double):
-  require(turningRadiusM > 0, s"the turning radius must be positive, came $turningRadiusM m")
-  require(speedRatio >= 0 && speedRatio <= 1, s"the ratio of speeds must be in 0 to 1, came $speedRatio")
+  require(turningRadiusM > 0, s"the turning radius must be positive, got $turningRadiusM m")
+  require(speedRatio >= 0 && speedRatio <= 1, s"the ratio of speeds must be in 0 to 1, got $speedRatio")
 
   /** arccos γ: an evader at a smaller angle to the pursuer's heading cannot maintain its distance. */
   val edgeRad: Double = StrictMath.acos(speedRatio)

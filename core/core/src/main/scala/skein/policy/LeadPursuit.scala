@@ -13,8 +13,8 @@ package skein.policy
   */
 final case class LeadPursuit(speedRatio: Double = 0.5, lead: Double = 1.0, turnRateRadPerS: Double = 1.0)
     extends HeadingPolicy.Memoryless:
-  require(speedRatio >= 0, s"the ratio of speeds must not be negative, came $speedRatio")
-  require(turnRateRadPerS > 0, s"the turn rate must be positive, came $turnRateRadPerS rad/s")
+  require(speedRatio >= 0, s"the ratio of speeds must not be negative, got $speedRatio")
+  require(turnRateRadPerS > 0, s"the turn rate must be positive, got $turnRateRadPerS rad/s")
 
   def heading(seen: PlanarObservation): Double =
     import seen.*

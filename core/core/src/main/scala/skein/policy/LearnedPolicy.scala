@@ -21,7 +21,7 @@ final case class LearnedPolicy(
   )
   require(
     shape.activations.last.squashes,
-    s"a learned policy's output is squashed by tanh or clipped, came ${shape.activations.last.label}"
+    s"a learned policy's output is squashed by tanh or clipped, got ${shape.activations.last.label}"
   )
 
   private val network = DenseNetwork(shape, parameters)
@@ -86,7 +86,7 @@ object LearnedPolicy:
         Left(
           s"expected up to ${NeuralShape.MostLayers} widths of hidden layers from 1 to " +
             s"${NeuralShape.MostWidth}, each with relu, tanh, clip or elu behind it, and :tanh or " +
-            s":clip of the output, for example 64x64 or 64tanhx64tanh:clip, came '$text'"
+            s":clip of the output, for example 64x64 or 64tanhx64tanh:clip, got '$text'"
         )
 
   private def named(text: String) = Activation.values.find(_.label == text)

@@ -12,7 +12,7 @@ final case class NeuralShape(hidden: Vector[Int], inputs: Int, activations: Vect
       width >= 1 && width <= NeuralShape.MostWidth
     ) && hidden.sizeIs <= NeuralShape.MostLayers && activations.sizeIs == hidden.size + 1,
     s"expected at most ${NeuralShape.MostLayers} hidden layers of " +
-      s"1 to ${NeuralShape.MostWidth} neurons, came $this"
+      s"1 to ${NeuralShape.MostWidth} neurons, got $this"
   )
 
   def widths: Vector[Int] = inputs +: hidden :+ 1
@@ -47,7 +47,7 @@ object NeuralShape:
     else
       Left(
         s"expected up to $MostLayers widths of hidden layers from 1 " +
-          s"to $MostWidth, for example 8x8, came '$text'"
+          s"to $MostWidth, for example 8x8, got '$text'"
       )
 
   private[policy] def isWidth(width: Int): Boolean = width >= 1 && width <= MostWidth

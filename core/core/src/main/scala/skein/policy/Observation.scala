@@ -82,5 +82,5 @@ final case class Sensed(columns: Vector[String], values: Vector[Double], age: Sp
   def apply(column: String): Double =
     columns.indexOf(column) match
       case -1 =>
-        throw java.util.NoSuchElementException(s"expected one of ${columns.mkString(", ")}, came '$column'")
+        throw java.util.NoSuchElementException(s"expected one of ${columns.mkString(", ")}, got '$column'")
       case index => values(index)

@@ -147,9 +147,9 @@ object PolicyFamily:
     names
       .diff(names.distinct)
       .headOption
-      .map(twice => s"every family of policies needs a name of its own, came '$twice' twice")
+      .map(twice => s"every family of policies needs a name of its own, got '$twice' twice")
       .orElse(own.map(_.name).find(name => !name.matches("[a-z][a-z0-9-]*")).map(came =>
-        s"expected small letters, digits and dashes as a family's name, came '$came'"
+        s"expected small letters, digits and dashes as a family's name, got '$came'"
       ))
 
   /** All families with a fixed number of parameters, in the order of listings. */
@@ -179,5 +179,5 @@ object PolicyFamily:
         .find(_.name == text)
         .toRight(
           s"expected a family of policies (${known.map(_.name).mkString(", ")}, " +
-            s"${NeuralPrefix}8x8, or ${LearnedPrefix}64x64), came '$text'"
+            s"${NeuralPrefix}8x8, or ${LearnedPrefix}64x64), got '$text'"
         )

@@ -13,8 +13,8 @@ package skein.policy
   */
 final case class ProportionalNavigation(gain: Double = 3.0, turnRateRadPerS: Double = 1.0)
     extends HeadingPolicy.Memoryless:
-  require(gain > 0, s"the gain must be positive, came $gain")
-  require(turnRateRadPerS > 0, s"the turn rate must be positive, came $turnRateRadPerS rad/s")
+  require(gain > 0, s"the gain must be positive, got $gain")
+  require(turnRateRadPerS > 0, s"the turn rate must be positive, got $turnRateRadPerS rad/s")
 
   def heading(seen: PlanarObservation): Double =
     import seen.*

@@ -6,7 +6,7 @@ package skein.policy
   *   pursuer turns 1 rad/s.
   */
 final case class PurePursuit(turnRateRadPerS: Double = 1.0) extends HeadingPolicy.Memoryless:
-  require(turnRateRadPerS > 0, s"the turn rate must be positive, came $turnRateRadPerS rad/s")
+  require(turnRateRadPerS > 0, s"the turn rate must be positive, got $turnRateRadPerS rad/s")
 
   def heading(seen: PlanarObservation): Double =
     import seen.*

@@ -27,7 +27,7 @@ object CommandPlan:
 
   /** The reason why a plan cannot have actions at these times; None if it can. */
   def mistake(moments: Seq[Instant]): Option[String] =
-    if moments.size > Most then Some(s"expected at most $Most actions, came ${moments.size}")
+    if moments.size > Most then Some(s"expected at most $Most actions, got ${moments.size}")
     else if moments.zip(moments.drop(1)).exists((one, next) => one >= next) then
-      Some("expected moments in ascending order, came others")
+      Some("expected moments in ascending order, got others")
     else None

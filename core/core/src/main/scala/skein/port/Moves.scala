@@ -16,7 +16,7 @@ object Moves:
 
   /** The reason why this number of unanswered moves is invalid; None if it is valid. */
   def mistake(inFlight: Int): Option[String] =
-    Option.when(inFlight < 1 || inFlight > MostInFlight)(s"expected 1 to $MostInFlight, came $inFlight")
+    Option.when(inFlight < 1 || inFlight > MostInFlight)(s"expected 1 to $MostInFlight, got $inFlight")
 
   /** Time from a move's cancellation to the start of its successor; measured at AirSim's server, below 0.3
     * ms.

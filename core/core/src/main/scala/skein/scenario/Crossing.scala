@@ -38,7 +38,7 @@ final case class Crossing(
   override def mistakes: Seq[String] =
     Scenario.outside("vehicles", vehicles, 2, AtOneAltitude.MostVehicles).toSeq ++
       Scenario.notPositive(this, "laneM", "marginM") ++
-      Option.when(streams != 2 && streams != 4)(s"streams: expected 2 or 4, came $streams")
+      Option.when(streams != 2 && streams != 4)(s"streams: expected 2 or 4, got $streams")
 
   def agents: Vector[Agent] = routes.zipWithIndex.map: (route, vehicle) =>
     val (northM, eastM)         = onLane(route.headingRad, route.startM)

@@ -78,7 +78,7 @@ private[skein] sealed class FileScenario(val file: ScenarioFile, val values: Arr
 
   override def mistakes: Seq[String] =
     def wrong(what: String, isRight: Double => Boolean, expected: String)(of: Iterable[skein.formula.Node]) =
-      of.map(number).find(!isRight(_)).map(came => s"$what: expected $expected, came $came")
+      of.map(number).find(!isRight(_)).map(came => s"$what: expected $expected, got $came")
     def bound(what: String)(of: Iterable[skein.formula.Node]) = wrong(what, _.isFinite, "finite numbers")(of)
     (wrong("duration", each => each > 0 && each <= FileScenario.LongestS, "more than 0 s and at most a day")(
       file.durationS

@@ -83,7 +83,7 @@ object Limit:
     * @param corners north and east of each corner, in order around the polygon; at least three
     */
   def geofence(corners: Vector[(Metres, Metres)]): Limit =
-    require(corners.sizeIs >= 3, s"a geofence has at least three corners, came ${corners.size}")
+    require(corners.sizeIs >= 3, s"a geofence has at least three corners, got ${corners.size}")
     val fence = Fence.Polygon(corners.map((north, east) => (north.value, east.value)))
     single("distance outside the geofence", "m", 0, false, Some(Kept.Inside(fence)))((tracks, vehicle) =>
       instant => fence.beyondM(tracks.northM(vehicle)(instant), tracks.eastM(vehicle)(instant)).max(0)

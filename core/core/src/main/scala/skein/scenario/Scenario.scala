@@ -50,7 +50,7 @@ trait Scenario extends Product:
   /** Explanation of the measures for the report, in whole sentences. */
   def note: String = ""
 
-  /** A message for each setting with an invalid value: `name: expected …, came …`. */
+  /** A message for each setting with an invalid value: `name: expected …, got …`. */
   def mistakes: Seq[String] = Seq.empty
 
   /** The scenario's identifier in configurations and recordings, one word. */
@@ -96,7 +96,7 @@ object Scenario:
     val agents = scenario.agents
     val names  = agents.map(_.name)
     val same   =
-      names.diff(names.distinct).headOption.map(name => s"a name of its own for each, came '$name' twice")
+      names.diff(names.distinct).headOption.map(name => s"a name of its own for each, got '$name' twice")
     same
       .orElse(agents.flatMap(agent => unflyable(agent).map(_ + s", of ${agent.name}")).headOption)
       .map("agents: expected " + _)
@@ -104,16 +104,16 @@ object Scenario:
   private def unflyable(agent: Agent): Option[String] =
     val place = agent.startPositionNed
     val speed = agent.speed.value
-    if !(speed >= 0 && speed.isFinite) then Some(s"a speed of 0 or more, came $speed m/s")
+    if !(speed >= 0 && speed.isFinite) then Some(s"a speed of 0 or more, got $speed m/s")
     else if !Seq(place.x, place.y, place.z).forall(_.isFinite) then
-      Some(s"finite numbers as a start, came ${place.x}, ${place.y}, ${place.z}")
+      Some(s"finite numbers as a start, got ${place.x}, ${place.y}, ${place.z}")
     else if !agent.startHeading.value.isFinite then
-      Some(s"a finite number as the start's heading, came ${agent.startHeading.value}")
+      Some(s"a finite number as the start's heading, got ${agent.startHeading.value}")
     else None
 
   /** A message if a value is outside its bounds. */
   def outside(name: String, value: Int, fewest: Int, most: Int): Option[String] =
-    Option.when(value < fewest || value > most)(s"$name: expected $fewest to $most, came $value")
+    Option.when(value < fewest || value > most)(s"$name: expected $fewest to $most, got $value")
 
   /** A message for each `Double` setting of a scenario that is not above 0.
     *
@@ -124,7 +124,7 @@ object Scenario:
       .zip(scenario.productIterator)
       .collect:
         case (name, value: Double) if !(value > 0 || value == 0 && mayBeZero.contains(name)) =>
-          s"$name: expected more than 0, came $value"
+          s"$name: expected more than 0, got $value"
       .toSeq
 
 /** The state of a flight at a decision.

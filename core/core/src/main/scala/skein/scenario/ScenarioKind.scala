@@ -43,7 +43,7 @@ open class ScenarioKind[A <: Scenario](val standard: A)(using mirror: Mirror.Pro
         case ((setting, reader), default) =>
           values.get(setting) match
             case None       => Right(default)
-            case Some(text) => reader.read(text).toRight(s"$setting: expected ${reader.what}, came '$text'")
+            case Some(text) => reader.read(text).toRight(s"$setting: expected ${reader.what}, got '$text'")
       .partitionMap(identity)
     if unknown.nonEmpty || wrong.nonEmpty then Left(unknown ++ wrong)
     else
@@ -89,7 +89,7 @@ private object Reader:
     case _: String  => Reader("a text", Some(_))
     case other      =>
       throw IllegalArgumentException(
-        s"scenario $scenario: a setting is a number, a truth value or a text, came $other"
+        s"scenario $scenario: a setting is a number, a truth value or a text, got $other"
       )
 
 /** Finds the known word nearest to a misspelt word. */

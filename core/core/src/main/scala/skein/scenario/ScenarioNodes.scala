@@ -30,15 +30,15 @@ private[scenario] final class ScenarioNodes extends ScenarioNumbers:
     * @param setting index of a setting, from its name; −1 if there is no such setting
     */
   def add(number: String, words: ScenarioWords, setting: String => Int): Unit =
-    if number != size.toString then wrong(s"expected node $size, the next one, came '${shown(number)}'")
-    if size >= MostNodes then wrong(s"expected at most $MostNodes nodes, came more")
+    if number != size.toString then wrong(s"expected node $size, the next one, got '${shown(number)}'")
+    if size >= MostNodes then wrong(s"expected at most $MostNodes nodes, got more")
     val word    = words.text("an operation")
     val node    = leaf(word, words, setting).getOrElse(computed(word, words))
     val isTruth = ofTruth(word)
     if isTruth then conditions += size
     all += node
     if depth(node) > MostDepth then
-      wrong(s"expected at most $MostDepth operations upon one another, came more")
+      wrong(s"expected at most $MostDepth operations upon one another, got more")
 
   /** Length of the longest chain of operations that leads to a node. Also records which nodes depend on
     * inputs. A line adds few nodes, so the recursion is not deep.
@@ -58,7 +58,7 @@ private[scenario] final class ScenarioNodes extends ScenarioNumbers:
       case "setting" =>
         val name = words.key("a setting")
         setting(name) match
-          case -1    => wrong(s"expected a setting of an earlier line, came '$name'")
+          case -1    => wrong(s"expected a setting of an earlier line, got '$name'")
           case index => Some(trace.param(index))
       case "memory" => Some(input(PolicyInput.Memory(words.whole("a number of the memory", MostMemory))))
       case "ahead"  => Some(input(Ahead))
@@ -73,7 +73,7 @@ private[scenario] final class ScenarioNodes extends ScenarioNumbers:
   private def computed(word: String, words: ScenarioWords): Node =
     val op = Operations.getOrElse(
       word,
-      wrong(s"expected an operation, such as add, came '${shown(word)}'")
+      wrong(s"expected an operation, such as add, got '${shown(word)}'")
     )
     op match
       case Op.Always           => trace.always

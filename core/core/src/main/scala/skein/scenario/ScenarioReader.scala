@@ -27,14 +27,14 @@ private[scenario] final class ScenarioReader private (text: String):
   private var line = 0
 
   private def file(): ScenarioFile =
-    if text.length > MostLetters then wrong(s"expected at most $MostLetters letters, came ${text.length}")
+    if text.length > MostLetters then wrong(s"expected at most $MostLetters letters, got ${text.length}")
     val lines = text.linesIterator
     line = 1
     val head = ScenarioWords(if lines.hasNext then lines.next() else "", nodes)
-    if !head.isNext(Head) then wrong(s"expected '$Head $Version', came another first line")
+    if !head.isNext(Head) then wrong(s"expected '$Head $Version', got another first line")
     val version = head.text("a version")
     if version != Version.toString then
-      wrong(s"expected version $Version, came '${shown(version)}'; a newer Skein may read it")
+      wrong(s"expected version $Version, got '${shown(version)}'; a newer Skein may read it")
     head.end()
     for each <- lines do
       line += 1
@@ -43,8 +43,8 @@ private[scenario] final class ScenarioReader private (text: String):
         one(words)
         words.end()
     line = 0
-    if vehicles.isEmpty then wrong("expected a vehicle, came none")
-    val name = once.getOrElse("name", wrong("expected a line 'name', came none"))
+    if vehicles.isEmpty then wrong("expected a vehicle, got none")
+    val name = once.getOrElse("name", wrong("expected a line 'name', got none"))
     ScenarioFile(
       text,
       name,
@@ -71,10 +71,10 @@ private[scenario] final class ScenarioReader private (text: String):
         case "setting" =>
           room(settings.size, MostSettings, "settings")
           val name = words.key("a setting's name")
-          if settings.exists(_.name == name) then wrong(s"expected a setting's own name, came '$name' twice")
+          if settings.exists(_.name == name) then wrong(s"expected a setting's own name, got '$name' twice")
           settings += Setting(name, words.number("its default"), words.text("its meaning", MostNote))
         case "duration" =>
-          if duration.isDefined then wrong("expected one line 'duration', came two")
+          if duration.isDefined then wrong("expected one line 'duration', got two")
           duration = Some(words.fixed())
         case "vehicle" =>
           room(vehicles.size, ScenarioNodes.MostVehicles, "vehicles")
@@ -84,7 +84,7 @@ private[scenario] final class ScenarioReader private (text: String):
           val acts = vehicle("does").actions
           room(acts.size, MostActions, "actions of a vehicle")
           if acts.lastOption.exists(_._1.isEmpty) then
-            wrong("expected no action after the one without a condition, came one that is never performed")
+            wrong("expected no action after the one without a condition, got one that is never performed")
           acts += action(words)
         case "remembers" =>
           val memory = vehicle("remembers").memory
@@ -92,26 +92,26 @@ private[scenario] final class ScenarioReader private (text: String):
           memory += ((words.fixed(), words.value()))
         case "wants" =>
           val wanting = vehicle("wants")
-          if wanting.goal.nonEmpty then wrong("expected one line 'wants' of a vehicle, came two")
+          if wanting.goal.nonEmpty then wrong("expected one line 'wants' of a vehicle, got two")
           wanting.goal = Vector(words.value(), words.value())
           wanting.limits = Vector(words.fixed(), words.fixed())
         case "limit"   => limit(words)
         case "series"  => quantity(words)
         case "measure" => measure(words)
         case "over"    =>
-          if over.isDefined then wrong("expected one line 'over', came two")
+          if over.isDefined then wrong("expected one line 'over', got two")
           over = Some((line, words.condition()))
         case other =>
-          wrong(s"expected a node's number or one of ${Words.mkString(", ")}, came '${shown(other)}'")
+          wrong(s"expected a node's number or one of ${Words.mkString(", ")}, got '${shown(other)}'")
 
   private def only(key: String, value: String): Unit =
-    if once.put(key, value).isDefined then wrong(s"expected one line '$key', came two")
+    if once.put(key, value).isDefined then wrong(s"expected one line '$key', got two")
 
   private def room(size: Int, most: Int, what: String): Unit =
-    if size >= most then wrong(s"expected at most $most $what, came more")
+    if size >= most then wrong(s"expected at most $most $what, got more")
 
   private def vehicle(word: String) =
-    vehicles.lastOption.getOrElse(wrong(s"expected '$word' after a vehicle, came none"))
+    vehicles.lastOption.getOrElse(wrong(s"expected '$word' after a vehicle, got none"))
 
   private def action(words: ScenarioWords): (Option[Node], GraphAction[Node]) =
     val when    = Option.when(words.isNext("when"))(words.condition())
@@ -127,23 +127,23 @@ private[scenario] final class ScenarioReader private (text: String):
     val (kind, count) = words.oneOf("a limit", Limits)(_._1)
     val numbers       = if count > 0 then Vector.fill(count)(words.fixed()) else words.allFixed()
     if count == 0 && (numbers.size < 6 || numbers.size % 2 != 0) then
-      wrong(s"expected north and east of three corners or more, came ${numbers.size} numbers")
+      wrong(s"expected north and east of three corners or more, got ${numbers.size} numbers")
     limits += Bounded(kind, numbers)
 
   private def quantity(words: ScenarioWords): Unit =
     room(series.size, MostSeries, "series")
     val name = words.name("its name")
-    if series.exists(_.name == name) then wrong(s"expected a series' own name, came '${shown(name)}' twice")
+    if series.exists(_.name == name) then wrong(s"expected a series' own name, got '${shown(name)}' twice")
     val (unit, value) = (words.text("its unit"), words.value())
     val bound         = Option.when(words.isNext("bound"))((words.name("the bound's name"), words.fixed()))
     series += SeriesLines(line, name, unit, value, bound)
 
   private def measure(words: ScenarioWords): Unit =
-    val of = series.lastOption.getOrElse(wrong("expected 'measure' after a series, came none"))
+    val of = series.lastOption.getOrElse(wrong("expected 'measure' after a series, got none"))
     room(series.iterator.map(_.measures.size).sum, MostMeasures, "measures")
     val name = words.name("its name")
     if series.exists(_.measures.exists(_.name == name)) then
-      wrong(s"expected a measure's own name, came '${shown(name)}' twice")
+      wrong(s"expected a measure's own name, got '${shown(name)}' twice")
     val reduction = words.oneOf("a reduction", Reductions)(identity)
     val window    =
       if reduction == "first-positive" then None
@@ -153,25 +153,25 @@ private[scenario] final class ScenarioReader private (text: String):
   private def policy(of: VehicleLines): PolicyGraph =
     line = of.line
     if !of.actions.lastOption.exists(_._1.isEmpty) then
-      wrong("expected a last action 'does' without a condition for this vehicle, came none")
+      wrong("expected a last action 'does' without a condition for this vehicle, got none")
     val (starts, next) = of.memory.toVector.unzip
     val decided        = of.actions.toVector.flatMap((when, act) => when ++ act.numbers) ++ next
     val read           = nodes.inputsOf(decided)
     val sought         = nodes.inputsOf(of.goal)
     read.foreach:
-      case Ahead => wrong("expected 'ahead' in what a vehicle wants alone, came it in what it does")
+      case Ahead => wrong("expected 'ahead' in what a vehicle wants alone, got it in what it does")
       case PolicyInput.Memory(number) if number >= next.size =>
-        wrong(s"expected a memory of ${number + 1} numbers, lines 'remembers', came ${next.size}")
+        wrong(s"expected a memory of ${number + 1} numbers, lines 'remembers', got ${next.size}")
       case other => exists(other)
     sought.foreach:
-      case PolicyInput.Memory(_) => wrong("expected no memory in what a vehicle wants, came it")
+      case PolicyInput.Memory(_) => wrong("expected no memory in what a vehicle wants, got it")
       case other                 => exists(other)
     val inputs         = (read ++ sought).distinct.collect { case input: PolicyInput => input }
     val fixed          = starts ++ of.limits
     val (trace, graph) = nodes.moved(decided ++ of.goal ++ fixed, inputs :+ Ahead)
     val moved          = graph.iterator
     used += trace.size
-    if used > MostUsed then wrong(s"expected at most $MostUsed nodes in what all vehicles do, came more")
+    if used > MostUsed then wrong(s"expected at most $MostUsed nodes in what all vehicles do, got more")
     PolicyGraph(
       inputs,
       settings.map(_.name).toVector,
@@ -193,7 +193,7 @@ private[scenario] final class ScenarioReader private (text: String):
       case PolicyInput.Age(vehicle)         => vehicle
       case _                                => 0
     if vehicle >= vehicles.size then
-      wrong(s"expected vehicles from 0 to ${vehicles.size - 1}, came a node of vehicle $vehicle")
+      wrong(s"expected vehicles from 0 to ${vehicles.size - 1}, got a node of vehicle $vehicle")
 
   private def drawn(of: SeriesLines): Drawn =
     line = of.line
@@ -214,7 +214,7 @@ private[scenario] final class ScenarioReader private (text: String):
       case input: PolicyInput if input == time                  => input
       case _                                                    =>
         val ages = if hasAges then "positions, velocities, ages" else "positions, velocities"
-        wrong(s"expected $what of $ages and elapsed alone, came a node of something else")
+        wrong(s"expected $what of $ages and elapsed alone, got a node of something else")
     read.foreach(exists)
     val (trace, moved) = nodes.moved(Vector(node), read)
     Watched(trace, moved.head, read)

@@ -38,7 +38,7 @@ private[scenario] final class ScenarioWords(line: String, nodes: ScenarioNumbers
 
   private def split(): Vector[String] =
     if line.length > MostLetters then
-      wrong(s"expected at most $MostLetters letters in a line, came ${line.length}")
+      wrong(s"expected at most $MostLetters letters in a line, got ${line.length}")
     val found = Vector.newBuilder[String]
     var i     = 0
     while i < line.length do
@@ -50,9 +50,9 @@ private[scenario] final class ScenarioWords(line: String, nodes: ScenarioNumbers
           if line(i) == '\\' && i + 1 < line.length then i += 1
           word += line(i)
           i += 1
-        if i >= line.length then wrong("expected a quotation mark at the end of a text, came the line's end")
+        if i >= line.length then wrong("expected a quotation mark at the end of a text, got the line's end")
         i += 1
-        if i < line.length && line(i) != ' ' then wrong("expected a space after a quotation mark, came none")
+        if i < line.length && line(i) != ' ' then wrong("expected a space after a quotation mark, got none")
         found += word.result()
       else
         val end = line.indexOf(' ', i) match
@@ -61,41 +61,41 @@ private[scenario] final class ScenarioWords(line: String, nodes: ScenarioNumbers
         found += line.substring(i, end)
         i = end
     val all = found.result()
-    if all.exists(_.exists(_.isControl)) then wrong("expected printable letters, came a control character")
+    if all.exists(_.exists(_.isControl)) then wrong("expected printable letters, got a control character")
     all
 
   private def hasMore = at < words.size
 
   def text(what: String, most: Int = MostWord): String =
-    if !hasMore then wrong(s"expected $what, came the line's end")
+    if !hasMore then wrong(s"expected $what, got the line's end")
     val word = words(at)
     at += 1
-    if word.length > most then wrong(s"expected $what of at most $most letters, came ${word.length}")
+    if word.length > most then wrong(s"expected $what of at most $most letters, got ${word.length}")
     word
 
   def name(what: String): String =
     val word = text(what)
-    if word.isBlank then wrong(s"expected $what, came an empty text")
+    if word.isBlank then wrong(s"expected $what, got an empty text")
     word
 
   /** Reads a name of small letters, digits and dashes. */
   def key(what: String): String =
     val word = text(what)
     if !word.matches("[a-z][a-z0-9]*(-[a-z0-9]+)*") then
-      wrong(s"expected $what of small letters and digits, with dashes between words, came '${shown(word)}'")
+      wrong(s"expected $what of small letters and digits, with dashes between words, got '${shown(word)}'")
     word
 
   def number(what: String, isRight: Double => Boolean = _.isFinite): Double =
     val word = text(what)
     word.toDoubleOption
       .filter(isRight)
-      .getOrElse(wrong(s"expected $what, a number, came '${shown(word)}'"))
+      .getOrElse(wrong(s"expected $what, a number, got '${shown(word)}'"))
 
   def whole(what: String, most: Int): Int =
     val word = text(what)
     word.toIntOption
       .filter(each => each >= 0 && each < most)
-      .getOrElse(wrong(s"expected $what, a whole number from 0 to ${most - 1}, came '${shown(word)}'"))
+      .getOrElse(wrong(s"expected $what, a whole number from 0 to ${most - 1}, got '${shown(word)}'"))
 
   def isNext(word: String): Boolean =
     val same = hasMore && words(at) == word
@@ -105,7 +105,7 @@ private[scenario] final class ScenarioWords(line: String, nodes: ScenarioNumbers
   def oneOf[A](what: String, options: Iterable[A])(word: A => String): A =
     val came = text(what)
     options.find(word(_) == came).getOrElse(
-      wrong(s"expected $what, one of ${options.map(word).mkString(", ")}, came '${shown(came)}'")
+      wrong(s"expected $what, one of ${options.map(word).mkString(", ")}, got '${shown(came)}'")
     )
 
   private def node(isCondition: Boolean): Node =
@@ -113,9 +113,9 @@ private[scenario] final class ScenarioWords(line: String, nodes: ScenarioNumbers
     val word = text(what)
     val id   = word.toIntOption.filter(each => each >= 0 && each < nodes.size).getOrElse:
       val which = if nodes.size == 0 then "of which there is none" else s"from 0 to ${nodes.size - 1}"
-      wrong(s"expected $what of an earlier line, $which, came '${shown(word)}'")
+      wrong(s"expected $what of an earlier line, $which, got '${shown(word)}'")
     if nodes.isCondition(id) != isCondition then
-      wrong(s"expected $what, came node $id, which is a ${if isCondition then "number" else "condition"}")
+      wrong(s"expected $what, got node $id, which is a ${if isCondition then "number" else "condition"}")
     nodes(id)
 
   def value(): Node     = node(isCondition = false)
@@ -126,7 +126,7 @@ private[scenario] final class ScenarioWords(line: String, nodes: ScenarioNumbers
     val one = value()
     if nodes.reads(one) then
       wrong(
-        s"expected a number of settings alone, came node ${words(at - 1)}, which depends on what is observed"
+        s"expected a number of settings alone, got node ${words(at - 1)}, which depends on what is observed"
       )
     one
 
@@ -135,7 +135,7 @@ private[scenario] final class ScenarioWords(line: String, nodes: ScenarioNumbers
     while hasMore do found += fixed()
     found.result()
 
-  def end(): Unit = if hasMore then wrong(s"expected the line's end, came '${shown(words(at))}'")
+  def end(): Unit = if hasMore then wrong(s"expected the line's end, got '${shown(words(at))}'")
 
 private[scenario] object ScenarioWords:
   private val MostLetters = 4000

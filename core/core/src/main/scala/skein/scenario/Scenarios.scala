@@ -27,7 +27,7 @@ final case class Scenarios(
   private val unspeakable = names.find(!_.matches("""[\p{L}\p{N}_-]+"""))
   require(
     unspeakable.isEmpty,
-    s"expected letters, digits and dashes as a scenario's name, came '${unspeakable.mkString}'"
+    s"expected letters, digits and dashes as a scenario's name, got '${unspeakable.mkString}'"
   )
 
   PolicyFamily.mistake(families).foreach(why => throw IllegalArgumentException(why))
@@ -53,7 +53,7 @@ final case class Scenarios(
   def structure(label: String): Either[String, Structure] =
     structures
       .find(_.label == label)
-      .toRight(s"expected a structure (${labels.mkString(", ")}), came '$label'")
+      .toRight(s"expected a structure (${labels.mkString(", ")}), got '$label'")
 
   /** The default scenario of a program that does not include the paper's game; None in a program that does,
     * whose commands need the two sides of the game instead.
@@ -74,7 +74,7 @@ final case class Scenarios(
     kinds
       .find(_.name == name)
       .toRight(
-        s"expected ${names.mkString(", ")}, came '$name'${
+        s"expected ${names.mkString(", ")}, got '$name'${
             if names.sizeIs > 1 then s"; the nearest is '${Nearest.to(name, names)}'" else ""
           }"
       )

@@ -29,7 +29,7 @@ final case class Shadow(
 
   override def mistakes: Seq[String] =
     Scenario.notPositive(this, "course") ++
-      Option.when(leastS > mostS)(s"leastS: expected mostS ($mostS) or less, came $leastS")
+      Option.when(leastS > mostS)(s"leastS: expected mostS ($mostS) or less, got $leastS")
 
   def agents: Vector[Agent] =
     val weave = Weave(leaderMps, turnRadps, leastS, mostS, course)

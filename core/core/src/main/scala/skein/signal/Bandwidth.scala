@@ -46,7 +46,7 @@ object Bandwidth:
           if limit.timeOf(bytes) <= MostQueue
         yield limit
       case rate => amount(rate, bitUnits).filter(inRange).map(ofBitsPerSecond)
-    bandwidth.toRight(s"expected $form, came '$text'")
+    bandwidth.toRight(s"expected $form, got '$text'")
 
   private def inRange(bits: Long) = bits >= 1000 && bits <= 100_000_000_000L
 

@@ -18,7 +18,7 @@ private[skein] object Expect:
 
   /** The choice with a label. Left states all labels, and the given text. */
   def oneOf[A](choices: Array[A], text: String)(label: A => String): Either[String, A] =
-    choices.find(label(_) == text).toRight(s"expected ${choices.map(label).mkString(" or ")}, came '$text'")
+    choices.find(label(_) == text).toRight(s"expected ${choices.map(label).mkString(" or ")}, got '$text'")
 
   def refused(by: IllegalArgumentException): String =
     Option(by.getMessage).fold(by.toString)(_.stripPrefix("requirement failed: "))

@@ -48,10 +48,10 @@ object Span:
           if nanosOf.contains(unit) && number.toDouble * nanosOf(unit) < Long.MaxValue =>
         Right((BigDecimal(number) * nanosOf(unit)).setScale(0, BigDecimal.RoundingMode.HALF_UP).toLong)
       case negative if negative.startsWith("-") =>
-        Left(s"expected a duration that is not negative, came '$text'")
+        Left(s"expected a duration that is not negative, got '$text'")
       case number =>
         val example = if number.matches(digits) then s"${number}s" else "100ms"
-        Left(s"expected a duration with unit, such as $example, came '$text'")
+        Left(s"expected a duration with unit, such as $example, got '$text'")
 
   private val digits   = """\d+(?:\.\d+)?"""
   private val withUnit = s"($digits)\\s*([a-zµ]+)".r

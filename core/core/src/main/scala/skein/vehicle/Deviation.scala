@@ -68,14 +68,14 @@ object Deviation:
     case s"gusts=$x" => number(word, x, 0, 30).map(gusts => of.copy(wind = of.wind.copy(gustsMps = gusts)))
     case s"shear=$x" =>
       number(word, x, 0.0001, 2).map(roughness => of.copy(wind = of.wind.copy(roughnessM = roughness)))
-    case _ => Left(s"expected $forms; came '$word'")
+    case _ => Left(s"expected $forms; got '$word'")
 
   private val MostWindMps = 30.0
 
   private def number(word: String, text: String, least: Double, most: Double): Either[String, Double] =
     text.toDoubleOption
       .filter(x => x >= least && x <= most)
-      .toRight(s"expected a number from $least to $most, came '$word'")
+      .toRight(s"expected a number from $least to $most, got '$word'")
 
   private def numbers(
       word: String,
@@ -86,6 +86,6 @@ object Deviation:
   ): Either[String, Vector[Double]] =
     val parts = text.split("/", -1)
     for
-      _    <- Expect.that(parts.length == count)(s"expected $count numbers between /, came '$word'")
+      _    <- Expect.that(parts.length == count)(s"expected $count numbers between /, got '$word'")
       read <- Expect.each(parts)(number(word, _, least, most))
     yield read

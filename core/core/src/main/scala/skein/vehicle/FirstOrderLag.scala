@@ -7,7 +7,7 @@ package skein.vehicle
   * @param lagS time constant, s; with 0 the velocity changes immediately
   */
 final case class FirstOrderLag(lagS: Double):
-  require(lagS >= 0, s"a lag must not be negative, came $lagS s")
+  require(lagS >= 0, s"a lag must not be negative, got $lagS s")
 
   def remains(afterS: Double): Double = if lagS == 0 then 0 else StrictMath.exp(-afterS / lagS)
 

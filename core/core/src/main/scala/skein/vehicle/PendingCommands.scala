@@ -8,7 +8,11 @@ import skein.units.Span
   * @param last the last command received
   * @param coming received commands that are not in effect yet, the oldest first
   */
-private[vehicle] final case class PendingCommands[C](acting: C, last: C, coming: Vector[PendingCommands.Coming[C]]):
+private[vehicle] final case class PendingCommands[C](
+    acting: C,
+    last: C,
+    coming: Vector[PendingCommands.Coming[C]]
+):
   import PendingCommands.Coming
 
   /** Receives a command, which may repeat the last one, and lets time pass.

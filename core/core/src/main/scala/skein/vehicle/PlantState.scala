@@ -15,7 +15,7 @@ object PlantState:
     */
   def of[S](like: S, numbers: Vector[Double]): S =
     val expected = PlantState.numbers(like).size
-    require(numbers.size == expected, s"expected a state of $expected numbers, came ${numbers.size}")
+    require(numbers.size == expected, s"expected a state of $expected numbers, got ${numbers.size}")
     val left                 = numbers.iterator
     def made(part: Any): Any = part match
       case _: Double        => left.next()
@@ -25,7 +25,7 @@ object PlantState:
           .find(_.getParameterCount == parts.length)
           .getOrElse(throw IllegalArgumentException(
             s"expected states that are made of their parts alone, of a case class at the top level or in an object, " +
-              s"came ${several.getClass.getName}"
+              s"got ${several.getClass.getName}"
           ))
         maker.setAccessible(true)
         maker.newInstance(parts*)

@@ -28,7 +28,7 @@ final case class ReducedModel(
     turnLagS: Double,
     dragPerM: Double
 ) extends ObservedPlant[PlaneReading]:
-  require(lagS > 0 && turnLagS > 0, s"both lags must be positive, came $lagS s and $turnLagS s")
+  require(lagS > 0 && turnLagS > 0, s"both lags must be positive, got $lagS s and $turnLagS s")
   require(deadTimeS >= 0 && dragPerM >= 0, s"negative: dead time $deadTimeS s or drag $dragPerM /m")
 
   private val drags       = dragPerM != 0

@@ -27,12 +27,12 @@ class StructureSuite extends munit.FunSuite:
       1
     )).contains("axis lag-s: the least value 2.0 must be below the most"))
     assert(refused(Axis("lag-s", 0.1, Double.NaN, 1)).contains("axis lag-s"))
-    assert(refused(structure("slow one", Axis("lag-s", 0.1, 2, 1))).contains("came 'slow one'"))
+    assert(refused(structure("slow one", Axis("lag-s", 0.1, 2, 1))).contains("got 'slow one'"))
     assert(refused(structure("slow", Axis("lag.s", 0.1, 2, 1))).contains("structure slow: expected letters"))
 
   test("a structure creates a plant only from one value per parameter"):
     assertEquals(Structure.Drag.plant(Vector(1, 2, 0.1, 0.01)), ReducedModel(1, 2, 0.1, 2, 0.01))
-    assert(refused(Structure.Drag.plant(Vector(1, 2))).contains("structure drag: expected 4 values, came 2"))
+    assert(refused(Structure.Drag.plant(Vector(1, 2))).contains("structure drag: expected 4 values, got 2"))
 
   test("a program's own structures are found in addition to Skein's, and labels must differ"):
     def program(label: String) =
@@ -40,6 +40,6 @@ class StructureSuite extends munit.FunSuite:
     assertEquals(program("slow").structure("slow").map(_.label), Right("slow"))
     assertEquals(
       program("slow").structure("fast").left.toOption,
-      Some("expected a structure (lag, turn, drag, drag-and-turn, slow), came 'fast'")
+      Some("expected a structure (lag, turn, drag, drag-and-turn, slow), got 'fast'")
     )
     assert(refused(program("drag")).contains("every structure needs a label of its own"))

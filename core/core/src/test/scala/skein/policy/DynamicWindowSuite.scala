@@ -34,7 +34,7 @@ class DynamicWindowSuite extends munit.FunSuite:
       )
       ._1 match
       case along: Action.Along => along
-      case other               => fail(s"came $other")
+      case other               => fail(s"got $other")
 
   test("without obstacles the vehicle flies straight on at its cruise speed"):
     assertEquals(choose(scan(_ => 40)), Action.Along(Radians(0), MetresPerSecond(5), Metres(-4)))

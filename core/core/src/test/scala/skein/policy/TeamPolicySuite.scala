@@ -59,7 +59,7 @@ class TeamPolicySuite extends munit.FunSuite:
       case Action.Along(heading, speed, down, Yaw.Still) =>
         assertEqualsDouble(heading.value, math.atan2(1, 2), 1e-12)
         assertEquals((speed, down), (MetresPerSecond(4), seen.startDown))
-      case other => fail(s"came $other")
+      case other => fail(s"got $other")
 
   test("a place on the circuit is found again from its point, and directions are those from point to point"):
     val circuit = Racetrack(50, 20)
@@ -178,7 +178,7 @@ class TeamPolicySuite extends munit.FunSuite:
         val found = nearest.velocity
         val away  = math.sqrt((found - wanted) dot (found - wanted))
         assert(worst(found) <= 1.01e-4 && (found dot found) <= 36.0001, s"turn $turn")
-        assert(within.forall(_ >= away - 1e-6), s"turn $turn: the grid has ${within.min}, came $away")
+        assert(within.forall(_ >= away - 1e-6), s"turn $turn: the grid has ${within.min}, got $away")
         allowed += 1
       else
         assert(within.isEmpty, s"turn $turn")

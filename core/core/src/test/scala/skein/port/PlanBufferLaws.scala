@@ -74,5 +74,5 @@ class PlanBufferLaws extends munit.ScalaCheckSuite:
       intercept[IllegalArgumentException](
         CommandPlan(0, moments.map(time => (at = ms(time), action = Action.Hover)).toVector)
       ).getMessage
-    assertEquals(mistake(100, 100), "a command's plan: expected moments in ascending order, came others")
-    assertEquals(mistake(0 to 16*), "a command's plan: expected at most 16 actions, came 17")
+    assertEquals(mistake(100, 100), "a command's plan: expected moments in ascending order, got others")
+    assertEquals(mistake(0 to 16*), "a command's plan: expected at most 16 actions, got 17")

@@ -22,7 +22,7 @@ class OurScenariosSuite extends munit.FunSuite:
     assertEquals(PaperDuel().agents.map(_.speed.value), Vector(5.0, 10.0))
     assertEquals(PaperDuel(asPublished = true).title, "duel, as published")
     assertEquals((PaperDuel().crowded(9).pairs, PaperDuel(pairs = 6).crowded(9).pairs), (4, 6))
-    assertEquals(PaperDuel(pairs = 51).mistakes, Seq("pairs: expected 1 to 50, came 51"))
+    assertEquals(PaperDuel(pairs = 51).mistakes, Seq("pairs: expected 1 to 50, got 51"))
 
   test("in surround, pursuers start in a line, half a ring's radius apart, 30 m south of the evader"):
     assertEquals(
@@ -32,7 +32,7 @@ class OurScenariosSuite extends munit.FunSuite:
     assertEquals(Surround().agents.map(_.role).distinct, Vector(Role.Evader, Role.Pursuer))
     assert(Surround(vehicles = 6).note.contains("72° is even"), Surround().note)
     assert(Surround(ringM = 4.185774264457861).note.contains("the ring of 4.19 m,"))
-    assertEquals(Surround(vehicles = 2).mistakes, Seq("vehicles: expected 3 to 100, came 2"))
+    assertEquals(Surround(vehicles = 2).mistakes, Seq("vehicles: expected 3 to 100, got 2"))
     assertEquals((0 to 3).map(Surround().shade), Seq(0, 0, 1, 2))
 
   test("lengths in notes have at most three digits"):
@@ -52,7 +52,7 @@ class OurScenariosSuite extends munit.FunSuite:
       Vector((0.0, 0.0, -5.0), (-4.0, 4.0, -5.0), (-4.0, -4.0, -5.0))
     )
     assertEquals(Formation(straightM = 0, lagS = 0).mistakes, Nil)
-    assertEquals(Formation(radiusM = 0).mistakes, Seq("radiusM: expected more than 0, came 0.0"))
+    assertEquals(Formation(radiusM = 0).mistakes, Seq("radiusM: expected more than 0, got 0.0"))
 
   test("in crossing, streams keep to the right, and all vehicles fly equally far"):
     val crossing = Crossing(vehicles = 5, streams = 2, spacingM = 6, entryM = 25, laneM = 4)
@@ -78,5 +78,5 @@ class OurScenariosSuite extends munit.FunSuite:
     assertEquals(Scenarios.ours.firstWithoutGame, None)
     assertEquals(
       Scenarios(ScenarioKind(Surround())).kind("ring").left.toOption,
-      Some("expected surround, came 'ring'")
+      Some("expected surround, got 'ring'")
     )

@@ -107,14 +107,14 @@ class ScenarioFileSuite extends munit.FunSuite:
     def chain(count: Int) = Iterator.range(2, count).map(node => s"$node add 1 ${node - 1}")
     assertEquals(
       ScenarioText.read(file(chain(9_000), 1, 1)).left.toOption,
-      Some("line 5005: expected at most 5000 operations upon one another, came more")
+      Some("line 5005: expected at most 5000 operations upon one another, got more")
     )
     assertEquals(
       ScenarioText.read(file(chain(4_000), 100, 3_999)).left.toOption.map(_.replaceAll(
         "line [0-9]+",
         "line"
       )),
-      Some("line: expected at most 200000 nodes in what all vehicles do, came more")
+      Some("line: expected at most 200000 nodes in what all vehicles do, got more")
     )
 
   test("a mutated file is read, or refused with one line (seed 5)"):
@@ -173,87 +173,87 @@ object ScenarioFileSuite:
       (
         "another version",
         line("skein-scenario 1", "skein-scenario 2"),
-        "line 1: expected version 1, came '2'; a newer Skein may read it"
+        "line 1: expected version 1, got '2'; a newer Skein may read it"
       ),
-      ("another text", _ => "hello", "line 1: expected 'skein-scenario 1', came another first line"),
-      ("no text", _ => "", "line 1: expected 'skein-scenario 1', came another first line"),
-      ("a node too many", line("6 sub 4 5", "7 sub 4 5"), "line 13: expected node 6, the next one, came '7'"),
+      ("another text", _ => "hello", "line 1: expected 'skein-scenario 1', got another first line"),
+      ("no text", _ => "", "line 1: expected 'skein-scenario 1', got another first line"),
+      ("a node too many", line("6 sub 4 5", "7 sub 4 5"), "line 13: expected node 6, the next one, got '7'"),
       (
         "a later node",
         line("6 sub 4 5", "6 sub 4 6"),
-        "line 13: expected a number's node of an earlier line, from 0 to 5, came '6'"
+        "line 13: expected a number's node of an earlier line, from 0 to 5, got '6'"
       ),
       (
         "a condition in the place of a number",
         line("13 atan2 9 6", "13 atan2 9 12"),
-        "line 20: expected a number's node, came node 12, which is a condition"
+        "line 20: expected a number's node, got node 12, which is a condition"
       ),
       (
         "an operation that there is not",
         line("10 hypot 6 9", "10 system 6 9"),
-        "line 17: expected an operation, such as add, came 'system'"
+        "line 17: expected an operation, such as add, got 'system'"
       ),
       (
         "a word too many",
         line("10 hypot 6 9", "10 hypot 6 9 1"),
-        "line 17: expected the line's end, came '1'"
+        "line 17: expected the line's end, got '1'"
       ),
-      ("no number", line("0 const 30.0", "0 const NaN"), "line 7: expected a constant, a number, came 'NaN'"),
+      ("no number", line("0 const 30.0", "0 const NaN"), "line 7: expected a constant, a number, got 'NaN'"),
       (
         "a setting that there is not",
         line("2 setting ring", "2 setting rings"),
-        "line 9: expected a setting of an earlier line, came 'rings'"
+        "line 9: expected a setting of an earlier line, got 'rings'"
       ),
       (
         "a vehicle that there is not",
         line("4 north 0", "4 north 2"),
-        "line 30: expected vehicles from 0 to 1, came a node of vehicle 2"
+        "line 30: expected vehicles from 0 to 1, got a node of vehicle 2"
       ),
       (
         "a start that depends on what is observed",
         line("vehicle Runner Evader 18 1 1 15 1", "vehicle Runner Evader 18 1 6 15 1"),
-        "line 28: expected a number of settings alone, came node 6, which depends on what is observed"
+        "line 28: expected a number of settings alone, got node 6, which depends on what is observed"
       ),
       (
         "no action without a condition",
         line("does along 13 3 14 yaw forward", "does when 12 land"),
-        "line 30: expected a last action 'does' without a condition for this vehicle, came none"
+        "line 30: expected a last action 'does' without a condition for this vehicle, got none"
       ),
       (
         "an action that is never performed",
         line("remembers 1 13", "does hover"),
-        "line 33: expected no action after the one without a condition, came one that is never performed"
+        "line 33: expected no action after the one without a condition, got one that is never performed"
       ),
       (
         "a memory that there is not",
         line("17 cruise", "17 memory 0"),
-        "line 28: expected a memory of 1 numbers, lines 'remembers', came 0"
+        "line 28: expected a memory of 1 numbers, lines 'remembers', got 0"
       ),
       (
         "a reduction that there is not",
         line("measure nearest least", "measure nearest median"),
         "line 37: expected a reduction, one of mean, rms, sd, least, most, least-at, most-at, time-positive, " +
-          "first-positive, came 'median'"
+          "first-positive, got 'median'"
       ),
       (
         "two vehicles of one name",
         _.replace("\"Scout 1\"", "Runner"),
-        "by its defaults: agents: expected a name of its own for each, came 'Runner' twice"
+        "by its defaults: agents: expected a name of its own for each, got 'Runner' twice"
       ),
       (
         "a flight of no time",
         line("0 const 30.0", "0 const -1"),
-        "by its defaults: duration: expected more than 0 s and at most a day, came -1.0"
+        "by its defaults: duration: expected more than 0 s and at most a day, got -1.0"
       ),
       (
         "no vehicles",
         _.linesIterator.takeWhile(!_.startsWith("vehicle")).mkString("\n"),
-        "expected a vehicle, came none"
+        "expected a vehicle, got none"
       ),
       (
         "a text without an end",
         line("measure nearest least", "measure \"nearest least"),
-        "line 37: expected a quotation mark at the end of a text, came the line's end"
+        "line 37: expected a quotation mark at the end of a text, got the line's end"
       ),
-      ("too long a file", _ + "#".repeat(500_000), "expected at most 409600 letters, came 500722")
+      ("too long a file", _ + "#".repeat(500_000), "expected at most 409600 letters, got 500722")
     )

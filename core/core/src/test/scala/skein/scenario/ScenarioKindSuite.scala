@@ -30,8 +30,8 @@ class ScenarioKindSuite extends munit.FunSuite:
       kind.read(Map("scuots" -> "3", "heightM" -> "high", "isNight" -> "dusk")),
       Left(Seq(
         "no setting 'scuots'; the nearest is 'scouts'",
-        "heightM: expected a number, came 'high'",
-        "isNight: expected true or false, came 'dusk'"
+        "heightM: expected a number, got 'high'",
+        "isNight: expected true or false, got 'dusk'"
       ))
     )
 
@@ -72,14 +72,14 @@ class ScenarioKindSuite extends munit.FunSuite:
     val pair                                    = ScenarioKind(Pair())
     def mistake(setting: String, value: String) = pair.read(Map(setting -> value)).left.map(_.mkString)
     assertEquals(pair.read(Map.empty), Right(Pair()))
-    assertEquals(mistake("second", "A"), Left("agents: expected a name of its own for each, came 'A' twice"))
+    assertEquals(mistake("second", "A"), Left("agents: expected a name of its own for each, got 'A' twice"))
     assertEquals(
       mistake("speedMps", "-1"),
-      Left("agents: expected a speed of 0 or more, came -1.0 m/s, of A")
+      Left("agents: expected a speed of 0 or more, got -1.0 m/s, of A")
     )
     assertEquals(
       mistake("north", "NaN"),
-      Left("agents: expected finite numbers as a start, came NaN, 0.0, -10.0, of B")
+      Left("agents: expected finite numbers as a start, got NaN, 0.0, -10.0, of B")
     )
 
   test("an exception in a scenario's own code is reported with the scenario's name and the line"):
@@ -116,9 +116,9 @@ class ScenarioKindSuite extends munit.FunSuite:
     assertEquals(
       Crossing(vehicles = 1, streams = 3, spacingM = -1).mistakes,
       Seq(
-        "vehicles: expected 2 to 100, came 1",
-        "spacingM: expected more than 0, came -1.0",
-        "streams: expected 2 or 4, came 3"
+        "vehicles: expected 2 to 100, got 1",
+        "spacingM: expected more than 0, got -1.0",
+        "streams: expected 2 or 4, got 3"
       )
     )
 
@@ -127,7 +127,7 @@ class ScenarioKindSuite extends munit.FunSuite:
       Scenarios.ours.kind("crosing"),
       Left(
         "expected duel, surround, formation, crossing, forest, " +
-          "convoy, shadow, came 'crosing'; the nearest is 'crossing'"
+          "convoy, shadow, got 'crosing'; the nearest is 'crossing'"
       )
     )
     intercept[IllegalArgumentException](Scenarios(ScenarioKind(Surround()), ScenarioKind(Surround(4))))
@@ -137,7 +137,7 @@ class ScenarioKindSuite extends munit.FunSuite:
       def agents: Vector[Agent] = Vector.empty
     for name <- Seq("ridge, by night", "ridge.north", "ridge {}", "") do
       val refused = intercept[IllegalArgumentException](Scenarios(ScenarioKind(Called(name))))
-      assert(refused.getMessage.contains(s"came '$name'"), refused.getMessage)
+      assert(refused.getMessage.contains(s"got '$name'"), refused.getMessage)
     assertEquals(Scenarios(ScenarioKind(Called("über-2_b"))).names, Vector("über-2_b"))
 
   test("the distance between two words is the number of letters to change"):

@@ -35,7 +35,7 @@ class BandwidthSuite extends munit.FunSuite:
         "1e9mbit"
       )
     do
-      assertEquals(Bandwidth.parse(text), Left(s"expected ${Bandwidth.form}, came '$text'"))
+      assertEquals(Bandwidth.parse(text), Left(s"expected ${Bandwidth.form}, got '$text'"))
 
   test("the time to send bytes is that of their bits"):
     assertEquals(Bandwidth.ofBitsPerSecond(50_000_000).timeOf(6250), Span.ofMillis(1))

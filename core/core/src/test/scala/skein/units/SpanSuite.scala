@@ -15,10 +15,10 @@ class SpanSuite extends munit.FunSuite:
     do assertEquals(Span.parse(text).map(_.toNanos), Right(nanos), text)
 
   test("a bare number is not a duration, and the message suggests a unit"):
-    assertEquals(Span.parse("40"), Left("expected a duration with unit, such as 40s, came '40'"))
-    assertEquals(Span.parse("0.5"), Left("expected a duration with unit, such as 0.5s, came '0.5'"))
+    assertEquals(Span.parse("40"), Left("expected a duration with unit, such as 40s, got '40'"))
+    assertEquals(Span.parse("0.5"), Left("expected a duration with unit, such as 0.5s, got '0.5'"))
 
   test("negative and infinite durations, and text that is no duration, are refused"):
-    assertEquals(Span.parse("-1s"), Left("expected a duration that is not negative, came '-1s'"))
+    assertEquals(Span.parse("-1s"), Left("expected a duration that is not negative, got '-1s'"))
     for text <- Seq("Inf", "soon", "", "NaN", "1e400s", "99999999999d") do
-      assertEquals(Span.parse(text), Left(s"expected a duration with unit, such as 100ms, came '$text'"))
+      assertEquals(Span.parse(text), Left(s"expected a duration with unit, such as 100ms, got '$text'"))

@@ -16,11 +16,11 @@ class DeviationSuite extends munit.FunSuite:
       ))
     )
     def mistake(text: String) = Deviation.parse(text).left.getOrElse(fail(s"$text is read"))
-    assertEquals(mistake("mass=2"), "expected a number from 0.5 to 1.6, came 'mass=2'")
-    assertEquals(mistake("lag=NaN"), "expected a number from 0.3 to 3.0, came 'lag=NaN'")
-    assertEquals(mistake("wind=8"), "expected 3 numbers between /, came 'wind=8'")
+    assertEquals(mistake("mass=2"), "expected a number from 0.5 to 1.6, got 'mass=2'")
+    assertEquals(mistake("lag=NaN"), "expected a number from 0.3 to 3.0, got 'lag=NaN'")
+    assertEquals(mistake("wind=8"), "expected 3 numbers between /, got 'wind=8'")
     assertEquals(mistake("drag=2,drag=2"), "drag stands twice")
-    assert(mistake("").endsWith("; came ''"))
+    assert(mistake("").endsWith("; got ''"))
     assert(mistake("weight=2").startsWith("expected mass=FACTOR, "))
 
   test("each factor changes its own quantity alone"):

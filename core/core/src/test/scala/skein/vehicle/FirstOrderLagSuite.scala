@@ -24,5 +24,5 @@ class FirstOrderLagSuite extends munit.FunSuite:
 
   test("a negative lag is refused"):
     interceptMessage[IllegalArgumentException](
-      "requirement failed: a lag must not be negative, came -1.0 s"
+      "requirement failed: a lag must not be negative, got -1.0 s"
     )(FirstOrderLag(-1)): Unit

@@ -22,4 +22,4 @@ class PlantStateSuite extends munit.FunSuite:
     for count <- Seq(0, 3, 5) do
       val said = intercept[IllegalArgumentException]:
         PlantState.of(PlaneReading(0, 0, 0, 0), Vector.fill(count)(1.0))
-      assert(said.getMessage.contains(s"expected a state of 4 numbers, came $count"), said.getMessage)
+      assert(said.getMessage.contains(s"expected a state of 4 numbers, got $count"), said.getMessage)

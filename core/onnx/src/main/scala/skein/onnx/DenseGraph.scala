@@ -69,7 +69,7 @@ private[onnx] object DenseGraph:
 
     /** The complete network. An output without a limiting activation is clipped to −1 and 1. */
     def network: Network =
-      if sums.rows != 1 then throw NotDense(s"expected one output, came ${sums.rows}")
+      if sums.rows != 1 then throw NotDense(s"expected one output, got ${sums.rows}")
       val isSquashed = layers.lastOption.exists(_._2.squashes) && sums.isIdentity
       val all        = if isSquashed then layers else layers :+ (sums, Activation.Clip)
       val hidden     = all.init.map(_._1.rows)
@@ -77,7 +77,7 @@ private[onnx] object DenseGraph:
       if hidden.sizeIs > NeuralShape.MostLayers || widest > NeuralShape.MostWidth then
         throw NotDense(
           s"expected at most ${NeuralShape.MostLayers} hidden layers of at most " +
-            s"${NeuralShape.MostWidth} neurons, came ${hidden.mkString("x")}"
+            s"${NeuralShape.MostWidth} neurons, got ${hidden.mkString("x")}"
         )
       (NeuralShape(hidden, LearnedPolicy.Inputs, all.map(_._2)), all.flatMap(_._1.parameters))
 
@@ -94,7 +94,7 @@ private[onnx] object DenseGraph:
 
     def into(next: Affine): Affine =
       if next.weights.exists(_.size != rows) then
-        throw NotDense(s"expected weights of $rows inputs, came ${next.weights.head.size}")
+        throw NotDense(s"expected weights of $rows inputs, got ${next.weights.head.size}")
       val columns = weights.transpose
       val summed  = next.weights.map(row => columns.map(column => dot(row, column)))
       Affine(summed, next.weights.zip(next.biases).map((row, bias) => dot(row, biases) + bias))
@@ -156,7 +156,7 @@ private[onnx] object DenseGraph:
         val shape = fixed(1).values
         if shape.sizeIs > 2 || !(shape.lastOption.exists(last => last == rows || last == -1)) then
           not(
-            s"expected one that keeps $rows numbers in a row, came " +
+            s"expected one that keeps $rows numbers in a row, got " +
               s"${shape.map(_.toLong).mkString("(", ", ", ")")}"
           )
         flow(0)
@@ -182,7 +182,7 @@ private[onnx] object DenseGraph:
           case _ => not("expected one with a constant behind")
       case "Relu" => flow(0).activated(Activation.Relu)
       case "Elu"  =>
-        if number("alpha", 1) != 1 then not(s"expected an alpha of 1, came ${number("alpha", 1)}")
+        if number("alpha", 1) != 1 then not(s"expected an alpha of 1, got ${number("alpha", 1)}")
         flow(0).activated(Activation.Elu)
       case "Tanh"    => flow(0).activated(Activation.Tanh)
       case "Sigmoid" =>
@@ -197,7 +197,7 @@ private[onnx] object DenseGraph:
           (bound(1, "min", Double.NegativeInfinity), bound(2, "max", Double.PositiveInfinity))
         if least == 0 && most.isInfinite then flow(0).activated(Activation.Relu)
         else if least.isInfinite || most.isInfinite || !(least < most) then
-          not(s"expected two bounds, came $least and $most")
+          not(s"expected two bounds, got $least and $most")
         else
           val (middle, half) = ((least + most) / 2, (most - least) / 2)
           val within         =
@@ -217,7 +217,7 @@ private[onnx] object DenseGraph:
   private def spread(tensor: Tensor, rows: Int, not: String => Nothing): Vector[Double] =
     if tensor.values.size == 1 then Vector.fill(rows)(tensor.values.head)
     else if tensor.values.size == rows && tensor.shape.last == rows then tensor.values
-    else not(s"expected $rows numbers, came ${tensor.shape.mkString(" × ")}")
+    else not(s"expected $rows numbers, got ${tensor.shape.mkString(" × ")}")
 
   private def by(operator: String, flow: Flow, tensor: Tensor, not: String => Nothing): Flow =
     val numbers = spread(tensor, flow.sums.rows, not)

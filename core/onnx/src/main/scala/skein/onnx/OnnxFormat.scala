@@ -124,7 +124,7 @@ object OnnxFormat:
       val values = raw.fold(numbers.result())(unpacked(element, _))
       if values.size != count then
         throw Mistake(
-          s"tensor '$name': expected ${dimensions.mkString(" × ")} numbers, came ${values.size}"
+          s"tensor '$name': expected ${dimensions.mkString(" × ")} numbers, got ${values.size}"
         )
       (name, Tensor(dimensions, values))
 
@@ -202,7 +202,7 @@ object OnnxFormat:
           attribute.writeInt64(3, value)
           attribute.writeInt32(20, 2)
       case (name, other) =>
-        throw IllegalArgumentException(s"attribute $name: expected a whole number, came $other")
+        throw IllegalArgumentException(s"attribute $name: expected a whole number, got $other")
 
   private def written(name: String, tensor: Tensor, out: CodedOutputStream): Unit =
     val raw = ByteBuffer.allocate(4 * tensor.values.size).order(ByteOrder.LITTLE_ENDIAN)

@@ -62,9 +62,9 @@ object OnnxPolicy:
           Either.cond(
             family.name == name,
             family,
-            s"$path: expected the file of SHA-256 $digest that decided then, came another"
+            s"$path: expected the file of SHA-256 $digest that decided then, got another"
           )
-      case _ => Left(s"expected ${Prefix}SHA-256:FILE, came '$name'")
+      case _ => Left(s"expected ${Prefix}SHA-256:FILE, got '$name'")
 
   /** Writes a network as an ONNX file.
     *
@@ -108,7 +108,7 @@ object OnnxPolicy:
     for
       _    <- Expect.that(Files.isRegularFile(file))("expected an ONNX model, there is no such file")
       size <- attempted(Files.size(file))
-      _    <- Expect.that(size <= MostBytes)(s"expected at most $MostBytes bytes, came $size")
+      _    <- Expect.that(size <= MostBytes)(s"expected at most $MostBytes bytes, got $size")
       all  <- attempted(Files.readAllBytes(file))
     yield all
 
@@ -116,7 +116,7 @@ object OnnxPolicy:
   private def beside(file: Path)(name: String, offset: Long, length: Long): Either[String, Array[Byte]] =
     val other = Path.of(name)
     if other.isAbsolute || other.getNameCount != 1 || name == ".." then
-      Left(s"expected weights in a file beside it, came '$name'")
+      Left(s"expected weights in a file beside it, got '$name'")
     else
       contents(file.resolveSibling(other)).left.map(reason => s"its weights in $name: $reason").flatMap:
         all =>
@@ -137,7 +137,7 @@ object OnnxPolicy:
       fits(graph.inputs.head, LearnedPolicy.Inputs) && fits(graph.outputs.head, 1)
     Expect.that(isRight):
       s"expected one input of shape (batch, ${LearnedPolicy.Inputs}) and one output of shape (batch, 1), " +
-        s"came ${told("input", graph.inputs)} and ${told("output", graph.outputs)}"
+        s"got ${told("input", graph.inputs)} and ${told("output", graph.outputs)}"
 
   private def told(what: String, ports: Vector[Port]): String =
     if ports.isEmpty then s"no $what" else s"$what ${ports.map(_.text).mkString(", ")}"
@@ -154,7 +154,7 @@ object OnnxPolicy:
         PolicyFamily.learned(shape),
         role => parameters ++ mostTurn(graph, role)
       ),
-      "expected finite weights, came some that are none"
+      "expected finite weights, got some that are none"
     )
 
   private def mostTurn(graph: OnnxGraph, role: Role): Vector[Double] =
@@ -175,7 +175,7 @@ object OnnxPolicy:
       runner <-
         runners.headOption.toRight(s"it is no dense network ($why), and nothing here runs other models")
       _ <- Expect.that(input.element == Float32):
-        s"it is no dense network ($why), and runs on 32-bit floats alone: came input of type ${input.element}"
+        s"it is no dense network ($why), and runs on 32-bit floats alone: got input of type ${input.element}"
       model <- runner.load(bytes).left.map(reason => s"it is no dense network ($why): $reason")
       rank  = input.shape.fold(2)(_.size)
       asked = (seen: Array[Float]) => model(seen, Vector(LearnedPolicy.Inputs).reverse.padTo(rank, 1).reverse)
@@ -203,8 +203,8 @@ object OnnxPolicy:
   ): Either[String, Double] =
     asked(seen.fromOwnHeading.map(_.toFloat)).flatMap:
       case Array(share) if share.isFinite => Right(share.toDouble.max(-1).min(1))
-      case Array(share)                   => Left(s"expected a number from -1 to 1, came $share")
-      case others                         => Left(s"expected one number, came ${others.length}")
+      case Array(share)                   => Left(s"expected a number from -1 to 1, got $share")
+      case others                         => Left(s"expected one number, got ${others.length}")
 
   /** A policy that a runtime evaluates; thread-safe. Throws if the model fails or its output is not a number.
     */

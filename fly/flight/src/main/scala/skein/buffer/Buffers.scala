@@ -127,7 +127,7 @@ private[buffer] final case class Buffers(
     shows(now) match
       case Some(simulated) if known(name) => taken(ticket, plan, name, simulated)
       case _ if !known(name) && known.size + waiting.size >= MostVehicles =>
-        refused(ticket, PlanCall.refusal(s"expected plans of at most $MostVehicles vehicles, came one more"))
+        refused(ticket, PlanCall.refusal(s"expected plans of at most $MostVehicles vehicles, got one more"))
       case _ =>
         val others = waiting.getOrElse(name, Vector.empty)
         val next   = copy(waiting = waiting.updated(name, others.appended((ticket = ticket, plan = plan))))

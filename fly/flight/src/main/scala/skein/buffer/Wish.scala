@@ -43,7 +43,7 @@ private[buffer] object Wish:
   /** The meaning of a call too long to decode. A long move may be any vehicle's, so it ends all plans. */
   def ofLong(method: String): Option[Wish] =
     if method == PlanCall.Function then
-      Some(Plan(Left(PlanCall.refusal(s"expected a plan of at most $MostBytes bytes, came more"))))
+      Some(Plan(Left(PlanCall.refusal(s"expected a plan of at most $MostBytes bytes, got more"))))
     else Option.when(PlanCall.isMove(method))(Reset)
 
   /** The vehicle's name: the last parameter of functions of one vehicle. */

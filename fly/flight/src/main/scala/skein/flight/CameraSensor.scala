@@ -142,7 +142,7 @@ private[skein] final class CameraSensor(
 
   private def look(worker: Int, image: Image): Either[String, Option[PolarMeasurement]] = image.pixels match
     case Pixels.Bgr(bytes) => recognisers(worker).find(image.width, image.height, bytes.buffer)
-    case other             => Left(s"expected raw pixels, came ${other.productPrefix}")
+    case other             => Left(s"expected raw pixels, got ${other.productPrefix}")
 
   private def counted(recognised: Recognised[(Image, Option[PolarMeasurement])]): Option[Seen] =
     images += 1

@@ -47,7 +47,7 @@ final class EnvironmentProcess private (socket: ProcessSocket, names: Vector[Str
       read(ujson.read(line()))
     catch
       case lost: IOException => Left(lost.getMessage)
-      case NonFatal(wrong)   => Left(s"expected an environment's answer, came ${wrong.getMessage}")
+      case NonFatal(wrong)   => Left(s"expected an environment's answer, got ${wrong.getMessage}")
 
   private def read(answer: Value): Either[String, Moment] = answer.obj.get("error") match
     case Some(error) => Left(ProcessSocket.plain(error.str))
@@ -69,7 +69,7 @@ final class EnvironmentProcess private (socket: ProcessSocket, names: Vector[Str
     val bytes = ByteBuffer.allocate(LongestLine)
     while bytes.position() == 0 || bytes.get(bytes.position() - 1) != '\n' do
       socket.read(bytes)
-      if !bytes.hasRemaining then throw IOException(s"expected at most $LongestLine bytes, came more")
+      if !bytes.hasRemaining then throw IOException(s"expected at most $LongestLine bytes, got more")
     String(bytes.array, 0, bytes.position(), UTF_8)
 
 object EnvironmentProcess:

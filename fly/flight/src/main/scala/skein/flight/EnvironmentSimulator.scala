@@ -64,7 +64,7 @@ final class EnvironmentSimulator private (
         while steps < until && failed.isEmpty do stepOnce()
     else
       Future.successful(Left(VehicleError.Refused(
-        s"expected a multiple of ${begun.step.toMillis} ms, the environment's step, came ${span.toMillis} ms"
+        s"expected a multiple of ${begun.step.toMillis} ms, the environment's step, got ${span.toMillis} ms"
       )))
 
   private def asked(change: => Unit): Future[Either[VehicleError, Unit]] = Future:
@@ -165,5 +165,5 @@ object EnvironmentSimulator:
     for
       begun <- process.reset()
       _     <-
-        Expect.that(begun.step > Span.Zero)(s"stepS: expected more than 0, came ${begun.step.toSeconds}")
+        Expect.that(begun.step > Span.Zero)(s"stepS: expected more than 0, got ${begun.step.toSeconds}")
     yield new EnvironmentSimulator(process, begun, names, clock, recorder, on)

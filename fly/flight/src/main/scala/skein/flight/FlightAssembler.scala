@@ -333,7 +333,7 @@ final class FlightAssembler(
     if !settings.isDecentralised(plan) then None
     else
       elsewhere
-        .map(source => s"expected vehicles over AirSim's protocol, came those of ${source.where}")
+        .map(source => s"expected vehicles over AirSim's protocol, got those of ${source.where}")
         .orElse:
           Option.when(plan.policy.exists(_.learning.isDefined)):
             "expected policies that do not learn in flight, which is one learner for all"
@@ -351,14 +351,14 @@ final class FlightAssembler(
           for error <- answers.flatMap(_.left.toOption).headOption do
             throw CannotFly(
               "plan-in-packet: expected a buffer of plans beside the vehicles, as the built-in simulator has and " +
-                s"`skein link --buffer` puts before AirSim, came ${reached.where}: ${error.message}"
+                s"`skein link --buffer` puts before AirSim, got ${reached.where}: ${error.message}"
             )
 
   private def fromSource(plan: FlightPlan, source: VehicleSource, opened: Opened): Future[ConnectedFleet] =
     if plan.loop == LoopKind.Paused then Future.failed(CannotFly(FlightAssembler.noSteps(source.where)))
     else if plan.link.bandwidth.isDefined then
       Future.failed(CannotFly(
-        s"expected a link without a rate to ${source.where}, whose messages have no known size, came ${plan.link.name}"
+        s"expected a link without a rate to ${source.where}, whose messages have no known size, got ${plan.link.name}"
       ))
     else
       SourceFleet(source, fleet, clock, () => calledOff(plan.id)).connect(opened).map: reached =>

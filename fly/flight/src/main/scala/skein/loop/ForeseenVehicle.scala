@@ -31,7 +31,7 @@ private object ForeseenVehicle:
       case _: (QuadrotorModel | CarModel) | AdaptiveQuadrotor | ConstantVelocity | ConstantTurn => Right(
           ReducedModel.airSimAt(settings.altitudeM(-agent.startPositionNed.z))
         )
-      case other => Left(s"expected a model of a plant (skein.vehicle.PlantModel) to plan by, came $other")
+      case other => Left(s"expected a model of a plant (skein.vehicle.PlantModel) to plan by, got $other")
     val known =
       for
         plant <- plant

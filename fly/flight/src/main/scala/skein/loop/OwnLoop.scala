@@ -41,9 +41,9 @@ final class OwnLoop(
 ) extends NamedLoop:
   require(
     name.matches("[a-z][a-z0-9-]{0,39}"),
-    s"a loop's name: expected up to 40 small letters, digits and dashes, came '$name'"
+    s"a loop's name: expected up to 40 small letters, digits and dashes, got '$name'"
   )
-  require(LoopKind.parse(name).isLeft, s"a loop's name: expected none of Skein's own, came '$name'")
+  require(LoopKind.parse(name).isLeft, s"a loop's name: expected none of Skein's own, got '$name'")
 
 object OwnLoop:
   /** Time after the switch was shut down in which a graph must end before it is aborted. More than a command

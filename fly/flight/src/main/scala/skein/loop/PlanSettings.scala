@@ -42,7 +42,7 @@ final case class PlanSettings(
   /** The settings with invalid values, one line each. */
   def mistakes: Seq[String] =
     def check(name: String, value: Any, isRight: Boolean, expected: String) =
-      Option.when(!isRight)(s"$name: expected $expected, came $value")
+      Option.when(!isRight)(s"$name: expected $expected, got $value")
     Seq(
       check(
         "deadline",

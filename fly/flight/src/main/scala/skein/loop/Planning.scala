@@ -151,7 +151,7 @@ object Planning:
                if others.sizeIs == 1 then "flies by its own policy" else "fly by their own policies"
              }"),
       "plan: expected a multirotor that can plan, by a policy with a Goal or by one that " +
-        s"pursues one opponent, came none: ${names(others)} would fly by their own policies"
+        s"pursues one opponent, got none: ${names(others)} would fly by their own policies"
     )
 
   private val MostNamed = 8

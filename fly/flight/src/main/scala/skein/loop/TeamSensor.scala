@@ -23,7 +23,7 @@ private final class TeamSensor(val vehicle: Int, val name: String, sensor: Senso
         Either.cond(
           values.size == columns.size && values.forall(_.isFinite),
           SensorReading(vehicle, name, sequence, columns, answer.map(_ => values)),
-          VehicleError.Malformed(s"expected ${columns.mkString(", ")}, came ${values.mkString(", ")}")
+          VehicleError.Malformed(s"expected ${columns.mkString(", ")}, got ${values.mkString(", ")}")
         ))
       .map:
         case Right(reading) =>

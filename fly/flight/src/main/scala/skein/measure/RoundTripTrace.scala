@@ -51,13 +51,13 @@ object RoundTripTrace:
     val total = lines.collectFirst { case summary(sent, lastsMs) => (sent.toInt, lastsMs.toDouble) }
     for
       _ <- Expect.that(trips.nonEmpty)(
-        "expected the answers of ping, such as 'icmp_seq=1 ttl=64 time=36.1 ms', came none"
+        "expected the answers of ping, such as 'icmp_seq=1 ttl=64 time=36.1 ms', got none"
       )
       first = trips.keys.min.min(1)
       last  = trips.keys.max.max(total.fold(0)(first + _._1 - 1))
       _ <- Expect.that(
         last - first < MostSamples
-      )(s"expected at most $MostSamples requests, came ${last - first + 1}")
+      )(s"expected at most $MostSamples requests, got ${last - first + 1}")
       // Without a summary, ping was stopped by force: it sends once a second by default.
       everyS = total.filter(_._1 > 1).fold(1.0)((sent, lastsMs) => lastsMs / 1000 / (sent - 1))
     yield RoundTripTrace(
@@ -68,7 +68,7 @@ object RoundTripTrace:
   private def ofTable(lines: Vector[(String, Int)]): Either[String, RoundTripTrace] =
     val rows = lines.filterNot((line, _) => line.isEmpty || line.startsWith("#") || line == "time_s,rtt_ms")
     for
-      _ <- Expect.that(rows.size <= MostSamples)(s"expected at most $MostSamples requests, came ${rows.size}")
+      _ <- Expect.that(rows.size <= MostSamples)(s"expected at most $MostSamples requests, got ${rows.size}")
       read <- Expect.each(rows): (line, number) =>
         val row = line.split(",", -1) match
           case Array(time, "") => time.toDoubleOption.map((_, None))
@@ -76,9 +76,9 @@ object RoundTripTrace:
             time.toDoubleOption.zip(ms.toDoubleOption.filter(t => t >= 0 && t <= MostMs).map(Some(_)))
           case _ => None
         row.filter(_._1.isFinite).toRight(
-          s"line $number: expected time_s,rtt_ms, such as 0.1,36.2, or 0.1, where no answer came; came '$line'"
+          s"line $number: expected time_s,rtt_ms, such as 0.1,36.2, or 0.1, where no answer came; got '$line'"
         )
-      _ <- Expect.that(read.exists(_._2.nonEmpty))("expected round trips, came none")
+      _ <- Expect.that(read.exists(_._2.nonEmpty))("expected round trips, got none")
       _ <- Expect.that(read.map(_._1).sliding(2).forall(pair => pair.head <= pair.last)):
         "expected times in ascending order"
     yield RoundTripTrace(read.map(_._1), read.map(_._2))

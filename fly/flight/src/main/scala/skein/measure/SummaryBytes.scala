@@ -36,7 +36,7 @@ object SummaryBytes:
     try Right(Codecs(scenario).all.read(DataInputStream(ByteArrayInputStream(inflated(bytes.toArray)))))
     catch
       case wrong @ (_: IOException | _: IllegalArgumentException | _: NoSuchElementException) =>
-        Left(s"expected a flight's summary, came ${bytes.length} bytes that are none: $wrong")
+        Left(s"expected a flight's summary, got ${bytes.length} bytes that are none: $wrong")
 
   private def inflated(bytes: Array[Byte]): Array[Byte] =
     val all = InflaterInputStream(ByteArrayInputStream(bytes)).readNBytes(MostBytes + 1)

@@ -5,7 +5,7 @@ import pureconfig.error.*
 import scala.jdk.CollectionConverters.*
 import skein.scenario.{Nearest, ScenarioText, Scenarios}
 
-/** Describes mistakes in a configuration, a line for each value: `FILE: LINE: PATH: expected …, came …`. A
+/** Describes mistakes in a configuration, a line for each value: `FILE: LINE: PATH: expected …, got …`. A
   * value from an option is identified by the option's name.
   */
 private[skein] object ConfigMistakes:
@@ -66,13 +66,13 @@ private[skein] object ConfigMistakes:
   private val Ours = "reference.conf"
 
   private def because(reason: FailureReason, path: String, config: Config): String = reason match
-    case CannotConvert(value, "Boolean", _) => s"expected true or false, came '$value'"
+    case CannotConvert(value, "Boolean", _) => s"expected true or false, got '$value'"
     case CannotConvert(_, _, because)       => oneLine(because)
     case WrongType(_, expected)             =>
       val came = if config.hasPath(path) then text(config.getValue(path)) else "nothing"
-      s"expected ${expected.map(named).toSeq.sorted.mkString(" or ")}, came $came"
-    case EmptyStringFound(_) => "expected a value, came ''"
-    case KeyNotFound(key, _) => s"expected '$key', came nothing"
+      s"expected ${expected.map(named).toSeq.sorted.mkString(" or ")}, got $came"
+    case EmptyStringFound(_) => "expected a value, got ''"
+    case KeyNotFound(key, _) => s"expected '$key', got nothing"
     case other               => oneLine(other.description)
 
   private def named(kind: ConfigValueType): String = kind match
@@ -92,7 +92,7 @@ private[skein] object ConfigMistakes:
 
   private def ofValue(value: ConfigValue, known: ConfigValue, path: String): Seq[String] =
     def expected(what: String) =
-      Seq(oneLine(s"${at(path, value.origin)}: expected $what, came ${text(value)}"))
+      Seq(oneLine(s"${at(path, value.origin)}: expected $what, got ${text(value)}"))
     (known, value) match
       case (known: ConfigObject, set: ConfigObject) =>
         keys(set).flatMap: (key, value) =>
@@ -103,7 +103,7 @@ private[skein] object ConfigMistakes:
       case (_: ConfigObject, _)                 => expected("settings in braces")
       case (_: ConfigList, several: ConfigList) =>
         several.asScala.toSeq.filterNot(isSingle).map: one =>
-          s"${at(path, one.origin)}: expected a list of single values, came ${text(one)} in it"
+          s"${at(path, one.origin)}: expected a list of single values, got ${text(one)} in it"
       case (_: ConfigList, _)                                         => expected("a list in brackets")
       case _ if value.valueType == known.valueType || isSingle(value) => Nil
       case _ if value.valueType == ConfigValueType.NULL               => expected("a value")

@@ -254,24 +254,24 @@ object FlySettings:
 
   private def validated(settings: FlySettings, config: Config): Either[String, FlySettings] =
     val mistakes = Seq(
-      Option.when(settings.loops.isEmpty)("loops: expected at least one loop, came none"),
+      Option.when(settings.loops.isEmpty)("loops: expected at least one loop, got none"),
       Option.when(settings.links.isEmpty && settings.loops.exists(_ != LoopKind.Paused))(
-        "links: expected at least one link for any loop but paused, came none"
+        "links: expected at least one link for any loop but paused, got none"
       ),
       Option.when(settings.duration < settings.period * 2)(shortMistake(settings, config)),
       Option.when(
         settings.period < Span.ofMillis(1)
-      )(s"period: expected 1 ms or more, came ${settings.period.toMillis} ms"),
+      )(s"period: expected 1 ms or more, got ${settings.period.toMillis} ms"),
       Option.when(settings.fleet.agents.isEmpty)(
-        s"${settings.scenario.name}.agents: expected one or more, came none"
+        s"${settings.scenario.name}.agents: expected one or more, got none"
       ),
       Option.when(settings.scene.isEmpty && NamedScene.shipped(settings.scenario.scene).isEmpty)(
         s"${settings.scenario.name}.scene: expected ${SceneFile.Names.mkString(", ")}, " +
-          s"came '${settings.scenario.scene}'"
+          s"got '${settings.scenario.scene}'"
       ),
       settings.multirotors.find(agent => !isRightAltitude(-agent.startPositionNed.z)).map(agent =>
         s"${settings.scenario.name}: expected starts above 0 and up to " +
-          s"$MostAltitudeM m, came ${agent.name} at ${-agent.startPositionNed.z} m"
+          s"$MostAltitudeM m, got ${agent.name} at ${-agent.startPositionNed.z} m"
       ),
       Option.when(settings.wire == Wire.Mavlink && settings.loops.contains(LoopKind.Paused))(
         "wire: expected loops other than paused over MAVLink, since " +
@@ -281,16 +281,16 @@ object FlySettings:
         .find(_.startPositionNed.z != 0)
         .map(car =>
           s"${settings.scenario.name}: expected cars on the ground, at 0 " +
-            s"m, came ${car.name} at ${-car.startPositionNed.z} m"
+            s"m, got ${car.name} at ${-car.startPositionNed.z} m"
         ),
       settings.cars.find(_ => settings.wire == Wire.Mavlink).map(car =>
-        s"wire: expected multirotors alone over MAVLink, came the car ${car.name}"
+        s"wire: expected multirotors alone over MAVLink, got the car ${car.name}"
       ),
       Option.when(settings.wire == Wire.Mavlink && settings.images.nonEmpty)(
         "images: expected none with wire mavlink, which carries no images"
       ),
       Option.when(settings.onlyPolicies && settings.policies.isEmpty)(
-        "only-policies: expected policies beside it, came none"
+        "only-policies: expected policies beside it, got none"
       ),
       Moves.mistake(settings.movesInFlight).map("moves-in-flight: " + _),
       packetMistake(settings).map("plan-in-packet: " + _),
@@ -300,18 +300,18 @@ object FlySettings:
       onlyMistake(settings).map("only: " + _),
       betweenMistake(settings).map("between: " + _),
       Option.when(settings.solver.isDefined && !settings.loops.exists(decidedElsewhere))(
-        "solver: expected with a loop whose decisions can be made elsewhere, came with paused alone"
+        "solver: expected with a loop whose decisions can be made elsewhere, got with paused alone"
       ),
       Option.when(settings.solver.isDefined && settings.policies.exists(OutsidePolicy.decides))(
-        "solver: expected with policies that both processes have, came with one behind a socket"
+        "solver: expected with policies that both processes have, got with one behind a socket"
       ),
       Option.when(settings.deadline.exists(_ <= Span.Zero))(
-        s"deadline: expected more than 0, came ${settings.deadline.fold(0.0)(_.toMillis)} ms"
+        s"deadline: expected more than 0, got ${settings.deadline.fold(0.0)(_.toMillis)} ms"
       ),
       lateMistake(settings),
       settings.policies.find(file => !isFlownIn(settings.fleet, file)).map(file =>
         s"policies: expected with a scenario of a ${PolicyFile.name(file.role)} and " +
-          s"vehicles of another role, came with '${settings.scenario.name}'"
+          s"vehicles of another role, got with '${settings.scenario.name}'"
       )
     ).flatten ++ settings.planning.mistakes.map(mistake => ConfigKeys.ofMistake(s"planning.$mistake"))
     val all = if mistakes.isEmpty then predictorMistake(settings).toSeq ++ planMistake(settings) else mistakes
@@ -323,10 +323,10 @@ object FlySettings:
   private def shortMistake(settings: FlySettings, config: Config): String =
     if optionAt("period", config).isDefined && optionAt("duration", config).isEmpty then
       s"period: expected half the duration (${(settings.duration / 2).toMillis} ms) or less, " +
-        s"came ${settings.period.toMillis} ms"
+        s"got ${settings.period.toMillis} ms"
     else
       s"duration: expected two periods (${(settings.period * 2).toMillis} ms) or more, " +
-        s"came ${settings.duration.toMillis} ms"
+        s"got ${settings.duration.toMillis} ms"
 
   /** Replaces the key at the beginning of a mistake by the source of its value. */
   private def placed(mistake: String, config: Config): String =
@@ -350,29 +350,29 @@ object FlySettings:
     ):
       val which = if settings.deadline.isDefined then "deadline" else "period"
       s"$which: expected more than planning.deadline, for which a solver searches " +
-        s"its plans, ${searched.toMillis} ms; came ${within.toMillis} ms"
+        s"its plans, ${searched.toMillis} ms; got ${within.toMillis} ms"
 
   private def packetMistake(settings: FlySettings): Option[String] =
     if !settings.planInPacket then None
     else if !settings.loops.contains(LoopKind.Predictive) then
-      Some("expected with the loop predictive, which foresees its commands, came without it")
+      Some("expected with the loop predictive, which foresees its commands, got without it")
     else if settings.wire == Wire.Mavlink then
-      Some("expected vehicles over AirSim's protocol, came mavlink")
+      Some("expected vehicles over AirSim's protocol, got mavlink")
     else if settings.deadline.isDefined || settings.solver.isDefined then
       Some("expected without deadline and solver, since the policy is asked for later moments too")
     else if settings.policies.exists(OutsidePolicy.decides) then
       Some(
-        "expected policies of this process, which are asked for later moments too, came one behind a socket"
+        "expected policies of this process, which are asked for later moments too, got one behind a socket"
       )
     else
-      settings.cars.headOption.map(car => s"expected multirotors, which hold plans, came the car ${car.name}")
+      settings.cars.headOption.map(car => s"expected multirotors, which hold plans, got the car ${car.name}")
 
   private def knowsMistake(settings: FlySettings): Option[String] =
     val all = settings.knows == Knowledge.All
     if !all && settings.loops.contains(LoopKind.Plan) then
-      Some("expected all with the loop plan, which plans against the policies of others, came positions")
+      Some("expected all with the loop plan, which plans against the policies of others, got positions")
     else if !all && settings.solver.isDefined then
-      Some("expected all with a solver, which is told every command, came positions")
+      Some("expected all with a solver, which is told every command, got positions")
     else None
 
   private def strangersMistake(settings: FlySettings): Option[String] =
@@ -382,15 +382,15 @@ object FlySettings:
     else if settings.loopSettings.knows == Knowledge.All then
       Some(
         "expected knows positions with it, or decentralised, since otherwise all commands are known, " +
-          s"came ${strangers.label} without"
+          s"got ${strangers.label} without"
       )
     else if !settings.loops.exists(predicts) then
-      Some(s"expected a loop that predicts, such as predictive, came ${strangers.label} without")
+      Some(s"expected a loop that predicts, such as predictive, got ${strangers.label} without")
     else
       Option.when(
         strangers == Strangers.Belief && settings.predictor == PredictionModel.ConstantVelocity
       )(
-        "expected turn or straight with the predictor constant-velocity, which predicts all straight on, came belief"
+        "expected turn or straight with the predictor constant-velocity, which predicts all straight on, got belief"
       )
 
   private def apartMistake(settings: FlySettings, isGiven: Boolean): Option[String] =
@@ -400,34 +400,34 @@ object FlySettings:
     else
       other
         .map(loop =>
-          s"expected loops that decide for each vehicle by itself (${Apart}), came ${loop.label}"
+          s"expected loops that decide for each vehicle by itself (${Apart}), got ${loop.label}"
         )
         .orElse(Option.when(
           settings.wire == Wire.Mavlink
-        )("expected vehicles over AirSim's protocol, came mavlink"))
+        )("expected vehicles over AirSim's protocol, got mavlink"))
         .orElse(Option.when(settings.solver.isDefined)("expected no solver, which decides for all"))
         .orElse(Option.when(isGiven && settings.knows == Knowledge.All)(
-          "expected knows positions, since no message carries the commands of others, came all"
+          "expected knows positions, since no message carries the commands of others, got all"
         ))
         .orElse(Option.when(settings.fleet.agents.sizeIs > MostControllers)(
-          s"expected at most ${MostControllers} vehicles, came ${settings.fleet.agents.size}"
+          s"expected at most ${MostControllers} vehicles, got ${settings.fleet.agents.size}"
         ))
 
   private def onlyMistake(settings: FlySettings): Option[String] =
     settings.only.flatMap: name =>
-      if !settings.decentralised then Some(s"expected decentralised with it, came '$name' without")
+      if !settings.decentralised then Some(s"expected decentralised with it, got '$name' without")
       else if settings.own.isEmpty then
-        Some(s"expected one of ${settings.fleet.agents.map(_.name).mkString(", ")}, came '$name'")
+        Some(s"expected one of ${settings.fleet.agents.map(_.name).mkString(", ")}, got '$name'")
       else
         Option.when(settings.loops.contains(LoopKind.Paused)):
           "expected loops other than paused, which stops the time of all vehicles"
 
   private def betweenMistake(settings: FlySettings): Option[String] =
     settings.between.flatMap: link =>
-      if !settings.decentralised then Some(s"expected decentralised with it, came '${link.text}' without")
+      if !settings.decentralised then Some(s"expected decentralised with it, got '${link.text}' without")
       else
         settings.only.map: name =>
-          s"expected all controllers in this process, which carries their messages, came only $name"
+          s"expected all controllers in this process, which carries their messages, got only $name"
 
   private def isRightAltitude(altitudeM: Double) = altitudeM > 0 && altitudeM <= MostAltitudeM
 
@@ -456,18 +456,18 @@ object FlySettings:
   private given ConfigReader[Int] =
     parsed(
       "whole number",
-      text => exactly(text)(_.intValueExact).toRight(s"expected a whole number, came '$text'")
+      text => exactly(text)(_.intValueExact).toRight(s"expected a whole number, got '$text'")
     )
 
   private given ConfigReader[Long] =
     parsed(
       "whole number",
-      text => exactly(text)(_.longValueExact).toRight(s"expected a whole number, came '$text'")
+      text => exactly(text)(_.longValueExact).toRight(s"expected a whole number, got '$text'")
     )
 
   private given ConfigReader[Double] = parsed(
     "number",
-    text => text.toDoubleOption.filter(_.isFinite).toRight(s"expected a finite number, came '$text'")
+    text => text.toDoubleOption.filter(_.isFinite).toRight(s"expected a finite number, got '$text'")
   )
 
   /** Reads a number exactly, so that `1e3` is a whole number too. */

@@ -25,5 +25,5 @@ object ImageSource:
     case other                                                        =>
       Left(
         s"expected seen, or CAMERA@HZ with up to ${MostHz.toInt} images a " +
-          s"second, for example front_center@10, came '$other'"
+          s"second, for example front_center@10, got '$other'"
       )

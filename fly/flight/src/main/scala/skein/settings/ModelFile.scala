@@ -37,7 +37,7 @@ object ModelFile:
     flownAtM
       .filter(flown => math.abs(flown - altitudeM) > SameAltitudeM)
       .map(flown =>
-        s"expected a model of flights at ${number(altitudeM)} m altitude, since the vehicles' lag depends on it, came one of ${number(flown)} m"
+        s"expected a model of flights at ${number(altitudeM)} m altitude, since the vehicles' lag depends on it, got one of ${number(flown)} m"
       )
 
   /** The data of a fit.
@@ -123,7 +123,7 @@ object ModelFile:
   private def values(section: Config, structure: Structure): Vector[Double] =
     structure.names.map: name =>
       val value = section.getDouble(s"$name.value")
-      require(value.isFinite, s"$name: expected a finite number, came $value")
+      require(value.isFinite, s"$name: expected a finite number, got $value")
       value
 
   private def quoted(text: String): String = com.typesafe.config.ConfigUtil.quoteString(text)

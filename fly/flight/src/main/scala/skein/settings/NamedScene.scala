@@ -17,7 +17,7 @@ object NamedScene:
   def read(name: String): Either[String, NamedScene] = shipped(name).map(Right(_)).getOrElse:
     for
       text <- TextFile.read(name).left.map(error =>
-        s"expected ${SceneFile.Names.mkString(", ")} or a file, came '$name': $error"
+        s"expected ${SceneFile.Names.mkString(", ")} or a file, got '$name': $error"
       )
       read <- ofText(name, text)
     yield read

@@ -60,7 +60,7 @@ object OutsidePolicy:
           s"expected a policy behind the socket $path: $reason"
         )
       yield PolicyFile.ofDefaults(known, family(known, connection))
-    case _ => Left(s"expected unix:ROLE:PATH, came '$text'")
+    case _ => Left(s"expected unix:ROLE:PATH, got '$text'")
 
   /** Connects; blocks as long as the other side's queue of connections is full. */
   private def connected(path: String, within: Span): Either[String, Connection] =
@@ -100,15 +100,15 @@ object OutsidePolicy:
     private def exchange(seen: Array[Float]): Either[String, Float] =
       val question = ByteBuffer.allocate(4 * seen.length)
       for number <- seen do question.putFloat(number): Unit
-      if socket.isAhead then throw IOException("expected one answer to a question, came more")
+      if socket.isAhead then throw IOException("expected one answer to a question, got more")
       socket.ask(question.flip())
       socket.read(1).get match
         case 0 =>
           val share = socket.read(4).getFloat
-          Either.cond(share.isFinite, share, s"expected a number from -1 to 1, came $share")
+          Either.cond(share.isFinite, share, s"expected a number from -1 to 1, got $share")
         case 1 =>
           val length = socket.read(4).getInt
           if length < 0 || length > MostText then
-            throw IOException(s"expected at most $MostText bytes of text, came $length")
+            throw IOException(s"expected at most $MostText bytes of text, got $length")
           Left(ProcessSocket.plain(String(socket.read(length).array, UTF_8)))
-        case other => throw IOException(s"expected 0 or 1 before an answer, came $other")
+        case other => throw IOException(s"expected 0 or 1 before an answer, got $other")

@@ -62,7 +62,7 @@ object PolicyFile:
   def name(role: Role): String = role.toString.toLowerCase(Locale.ROOT)
 
   def role(text: String): Either[String, Role] =
-    Seq(Role.Pursuer, Role.Evader).find(name(_) == text).toRight(s"expected pursuer or evader, came '$text'")
+    Seq(Role.Pursuer, Role.Evader).find(name(_) == text).toRight(s"expected pursuer or evader, got '$text'")
 
   def ofDefaults(role: Role, family: PolicyFamily): PolicyFile =
     PolicyFile(role, family, family.space.defaults)
@@ -78,7 +78,7 @@ object PolicyFile:
     case Some(text) =>
       role(text).filterOrElse(
         family.roles,
-        s"family ${family.name} is for ${family.roles.map(name).mkString(" and ")}, came '$text'"
+        s"family ${family.name} is for ${family.roles.map(name).mkString(" and ")}, got '$text'"
       )
     case None =>
       family.roles.toSeq match
@@ -86,7 +86,7 @@ object PolicyFile:
         case several  =>
           Left(
             s"family ${family.name} is for " +
-              s"${several.map(name).mkString(" and ")}: expected one of them, came none"
+              s"${several.map(name).mkString(" and ")}: expected one of them, got none"
           )
 
   /** A policy for a role: from a file, or from a family with its defaults.
@@ -96,7 +96,7 @@ object PolicyFile:
   def chosen(role: Role, text: String)(using Scenarios): Either[String, PolicyFile] =
     named(text, Some(role)).filterOrElse(
       _.role == role,
-      s"expected a policy for the ${name(role)}, came one for the other role: $text"
+      s"expected a policy for the ${name(role)}, got one for the other role: $text"
     )
 
   /** A policy from a file, or from a family with its defaults.
@@ -158,7 +158,7 @@ object PolicyFile:
       names  = family.space.axes.map(_.name)
       _ <- given_.find((key, _) => !names.contains(key)) match
         case Some((key, value)) =>
-          Left(s"${at(value)}: family ${family.name} has the parameters ${names.mkString(", ")}, came '$key'")
+          Left(s"${at(value)}: family ${family.name} has the parameters ${names.mkString(", ")}, got '$key'")
         case None => Right(())
       parameters <- Expect.each(names): name =>
         for
@@ -167,7 +167,7 @@ object PolicyFile:
             .toRight(s"$path: parameters: expected ${names.mkString(", ")}; '$name' is missing")
           number <- value.unwrapped match
             case number: Number if number.doubleValue.isFinite => Right(number.doubleValue)
-            case other => Left(s"${at(value)}: $name: expected a finite number, came '$other'")
+            case other => Left(s"${at(value)}: $name: expected a finite number, got '$other'")
         yield number
       chosen = PolicyFile(role, family, parameters)
       _ <- Try(chosen.policy).toEither.left.map(mistake => s"$path: ${told(family, mistake)}")
@@ -193,5 +193,5 @@ object PolicyFile:
       _ <- Expect.that(values.map(_._1) == family.space.axes.map(_.name)):
         "expected " +
           s"${family.space.axes.map(axis => s"${axis.name}=NUMBER").mkString(" ")} " +
-          s"after ${family.name}, came '$text'"
+          s"after ${family.name}, got '$text'"
     yield PolicyFile(role, family, values.map(_._2))

@@ -45,7 +45,7 @@ private[skein] final class ProcessSocket(path: String, answerWithin: Span) exten
     key.interestOps(operation): Unit
     val leftMs = until.since(Clock.system.now()).toMillis.ceil.toLong
     if leftMs <= 0 || selector.select(leftMs) == 0 then
-      throw IOException(s"expected an answer within ${answerWithin.toMillis.round} ms, came none")
+      throw IOException(s"expected an answer within ${answerWithin.toMillis.round} ms, got none")
     selector.selectedKeys.clear()
 
 private[skein] object ProcessSocket:

@@ -93,7 +93,7 @@ object RecordedPlan:
       _       <- Moves.mistake(flown.movesInFlight).map("its parameter 'movesInFlight': " + _).toLeft(())
       chosen  <- policyOf(parameters.get(PolicyName), recording.heading.parametersOf(PolicyName))
       explore <- Expect.each(parameters.get(Explore)): text =>
-        text.toDoubleOption.toRight(s"its parameter '$Explore': expected a number, came '$text'")
+        text.toDoubleOption.toRight(s"its parameter '$Explore': expected a number, got '$text'")
       news <- newsOf(recording)
       policy = chosen.map(_.copy(learning = explore.headOption.map(Learning.Again(_, news))))
     yield RecordedPlan(
@@ -116,7 +116,7 @@ object RecordedPlan:
             s"its parameter '$Version.$number': expected a decision before which something was learned"
           )
           numbers <- Numbers64.parse(text).toRight(
-            s"its parameter '$Version.$number': expected numbers in Base64, came others"
+            s"its parameter '$Version.$number': expected numbers in Base64, got others"
           )
         yield said.updated(
           decision,

@@ -158,7 +158,7 @@ private[settings] object RecordedSetting:
     def read(name: String, parameters: Map[String, String])(using Scenarios) =
       Expect
         .each(parameters.get(name)): value =>
-          parse(value).toRight(s"its parameter '$name': expected $expected, came '$value'")
+          parse(value).toRight(s"its parameter '$name': expected $expected, got '$value'")
         .map(_.headOption)
 
   private final class Elsewhere[A] extends RecordedSetting[A]:

@@ -78,7 +78,7 @@ object ScenarioSettings:
         case settings: ConfigObject => Right(settings.asScala.toMap)
         case other                  =>
           Left(
-            s"${ConfigMistakes.at(path, other.origin)}: expected settings in braces, came ${ConfigMistakes.text(other)}"
+            s"${ConfigMistakes.at(path, other.origin)}: expected settings in braces, got ${ConfigMistakes.text(other)}"
           )
 
   /** Replaces the key at the beginning of a mistake by the source of its value. */

@@ -38,7 +38,7 @@ final class SimulatedBody private (
       else
         Option.when(!SimulatedBody.meetsSensors(body.stepS)):
           s"$text: expected a timestep of 1 ms or a whole part of it, at " +
-            s"which autopilots' sensors are read, came ${body.stepS} s"
+            s"which autopilots' sensors are read, got ${body.stepS} s"
     case _ => None
 
 object SimulatedBody:
@@ -62,4 +62,4 @@ object SimulatedBody:
     case s"airsim:$deviation" =>
       Deviation.parse(deviation).map(read => SimulatedBody(text, Right(None), Some(read)))
     case s"mujoco:$path" => Right(SimulatedBody(text, MujocoModel.read(Path.of(path)).map(Some(_))))
-    case other           => Left(s"expected $forms, came '$other'")
+    case other           => Left(s"expected $forms, got '$other'")

@@ -34,16 +34,16 @@ object SolverChoice:
         name <- Either.cond(
           prefix.matches("[A-Za-z0-9._-]{1,100}"),
           prefix,
-          s"expected a PREFIX of topics of letters, digits, '.', '_' and '-', came '$prefix'"
+          s"expected a PREFIX of topics of letters, digits, '.', '_' and '-', got '$prefix'"
         )
       yield Kafka(at, name)
     case s"link:$profile" => LatencyProfile.parse(profile, TextFile.read).map(Link(_)).left.map(_.message)
     case s"pekko://$_"    =>
       Left(
-        s"expected $expected, came '$text': solvers speak a " +
+        s"expected $expected, got '$text': solvers speak a " +
           "protocol of their own over TCP, not Pekko's remoting"
       )
-    case _ => Left(s"expected $expected, came '$text'")
+    case _ => Left(s"expected $expected, got '$text'")
 
   private def address(text: String, whole: String, expected: String): Either[String, Address] =
-    Address.parse(text).left.map(why => s"expected $expected, came '$whole': $why")
+    Address.parse(text).left.map(why => s"expected $expected, got '$whole': $why")

@@ -20,9 +20,9 @@ object TextFile:
   /** The file's text, or why it cannot be read. */
   def read(path: String): Either[String, String] =
     val file = Path.of(path)
-    if path.isEmpty then Left("expected the name of a file, came ''")
+    if path.isEmpty then Left("expected the name of a file, got ''")
     else if !Files.exists(file) then Left(s"there is no file $path${sought(file)}")
-    else if Files.isDirectory(file) then Left(s"expected a file, came the folder $path")
+    else if Files.isDirectory(file) then Left(s"expected a file, got the folder $path")
     else
       try
         val bytes = Using.resource(Files.newInputStream(file))(_.readNBytes(MostBytes + 1))
@@ -30,7 +30,7 @@ object TextFile:
           bytes.length <= MostBytes,
           // Some editors begin a text with a mark of its byte order, which is no part of it.
           UTF_8.newDecoder().decode(ByteBuffer.wrap(bytes)).toString.stripPrefix("\ufeff"),
-          s"expected a file of at most ${MostBytes >> 20} MiB, came $path, which is larger"
+          s"expected a file of at most ${MostBytes >> 20} MiB, got $path, which is larger"
         )
       catch
         case _: CharacterCodingException => Left(s"$path is no text in UTF-8")

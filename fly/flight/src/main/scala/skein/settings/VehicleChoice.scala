@@ -93,7 +93,7 @@ object VehicleChoice:
     for
       read <- Deviation.parse(deviation)
       _    <- Expect.that(read == Deviation(read.mass, read.drag, read.lag)):
-        s"expected mass, drag and lag; wind, gusts, shear and rotors are for fly and spread, came '$text'"
+        s"expected mass, drag and lag; wind, gusts, shear and rotors are for fly and spread, got '$text'"
     yield VehicleChoice(text, s"AirSim's quadrotor with $deviation", response(read.quadrotor))
 
   /** Reads one of the names, or a model file: then the structure that the file says to use, or after
@@ -134,7 +134,7 @@ object VehicleChoice:
         file <- ModelFile.read(path)
         _    <- ModelFile.mistake(file.altitudeM, altitudeM).map(mistake => s"$path: $mistake").toLeft(())
       yield file
-    else Left(s"expected $forms, came '$path'")
+    else Left(s"expected $forms, got '$path'")
 
   private def ofLag(text: String, lag: ReducedModel, path: String) =
     VehicleChoice(text, s"reduced model of $path, ${described(lag)}", PlantResponse(lag))

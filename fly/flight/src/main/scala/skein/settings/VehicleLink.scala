@@ -20,7 +20,7 @@ object VehicleLink:
           .stripSuffix("m")
           .toDoubleOption
           .filter(far => range.endsWith("m") && far > 0 && far.isFinite)
-          .toRight(s"expected a range such as 60m, came '$range'")
+          .toRight(s"expected a range such as 60m, got '$range'")
         profile <- profile(rest)
       yield VehicleLink(profile, Some(Metres(metres)))
     case _ => profile(text).map(VehicleLink(_, None))
@@ -30,4 +30,4 @@ object VehicleLink:
       .parse(text, TextFile.read)
       .left
       .map(_.message)
-      .filterOrElse(_.bandwidth.isEmpty, s"expected no rate, since messages have no size, came '$text'")
+      .filterOrElse(_.bandwidth.isEmpty, s"expected no rate, since messages have no size, got '$text'")

@@ -30,12 +30,12 @@ object SolverMessageCodec:
 
   /** Decodes a message; Left states what was expected and what was received. */
   def message(bytes: Array[Byte]): Either[String, SolverMessage] =
-    if bytes.length > MostBytes then Left(s"expected $MostBytes bytes at most, came ${bytes.length}")
+    if bytes.length > MostBytes then Left(s"expected $MostBytes bytes at most, got ${bytes.length}")
     else
       bytes.headOption match
         case Some(version) if version != Version =>
           Left(
-            s"expected messages of version $Version of the solver's protocol, came version ${version & 0xff}"
+            s"expected messages of version $Version of the solver's protocol, got version ${version & 0xff}"
           )
         case _ => Codec.message[SolverMessage](bytes.drop(1))
 
@@ -72,7 +72,7 @@ object SolverMessageCodec:
     val vehicles = asked.view.readings.size
     val whose    = asked.deciders.map(_.vehicle)
     if whose.isEmpty || whose.distinct != whose || whose.exists(!asked.view.readings.isDefinedAt(_)) then
-      throw IOException(s"expected different vehicles below $vehicles, came ${whose.mkString(", ")}")
+      throw IOException(s"expected different vehicles below $vehicles, got ${whose.mkString(", ")}")
     asked
 
   private def withSensorsOf(vehicles: Set[Int], view: TeamView): TeamView =
@@ -93,10 +93,10 @@ object SolverMessageCodec:
       def isOfEach(told: Vector[Option[Int]]) =
         told.size == vehicles && told.zipWithIndex.forall((whose, place) => whose.forall(_ == place))
       if vehicles > MostVehicles then
-        throw IOException(s"expected $MostVehicles vehicles at most, came $vehicles")
+        throw IOException(s"expected $MostVehicles vehicles at most, got $vehicles")
       if !isOfEach(readings.map(_.map(_.vehicle))) || !isOfEach(moves.map(_.map(_.vehicle))) ||
         estimates.exists(_.size != vehicles) || sensed.exists(said => !readings.isDefinedAt(said.vehicle))
-      then throw IOException(s"expected what is known of $vehicles vehicles, came what is of others")
+      then throw IOException(s"expected what is known of $vehicles vehicles, got what is of others")
       TeamView(
         readings,
         moves,

@@ -155,5 +155,5 @@ class DecentralisedSimulation extends munit.FunSuite, TemporaryFolders, Optimise
       .value
     assertEquals(
       started,
-      Left("decentralised: expected vehicles over AirSim's protocol, came those of ROS 2")
+      Left("decentralised: expected vehicles over AirSim's protocol, got those of ROS 2")
     )

@@ -54,7 +54,7 @@ class DeviationSimulation extends munit.FunSuite, Unhurried:
   test("a mistake in a deviation is one line, and external autopilots are refused"):
     assertEquals(
       SimulatedBody.parse("airsim:mass=9").map(_.text),
-      Left("expected a number from 0.5 to 1.6, came 'mass=9'")
+      Left("expected a number from 0.5 to 1.6, got 'mass=9'")
     )
     assert(SimulatedBody.parse("airsim:mass=1.1").toOption.flatMap(_.refusesAutopilots).isDefined)
     for name <- Seq("quadrotor:mass=1.3,lag=1.5", "tilt:drag=2") do
@@ -63,6 +63,6 @@ class DeviationSimulation extends munit.FunSuite, Unhurried:
       VehicleChoice.parse("tilt:wind=8/0/0", 20).map(_.name),
       Left(
         "expected mass, drag and lag; wind, gusts, shear and rotors are for fly and spread, " +
-          "came 'tilt:wind=8/0/0'"
+          "got 'tilt:wind=8/0/0'"
       )
     )

@@ -207,7 +207,7 @@ class EnvironmentSimulatorLiveSuite extends munit.FunSuite, Unhurried:
       refused(_ => Some("""{"error": "ValueError: no\u001b[31m luck"}""")).left.toOption,
       Some("ValueError: no [31m luck")
     )
-    assert(refused(_ => Some("[]")).left.exists(_.startsWith("expected an environment's answer, came")))
+    assert(refused(_ => Some("[]")).left.exists(_.startsWith("expected an environment's answer, got")))
     assert(refused(_ => Some("""{"stepS": 0.1, "vehicles": {"Evader": {"body": [1, 2]}}}""")).left.exists(
       _.contains("[1,2] of Evader")
     ))

@@ -56,7 +56,7 @@ class MujocoFlightLiveSuite extends MujocoHere:
       assert(clue(settings(plant, LoopKind.Stream)).left.exists(_.contains(reason)), reason)
     refused("mujoco:nowhere.xml", "there is no nowhere.xml")
     refused("mujoco:", "expected a file of MuJoCo's XML")
-    refused("bullet:quadrotor.xml", s"expected ${SimulatedBody.forms}, came 'bullet:quadrotor.xml'")
+    refused("bullet:quadrotor.xml", s"expected ${SimulatedBody.forms}, got 'bullet:quadrotor.xml'")
     val heavy = Files.createTempFile("heavy", ".xml")
     try
       val text = Files.readString(Path.of(example("quadrotor").stripPrefix("mujoco:")))

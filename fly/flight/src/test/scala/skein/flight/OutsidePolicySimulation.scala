@@ -69,7 +69,7 @@ class OutsidePolicySimulation extends munit.FunSuite, Unhurried:
     val decided = recording.decisions.filter(_.vehicle == Pursuer)
     assert(decided.size > 30, decided.size)
     assertEquals(missed(recording).size, decided.size - 10)
-    assert(missed(recording).forall(_.detail.contains("expected an answer within 200 ms, came none")))
+    assert(missed(recording).forall(_.detail.contains("expected an answer within 200 ms, got none")))
 
   test("without a deadline, an outside policy that fails ends the flight with its error message"):
     flownBy(settings)((number, seen) =>

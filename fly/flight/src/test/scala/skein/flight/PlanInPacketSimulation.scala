@@ -122,7 +122,7 @@ class PlanInPacketSimulation extends munit.FunSuite, TemporaryFolders, Unhurried
       result,
       Left(
         "plan-in-packet: expected a buffer of plans beside the vehicles, as the built-in simulator has and " +
-          "`skein link --buffer` puts before AirSim, came our rovers: " +
+          "`skein link --buffer` puts before AirSim, got our rovers: " +
           "plan 0: no buffer beside this vehicle holds plans"
       )
     )

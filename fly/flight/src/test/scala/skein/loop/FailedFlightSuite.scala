@@ -79,7 +79,7 @@ class FailedFlightSuite extends munit.FunSuite:
 
   private def assertFailed(landed: FlightResult, reason: String): Unit = landed.outcome match
     case FlightOutcome.Failed(why) => assert(clue(why).startsWith(reason))
-    case other                     => fail(s"expected a failure, came $other")
+    case other                     => fail(s"expected a failure, got $other")
 
   for kind <- LoopKind.values.toSeq if kind != LoopKind.Plan do
     test(

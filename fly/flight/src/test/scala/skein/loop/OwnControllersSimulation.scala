@@ -95,7 +95,7 @@ class OwnControllersSimulation extends munit.FunSuite, Optimised:
         case FlightOutcome.Failed(why) =>
           assert(clue(why).startsWith("the controller of Pursuer: the policy of Pursuer failed: "))
           assert(why.contains("no idea"), why)
-        case other => fail(s"expected a failure, came $other")
+        case other => fail(s"expected a failure, got $other")
       assertEachByItsOwn(flown)
 
   test("while a flight is paused, no controller decides"):

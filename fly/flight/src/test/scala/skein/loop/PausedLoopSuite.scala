@@ -180,7 +180,7 @@ class PausedLoopSuite extends munit.FunSuite:
       val landed = fly(stepsBy = number => Option.when(number == 4)(step))
       landed.outcome match
         case FlightOutcome.Failed(reason) => assert(reason.contains(why), reason)
-        case other                        => fail(s"expected a failure, came $other")
+        case other                        => fail(s"expected a failure, got $other")
       isReleased(landed)
 
   private val forGood = 5 until 1_000_000
@@ -195,7 +195,7 @@ class PausedLoopSuite extends munit.FunSuite:
     do
       landed.outcome match
         case FlightOutcome.Failed(reason) => assert(reason.contains("no answer"), reason)
-        case other                        => fail(s"expected a failure, came $other")
+        case other                        => fail(s"expected a failure, got $other")
       isReleased(landed)
 
   test("commands to vehicles and simulator are repeated until they answer"):
@@ -205,4 +205,4 @@ class PausedLoopSuite extends munit.FunSuite:
   test("a simulator that never answers again is given up, and the outcome states that"):
     fly(failedResumes = 999).outcome match
       case FlightOutcome.Failed(reason) => assert(reason.contains("stands still"), reason)
-      case other                        => fail(s"expected a failure, came $other")
+      case other                        => fail(s"expected a failure, got $other")

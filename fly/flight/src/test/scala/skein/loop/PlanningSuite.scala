@@ -131,7 +131,7 @@ class PlanningSuite extends munit.FunSuite:
       case opponent: Target.Opponent =>
         assertEquals((opponent.policy, opponent.headingRad), (KeepHeading, 0.7))
         assertEquals(opponent.speed, fleet.agents(evader).speed.value)
-      case other => fail(s"came $other")
+      case other => fail(s"got $other")
     assertEquals(OpponentModel.missing(flownBy(KeepHeading)), Vector.empty)
 
     object Lucky extends HeadingPolicy.Memoryless:
@@ -179,7 +179,7 @@ class PlanningSuite extends munit.FunSuite:
           assertEqualsDouble(track.x(0), 0.6, 1e-6)
           assertEqualsDouble(track.x(steps - 1), 0.6 * steps, 1e-5)
           assertEquals(track.y(0), 4.0)
-        case other => fail(s"came $other")
+        case other => fail(s"got $other")
       // It may stand still.
       assertEquals((posed.objective.limits.minSpeed, posed.objective.limits.maxSpeed), (0.0, 6.0))
     // One place does not move.

@@ -18,8 +18,8 @@ class SettingsSuite extends munit.FunSuite:
       (make, expected) <- Seq[(() => LoopSettings, String)](
         (() => LoopSettings(period = Span.Zero), "period"),
         (() => LoopSettings(window = 0), "window"),
-        (() => LoopSettings(movesInFlight = 0), "moves in flight: expected 1 to 32, came 0"),
-        (() => LoopSettings(movesInFlight = 33), "moves in flight: expected 1 to 32, came 33")
+        (() => LoopSettings(movesInFlight = 0), "moves in flight: expected 1 to 32, got 0"),
+        (() => LoopSettings(movesInFlight = 33), "moves in flight: expected 1 to 32, got 33")
       )
     do assert(intercept[IllegalArgumentException](make()).getMessage.contains(expected))
 
@@ -55,7 +55,7 @@ class SettingsSuite extends munit.FunSuite:
     of(LoopKind.Stream, settings.asPublished) match
       case Some(LoopTiming.Stream(_, wait, patience, decideThenPace, asking, _)) =>
         assertEquals((wait, patience, decideThenPace, asking.inOrder), (0.0, 0.0, true, true))
-      case other => fail(s"expected a stream, came $other")
+      case other => fail(s"expected a stream, got $other")
     val models = Vector(ConstantVelocity, ConstantTurn)
     assertEquals(
       of(LoopKind.Predictive, settings.copy(model = models(_))),
@@ -88,30 +88,30 @@ class SettingsSuite extends munit.FunSuite:
       (settings, told) <- Seq(
         PlanSettings(deadline =
           Span.Zero
-        ) -> "deadline: expected more than 0 and at most 2000.0 ms, came 0.0 ms",
+        ) -> "deadline: expected more than 0 and at most 2000.0 ms, got 0.0 ms",
         PlanSettings(deadline =
           ms(2001)
-        ) -> "deadline: expected more than 0 and at most 2000.0 ms, came 2001.0 ms",
-        PlanSettings(horizonSteps = 0)     -> "horizonSteps: expected 1 to 200, came 0",
-        PlanSettings(horizonSteps = 201)   -> "horizonSteps: expected 1 to 200, came 201",
-        PlanSettings(step = ms(9.5))       -> "step: expected 10 to 500 ms, came 9.5 ms",
-        PlanSettings(step = ms(500.5))     -> "step: expected 10 to 500 ms, came 500.5 ms",
-        PlanSettings(method = "luck")      -> "method: expected cross-entropy or path-integral, came luck",
-        PlanSettings(behaviours = 0)       -> "behaviours: expected 1 to 32, came 0",
-        PlanSettings(behaviours = 33)      -> "behaviours: expected 1 to 32, came 33",
-        PlanSettings(searches = 0)         -> "searches: expected 1 to 64, came 0",
-        PlanSettings(searches = 65)        -> "searches: expected 1 to 64, came 65",
-        PlanSettings(slices = 0)           -> "slices: expected 1 or more, came 0",
-        PlanSettings(blocksPerSlice = 0)   -> "blocksPerSlice: expected 1 or more, came 0",
-        PlanSettings(turningRadiusM = 0)   -> "turningRadiusM: expected more than 0, came 0.0",
-        PlanSettings(slowestShare = -0.01) -> "slowestShare: expected 0 to 1, came -0.01",
-        PlanSettings(slowestShare = 1.01)  -> "slowestShare: expected 0 to 1, came 1.01",
-        PlanSettings(separationM = -1)     -> "separationM: expected 0 or more, came -1.0",
-        PlanSettings(geofenceM = -1)       -> "geofenceM: expected 0 or more, came -1.0",
+        ) -> "deadline: expected more than 0 and at most 2000.0 ms, got 2001.0 ms",
+        PlanSettings(horizonSteps = 0)     -> "horizonSteps: expected 1 to 200, got 0",
+        PlanSettings(horizonSteps = 201)   -> "horizonSteps: expected 1 to 200, got 201",
+        PlanSettings(step = ms(9.5))       -> "step: expected 10 to 500 ms, got 9.5 ms",
+        PlanSettings(step = ms(500.5))     -> "step: expected 10 to 500 ms, got 500.5 ms",
+        PlanSettings(method = "luck")      -> "method: expected cross-entropy or path-integral, got luck",
+        PlanSettings(behaviours = 0)       -> "behaviours: expected 1 to 32, got 0",
+        PlanSettings(behaviours = 33)      -> "behaviours: expected 1 to 32, got 33",
+        PlanSettings(searches = 0)         -> "searches: expected 1 to 64, got 0",
+        PlanSettings(searches = 65)        -> "searches: expected 1 to 64, got 65",
+        PlanSettings(slices = 0)           -> "slices: expected 1 or more, got 0",
+        PlanSettings(blocksPerSlice = 0)   -> "blocksPerSlice: expected 1 or more, got 0",
+        PlanSettings(turningRadiusM = 0)   -> "turningRadiusM: expected more than 0, got 0.0",
+        PlanSettings(slowestShare = -0.01) -> "slowestShare: expected 0 to 1, got -0.01",
+        PlanSettings(slowestShare = 1.01)  -> "slowestShare: expected 0 to 1, got 1.01",
+        PlanSettings(separationM = -1)     -> "separationM: expected 0 or more, got -1.0",
+        PlanSettings(geofenceM = -1)       -> "geofenceM: expected 0 or more, got -1.0",
         PlanSettings(
           slices = 0,
           geofenceM = -1
-        ) -> "slices: expected 1 or more, came 0; geofenceM: expected 0 or more, came -1.0"
+        ) -> "slices: expected 1 or more, got 0; geofenceM: expected 0 or more, got -1.0"
       )
     do
       assertEquals(mistake(settings), told)

@@ -101,7 +101,7 @@ class TeamLogSuite extends munit.FunSuite:
         assert(decision.seesOthers)
         assertEquals(decision.readings, made.view.asRead(made.decidedAt))
         assertEquals(decision.readings.size, team.agents.size)
-      case other => fail(s"expected a decision and two sightings to be made later, came $other")
+      case other => fail(s"expected a decision and two sightings to be made later, got $other")
     val rows = books.recording
     assertEquals(taken.result().map(_.row), (rows.decisions ++ rows.sightings).toVector)
 
@@ -118,5 +118,5 @@ class TeamLogSuite extends munit.FunSuite:
       (answer.isRight, books.recording.measurements.size, books.recording.events.map(_.detail))
     assertEquals(read(1, 2), (true, 1, Vector.empty))
     for values <- Seq(Seq(1, Double.NaN), Seq(Double.PositiveInfinity, 2), Seq(1.0), Seq(1.0, 2.0, 3.0)) do
-      val told = s"gps 0: expected north, east, came ${values.mkString(", ")}"
+      val told = s"gps 0: expected north, east, got ${values.mkString(", ")}"
       assertEquals(read(values*), (false, 0, Vector(told)))

@@ -70,8 +70,8 @@ class LinkFitSuite extends munit.FunSuite:
     assertEquals(
       RoundTripTrace.parse("0.0,36.2\n0.1;3\n"),
       Left(
-        "line 2: expected time_s,rtt_ms, such as 0.1,36.2, or 0.1, where no answer came; came '0.1;3'"
+        "line 2: expected time_s,rtt_ms, such as 0.1,36.2, or 0.1, where no answer came; got '0.1;3'"
       )
     )
-    assertEquals(RoundTripTrace.parse("0.0,\n"), Left("expected round trips, came none"))
+    assertEquals(RoundTripTrace.parse("0.0,\n"), Left("expected round trips, got none"))
     assertEquals(RoundTripTrace.parse("1,5\n0,5\n"), Left("expected times in ascending order"))

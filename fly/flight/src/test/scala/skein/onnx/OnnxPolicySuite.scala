@@ -132,7 +132,7 @@ class OnnxPolicySuite extends munit.FunSuite, OnnxFiles:
     assert(PolicyFile.chosen(Role.Evader, s"pursuer:$file").left.exists(_.contains("for the other role")))
 
   private def refused(folder: Path, bytes: Array[Byte]): String =
-    PolicyFile.read(written(folder, bytes)).fold(identity, file => fail(s"came ${file.label}"))
+    PolicyFile.read(written(folder, bytes)).fold(identity, file => fail(s"got ${file.label}"))
 
   folder.test("a wrong shape is reported with both shapes"): folder =>
     val wrong = OnnxFormat.write(OnnxGraph(
@@ -144,13 +144,13 @@ class OnnxPolicySuite extends munit.FunSuite, OnnxFiles:
     assert(
       refused(folder, wrong).endsWith(
         "expected one input of shape (batch, 9) and one output of shape (batch, 1), " +
-          "came input 'obs' of (any, 12) and output 'act' of (1, 2)"
+          "got input 'obs' of (any, 12) and output 'act' of (1, 2)"
       ),
       refused(folder, wrong)
     )
     val narrow =
       graph(Node("MatMul", Vector("x", "w"), Vector("y")))("w" -> tensor(12, 1)(_ => 1))
-    assert(refused(folder, narrow).contains("expected weights of 9 inputs, came 12"), refused(folder, narrow))
+    assert(refused(folder, narrow).contains("expected weights of 9 inputs, got 12"), refused(folder, narrow))
 
   folder.test("weights that are not finite, and other models without a runtime, are reported"): folder =>
     val infinite = graph(Node("MatMul", Vector("x", "w"), Vector("y")))(

@@ -52,41 +52,41 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
   test("a null, a list, a single value and settings in one another's places are reported, in a line each"):
     assertTold(
       "scenario = surround, surround { ring-m = null }",
-      "2: skein.fly.surround.ring-m: expected a value, came null"
+      "2: skein.fly.surround.ring-m: expected a value, got null"
     )
-    assertTold("seed = null", "2: skein.fly.seed: expected a value, came null")
-    assertTold("loops = stream", "2: skein.fly.loops: expected a list in brackets, came 'stream'")
+    assertTold("seed = null", "2: skein.fly.seed: expected a value, got null")
+    assertTold("loops = stream", "2: skein.fly.loops: expected a list in brackets, got 'stream'")
     assertTold(
       "loops = [stream, [paused], null]",
-      "2: skein.fly.loops: expected a list of single values, came a list in it",
-      "2: skein.fly.loops: expected a list of single values, came null in it"
+      "2: skein.fly.loops: expected a list of single values, got a list in it",
+      "2: skein.fly.loops: expected a list of single values, got null in it"
     )
-    assertTold("period = [100 ms]", "2: skein.fly.period: expected a single value, came a list")
+    assertTold("period = [100 ms]", "2: skein.fly.period: expected a single value, got a list")
     assertTold(
       "scenario { a = 1 }",
-      "2: skein.fly.scenario: expected a single value, came settings in braces"
+      "2: skein.fly.scenario: expected a single value, got settings in braces"
     )
     assertTold(
       "planning = 3\nsurround = x",
-      "2: skein.fly.planning: expected settings in braces, came '3'",
-      "3: skein.fly.surround: expected settings in braces, came 'x'"
+      "2: skein.fly.planning: expected settings in braces, got '3'",
+      "3: skein.fly.surround: expected settings in braces, got 'x'"
     )
-    assertTold("only-policies = true", "2: skein.fly.only-policies: expected policies beside it, came none")
+    assertTold("only-policies = true", "2: skein.fly.only-policies: expected policies beside it, got none")
 
   test("values of a wrong kind are reported in a line each, whatever reads them"):
-    assertTold("seed = many", "2: skein.fly.seed: expected a whole number, came 'many'")
-    assertTold("seed = 1e30", "2: skein.fly.seed: expected a whole number, came '1.0E30'")
+    assertTold("seed = many", "2: skein.fly.seed: expected a whole number, got 'many'")
+    assertTold("seed = 1e30", "2: skein.fly.seed: expected a whole number, got '1.0E30'")
     assertTold(
       "moves-in-flight = 2.5\nplanning { slowest-share = half, horizon-steps = 99999999999 }",
-      "2: skein.fly.moves-in-flight: expected a whole number, came '2.5'",
-      "3: skein.fly.planning.horizon-steps: expected a whole number, came '99999999999'",
-      "3: skein.fly.planning.slowest-share: expected a finite number, came 'half'"
+      "2: skein.fly.moves-in-flight: expected a whole number, got '2.5'",
+      "3: skein.fly.planning.horizon-steps: expected a whole number, got '99999999999'",
+      "3: skein.fly.planning.slowest-share: expected a finite number, got 'half'"
     )
     assertTold(
       "only-policies = perhaps",
-      "2: skein.fly.only-policies: expected true or false, came 'perhaps'"
+      "2: skein.fly.only-policies: expected true or false, got 'perhaps'"
     )
-    assertTold("period = 0 ms", "2: skein.fly.period: expected 1 ms or more, came 0.0 ms")
+    assertTold("period = 0 ms", "2: skein.fly.period: expected 1 ms or more, got 0.0 ms")
     assertEquals(read("skein.fly.seed = 1e3").map(_.seed), Right(1000L))
     assert(read("skein.fly { duration = null, deadline = null, solver = null, scene = null }").isRight)
 
@@ -94,7 +94,7 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
     assertTold(
       "scenario = forest, loops = [stream, plan]",
       "2: skein.fly.loops: plan: expected a multirotor that can plan, by a policy with a Goal or by one that " +
-        "pursues one opponent, came none: Scout1, Scout2, Scout3, Scout4, Scout5 would fly by their own policies"
+        "pursues one opponent, got none: Scout1, Scout2, Scout3, Scout4, Scout5 would fly by their own policies"
     )
     assertEquals(
       Planning.told(PaperDuel().fleet),
@@ -102,60 +102,60 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
     )
 
   test("knowledge of positions alone is refused if others' commands or policies are needed"):
-    assertTold("knows = some", "2: skein.fly.knows: expected all or positions, came 'some'")
+    assertTold("knows = some", "2: skein.fly.knows: expected all or positions, got 'some'")
     assertTold(
       "knows = positions, loops = [plan]",
       "2: skein.fly.knows: expected all with the loop plan, which plans against the policies of others, " +
-        "came positions"
+        "got positions"
     )
     assertTold(
       "knows = positions, solver = \"link:vpn\", loops = [stream]",
-      "2: skein.fly.knows: expected all with a solver, which is told every command, came positions"
+      "2: skein.fly.knows: expected all with a solver, which is told every command, got positions"
     )
 
   test("how others are predicted is refused if their commands are known"):
     assertTold(
       "strangers = belief",
       "2: skein.fly.strangers: expected knows positions with it, or decentralised, since otherwise all commands " +
-        "are known, came belief without"
+        "are known, got belief without"
     )
     assertTold(
       "knows = positions, strangers = belief, loops = [stream]",
-      "2: skein.fly.strangers: expected a loop that predicts, such as predictive, came belief without"
+      "2: skein.fly.strangers: expected a loop that predicts, such as predictive, got belief without"
     )
     assertTold(
       "knows = positions, strangers = belief, predictor = constant-velocity",
       "2: skein.fly.strangers: expected turn or straight with the predictor constant-velocity, which predicts " +
-        "all straight on, came belief"
+        "all straight on, got belief"
     )
     assertTold(
       "knows = positions, strangers = none",
-      "2: skein.fly.strangers: expected turn or straight or belief, came 'none'"
+      "2: skein.fly.strangers: expected turn or straight or belief, got 'none'"
     )
 
   test("decentralised is refused if one controller decides for all, or knows the others' commands"):
     def refused(text: String)(why: String) = assertTold(text, s"2: skein.fly.decentralised: expected $why")
     refused("decentralised = true, loops = [stream, plan]"):
-      "loops that decide for each vehicle by itself (paused, sequential, futures, stream, predictive), came plan"
+      "loops that decide for each vehicle by itself (paused, sequential, futures, stream, predictive), got plan"
     refused("decentralised = true, loops = [stream], wire = mavlink"):
-      "vehicles over AirSim's protocol, came mavlink"
+      "vehicles over AirSim's protocol, got mavlink"
     refused("decentralised = true, loops = [stream], solver = \"link:vpn\""):
       "no solver, which decides for all"
     refused("decentralised = true, scenario = crossing, crossing.vehicles = 60"):
-      "at most 50 vehicles, came 60"
+      "at most 50 vehicles, got 60"
     def refusedOnly(text: String)(why: String) = assertTold(text, s"2: skein.fly.only: expected $why")
-    refusedOnly("only = Pursuer, loops = [stream]")("decentralised with it, came 'Pursuer' without")
+    refusedOnly("only = Pursuer, loops = [stream]")("decentralised with it, got 'Pursuer' without")
     refusedOnly("decentralised = true, only = Hare, loops = [stream]"):
-      "one of Evader, Pursuer, came 'Hare'"
+      "one of Evader, Pursuer, got 'Hare'"
     refusedOnly("decentralised = true, only = Evader"):
       "loops other than paused, which stops the time of all vehicles"
     def refusedBetween(text: String)(why: String) = assertTold(text, s"2: skein.fly.between: expected $why")
-    refusedBetween("between = vpn, loops = [stream]")("decentralised with it, came 'vpn' without")
+    refusedBetween("between = vpn, loops = [stream]")("decentralised with it, got 'vpn' without")
     refusedBetween("decentralised = true, loops = [stream], only = Pursuer, between = vpn"):
-      "all controllers in this process, which carries their messages, came only Pursuer"
-    refusedBetween("between = \"range:far,vpn\"")("a range such as 60m, came 'far'")
+      "all controllers in this process, which carries their messages, got only Pursuer"
+    refusedBetween("between = \"range:far,vpn\"")("a range such as 60m, got 'far'")
     refusedBetween("between = \"rate:1mbit,vpn\""):
-      "no rate, since messages have no size, came 'rate:1mbit,vpn'"
+      "no rate, since messages have no size, got 'rate:1mbit,vpn'"
     val read = this.read("skein.fly.decentralised = true").fold(fail(_), identity)
     assertEquals(read.loopSettings.knows, Knowledge.Positions)
     assertEquals(
@@ -166,15 +166,15 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
   test("plan-in-packet is refused if no plan could be sent"):
     def refused(text: String)(why: String) = assertTold(text, s"2: skein.fly.plan-in-packet: expected $why")
     refused("plan-in-packet = true, loops = [stream]"):
-      "with the loop predictive, which foresees its commands, came without it"
+      "with the loop predictive, which foresees its commands, got without it"
     refused("plan-in-packet = true, loops = [predictive], wire = mavlink"):
-      "vehicles over AirSim's protocol, came mavlink"
+      "vehicles over AirSim's protocol, got mavlink"
     refused("plan-in-packet = true, loops = [predictive], deadline = 20 ms"):
       "without deadline and solver, since the policy is asked for later moments too"
     refused("plan-in-packet = true, loops = [predictive], solver = \"link:vpn\""):
       "without deadline and solver, since the policy is asked for later moments too"
     refused("plan-in-packet = true, loops = [predictive], scenario = convoy"):
-      "multirotors, which hold plans, came the car Lead"
+      "multirotors, which hold plans, got the car Lead"
 
   test("the ground truth alone needs no link, and any other loop needs one"):
     assertEquals(
@@ -183,12 +183,12 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
     )
     assertTold(
       "links = [], loops = [paused, stream]",
-      "2: skein.fly.links: expected at least one link for any loop but paused, came none"
+      "2: skein.fly.links: expected at least one link for any loop but paused, got none"
     )
 
   test("a solver has time to answer after its search for plans"):
     def told(key: String) = s"2: skein.fly.$key: expected more than planning.deadline, for which a solver " +
-      "searches its plans, 40.0 ms; came 40.0 ms"
+      "searches its plans, 40.0 ms; got 40.0 ms"
     val plans = "loops = [plan], planning.deadline = 40 ms, solver = \"link:vpn\""
     assertTold(s"period = 40 ms, $plans", told("period"))
     assertTold(s"deadline = 40 ms, $plans", told("deadline"))
@@ -228,7 +228,7 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
   test("a duration without a unit is refused, with a line that says so"):
     for text <- Seq("skein.fly.duration = 40", "skein.fly.duration = \"40\"") do
       val said = read(text).left.getOrElse("")
-      assert(clue(said).contains("expected a duration with unit, such as 40s, came '40'"))
+      assert(clue(said).contains("expected a duration with unit, such as 40s, got '40'"))
 
   test("a scene is one that ships, a file, or else the scenario's"):
     assertEquals(read("").map(_.world.name), Right("empty"))
@@ -252,7 +252,7 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
     assert(
       clue(
         read("skein.fly.scene = wood").left.getOrElse("")
-      ).contains("expected empty, forest, pursuit, street or a file, came 'wood'")
+      ).contains("expected empty, forest, pursuit, street or a file, got 'wood'")
     )
 
   test("without a configured deadline there is none"):
@@ -269,16 +269,16 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
 
   test("a scenario's mistakes state their place, what was expected and what was given"):
     val none = read("skein.fly.scenario = crosing").left.getOrElse("")
-    assert(clue(none).contains("came 'crosing'; the nearest is 'crossing'"))
+    assert(clue(none).contains("got 'crosing'; the nearest is 'crossing'"))
     val text = "skein.fly { scenario = crossing\n crossing { vehicles = many, streams = 3 } }"
     val said = read(text).left.getOrElse("")
     assert(
-      clue(said).contains("String: 2: skein.fly.crossing.vehicles: expected a whole number, came 'many'")
+      clue(said).contains("String: 2: skein.fly.crossing.vehicles: expected a whole number, got 'many'")
     )
     val unsound =
       read("skein.fly { scenario = crossing, crossing { spacing-m = -1, streams = 3 } }").left.getOrElse("")
-    assert(clue(unsound).contains("skein.fly.crossing.spacing-m: expected more than 0, came -1.0"))
-    assert(unsound.contains("skein.fly.crossing.streams: expected 2 or 4, came 3"))
+    assert(clue(unsound).contains("skein.fly.crossing.spacing-m: expected more than 0, got -1.0"))
+    assert(unsound.contains("skein.fly.crossing.streams: expected 2 or 4, got 3"))
 
   test("a flight lasts as long as its scenario states, unless configured otherwise"):
     assertEquals(read("").map(_.duration), Right(Span.ofSeconds(60)))
@@ -295,6 +295,6 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
     val said = read(s"skein.fly { scenario = formation, policies = [\"$file\"] }").left.getOrElse("")
     assert(
       clue(said).contains(
-        "policies: expected with a scenario of a pursuer and vehicles of another role, came with 'formation'"
+        "policies: expected with a scenario of a pursuer and vehicles of another role, got with 'formation'"
       )
     )

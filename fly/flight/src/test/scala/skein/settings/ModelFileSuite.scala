@@ -103,7 +103,7 @@ class ModelFileSuite extends munit.FunSuite, TemporaryFolders:
     val said = ModelFile.parse(text(late), "model.conf")(using Scenarios.ours)
     assertEquals(
       said.left.toOption,
-      Some("model.conf: use: expected a structure (lag, turn, drag, drag-and-turn), came 'late'")
+      Some("model.conf: use: expected a structure (lag, turn, drag, drag-and-turn), got 'late'")
     )
 
   test("no structure or parameter may have the name of a key of model files"):

@@ -50,8 +50,8 @@ class OutsidePolicyLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders
       ),
       Seq(
         Left("the policy: no  [2J  such luck"),
-        Left("the policy: expected a number from -1 to 1, came NaN"),
-        Left("the policy: expected a number from -1 to 1, came -Infinity"),
+        Left("the policy: expected a number from -1 to 1, got NaN"),
+        Left("the policy: expected a number from -1 to 1, got -Infinity"),
         Right(0.5)
       )
     )
@@ -59,9 +59,9 @@ class OutsidePolicyLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders
   test("a policy that violates the protocol, or ends, receives no further requests"):
     for
       (answer, reason) <- Seq(
-        Array[Byte](7)                 -> "expected 0 or 1 before an answer, came 7",
-        Array[Byte](1, 1, 0, 0, 0)     -> "expected at most 65536 bytes of text, came 16777216",
-        Array[Byte](1, -1, -1, -1, -1) -> "expected at most 65536 bytes of text, came -1"
+        Array[Byte](7)                 -> "expected 0 or 1 before an answer, got 7",
+        Array[Byte](1, 1, 0, 0, 0)     -> "expected at most 65536 bytes of text, got 16777216",
+        Array[Byte](1, -1, -1, -1, -1) -> "expected at most 65536 bytes of text, got -1"
       )
     do assertEquals(decided(answer, Peer.number(0)), Seq.fill(2)(Left(s"the policy: $reason")))
 
@@ -76,7 +76,7 @@ class OutsidePolicyLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders
   test("an answer without a request is not taken for that to the next request"):
     assertEquals(
       decided(Peer.number(0.5f) ++ Peer.number(-1), Peer.number(0), Peer.number(0)),
-      Right(0.55) +: Seq.fill(2)(Left("the policy: expected one answer to a question, came more"))
+      Right(0.55) +: Seq.fill(2)(Left("the policy: expected one answer to a question, got more"))
     )
 
   test("a process that ends between two requests has ended, and receives no further ones"):
@@ -109,7 +109,7 @@ class OutsidePolicyLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders
         val policy = reached(OutsidePolicy.reach(peer.option, Span.ofMillis(30)))
         for _ <- 1 to 2 do
           val reason = intercept[OwnFailure](policy.heading(1, 1, 0, 0, 0, 0, 0.1)).getMessage
-          assertEquals(reason, "the policy: expected an answer within 30 ms, came none")
+          assertEquals(reason, "the policy: expected an answer within 30 ms, got none")
         assert(peer.asked <= 1)
 
   test("a question that is not read in time is not sent"):
@@ -118,13 +118,13 @@ class OutsidePolicyLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders
       listener.bind(UnixDomainSocketAddress.of(path)): Unit
       Using.resource(ProcessSocket(path.toString, Span.ofMillis(30))): socket =>
         val reason = intercept[IOException](socket.ask(ByteBuffer.allocate(64 << 20))).getMessage
-        assertEquals(reason, "expected an answer within 30 ms, came none")
+        assertEquals(reason, "expected an answer within 30 ms, got none")
 
   test("an address without a process is refused, with what was expected"):
     val nobody = OutsidePolicy.reach("unix:pursuer:/nowhere/policy").left.toOption
     assert(nobody.exists(_.startsWith("expected a policy behind the socket /nowhere/policy: ")), nobody)
     assertEquals(
       OutsidePolicy.reach("unix:judge:/nowhere"),
-      Left("unix:judge:/nowhere: expected pursuer or evader, came 'judge'")
+      Left("unix:judge:/nowhere: expected pursuer or evader, got 'judge'")
     )
-    assertEquals(OutsidePolicy.reach("unix:pursuer"), Left("expected unix:ROLE:PATH, came 'unix:pursuer'"))
+    assertEquals(OutsidePolicy.reach("unix:pursuer"), Left("expected unix:ROLE:PATH, got 'unix:pursuer'"))

@@ -61,7 +61,7 @@ class PolicyFileSuite extends munit.FunSuite, TemporaryFolders:
     for wrong <- Seq("", " speed=1.5", " turnRateRadPerS=fast", " turnRateRadPerS=1 turnRateRadPerS=1") do
       assertEquals(
         parsed(s"paper-pursuer$wrong"),
-        Left(s"expected turnRateRadPerS=NUMBER after paper-pursuer, came 'paper-pursuer$wrong'")
+        Left(s"expected turnRateRadPerS=NUMBER after paper-pursuer, got 'paper-pursuer$wrong'")
       )
 
   test("a policy is used by all agents of its role, and by no others"):
@@ -80,7 +80,7 @@ class PolicyFileSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(PolicyFile.roleOf(both, Some("evader")), Right(Role.Evader))
     assertEquals(
       PolicyFile.roleOf(both, None),
-      Left("family either is for pursuer and evader: expected one of them, came none")
+      Left("family either is for pursuer and evader: expected one of them, got none")
     )
 
   test("a missing file is reported with its path"):

@@ -86,11 +86,11 @@ class RecordedPlanSuite extends munit.FunSuite:
   test("an invalid parameter is reported with what was expected"):
     for
       (name, wrong, expected) <- Seq(
-        ("movesInFlight", "few", "expected a whole number, came 'few'"),
-        ("movesInFlight", "33", "expected 1 to 32, came 33"),
-        ("wire", "x", "expected airsim or mavlink, came 'x'"),
-        ("deadlineNs", "0", "expected nanoseconds, came '0'"),
-        ("learningExplore", "x", "expected a number, came 'x'")
+        ("movesInFlight", "few", "expected a whole number, got 'few'"),
+        ("movesInFlight", "33", "expected 1 to 32, got 33"),
+        ("wire", "x", "expected airsim or mavlink, got 'x'"),
+        ("deadlineNs", "0", "expected nanoseconds, got '0'"),
+        ("learningExplore", "x", "expected a number, got 'x'")
       )
     do
       assertEquals(

@@ -29,11 +29,11 @@ class SensorFileSuite extends munit.FunSuite:
 
   for
     (key, value, mistake) <- Seq(
-      ("every-s", "1e-7", "expected a millisecond or more between images, came 1.0E-7 s"),
-      ("farthest-m", "-1", "expected a positive largest range, came -1.0 m"),
-      ("detection.value", "1.5", "expected a detection between 0 and 1, came 1.5"),
-      ("range-bias.value", "0", "expected a positive bias of the range, of 1 where it is exact, came 0.0"),
-      ("workers", "0", "expected at least one worker, came 0")
+      ("every-s", "1e-7", "expected a millisecond or more between images, got 1.0E-7 s"),
+      ("farthest-m", "-1", "expected a positive largest range, got -1.0 m"),
+      ("detection.value", "1.5", "expected a detection between 0 and 1, got 1.5"),
+      ("range-bias.value", "0", "expected a positive bias of the range, of 1 where it is exact, got 0.0"),
+      ("workers", "0", "expected at least one worker, got 0")
     )
   do
     test(s"$key = $value is reported as the mistake"):

@@ -17,16 +17,16 @@ class SolverChoiceSuite extends munit.FunSuite:
       assertEquals(choice.text, text)
 
   test("an invalid text is refused, with what was expected and given"):
-    val forms = "expected tcp://HOST:PORT, kafka://HOST:PORT/PREFIX or link:PROFILE, came "
+    val forms = "expected tcp://HOST:PORT, kafka://HOST:PORT/PREFIX or link:PROFILE, got "
     for
       (text, expected) <- Seq(
-        "lab:7400"           -> s"$forms'lab:7400'",
-        "tcp://lab"          -> s"$forms'tcp://lab': ",
-        "kafka://lab/x"      -> s"$forms'kafka://lab/x': ",
-        "kafka://lab:9092"   -> s"$forms'kafka://lab:9092'",
-        "kafka://lab:9092/ä" -> "expected a PREFIX of topics of letters, digits, '.', '_' and '-', came 'ä'",
-        "kafka://lab:9092/"  -> "expected a PREFIX of topics of letters, digits, '.', '_' and '-', came ''",
-        "link:slow"          -> "unknown latency profile \"slow\"; expected none, direct, ",
+        "lab:7400"             -> s"$forms'lab:7400'",
+        "tcp://lab"            -> s"$forms'tcp://lab': ",
+        "kafka://lab/x"        -> s"$forms'kafka://lab/x': ",
+        "kafka://lab:9092"     -> s"$forms'kafka://lab:9092'",
+        "kafka://lab:9092/ä"   -> "expected a PREFIX of topics of letters, digits, '.', '_' and '-', got 'ä'",
+        "kafka://lab:9092/"    -> "expected a PREFIX of topics of letters, digits, '.', '_' and '-', got ''",
+        "link:slow"            -> "unknown latency profile \"slow\"; expected none, direct, ",
         "pekko://system@lab:1" -> s"$forms'pekko://system@lab:1': solvers speak a protocol of their own"
       )
     do assert(clue(SolverChoice.parse(text)).left.exists(_.startsWith(expected)), text)

@@ -23,7 +23,7 @@ class TextFileSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(TextFile.read(file.toString), Right("zwei = 2"))
     Files.write(file, Array[Byte](-1, -2))
     assert(TextFile.read(file.toString).left.exists(_.contains("no text in UTF-8")))
-    assert(TextFile.read(folder.toString).left.exists(_.contains("came the folder")))
+    assert(TextFile.read(folder.toString).left.exists(_.contains("got the folder")))
     assertEquals(TextFile.read(s"$file-not"), Left(s"there is no file $file-not"))
     val here = Path.of("").toAbsolutePath
     assertEquals(TextFile.read("no/such.conf"), Left(s"there is no file no/such.conf, sought from $here"))

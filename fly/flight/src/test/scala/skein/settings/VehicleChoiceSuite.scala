@@ -20,7 +20,7 @@ class VehicleChoiceSuite extends munit.FunSuite:
         assertEquals(
           parsed(s"$name:$deviation"),
           Left(
-            s"expected mass, drag and lag; wind, gusts, shear and rotors are for fly and spread, came '$name:$deviation'"
+            s"expected mass, drag and lag; wind, gusts, shear and rotors are for fly and spread, got '$name:$deviation'"
           )
         )
 

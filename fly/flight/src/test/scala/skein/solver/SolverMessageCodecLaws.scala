@@ -190,16 +190,16 @@ class SolverMessageCodecLaws extends munit.ScalaCheckSuite:
     val welcome = SolverMessageCodec.bytes(SolverMessage.Welcome(1, 2, true))
     assertEquals(
       SolverMessageCodec.message(welcome.updated(0, 9.toByte)),
-      Left("expected messages of version 7 of the solver's protocol, came version 9")
+      Left("expected messages of version 7 of the solver's protocol, got version 9")
     )
     assertEquals(
       SolverMessageCodec.message(welcome.updated(1, 42.toByte)),
-      Left("expected a kind of solver message from 1 to 8, came 42")
+      Left("expected a kind of solver message from 1 to 8, got 42")
     )
     assertEquals(
       SolverMessageCodec.message(new Array[Byte](SolverMessageCodec.MostBytes + 1)),
       Left(
-        s"expected ${SolverMessageCodec.MostBytes} bytes at most, came ${SolverMessageCodec.MostBytes + 1}"
+        s"expected ${SolverMessageCodec.MostBytes} bytes at most, got ${SolverMessageCodec.MostBytes + 1}"
       )
     )
     val memory   = Memory(0, None, 0)
@@ -208,7 +208,7 @@ class SolverMessageCodecLaws extends munit.ScalaCheckSuite:
       val asked = question.copy(deciders = deciders.map(vehicle => (vehicle = vehicle, memory = memory)))
       assertEquals(
         SolverMessageCodec.message(SolverMessageCodec.bytes(SolverMessage.Ask(asked))),
-        Left(s"expected different vehicles below 2, came ${deciders.mkString(", ")}")
+        Left(s"expected different vehicles below 2, got ${deciders.mkString(", ")}")
       )
     val claims = SolverMessageCodec.bytes(SolverMessage.Refused(1, "no")).updated(10, 0x7f.toByte)
     assert(SolverMessageCodec.message(claims).left.exists(_.startsWith("expected a length of 0 to ")))

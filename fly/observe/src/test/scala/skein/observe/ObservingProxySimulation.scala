@@ -116,7 +116,7 @@ class ObservingProxySimulation extends munit.FunSuite, Unhurried:
         yield (told.toArray.toSeq, (page.isEmpty, answered.isRight, stats.malformed))
       .value
     assertEquals(answered, (true, true, 0L))
-    assert(clue(told).exists(_.toString.contains("came an HTTP request (POST)")))
+    assert(clue(told).exists(_.toString.contains("got an HTTP request (POST)")))
 
   for profile <- Seq(LatencyProfile.direct, LatencyProfile.vpn) do
     test(s"over ${profile.name} the ages that the observer reports are the program's own, within its bounds"):

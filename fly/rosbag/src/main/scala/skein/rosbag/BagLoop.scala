@@ -70,6 +70,6 @@ object BagLoop:
         mcap.nonEmpty,
         mcap,
         if files.exists(_.toString.endsWith(".db3")) then
-          s"$bag: expected MCAP, came SQLite; `ros2 bag convert` makes the one from the other"
+          s"$bag: expected MCAP, got SQLite; `ros2 bag convert` makes the one from the other"
         else s"$bag: expected a bag's folder, it has no MCAP file"
       )

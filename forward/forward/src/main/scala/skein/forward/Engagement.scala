@@ -25,7 +25,7 @@ final case class Engagement(
   )
   require(
     agents.nonEmpty && agents.size <= Engagement.Most,
-    s"expected 1 to ${Engagement.Most} agents, came ${agents.size}"
+    s"expected 1 to ${Engagement.Most} agents, got ${agents.size}"
   )
 
   val evaders: Vector[Int]  = roles.indices.filter(roles(_) == Role.Evader).toVector
@@ -34,7 +34,7 @@ final case class Engagement(
   private val inSides       = evaders.size + pursuers.size
   require(
     inSides == 0 || bothSides && inSides == agents.size,
-    s"expected pursuers and evaders, or neither, came ${roles.mkString(", ")}"
+    s"expected pursuers and evaders, or neither, got ${roles.mkString(", ")}"
   )
 
   /** Indices of the agents whose outcome counts: the evaders, or all agents of a team without sides. */

@@ -24,11 +24,11 @@ object LinkDelays:
       case _ => None
     for
       (delays, roundTrips) <- base.toRight(
-        s"expected a link without rate and correlation, which forward simulation does not have, came ${link.name}"
+        s"expected a link without rate and correlation, which forward simulation does not have, got ${link.name}"
       )
       longestS = roundTrips.map(_.quantile(1).toSeconds).max
       _ <- Expect.that(longestS <= LongestRoundTripS):
-        s"expected round trips of at most $LongestRoundTripS s, came ${link.name} with up to $longestS s"
+        s"expected round trips of at most $LongestRoundTripS s, got ${link.name} with up to $longestS s"
     yield LossyDelays.of(delays, link.impairments, Retransmission.timeout(link).toSeconds, packetsPerS)
 
   /** Number of packets of a loop per second in each direction: a request and a command per vehicle and

@@ -9,8 +9,8 @@ import skein.vehicle.{ConstantVelocity, ObservedPlant, Plant, PlantFlight, Plant
   * predicts by it, else by constant velocity.
   */
 final case class PlantResponse(plant: Plant[?]) extends VelocityResponse:
-  require(plant.stepS > 0, s"a plant's step must be positive, came ${plant.stepS} s")
-  require(plant.deadTimeS >= 0, s"a plant's dead time must not be negative, came ${plant.deadTimeS} s")
+  require(plant.stepS > 0, s"a plant's step must be positive, got ${plant.stepS} s")
+  require(plant.deadTimeS >= 0, s"a plant's dead time must not be negative, got ${plant.deadTimeS} s")
 
   def create(): Vehicle = PlantVehicle(plant)
 

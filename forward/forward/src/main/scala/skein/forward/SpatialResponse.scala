@@ -16,8 +16,8 @@ import skein.vehicle.{
   * altitude. Yaws are ignored; to hover or to turn in place becomes a command to stand still.
   */
 final case class SpatialResponse(plant: SpatialPlant[?]) extends VelocityResponse:
-  require(plant.stepS > 0, s"a plant's step must be positive, came ${plant.stepS} s")
-  require(plant.deadTimeS >= 0, s"a plant's dead time must not be negative, came ${plant.deadTimeS} s")
+  require(plant.stepS > 0, s"a plant's step must be positive, got ${plant.stepS} s")
+  require(plant.deadTimeS >= 0, s"a plant's dead time must not be negative, got ${plant.deadTimeS} s")
 
   def create(): Vehicle = SpatialVehicle(plant)
 

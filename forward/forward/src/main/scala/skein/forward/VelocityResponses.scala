@@ -16,7 +16,7 @@ object VelocityResponses:
     * @param lagS s; with 0 the velocity follows a command immediately
     */
   def lag(gain: Double, lagS: Double, deadTimeS: Double): PlantResponse =
-    require(lagS >= 0, s"a lag must not be negative, came $lagS s")
+    require(lagS >= 0, s"a lag must not be negative, got $lagS s")
     PlantResponse(ReducedModel.lag(gain, lagS.max(NoLagS), deadTimeS))
 
   /** AirSim's quadrotor with its flight controller at 3 ms, behind AirSim's API: see [[QuadrotorResponse]].

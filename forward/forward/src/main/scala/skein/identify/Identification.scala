@@ -59,10 +59,10 @@ object Identification:
     if blocks.sizeIs < 2 * structure.space.dimension then
       Left(
         s"expected at least ${(2 * structure.space.dimension * BlockS).fixed(0)} s of flight to identify ${structure.label}, " +
-          s"came ${flights.map(spanS).sum.fixed(0)} s"
+          s"got ${flights.map(spanS).sum.fixed(0)} s"
       )
     else if !flights.exists(_.arrivals.distinctBy(command => (command.vx, command.vy)).sizeIs > 1) then
-      Left("expected flights with changing commands, came none")
+      Left("expected flights with changing commands, got none")
     else fit(flights, windows, blocks.size, structure)
 
   private def spanS(flown: TimeHistory): Double =

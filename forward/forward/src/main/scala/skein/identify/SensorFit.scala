@@ -44,9 +44,9 @@ object SensorFit:
   def of(seeing: Vector[Seeing]): Either[String, SensorFit] =
     val all = seeing.flatMap(_.detections)
     if all.sizeIs < LeastDetections then
-      Left(s"expected at least $LeastDetections detections to identify a sensor, came ${all.size}")
+      Left(s"expected at least $LeastDetections detections to identify a sensor, got ${all.size}")
     else if seeing.map(one => (one.everyS, one.fovRad, one.workers, one.deadlineS)).distinct.sizeIs > 1 then
-      Left("expected flights with one kind of eye, came several")
+      Left("expected flights with one kind of eye, got several")
     else Right(fit(seeing, all))
 
   private def fit(seeing: Vector[Seeing], all: Vector[Detected]): SensorFit =

@@ -81,8 +81,8 @@ final class LearnerTeams private[lanes] (
   private def knowsPending(operation: Int): Boolean =
     var before = next
     while before < operation do
-      val field   = before * Timetable.Fields
-      val vehicle = operations(field + 1)
+      val field     = before * Timetable.Fields
+      val vehicle   = operations(field + 1)
       val isPending = vehicle == operations(operation * Timetable.Fields + 1) ||
         knownPlace(operation, vehicle) == operations(field + 5)
       if isPending && !isEnd(before) then return true

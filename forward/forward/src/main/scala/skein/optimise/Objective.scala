@@ -96,9 +96,9 @@ object Objective:
       case ("capture", Some(Vector(_, _))) | ("captureTime", Some(Vector(_))) =>
         Left(
           "expected capture(RADIUS_M, WITHIN_S) or captureTime(RADIUS_M) with numbers above 0 and below a million, " +
-            s"came '$name(${arguments.get})'"
+            s"got '$name(${arguments.get})'"
         )
-      case _ => Left(s"expected one of $RoleForms, came '${call(name, arguments)}'")
+      case _ => Left(s"expected one of $RoleForms, got '${call(name, arguments)}'")
 
   private def call(name: String, arguments: Option[String]) = name + arguments.fold("")(a => s"($a)")
 
@@ -138,6 +138,6 @@ object Objective:
     .parse(text, known.keys.mkString(", "), hyphened = true): (name, arguments) =>
       val (these, note) = expected(name)
       known.get(name).filter(_ => arguments.isEmpty).map(ScenarioTerm(_)).toRight(
-        s"expected $these, came '${call(name, arguments)}'$note"
+        s"expected $these, got '${call(name, arguments)}'$note"
       )
     .map(sum => Objective(sum.terms, sum.stated.getOrElse(otherwise)))

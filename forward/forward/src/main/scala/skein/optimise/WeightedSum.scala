@@ -45,7 +45,7 @@ object WeightedSum:
             for
               _ <- Expect.that(size <= Most):
                 s"objective '$text', at character ${offset + from + 1}: expected a weight up to $Most, " +
-                  s"came ${term.group(2)}"
+                  s"got ${term.group(2)}"
               measure <- measureOf(term.group(3), Option(term.group(4)))
                 .left
                 .map(mistake =>
@@ -61,7 +61,7 @@ object WeightedSum:
               if read.isEmpty then s"[WEIGHT*]MEASURE, where MEASURE is one of $forms" else "+ or -"
             Left(
               s"objective '$text', at character ${offset + from + 1}: " +
-                s"expected $expected, came '${formula.substring(from)}'"
+                s"expected $expected, got '${formula.substring(from)}'"
             )
 
     terms(0, Vector.empty).map(WeightedSum(_, stated))

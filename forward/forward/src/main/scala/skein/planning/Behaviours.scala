@@ -10,7 +10,7 @@ object Behaviours:
     * equal behaviours each time, so that all candidates of a tick are compared fairly.
     */
   def around(target: Target, count: Int, stream: Long): Vector[Behaviour] =
-    require(count > 0, s"at least one behaviour is needed, came $count")
+    require(count > 0, s"at least one behaviour is needed, got $count")
     def draw(of: Int, variant: Int)(place: Int): Double =
       Draws.normal(WorldRandom.key(stream, of, variant), place).toDouble
     def off(variant: Int, place: Int) = draw(0, variant)(place) * PlaceSd

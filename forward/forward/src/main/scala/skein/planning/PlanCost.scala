@@ -74,7 +74,7 @@ final case class PlanCost(
 ):
   require(
     softness == 0 || softness > 0 && capture == 0,
-    s"expected no softness, or one above 0 m and no capture, came $softness m and a capture worth $capture"
+    s"expected no softness, or one above 0 m and no capture, got $softness m and a capture worth $capture"
   )
 
   // Formulas: ManoeuvreRollout evaluates them in doubles, PlanKernel for a block's candidates. Each adds to

@@ -40,14 +40,14 @@ final case class PlannerSettings(
     turnSd: Double = 0.8,
     speedSd: Double = 2
 ):
-  require(steps > 0 && dtS > 0, s"the horizon must be positive, came $steps steps of $dtS s")
+  require(steps > 0 && dtS > 0, s"the horizon must be positive, got $steps steps of $dtS s")
   require(blocksPerSlice > 0 && stepsPerKnot > 0, "blocks per slice and steps per knot must be positive")
   method match
     case PlanMethod.CrossEntropy(elites, smoothing) =>
-      require(elites > 0, s"expected one elite at least, came $elites")
-      require(smoothing >= 0 && smoothing < 1, s"expected smoothing from 0 to below 1, came $smoothing")
+      require(elites > 0, s"expected one elite at least, got $elites")
+      require(smoothing >= 0 && smoothing < 1, s"expected smoothing from 0 to below 1, got $smoothing")
     case PlanMethod.PathIntegral(temperature) =>
-      require(temperature > 0, s"the temperature must be positive, came $temperature")
+      require(temperature > 0, s"the temperature must be positive, got $temperature")
 
   def horizonS: Double     = steps * dtS
   def sliceCandidates: Int = blocksPerSlice * CandidateBlock.Size

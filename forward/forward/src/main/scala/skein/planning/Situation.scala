@@ -5,7 +5,7 @@ import skein.vehicle.PlaneReading
 
 /** Predicted positions of an object at the end of each step of the horizon, m, world NED: x north, y east. */
 final class PredictedTrack(xs: IArray[Double], ys: IArray[Double]):
-  require(xs.length == ys.length, s"a track has as many x as y, came ${xs.length} and ${ys.length}")
+  require(xs.length == ys.length, s"a track has as many x as y, got ${xs.length} and ${ys.length}")
 
   def steps: Int           = xs.length
   def x(step: Int): Double = xs(step)
@@ -86,5 +86,5 @@ final case class Situation(
     others: Vector[PredictedTrack] = Vector.empty,
     suggested: Vector[Manoeuvre] = Vector.empty
 ):
-  require(suggested.size <= 16, s"at most 16 manoeuvres may be suggested, came ${suggested.size}")
-  require(sinceDecisionS >= 0, s"time since the last decision must not be negative, came $sinceDecisionS s")
+  require(suggested.size <= 16, s"at most 16 manoeuvres may be suggested, got ${suggested.size}")
+  require(sinceDecisionS >= 0, s"time since the last decision must not be negative, got $sinceDecisionS s")

@@ -20,7 +20,7 @@ private[skein] final class Forms[Of, Form](
 )(
     compile: Of => Either[Untraceable, Form]
 ):
-  require(most > 0, s"expected at least one form to keep, came $most")
+  require(most > 0, s"expected at least one form to keep, got $most")
   @volatile private var now, before = CopyOnWriteArrayList[Form]()
 
   /** Objects that were refused. Others of their class may still be formulas. */

@@ -7,7 +7,7 @@ import java.util.concurrent.ConcurrentHashMap
   * is.
   */
 private[skein] final class Recent[K, V](most: Int):
-  require(most > 0, s"expected at least one key to keep, came $most")
+  require(most > 0, s"expected at least one key to keep, got $most")
   @volatile private var now, before = ConcurrentHashMap[K, V]()
 
   /** The value of a key. Two threads may make it simultaneously; both get one of the two. */

@@ -40,7 +40,8 @@ class EngagementSuite extends munit.FunSuite:
         DelayTable.vpn,
         PlantResponse(ReducedModel.AirSimLag)
       ).fly(3)
-      val same = Rollout(Pair.paper.engagement, loop, DelayTable.vpn, PlantResponse(ReducedModel.AirSimLag)).fly(3)
+      val same =
+        Rollout(Pair.paper.engagement, loop, DelayTable.vpn, PlantResponse(ReducedModel.AirSimLag)).fly(3)
       assertEquals(one, same, loop.toString)
 
   test("duels far from each other are simulated like each alone"):
@@ -56,7 +57,12 @@ class EngagementSuite extends munit.FunSuite:
       )
     )
     val alone =
-      places(Rollout(Pair.paper.engagement, LoopTiming.Paused(), DelayTable.none, PlantResponse(ReducedModel.AirSimLag)))
+      places(Rollout(
+        Pair.paper.engagement,
+        LoopTiming.Paused(),
+        DelayTable.none,
+        PlantResponse(ReducedModel.AirSimLag)
+      ))
     val together =
       places(Rollout(
         Engagement.of(scenario),

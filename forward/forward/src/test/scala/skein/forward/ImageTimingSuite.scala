@@ -17,7 +17,12 @@ class ImageTimingSuite extends munit.FunSuite:
   private def rollout(takes: LatencyDistribution, deadlineS: Double, timing: LoopTiming) =
     val camera = busy.copy(takes = takes, deadlineS = deadlineS)
     val paper  = Pair.paper
-    Rollout(paper.copy(pursuer = paper.pursuer.copy(eye = Some(camera)), durationS = 12).engagement, timing, link, plant)
+    Rollout(
+      paper.copy(pursuer = paper.pursuer.copy(eye = Some(camera)), durationS = 12).engagement,
+      timing,
+      link,
+      plant
+    )
 
   for
     timing <- Seq(

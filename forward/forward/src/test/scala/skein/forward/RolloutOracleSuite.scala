@@ -45,8 +45,9 @@ class RolloutOracleSuite extends munit.FunSuite:
   for radiusM <- Seq(0.5, 2.0, 8.0) do
     test(s"a straight chase to $radiusM m takes (d − l) / (vP − vE), to a period"):
       val chase = duel(PurePursuit(1), away, 21, 0, 10)
-      val flown = Rollout(chase.engagement, LoopTiming.Paused(0.002), DelayTable.none, VelocityResponses.Ideal)
-        .fly(0, captureRadiusM = radiusM)
+      val flown =
+        Rollout(chase.engagement, LoopTiming.Paused(0.002), DelayTable.none, VelocityResponses.Ideal)
+          .fly(0, captureRadiusM = radiusM)
       assertEqualsDouble(flown.captureS, (21.0 - radiusM) / (10.0 - 5.0), 0.0021)
 
   for loop <- loops do

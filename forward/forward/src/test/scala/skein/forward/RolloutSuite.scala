@@ -41,7 +41,12 @@ class RolloutSuite extends munit.FunSuite:
       def step(state: PlaneReading, northMps: Double, eastMps: Double, dtS: Double): PlaneReading =
         throw Exception("no way")
     def told(duel: Pair, plant: VelocityResponse) =
-      intercept[OwnFailure](Rollout(duel.engagement, LoopTiming.Stream(), DelayTable.vpn, plant).fly(1)).getMessage
+      intercept[OwnFailure](Rollout(
+        duel.engagement,
+        LoopTiming.Stream(),
+        DelayTable.vpn,
+        plant
+      ).fly(1)).getMessage
     val ofPolicy = told(Pair.paper.copy(pursuer = Pair.paper.pursuer.copy(policy = Lost())), lag)
     val ofPlant  = told(Pair.paper, PlantResponse(Stuck()))
     for (text, whose) <- Seq(ofPolicy -> "policy Lost", ofPlant -> "plant Stuck") do
@@ -95,7 +100,12 @@ class RolloutSuite extends munit.FunSuite:
 
   test("the paper's game, paused, settles at the distance of AirSim's own flight code, 8.31 m ± 3 %"):
     val flown =
-      Rollout(Pair.paper.engagement, LoopTiming.Paused(), DelayTable.none, VelocityResponses.quadrotor()).fly(0)
+      Rollout(
+        Pair.paper.engagement,
+        LoopTiming.Paused(),
+        DelayTable.none,
+        VelocityResponses.quadrotor()
+      ).fly(0)
     assertEqualsDouble(flown.meanLast10sM, 8.31, 0.03 * 8.31)
     assertEqualsDouble(flown.minDistanceM, 3.7, 0.3)
     assertEqualsDouble(flown.minDistanceAtS, 6.0, 0.2)

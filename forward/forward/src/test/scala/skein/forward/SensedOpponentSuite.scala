@@ -32,7 +32,12 @@ class SensedOpponentSuite extends munit.FunSuite:
       link: Delays = DelayTable.none,
       seed: Int = 1
   ) =
-    Rollout(duel(eye).engagement, timing, link, PlantResponse(ReducedModel.AirSimLag)).fly(WorldRandom.key(seed, 0, 0))
+    Rollout(
+      duel(eye).engagement,
+      timing,
+      link,
+      PlantResponse(ReducedModel.AirSimLag)
+    ).fly(WorldRandom.key(seed, 0, 0))
 
   private def last10s(eye: Option[SensorModel], timing: LoopTiming, link: Delays) =
     (1 to 12).map(flown(eye, timing, link, _).meanLast10sM).sum / 12

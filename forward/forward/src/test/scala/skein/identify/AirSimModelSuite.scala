@@ -45,7 +45,7 @@ class AirSimModelSuite extends munit.FunSuite:
       val identified = Identification.of(flights.map(HorizonErrors.reflown(_)), structure)
       val found      = identified.map(_.plant).fold(fail(_), identity) match
         case model: ReducedModel => model
-        case other               => fail(s"$structure: expected a reduced model, came $other")
+        case other               => fail(s"$structure: expected a reduced model, got $other")
       assertEqualsDouble(found.gain, model.gain, 0.03, s"$structure: $found")
       assertEqualsDouble(found.lagS, model.lagS, 0.1 * model.lagS, s"$structure: $found")
       assertEqualsDouble(found.deadTimeS, model.deadTimeS, 0.03, s"$structure: $found")

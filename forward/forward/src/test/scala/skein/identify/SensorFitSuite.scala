@@ -39,9 +39,9 @@ class SensorFitSuite extends munit.FunSuite:
   test("too few detections, or flights with several kinds of cameras, are refused"):
     assertEquals(
       SensorFit.of(Vector(seeing(29))).left.map(identity),
-      Left("expected at least 30 detections to identify a sensor, came 29")
+      Left("expected at least 30 detections to identify a sensor, got 29")
     )
     assertEquals(
       SensorFit.of(Vector(seeing(40), seeing(40).copy(everyS = 0.2))).left.map(identity),
-      Left("expected flights with one kind of eye, came several")
+      Left("expected flights with one kind of eye, got several")
     )

@@ -80,7 +80,8 @@ class LagPairsSuite extends munit.FunSuite:
     test(s"over $name kernel and scalar reference agree for 5 s, to 2 mm in every world"):
       val kernel = fly(link, 5)
       val equal  = (0 until worlds).count: world =>
-        val scalar = Rollout(duel(world, 5).engagement, LoopTiming.Stream(), link, lag).fly(keys(world), captureRadiusM)
+        val scalar =
+          Rollout(duel(world, 5).engagement, LoopTiming.Stream(), link, lag).fly(keys(world), captureRadiusM)
         (kernel(PairNumber.MinDistance)(world) - scalar.minDistanceM).abs < 2e-3 &&
         (kernel(PairNumber.MeanDistance)(world) - scalar.meanDistanceM).abs < 2e-3 &&
         (kernel(PairNumber.PursuerEffort)(world) - scalar.pursuerEffortRad).abs < 2e-3 &&
@@ -91,7 +92,12 @@ class LagPairsSuite extends munit.FunSuite:
       val kernel  = fly(link, 60)
       val scalars = ArrayBuffer.empty[EpisodeOutcome]
       for world <- 0 until worlds do
-        scalars += Rollout(duel(world, 60).engagement, LoopTiming.Stream(), link, lag).fly(keys(world), captureRadiusM)
+        scalars += Rollout(
+          duel(world, 60).engagement,
+          LoopTiming.Stream(),
+          link,
+          lag
+        ).fly(keys(world), captureRadiusM)
       assertEqualsDouble(
         kernel(PairNumber.MeanLast10s).sum / worlds,
         scalars.map(_.meanLast10sM).sum / worlds,

@@ -120,7 +120,8 @@ object OwnEndSuite:
       |over 9
       |""".stripMargin
 
-  private val file = ScenarioText.read(Text).fold(mistake => throw IllegalArgumentException(mistake), identity)
+  private val file =
+    ScenarioText.read(Text).fold(mistake => throw IllegalArgumentException(mistake), identity)
 
   private def fromFile(farM: Double, oldS: Double): Scenario =
     file.read(Map("far-m" -> farM.toString, "old-s" -> oldS.toString)).fold(
@@ -139,7 +140,8 @@ object OwnEndSuite:
     )
 
   sealed private trait OfThree extends Scenario:
-    def agents: Vector[Agent] = Vector(agent(0, Turning(0.1)), agent(1, Turning(-0.2)), agent(2, Turning(0.05)))
+    def agents: Vector[Agent] =
+      Vector(agent(0, Turning(0.1)), agent(1, Turning(-0.2)), agent(2, Turning(0.05)))
 
   /** Turns steadily. */
   private final case class Turning(rate: Double) extends Policy:
@@ -162,7 +164,9 @@ object OwnEndSuite:
 
   private final case class ByAge(seconds: Double) extends OfThree:
     override def isOver(known: Known): Boolean =
-      0.2 * known.vehicles.map(_.age.toSeconds).sum + known.vehicles(1).kinematics.positionNed.x / 200 > seconds
+      0.2 * known.vehicles.map(_.age.toSeconds).sum + known.vehicles(
+        1
+      ).kinematics.positionNed.x / 200 > seconds
 
   private object ByAge:
     val Name = "by ages of readings"
@@ -177,7 +181,10 @@ object OwnEndSuite:
     type Memory = Unit
     def start: Unit                                             = ()
     def choose(seen: Observation, memory: Unit): (Action, Unit) =
-      (Action.Velocity(Vector3(2, 1, -0.2 * seen.vehicles(1).kinematics.positionNed.x.min(8)), Yaw.Forward), ())
+      (
+        Action.Velocity(Vector3(2, 1, -0.2 * seen.vehicles(1).kinematics.positionNed.x.min(8)), Yaw.Forward),
+        ()
+      )
 
   private final case class ByList(seconds: Double) extends OfThree:
     override def isOver(known: Known): Boolean =

@@ -99,7 +99,12 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
     val timing = LoopTiming.Stream()
     for key <- 1 to 5 do
       val plant =
-        Rollout(short.engagement, timing, DelayTable.vpn, PlantResponse(GuideExample.Lagging(0.9, 0.8))).fly(key)
+        Rollout(
+          short.engagement,
+          timing,
+          DelayTable.vpn,
+          PlantResponse(GuideExample.Lagging(0.9, 0.8))
+        ).fly(key)
       val exact = Rollout(short.engagement, timing, DelayTable.vpn, lag).fly(key)
       assertEqualsDouble(plant.meanDistanceM, exact.meanDistanceM, 1e-9)
 
@@ -121,7 +126,8 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
             duel.pursuer.copy(policy = all.pursuer(world)),
             duel.evader.copy(policy = all.evader(world))
           )
-          val scalar = Rollout(own.engagement, timing, all.link(world), PlantResponse(plant)).fly(all.key(world))
+          val scalar =
+            Rollout(own.engagement, timing, all.link(world), PlantResponse(plant)).fly(all.key(world))
           assertEqualsDouble(flown.meanDistanceM(world), scalar.meanDistanceM, 1e-3)
 
   private object Sheltered extends Plant[PlaneReading]:

@@ -49,7 +49,9 @@ class SpaceLanesSuite extends munit.FunSuite, Optimised:
     if shared || timing != LoopTiming.Paused()
   do
     val delays = if shared then "shared" else "own"
-    test(s"${timing.productPrefix} over $linked, $delays delays: scores by SIMD are those of the scalar engine, to 5 mm"):
+    test(
+      s"${timing.productPrefix} over $linked, $delays delays: scores by SIMD are those of the scalar engine, to 5 mm"
+    ):
       val (fast, slow) = (flown(timing, link, shared, false), flown(timing, link, shared, true))
       for number <- fast.indices; world <- candidates.indices do
         assertEqualsDouble(

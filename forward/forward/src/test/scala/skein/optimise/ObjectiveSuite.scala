@@ -35,8 +35,8 @@ class ObjectiveSuite extends munit.FunSuite:
       ("last10s + ", "character 9", "+ or -"),
       ("capture(4)", "character 1", "capture(RADIUS_M, WITHIN_S)"),
       ("capture(4, x)", "character 1", "capture(RADIUS_M, WITHIN_S)"),
-      ("capture(-4, 20)", "above 0 and below a million", "came 'capture(-4, 20)'"),
-      ("captureTime(1e7)", "above 0 and below a million", "came 'captureTime(1e7)'"),
+      ("capture(-4, 20)", "above 0 and below a million", "got 'capture(-4, 20)'"),
+      ("captureTime(1e7)", "above 0 and below a million", "got 'captureTime(1e7)'"),
       ("captureTime(-1)", "character 1", "captureTime(RADIUS_M)")
     )
   do

@@ -32,8 +32,9 @@ class PairSearchSimulation extends munit.FunSuite, Unhurried:
     val tallies    = game(1).tallies(candidates, 0 until 30)
     assertEquals(game(2).tallies(candidates, 0 until 30), tallies)
     for (tally, candidate) <- tallies.zip(candidates) do
-      val pursuer   = short.pursuer.copy(policy = PaperPursuer(candidate.head.toFloat))
-      val rollout   = Rollout(short.copy(pursuer = pursuer).engagement, LoopTiming.Stream(), DelayTable.vpn, lag)
+      val pursuer = short.pursuer.copy(policy = PaperPursuer(candidate.head.toFloat))
+      val rollout =
+        Rollout(short.copy(pursuer = pursuer).engagement, LoopTiming.Stream(), DelayTable.vpn, lag)
       val reference = (0 until 30).map(episode => rollout.fly(WorldRandom.key(1, 0, episode)).meanLast10sM)
       assertEqualsDouble(tally.mean, reference.sum / 30, 0.03)
 

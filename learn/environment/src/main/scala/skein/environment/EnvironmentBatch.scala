@@ -69,7 +69,7 @@ final class EnvironmentBatch private (
     * @param seeds one for each environment; a negative one continues the environment's own sequence
     */
   def reset(seeds: Array[Long]): Unit =
-    require(seeds.length == count, s"expected $count seeds, came ${seeds.length}")
+    require(seeds.length == count, s"expected $count seeds, got ${seeds.length}")
     groups.foreach(_.reset(seeds))
     isReset = true
 
@@ -91,7 +91,7 @@ final class EnvironmentBatch private (
       val misfit = groups(i).misfit()
       if misfit >= 0 then
         throw IllegalArgumentException(
-          s"action of environment $misfit: expected a number from -1 to 1, came none"
+          s"action of environment $misfit: expected a number from -1 to 1, got none"
         )
       val ended = groups(i).ended
       if ended >= 0 then
@@ -172,7 +172,7 @@ object EnvironmentBatch:
         block: ByteBuffer
     ): Either[String, EnvironmentBatch] =
       for
-        _    <- Expect.that(count >= 1 && count <= Most)(s"num_envs: expected 1 to $Most, came $count")
+        _    <- Expect.that(count >= 1 && count <= Most)(s"num_envs: expected 1 to $Most, got $count")
         made <- Try(new EnvironmentBatch(side, count, autoreset, block)).toEither.left.map(_.getMessage)
       yield made
 

@@ -22,7 +22,7 @@ import skein.lanes.LearnerPolicy.Fields
 final class EnvironmentBuffers(block: ByteBuffer, val agents: Int, val count: Int):
   require(
     block.capacity == EnvironmentBuffers.bytes(agents, count),
-    s"expected a block of ${EnvironmentBuffers.bytes(agents, count)} bytes, came ${block.capacity}"
+    s"expected a block of ${EnvironmentBuffers.bytes(agents, count)} bytes, got ${block.capacity}"
   )
 
   private var at = 0

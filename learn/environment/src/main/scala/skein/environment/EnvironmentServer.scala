@@ -85,7 +85,7 @@ object EnvironmentServer:
             case 2 => batch.reset(seeds(in, batch.count))
             case 3 => batch.reset(seeds(in, batch.count), in.readNBytes(batch.count).map(_ != 0))
             case 4 => ()
-            case _ => throw EOFException(s"expected 1 to 4, came $request")
+            case _ => throw EOFException(s"expected 1 to 4, got $request")
           if request == 4 then answer(out, 0, batch.engine.text) else out.write(0)
         catch
           case mistake: IllegalArgumentException => answer(out, 1, Expect.refused(mistake))
@@ -116,7 +116,7 @@ object EnvironmentServer:
         val channel = FileChannel.open(Path.of(file), StandardOpenOption.READ, StandardOpenOption.WRITE)
         try channel.map(FileChannel.MapMode.READ_WRITE, 0, channel.size)
         finally channel.close()
-      .toEither.left.map(reason => s"file: expected one to read and write, came $reason")
+      .toEither.left.map(reason => s"file: expected one to read and write, got $reason")
       batch <- made.batch(count, Autoreset.fromOrdinal(autoreset), block)
     yield batch
 
@@ -125,7 +125,7 @@ object EnvironmentServer:
   private def text(in: DataInputStream): String =
     val length = in.readInt()
     if length < 0 || length > MostText then
-      throw IOException(s"expected at most $MostText bytes, came $length")
+      throw IOException(s"expected at most $MostText bytes, got $length")
     String(in.readNBytes(length), "UTF-8")
 
   private def answer(out: DataOutputStream, status: Int, message: String): Unit =

@@ -77,7 +77,7 @@ final case class EnvironmentSettings(
       val roles = agents.map(_.role.name.toLowerCase(Locale.ROOT)).distinct
       Left(
         s"learners: expected one of ${roles.mkString(", ")}, all of a role (${roles.head}s), all, or " +
-          s"vehicles of ${agents.map(_.name).mkString(",")}, came '$learners'"
+          s"vehicles of ${agents.map(_.name).mkString(",")}, got '$learners'"
       )
 
   private[environment] def opponentOf(learner: Role)(using Scenarios): Either[String, Option[PolicyFile]] =
@@ -113,7 +113,7 @@ final case class EnvironmentSettings(
         .of(kind, loopSettings)
         .toRight(
           "loop: expected paused, sequential, futures, stream or " +
-            s"predictive, came '${kind.label}', which plans"
+            s"predictive, got '${kind.label}', which plans"
         )
     yield (timing, delays, vehicle)
 
@@ -142,7 +142,7 @@ object EnvironmentSettings:
       case (before, (name, text)) =>
         before.flatMap: settings =>
           def number(set: Double => EnvironmentSettings) =
-            text.toDoubleOption.map(set).toRight(s"$name: expected a number, came '$text'")
+            text.toDoubleOption.map(set).toRight(s"$name: expected a number, got '$text'")
           name match
             case "learners"         => Right(settings.copy(learners = text))
             case "opponent"         => Right(settings.copy(opponent = text))
@@ -166,4 +166,4 @@ object EnvironmentSettings:
             case _                       => Left(s"no setting '$name'")
 
   private def within(name: String, value: Double, least: Double, most: Double): Either[String, Unit] =
-    Expect.that(value >= least && value <= most)(s"$name: expected $least to $most, came $value")
+    Expect.that(value >= least && value <= most)(s"$name: expected $least to $most, got $value")

@@ -119,14 +119,14 @@ private[environment] object LearnerSide:
       agents = scenario.agents
       turns <- settings.turns(agents)
       _     <- refusal(scenario, turns.flatten).map(why =>
-        s"scenario: expected one of vehicles that know where others are, came ${scenario.name}, $why"
+        s"scenario: expected one of vehicles that know where others are, got ${scenario.name}, $why"
       ).toLeft(())
       opponent <- against.fold(settings.opponentOf(agents(turns.head.head).role))(file => Right(Some(file)))
       isFree = (place: Int) => !turns.flatten.contains(place)
       _ <- Expect.that(opponent.forall(file =>
         agents.indices.exists(place => isFree(place) && agents(place).role == file.role)
       )):
-        s"opponent: expected none where no ${opponent.get.role} flies without a learner, came '${settings.opponent}'"
+        s"opponent: expected none where no ${opponent.get.role} flies without a learner, got '${settings.opponent}'"
       flown <- Try(Engagement.ofScenario(scenario, settings.episodeS + EnvironmentSettings.SpareS)).toEither
         .left.map("scenario: " + _.getMessage)
       engagement = flown.copy(agents = flown.agents.zipWithIndex.map: (agent, place) =>
@@ -145,7 +145,7 @@ private[environment] object LearnerSide:
         settings.flown(altitudeM, climbs.fold(levelAt(altitudeM))(_ => VehicleChoice.Tilt), agents.size)
       (timing, delays, vehicle) = resolved
       _ <- Expect.that(climbs.isEmpty || vehicle.response.isSpatial):
-        s"plant: expected ${VehicleChoice.Tilt} or ${VehicleChoice.Spatial}, came ${vehicle.name}: ${climbs.get}"
+        s"plant: expected ${VehicleChoice.Tilt} or ${VehicleChoice.Spatial}, got ${vehicle.name}: ${climbs.get}"
     yield LearnerSide(
       settings,
       agents.map(_.name),
@@ -183,7 +183,7 @@ private[environment] object LearnerSide:
         .orElse(measures.find(_ => measures.sizeIs > 1 && measures.exists(isRms)))
         .map: _ =>
           "objective: expected means over time, or one root mean square alone: " +
-            s"rewards add up to these, came ${all.head.formula}"
+            s"rewards add up to these, got ${all.head.formula}"
         .toLeft(())
     yield all
 

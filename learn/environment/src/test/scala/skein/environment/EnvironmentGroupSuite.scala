@@ -177,7 +177,7 @@ class EnvironmentGroupSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(
       refused(surround.copy(objective = "off-ring + 0.1*gap")),
       "objective: expected means over time, or one root mean square alone: rewards add up to these, " +
-        "came off-ring + 0.1*gap"
+        "got off-ring + 0.1*gap"
     )
     assert(clue(refused(surround.copy(opponent =
       "paper-pursuer"

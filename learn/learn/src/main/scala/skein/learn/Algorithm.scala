@@ -21,4 +21,4 @@ enum Algorithm:
 object Algorithm:
   def parse(text: String): Either[String, Algorithm] = values
     .find(_.label == text)
-    .toRight(s"expected ${values.map(_.label).mkString(", ")}, came '$text'")
+    .toRight(s"expected ${values.map(_.label).mkString(", ")}, got '$text'")

@@ -27,20 +27,20 @@ final case class LearnerSettings(
   import LearnerSettings.MostBatch
 
   def mistake: Option[String] = Seq(
-    Option.when(!(discount >= 0 && discount < 1))(s"discount: expected 0 up to less than 1, came $discount"),
-    Option.when(!(rate > 0 && rate <= 1))(s"learning rate: expected more than 0 and up to 1, came $rate"),
-    Option.when(batch < 1 || batch > MostBatch)(s"batch: expected 1 to $MostBatch, came $batch"),
+    Option.when(!(discount >= 0 && discount < 1))(s"discount: expected 0 up to less than 1, got $discount"),
+    Option.when(!(rate > 0 && rate <= 1))(s"learning rate: expected more than 0 and up to 1, got $rate"),
+    Option.when(batch < 1 || batch > MostBatch)(s"batch: expected 1 to $MostBatch, got $batch"),
     Option.when(replay < batch || replay > 10_000_000)(
-      s"replay: expected the batch, $batch, to 10000000, came $replay"
+      s"replay: expected the batch, $batch, to 10000000, got $replay"
     ),
     Option.when(!(updatesPerStep > 0 && updatesPerStep <= 100))(
-      s"updates per step: expected more than 0 and up to 100, came $updatesPerStep"
+      s"updates per step: expected more than 0 and up to 100, got $updatesPerStep"
     ),
-    Option.when(randomSteps < 0)(s"random steps: expected 0 or more, came $randomSteps"),
-    Option.when(horizon < 1 || horizon > 100_000)(s"horizon: expected 1 to 100000, came $horizon"),
-    Option.when(epochs < 1 || epochs > 1000)(s"epochs: expected 1 to 1000, came $epochs"),
+    Option.when(randomSteps < 0)(s"random steps: expected 0 or more, got $randomSteps"),
+    Option.when(horizon < 1 || horizon > 100_000)(s"horizon: expected 1 to 100000, got $horizon"),
+    Option.when(epochs < 1 || epochs > 1000)(s"epochs: expected 1 to 1000, got $epochs"),
     Option.when(hidden.size > 8 || hidden.exists(width => width < 1 || width > 256))(
-      s"network: expected at most 8 hidden layers of 1 to 256, came ${hidden.mkString("x")}"
+      s"network: expected at most 8 hidden layers of 1 to 256, got ${hidden.mkString("x")}"
     )
   ).flatten.headOption
 

@@ -10,7 +10,7 @@ import skein.signal.SplitMix64
 final class Network(val widths: Vector[Int]) extends Saved:
   require(
     widths.sizeIs >= 2 && widths.forall(width => width >= 1 && width <= Network.MostWidth),
-    s"expected inputs and outputs, each layer of 1 to ${Network.MostWidth}, came ${widths.mkString("x")}"
+    s"expected inputs and outputs, each layer of 1 to ${Network.MostWidth}, got ${widths.mkString("x")}"
   )
 
   val inputs: Int  = widths.head

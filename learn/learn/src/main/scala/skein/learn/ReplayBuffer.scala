@@ -49,7 +49,7 @@ final class ReplayBuffer(observations: Int, actions: Int, capacity: Int) extends
     next = in.readInt()
     held = in.readInt()
     if next < 0 || next >= capacity || held < 0 || held > capacity then
-      throw IOException(s"expected a replay buffer of at most $capacity transitions, came $held")
+      throw IOException(s"expected a replay buffer of at most $capacity transitions, got $held")
     for part <- Seq(all.seen, all.actions, all.reached, all.rewards, all.goesOn) do
       Saved.readSome(in, part): Unit
 

@@ -23,7 +23,7 @@ private[learn] object Saved:
   def readSome(in: DataInput, into: Array[Float]): Int =
     val count = in.readInt()
     if count < 0 || count > into.length then
-      throw IOException(s"expected at most ${into.length} numbers, came $count")
+      throw IOException(s"expected at most ${into.length} numbers, got $count")
     val bytes = Array.ofDim[Byte](4 * count)
     in.readFully(bytes)
     ByteBuffer.wrap(bytes).asFloatBuffer.get(into, 0, count): Unit
@@ -31,4 +31,4 @@ private[learn] object Saved:
 
   def read(in: DataInput, into: Array[Float]): Unit =
     val count = readSome(in, into)
-    if count != into.length then throw IOException(s"expected ${into.length} numbers, came $count")
+    if count != into.length then throw IOException(s"expected ${into.length} numbers, got $count")

@@ -74,9 +74,9 @@ object SideTask:
       count: Int,
       seed: Long
   )(using Scenarios): Either[String, SideTask] =
-    if settings.learners == "both" then Left("learners: expected pursuer or evader, came 'both'")
+    if settings.learners == "both" then Left("learners: expected pursuer or evader, got 'both'")
     else if count < 1 || count > EnvironmentBatch.Most then
-      Left(s"environments: expected 1 to ${EnvironmentBatch.Most}, came $count")
+      Left(s"environments: expected 1 to ${EnvironmentBatch.Most}, got $count")
     else
       val block = ByteBuffer.allocateDirect(EnvironmentBuffers.bytes(1, count))
       EnvironmentBatch
@@ -91,7 +91,7 @@ object SideTask:
   def parameters(actor: Network): Vector[Double] =
     require(
       actor.inputs == LearnedPolicy.Inputs,
-      s"expected ${LearnedPolicy.Inputs} inputs, came ${actor.inputs}"
+      s"expected ${LearnedPolicy.Inputs} inputs, got ${actor.inputs}"
     )
     val widths = actor.widths.init :+ 1
     for

@@ -44,13 +44,13 @@ final class Training(task: Task, learner: Learner, stepsPerRound: Int):
   /** Reports a task's reward that is not finite, which would corrupt all weights. */
   private def notRewarded(round: Long) = Option.unless(areFinite(task.rewards)):
     val environment = task.rewards.indexWhere(!_.isFinite)
-    s"round ${round + 1}: expected a finite reward, came ${task.rewards(environment)} in environment $environment"
+    s"round ${round + 1}: expected a finite reward, got ${task.rewards(environment)} in environment $environment"
 
   private def notShown(round: Long) =
     Seq(task.seen, task.reached).find(!areFinite(_)).map: shown =>
       val at                   = shown.indexWhere(!_.isFinite)
       val (environment, field) = (at / task.observations, at % task.observations)
-      s"round ${round + 1}: expected finite observations, came ${shown(at)} as number $field in environment $environment"
+      s"round ${round + 1}: expected finite observations, got ${shown(at)} as number $field in environment $environment"
 
   private def areFinite(numbers: Array[Float]): Boolean =
     var at = 0

@@ -54,11 +54,11 @@ class LearnerSimulation extends munit.FunSuite, Unhurried:
       Training(task, learner, stepsPerRound = 100).round(6)
     assertEquals(
       told(Broken(Float.NaN, 0)),
-      Left("round 7: expected a finite reward, came NaN in environment 2")
+      Left("round 7: expected a finite reward, got NaN in environment 2")
     )
     assertEquals(
       told(Broken(0, Float.PositiveInfinity)),
-      Left("round 7: expected finite observations, came Infinity as number 1 in environment 2")
+      Left("round 7: expected finite observations, got Infinity as number 1 in environment 2")
     )
     assert(clue(told(
       Broken(0, 0),

@@ -47,7 +47,7 @@ class SideTaskSimulation extends munit.FunSuite:
         task.step(Array(math.tanh(pass.output(0)).toFloat))
         reward += task.rewards(0)
         isOver = task.ended(0)
-      val both = game.flownBy(if side == "pursuer" then Role.Pursuer else Role.Evader, policy)
+      val both  = game.flownBy(if side == "pursuer" then Role.Pursuer else Role.Evader, policy)
       val flown = Rollout(both, LoopTiming.Stream(), none, PlantResponse(ReducedModel.AirSimLag)).fly(1)
       val mean  = math.abs(reward) * 100 / 200
       assertEqualsDouble(mean, flown.meanDistanceM, 0.05)

@@ -83,7 +83,7 @@ final class AprilTags(camera: Pinhole, size: Metres, deviationPx: Double = April
   /** All tags in an image; Left states why it does not match the camera. */
   def find(image: Image): Either[String, Vector[Tag]] = image.pixels match
     case Pixels.Bgr(bytes) => find(image.width, image.height, bytes.buffer)
-    case other             => Left(s"expected raw pixels, came ${other.productPrefix}")
+    case other             => Left(s"expected raw pixels, got ${other.productPrefix}")
 
   /** @param bgr blue, green, red of each pixel, in rows from the top
     */
@@ -95,7 +95,7 @@ final class AprilTags(camera: Pinhole, size: Metres, deviationPx: Double = April
     else
       Left(
         s"expected ${camera.width} × ${camera.height} pixels of three " +
-          s"bytes, came $width × $height in ${bgr.remaining} bytes"
+          s"bytes, got $width × $height in ${bgr.remaining} bytes"
       )
 
   private def tag(index: Int): Tag =

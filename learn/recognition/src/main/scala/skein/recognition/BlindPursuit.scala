@@ -36,7 +36,7 @@ final case class BlindPursuit(
   override def mistakes: Seq[String] =
     Scenario.outside("everyMs", everyMs, 20, 1000).toSeq ++
       Scenario.outside("widthPx", widthPx, 64, 4096) ++ Scenario.outside("heightPx", heightPx, 64, 4096) ++
-      Scenario.notPositive(this) ++ Option.when(fovDeg >= 180)(s"fovDeg: expected below 180, came $fovDeg") ++
+      Scenario.notPositive(this) ++ Option.when(fovDeg >= 180)(s"fovDeg: expected below 180, got $fovDeg") ++
       recognition.left.toOption.map(mistake => s"takes: $mistake") ++
       recognisers.left.toOption.map(mistake => s"recogniser: $mistake")
 

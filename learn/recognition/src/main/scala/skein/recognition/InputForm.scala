@@ -20,14 +20,14 @@ final case class InputForm(
 
   def tensor(image: Image): Either[String, Array[Float]] = image.pixels match
     case Pixels.Bgr(bytes) => tensor(image.width, image.height, bytes.buffer)
-    case other             => Left(s"expected raw pixels, came ${other.productPrefix}")
+    case other             => Left(s"expected raw pixels, got ${other.productPrefix}")
 
   /** @param bgr blue, green, red of each pixel, in rows from the top
     */
   def tensor(imageWidth: Int, imageHeight: Int, bgr: ByteBuffer): Either[String, Array[Float]] =
     val expected = 3L * imageWidth * imageHeight
     if bgr.remaining != expected then
-      Left(s"expected $expected bytes of $imageWidth × $imageHeight pixels, came ${bgr.remaining}")
+      Left(s"expected $expected bytes of $imageWidth × $imageHeight pixels, got ${bgr.remaining}")
     else
       val plane  = width * height
       val values = new Array[Float](3 * plane)

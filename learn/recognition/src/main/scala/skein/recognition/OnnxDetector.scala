@@ -49,7 +49,7 @@ final class OnnxDetector(
   /** The objects in an image, the highest score first; Left states why it cannot be searched. */
   def find(image: Image): Either[String, Vector[Box]] = image.pixels match
     case Pixels.Bgr(bytes) => find(image.width, image.height, bytes.buffer)
-    case other             => Left(s"expected raw pixels, came ${other.productPrefix}")
+    case other             => Left(s"expected raw pixels, got ${other.productPrefix}")
 
   /** @param bgr blue, green, red of each pixel, in rows from the top
     */
@@ -92,7 +92,7 @@ object OnnxDetector:
       val expected = form match
         case BoxForm.Columns => "1 × (4 + kinds) × boxes"
         case BoxForm.Rows    => "1 × boxes × 6"
-      Left(s"expected an output of $expected, came ${shape.mkString(" × ")}")
+      Left(s"expected an output of $expected, got ${shape.mkString(" × ")}")
 
   /** One box for each object, the highest score first (greedy non-maximum suppression). */
   private[recognition] def distinct(found: Vector[Box], mostOverlap: Double): Vector[Box] =

@@ -20,7 +20,7 @@ final class OnnxModel private (session: OrtSession, inputName: String, val input
   /** Runs the model on a tensor of the given shape. Left states what the model does not accept. */
   def run(tensor: Array[Float], shape: Vector[Int]): Either[String, Outputs] =
     if shape.map(_.toLong).product != tensor.length then
-      Left(s"expected ${shape.mkString(" × ")} numbers, came ${tensor.length}")
+      Left(s"expected ${shape.mkString(" × ")} numbers, got ${tensor.length}")
     else
       OnnxModel.attempt:
         Using.resource(
@@ -77,7 +77,7 @@ object OnnxModel:
         case other =>
           session.close()
           Left(
-            "expected a model with one input of floats, came " +
+            "expected a model with one input of floats, got " +
               s"${other.map((name, info) => s"$name: $info").mkString("; ")}"
           )
 

@@ -17,7 +17,7 @@ final class VehicleDetector(camera: Pinhole, detector: OnnxDetector, appearance:
   def find(width: Int, height: Int, bgr: ByteBuffer): Either[String, Option[PolarMeasurement]] =
     if width == camera.width && height == camera.height then
       detector.find(width, height, bgr).map(_.headOption.map(polar))
-    else Left(s"expected ${camera.width} × ${camera.height} pixels, came $width × $height")
+    else Left(s"expected ${camera.width} × ${camera.height} pixels, got $width × $height")
 
   /** The bearing and range of a box's object. A round object away from the image's middle appears wider: a
     * body of width w at azimuth α and depth d covers f·w / (d·cos α) pixels.

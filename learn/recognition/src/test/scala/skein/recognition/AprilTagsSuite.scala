@@ -56,9 +56,9 @@ class AprilTagsSuite extends munit.FunSuite, Optimised:
     assertEquals(tags.find(blank), Right(Vector.empty))
     assertEquals(
       tags.find(grey.copy(width = 640)),
-      Left("expected 1280 × 720 pixels of three bytes, came 640 × 720 in 2764800 bytes")
+      Left("expected 1280 × 720 pixels of three bytes, got 640 × 720 in 2764800 bytes")
     )
     assertEquals(
       tags.find(grey.copy(pixels = Pixels.Numbers(Array.emptyFloatArray))),
-      Left("expected raw pixels, came Numbers")
+      Left("expected raw pixels, got Numbers")
     )

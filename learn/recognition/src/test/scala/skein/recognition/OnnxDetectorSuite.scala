@@ -29,9 +29,9 @@ class OnnxDetectorSuite extends munit.FunSuite:
     val other = OnnxModel.Output(Vector(1, 3, 4), new Array[Float](12))
     assertEquals(
       OnnxDetector.read(other, BoxForm.Columns, 0.5).left.toOption,
-      Some("expected an output of 1 × (4 + kinds) × boxes, came 1 × 3 × 4")
+      Some("expected an output of 1 × (4 + kinds) × boxes, got 1 × 3 × 4")
     )
     assertEquals(
       OnnxDetector.read(other, BoxForm.Rows, 0.5).left.toOption,
-      Some("expected an output of 1 × boxes × 6, came 1 × 3 × 4")
+      Some("expected an output of 1 × boxes × 6, got 1 × 3 × 4")
     )

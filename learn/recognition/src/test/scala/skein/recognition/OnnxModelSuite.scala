@@ -45,7 +45,7 @@ class OnnxModelSuite extends munit.FunSuite:
     assert(model.run(new Array[Float](6), Vector(1, 2, 3)).isLeft)
     assertEquals(
       model.run(new Array[Float](5), Vector(1, 2, 3)).left.toOption,
-      Some("expected 1 × 2 × 3 numbers, came 5")
+      Some("expected 1 × 2 × 3 numbers, got 5")
     )
 
 /** A model of one node, written by hand: the largest value of each channel. ONNX's messages are protocol

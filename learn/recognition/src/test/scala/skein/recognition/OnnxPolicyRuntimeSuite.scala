@@ -60,7 +60,7 @@ class OnnxPolicyRuntimeSuite extends munit.FunSuite, OnnxFiles, Unhurried:
     assertEquals(one.landed.outcome, FlightOutcome.Completed)
     assertEquals(one.recorder.digest, other.recorder.digest)
     written(folder, model("Sin")): Unit
-    assert(PolicyFile.parse(policy.role, policy.text).left.exists(_.contains("came another")))
+    assert(PolicyFile.parse(policy.role, policy.text).left.exists(_.contains("got another")))
 
   folder.test("a model that returns NaN ends the flight with that reason, and vehicles hover"): folder =>
     // The trial before the flight has a result, with the evader straight ahead; later observations have none.
@@ -68,6 +68,6 @@ class OnnxPolicyRuntimeSuite extends munit.FunSuite, OnnxFiles, Unhurried:
     val landed = flown(policy)
     landed.landed.outcome match
       case FlightOutcome.Failed(reason) =>
-        assert(reason.contains("the policy: expected a number from -1 to 1, came NaN"), reason)
+        assert(reason.contains("the policy: expected a number from -1 to 1, got NaN"), reason)
       case other => fail(s"$other")
     assert(landed.recorder.recording.commands.groupBy(_.vehicle).values.forall(_.nonEmpty))

@@ -37,7 +37,7 @@ class VehicleDetectorSuite extends munit.FunSuite, Optimised:
     val detector = VehicleDetector.shipped(camera).fold(fail(_), identity)
     assertEquals(
       detector.find(640, 480, ByteBuffer.allocate(640 * 480 * 3)).left.toOption,
-      Some("expected 800 × 600 pixels, came 640 × 480")
+      Some("expected 800 × 600 pixels, got 640 × 480")
     )
     assertEquals(
       BlindPursuit(recogniser = "missing.onnx").mistakes,

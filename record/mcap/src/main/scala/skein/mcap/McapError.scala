@@ -40,18 +40,18 @@ enum McapError:
 
   def message: String = this match
     case NotMcap(came) =>
-      s"byte 0: expected an MCAP file of version 0, which begins with ${McapError.hex(Magic.bytes)}, came " +
+      s"byte 0: expected an MCAP file of version 0, which begins with ${McapError.hex(Magic.bytes)}, got " +
         (if came.size == 0 then "no byte" else McapError.hex(came))
-    case CutOff(at, expected, came) => s"$at: the file is cut off: expected $expected, came $came bytes"
+    case CutOff(at, expected, came) => s"$at: the file is cut off: expected $expected, got $came bytes"
     case TooLarge(at, what, claimed, limit) =>
       s"$at: $what claims ${java.lang.Long.toUnsignedString(claimed)} bytes, expected at most $limit"
-    case Malformed(at, expected, came)      => s"$at: expected $expected, came $came"
+    case Malformed(at, expected, came)      => s"$at: expected $expected, got $came"
     case WrongCrc(at, what, expected, came) =>
       s"$at: the CRC of $what is written as ${Hex.of(expected)}, its bytes give ${Hex.of(came)}"
     case NotDecompressed(at, compression, why) =>
-      s"$at: expected a chunk compressed by $compression, came $why"
+      s"$at: expected a chunk compressed by $compression, got $why"
     case UnknownCompression(at, name) =>
-      s"$at: expected a chunk compressed by zstd, by lz4 or not at all, came \"$name\""
+      s"$at: expected a chunk compressed by zstd, by lz4 or not at all, got \"$name\""
 
   override def toString: String = message
 

@@ -31,4 +31,4 @@ final case class WriterOptions(
     metadataIndex: Boolean = true,
     summaryOffsets: Boolean = true
 ):
-  require(chunkBytes > 0, s"expected a chunk of at least a byte, came $chunkBytes")
+  require(chunkBytes > 0, s"expected a chunk of at least a byte, got $chunkBytes")

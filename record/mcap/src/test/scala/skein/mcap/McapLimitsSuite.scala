@@ -52,15 +52,15 @@ class McapLimitsSuite extends munit.FunSuite:
     assertEquals(
       errorOf(Bytes.utf8("SQLite format 3")),
       "byte 0: expected an MCAP file of version 0, which begins with 89 4d 43 41 50 30 0d 0a, " +
-        "came 53 51 4c 69 74 65 20 66"
+        "got 53 51 4c 69 74 65 20 66"
     )
     assertEquals(
       errorOf(after(RecordCodec.append(Record.Message(7, 0, 0, 0, Bytes.empty), _))),
-      "byte 25: expected a message of a channel named before, came one of channel 7"
+      "byte 25: expected a message of a channel named before, got one of channel 7"
     )
     assertEquals(
       errorOf(after(RecordCodec.append(Record.Chunk(0, 0, 0, 0, "bz2", Bytes.empty), _))),
-      "byte 25: expected a chunk compressed by zstd, by lz4 or not at all, came \"bz2\""
+      "byte 25: expected a chunk compressed by zstd, by lz4 or not at all, got \"bz2\""
     )
     assertEquals(
       errorOf(after(RecordCodec.append(Record.Chunk(0, 0, 3, 5, "", Bytes.utf8("abc")), _))),
@@ -69,11 +69,11 @@ class McapLimitsSuite extends munit.FunSuite:
     )
     assertEquals(
       errorOf(after(RecordCodec.append(Record.SummaryOffset(3, 0, 0), _))),
-      "byte 25: expected a record of the data section, came a Summary Offset record"
+      "byte 25: expected a record of the data section, got a Summary Offset record"
     )
     assertEquals(
       errorOf(begin.slice(0, 20)),
-      "byte 8: the file is cut off: expected 8 bytes of Header, came 3 bytes"
+      "byte 8: the file is cut off: expected 8 bytes of Header, got 3 bytes"
     )
 
   test("a record of an unknown kind is returned unchanged"):
@@ -87,4 +87,4 @@ class McapLimitsSuite extends munit.FunSuite:
       RecordCodec.append(channel("/a"), out)
       RecordCodec.append(channel(second), out)
     assertEquals(Parsing.all(file("/a")).records.size, 3)
-    assertEquals(errorOf(file("/b")), "byte 52: expected channel 1 as it was named before, /a, came /b")
+    assertEquals(errorOf(file("/b")), "byte 52: expected channel 1 as it was named before, /a, got /b")

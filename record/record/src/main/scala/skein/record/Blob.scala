@@ -59,8 +59,8 @@ object Blob:
     */
   def ofPacked(packed: Array[Byte]): Either[String, Blob] =
     val size = Zstd.getFrameContentSize(packed)
-    if size < 0 then Left(s"expected a frame of Zstandard that says its size, came ${packed.length} others")
-    else if size > MostBytes then Left(s"expected up to $MostBytes bytes, came a frame of $size")
+    if size < 0 then Left(s"expected a frame of Zstandard that says its size, got ${packed.length} others")
+    else if size > MostBytes then Left(s"expected up to $MostBytes bytes, got a frame of $size")
     else
       val blob = new Blob(packed, isPacked = true, size.toInt)
       try

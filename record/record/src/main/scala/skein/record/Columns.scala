@@ -62,7 +62,7 @@ private[record] object FieldColumns:
       (row, column) =>
         val value = row.getDouble(column)
         if value.isFinite then value
-        else throw SQLException(s"$name: expected a finite number, came $value")
+        else throw SQLException(s"$name: expected a finite number, got $value")
     )
 
   given longs: FieldColumns[Vector[Long]] = name =>
@@ -73,7 +73,7 @@ private[record] object FieldColumns:
       (row, column) =>
         listed(row.getArray(column)).map:
           case number: Number => number.longValue
-          case other          => throw SQLException(s"expected whole numbers in a list, came $other")
+          case other          => throw SQLException(s"expected whole numbers in a list, got $other")
     )
 
   given doubles: FieldColumns[Vector[Double]] = name =>
@@ -84,7 +84,7 @@ private[record] object FieldColumns:
       (row, column) =>
         listed(row.getArray(column)).map:
           case number: Number if number.doubleValue.isFinite => number.doubleValue
-          case other => throw SQLException(s"$name: expected finite numbers, came $other")
+          case other => throw SQLException(s"$name: expected finite numbers, got $other")
     )
 
   given texts: FieldColumns[Vector[String]] =
@@ -194,7 +194,7 @@ private[record] object FieldColumns:
     read =>
       cases
         .find(_.toString == read)
-        .getOrElse(throw SQLException(s"$name: expected one of ${cases.mkString(", ")}, came '$read'")),
+        .getOrElse(throw SQLException(s"$name: expected one of ${cases.mkString(", ")}, got '$read'")),
     _.toString
   )
 

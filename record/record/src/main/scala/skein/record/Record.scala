@@ -41,7 +41,7 @@ final class LaterDecision(
     make: => DecisionRow
 ) extends Recordable:
   def readings: Vector[Seen] = asRead
-  lazy val row: DecisionRow = make
+  lazy val row: DecisionRow  = make
 
 object Record:
   /** The large part of an image or a cloud. */

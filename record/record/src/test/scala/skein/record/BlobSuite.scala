@@ -17,7 +17,7 @@ class BlobSuite extends munit.FunSuite:
     assert(refused(cut).startsWith("a frame of Zstandard is damaged"), refused(cut))
     // A header alone: one segment, a size of eight bytes, 2^40.
     val huge = Array(0x28, 0xb5, 0x2f, 0xfd, 0xe0, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0).map(_.toByte)
-    assertEquals(refused(huge), s"expected up to ${Blob.MostBytes} bytes, came a frame of ${1L << 40}")
+    assertEquals(refused(huge), s"expected up to ${Blob.MostBytes} bytes, got a frame of ${1L << 40}")
 
   test("a field of bytes is found among others, and is missing in a truncated message"):
     val message =

@@ -8,7 +8,7 @@ class KindsSuite extends munit.FunSuite:
     for kind <- LoopKind.values do assertEquals(LoopKind.parse(kind.label), Right(kind))
 
   test("an unknown name is refused with the list of the known ones"):
-    assertEquals(ClockKind.parse("Real"), Left("expected real or virtual, came 'Real'"))
+    assertEquals(ClockKind.parse("Real"), Left("expected real or virtual, got 'Real'"))
     assertEquals(
       LoopKind.parse("streams"),
       Left("no loop 'streams': expected one of paused, sequential, futures, stream, predictive, plan")

@@ -159,12 +159,12 @@ class RecordingSuite extends munit.FunSuite, TemporaryFolders:
       (
         "a number that is none",
         "UPDATE reading SET positionNorthM = 'NaN'",
-        "table reading, row 4: positionNorthM: expected a finite number, came NaN"
+        "table reading, row 4: positionNorthM: expected a finite number, got NaN"
       ),
       (
         "an endless number",
         "UPDATE decision SET ownAgeMs = '-Infinity'",
-        "table decision, row 5: ownAgeMs: expected a finite number, came -Infinity"
+        "table decision, row 5: ownAgeMs: expected a finite number, got -Infinity"
       ),
       (
         "an unknown word",

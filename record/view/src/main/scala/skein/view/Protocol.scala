@@ -136,11 +136,11 @@ object Protocol:
     val hasSeek = in.get() != 0
     val seek    = in.getLong()
     val length  = in.getInt()
-    if command != 0 && command != 1 then Left(s"a playback command is 0 or 1, came $command")
+    if command != 0 && command != 1 then Left(s"a playback command is 0 or 1, got $command")
     else if !(speed > 0 && speed <= Playback.MostSpeed) then
-      Left(s"a playback speed is more than 0 and up to ${Playback.MostSpeed.toInt}, came $speed")
+      Left(s"a playback speed is more than 0 and up to ${Playback.MostSpeed.toInt}, got $speed")
     else if length < 0 || length > in.remaining || length > MostRequest then
-      Left(s"a request's name has up to $MostRequest bytes, all of them in the message; came $length")
+      Left(s"a request's name has up to $MostRequest bytes, all of them in the message; got $length")
     else
       val request = new Array[Byte](length)
       in.get(request)
@@ -161,7 +161,7 @@ object Protocol:
     if number >= 0 && number <= MostNumber && number == number.toLong then number.toLong
     else
       throw Malformed(
-        s"a number of a channel or a subscription is whole, from 0 to $MostNumber; came $number"
+        s"a number of a channel or a subscription is whole, from 0 to $MostNumber; got $number"
       )
 
   private def time(at: Instant) =

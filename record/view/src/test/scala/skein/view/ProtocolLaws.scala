@@ -67,9 +67,9 @@ class ProtocolLaws extends munit.FunSuite:
         "[]"                                                                -> "JSON",
         "{}"                                                                -> "JSON",
         """{"op":1}"""                                                      -> "JSON",
-        """{"op":"subscribe","subscriptions":[{"id":-1,"channelId":1}]}"""  -> "came -1",
-        """{"op":"subscribe","subscriptions":[{"id":1.5,"channelId":1}]}""" -> "came 1.5",
-        """{"op":"unsubscribe","subscriptionIds":[4294967296]}"""           -> "came 4.294967296E9",
+        """{"op":"subscribe","subscriptions":[{"id":-1,"channelId":1}]}"""  -> "got -1",
+        """{"op":"subscribe","subscriptions":[{"id":1.5,"channelId":1}]}""" -> "got 1.5",
+        """{"op":"unsubscribe","subscriptionIds":[4294967296]}"""           -> "got 4.294967296E9",
         "[" * 60_000                                                        -> "JSON",
         """{"op":"subscribe","subscriptions":""" + """{"a":""" * 9_000      -> "JSON"
       )
@@ -77,9 +77,9 @@ class ProtocolLaws extends munit.FunSuite:
     for (message, expected) <- Seq(
         ByteString.empty                                                      -> "ends at byte 0",
         playback(0, 1f, None, "").dropRight(1)                                -> "ends at byte 18",
-        playback(7, 1f, None, "")                                             -> "came 7",
-        playback(0, 0f, None, "")                                             -> "came 0.0",
-        playback(0, Float.NaN, None, "")                                      -> "came NaN",
+        playback(7, 1f, None, "")                                             -> "got 7",
+        playback(0, 0f, None, "")                                             -> "got 0.0",
+        playback(0, Float.NaN, None, "")                                      -> "got NaN",
         playback(0, 1e9f, None, "")                                           -> "up to 100",
         playback(0, 1f, None, "").dropRight(4) ++ ByteString(-1, -1, -1, 127) -> "256 bytes"
       )

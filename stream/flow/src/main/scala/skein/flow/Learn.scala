@@ -23,7 +23,7 @@ object Learn:
       most: Int,
       onDropped: A => Unit
   )(learn: Vector[A] => Future[Option[B]]): Flow[A, B, NotUsed] =
-    require(most > 0, s"expected lessons of at least one element, came $most")
+    require(most > 0, s"expected lessons of at least one element, got $most")
     Flow[A]
       .conflateWithSeed(Vector(_)): (held, next) =>
         val kept = held.drop(held.size - most + 1)

@@ -48,7 +48,7 @@ object Codec:
     val in = DataInputStream(ByteArrayInputStream(bytes))
     try
       val read = codec.read(in)
-      Either.cond(in.available == 0, read, s"expected the message's end, came ${in.available} more bytes")
+      Either.cond(in.available == 0, read, s"expected the message's end, got ${in.available} more bytes")
     catch
       case _: EOFException    => Left(s"the message is cut off after ${bytes.length} bytes")
       case wrong: IOException => Left(wrong.getMessage)
@@ -57,7 +57,7 @@ object Codec:
   def length(in: DataInputStream, atMost: Int = Int.MaxValue): Int =
     val came = in.readInt()
     val most = atMost.min(in.available)
-    if came < 0 || came > most then throw IOException(s"expected a length of 0 to $most, came $came")
+    if came < 0 || came > most then throw IOException(s"expected a length of 0 to $most, got $came")
     came
 
   /** A byte array after its length.
@@ -140,5 +140,5 @@ object Codec:
         val kind = in.readUnsignedByte()
         if kind < 1 || kind > all.size then
           val what = label.replaceAll("(?<=.)([A-Z])", " $1").toLowerCase(Locale.ROOT)
-          throw IOException(s"expected a kind of $what from 1 to ${all.size}, came $kind")
+          throw IOException(s"expected a kind of $what from 1 to ${all.size}, got $kind")
         all(kind - 1).read(in).asInstanceOf[A]

@@ -18,7 +18,7 @@ enum FirstBytes:
     */
   case Undecided
 
-  /** @param what a description for the user: "came …" */
+  /** @param what a description for the user: "got …" */
   case Foreign(what: String)
 
 object FirstBytes:

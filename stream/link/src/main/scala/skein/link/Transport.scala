@@ -26,13 +26,13 @@ object Address:
     * @return Left states what was expected and what was given
     */
   def parse(text: String): Either[String, Address] = text match
-    case Plain(_, port) if port.toInt > MostPort => Left(s"expected a port up to $MostPort, came '$text'")
-    case IPv6(_, port) if port.toInt > MostPort  => Left(s"expected a port up to $MostPort, came '$text'")
+    case Plain(_, port) if port.toInt > MostPort => Left(s"expected a port up to $MostPort, got '$text'")
+    case IPv6(_, port) if port.toInt > MostPort  => Left(s"expected a port up to $MostPort, got '$text'")
     case Plain(host, port)                       => Right(Address(host, port.toInt))
     case IPv6(host, port) if Try(InetAddress.ofLiteral(host)).isSuccess => Right(Address(host, port.toInt))
     case _                                                              =>
       val example = if text.count(_ == ':') > 1 then "[::1]:41451 of an IPv6 address" else "127.0.0.1:41451"
-      Left(s"expected HOST:PORT, for example $example, came '$text'")
+      Left(s"expected HOST:PORT, for example $example, got '$text'")
 
   private val MostPort = 65535
 

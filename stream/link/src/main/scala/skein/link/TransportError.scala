@@ -42,7 +42,7 @@ enum TransportError(message: String, cause: Throwable | Null = null) extends Run
 
   /** The connecting peer speaks another protocol: see [[FirstBytes]]. */
   case Foreign(from: Address, what: String)
-      extends TransportError(s"connection from $from closed: expected this port's own protocol, came $what")
+      extends TransportError(s"connection from $from closed: expected this port's own protocol, got $what")
 
   case Failed(to: Address, reason: Throwable)
       extends TransportError(s"connection to $to failed: ${reason.getMessage}", reason)

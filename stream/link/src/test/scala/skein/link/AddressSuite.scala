@@ -21,12 +21,12 @@ class AddressSuite extends munit.FunSuite:
     do
       assertEquals(
         Address.parse(text),
-        Left(s"expected HOST:PORT, for example 127.0.0.1:41451, came '$text'")
+        Left(s"expected HOST:PORT, for example 127.0.0.1:41451, got '$text'")
       )
     for text <- Seq("here:65536", "[::1]:99999") do
-      assertEquals(Address.parse(text), Left(s"expected a port up to 65535, came '$text'"))
+      assertEquals(Address.parse(text), Left(s"expected a port up to 65535, got '$text'"))
     for text <- Seq("::1:41451", "::1", "[::1]", "[::1]41451", "[::1::2]:80", "1:2:3") do
       assertEquals(
         Address.parse(text),
-        Left(s"expected HOST:PORT, for example [::1]:41451 of an IPv6 address, came '$text'")
+        Left(s"expected HOST:PORT, for example [::1]:41451 of an IPv6 address, got '$text'")
       )

@@ -60,5 +60,5 @@ class FirstBytesSuite extends munit.FunSuite:
     val error = intercept[TransportError.Foreign](through(ByteString("GE"), ByteString("T / HTTP")))
     assertEquals(
       error.getMessage,
-      "connection from 127.0.0.1:5 closed: expected this port's own protocol, came an HTTP request (GET)"
+      "connection from 127.0.0.1:5 closed: expected this port's own protocol, got an HTTP request (GET)"
     )

@@ -53,7 +53,7 @@ final class AirSimVehicle(multirotor: Multirotor, onLost: String => Unit)(using 
   override def follow(plan: CommandPlan): Future[Either[VehicleError, Boolean]] =
     if plan.actions.nonEmpty then follows = true
     multirotor.followPlan(plans.getAndIncrement(), plan).fold(
-      Future.successful(Left(VehicleError.Unsupported("expected a plan of velocities, came other actions")))
+      Future.successful(Left(VehicleError.Unsupported("expected a plan of velocities, got other actions")))
     )(_.map(_.left.map(errorOf)))
 
   def hover(): Future[Either[VehicleError, Boolean]] =

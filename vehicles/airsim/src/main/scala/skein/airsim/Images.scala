@@ -108,7 +108,7 @@ private[airsim] object Images:
       originNed: Vector3
   ): Either[String, (Vector[Image], Instant)] =
     val came = Vector.fill(in.array())(readOne(in))
-    if came.size != shots.size then Left(s"expected ${shots.size} images, came ${came.size}")
+    if came.size != shots.size then Left(s"expected ${shots.size} images, got ${came.size}")
     else
       Expect
         .each(came.zip(shots))((one, shot) => one.image(shot, originNed))
@@ -133,7 +133,7 @@ private[airsim] object Images:
         case encoding                                    =>
           val said = if message.isEmpty then "" else s"; the simulator says: ${message.take(200)}"
           Left(
-            s"expected ${shot.kind} of camera '${shot.camera}' as $encoding, came $width × " +
+            s"expected ${shot.kind} of camera '${shot.camera}' as $encoding, got $width × " +
               s"$height pixels in ${bytes.length} bytes and ${numbers.length} numbers$said"
           )
       pixels.map(Image(shot, width, height, _, position + originNed, orientation))
@@ -171,9 +171,9 @@ private[airsim] object Images:
     if points.length == 1 then
       points = Array.emptyFloatArray
       segmentation = Array.emptyIntArray
-    if points.length % 3 != 0 then Left(s"expected x, y, z of each point, came ${points.length} numbers")
+    if points.length % 3 != 0 then Left(s"expected x, y, z of each point, got ${points.length} numbers")
     else if segmentation.length > 0 && segmentation.length != points.length / 3 then
-      Left(s"expected ${points.length / 3} segmentation ids, came ${segmentation.length}")
+      Left(s"expected ${points.length / 3} segmentation ids, got ${segmentation.length}")
     else Right((Scan(points, segmentation, position + originNed, orientation), at))
 
   /** Reads the field of view from the answer to `simGetCameraInfo`. */

@@ -81,7 +81,7 @@ final class MessageReader private (bytes: Array[Byte], private var at: Int, end:
 
   def int(): Int =
     val value = long()
-    if value.isValidInt then value.toInt else throw Unexpected(s"expected a 32-bit integer, came $value")
+    if value.isValidInt then value.toInt else throw Unexpected(s"expected a 32-bit integer, got $value")
 
   def double(): Double = peek() match
     case 0xca =>
@@ -178,15 +178,15 @@ final class MessageReader private (bytes: Array[Byte], private var at: Int, end:
   private def size(bytesOfSize: Int, least: Int): Int =
     val length = take(bytesOfSize)
     if length * least > end - at then
-      throw Unexpected(s"expected $length more values or bytes, came ${end - at} bytes")
+      throw Unexpected(s"expected $length more values or bytes, got ${end - at} bytes")
     length.toInt
 
   private def need(count: Int): Unit =
-    if end - at < count then throw Unexpected(s"expected $count more bytes, came ${end - at}")
+    if end - at < count then throw Unexpected(s"expected $count more bytes, got ${end - at}")
 
   private def unexpected(what: String, marker: Int): Nothing =
     throw Unexpected(
-      s"expected $what, came a value that begins with 0x${Integer.toHexString(marker | 0x100).drop(1)}"
+      s"expected $what, got a value that begins with 0x${Integer.toHexString(marker | 0x100).drop(1)}"
     )
 
 object MessageReader:

@@ -83,7 +83,7 @@ final class RpcClient(
             RpcError.Malformed(method, _)
           )
         case other: Msg =>
-          Left(RpcError.Malformed(method, s"expected a large result, came ${RpcMessage.kindOf(other)}"))
+          Left(RpcError.Malformed(method, s"expected a large result, got ${RpcMessage.kindOf(other)}"))
     ))
 
   private def submit(
@@ -122,7 +122,7 @@ final class RpcClient(
       val read = upickle.default.readBinary[A](value, trace)
       for where <- RpcClient.nilIn(value, read) do
         throw IllegalArgumentException(
-          s"expected a value${if where.isEmpty then "" else s" in $where"}, came nil"
+          s"expected a value${if where.isEmpty then "" else s" in $where"}, got nil"
         )
       read
     // Tracking the position makes reading several times slower: only unreadable answers are read again with
@@ -155,7 +155,7 @@ object RpcClient:
       val where = at.jsonPath.stripPrefix("$").replaceAll("\\['?([^'\\]]*)'?\\]", ".$1").stripPrefix(".")
       unreadable(at.getCause) + (if where.isEmpty then "" else s" in $where")
     case ended: AbortException    => ended.clue
-    case _: NumberFormatException => "expected a number, came a string"
+    case _: NumberFormatException => "expected a number, got a string"
     case other                    => Option(other.getMessage).getOrElse(s"$other")
 
   /** The dotted path of a nil in an answer where a value was read; None without one. Needed since a nil

@@ -84,7 +84,7 @@ private[rpc] final class ServerConnection(
         patience.came()
         foreign(bytes) match
           case Some(what) =>
-            close(ServerLimit.Malformed, s"expected a message of MessagePack-RPC, came $what")
+            close(ServerLimit.Malformed, s"expected a message of MessagePack-RPC, got $what")
           case None =>
             framer.offer(bytes)
             segment = bytes.length
@@ -237,7 +237,7 @@ private[rpc] final class ServerConnection(
         strays += 1
         observe(ServerEvent.Ignored(connection, what))
         if !spoken then
-          refuse(ServerLimit.Malformed, s"expected a message of MessagePack-RPC first, came $what")
+          refuse(ServerLimit.Malformed, s"expected a message of MessagePack-RPC first, got $what")
         else if strays > limits.strays then
           refuse(ServerLimit.Malformed, s"more than ${limits.strays} values in a row that are no messages")
 

@@ -72,13 +72,13 @@ class ImagesSuite extends munit.FunSuite:
     assertEquals(
       images(sent(none), raw),
       Left(
-        "expected Scene of camera 'front_center' as Raw, came 0 × 0 pixels in 1 bytes and 0 numbers; " +
+        "expected Scene of camera 'front_center' as Raw, got 0 × 0 pixels in 1 bytes and 0 numbers; " +
           "the simulator says: no such camera"
       )
     )
     assert(images(sent(image.copy(height = 3)), raw).isLeft)
     assert(images(sent(image.copy(width = -4, height = -2)), raw).isLeft)
-    assertEquals(images(sent(image), raw, raw), Left("expected 2 images, came 1"))
+    assertEquals(images(sent(image), raw, raw), Left("expected 2 images, got 1"))
 
   test("a scan is read as sent, a single value as an empty cloud, and mismatched ids are reported"):
     val cloud = LidarData(
@@ -97,11 +97,11 @@ class ImagesSuite extends munit.FunSuite:
     )
     assertEquals(
       scan(bytes(cloud.copy(segmentation = Array(7)))),
-      Left("expected 2 segmentation ids, came 1")
+      Left("expected 2 segmentation ids, got 1")
     )
     assertEquals(
       scan(bytes(cloud.copy(point_cloud = Array(1, 2)))),
-      Left("expected x, y, z of each point, came 2 numbers")
+      Left("expected x, y, z of each point, got 2 numbers")
     )
     val cosys = Obj(Str("point_cloud") -> Arr(), Str("groundtruth") -> Arr(Str("tree")))
     assertEquals(scan(Wire.pack(cosys)).map(_._1.size), Right(0))

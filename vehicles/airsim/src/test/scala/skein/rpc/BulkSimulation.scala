@@ -94,7 +94,7 @@ class BulkSimulation extends munit.FunSuite:
     assertEquals(
       answers,
       (
-        Left(RpcError.Malformed("seven", "expected binary or a string, came a value that begins with 0x07")),
+        Left(RpcError.Malformed("seven", "expected binary or a string, got a value that begins with 0x07")),
         Left(RpcError.Refused("no", "cannot")),
         Right(7),
         Right(Int32(7)),

@@ -134,14 +134,14 @@ class HostileServerSuite extends munit.FunSuite:
     Obj(Str("name") -> Str("a"), Str("inner") -> inner, Str("more") -> more)
 
   for (where, answer, reason) <- Seq(
-      ("in the place of everything", Null, "expected a value, came nil"),
-      ("in a structure", outer(Null, Arr()), "expected a value in inner, came nil"),
+      ("in the place of everything", Null, "expected a value, got nil"),
+      ("in a structure", outer(Null, Arr()), "expected a value in inner, got nil"),
       (
         "in a list in a structure",
         outer(one(Float64(1)), Arr(one(Float64(1)), Null)),
-        "expected a value in more.1, came nil"
+        "expected a value in more.1, got nil"
       ),
-      ("in the place of a number", outer(one(Null), Arr()), "expected a value in inner.x, came nil")
+      ("in the place of a number", outer(one(Null), Arr()), "expected a value in inner.x, got nil")
     )
   do
     rig(s"an answer with nil $where is malformed, and is reported in one line"): r =>
@@ -154,7 +154,7 @@ class HostileServerSuite extends munit.FunSuite:
       (
         "in the place of a number",
         outer(one(Str("far")), Arr()),
-        "expected a number, came a string in inner.x"
+        "expected a number, got a string in inner.x"
       )
     )
   do

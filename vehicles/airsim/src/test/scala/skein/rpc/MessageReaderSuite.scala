@@ -43,14 +43,14 @@ class MessageReaderSuite extends munit.FunSuite:
       val map = (head ++ Array.fill(9)(0xc0)).map(_.toByte)
       assertEquals(
         read(map)(_.fields { case other => fail(other) }),
-        Left("expected 5 more values or bytes, came 9 bytes")
+        Left("expected 5 more values or bytes, got 9 bytes")
       )
 
   test("an unexpected value is reported with its field"):
     val map = Wire.pack(Obj(Str("width") -> Str("wide")))
     assertEquals(
       read(map)(in => in.fields { case "width" => in.int(): Unit }),
-      Left("width: expected an integer, came a value that begins with 0xa4")
+      Left("width: expected an integer, got a value that begins with 0xa4")
     )
 
   test("mutated bytes throw nothing, and no memory is allocated for elements that cannot exist"):
@@ -68,5 +68,5 @@ class MessageReaderSuite extends munit.FunSuite:
     val huge = Array(0xdd, 0x7f, 0xff, 0xff, 0xff, 1).map(_.toByte)
     assertEquals(
       read(huge)(_.floats().length),
-      Left("expected 2147483647 more values or bytes, came 1 bytes")
+      Left("expected 2147483647 more values or bytes, got 1 bytes")
     )

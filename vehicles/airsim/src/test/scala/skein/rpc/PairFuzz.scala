@@ -177,12 +177,12 @@ object PairFuzz:
   /** Before the first request nothing else may be sent; data whose first byte is foreign are not read. */
   private def expectedReason(bytes: Array[Byte]): Option[String] =
     FirstBytes.verdict(ByteString.fromArrayUnsafe(bytes), ServerConnection.Starts) match
-      case FirstBytes.Foreign(what) => Some(s"expected a message of MessagePack-RPC, came $what")
+      case FirstBytes.Foreign(what) => Some(s"expected a message of MessagePack-RPC, got $what")
       case _                        =>
         val (messages, reason) = decoded(bytes, RpcMessage.fromClient)
         messages.headOption
           .collect { case RpcMessage.Ignored(what) =>
-            s"expected a message of MessagePack-RPC first, came $what"
+            s"expected a message of MessagePack-RPC first, got $what"
           }
           .orElse(reason)
 

@@ -129,7 +129,7 @@ class ServerConnectionSuite extends munit.FunSuite:
       val _ = r.replies.ensureSubscription().expectComplete()
       r.event() match
         case ServerEvent.Closed(1, Some(why)) if came.nonEmpty =>
-          assertEquals(why, s"expected a message of MessagePack-RPC, came $came")
+          assertEquals(why, s"expected a message of MessagePack-RPC, got $came")
         case ServerEvent.Closed(1, Some(_)) if came.isEmpty => ()
         case other                                          => fail(s"$other")
       assert(r.asked.isEmpty)
@@ -142,7 +142,7 @@ class ServerConnectionSuite extends munit.FunSuite:
     assertEquals(r.event(), ServerEvent.Ignored(1, "an array of 2"))
     assertEquals(
       r.event(),
-      ServerEvent.Closed(1, Some("expected a message of MessagePack-RPC first, came an array of 2"))
+      ServerEvent.Closed(1, Some("expected a message of MessagePack-RPC first, got an array of 2"))
     )
 
   for (what, bytes, reason) <- Seq(

@@ -139,9 +139,9 @@ object OffboardSetpoint:
     val rate     = asked(yawRate, Ignore.YawRate)
     val numbers  = (place ++ velocity :+ turn :+ rate).flatten
     if (place ++ velocity).flatten.isEmpty then
-      Left("setpoint: expected a position or a velocity, came neither")
+      Left("setpoint: expected a position or a velocity, got neither")
     else if numbers.exists(number => !(math.abs(number) <= Most)) then
-      Left("setpoint: expected finite numbers, came others")
+      Left("setpoint: expected finite numbers, got others")
     else
       Right(OffboardSetpoint.Move(
         place(0),

@@ -5,8 +5,8 @@ package skein.mavlink
   * @param signing without it frames are not signed
   */
 final class FrameWriter(system: Int, component: Int, signing: Option[Signing] = None):
-  require((1 to 255).contains(system), s"expected a system from 1 to 255, came $system")
-  require((1 to 255).contains(component), s"expected a component from 1 to 255, came $component")
+  require((1 to 255).contains(system), s"expected a system from 1 to 255, got $system")
+  require((1 to 255).contains(component), s"expected a component from 1 to 255, got $component")
 
   private var sequence = 0
 

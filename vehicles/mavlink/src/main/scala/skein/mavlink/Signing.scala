@@ -16,7 +16,7 @@ import scala.collection.mutable
   */
 final class Signing(key: Array[Byte], link: Int, now: () => Long):
   import Signing.*
-  require(key.length == 32, s"expected a key of 32 bytes, came ${key.length}")
+  require(key.length == 32, s"expected a key of 32 bytes, got ${key.length}")
 
   private val secret = key.clone
   private val heard  = mutable.HashMap.empty[(Int, Int, Int), Long]

@@ -36,7 +36,7 @@ object MujocoLibrary:
       Either.cond(
         version >= LeastVersion,
         path,
-        s"$path: expected MuJoCo ${LeastVersion / 1000000} or newer, came " +
+        s"$path: expected MuJoCo ${LeastVersion / 1000000} or newer, got " +
           s"${version / 1000000}.${version / 1000 % 1000}.${version % 1000}"
       )
 

@@ -61,7 +61,7 @@ private[mujoco] final class MujocoMeasuring(one: MujocoBatch):
       _ <- expect(place.size >= 7 && one.ints("jnt_type").head == FreeJoint)(
         "the vehicle's free joint to be the first joint"
       )
-      _ <- expect(count >= 4)(s"at least 4 actuators, came $count")
+      _ <- expect(count >= 4)(s"at least 4 actuators, got $count")
       falling = accelerations(resting)
       effects    <- Expect.each(0 until count)(effectOf(_, falling))
       _          <- expect(falling(0) < 0)("gravity along −z")
@@ -70,13 +70,13 @@ private[mujoco] final class MujocoMeasuring(one: MujocoBatch):
       hovering  = actuators.hovering
       _ <- Expect.each(0 until count): i =>
         expect(hovering(i) >= lowest(i) && hovering(i) <= highest(i))(
-          s"a control range with ${hovering(i)}, by which it hovers, came ${lowest(i)} to ${highest(i)}"
+          s"a control range with ${hovering(i)}, by which it hovers, got ${lowest(i)} to ${highest(i)}"
         ).left.map(named(i))
       _ <- Expect.each(Needed): (axis, name, needed) =>
         val came = actuators.turning(axis)
         expect(came >= needed)(
           s"moments that turn it about its $name axis by ${needed.brief} rad/s² or more while it hovers, " +
-            s"came ${came.brief} rad/s²: ${(needed / came).brief} times as much is needed"
+            s"got ${came.brief} rad/s²: ${(needed / came).brief} times as much is needed"
         )
     yield MujocoBody(
       stepS,

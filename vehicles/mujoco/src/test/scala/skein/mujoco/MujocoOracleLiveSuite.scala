@@ -86,7 +86,7 @@ private object MujocoOracleLiveSuite:
 
     def write(part: Int, values: Seq[Double]): Unit =
       val at = batch.part(part)
-      require(values.size == at.size, s"expected ${at.size} numbers, came ${values.size}")
+      require(values.size == at.size, s"expected ${at.size} numbers, got ${values.size}")
       values.zipWithIndex.foreach((value, index) => batch(0, at.at + index) = value)
 
   private val airframe     = Airframe()

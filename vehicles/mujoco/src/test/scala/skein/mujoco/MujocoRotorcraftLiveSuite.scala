@@ -132,7 +132,7 @@ class MujocoRotorcraftLiveSuite extends MujocoHere, Waiting:
     assert(
       clue(published).left.exists(_.endsWith(
         "expected moments that turn it about its front axis by 7.8 rad/s² or more while it hovers, " +
-          "came 0.42 rad/s²: 19 times as much is needed"
+          "got 0.42 rad/s²: 19 times as much is needed"
       ))
     )
     val rotorcraft = MujocoRotorcraft(read(write(crazyflie(Seq(8, 8, 1.1)))))
@@ -158,8 +158,8 @@ class MujocoRotorcraftLiveSuite extends MujocoHere, Waiting:
           "<joint type=\"hinge\"/>",
           "expected the vehicle's free joint to be the first joint"
         ),
-        (last, "", "expected at least 4 actuators, came 3"),
-        ("mass=\"1\"", "mass=\"2\"", "by which it hovers, came 0.0 to 1.0"),
+        (last, "", "expected at least 4 actuators, got 3"),
+        ("mass=\"1\"", "mass=\"2\"", "by which it hovers, got 0.0 to 1.0"),
         ("0.0556", "0", "none yaws it"),
         ("site=\"rear right\"", "site=\"front left\"", "each by itself"),
         ("ctrlrange=\"0 1\"", "ctrlrange=\"-1 0\"", "expected a control range above 0.0"),

@@ -54,9 +54,9 @@ object Firmware:
     case (12, _)                         => Right(Px4)
     case (3, copter) if isCopter(copter) => Right(Copter)
     case (3, other)                      =>
-      Left(s"expected a multirotor of ArduPilot's, came a vehicle of type $other, whose modes are not known")
+      Left(s"expected a multirotor of ArduPilot's, got a vehicle of type $other, whose modes are not known")
     case (other, _) =>
-      Left(s"expected PX4 (12) or ArduPilot (3), came autopilot $other, whose modes are not known")
+      Left(s"expected PX4 (12) or ArduPilot (3), got autopilot $other, whose modes are not known")
 
   /** Coaxial, helicopter, and multirotors of three to twelve rotors (`MAV_TYPE`). */
   private val isCopter = Set(2, 3, 4, 13, 14, 15, 29, 35)

@@ -7,7 +7,7 @@ package skein.ros
   * @param depth maximum number of messages kept for a reader that is behind
   */
 final case class Qos(isReliable: Boolean, depth: Int):
-  require(depth > 0, s"depth: expected at least 1, came $depth")
+  require(depth > 0, s"depth: expected at least 1, got $depth")
 
 object Qos:
   val Reliable: Qos   = Qos(isReliable = true, depth = 10)

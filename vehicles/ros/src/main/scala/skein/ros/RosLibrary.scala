@@ -110,7 +110,7 @@ private[ros] final class RosLibrary private (folders: Vector[Path], rcl: SymbolL
 
   private def described(kind: String): Either[String, MemorySegment] = kind match
     case Kind(packageName, name) => described(kind, packageName, name)
-    case _                       => Left(s"expected a type such as nav_msgs/msg/Odometry, came $kind")
+    case _                       => Left(s"expected a type such as nav_msgs/msg/Odometry, got $kind")
 
   private def described(kind: String, packageName: String, name: String): Either[String, MemorySegment] =
     val file   = System.mapLibraryName(s"${packageName}__rosidl_typesupport_c")

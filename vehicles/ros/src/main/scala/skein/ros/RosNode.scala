@@ -150,7 +150,7 @@ final class RosNode private (
             info.get(JAVA_LONG, NumberAt)
           )
           val length = one.bytes.get(JAVA_LONG, 8)
-          if length > MostBytes then refuse(one.topic, s"expected at most $MostBytes bytes, came $length")
+          if length > MostBytes then refuse(one.topic, s"expected at most $MostBytes bytes, got $length")
           else
             val message = one.bytes.get(ADDRESS, 0).reinterpret(length.min(one.most)).toArray(JAVA_BYTE)
             try one.read(message, arrivedAt(info)).left.foreach(refuse(one.topic, _))

@@ -93,7 +93,7 @@ object SimulatedSensors:
     names.groupBy(SensorMessages.token).collectFirst:
       case (token, all) if all.sizeIs > 1 || token == "base_link" =>
         s"expected cameras and lidars of ${carried.vehicle.name} whose names differ in letters and digits, and none " +
-          s"called base_link, came ${all.mkString("'", "', '", "'")}"
+          s"called base_link, got ${all.mkString("'", "', '", "'")}"
 
   private def opened(
       node: RosNode,

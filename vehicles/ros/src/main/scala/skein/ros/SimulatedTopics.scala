@@ -163,4 +163,4 @@ object SimulatedTopics:
   /** Why vehicles with these names cannot have topics, if they cannot. */
   def mistake(names: Vector[String]): Option[String] =
     names.find(name => !name.matches("[A-Za-z][A-Za-z0-9_]*") || name.contains("__")).map: name =>
-      s"expected vehicles' names of letters, digits and single _, with a letter first, came '$name'"
+      s"expected vehicles' names of letters, digits and single _, with a letter first, got '$name'"

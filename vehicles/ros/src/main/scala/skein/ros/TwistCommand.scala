@@ -27,7 +27,7 @@ object TwistCommand:
     Either.cond(
       motion.isFinite && math.abs(norm - 1) < 0.1,
       motion,
-      s"expected finite numbers and a unit quaternion, came the position ${at.x}, ${at.y}, ${at.z} and a " +
+      s"expected finite numbers and a unit quaternion, got the position ${at.x}, ${at.y}, ${at.z} and a " +
         s"quaternion of the squared length $norm"
     )
 

@@ -32,7 +32,7 @@ private[ros] object VehicleCommands:
         case own if own == VehicleMessages.body(vehicle) => Right(inBody(wanted, turn))
         case other                                       =>
           Left(
-            s"expected the frame ${VehicleMessages.body(vehicle)} or ${VehicleMessages.World}, came '$other'"
+            s"expected the frame ${VehicleMessages.body(vehicle)} or ${VehicleMessages.World}, got '$other'"
           )
     yield action
 
@@ -49,7 +49,7 @@ private[ros] object VehicleCommands:
     for
       _ <- finite(Seq(at.x, at.y, at.z, norm))
       _ <- Expect.that(Set("", VehicleMessages.World)(pose.header.frameId)):
-        s"expected the frame ${VehicleMessages.World}, came '${pose.header.frameId}'"
+        s"expected the frame ${VehicleMessages.World}, got '${pose.header.frameId}'"
     yield
       val yaw =
         if norm == 0 then Yaw.Still else Yaw.Towards(Radians(RosFrames.heading(rotation.normalized)))
@@ -57,6 +57,6 @@ private[ros] object VehicleCommands:
       now => Action.Velocity(GoTo.velocityNed(now.positionNed, now.velocityNed, goal, Cruise), yaw)
 
   private def finite(numbers: Seq[Double]) =
-    Expect.that(numbers.forall(_.isFinite))(s"expected finite numbers, came ${numbers.mkString(", ")}")
+    Expect.that(numbers.forall(_.isFinite))(s"expected finite numbers, got ${numbers.mkString(", ")}")
 
   private def vector(v: RosVector) = Vector3(v.x, v.y, v.z)

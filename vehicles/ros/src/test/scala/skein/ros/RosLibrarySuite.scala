@@ -41,4 +41,4 @@ class RosLibrarySuite extends munit.FunSuite:
   test("a vehicle's name must be valid as a part of a topic's name"):
     assertEquals(SimulatedTopics.mistake(Vector("Drone_1", "b2")), None)
     for name <- Seq("", "1st", "a b", "a/b", "a__b", "ä") do
-      assert(SimulatedTopics.mistake(Vector("a", name)).exists(_.endsWith(s"came '$name'")), name)
+      assert(SimulatedTopics.mistake(Vector("a", name)).exists(_.endsWith(s"got '$name'")), name)

@@ -57,7 +57,7 @@ class RosLiveSuite extends munit.FunSuite, Conclusive, Lengthy, Waiting:
       println(ended)
       for line <- Seq(
           "/a/cmd_vel: refused a message: expected",
-          "/b/setpoint_pose: refused a message: expected the frame map, came 'elsewhere'",
+          "/b/setpoint_pose: refused a message: expected the frame map, got 'elsewhere'",
           "/c/cmd_vel: expected geometry_msgs/msg/TwistStamped, a node uses geometry_msgs/msg/Twist"
         )
       do assert(ended.contains(line), ended)

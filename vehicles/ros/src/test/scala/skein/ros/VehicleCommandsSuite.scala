@@ -33,7 +33,7 @@ class VehicleCommandsSuite extends munit.FunSuite:
   test("other frames, and numbers that are not finite, are refused"):
     assertEquals(
       VehicleCommands.velocity("a", "b/base_link", twist),
-      Left("expected the frame a/base_link or map, came 'b/base_link'")
+      Left("expected the frame a/base_link or map, got 'b/base_link'")
     )
     val nan = twist.copy(linear = RosVector(Double.NaN, 0, 0))
     assert(VehicleCommands.velocity("a", "", nan).left.exists(_.startsWith("expected finite numbers")))
@@ -69,4 +69,4 @@ class VehicleCommandsSuite extends munit.FunSuite:
       case other                => fail(s"$other")
 
   test("a pose in another frame is refused"):
-    assertEquals(flown(pose("odom", Quaternion(0, 0, 0, 1))), Left("expected the frame map, came 'odom'"))
+    assertEquals(flown(pose("odom", Quaternion(0, 0, 0, 1))), Left("expected the frame map, got 'odom'"))

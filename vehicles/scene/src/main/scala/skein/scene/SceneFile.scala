@@ -124,7 +124,7 @@ object SceneFile:
         else entry.root.keySet.asScala.toVector.sorted.mkString(", ")
         fail(
           entry,
-          s"expected one of box, pole, wall or tag, came ${if came.isEmpty then "nothing" else came}"
+          s"expected one of box, pole, wall or tag, got ${if came.isEmpty then "nothing" else came}"
         )
 
   /** An object on the ground, unless `at` has a third number. */
@@ -219,7 +219,7 @@ object SceneFile:
     else
       val value = numberOf(config.getValue(key), key)
       if value >= least && value <= most then value
-      else fail(config.getValue(key), s"$key: expected a number from $least to $most, came $value")
+      else fail(config.getValue(key), s"$key: expected a number from $least to $most, got $value")
 
   private def numbers(config: Config, key: String, count: Int, least: Int = -1): Vector[Double] =
     if !config.hasPath(key) then fail(config, s"$key is missing")
@@ -236,11 +236,11 @@ object SceneFile:
     value.unwrapped match
       case number: Number if value.valueType == ConfigValueType.NUMBER && number.doubleValue.abs <= 1e15 =>
         number.doubleValue
-      case other => fail(value, s"$key: expected a number, came $other")
+      case other => fail(value, s"$key: expected a number, got $other")
 
   private def colour(config: Config, key: String, unless: Int): Int =
     if !config.hasPath(key) then unless
     else
       config.getValue(key).unwrapped match
         case text: String if text.matches("#[0-9a-fA-F]{6}") => Integer.parseInt(text.drop(1), 16)
-        case other => fail(config.getValue(key), s"$key: expected a colour such as \"#6b7f4f\", came $other")
+        case other => fail(config.getValue(key), s"$key: expected a colour such as \"#6b7f4f\", got $other")

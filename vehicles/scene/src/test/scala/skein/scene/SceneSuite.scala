@@ -38,7 +38,7 @@ class SceneSuite extends munit.FunSuite:
     )
     assertEquals(error("objects = [\n\n  { box = [1, 2, 3] }\n]"), "my.conf: 3: at is missing")
     assert(
-      error("ground = 5").startsWith("my.conf: 1: ground: expected a colour such as \"#6b7f4f\", came 5")
+      error("ground = 5").startsWith("my.conf: 1: ground: expected a colour such as \"#6b7f4f\", got 5")
     )
     assert(
       error("objects = [{ tag = 587, at = [0, 0] }]").contains("tag: expected a number from 0.0 to 586.0")
@@ -48,7 +48,7 @@ class SceneSuite extends munit.FunSuite:
       error("objects = [{ pole = [1, 2], at = [0, 0], name = Ground }]").contains("is the ground's name")
     )
     assert(error("objects = [").startsWith("my.conf: 1"))
-    assert(error("objects = [{}]").endsWith("expected one of box, pole, wall or tag, came nothing"))
+    assert(error("objects = [{}]").endsWith("expected one of box, pole, wall or tag, got nothing"))
     assert(error("objects = [{ boxx = [1, 1, 1], at = [0, 0] }]").endsWith("came at, boxx"))
     for what <- Seq("\"/etc/passwd\"", "file(\"/a\")", "required(file(\"/a\"))", "classpath(\"a\")") ++
         Seq("url(\"http://127.0.0.1:9/a.conf\")", "required(url(\"http://127.0.0.1:9/a.conf\"))")

@@ -63,7 +63,7 @@ private[skein] final case class PlanCall(sequence: Long, moves: Vector[PlannedMo
     CommandPlan.mistake(moves.map(_.at)).orElse(moves.flatMap(wrong).headOption)
 
   private def wrong(move: PlannedMove): Option[String] = PlanCall.functions.get(move.method) match
-    case None           => Some(s"expected a function that moves, came '${move.method}'")
+    case None           => Some(s"expected a function that moves, got '${move.method}'")
     case Some(function) =>
       Option.unless(function.takes(move.params :+ Str(vehicle)))(s"wrong parameters of ${move.method}")
 

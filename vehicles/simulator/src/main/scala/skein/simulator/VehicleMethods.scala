@@ -60,7 +60,7 @@ private[simulator] object VehicleMethods:
           val place = pose.position.toVector
           if !vehicle.apiControl then CallOutcome.Threw("only a vehicle under api control can hover")
           else if !vehicle.isAboveGround(place) then
-            CallOutcome.Threw(s"expected a place above the ground, came z = ${place.z} m")
+            CallOutcome.Threw(s"expected a place above the ground, got z = ${place.z} m")
           else
             simulation.world.forgetPlans(index)
             val turn = pose.orientation.toQuaternion

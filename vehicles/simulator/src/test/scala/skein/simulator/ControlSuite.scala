@@ -151,7 +151,7 @@ class ControlSuite extends munit.FunSuite:
       there
     )
     assert(hoverAt(Bench(), -5).contains("only a vehicle under api control can hover"))
-    assert(hoverAt(Bench().ready(), 0).contains("expected a place above the ground, came z = 0.0 m"))
+    assert(hoverAt(Bench().ready(), 0).contains("expected a place above the ground, got z = 0.0 m"))
 
   test(
     "position hold drifts when the yaw is not 0, as in AirSim: at 99 degrees it does not come to rest nearby"

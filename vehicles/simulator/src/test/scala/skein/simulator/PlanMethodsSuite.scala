@@ -113,11 +113,11 @@ class PlanMethodsSuite extends munit.FunSuite:
       Int64(0),
       Str("reset"),
       Arr(none*)
-    ))).contains("a function that moves, came 'reset'"))
+    ))).contains("a function that moves, got 'reset'"))
     assert(clue(refused(Arr(Int64(0), Str("moveByVelocityZ"), Arr(Bool(true))))).contains("wrong parameters"))
     assert(clue(refused(bench.north(1, 5), bench.north(1, 5))).contains("ascending order"))
     assert(
-      clue(refused((0 to 16).map(number => bench.north(number, 5))*)).contains("at most 16 actions, came 17")
+      clue(refused((0 to 16).map(number => bench.north(number, 5))*)).contains("at most 16 actions, got 17")
     )
     assert(clue(refused(Arr(
       Int64(0),

@@ -39,7 +39,7 @@ trait PlanSearch:
   */
 final class CountedPlanWorkers(searches: Int, slices: Int) extends PlanWorkers:
   require(searches > 0 && searches <= PlanProblem.MostSearches, s"1 to ${PlanProblem.MostSearches} searches")
-  require(slices >= 0, s"slices must not be negative, came $slices")
+  require(slices >= 0, s"slices must not be negative, got $slices")
 
   private val planner = JointPlanner()
 

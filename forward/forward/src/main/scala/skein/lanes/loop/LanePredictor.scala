@@ -36,8 +36,8 @@ private[skein] object LanePredictor:
     case PlantModel(lag: ReducedModel) if lag.isLag => Right(LagPredictor(lag))
     case PlantModel(plant)                          => byPlant(plant)
     case SpatialModel(plant)                        => byPlant(plant)
-    case ConstantVelocity => Right(CoastPredictor)
-    case _                => Left("the lanes predict by plants and by constant velocity")
+    case ConstantVelocity                           => Right(CoastPredictor)
+    case _ => Left("the lanes predict by plants and by constant velocity")
 
   private def byPlant(plant: PlantTiming) =
     for

@@ -39,7 +39,7 @@ private[lanes] final class LoopLanes(
     case sequential: LoopTiming.Sequential => SequentialOffers(sequential, vehicles)
     case futures: LoopTiming.Futures       => FuturesOffers(futures, vehicles, maxDelayS)
     case predictive: LoopTiming.Predictive => PredictiveOffers(predictive, vehicles, maxDelayS, forecast)
-    case other => throw IllegalArgumentException(s"expected a loop that is not refused, came $other")
+    case other => throw IllegalArgumentException(s"expected a loop that is not refused, got $other")
 
   def periodS: Double    = timing.periodS
   val steering: Steering = LoopTiming.steeringOf(timing)

@@ -6,8 +6,8 @@ import skein.simd.FixedFormula
 import skein.vehicle.PlantTiming
 
 /** Corrects a plant's state by readings, in many worlds by SIMD. Compiled from the method `corrected` of an
-  * [[skein.vehicle.ObservedPlant]] or [[skein.vehicle.ObservedSpatialPlant]];
-  * inputs are the state's components, then position and velocity.
+  * [[skein.vehicle.ObservedPlant]] or [[skein.vehicle.ObservedSpatialPlant]]; inputs are the state's
+  * components, then position and velocity.
   *
   * @param count number of components of the state
   */

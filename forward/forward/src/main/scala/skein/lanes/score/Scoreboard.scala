@@ -62,22 +62,22 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
       function,
       input =>
         Some(lanes.source(input)).collect:
-          case Source.Reading(vehicle, field)          => (vehicle, field)
+          case Source.Reading(vehicle, field)             => (vehicle, field)
           case Source.Velocity(vehicle, axis) if axis < 2 => (vehicle, 2 + axis)
-          case Source.Altitude(vehicle) if inSpace     => (vehicle, LaneObservation.DOWN)
-          case Source.Velocity(vehicle, _) if inSpace  => (vehicle, LaneObservation.DOWN + 1)
+          case Source.Altitude(vehicle) if inSpace        => (vehicle, LaneObservation.DOWN)
+          case Source.Velocity(vehicle, _) if inSpace     => (vehicle, LaneObservation.DOWN + 1)
       ,
       shared
     )
     for (place, output) <- places.zipWithIndex do shown.call.output(output, kept, place * worlds)
     for (input, place) <- function.inputs.zipWithIndex do
       lanes.source(input) match
-        case Source.Reading(_, _)        => ()
-        case Source.Now                  => shown.call.input(place, nowS, 0)
-        case Source.Since                => shown.call.input(place, sinceS, 0)
-        case Source.Age(vehicle)         => shown.call.input(place, agesS(vehicle), 0)
-        case Source.Velocity(_, axis)    => if !inSpace && axis == 2 then shown.call.input(place, level, 0)
-        case Source.Altitude(vehicle)    =>
+        case Source.Reading(_, _)     => ()
+        case Source.Now               => shown.call.input(place, nowS, 0)
+        case Source.Since             => shown.call.input(place, sinceS, 0)
+        case Source.Age(vehicle)      => shown.call.input(place, agesS(vehicle), 0)
+        case Source.Velocity(_, axis) => if !inSpace && axis == 2 then shown.call.input(place, level, 0)
+        case Source.Altitude(vehicle) =>
           if !inSpace then shown.call.input(place, altitudes, vehicle * worlds)
         case Source.Kept(from)                   => shown.call.input(place, kept, from * worlds)
         case Source.Parameter(number, parameter) =>

@@ -38,7 +38,8 @@ private[lanes] final class PredictedPlants(
       still.level(startZ)
 
   /** Writes the state before the first reading. */
-  private def rest(): Unit = if lanes.inSpace then lanes.restInSpace(before, 0, startZ) else lanes.rest(before, 0)
+  private def rest(): Unit =
+    if lanes.inSpace then lanes.restInSpace(before, 0, startZ) else lanes.rest(before, 0)
 
   override def enter(
       read: TimetableReadings,

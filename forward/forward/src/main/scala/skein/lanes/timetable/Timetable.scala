@@ -190,9 +190,9 @@ private final class TimetableCompiler(
         case None       => if vehicles == 2 then headings(1 - vehicle).usedAt(decide.opponent, at)
       // Its effort is computed from it, even if no other operation uses it.
       headings(vehicle).usedAt(before + 1, at)
-    case Note.Act(vehicle, _, decision)         => headings(vehicle).usedAt(decision, at)
-    case score: Note.Score                      => usedAt(score.view, at)
-    case mayEnd: Note.End                       =>
+    case Note.Act(vehicle, _, decision) => headings(vehicle).usedAt(decision, at)
+    case score: Note.Score              => usedAt(score.view, at)
+    case mayEnd: Note.End               =>
       usedAt(mayEnd.view, at)
       val seen = notes.views(mayEnd.view)
       for each <- 0 until vehicles do decidedUpon(each)(seen(each)) = true

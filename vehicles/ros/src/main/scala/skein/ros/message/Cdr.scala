@@ -37,7 +37,7 @@ object Cdr:
     try
       val from = CdrReader.of(bytes)
       val read = cdr.read(from)
-      Either.cond(from.rest <= MostPadding, read, s"expected the message's end, came ${from.rest} more bytes")
+      Either.cond(from.rest <= MostPadding, read, s"expected the message's end, got ${from.rest} more bytes")
     catch case error: CdrError => Left(error.getMessage)
 
   def of[A](put: (A, CdrWriter) => Unit)(take: CdrReader => A): Cdr[A] = new Cdr[A]:

@@ -39,7 +39,7 @@ final class CdrReader private (body: ByteBuffer):
   def boolean(): Boolean = byte() match
     case 0    => false
     case 1    => true
-    case came => throw CdrError(s"expected 0 or 1 at byte ${body.position - 1}, came $came")
+    case came => throw CdrError(s"expected 0 or 1 at byte ${body.position - 1}, got $came")
 
   /** A number of elements, each of which takes at least `leastBytes`. */
   def count(leastBytes: Int): Int =
@@ -47,7 +47,7 @@ final class CdrReader private (body: ByteBuffer):
     val most = body.remaining / leastBytes
     if came < 0 || came > most then
       throw CdrError(
-        s"expected a count of 0 to $most at byte ${body.position - 4}, came ${came & 0xffffffffL}"
+        s"expected a count of 0 to $most at byte ${body.position - 4}, got ${came & 0xffffffffL}"
       )
     came
 
@@ -85,11 +85,11 @@ private[message] object CdrReader:
   /** @throws CdrError if the bytes begin with another encoding */
   def of(bytes: Array[Byte]): CdrReader =
     if bytes.length < HeaderBytes then
-      throw CdrError(s"expected at least $HeaderBytes bytes, came ${bytes.length}")
+      throw CdrError(s"expected at least $HeaderBytes bytes, got ${bytes.length}")
     val order = (bytes(0), bytes(1)) match
       case (0, 0) => ByteOrder.BIG_ENDIAN
       case (0, 1) => ByteOrder.LITTLE_ENDIAN
       case (a, b) =>
         val came = java.util.HexFormat.of.formatHex(Array(a, b))
-        throw CdrError(s"expected plain CDR, 0x0000 or 0x0001, came 0x$came")
+        throw CdrError(s"expected plain CDR, 0x0000 or 0x0001, got 0x$came")
     CdrReader(ByteBuffer.wrap(bytes, HeaderBytes, bytes.length - HeaderBytes).slice().order(order))

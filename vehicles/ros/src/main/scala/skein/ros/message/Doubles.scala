@@ -8,7 +8,7 @@ opaque type Doubles[N <: Int] = ArraySeq[Double]
 object Doubles:
   /** @throws IllegalArgumentException for another number of values */
   def of[N <: Int](values: Seq[Double])(using size: ValueOf[N]): Doubles[N] =
-    require(values.size == size.value, s"expected ${size.value} numbers, came ${values.size}")
+    require(values.size == size.value, s"expected ${size.value} numbers, got ${values.size}")
     ArraySeq.from(values)
 
   /** All zero, which for a covariance means that it is unknown. */

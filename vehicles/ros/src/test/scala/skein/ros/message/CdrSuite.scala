@@ -29,7 +29,7 @@ class CdrSuite extends munit.FunSuite:
     assertEquals(Cdr.message[Int](little(7, 0, 0, 0, 9, 9, 9)), Right(7))
     assertEquals(
       refused[Int](little(7, 0, 0, 0, 9, 9, 9, 9)),
-      "expected the message's end, came 4 more bytes"
+      "expected the message's end, got 4 more bytes"
     )
 
   test("a message that is cut off anywhere is refused, with the position"):
@@ -41,26 +41,26 @@ class CdrSuite extends munit.FunSuite:
   test("another encoding than plain CDR is refused"):
     assertEquals(
       refused[Int](Array[Byte](0, 7, 0, 0, 1, 0, 0, 0)),
-      "expected plain CDR, 0x0000 or 0x0001, came 0x0007"
+      "expected plain CDR, 0x0000 or 0x0001, got 0x0007"
     )
 
   test("a count beyond the bytes that are left is refused before anything is allocated"):
     val most = Seq(255, 255, 255, 255)
     assertEquals(
       refused[ArraySeq[Byte]](little(most*)),
-      "expected a count of 0 to 0 at byte 0, came 4294967295"
+      "expected a count of 0 to 0 at byte 0, got 4294967295"
     )
     assertEquals(
       refused[Vector[Vector3]](little(0, 0, 0, 127, 0)),
-      "expected a count of 0 to 1 at byte 0, came 2130706432"
+      "expected a count of 0 to 1 at byte 0, got 2130706432"
     )
     assertEquals(
       refused[ArraySeq[Double]](little(2, 0, 0, 0, 0, 0, 0, 0, 0, 0)),
-      "expected a count of 0 to 0 at byte 0, came 2"
+      "expected a count of 0 to 0 at byte 0, got 2"
     )
 
   test("a boolean is 0 or 1"):
-    assertEquals(refused[Boolean](little(2)), "expected 0 or 1 at byte 0, came 2")
+    assertEquals(refused[Boolean](little(2)), "expected 0 or 1 at byte 0, got 2")
 
   test("a buffer grows with its message"):
     val image = Image(Header(Time(0, 0), ""), 1000, 1000, "rgb8", 0, 3000, ArraySeq.fill[Byte](3_000_000)(5))
@@ -69,7 +69,7 @@ class CdrSuite extends munit.FunSuite:
   test("an array has exactly the number of elements of its type"):
     assertEquals(Doubles.zero[9].values.size, 9)
     val error = intercept[IllegalArgumentException](Doubles.of[9](Seq(1.0)))
-    assert(error.getMessage.contains("expected 9 numbers, came 1"))
+    assert(error.getMessage.contains("expected 9 numbers, got 1"))
 
   test("times before and after the epoch keep their nanoseconds"):
     for nanos <- Seq(0L, 1L, -1L, 1_700_000_000_123_456_789L, -1_500_000_000L) do
