@@ -2,10 +2,10 @@ package skein.lanes
 
 import java.nio.file.{Files, Path}
 import skein.forward.DelayTable
-import skein.testing.Optimised
+import skein.testing.Unhurried
 
 /** The code in the guide on formulas compiles and runs. */
-class GuideSuite extends munit.FunSuite, Optimised:
+class GuideSuite extends munit.FunSuite, Unhurried:
   private val root =
     Iterator.iterate(Path.of("").toAbsolutePath)(_.getParent).find(at => Files.exists(at.resolve("sbtw"))).get
   private val guide = Files.readString(root.resolve("docs/guides/formulas.md"))
