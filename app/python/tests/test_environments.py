@@ -336,7 +336,7 @@ def test_another_scenario_is_learned_in_by_one_of_its_pursuers():
     with pytest.raises(ValueError, match="learners: expected one of leader, follower"):
         gym.make_vec("skein_uav/Pursuit-v0", num_envs=1, scenario="formation")
     with contextlib.closing(gym.make("skein_uav/Pursuit-v0", plant="quadrotor", altitude_m=3.0)) as env:
-        assert env.unwrapped.engine.startswith("scalar: the lanes know no ground")
+        assert env.unwrapped.engine.startswith("scalar: SIMD simulates no ground")
 
 
 def test_both_sides_may_turn_by_a_rate():

@@ -2,7 +2,7 @@
 
 Observations, actions and rewards are those of `skein_uav.environments`. In the duel the sum of both rewards is 0.
 
-A step lasts until the loop lets a learner decide. Under ``paused`` learners decide simultaneously by SIMD, unless other
+A step lasts until the loop lets a learner decide. Under ``paused`` learners decide simultaneously with SIMD, unless other
 vehicles decide between them, and one after another by the scalar engine. Over a link one may still be waiting for an answer
 while another decides alone; then its observation stays unchanged and its action is ignored: ``infos[agent]["decides"]``
 states it.

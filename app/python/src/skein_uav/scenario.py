@@ -222,7 +222,7 @@ class Measure:
 class Series:
     """A quantity over time: the report draws it, and measures reduce it.
 
-    Searches optimise measures of positions by SIMD.
+    Searches optimise measures of positions with SIMD.
 
     Attributes
     ----------

@@ -23,7 +23,7 @@ object TeamRates:
 
   def main(args: Array[String]): Unit =
     println(
-      "| team | delays | by lanes, M agent-steps per processor second | scalar | " +
+      "| team | delays | SIMD, M agent-steps per processor second | scalar | " +
         "ratio | first flight of an episode, ms | witness | scalar's |"
     )
     println("|---|---|---|---|---|---|---|---|")

@@ -175,7 +175,9 @@ class RoverSimulation extends munit.FunSuite:
       assert(least - 1e-5 <= value && value <= most + 1e-5, s"$name: $least to $most")
       assertEqualsDouble(model.getDouble(s"$name.value"), value, 1e-3 * value, name)
 
-  test("with a delay identify is within 5 %, since arrival times of commands are estimates"):
+  test(
+    "with a link delay, identify finds the parameters within 5 %, since it estimates when commands arrive"
+  ):
     val model = modelOf(identified(seed = 2, LatencyProfile.direct))
     for (name, value) <- Seq("turn-per-s" -> 3.0, "most-rad-per-s" -> 1.5, "lag-s" -> 0.4) do
       assertEqualsDouble(model.getDouble(s"$name.value"), value, 0.05 * value, name)

@@ -58,7 +58,7 @@ object BenchmarkSet:
 
     /** The settings of an entry's flights.
       *
-      * @return Left states the mistake in the cell's texts
+      * @return Left lists the mistake in the cell's texts
       */
     def settings(entry: Entry, seed: Long)(using Scenarios): Either[String, FlySettings] =
       val policy = entry.policy.map(ConfigUtil.quoteString)

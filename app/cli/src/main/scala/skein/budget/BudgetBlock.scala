@@ -18,7 +18,7 @@ final case class BudgetBlock(number: Int, links: Vector[LatencyDistribution], ep
 
   /** Simulates the cells and encodes each link's statistics.
     *
-    * @return Left states why there is no answer
+    * @return Left says why there is no answer
     */
   def answer(subjects: Vector[BudgetSubject]): Either[String, ArraySeq[Byte]] =
     for
@@ -38,7 +38,7 @@ object BudgetBlock:
 
   /** Decodes a block.
     *
-    * @return Left states what was expected and what was received
+    * @return Left says what was expected and what was received
     */
   def read(bytes: ArraySeq[Byte]): Either[String, BudgetBlock] =
     BlockBytes.read[BudgetBlock](bytes, "a block of a budget")

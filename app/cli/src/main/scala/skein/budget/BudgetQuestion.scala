@@ -12,7 +12,7 @@ import upickle.default.ReadWriter
 sealed trait BudgetQuestion derives ReadWriter:
   /** Resolves the question.
     *
-    * @return Left states what was expected, what was given, and in which option
+    * @return Left says what was expected, what was given, and in which option
     */
   def subject(threads: Int)(using Scenarios): Either[String, BudgetSubject]
 

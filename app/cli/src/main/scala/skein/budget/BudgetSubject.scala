@@ -23,7 +23,7 @@ trait BudgetSubject(
     val formula: String,
     val unit: String
 ):
-  /** The value in a world that stands still while the controller decides; Left states why there is none. */
+  /** The value in a world that stands still while the controller decides; Left says why there is none. */
   def truth: Either[String, Double]
 
   def engine(links: Vector[LatencyDistribution]): Engine
@@ -36,7 +36,7 @@ trait BudgetSubject(
 
   /** The statistics of each cell; all cells use equal random numbers.
     *
-    * @return Left states why there are none
+    * @return Left says why there are none
     */
   def tallies(cells: BudgetCells): Either[String, Vector[RunningStats]]
 

@@ -30,7 +30,7 @@ final class BudgetSweep(subject: BudgetSubject, axes: BudgetAxes, tolerance: Tol
     *
     * @param onProgress called with the number of episodes done
     * @param onRow called with all rows known, after each row
-    * @return the rows known, also of a cancelled map; Left states why there are none
+    * @return the rows known, also of a cancelled map; Left says why there are none
     */
   def map(
       onProgress: Long => Unit,

@@ -22,7 +22,7 @@ final case class ScenarioQuestion(
   /** Chooses the engine: forward simulation, with SIMD or world by world, where it supports the policies and
     * measures, else flights in virtual time.
     *
-    * @return Left states what was expected, what was given, and in which option
+    * @return Left says what was expected, what was given, and in which option
     */
   def subject(plantIsTold: Boolean)(using Scenarios): Either[String, BudgetSubject] =
     WholeFlights.engagement(scenario, conditions.durationS) match

@@ -15,7 +15,7 @@ enum Tolerance:
     case Share(share)     => share
     case Within(distance) => distance
 
-  /** The divisor of deviations; Left states why there is none. */
+  /** The divisor of deviations; Left says why there is none. */
   def per(truth: Double): Either[String, Double] = this match
     case Share(_) if truth == 0 =>
       Left(

@@ -24,7 +24,7 @@ trait Command(val name: String, val summary: String):
 
   /** Reads the words after the command's name without running it, for tests.
     *
-    * @return Left states what is wrong with them
+    * @return Left says what is wrong with them
     */
   private[cli] def checked(arguments: Seq[String]): Either[String, Unit]
 
@@ -55,7 +55,7 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
 
   /** Executes the command.
     *
-    * @return Left states why it failed, in one or more lines for a person
+    * @return Left says why it failed, in one or more lines for a person
     */
   protected def execute(options: A): Either[String, Unit]
 
@@ -106,7 +106,7 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
 
   /** Makes the settings of the options, without a file, a socket or a flight.
     *
-    * @return Left states what is wrong with them
+    * @return Left says what is wrong with them
     */
   protected def check(@unused options: A): Either[String, Unit] = Right(())
 

@@ -268,7 +268,7 @@ object LearnCommand:
 
   /** The question of the options.
     *
-    * @return Left states what was expected, what was given, and in which option
+    * @return Left says what was expected, what was given, and in which option
     */
   def question(options: LearnOptions)(using scenarios: Scenarios): Either[String, LearnQuestion] =
     import options.forward

@@ -38,7 +38,7 @@ final case class LearnInFlight(
 
   /** The learner for flights with these settings.
     *
-    * @return Left states what was expected, what was given, and in which option
+    * @return Left says what was expected, what was given, and in which option
     */
   def chosen(settings: FlySettings)(using Scenarios): Either[String, Option[ChosenPolicy]] =
     val alone =

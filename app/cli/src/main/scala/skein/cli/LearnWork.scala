@@ -58,7 +58,7 @@ private[cli] object LearnWork:
 
   /** The flights of the scenario with a policy instead of its own, as the commands run them.
     *
-    * @return settings, and a plan for each flight; Left states why there are none
+    * @return settings, and a plan for each flight; Left says why there are none
     */
   def flights(
       setup: LearnSetup,

@@ -37,7 +37,7 @@ private[cli] object OutFolder:
     * fail at its end.
     *
     * @param option the option that names the folder, for example `--out`
-    * @return Left states in a line why it cannot be written
+    * @return Left says in a line why it cannot be written
     */
   def made(option: String, text: String): Either[String, Path] =
     if text.isEmpty then Left(s"$option: expected a folder, got ''")

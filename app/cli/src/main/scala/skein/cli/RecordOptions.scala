@@ -52,7 +52,7 @@ final case class RecordOptions(
 
   /** Exports the recording of a completed flight.
     *
-    * @return Left states why it cannot be exported
+    * @return Left says why it cannot be exported
     */
   def exported(plan: FlightPlan, folder: Path): Either[String, Unit] =
     if wantsMcap then

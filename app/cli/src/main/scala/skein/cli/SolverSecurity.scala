@@ -27,7 +27,7 @@ final case class SolverSecurity(
 ):
   import SolverSecurity.*
 
-  /** @return Left states which option a connection to such a solver lacks, or does not accept */
+  /** @return Left says which option a connection to such a solver lacks, or does not accept */
   def checked(way: Option[SolverChoice]): Either[String, Checked] = way match
     case Some(SolverChoice.Tcp(at)) =>
       for

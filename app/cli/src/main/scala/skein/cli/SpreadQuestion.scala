@@ -25,7 +25,7 @@ private[cli] final case class SpreadQuestion(settings: String, probe: Vector[Str
 private[cli] object SpreadQuestion:
 
   /** @param config `skein.fly`, from which the settings were read
-    * @return Left states why other processes cannot run it
+    * @return Left says why other processes cannot run it
     */
   def of(config: Config, settings: FlySettings): Either[String, SpreadQuestion] =
     val outside = config.getStringList("skein.fly.policies").asScala.find(_.startsWith("unix:"))

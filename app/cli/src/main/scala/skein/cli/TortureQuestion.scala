@@ -22,7 +22,7 @@ private[cli] final case class TortureQuestion(
 ) derives ReadWriter:
   def bytes: ArraySeq[Byte] = JsonText.bytes(this)
 
-  /** @return Left states what was expected, what was given, and in which option */
+  /** @return Left says what was expected, what was given, and in which option */
   def ready(using Scenarios): Either[String, TortureQuestion.Ready] =
     for
       task <- scenario.fold(Right(None))(TortureQuestion.standard(_).map(Some(_)))

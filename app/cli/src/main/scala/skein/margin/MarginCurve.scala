@@ -73,7 +73,7 @@ final case class MarginCurve private (
     s"$before (95 %: ${MarginCurve.text(interval.from)} to ${MarginCurve.text(interval.to)})"
 
 object MarginCurve:
-  /** @return Left states why there is no curve */
+  /** @return Left says why there is no curve */
   def of(
       judge: MarginJudge,
       tolerance: Tolerance,

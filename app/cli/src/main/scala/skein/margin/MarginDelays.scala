@@ -8,7 +8,7 @@ import skein.units.{Expect, Span}
 object MarginDelays:
   private val form = "FROM..TO/COUNT, for example 50ms..200ms/4"
 
-  /** @return Left states the expected form and the given text */
+  /** @return Left lists the expected form and the given text */
   def read(text: String): Either[String, Vector[LatencyProfile]] =
     def wrong = s"expected $form, got '$text'"
     text match

@@ -26,7 +26,7 @@ object MarginJudge:
     *
     * @param scenario the scenario whose first measure is the default
     * @param vehicles number of vehicles
-    * @return Left states what was expected, and the word
+    * @return Left says what was expected, and the word
     */
   def read(
       text: Option[String],

@@ -26,7 +26,7 @@ final class MarginRuns(
     *
     * @param links the first one is the reference: if the program fails in its first run there, no other
     *   follows
-    * @return Left states why there are none
+    * @return Left says why there are none
     */
   def fly(links: Vector[LatencyProfile]): Either[String, Flown] =
     one(links, Run(0, 0)).flatMap: first =>

@@ -39,7 +39,7 @@ final class MarginTrial(
   /** Executes a run. Blocks.
     *
     * @param isStopped whether the run must end early; its result is not counted then
-    * @return the run, and what the program printed; Left states why the program cannot be run
+    * @return the run, and what the program printed; Left says why the program cannot be run
     */
   def run(
       link: LatencyProfile,

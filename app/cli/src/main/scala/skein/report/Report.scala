@@ -70,7 +70,7 @@ object Report:
   /** Writes `report.html`, and each figure as `figures/NAME.svg` and `figures/NAME.png`, into a folder, which
     * is created if necessary; files of these names are replaced.
     *
-    * @return Left states why it could not be written
+    * @return Left says why it could not be written
     */
   def write(set: FlightSet, directory: Path)(using Scenarios): Either[String, Output] =
     val figures  = ReportFigures.of(set)

@@ -11,7 +11,7 @@ private[skein] object BlockBytes:
   def of[A: Codec](value: A): ArraySeq[Byte] = ArraySeq.unsafeWrapArray(Codec.bytes(value))
 
   /** @param what the bytes should be, in words
-    * @return Left states what was expected and what was received
+    * @return Left says what was expected and what was received
     */
   def read[A: Codec](bytes: ArraySeq[Byte], what: String): Either[String, A] =
     Codec.message[A](bytes.toArray).left.map(wrong => s"expected $what: $wrong")

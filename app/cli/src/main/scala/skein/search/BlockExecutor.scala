@@ -8,7 +8,7 @@ import scala.concurrent.{Await, Future}
 /** Computes blocks of work in other processes. */
 trait BlockExecutor:
   /** @param onAnswer called with each answer as it arrives, in any order, on any thread
-    * @return the answers in the order of the blocks; None if it was cancelled; Left states why there are none
+    * @return the answers in the order of the blocks; None if it was cancelled; Left says why there are none
     */
   def compute(
       works: Vector[ArraySeq[Byte]],

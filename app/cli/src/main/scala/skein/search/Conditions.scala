@@ -47,7 +47,7 @@ final case class Conditions(
 
   /** The delays of a link between the controller and this number of vehicles.
     *
-    * @return Left states what was expected and what was given
+    * @return Left says what was expected and what was given
     */
   def delays(link: String, vehicles: Int): Either[String, Delays] =
     LatencyProfile
@@ -55,7 +55,7 @@ final case class Conditions(
       .left.map(_.message)
       .flatMap(LinkDelays.checked(_, LinkDelays.packetsPerS(vehicles, periodMs / 1000)))
 
-  /** @return Left states what was expected and what was given */
+  /** @return Left says what was expected and what was given */
   def resolved(using Scenarios): Either[String, Conditions.Resolved] =
     for
       kind    <- checked

@@ -10,7 +10,7 @@ private[skein] object JsonText:
   def bytes[A: Writer](value: A): ArraySeq[Byte] = ArraySeq.unsafeWrapArray(writeJson(value).getBytes(UTF_8))
 
   /** @param what the bytes should be, in words
-    * @return Left states what was expected and what was received
+    * @return Left says what was expected and what was received
     */
   def read[A: Reader](bytes: ArraySeq[Byte], what: String): Either[String, A] =
     parse(String(bytes.toArray, UTF_8), what)

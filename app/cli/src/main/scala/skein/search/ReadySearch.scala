@@ -12,7 +12,7 @@ trait PosedSearch:
   def conditions: Conditions
   def link: String
 
-  /** @return Left states what was expected, what was given, and in which option */
+  /** @return Left says what was expected, what was given, and in which option */
   def setup(using Scenarios): Either[String, ReadySearch]
 
   /** The words of the question that may be names of files. */

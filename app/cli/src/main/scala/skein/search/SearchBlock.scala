@@ -86,7 +86,7 @@ object SearchBlock:
   /** Combines the answers of a call's blocks.
     *
     * @param episodes number of episodes of the call
-    * @return statistics for each candidate in order, bit-identical to those of an undivided call; Left states
+    * @return statistics for each candidate in order, bit-identical to those of an undivided call; Left says
     *   what was wrong
     */
   def together(
@@ -107,7 +107,7 @@ object SearchBlock:
             parts = Vector.empty
       tallies.result()
 
-  /** @return Left states what was expected and what was received */
+  /** @return Left says what was expected and what was received */
   def read(bytes: ArraySeq[Byte]): Either[String, SearchBlock] =
     BlockBytes
       .read[SearchBlock](bytes, "a block of a search")

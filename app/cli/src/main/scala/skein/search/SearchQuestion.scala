@@ -55,7 +55,7 @@ object SearchQuestion:
   private val MostRacing  = 100_000
   private val MostEpisode = 1_000_000
 
-  /** @return Left states what was expected, what was given, and in which option */
+  /** @return Left says what was expected, what was given, and in which option */
   def method(
       name: String,
       candidates: Int,

@@ -19,7 +19,7 @@ final class SearchRun(
 
   /** @param isStopped checked from time to time, from any thread; true abandons the current step
     * @param onStep called with every state
-    * @return the last state; Left states why it could not be stored
+    * @return the last state; Left says why it could not be stored
     */
   def run(
       from: SearchState,

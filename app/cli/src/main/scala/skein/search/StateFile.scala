@@ -25,7 +25,7 @@ private[skein] final class StateFile[A: ReadWriter](name: String, version: Int, 
     val text = writeJson(state).stripSuffix("}")
     s"$text$Seal${sumOf(text)}}"
 
-  /** Parses what [[json]] wrote; Left states what was expected and what was found. */
+  /** Parses what [[json]] wrote; Left says what was expected and what was found. */
   def parse(text: String): Either[String, A] =
     val at = text.lastIndexOf(Seal)
     text match
@@ -42,7 +42,7 @@ private[skein] final class StateFile[A: ReadWriter](name: String, version: Int, 
 
   /** Reads the file of a folder.
     *
-    * @return Left states why the run cannot be continued
+    * @return Left says why the run cannot be continued
     */
   def read(folder: Path): Either[String, A] =
     val file = folder.resolve(name)
@@ -61,7 +61,7 @@ private[skein] final class StateFile[A: ReadWriter](name: String, version: Int, 
 
   /** Replaces the file atomically: a crash leaves the old or the new content.
     *
-    * @return Left states why not
+    * @return Left says why not
     */
   def write(folder: Path, state: A): Either[String, Unit] =
     replace(folder.resolve(name), folder.resolve(s"$name.new"))(_.write(json(state).getBytes(UTF_8)))
@@ -78,7 +78,7 @@ private[skein] object StateFile:
   /** Replaces a file atomically: a crash leaves the old or the new content.
     *
     * @param part path of the temporary file; only a killed process leaves it behind
-    * @return Left states why not
+    * @return Left says why not
     */
   def replace(target: Path, part: Path)(write: OutputStream => Unit): Either[String, Unit] =
     try

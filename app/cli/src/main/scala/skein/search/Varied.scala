@@ -15,7 +15,7 @@ object Varied:
 
   /** Parses a setting such as `ring-m=4..12`.
     *
-    * @return Left states what was expected and what was given
+    * @return Left says what was expected and what was given
     */
   def parse(text: String): Either[String, Varied] = text match
     case Form(key, NumberOf(least), NumberOf(most)) if least < most =>

@@ -28,7 +28,7 @@ final class WholeFlights private (
 ):
   /** An episode's objective value.
     *
-    * @return Left states why the episode could not be completed
+    * @return Left says why the episode could not be completed
     */
   def value(scenario: Scenario, objective: Objective, episode: Int): Either[String, Double] =
     val measures = scenario.measures.map(measure => measure.name -> measure).toMap
@@ -65,7 +65,7 @@ object WholeFlights:
 
   /** A scenario for forward simulation.
     *
-    * @return Left states why it cannot be simulated
+    * @return Left says why it cannot be simulated
     */
   def engagement(scenario: Scenario, durationS: Double): Either[String, Engagement] =
     try Right(Engagement.ofScenario(scenario, durationS))
@@ -79,7 +79,7 @@ object WholeFlights:
 
   /** One episode by forward simulation.
     *
-    * @return Left states why it cannot be simulated, or that not all vehicles were observed
+    * @return Left says why it cannot be simulated, or that not all vehicles were observed
     */
   def forward(timing: LoopTiming, link: Delays, response: VelocityResponse, durationS: Double, seed: Long)(
       scenario: Scenario,
@@ -104,7 +104,7 @@ object WholeFlights:
 
   /** One episode in virtual time, with the actual simulator, link, client and loop.
     *
-    * @return Left states why it could not be completed
+    * @return Left says why it could not be completed
     */
   def virtual(conditions: Conditions, loop: LoopKind, link: LatencyProfile, seed: Long)(
       scenario: Scenario,

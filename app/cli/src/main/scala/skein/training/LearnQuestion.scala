@@ -49,7 +49,7 @@ final case class LearnQuestion(
 ) derives ReadWriter:
   import LearnQuestion.*
 
-  /** @return Left states what was expected, what was given, and in which option */
+  /** @return Left says what was expected, what was given, and in which option */
   def setup(using scenarios: Scenarios): Either[String, LearnSetup] =
     for
       algorithm <- Algorithm.parse(algorithm).left.map("--algorithm: " + _)
@@ -163,11 +163,11 @@ final case class LearnSetup(
     val (own, learned) = (evaluator(_ => team), evaluator(from => team.flownBy(role, family.policy(from))))
     judge => if judge == Judge.Baseline then own else learned
 
-  /** The engine of the episodes while it learns; Left states what was expected and what was given. */
+  /** The engine of the episodes while it learns; Left says what was expected and what was given. */
   def engine(using Scenarios): Either[String, Engine] =
     EnvironmentBatch.engine(environment, game.opponent, Some(family.defaultPolicy))
 
-  /** @return Left states what was expected and what was given */
+  /** @return Left says what was expected and what was given */
   def task(using Scenarios): Either[String, SideTask] =
     SideTask.of(environment, game.opponent, question.environments, question.seed)
 

@@ -38,7 +38,7 @@ final class LearnRun(
 
   /** @param isStopped checked at every step; true abandons the current round
     * @param onRound called with every state
-    * @return the progress; Left states why it could not begin
+    * @return the progress; Left says why it could not begin
     */
   def run(from: LearnState, threads: Int, isStopped: () => Boolean)(
       onRound: LearnState => Unit

@@ -2,8 +2,8 @@ package skein.training
 
 import skein.plot.*
 
-/** The policies' quality against the steps of learning: means over the evaluation's episodes, with a standard
-  * deviation to either side.
+/** A plot of the policies' mean objective over the evaluation's episodes against the number of environment
+  * steps, with a band of one standard deviation on either side.
   */
 object LearningCurve:
 

@@ -11,7 +11,7 @@ class MisuseSuite extends munit.FunSuite:
     val ran = Ran.of(command.run(arguments))
     (ran.status, ran.err.linesIterator.toSeq.dropRight(1))
 
-  test("a mistake is reported in a line with the option, what was expected and what was given"):
+  test("a mistake is reported on one line that names the option and says what is wrong"):
     for
       (command, arguments, line) <- Seq(
         (

@@ -96,7 +96,7 @@ class TeamSearchSimulation extends munit.FunSuite, Optimised:
     assert(clue(high.read(plantIsTold =
       true
     )).left.exists(_.startsWith("--plant: expected tilt or quadrotor")))
-    // A candidate at its own altitude has equal results by SIMD and by the scalar engine.
+    // A candidate at its own altitude has equal results with SIMD and by the scalar engine.
     def values(judge: Judge) = ready.judges(1)(judge).tallies(Vector(Vector(12.0), Vector(17.0)), 0 until 2)
     val reference            = ready.reference(Vector(17.0), 0 until 2).get
     assertEqualsDouble(values(Judge.Winner)(1).mean, reference.mean, 0.02)

@@ -66,7 +66,7 @@ object Ledger:
   /** Opens a question's ledger, or creates it.
     *
     * @param question 32 bytes that identify the question
-    * @return Left states what prevents it: another question's ledger, or a file that cannot be written
+    * @return Left says what prevents it: another question's ledger, or a file that cannot be written
     */
   def open(file: Path, question: ArraySeq[Byte]): Either[String, Ledger] =
     import StandardOpenOption.*

@@ -14,7 +14,7 @@ trait BlockSolver:
 trait BlockSolverFactory:
 
   /** @param question the question, as its coordinator encoded it
-    * @return a function that makes a solver for each core; Left states in a line why this process cannot
-    *   answer the question
+    * @return a function that makes a solver for each core; Left says in a line why this process cannot answer
+    *   the question
     */
   def of(question: ArraySeq[Byte]): Either[String, () => BlockSolver]

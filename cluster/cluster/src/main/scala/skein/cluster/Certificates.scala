@@ -23,7 +23,7 @@ object Certificates:
   def folderOf(host: String): String = host.replace("*", "_")
 
   /** @param hosts the hosts' names or addresses, as in `--listen` and `--join`
-    * @return Left states which of them is neither
+    * @return Left says which of them is neither
     */
   def checked(hosts: Seq[String]): Either[String, Unit] =
     hosts.find(!isHost(_)).toLeft(()).left.map(host => s"expected a host's name or address, got '$host'")
@@ -31,7 +31,7 @@ object Certificates:
   /** Makes the certificates. If a host is invalid or already has a certificate, it makes none.
     *
     * @param hosts the hosts' names or addresses, as in `--listen` and `--join`
-    * @return each host's folder; Left states what went wrong
+    * @return each host's folder; Left says what went wrong
     */
   def make(folder: Path, hosts: Seq[String]): Either[String, Vector[Path]] =
     val had = hosts.map(host => folder.resolve(folderOf(host))).find(own =>

@@ -200,7 +200,7 @@ private[cluster] final class CoordinatorBehavior private (
     ))
 
 private[cluster] object CoordinatorBehavior:
-  /** All answers in the order of the works; None if it was cancelled; Left states why there are none. */
+  /** All answers in the order of the works; None if it was cancelled; Left says why there are none. */
   type Outcome = Either[String, Option[Vector[ArraySeq[Byte]]]]
 
   sealed trait Local

@@ -41,7 +41,7 @@ final class CoordinatorNode private (
     * @param onAnswer called with each answer when it arrives or is found in the ledger, in any order, on a
     *   thread of the node's own
     * @param onWanted called on such a thread if the ledger lacks answers
-    * @return the answers in the order of the works; None if it was cancelled; Left states why there are none
+    * @return the answers in the order of the works; None if it was cancelled; Left says why there are none
     */
   def compute(
       works: Vector[ArraySeq[Byte]],
@@ -80,7 +80,7 @@ object CoordinatorNode:
   /** @param listen the endpoint to listen at; port 0 for any that is free
     * @param ledger the question's ledger
     * @param tell called with the workers' changes, on a thread of the node's own
-    * @return Left states why it cannot listen
+    * @return Left says why it cannot listen
     */
   def start(
       listen: Endpoint,

@@ -30,7 +30,7 @@ private[cluster] final class MessageCodec(
 
   def bytes(message: Message): Array[Byte] = Codec.bytes(message)
 
-  /** @return Left states in a line what was expected and what was read */
+  /** @return Left with one line that says what was expected and what was read */
   def message(bytes: Array[Byte]): Either[String, Message] =
     try
       Codec.message[Message](bytes).flatMap:

@@ -21,7 +21,7 @@ final case class Tls(keyStore: Path, trustStore: Path, password: String):
 
   /** A context for connections other than Pekko's.
     *
-    * @return Left states what is wrong with the files
+    * @return Left says what is wrong with the files
     */
   def context: Either[String, SSLContext] =
     def store(file: Path) = KeyStore.getInstance(file.toFile, password.toCharArray)
@@ -104,7 +104,7 @@ object Tls:
 
   /** Reads a folder with `node.p12`, `trust.p12` and `password`.
     *
-    * @return Left states what is missing
+    * @return Left says what is missing
     */
   def of(folder: Path): Either[String, Tls] =
     val missing =

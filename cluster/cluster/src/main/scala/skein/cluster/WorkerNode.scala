@@ -53,7 +53,7 @@ final class WorkerNode(
 
   /** Computes until the coordinator has no more work. Blocks the calling thread.
     *
-    * @return Left states why it could not
+    * @return Left says why it could not
     */
   def run(): Either[String, Unit] =
     NodeConfig.of(listen, tls, joins = Some(coordinator)).flatMap: config =>

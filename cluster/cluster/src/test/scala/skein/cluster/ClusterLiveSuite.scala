@@ -174,7 +174,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     anna.stop()
     ben.stop()
 
-  test("a stranger's garbage at the port does no harm: members continue, and others join"):
+  test("garbage sent to the port by an outsider does no harm: members continue, and others can join"):
     coordinating(assertUnharmed(_, None)(garbage))
 
   test("a stranger's garbage does no harm where certificates are required, either"):

@@ -39,7 +39,7 @@ object Formula:
     * @param arguments types of its arguments, needed if the class has several methods of that name
     * @param known constant arguments or fields that are not doubles, by name. If the result contains them,
     *   only its other fields become outputs
-    * @return Left states why the method cannot be traced
+    * @return Left says why the method cannot be traced
     */
   def of(
       target: AnyRef,

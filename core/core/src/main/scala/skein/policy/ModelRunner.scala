@@ -9,6 +9,6 @@ trait ModelRunner:
     *
     * @param model the file's bytes, with one input of 32-bit floats and one output
     * @return a function from a tensor and its shape to the output tensor; several threads may call it
-    *   simultaneously; Left states why the model cannot be run
+    *   simultaneously; Left says why the model cannot be run
     */
   def load(model: Array[Byte]): Either[String, (Array[Float], Vector[Int]) => Either[String, Array[Float]]]

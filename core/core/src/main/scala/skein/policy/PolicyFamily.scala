@@ -167,7 +167,7 @@ object PolicyFamily:
   /** The family of this name, Skein's or the program's own.
     *
     * @param own further families that the program knows
-    * @return Left states which names were expected
+    * @return Left says which names were expected
     */
   def parse(text: String, own: Vector[PolicyFamily] = Vector.empty): Either[String, PolicyFamily] =
     def known = all ++ own

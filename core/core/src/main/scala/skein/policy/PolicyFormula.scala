@@ -72,7 +72,7 @@ object PolicyFormula:
     *
     * @param self the vehicle's index in its team
     * @param isPredicted see [[Seen.isPredicted]]
-    * @return Left states why it cannot be traced, with the source line
+    * @return Left says why it cannot be traced, with the source line
     */
   def of(
       policy: Policy,

@@ -20,7 +20,7 @@ private[skein] object EndFormula:
   private val Descriptor = "(Lskein/scenario/Known;)Z"
 
   /** @param vehicles number of the scenario's vehicles
-    * @return Left states why the method cannot be traced, with the source line
+    * @return Left says why the method cannot be traced, with the source line
     */
   def of(end: OwnEnd, vehicles: Int): Either[Untraceable, EndFormula] = end.scenario match
     case known: KnownEnd => Right(known.end)

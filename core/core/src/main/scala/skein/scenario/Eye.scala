@@ -68,6 +68,6 @@ trait Recogniser:
   /** Searches an image.
     *
     * @param bgr blue, green, red of each pixel, in rows from the top
-    * @return the detection, in the camera's frame; Left states why the image cannot be searched
+    * @return the detection, in the camera's frame; Left says why the image cannot be searched
     */
   def find(width: Int, height: Int, bgr: ByteBuffer): Either[String, Option[PolarMeasurement]]

@@ -21,7 +21,7 @@ private[skein] object ScenarioText:
   /** Reads a file's text. Repeated calls with one text return one object, so that the scenario is compiled
     * once.
     *
-    * @return Left states in one line what was expected, what was given, and in which line
+    * @return Left with one line that says what was expected, what was given, and in which line
     */
   def read(text: String): Either[String, ScenarioKind[FileScenario]] = last.filter(_._1 == text) match
     case Some((_, same)) => Right(same)

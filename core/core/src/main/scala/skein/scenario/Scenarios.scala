@@ -46,10 +46,10 @@ final case class Scenarios(
 
   def names: Vector[String] = kinds.map(_.name)
 
-  /** The policy family with this name. Left states the known names and the given one. */
+  /** The policy family with this name. Left lists the known names and the given one. */
   def family(name: String): Either[String, PolicyFamily] = PolicyFamily.parse(name, families)
 
-  /** The structure with this label. Left states the known labels and the given one. */
+  /** The structure with this label. Left lists the known labels and the given one. */
   def structure(label: String): Either[String, Structure] =
     structures
       .find(_.label == label)
@@ -64,7 +64,7 @@ final case class Scenarios(
   def isPapersGame(name: String, set: Map[String, String]): Boolean =
     set.isEmpty && (kinds ++ Scenarios.ours.kinds).find(_.name == name).exists(_.standard.isPapersGame)
 
-  /** The kind with this name, or that of a [[ScenarioFile]] with this text. Left states the known names, the
+  /** The kind with this name, or that of a [[ScenarioFile]] with this text. Left lists the known names, the
     * given one, and the nearest.
     */
   def kind(name: String): Either[String, ScenarioKind[?]] =
@@ -83,7 +83,7 @@ final case class Scenarios(
     *
     * @param name the recorded [[Scenario.name]]
     * @param parameters the recorded settings, by name
-    * @return Left states why this program does not know the scenario
+    * @return Left says why this program does not know the scenario
     */
   def ofRecording(name: String, parameters: Map[String, String]): Either[String, Scenario] =
     kind(parameters.getOrElse(ScenarioFile.Recorded, name)).left

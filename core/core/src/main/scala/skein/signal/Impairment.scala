@@ -33,7 +33,7 @@ object Impairment:
   private val lossForm =
     s"a share from 0% to ${(MostShare * 100).toInt}% such as 5%, or with a mean length of bursts such as 5%/4"
 
-  /** Reads `5%` or `5%/4`. Left states what was expected. */
+  /** Reads `5%` or `5%/4`. Left says what was expected. */
   private[signal] def loss(text: String): Either[String, Impairment] =
     val (share, burst) = text match
       case s"$share/$burst" => (share, Some(burst))

@@ -40,7 +40,7 @@ object Span:
 
   /** Reads a duration with its unit, for example `100ms`, `1.5 s`, `2 min`, `1h`; zero or more.
     *
-    * @return Left states what was expected and what was received
+    * @return Left says what was expected and what was received
     */
   def parse(text: String): Either[String, Span] =
     text.trim match

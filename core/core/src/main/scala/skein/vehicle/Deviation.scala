@@ -43,7 +43,7 @@ object Deviation:
     "mass=FACTOR, drag=FACTOR, lag=FACTOR, rotors=A/B/C/D (shares of their thrust), wind=NORTH/EAST/DOWN " +
       "(m/s), gusts=SPEED (m/s at 20 ft), shear=ROUGHNESS (m), separated by commas"
 
-  /** Reads, for example, `mass=1.3,drag=2,wind=8/0/0`. Left states what was expected. */
+  /** Reads, for example, `mass=1.3,drag=2,wind=8/0/0`. Left says what was expected. */
   def parse(text: String): Either[String, Deviation] =
     type Read = (deviation: Deviation, names: Set[String])
     val none: Either[String, Read] = Right((deviation = Deviation(), names = Set()))

@@ -110,8 +110,9 @@ final class Quadrotor(
     state.qw = StrictMath.cos(yawRad / 2); state.qz = StrictMath.sin(yawRad / 2)
     state
 
-  /** Advances the rotors. AirSim passes a rotor's output on twice, so that a control takes effect two steps
-    * after its lag: 6 ms, which is visible in step responses.
+  /** Advances the rotors by one step. As in AirSim, a rotor's output passes through two stages of one step
+    * each, so a control acts two steps (6 ms in AirSim) later than the rotor's lag alone would cause. Step
+    * responses show this delay.
     */
   private def spinRotors(state: QuadrotorState): Unit =
     state.thrust0 = state.lagged0; state.thrust1 = state.lagged1

@@ -37,7 +37,7 @@ private[onnx] object DenseGraph:
   /** Reads a graph as a network of [[LearnedPolicy]]. Multiplications, additions and divisions between two
     * layers are folded into their weights, in doubles.
     *
-    * @return Left states why the graph is not such a network
+    * @return Left says why the graph is not such a network
     */
   def network(graph: OnnxGraph): Either[String, Network] =
     try

@@ -14,7 +14,7 @@ object OnnxFormat:
   /** Reads external tensor data, from file name, offset and length, in bytes. */
   type Beside = (String, Long, Long) => Either[String, Array[Byte]]
 
-  /** Reads a model. Left states why the bytes are not a model. */
+  /** Reads a model. Left says why the bytes are not a model. */
   def read(bytes: Array[Byte], beside: Beside): Either[String, OnnxGraph] =
     try
       val parts    = Parts(beside)

@@ -35,7 +35,7 @@ object OnnxPolicy:
   private val RateNote = "skein.turnRateRadPerS"
   private val TurnNote = "skein.turnRad"
 
-  /** Reads a policy file; Left states what was expected, what was found, and where. */
+  /** Reads a policy file; Left says what was expected, what was found, and where. */
   def read(path: String): Either[String, OnnxPolicy] =
     (for
       file  <- attempted(Path.of(path).toAbsolutePath.normalize)
@@ -52,7 +52,7 @@ object OnnxPolicy:
 
   /** The family of a recorded policy that a runtime evaluated.
     *
-    * @return Left states why it is not available any more
+    * @return Left says why it is not available any more
     */
   def recorded(name: String): Either[String, PolicyFamily] =
     name.stripPrefix(Prefix).split(":", 2) match
@@ -69,7 +69,7 @@ object OnnxPolicy:
   /** Writes a network as an ONNX file.
     *
     * @param role the role for which it was trained
-    * @return Left states why the policy is no network
+    * @return Left says why the policy is no network
     */
   def write(policy: Policy, role: String): Either[String, Array[Byte]] =
     (policy match

@@ -214,7 +214,7 @@ object AirSimFleet:
 
   /** Checks over a separate connection that the simulator has a fleet's vehicles.
     *
-    * @return Left states that it does not answer, or which of a fleet's vehicles it lacks
+    * @return Left says that it does not answer, or which of a fleet's vehicles it lacks
     */
   def missing(fleet: Fleet, at: Address, transport: Transport, clock: Clock)(using
       system: ActorSystem

@@ -22,5 +22,7 @@ private[flight] final class AlignedCamera(eyes: Eyes, camera: String):
   def isNewer(one: Stamped[?], other: Stamped[?]): Boolean =
     clocks.get.getOrElse(ClockAlignment.of(one)).isNewer(one, other)
 
-  /** Number of the simulator's restarts, as detected by its clock. */
+  /** Number of times that the clock estimate restarted because the simulator's clock stopped or jumped, as
+    * after a restart.
+    */
   def restarts: Int = clocks.get.fold(0)(_.restarts)

@@ -30,7 +30,7 @@ final class EnvironmentProcess private (socket: ProcessSocket, names: Vector[Str
 
   /** Begins an episode.
     *
-    * @return Left states what was expected and what was received
+    * @return Left says what was expected and what was received
     */
   def reset(): Either[String, Moment] = ask(Obj())
 
@@ -90,7 +90,7 @@ object EnvironmentProcess:
 
   private val LongestLine = 1 << 20
 
-  /** Connects to the socket; Left states why that failed. */
+  /** Connects to the socket; Left says why that failed. */
   def connect(path: String, names: Vector[String]): Either[String, EnvironmentProcess] =
     try Right(EnvironmentProcess(ProcessSocket(path, AnswerWithin), names))
     catch

@@ -153,7 +153,7 @@ object EnvironmentSimulator:
   /** Begins an episode; blocks until it has begun.
     *
     * @param names the vehicles' names
-    * @return Left states why there is none
+    * @return Left says why there is none
     */
   def start(
       process: EnvironmentProcess,

@@ -101,7 +101,7 @@ final class FlightAssembler(
   /** Prepares and starts a flight. If it cannot start, everything opened for it is closed again.
     *
     * @param on the materializer of its loop: see [[Flight.start]]
-    * @return Left states why it cannot start
+    * @return Left says why it cannot start
     */
   def start(
       plan: FlightPlan,

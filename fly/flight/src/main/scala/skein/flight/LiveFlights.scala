@@ -55,7 +55,7 @@ object LiveFlights:
     * @param observe called with each flight's heading; its result is called with every record of that flight,
     *   and must not block
     * @param beside receives a flight's rows in addition to its recording, or why it cannot
-    * @return Left states why they cannot start; those that had started were stopped again
+    * @return Left says why they cannot start; those that had started were stopped again
     */
   def start(
       assembler: FlightAssembler,

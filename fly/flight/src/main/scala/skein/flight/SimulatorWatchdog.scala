@@ -177,7 +177,8 @@ private[flight] object SimulatorWatchdog:
   /** Interval of checks whether the flight still has its vehicles. */
   val AskEvery: Span = Span.ofSeconds(1)
 
-  /** Duration of a policy's decision from which it is named as the reason why the loop sends no requests. */
+  /** Time after which a policy that is still deciding is named as the reason why the loop sends no requests.
+    */
   private val Slow = Span.ofMillis(200)
 
   /** Time from a flight's start to the first check, so that checks coincide with no tick. */

@@ -20,7 +20,7 @@ trait VehicleSource:
   /** Connects to the vehicles of a flight.
     *
     * @param names the vehicles' names, in the flight's order
-    * @return Left states what is missing
+    * @return Left says what is missing
     */
   def open(names: Vector[String]): Future[Either[String, VehicleSource.Opened]]
 

@@ -25,7 +25,7 @@ object VirtualFlights:
   /** Simulates all flights, in parallel on all cores, and writes a recording of each into `folder`. Blocks.
     *
     * @param onLanded called with each flight when it has ended, on its thread, and with its records
-    * @return Left states which of them failed, and why; the recordings of the others are written
+    * @return Left says which of them failed, and why; the recordings of the others are written
     */
   def fly(settings: FlySettings, plans: Vector[FlightPlan], folder: Path)(
       onLanded: (FlightResult, MemoryRecorder) => Unit
@@ -142,7 +142,7 @@ object VirtualFlights:
   /** Simulates one flight of a scenario on the calling thread.
     *
     * @param duration maximum duration; 0 for the scenario's own
-    * @return Left states why it failed, or which vehicles were not read
+    * @return Left says why it failed, or which vehicles were not read
     */
   def result(
       scenario: Scenario,

@@ -23,7 +23,7 @@ private object ForeseenVehicle:
     *
     * @param model the model that predicts its readings. For a model without a plant of velocities, plans use
     *   AirSim's quadrotor at the vehicle's altitude
-    * @return Left states why planning does not support it
+    * @return Left says why planning does not support it
     */
   def of(agent: Agent, model: VehicleModel[?], settings: PlanSettings): Either[String, ForeseenVehicle] =
     val plant = model match
@@ -35,7 +35,7 @@ private object ForeseenVehicle:
     val known =
       for
         plant <- plant
-        _     <- Planner.refusal(plant).map("plans are flown by SIMD, and " + _).toLeft(())
+        _     <- Planner.refusal(plant).map("plans are flown with SIMD, and " + _).toLeft(())
         rest = plant.initial
         _ <- Try(PlantState.of(rest, PlantState.numbers(rest))).toEither.left.map(_.getMessage)
       yield ForeseenVehicle(plant, PredictedVehicle.carriesS(plant, agent.speed.value.max(LeastMps)))

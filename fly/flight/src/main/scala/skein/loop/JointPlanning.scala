@@ -51,7 +51,7 @@ object JointPlanning:
 
   /** Joint planning for a fleet; None if no vehicle plans.
     *
-    * @return Left states why planning does not support the models of vehicles or opponents
+    * @return Left says why planning does not support the models of vehicles or opponents
     */
   def of(fleet: Fleet, settings: LoopSettings): Either[String, Option[JointPlanning]] =
     import settings.{planning, seed}

@@ -16,7 +16,7 @@ object AnyLoop:
   def names(using scenarios: Scenarios): Vector[String] =
     LoopKind.values.toVector.map(_.label) ++ scenarios.loops.map(_.name)
 
-  /** The loop of this name; Left states what was expected and what was given. */
+  /** The loop of this name; Left says what was expected and what was given. */
   def parse(name: String)(using scenarios: Scenarios): Either[String, AnyLoop] =
     scenarios.loops
       .collectFirst { case own: OwnLoop if own.name == name => own }

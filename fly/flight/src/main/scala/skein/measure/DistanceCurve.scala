@@ -5,7 +5,8 @@ import skein.units.*
 
 /** The horizontal distance between two vehicles at equal instants of the simulator's clock.
   *
-  * @param points seconds since both were first read, every 20 ms, and metres; never empty
+  * @param points one every 20 ms: time since both vehicles had first been read, s, and distance, m; never
+  *   empty
   */
 final case class DistanceCurve private (points: Vector[(Double, Double)]):
 

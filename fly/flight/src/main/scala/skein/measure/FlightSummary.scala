@@ -212,7 +212,7 @@ object FlightSummary:
 
   /** The summaries by role.
     *
-    * @param hasAges whether there is a clock for true ages
+    * @param hasAges whether true ages are valid: they are unless the flight has no result ([[NoResult]])
     */
   private def roles(recording: Recording, scenario: Option[Scenario], hasAges: Boolean): Vector[RoleSummary] =
     val isOther                 = recording.heading.parameter("policy").isDefined

@@ -37,7 +37,7 @@ object RoundTripTrace:
   /** Reads the output of `ping`, or lines `time_s,rtt_ms` with nothing behind the comma for a request without
     * an answer.
     *
-    * @return Left states what was expected and received, and in which line
+    * @return Left says what was expected and received, and in which line
     */
   def parse(text: String): Either[String, RoundTripTrace] =
     val lines = text.linesIterator.map(_.trim).zipWithIndex.map((line, i) => (line, i + 1)).toVector

@@ -23,7 +23,7 @@ private object FittedFile:
   /** Reads a file's section.
     *
     * @param what the expected kind of file, in words
-    * @return Left states what is wrong
+    * @return Left says what is wrong
     */
   def parse[A](text: String, path: String, section: String, what: String)(
       read: Config => Either[String, A]

@@ -7,7 +7,7 @@ object HoconFile:
 
   /** Reads a file without resolving it.
     *
-    * @return Left states why it cannot be read, in a line
+    * @return Left says why it cannot be read, in a line
     */
   def read(path: String): Either[String, Config] = TextFile.read(path).flatMap(parse(_, path))
 

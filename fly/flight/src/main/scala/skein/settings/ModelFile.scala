@@ -97,7 +97,7 @@ object ModelFile:
 
   /** Reads a file.
     *
-    * @return Left states what is wrong, with the line
+    * @return Left says what is wrong, with the line
     */
   def read(path: String)(using Scenarios): Either[String, ModelFile] =
     TextFile.read(path).flatMap(parse(_, path))

@@ -50,7 +50,7 @@ object OutsidePolicy:
   /** Connects to the policy of a running process.
     *
     * @param text `unix:ROLE:PATH`
-    * @return Left states what was expected, what was given, and where
+    * @return Left says what was expected, what was given, and where
     */
   def reach(text: String, answerWithin: Span = AnswerWithin): Either[String, PolicyFile] = text match
     case s"unix:$role:$path" =>

@@ -72,7 +72,7 @@ object PolicyFile:
 
   /** The role of a family, if it has a single one, or the requested role.
     *
-    * @return Left states what was expected
+    * @return Left says what was expected
     */
   def roleOf(family: PolicyFamily, asked: Option[String]): Either[String, Role] = asked match
     case Some(text) =>
@@ -91,7 +91,7 @@ object PolicyFile:
 
   /** A policy for a role: from a file, or from a family with its defaults.
     *
-    * @return Left states what was expected and what was given
+    * @return Left says what was expected and what was given
     */
   def chosen(role: Role, text: String)(using Scenarios): Either[String, PolicyFile] =
     named(text, Some(role)).filterOrElse(
@@ -103,7 +103,7 @@ object PolicyFile:
     *
     * @param asked its role if neither file nor family states one; without it, such a family is refused and
     *   such a file is a pursuer's
-    * @return Left states what was expected and what was given
+    * @return Left says what was expected and what was given
     */
   def named(text: String, asked: Option[Role])(using Scenarios): Either[String, PolicyFile] =
     summon[Scenarios].family(text) match
@@ -115,7 +115,7 @@ object PolicyFile:
   /** Reads a file; `evader:FILE` states the role of an ONNX file that does not note it.
     *
     * @param asked its role in that case; by default a pursuer's
-    * @return Left states what was expected, what was found, and where
+    * @return Left says what was expected, what was found, and where
     */
   def read(path: String, asked: Option[Role] = None)(using Scenarios): Either[String, PolicyFile] =
     if path.endsWith(OnnxPolicy.Suffix) then

@@ -75,7 +75,7 @@ object RecordedPlan:
 
   /** Reads the settings of a recording.
     *
-    * @return Left states what is missing, or differs from what `skein fly` records
+    * @return Left says what is missing, or differs from what `skein fly` records
     */
   def of(recording: Recording)(using Scenarios): Either[String, RecordedPlan] =
     val flight     = recording.flight

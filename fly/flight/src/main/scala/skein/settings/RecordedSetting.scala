@@ -14,7 +14,7 @@ private[settings] trait RecordedSetting[A]:
 
   /** Reads the recorded value; None in a recording of a version that did not store it.
     *
-    * @return Left states what was expected, and what was found
+    * @return Left says what was expected, and what was found
     */
   def read(name: String, parameters: Map[String, String])(using Scenarios): Either[String, Option[A]]
 

@@ -18,7 +18,7 @@ final class SimulatedBody private (
 
   def isAirSim: Boolean = this == SimulatedBody.AirSim
 
-  /** The kind for the simulator; None means its own. Left states why it cannot be simulated here.
+  /** The kind for the simulator; None means its own. Left says why it cannot be simulated here.
     *
     * @param seed seed of the gusts
     */
@@ -51,7 +51,7 @@ object SimulatedBody:
     val steps = AutopilotInterface.Step.toSeconds / stepS
     steps >= 1 && math.abs(steps - steps.round) <= 1e-9
 
-  /** Reads the user's text; Left states what was expected, or why the model cannot be simulated. */
+  /** Reads the user's text; Left says what was expected, or why the model cannot be simulated. */
   def parse(text: String): Either[String, SimulatedBody] =
     val named = recorded(text)
     named.flatMap(_.model).flatMap(_ => named)

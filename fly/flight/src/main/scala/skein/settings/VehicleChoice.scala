@@ -100,7 +100,7 @@ object VehicleChoice:
     * `reduced:` the file's model of three parameters, which SIMD supports.
     *
     * @param altitudeM altitude of its flight: the lag of AirSim's vehicles depends on it
-    * @return Left states what was expected
+    * @return Left says what was expected
     */
   def parse(text: String, altitudeM: Double)(using
       Scenarios

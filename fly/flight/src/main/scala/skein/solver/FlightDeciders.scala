@@ -74,7 +74,7 @@ object FlightDeciders:
   /** The deciders of a flight.
     *
     * @param workers the workers that search for a flight that plans
-    * @return Left states why this process cannot plan it
+    * @return Left says why this process cannot plan it
     */
   def of(flown: RecordedPlan, workers: PlanSettings => PlanWorkers): Either[String, FlightDeciders] =
     val fleet = flown.plan.fleet(flown.settings)

@@ -16,7 +16,7 @@ import skein.units.*
   * @param clock the solver's clock, independent of the controllers'
   * @param workers the threads that execute decisions
   * @param takes artificial delay of each answer, for trials
-  * @param byVectors whether it searches plans by SIMD, of which flights are informed
+  * @param byVectors whether it searches plans with SIMD, of which flights are informed
   */
 final class SolverDesk(
     id: Long,
@@ -72,7 +72,9 @@ final class SolverDesk(
           garbled += mistakes.size
         Left(mistake)
 
-  /** Handles a hello. Returns whether the flight is, or will be, accepted. */
+  /** Handles a hello. Returns whether the flight has been accepted or is being prepared; preparation may
+    * still end in a refusal.
+    */
   private def greeted(flight: Long, theirs: String, briefing: Briefing, reply: Array[Byte] => Unit): Boolean =
     val known = lock.synchronized(sessions.get(flight).exists(_.briefing == briefing))
     def answer(message: SolverMessage) = reply(SolverMessageCodec.bytes(message))

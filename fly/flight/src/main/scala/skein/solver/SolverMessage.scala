@@ -66,7 +66,7 @@ object Briefing:
 
   /** The flight's plan, by the scenarios and policies of this program.
     *
-    * @return Left states what is not known here
+    * @return Left says what is not known here
     */
   def plan(briefing: Briefing)(using Scenarios): Either[String, RecordedPlan] =
     val flight = FlightRow(

@@ -28,7 +28,7 @@ object SolverMessageCodec:
     require(made.length <= MostBytes, s"a message has ${made.length} bytes, at most $MostBytes go")
     made
 
-  /** Decodes a message; Left states what was expected and what was received. */
+  /** Decodes a message; Left says what was expected and what was received. */
   def message(bytes: Array[Byte]): Either[String, SolverMessage] =
     if bytes.length > MostBytes then Left(s"expected $MostBytes bytes at most, got ${bytes.length}")
     else

@@ -63,7 +63,7 @@ class VehicleNetworkSimulation extends munit.FunSuite, TemporaryFolders, Optimis
         val replayed = Replayed.of(file).fold(fail(_), identity)
         assertEquals((replayed.decidedAgain, replayed.isSame), (None, true))
 
-  test("a message carries its sender's reading, takes the link's time, and is decided on"):
+  test("a message carries its sender's reading, arrives after the link's delay, and is used in decisions"):
     val recording = fly(settings(LoopKind.Stream, "constant:80ms", scenario = Surround())).recording
     val sent      = messages(recording)
     assert(sent.nonEmpty)

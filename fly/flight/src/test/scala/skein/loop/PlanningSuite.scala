@@ -107,7 +107,7 @@ class PlanningSuite extends munit.FunSuite:
     assertEquals(part(PlanSettings(), Some(Span.ofMillis(200))).situation.sinceDecisionS, 0.2)
     assertEquals(part(PlanSettings(), Some(Span.ofSeconds(3))).situation.sinceDecisionS, 0.5)
 
-  test("the turn rate is speed over turning radius, and the least speed a share of the greatest"):
+  test("the maximum turn rate is speed over turning radius; the minimum speed is a fraction of the maximum"):
     val limits = part(PlanSettings(turningRadiusM = 4, slowestShare = 0.5)).objective.limits
     val speed  = fleet.agents(pursuer).speed.value
     assertEquals((limits.minSpeed, limits.maxSpeed), (speed / 2, speed))

@@ -83,7 +83,7 @@ class TeamLogSuite extends munit.FunSuite:
     duel.log.decided(duel.decision(1))
     assertEquals((duel.recording.decisions.size, duel.recording.sightings), (1, Vector.empty))
 
-  test("a decision is offered without its rows, which the writer makes"):
+  test("a decision is offered to the recorder before its rows exist; the writer makes them later"):
     val team     = Fleet(PaperDuel(pairs = 2).fleet.agents.map(_.copy(policy = Together)))
     val deciders = team.agents.indices.map(Decider(team, _))
     val taken    = Vector.newBuilder[Recordable]

@@ -136,7 +136,7 @@ class ModelFileSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(settings.loopSettings.model(0), PlantModel(Late(0.75, 0.25)))
     val said = read("plan", Fickle).left.getOrElse("accepted")
     assert(
-      said.contains("predictor: Pursuer: plans are flown by SIMD, and the vehicle is no formula: "),
+      said.contains("predictor: Pursuer: plans are flown with SIMD, and the vehicle is no formula: "),
       said
     )
     assert(read("predictive", Fickle).isRight)

@@ -26,7 +26,7 @@ final case class KafkaTopics(broker: Address, prefix: String)(val security: Map[
 
   /** Creates missing topics. Blocks for some seconds at most.
     *
-    * @return Left states why the broker cannot be used
+    * @return Left says why the broker cannot be used
     */
   private[kafka] def made(): Either[KafkaTopics.Absent, Unit] =
     val settings =

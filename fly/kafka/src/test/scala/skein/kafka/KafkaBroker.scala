@@ -30,7 +30,7 @@ object KafkaBroker:
     * @param at the broker's address, which it advertises to clients; port 0 takes a free one
     * @param certificates settings by [[KafkaCertificates]]: it presents its own certificate, and requests
     *   those of clients. Without them it accepts every client
-    * @return Left states why it cannot start
+    * @return Left says why it cannot start
     */
   def start(
       folder: Path,

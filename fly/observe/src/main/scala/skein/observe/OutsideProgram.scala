@@ -35,7 +35,7 @@ object OutsideProgram:
   private val GraceS     = 5L
   private val RestMillis = 1_000L
 
-  /** @return Left states in a line why it cannot be started */
+  /** @return Left says in a line why it cannot be started */
   def start(command: Seq[String], environment: Map[String, String]): Either[String, OutsideProgram] =
     try
       val builder = ProcessBuilder(command*)

@@ -146,7 +146,7 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
       twice
     ).contains(s"${twice.arrivals.size} moves arrived of ${clean.ports.map(_.sendings.size).sum}"))
 
-  test("the checks find images without a recorded fate"):
+  test("the checks find images that were counted as neither missed, lost nor searched"):
     val counts = CameraSensor.Counts(due = 80, missed = 10, lost = 5, searched = 65)
     val forged = clean.copy(
       images = Vector(counts),

@@ -10,7 +10,7 @@ import jdk.incubator.vector.IntVector;
 import skein.simd.LaneMath;
 import skein.simd.LaneRandom;
 
-/** Draws and weights a block's candidates by SIMD. {@link ScalarBlock} is the scalar reference. */
+/** Draws and weights a block's candidates with SIMD. {@link ScalarBlock} is the scalar reference. */
 abstract class SampledBlock extends CandidateBlock {
   private static final float LEAST_EXPONENT = -80f, MOST_EXPONENT = 20f;
 

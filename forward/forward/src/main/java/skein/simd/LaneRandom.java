@@ -7,8 +7,8 @@ import static skein.simd.LaneMath.LANES;
 
 import jdk.incubator.vector.IntVector;
 
-/** {@link WorldRandom} for many worlds by SIMD. It is a separate class so that the scalar one loads no vector
- * classes.
+/** {@link WorldRandom} for many worlds side by side, with SIMD. It is a separate class so that {@code
+ * WorldRandom} loads no vector classes.
  */
 public final class LaneRandom {
   private LaneRandom() {}

@@ -13,7 +13,7 @@ object LinkDelays:
   /** The delays of a link, if forward simulation supports it.
     *
     * @param packetsPerS packets of all vehicles in each direction; see [[LossyDelays.of]]
-    * @return Left states what was expected and what was given
+    * @return Left says what was expected and what was given
     */
   def checked(link: LatencyProfile, packetsPerS: Double): Either[String, Delays] =
     val base = link.delays match

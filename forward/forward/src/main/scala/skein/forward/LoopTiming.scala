@@ -6,7 +6,7 @@ import skein.vehicle.{QuadrotorModel, VehicleModel}
 
 /** The timing of a control loop as data. It determines when an observation is taken, how old it is at the
   * decision, when the command takes effect, and which messages replace others. [[Rollout]] derives its events
-  * from it; the kernels derive equal events by SIMD.
+  * from it; the kernels derive equal events with SIMD.
   *
   * '''What all loops share''' (except `Paused`, in which nothing takes time):
   *   - A request, its answer, a command and the command's answer take a one-way delay each ([[Delays]]). A

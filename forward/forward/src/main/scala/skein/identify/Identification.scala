@@ -44,7 +44,7 @@ object Identification:
   val BlockS          = 5.0
   val DefaultHorizonS = 2.0
 
-  /** Fits a structure. Left states what the flights lack. */
+  /** Fits a structure. Left says what the flights lack. */
   def of(
       flights: Vector[TimeHistory],
       structure: Structure,

@@ -40,7 +40,7 @@ object SensorFit:
   /** Smallest number of detections from which deviations can be estimated. */
   val LeastDetections = 30
 
-  /** Fits the model. Left states what the flights lack. */
+  /** Fits the model. Left says what the flights lack. */
   def of(seeing: Vector[Seeing]): Either[String, SensorFit] =
     val all = seeing.flatMap(_.detections)
     if all.sizeIs < LeastDetections then

@@ -12,7 +12,7 @@ trait Accelerator:
   /** Prepares teams.
     *
     * @param threads number of threads that prepare the simulation
-    * @return Left states why the accelerator does not support such teams
+    * @return Left says why the accelerator does not support such teams
     */
   private[lanes] def teams(
       timing: LoopTiming,

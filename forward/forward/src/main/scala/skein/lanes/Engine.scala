@@ -24,11 +24,11 @@ object Engine:
     case Scalar
 
     /** Loops as in `Scalar`, but with the bodies of many worlds stepped together, by MuJoCo or, for
-      * quadrotors, by SIMD.
+      * quadrotors, with SIMD.
       */
     case Bodies, Quadrotors
 
-    /** Whole worlds by SIMD, on the processors or on a GPU. */
+    /** Whole worlds with SIMD, on the processors or on a GPU. */
     case Lanes, Gpu
 
   def scalar(why: String): Engine = Engine(Kind.Scalar, s"scalar: $why")

@@ -23,8 +23,8 @@ import skein.lanes.timetable.{
 import skein.units.Expect
 import skein.vehicle.ReducedModel
 
-/** Simulates a kind of vehicle by SIMD: with [[skein.lanes.timetable.Timetable]]s and, if it [[fliesAlone]],
-  * also with separate delays in every world.
+/** Simulates a kind of vehicle with SIMD: with [[skein.lanes.timetable.Timetable]]s and, if it
+  * [[fliesAlone]], also with separate delays in every world.
   */
 private[skein] trait LaneDynamics extends TimetableDynamics:
   /** Maximum duration of one simulation step, s. */
@@ -38,17 +38,17 @@ private[skein] trait LaneDynamics extends TimetableDynamics:
   private[lanes] def flights(agent: RolloutAgent, loop: LoopLanes): LaneVehicles
 
 private[skein] object LaneDynamics:
-  /** The dynamics of a model; Left states why SIMD does not support it. */
+  /** The dynamics of a model; Left says why SIMD does not support it. */
   def of(model: VelocityResponse): Either[String, LaneDynamics] = model match
     case quadrotor: QuadrotorResponse =>
       QuadrotorLanes.of(quadrotor.quadrotor).map(QuadrotorDynamics(quadrotor, _))
     case PlantResponse(plant)   => PlantLanes.of(plant).map(PlantDynamics(_))
     case SpatialResponse(plant) => PlantLanes.of(plant).map(PlantDynamics(_))
-    case _                      => Left("the lanes do not know the vehicle")
+    case _                      => Left("SIMD does not support the vehicle")
 
   /** The dynamics of a model under a loop; if the loop predicts, SIMD must support its predictor too.
     *
-    * @return Left states why SIMD does not support it
+    * @return Left says why SIMD does not support it
     */
   def under(timing: LoopTiming, model: VelocityResponse): Either[String, LaneDynamics] =
     of(model).flatMap: vehicles =>
@@ -61,10 +61,10 @@ private[skein] object LaneDynamics:
           yield PredictedDynamics(vehicles, predictor)
         case _ => Right(vehicles)
 
-  /** Checks that all vehicles start high enough. Left states why SIMD does not support their start. */
+  /** Checks that all vehicles start high enough. Left says why SIMD does not support their start. */
   def isHighEnough(model: VelocityResponse, vehicles: Seq[RolloutAgent]): Either[String, Unit] = Expect.that(
     !model.isInstanceOf[QuadrotorResponse] || vehicles.forall(-_.altitudeDownM >= LeastAltitudeM)
-  )(s"the lanes know no ground and fly from $LeastAltitudeM m altitude on")
+  )(s"SIMD simulates no ground: vehicles must start at $LeastAltitudeM m altitude or higher")
 
   /** Minimum altitude of the start, m: AirSim's quadrotor loses height while it turns. */
   private val LeastAltitudeM = 5.0

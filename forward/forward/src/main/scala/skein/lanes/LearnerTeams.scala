@@ -175,7 +175,7 @@ object LearnerTeams:
 
     /** @param learners indices of the vehicles that decide by [[LearnerPolicy]]
       * @param worlds number of worlds, at most [[LearnerWorlds.Most]]
-      * @return Left states why SIMD does not support them
+      * @return Left says why SIMD does not support them
       */
     def of(team: TeamCandidate, learners: Vector[Int], worlds: Int): Either[String, LearnerTeams] =
       forms.of(team).map(form => LearnerTeams(form, team, learners.toArray, worlds, timetableOf(form, _)))

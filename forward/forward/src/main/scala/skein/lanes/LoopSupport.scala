@@ -15,7 +15,7 @@ private[lanes] object LoopSupport:
   def refusal(timing: LoopTiming, vehicles: Int, link: Delays, model: LaneDynamics): Option[String] =
     link match
       case tabled: TabledDelays => refusal(timing, vehicles, tabled.maxS, model)
-      case _                    => Some("worlds of their own fly by lanes where delays come from tables")
+      case _                    => Some("SIMD supports delays of each world's own only from tables")
 
   private def refusal(
       timing: LoopTiming,
@@ -30,12 +30,12 @@ private[lanes] object LoopSupport:
         for
           _ <- asksAtOnce(stream.asking)
           _ <- Expect.that(stream.patienceS > 0):
-            "the lanes wait for the other vehicles' readings, and this loop does not"
+            "SIMD supports only loops that wait for the other vehicles' readings"
         yield Vector(stream.patienceS, stream.toleranceS)
       case _: LoopTiming.Sequential | _: LoopTiming.Futures =>
         Expect
           .that(readingS(timing, vehicles, maxDelayS) <= MostInTurnS):
-            s"$vehicles questions in turn may take longer than the lanes can count"
+            s"$vehicles questions in turn may take longer than SIMD can represent"
           .map(_ => Vector.empty)
       case predictive: LoopTiming.Predictive =>
         for
@@ -52,20 +52,20 @@ private[lanes] object LoopSupport:
           s"with ${steering.mostOutstanding} move in flight, a vehicle is commanded once"
         times <- ofLoop
         _     <- Expect.that(model.stepS <= LaneFlights.MOST_PIECE_S):
-          s"the lanes fly steps of ${LaneFlights.MOST_PIECE_S} s at most, and the vehicle's last ${model.stepS} s"
+          s"SIMD supports steps of ${LaneFlights.MOST_PIECE_S} s at most, and the vehicle's take ${model.stepS} s"
         underWayS = times.headOption.getOrElse(0.0) + readingS(timing, vehicles, maxDelayS) + 2 * maxDelayS
         _ <- Expect.that(timing.periodS + underWayS + model.deadTimeS <= MostS):
-          "a command may act later than the lanes can count"
+          "a command may take effect later than SIMD can represent"
         own = Vector(timing.periodS, timeoutS, steering.minIntervalS, steering.handoverS)
         _ <- Expect.that((own ++ times).forall(LaneViews.isWhole)):
-          "the lanes count time in grains of 4 ns, and this loop's times are none"
+          "SIMD counts time in units of 4 ns, and a time of this loop is no multiple of them"
       yield ()
     refused.left.toOption
 
   private def asksAtOnce(asking: Asking): Either[String, Unit] =
     for
       _ <- Expect.that(!asking.inOrder):
-        "the lanes take answers as they come, and this loop in order"
+        "SIMD takes answers in the order of arrival, and this loop in that of its requests"
       _ <- Expect.that(asking.spreadS == 0):
-        "the lanes ask all vehicles at once, and this loop spreads its questions"
+        "SIMD supports only loops that read all vehicles simultaneously"
     yield ()

@@ -99,15 +99,15 @@ final class TeamBatch(
     if together then None
     else
       val ends = Expect.that(!form.scores.hasEnd || !form.sees):
-        "one that ends by itself, and in which a vehicle sees by a sensor, flies by lanes where candidates share episodes"
+        "a scenario with an end of its own and a sensor uses SIMD only if candidates share episodes"
       val seen =
         for
           _ <- Expect.that(form.vehicles.fliesAlone):
-            "quadrotors of which one sees by a sensor fly by lanes where candidates share episodes"
+            "quadrotors with a sensor use SIMD only if candidates share episodes"
           _ <- Expect.that(!timing.isInstanceOf[LoopTiming.Paused]):
-            "who sees by a sensor while the world waits flies by lanes where candidates share episodes"
+            "a sensor under a loop that pauses the world uses SIMD only if candidates share episodes"
           _ <- Expect.that(form.policies.eyes.size == 1):
-            "two that see one another by sensors fly by lanes where candidates share episodes"
+            "two vehicles that see each other by sensors use SIMD only if candidates share episodes"
         yield ()
       ends.left.toOption.orElse(seen.left.toOption.filter(_ => form.sees)).orElse:
         LoopSupport.refusal(timing, form.count, link, form.vehicles)

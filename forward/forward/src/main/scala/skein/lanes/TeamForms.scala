@@ -61,9 +61,9 @@ private[lanes] final class TeamForms(
         .left
         .map(refused => s"a policy is no formula: ${refused.getMessage}")
       _ <- Expect.that(efforts.isEmpty):
-        "efforts are summed by lanes of two that play against one another by headings"
+        "SIMD sums efforts only of two that play against each other by headings"
       _ <- Expect.that(engagement.agents.forall(_.eye.isEmpty)):
-        "who sees by a sensor flies by lanes against one other, both by headings"
+        "SIMD supports a sensor only if two play against each other by headings"
       _ <- team.leaves(engagement.agents).filterNot(_ => inSpace).toLeft(())
       _ <- Expect.that(!team.looksUp || !model.regardsYaw):
         "a policy asks how high vehicles are, and the quadrotor's height is not told side by side"

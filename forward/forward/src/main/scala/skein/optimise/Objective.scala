@@ -63,7 +63,7 @@ object Objective:
     * the role's direction. The evader is vehicle 0.
     *
     * @param role the role to which `effort` refers
-    * @return Left states what was expected, what was given, and at which character
+    * @return Left says what was expected, what was given, and at which character
     */
   def ofRole(text: String, role: Role): Either[String, Objective] =
     WeightedSum
@@ -115,7 +115,7 @@ object Objective:
     * direction. Only measures of a quantity are allowed, as [[Objective.judged]] requires.
     *
     * @param otherwise the default direction
-    * @return Left states what was expected, what was given, and at which character
+    * @return Left says what was expected, what was given, and at which character
     */
   def ofQuantities(text: String, scenario: Scenario, otherwise: Direction): Either[String, Objective] =
     val known  = measures(scenario)

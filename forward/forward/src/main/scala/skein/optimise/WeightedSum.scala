@@ -24,7 +24,7 @@ object WeightedSum:
     * @param forms forms of a measure, for error messages
     * @param hyphened whether names may contain hyphens; then a minus between two names needs blanks around it
     * @param measureOf creates a term from a name and the text in brackets after it
-    * @return Left states what was expected, what was given, and at which character
+    * @return Left says what was expected, what was given, and at which character
     */
   def parse[M](text: String, forms: String, hyphened: Boolean = false)(
       measureOf: (String, Option[String]) => Either[String, M]

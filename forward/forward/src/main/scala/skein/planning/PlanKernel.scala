@@ -3,10 +3,10 @@ package skein.planning
 import java.util.Arrays
 import skein.simd.FixedFormula
 
-/** Simulates many candidate manoeuvres of one vehicle by SIMD and computes their costs. The code is compiled
-  * from the formulas of [[ManoeuvreRollout]], the scalar reference; `PlanKernelSuite` compares the two. The
-  * vehicle's track does not depend on its opponent; so it is simulated once, and then priced against every
-  * behaviour of the opponent.
+/** Simulates many candidate manoeuvres of one vehicle with SIMD and computes their costs. The code is
+  * compiled from the formulas of [[ManoeuvreRollout]], the scalar reference; `PlanKernelSuite` compares the
+  * two. The vehicle's track does not depend on its opponent; so it is simulated once, and then priced against
+  * every behaviour of the opponent.
   *
   * Positions are relative to the vehicle's start, where floats are finest. Results do not depend on the lane
   * count. One instance per thread.

@@ -232,7 +232,8 @@ object Planner:
   def apply(settings: PlannerSettings, objective: PlanCost): Planner =
     new Planner(settings, objective, CandidateBlocks(settings.steps))
 
-  /** Whether candidates are simulated by SIMD; otherwise a deadline allows some fifty times fewer of them. */
+  /** Whether candidates are simulated with SIMD; otherwise a deadline allows some fifty times fewer of them.
+    */
   def isFast: Boolean = CandidateBlocks.isFast
 
   /** Why plans against an opponent of this policy are not supported: for SIMD, it must be a formula. */

@@ -71,7 +71,7 @@ private[skein] object FixedFormula:
       BoundFunction.of(fused.map(angles.convert), { case input if input < rows => input }, areRows = rows > 0)
     new FixedFormula(formula, of, alike, bound, Evaluation(angles.derived))
 
-  /** Compiles an object's method, once for all objects of a form. Left states why SIMD does not support it.
+  /** Compiles an object's method, once for all objects of a form. Left says why SIMD does not support it.
     *
     * @param alike number of the method's last inputs that are equal in all worlds
     */

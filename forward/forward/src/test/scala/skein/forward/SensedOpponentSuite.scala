@@ -104,7 +104,7 @@ class SensedOpponentSuite extends munit.FunSuite:
 
   for timing <- Seq(LoopTiming.Sequential(), LoopTiming.Futures(), LoopTiming.stream(0.1), predictive) do
     test(
-      s"${timing.productPrefix}: worlds with separate delays have equal results by SIMD and the scalar engine"
+      s"${timing.productPrefix}: worlds with separate delays have equal results with SIMD and the scalar engine"
     ):
       // To the side of the pursuer's way, so that rounding does not decide the side of any turn.
       val seeing = duel(Some(camera))
@@ -135,14 +135,14 @@ class SensedOpponentSuite extends munit.FunSuite:
     )
     assertEquals(
       both,
-      "scalar: two that see one another by sensors fly by lanes where candidates share episodes"
+      "scalar: two vehicles that see each other by sensors use SIMD only if candidates share episodes"
     )
     assertEquals(
       told(seeing, VelocityResponses.quadrotor()),
-      "scalar: quadrotors of which one sees by a sensor fly by lanes where candidates share episodes"
+      "scalar: quadrotors with a sensor use SIMD only if candidates share episodes"
     )
 
   test("a sensor with errors too small for floats uses the scalar engine"):
     val batch  = PairBatch(duel(Some(exact)), predictive, PlantResponse(ReducedModel.AirSimLag), threads = 1)
     val engine = batch.engine(pursuer, evader, shareEpisodes = true, Seq(DelayTable.vpn)).text
-    assert(engine.startsWith("scalar: the lanes know sensors with deviations of"), engine)
+    assert(engine.startsWith("scalar: SIMD supports sensors with deviations of"), engine)

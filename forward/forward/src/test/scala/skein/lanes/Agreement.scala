@@ -3,7 +3,7 @@ package skein.lanes
 import scala.collection.mutable.ArrayBuffer
 import skein.formula.{ErrorBound, Node}
 
-/** Compares worlds simulated by SIMD with the scalar engine. In every world both must make equal decisions,
+/** Compares SIMD worlds with the scalar engine. In every world both must make equal decisions,
   * until a compared number is so near to a threshold that rounding decides, as [[ErrorBound]] shows; after
   * that, the world may differ.
   */

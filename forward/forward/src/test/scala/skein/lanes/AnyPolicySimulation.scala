@@ -11,7 +11,7 @@ import skein.testing.{Lengthy, Optimised}
 import skein.units.*
 import skein.vehicle.ReducedModel
 
-/** Policies of every kind, mixed in one team and in duels, have equal results by SIMD and by the scalar
+/** Policies of every kind, mixed in one team and in duels, have equal results with SIMD and by the scalar
   * engine.
   */
 class AnyPolicySimulation extends munit.FunSuite, Lengthy, Optimised:

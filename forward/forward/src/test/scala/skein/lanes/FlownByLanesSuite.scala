@@ -157,7 +157,7 @@ class FlownByLanesSuite extends munit.FunSuite:
     )
     for timing <- loops(model).tail do
       val engine = TeamBatch(timing, model, threads = 1).engine(team, false, Seq(DelayTable.vpn)).text
-      assert(engine.startsWith("scalar: the lanes fly steps of"), s"$timing: $engine")
+      assert(engine.startsWith("scalar: SIMD supports steps of"), s"$timing: $engine")
 
   test("the table has a row for everything that the engines support, and no other"):
     val all =

@@ -136,7 +136,7 @@ class LagPairsSuite extends munit.FunSuite:
       )
       agreement(link, 10).check(s"$meanMs ms and $jitterMs ms of jitter", some)
 
-    test(s"at $meanMs ms and $jitterMs ms of jitter views by SIMD equal those computed one by one"):
+    test(s"at $meanMs ms and $jitterMs ms of jitter views with SIMD equal those computed one by one"):
       val kernel  = flown(over(link))
       val longWay = flown(over(link), shortCut = false)
       assertEquals(kernel(PairNumber.MeanLast10s).toSeq, longWay(PairNumber.MeanLast10s).toSeq)

@@ -24,7 +24,7 @@ class LanePolicySimulation extends munit.FunSuite:
     ).asInstanceOf[HeadingPolicy]
 
   for (name, draw) <- families do
-    test(s"$name decides by SIMD like the scalar policy"):
+    test(s"$name decides with SIMD like the scalar policy"):
       val random             = SplitMix64(11)
       val (observation, own) = (LaneObservation(), Directions(worlds))
       val (known, into)      = (Directions(worlds), Directions(worlds))

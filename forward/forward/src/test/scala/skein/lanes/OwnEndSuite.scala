@@ -10,7 +10,7 @@ import skein.testing.Optimised
 import skein.units.*
 import skein.vehicle.TiltModel
 
-/** Compares scenarios that end by themselves by SIMD with the scalar reference. */
+/** Compares SIMD with the scalar reference, for scenarios that end by themselves. */
 class OwnEndSuite extends munit.FunSuite, Optimised:
   import OwnEndSuite.*
 
@@ -78,7 +78,7 @@ class OwnEndSuite extends munit.FunSuite, Optimised:
     if shared || timing != LoopTiming.Paused()
   do
     val delays = if shared then "shared" else "own"
-    test(s"an end $name, $timing, $delays delays: scores by SIMD are those of the scalar engine"):
+    test(s"an end $name, $timing, $delays delays: scores with SIMD are those of the scalar engine"):
       val all          = candidates(scenarios)
       val (fast, slow) = (flown(all, timing, model, shared, false), flown(all, timing, model, shared, true))
       for number <- fast.indices; world <- slow(0).indices do

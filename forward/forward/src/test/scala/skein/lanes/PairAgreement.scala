@@ -7,7 +7,7 @@ import skein.lanes.loop.LoopEye
 import skein.lanes.policy.{LaneObservation, PolicyLanes}
 import skein.policy.{Action, Observation, PlanarObservation, Policy}
 
-/** Compares duels by SIMD with the scalar engine, decision by decision, by [[Agreement]]. All but the
+/** Compares SIMD duels with the scalar engine, decision by decision, by [[Agreement]]. All but the
   * vehicles' motion is compared to the bit: a decision starts from the heading and memory of the SIMD
   * engine's previous one, and the opponent's heading is that of the decision which the scalar engine knows.
   *

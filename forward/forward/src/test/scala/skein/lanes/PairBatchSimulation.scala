@@ -56,7 +56,7 @@ class PairBatchSimulation extends munit.FunSuite:
 
   test(
     "over recorded delays, and if vehicles are read as published, the engine is scalar and states why; " +
-      "long and changing delays are supported by SIMD"
+      "long and changing delays are supported with SIMD"
   ):
     val near                      = DelayTable.of(LatencyDistribution.Constant(Span.ofMillis(2)))
     val far                       = DelayTable.of(LatencyDistribution.Constant(Span.ofMillis(60)))
@@ -90,7 +90,7 @@ class PairBatchSimulation extends munit.FunSuite:
         LoopTiming.Stream(asking = Asking(inOrder = true)),
         LoopTiming.Stream(asking = Asking(spreadS = 0.1))
       )
-    do assert(clue(engine(published, near)).startsWith("scalar: the lanes"))
+    do assert(clue(engine(published, near)).startsWith("scalar: SIMD "))
     def most(moves: Int) = LoopTiming.Stream(steering = Steering(mostOutstanding = moves))
     assert(clue(engine(most(1), near)).startsWith("scalar: with 1 move in flight"))
     assert(clue(engine(most(6), near)).startsWith("SIMD"))
@@ -146,7 +146,7 @@ class PairBatchSimulation extends munit.FunSuite:
     )
   do
     test(
-      s"candidates with $name that share episodes have by SIMD the results of each alone, close to the scalar engine"
+      s"candidates with $name that share episodes have with SIMD the results of each alone, close to the scalar engine"
     ):
       val offAxis = Pair(short.pursuer, short.evader.copy(startY = 2), short.durationS)
       val batch   = PairBatch(offAxis, LoopTiming.Futures(), model, threads = 2)
@@ -183,7 +183,7 @@ class PairBatchSimulation extends munit.FunSuite:
     val batch = PairBatch(Pair.at(4.9, 12), LoopTiming.Stream(), VelocityResponses.quadrotor())
     assertEquals(
       batch.engine(PaperPursuer(), PaperEvader(), shareEpisodes = true, Nil).text,
-      "scalar: the lanes know no ground and fly from 5.0 m altitude on"
+      "scalar: SIMD simulates no ground: vehicles must start at 5.0 m altitude or higher"
     )
 
   test("an exception thrown by a world reaches the caller"):

@@ -36,7 +36,7 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
         "a train"                            -> train
       )
   do
-    test(s"$name by SIMD under ${timing.productPrefix} equals its scalar simulation"):
+    test(s"$name with SIMD under ${timing.productPrefix} equals its scalar simulation"):
       val batch = PairBatch(short, timing, vehicle, threads = 1)
       assert(batch.engine(PaperPursuer(), PaperEvader(), shareEpisodes = true, Seq(DelayTable.vpn)).isFast)
       val all   = worlds(shared = true)
@@ -69,7 +69,7 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
         "a train"                            -> train
       )
   do
-    test(s"$name by SIMD under ${timing.productPrefix} with separate delays equals its scalar simulation"):
+    test(s"$name with SIMD under ${timing.productPrefix} with separate delays equals its scalar simulation"):
       val batch = PairBatch(short, timing, vehicle, threads = 1)
       val all   = new PairWorlds:
         def size: Int                   = 256
@@ -84,7 +84,7 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
 
   for shared <- Seq(true, false) do
     test(
-      s"a plant that uses one part of its command is predicted by SIMD like by its scalar, shared: $shared"
+      s"a plant that uses one part of its command is predicted with SIMD like by its scalar, shared: $shared"
     ):
       val timing = LoopTiming.Predictive(predictor = train.predictor)
       val batch  = PairBatch(short, timing, train, threads = 1)
@@ -153,7 +153,7 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
       bicycle.plant,
       shared = true,
       LoopTiming.Predictive()
-    ).startsWith("scalar: the lanes predict by plants and by constant velocity"))
+    ).startsWith("scalar: SIMD predicts by plants and by constant velocity"))
     val told = engine(Gusty, shared = true)
     assert(told.startsWith("scalar: the vehicle is no formula: ") && told.contains("nanoTime"), told)
     val slow = engine(Bicycle(1.2, 0.3, 4, 0.4, stepS = 1.5), shared = false)

@@ -11,7 +11,7 @@ import skein.testing.Unhurried
 import skein.units.*
 
 /** Scenarios written in Python, by the files next to the examples, and equal ones in Scala: equal bits,
-  * except for a network by SIMD. The package's tests compare the files with the Python.
+  * except for a network with SIMD. The package's tests compare the files with the Python.
   */
 class PythonTwinSuite extends munit.FunSuite, Unhurried:
   private val root = Iterator

@@ -9,7 +9,7 @@ import skein.testing.Optimised
 import skein.units.*
 import skein.vehicle.TiltModel
 
-/** Compares teams in three dimensions by SIMD with the scalar reference. */
+/** Compares SIMD with the scalar reference, for teams in three dimensions. */
 class SpaceLanesSuite extends munit.FunSuite, Optimised:
   import SpaceLanesSuite.*
 
@@ -50,7 +50,7 @@ class SpaceLanesSuite extends munit.FunSuite, Optimised:
   do
     val delays = if shared then "shared" else "own"
     test(
-      s"${timing.productPrefix} over $linked, $delays delays: scores by SIMD are those of the scalar engine, to 5 mm"
+      s"${timing.productPrefix} over $linked, $delays delays: scores with SIMD are those of the scalar engine, to 5 mm"
     ):
       val (fast, slow) = (flown(timing, link, shared, false), flown(timing, link, shared, true))
       for number <- fast.indices; world <- candidates.indices do

@@ -338,7 +338,7 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
   private def avoiding(scenario: Crossing, durationS: Double) =
     TeamCandidate(Engagement.of(scenario.fleet, durationS), Vector(Judged(Separation, Reduction.Least, 0)))
 
-  test("twenty vehicles, more than there are rounds, avoid one another by SIMD as by the scalar reference"):
+  test("twenty vehicles, more than there are rounds, avoid one another with SIMD as by the scalar reference"):
     val crossing = avoiding(Crossing(20, entryM = 8, spacingM = 4), 1.5)
     val batch    = TeamBatch(LoopTiming.Stream(), lag, 1)
     val engine   = batch.engine(crossing, shareEpisodes = true, Seq(DelayTable.vpn)).text

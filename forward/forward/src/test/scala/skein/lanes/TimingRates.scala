@@ -7,7 +7,7 @@ import skein.signal.LatencyProfile
 import skein.simd.WorldRandom
 import skein.vehicle.ReducedModel
 
-/** Measures the speed of each loop by SIMD, compared with the scalar engine: `forward/Test/runMain
+/** Measures the speed of each loop with SIMD, compared with the scalar engine: `forward/Test/runMain
   * skein.lanes.timingRates [text] [-text]`: on one thread, 60 s over `vpn` by default; only cases that
   * contain a text, or that do not contain a text after a minus sign; processor time. Agent-steps of a period,
   * in millions a second.

@@ -8,8 +8,8 @@ import skein.simd.WorldRandom
 import skein.vehicle.TiltModel
 
 /** Measures the speed of a team in three dimensions: [[Tower]], `stream` over `vpn`, 60 s. Simulates 200
-  * candidates × 200 episodes on all cores, and measures processor time by SIMD and by the scalar engine, with
-  * a witness of both. Run: `forward/Test/runMain skein.lanes.towerRates`.
+  * candidates × 200 episodes on all cores, and measures processor time with SIMD and by the scalar engine,
+  * with a witness of both. Run: `forward/Test/runMain skein.lanes.towerRates`.
   */
 @main def towerRates(): Unit =
   val system =

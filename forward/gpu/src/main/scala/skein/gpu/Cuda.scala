@@ -58,7 +58,7 @@ private[gpu] final class Cuda private (library: SymbolLookup):
 private[gpu] object Cuda:
   private val MostChars = 4096L
 
-  /** Loads the driver. Left states why that is impossible. */
+  /** Loads the driver. Left says why that is impossible. */
   def load(): Either[String, Cuda] =
     val names = if scala.util.Properties.isWin then Seq("nvcuda.dll") else Seq("libcuda.so.1", "libcuda.so")
     names.iterator

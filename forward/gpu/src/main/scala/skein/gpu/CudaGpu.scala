@@ -116,7 +116,7 @@ object CudaGpu:
 
   /** The first GPU of this machine; every call returns one object.
     *
-    * @return Left states why there is none
+    * @return Left says why there is none
     */
   def find(): Either[String, Gpu] = first
 

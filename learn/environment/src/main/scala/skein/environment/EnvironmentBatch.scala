@@ -20,10 +20,10 @@ import skein.units.Expect
   * divided by 10 m. Means of other quantities may be rewarded instead, divided by 10 likewise, or a root mean
   * square: then each reward is a square, divided by 100.
   *
-  * Environments are simulated by SIMD, up to [[LearnerWorlds.Most]] together, or one by one by the scalar
+  * Environments are simulated with SIMD, up to [[LearnerWorlds.Most]] together, or one by one by the scalar
   * reference; [[engine]] states which, and why.
   *
-  * One call at a time. A step by SIMD allocates nothing, except where many groups share the processors.
+  * One call at a time. A step with SIMD allocates nothing, except where many groups share the processors.
   *
   * @param count number of environments
   * @param block memory of [[EnvironmentBuffers.bytes]] bytes
@@ -121,7 +121,7 @@ object EnvironmentBatch:
   /** Minimum number of groups for which several threads are used. */
   private val Together = 4
 
-  /** The engine for such environments; Left states what was expected and what was given.
+  /** The engine for such environments; Left says what was expected and what was given.
     *
     * @param beside see [[EnvironmentBatch.fly]]
     */
@@ -133,7 +133,7 @@ object EnvironmentBatch:
     LearnerSide.of(settings, opponent).map(side => side.engine(beside.filter(_ => side.turns.size > 1)))
 
   /** @param opponent policy of the vehicles of another role; without one, as the settings name it
-    * @return Left states what was expected and what was given
+    * @return Left says what was expected and what was given
     */
   def of(
       settings: EnvironmentSettings,

@@ -63,7 +63,7 @@ final case class EnvironmentSettings(
   /** The learners of environments, in turns: those of environment n have the index n modulo the number of
     * turns.
     *
-    * @return Left states what was expected and what was given
+    * @return Left says what was expected and what was given
     */
   private[environment] def turns(agents: Vector[Agent]): Either[String, Vector[Vector[Int]]] =
     def ofRole(name: String) = agents.indices.filter(agents(_).role.name.equalsIgnoreCase(name)).toVector
@@ -136,7 +136,7 @@ object EnvironmentSettings:
 
   private val MostRateRadPerS = 50.0
 
-  /** @return Left states what was expected and what was given */
+  /** @return Left says what was expected and what was given */
   private[environment] def read(texts: java.util.Map[String, String]): Either[String, EnvironmentSettings] =
     texts.asScala.foldLeft[Either[String, EnvironmentSettings]](Right(EnvironmentSettings())):
       case (before, (name, text)) =>

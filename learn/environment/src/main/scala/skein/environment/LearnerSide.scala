@@ -104,7 +104,7 @@ private[environment] final case class LearnerSide(
 private[environment] object LearnerSide:
 
   /** @param against policy of the vehicles of another role; if None, the one that the settings name
-    * @return Left states what was expected and what was given
+    * @return Left says what was expected and what was given
     */
   def of(settings: EnvironmentSettings, against: Option[PolicyFile] = None)(using
       scenarios: Scenarios

@@ -39,7 +39,7 @@ class EnvironmentGroupSuite extends munit.FunSuite, TemporaryFolders:
     for settings <- Seq(EnvironmentSettings(), surround, surround.copy(learners = "all")) do
       assert(clue(engine(settings)).startsWith("SIMD, "))
     val quadrotor = EnvironmentSettings(plant = "quadrotor", altitudeM = 3)
-    assert(clue(engine(quadrotor)).startsWith("scalar: the lanes know no ground"))
+    assert(clue(engine(quadrotor)).startsWith("scalar: SIMD simulates no ground"))
     val others = Scenarios(ScenarioKind(Own()), ScenarioKind(Short()))
     assert(clue(engine(own("", ""))(using others)).startsWith("scalar: a policy is no formula"))
     assert(clue(engine(EnvironmentSettings(scenario = "short"))(using others)).startsWith("SIMD, "))

@@ -68,7 +68,7 @@ object LearnerInFlight:
   /** Restores a stored learner.
     *
     * @param load fills it with the stored state, if there is one
-    * @return the parameters of its policy, and the learner; Left states why it cannot learn in flight
+    * @return the parameters of its policy, and the learner; Left says why it cannot learn in flight
     */
   def of(
       algorithm: Algorithm,

@@ -66,7 +66,7 @@ object SideTask:
   private[learn] val RewardPerM: Double = RewardScale / EnvironmentSettings.RewardM
 
   /** @param opponent policy of the other role; None: the one in the settings
-    * @return Left states what was expected and what was given
+    * @return Left says what was expected and what was given
     */
   def of(
       settings: EnvironmentSettings,

@@ -12,7 +12,7 @@ final class Training(task: Task, learner: Learner, stepsPerRound: Int):
   def stepsOfRound: Long = stepsPerRound.toLong * task.count
 
   /** @param isStopped checked at every step; the rest of the round is not learned then
-    * @return the mean reward of a step; Left states what is wrong; None if it was stopped
+    * @return the mean reward of a step; Left says what is wrong; None if it was stopped
     */
   def round(number: Long, isStopped: () => Boolean = () => false): Either[String, Option[Double]] =
     learner.begin(number)

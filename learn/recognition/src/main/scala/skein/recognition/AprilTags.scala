@@ -80,7 +80,7 @@ final class AprilTags(camera: Pinhole, size: Metres, deviationPx: Double = April
     )
     made
 
-  /** All tags in an image; Left states why it does not match the camera. */
+  /** All tags in an image; Left says why it does not match the camera. */
   def find(image: Image): Either[String, Vector[Tag]] = image.pixels match
     case Pixels.Bgr(bytes) => find(image.width, image.height, bytes.buffer)
     case other             => Left(s"expected raw pixels, got ${other.productPrefix}")

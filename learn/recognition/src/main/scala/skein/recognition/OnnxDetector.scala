@@ -46,7 +46,7 @@ final class OnnxDetector(
     leastScore: Double = 0.5,
     mostOverlap: Double = 0.45
 ):
-  /** The objects in an image, the highest score first; Left states why it cannot be searched. */
+  /** The objects in an image, the highest score first; Left says why it cannot be searched. */
   def find(image: Image): Either[String, Vector[Box]] = image.pixels match
     case Pixels.Bgr(bytes) => find(image.width, image.height, bytes.buffer)
     case other             => Left(s"expected raw pixels, got ${other.productPrefix}")

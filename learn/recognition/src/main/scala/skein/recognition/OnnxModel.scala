@@ -17,7 +17,7 @@ type Outputs = Map[String, OnnxModel.Output]
 final class OnnxModel private (session: OrtSession, inputName: String, val input: Vector[Int])
     extends AutoCloseable:
 
-  /** Runs the model on a tensor of the given shape. Left states what the model does not accept. */
+  /** Runs the model on a tensor of the given shape. Left says what the model does not accept. */
   def run(tensor: Array[Float], shape: Vector[Int]): Either[String, Outputs] =
     if shape.map(_.toLong).product != tensor.length then
       Left(s"expected ${shape.mkString(" × ")} numbers, got ${tensor.length}")
@@ -51,7 +51,7 @@ object OnnxModel:
 
   /** @param threads number of threads that compute one image; several images at a time (`Recognise`) need one
     *   each
-    * @return Left states why the file is no such model
+    * @return Left says why the file is no such model
     */
   def load(file: Path, threads: Int = 1): Either[String, OnnxModel] =
     if !java.nio.file.Files.isReadable(file) then

@@ -6,9 +6,10 @@ import skein.scenario.Recogniser
 import skein.units.*
 
 /** Detects a vehicle by the AprilTags on its four sides, as on the built-in simulator's vehicles: the
-  * vehicle's middle lies [[behindM]] behind each. Where two sides are visible, the result is their mean.
+  * vehicle's centre lies [[behindM]] behind each tag. If two tags are visible, the mean of their estimates is
+  * used.
   *
-  * @param id the number of its tags
+  * @param id the ID that the vehicle's tags share
   */
 final class VehicleTags(camera: Pinhole, id: Long, size: Metres) extends Recogniser:
   private val tags    = AprilTags(camera, size)

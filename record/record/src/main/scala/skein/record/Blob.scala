@@ -55,7 +55,7 @@ object Blob:
 
   /** Content from the result of [[Blob.packed]].
     *
-    * @return Left states what is wrong with it
+    * @return Left says what is wrong with it
     */
   def ofPacked(packed: Array[Byte]): Either[String, Blob] =
     val size = Zstd.getFrameContentSize(packed)

@@ -75,7 +75,7 @@ object DuckDbRecorder:
 
   val batchSize = 4096
 
-  /** Checks by its name whether a recording can be created at this path; Left states why it cannot. */
+  /** Checks by its name whether a recording can be created at this path; Left says why it cannot. */
   def free(file: Path): Either[RecordError, Unit] = RecordingFile.free(file)
 
   /** Creates the file and begins to record. Fails if the file exists, or cannot be created.

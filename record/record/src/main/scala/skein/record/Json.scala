@@ -21,7 +21,7 @@ private[record] object Json:
   def obj(fields: (String, String)*): String =
     fields.map((name, value) => s"${string(name)}:$value").mkString("{", ",", "}")
 
-/** Writes a row as a JSON object, by the names of its columns; an absent value is left out. */
+/** Writes a row as a JSON object whose keys are the column names; an absent value is left out. */
 private[record] final class JsonRow(columns: Vector[Column]) extends RowWriter:
   private val fields = Vector.newBuilder[(String, String)]
   private val names  = columns.iterator.map(_.name)

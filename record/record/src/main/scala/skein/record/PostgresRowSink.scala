@@ -95,7 +95,7 @@ object PostgresRowSink:
   /** Connects, and creates the tables. Blocks.
     *
     * @param url `postgres://USER:PASSWORD@HOST:PORT/DATABASE`
-    * @return Left states why this failed, without the password
+    * @return Left says why this failed, without the password
     */
   def open(url: String, heading: RecordingHeader): Either[String, PostgresRowSink] =
     for

@@ -78,7 +78,7 @@ private[record] object RecordingFile:
           val _ = opened.close()
         begun.map(_ => opened)
 
-  /** Checks whether a recording can have this name; Left states why it cannot. */
+  /** Checks whether a recording can have this name; Left says why it cannot. */
   def free(file: Path): Either[RecordError, Unit] =
     if isUnnameable(file) then Left(RecordError.CannotCreate(file, Unnameable))
     else Expect.that(!Files.exists(file))(RecordError.AlreadyExists(file))

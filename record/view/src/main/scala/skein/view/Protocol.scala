@@ -102,7 +102,7 @@ object Protocol:
 
   /** Parses a viewer's text message.
     *
-    * @return Left states what was wrong with it
+    * @return Left says what was wrong with it
     */
   def read(text: String): Either[String, ClientMessage] =
     try

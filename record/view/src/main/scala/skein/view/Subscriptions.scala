@@ -8,7 +8,7 @@ final case class Subscriptions private (limits: ViewerLimits, channels: Set[Long
   private lazy val byChannel: Map[Long, Iterable[Long]] =
     chosen.groupMap((_, channel) => channel)((subscription, _) => subscription)
 
-  /** @return Left states why it is refused */
+  /** @return Left says why it is refused */
   def added(subscription: Long, channel: Long): Either[String, Subscriptions] =
     if !channels(channel) then Left(s"there is no channel $channel")
     else if chosen.contains(subscription) then Left(s"there is a subscription $subscription already")

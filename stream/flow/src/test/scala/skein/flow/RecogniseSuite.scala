@@ -133,7 +133,7 @@ class RecogniseSuite extends munit.FunSuite:
     // One is held for downstream, four wait behind it.
     assertEquals(begun.value, (5, 6))
 
-  test("frames are compared by the given function, by which a restarted simulator's frames are newer"):
+  test("frames are ordered by the given function, which here takes a restarted simulator's frames as newer"):
     val emitted = VirtualTime.run(seed = 1): system =>
       given ActorSystem                  = system
       val clock                          = Clock.ofNanos(VirtualTime.clock(system))

@@ -42,7 +42,7 @@ object Codec:
 
   /** Decodes a message that fills the bytes.
     *
-    * @return Left states what was expected and what was received
+    * @return Left says what was expected and what was received
     */
   def message[A](bytes: Array[Byte])(using codec: Codec[A]): Either[String, A] =
     val in = DataInputStream(ByteArrayInputStream(bytes))

@@ -23,7 +23,7 @@ object Address:
 
   /** Parses `HOST:PORT`, or for an IPv6 address `[ADDRESS]:PORT`.
     *
-    * @return Left states what was expected and what was given
+    * @return Left says what was expected and what was given
     */
   def parse(text: String): Either[String, Address] = text match
     case Plain(_, port) if port.toInt > MostPort => Left(s"expected a port up to $MostPort, got '$text'")

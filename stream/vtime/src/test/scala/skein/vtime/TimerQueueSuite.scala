@@ -8,7 +8,7 @@ class TimerQueueSuite extends munit.FunSuite:
     val added  = Seq(30L, 10L, 20L, 10L, 30L, 10L).map(timers.add(_, nothing))
     assertEquals(timers.removeAll(), Seq(1, 3, 5, 2, 0, 4).map(added))
 
-  test("cancelled timers never leave, and do not pile up"):
+  test("cancelled timers are never returned, and do not accumulate"):
     val timers = TimerQueue()
     val kept   = timers.add(1_000_000, nothing)
     (1 to 100_000).foreach: due =>

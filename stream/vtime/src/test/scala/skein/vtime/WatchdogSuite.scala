@@ -13,7 +13,7 @@ class WatchdogSuite extends munit.FunSuite:
   test("two observations are not enough"):
     assert(!standsStill(Seq(still, still)))
 
-  test("a thread that has worked between observations does not stand still, even if each finds it waiting"):
+  test("a thread that used the processor between observations is not stuck, even if each finds it waiting"):
     assert(!standsStill(Seq(still, still.copy(processorNanos = 1_001), still.copy(processorNanos = 1_002))))
     assert(!standsStill(Seq(still, still, still.copy(processorNanos = 1_001))))
 

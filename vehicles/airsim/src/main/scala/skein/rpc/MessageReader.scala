@@ -199,7 +199,7 @@ object MessageReader:
   /** The value received differs from what `read` expects. */
   private[rpc] final case class Unexpected(what: String) extends RuntimeException(what, null, false, false)
 
-  /** Applies `read` to one value; Left states what was expected and what was received. Binary in the result
+  /** Applies `read` to one value; Left says what was expected and what was received. Binary in the result
     * refers to these bytes.
     */
   def read[A](received: Received)(read: MessageReader => A): Either[String, A] =

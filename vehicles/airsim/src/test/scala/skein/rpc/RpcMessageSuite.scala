@@ -94,7 +94,7 @@ class RpcMessageSuite extends munit.FunSuite:
       RpcMessage.Malformed("an id outside 0 to 2^32 - 1: 18446744073709551615")
     )
 
-  test("a method that is no string and params that are no list are malformed"):
+  test("a method name that is not a string, and params that are not a list, are malformed"):
     assertEquals(
       fromClient(Arr(Int32(0), Int32(1), Int32(2), Arr())),
       RpcMessage.Malformed("a method name that is an integer")

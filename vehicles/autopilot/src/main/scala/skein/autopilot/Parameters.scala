@@ -15,7 +15,7 @@ final case class Parameters(values: Map[String, Double] = Parameters.defaults):
     (if index >= 0 then known.lift(index) else known.find(_.name == name)).map(message)
 
   /** @param value as encoded in a message: the bits of an integer
-    * @return the changed parameters and the answer; Left states why it is refused
+    * @return the changed parameters and the answer; Left says why it is refused
     */
   def set(name: String, value: Float): Either[String, (Parameters, Message)] =
     known.find(_.name == name) match

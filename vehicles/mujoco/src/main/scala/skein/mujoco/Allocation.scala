@@ -21,7 +21,7 @@ private[mujoco] object Allocation:
     *
     * @param effects B, 4 × actuators, row by row: change per unit of each control in upward acceleration,
     *   m/s², and in the angular accelerations about front, right and down, rad/s²
-    * @return Left states what these actuators cannot do
+    * @return Left says what these actuators cannot do
     */
   def of(effects: Array[Array[Double]]): Either[String, Allocation] =
     val most = effects.map(row => row.map(math.abs).max)

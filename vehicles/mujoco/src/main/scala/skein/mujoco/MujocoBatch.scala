@@ -80,7 +80,7 @@ private[mujoco] final class MujocoFailed(reason: String) extends IllegalStateExc
 private[mujoco] object MujocoBatch:
   /** Makes a batch; MuJoCo copies the model.
     *
-    * @return Left states why MuJoCo cannot make it
+    * @return Left says why MuJoCo cannot make it
     */
   def of(model: MemorySegment, count: Int, threads: Int = 1): Either[String, MujocoBatch] =
     val arena  = Arena.ofAuto()

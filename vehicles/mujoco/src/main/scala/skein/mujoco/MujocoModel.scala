@@ -28,7 +28,7 @@ final class MujocoModel private (
 object MujocoModel:
   /** Reads a model and measures its actuators: some 50 ms.
     *
-    * @return Left states why it cannot fly, or that MuJoCo is not installed
+    * @return Left says why it cannot fly, or that MuJoCo is not installed
     */
   def read(file: Path): Either[String, MujocoModel] =
     for

@@ -48,7 +48,7 @@ object Firmware:
     *
     * @param autopilot `MAV_AUTOPILOT`
     * @param kind `MAV_TYPE`
-    * @return Left states what was expected
+    * @return Left says what was expected
     */
   def of(autopilot: Int, kind: Int): Either[String, Firmware] = (autopilot, kind) match
     case (12, _)                         => Right(Px4)

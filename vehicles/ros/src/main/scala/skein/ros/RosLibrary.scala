@@ -166,7 +166,7 @@ private[ros] object RosLibrary:
 
   private val RclName = System.mapLibraryName("rcl")
 
-  /** Folders with ROS 2's libraries, overlays first. Left states why there is no `librcl` in any of them. */
+  /** Folders with ROS 2's libraries, overlays first. Left says why there is no `librcl` in any of them. */
   private[ros] def folders(environment: Map[String, String]): Either[String, Vector[Path]] =
     def listed(variable: String) =
       environment.get(

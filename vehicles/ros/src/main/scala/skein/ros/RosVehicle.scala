@@ -81,7 +81,7 @@ final class RosVehicle private[ros] (
       for state <- newest; twist <- TwistCommand.of(Action.Hover, state.value) do send(twist)
     Future.successful(Right(true))
 
-  /** Takes odometry. Left states which values are no motion. */
+  /** Takes odometry. Left says which values are no motion. */
   private[ros] def receive(message: Odometry): Either[String, Unit] =
     TwistCommand.kinematics(message).map: kinematics =>
       val (validAt, now) = (message.header.stamp.instant, clock.now())

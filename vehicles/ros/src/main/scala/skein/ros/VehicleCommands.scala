@@ -7,7 +7,7 @@ import skein.signal.Kinematics
 import skein.units.{Expect, MetresPerSecond, Quaternion, Radians, Span, Vector3}
 import skein.vehicle.GoTo
 
-/** Converts ROS commands to actions. Left states what was expected, and what was received. */
+/** Converts ROS commands to actions. Left says what was expected, and what was received. */
 private[ros] object VehicleCommands:
   /** Duration of a velocity after its arrival, by the simulator's clock. */
   val VelocityLasts: Span = Span.ofSeconds(0.5)

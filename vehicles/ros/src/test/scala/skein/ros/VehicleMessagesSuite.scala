@@ -40,6 +40,6 @@ class VehicleMessagesSuite extends munit.FunSuite:
     near(imu.linearAcceleration, 2, 0, 9.80665)
     near(imu.angularVelocity, 0, 0, -0.5)
 
-  test("a fix has degrees and metres"):
+  test("a GPS fix is given in degrees and metres"):
     val fix = VehicleMessages.fix(at, vehicle)
     assertEquals((fix.latitude, fix.longitude, fix.altitude), (47.0, 8.0, 500.0))

@@ -49,7 +49,7 @@ class SceneSuite extends munit.FunSuite:
     )
     assert(error("objects = [").startsWith("my.conf: 1"))
     assert(error("objects = [{}]").endsWith("expected one of box, pole, wall or tag, got nothing"))
-    assert(error("objects = [{ boxx = [1, 1, 1], at = [0, 0] }]").endsWith("came at, boxx"))
+    assert(error("objects = [{ boxx = [1, 1, 1], at = [0, 0] }]").endsWith("got at, boxx"))
     for what <- Seq("\"/etc/passwd\"", "file(\"/a\")", "required(file(\"/a\"))", "classpath(\"a\")") ++
         Seq("url(\"http://127.0.0.1:9/a.conf\")", "required(url(\"http://127.0.0.1:9/a.conf\"))")
     do assert(clue(error(s"include $what")).contains("includes no other file"), what)

@@ -16,7 +16,7 @@ private[simulator] object VoxelGrid:
   /** The number of cells along north, east and up.
     *
     * @param sizeM lengths along north, east and up
-    * @return Left states what is wrong with the request
+    * @return Left says what is wrong with the request
     */
   def cells(sizeM: (Int, Int, Int), edgeM: Float): Either[String, (north: Int, east: Int, up: Int)] =
     def count(lengthM: Int) = if edgeM > 0 then (lengthM / edgeM).toLong else 0L
@@ -29,7 +29,7 @@ private[simulator] object VoxelGrid:
   /** Computes the file. Cost: some 0.1 s for the most cells and vehicles, too long for the simulation's
     * thread.
     *
-    * @return Left states what is wrong with the request
+    * @return Left says what is wrong with the request
     */
   def render(
       moment: Moment,

@@ -177,7 +177,7 @@ class MoveSuite extends munit.FunSuite:
     assertEquals(bench.result(move), Some(true))
     assert(bench.position().x > 1, s"${bench.position()}")
 
-  test("without a remote control moveByManual lasts its duration and does nothing"):
+  test("without a remote control, moveByManual runs for its duration and does not move the vehicle"):
     val bench = Bench().hovering(-10)
     val move  = byManual(bench)
     bench.pass(3.1)

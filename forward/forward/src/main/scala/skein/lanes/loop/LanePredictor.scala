@@ -31,13 +31,13 @@ private[skein] trait LanePredictor extends TimetablePredictor:
   def alone(agent: RolloutAgent): ForecastVehicles
 
 private[skein] object LanePredictor:
-  /** The predictor of a model; Left states why SIMD does not support it. */
+  /** The predictor of a model; Left says why SIMD does not support it. */
   def of(model: VehicleModel[?]): Either[String, LanePredictor] = model match
     case PlantModel(lag: ReducedModel) if lag.isLag => Right(LagPredictor(lag))
     case PlantModel(plant)                          => byPlant(plant)
     case SpatialModel(plant)                        => byPlant(plant)
     case ConstantVelocity                           => Right(CoastPredictor)
-    case _ => Left("the lanes predict by plants and by constant velocity")
+    case _ => Left("SIMD predicts by plants and by constant velocity")
 
   private def byPlant(plant: PlantTiming) =
     for

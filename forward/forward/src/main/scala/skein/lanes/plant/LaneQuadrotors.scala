@@ -100,6 +100,6 @@ private[skein] object LaneQuadrotors:
   /** Number of vehicles that are simulated together. */
   val VEHICLES: Int = LaneFunction.COUNT
 
-  /** Compiles quadrotors. Left states why SIMD does not support them. */
+  /** Compiles quadrotors. Left says why SIMD does not support them. */
   def of(quadrotor: Quadrotor): Either[String, LaneQuadrotors] =
     QuadrotorLanes.of(quadrotor).map(new LaneQuadrotors(_))

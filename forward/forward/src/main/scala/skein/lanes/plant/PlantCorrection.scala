@@ -5,7 +5,7 @@ import skein.lanes.policy.LaneObservation
 import skein.simd.FixedFormula
 import skein.vehicle.PlantTiming
 
-/** Corrects a plant's state by readings, in many worlds by SIMD. Compiled from the method `corrected` of an
+/** Corrects a plant's state by readings, in many worlds with SIMD. Compiled from the method `corrected` of an
   * [[skein.vehicle.ObservedPlant]] or [[skein.vehicle.ObservedSpatialPlant]]; inputs are the state's
   * components, then position and velocity.
   *
@@ -25,7 +25,7 @@ private[lanes] final class PlantCorrection private (formula: FixedFormula, count
   def call: FixedFormula.Call = formula.call
 
 private[lanes] object PlantCorrection:
-  /** Compiles the correction. Left states why SIMD does not support it. */
+  /** Compiles the correction. Left says why SIMD does not support it. */
   def of(plant: PlantTiming, count: Int): Either[String, PlantCorrection] =
     FixedFormula
       .of(plant, "corrected", alike = 0)

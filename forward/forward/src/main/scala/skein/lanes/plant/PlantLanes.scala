@@ -6,7 +6,7 @@ import skein.formula.{Formula, Untraceable}
 import skein.simd.{FixedFormula, Forms, LaneFunction}
 import skein.vehicle.{PlaneReading, Plant, PlantState, PlantTiming, SpatialPlant}
 
-/** Simulates a [[skein.vehicle.Plant]] or a [[skein.vehicle.SpatialPlant]] in many worlds by SIMD. Compiled
+/** Simulates a [[skein.vehicle.Plant]] or a [[skein.vehicle.SpatialPlant]] in many worlds with SIMD. Compiled
   * from the plant's own methods.
   */
 private[skein] final class PlantLanes private (val plant: PlantTiming, form: PlantForm):
@@ -83,7 +83,7 @@ private[skein] object PlantLanes:
 
   /** Compiles a plant. Plants of one form share the compiled code.
     *
-    * @return Left states why SIMD does not support such plants
+    * @return Left says why SIMD does not support such plants
     */
   def of(plant: PlantTiming): Either[String, PlantLanes] =
     val forms = known.computeIfAbsent(plant.getClass, _ => Forms[PlantTiming, PlantForm](_.fits(_))(traced))

@@ -5,7 +5,7 @@ import skein.simd.{FixedFormula, Forms, LaneCall, LaneFunction}
 import skein.units.Vector3
 import skein.vehicle.{Environment, Quadrotor, QuadrotorState, Setpoint, VerticalMode}
 
-/** Simulates quadrotors of one form by SIMD. Compiled from [[Quadrotor.stepInAir]], under `moveByVelocityZ`
+/** Simulates quadrotors of one form with SIMD. Compiled from [[Quadrotor.stepInAir]], under `moveByVelocityZ`
   * with constant yaw, in calm air.
   */
 private[lanes] final class QuadrotorLanes private (
@@ -48,7 +48,7 @@ private[lanes] final class QuadrotorLanes private (
 private[lanes] object QuadrotorLanes:
   private val State = "state."
 
-  /** Compiles a quadrotor. Left states why SIMD does not support it. */
+  /** Compiles a quadrotor. Left says why SIMD does not support it. */
   def of(quadrotor: Quadrotor): Either[String, QuadrotorLanes] =
     val airborne = Airborne(quadrotor)
     forms(airborne).map(form => QuadrotorLanes(quadrotor, form.of(airborne))).left.map(_.getMessage)

@@ -130,14 +130,14 @@ private[lanes] object CameraTrackerLanes:
       val decidedUpon: FixedFormula
   )
 
-  /** Compiles the formulas of a sensor. Left states why SIMD does not support it. */
+  /** Compiles the formulas of a sensor. Left says why SIMD does not support it. */
   def of(model: SensorModel): Either[String, Forms] =
     val formulas                        = SensorFormulas(model)
     def form(name: String, inputs: Int) = FixedFormula.of(formulas, name, alike = 0).map: formula =>
       require(formula.inputs.size == inputs, s"$name of ${formula.inputs.mkString(", ")}")
       formula
     if model.bearingSdRad < LeastSd || model.rangeSd < LeastSd then
-      Left(s"the lanes know sensors with deviations of $LeastSd rad, and $LeastSd of the range, at least")
+      Left(s"SIMD supports sensors with deviations of at least $LeastSd rad, and $LeastSd of the range")
     else
       (for
         detected    <- form("detected", 9)

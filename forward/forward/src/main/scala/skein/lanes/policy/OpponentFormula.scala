@@ -46,7 +46,7 @@ private[policy] object OpponentFormula:
     final val Memory          = 9
 
   /** @param self the vehicle's index, 0 or 1
-    * @return Left states why it is of another kind
+    * @return Left says why it is of another kind
     */
   def of(formula: PolicyFormula, self: Int): Either[Untraceable, OpponentFormula] =
     import formula.motion

@@ -44,7 +44,7 @@ private[lanes] object OpponentLanes:
     *
     * @param efforts whether a vehicle's effort is computed, by vehicle
     * @param isPredicted whether readings are predicted
-    * @return Left states why SIMD does not support a camera
+    * @return Left says why SIMD does not support a camera
     */
   def of(
       engagement: Engagement,

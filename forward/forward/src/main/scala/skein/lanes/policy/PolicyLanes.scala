@@ -5,7 +5,7 @@ import skein.lanes.policy.OpponentFormula.In as Seen
 import skein.policy.{GraphPolicy, PlanarObservation, Policy, PolicyFormula}
 import skein.simd.{Forms, LaneCompiler, LaneFunction, Recent}
 
-/** The decision of policies of one form in many worlds by SIMD, compiled from the policy's own method;
+/** The decision of policies of one form in many worlds with SIMD, compiled from the policy's own method;
   * [[OpponentFormula]] defines which policies have one. Policies of one form differ only in parameter values.
   */
 private[skein] final class PolicyLanes private (formula: OpponentFormula):

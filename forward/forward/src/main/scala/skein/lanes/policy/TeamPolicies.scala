@@ -4,7 +4,7 @@ import skein.forward.RolloutAgent
 import skein.fusion.SensorModel
 import skein.policy.Policy
 
-/** Decides for the vehicles of a team by SIMD. Teams of one form differ only in parameter values. */
+/** Decides for the vehicles of a team with SIMD. Teams of one form differ only in parameter values. */
 private[lanes] trait TeamPolicies:
   def count: Int
 

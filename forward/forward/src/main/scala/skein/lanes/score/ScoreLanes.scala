@@ -7,10 +7,10 @@ import skein.scenario.{EndFormula, OwnEnd, Positions, Quantity, Reduction, Separ
 import skein.simd.{BoundFunction, Forms}
 import skein.units.Expect
 
-/** Scores flights in many worlds by SIMD. The quantities, compiled from [[Quantity.of]], and their reductions
-  * are one function: from the accumulators of each world and a view it computes their next values. Flights of
-  * one form differ only in parameter values. If the scenario has an end of its own, another function computes
-  * when each world ended; the accumulators of a world that has ended stay unchanged.
+/** Scores flights in many worlds with SIMD. The quantities, compiled from [[Quantity.of]], and their
+  * reductions are one function: from the accumulators of each world and a view it computes their next values.
+  * Flights of one form differ only in parameter values. If the scenario has an end of its own, another
+  * function computes when each world ended; the accumulators of a world that has ended stay unchanged.
   */
 private[lanes] final class ScoreLanes private (
     quantities: Vector[Formula],
@@ -232,7 +232,7 @@ private[lanes] object ScoreLanes:
   private def of(what: String, refused: Untraceable) =
     Untraceable(s"$what is no formula: ${refused.getMessage}")
 
-  /** Compiles scores, once for each form. Left states why SIMD does not support them.
+  /** Compiles scores, once for each form. Left says why SIMD does not support them.
     *
     * @param end the condition by which the scenario ends before its duration
     */

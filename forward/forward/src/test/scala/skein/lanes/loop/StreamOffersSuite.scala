@@ -69,7 +69,7 @@ class StreamOffersSuite extends munit.FunSuite:
     vehicles    <- Seq(2, 3, 6)
     (name, bad) <- steady ++ changing
   do
-    test(s"$vehicles vehicles, $name: views by SIMD equal those computed one by one"):
+    test(s"$vehicles vehicles, $name: views with SIMD equal those computed one by one"):
       val timing = LoopTiming.stream(0.1)
       // In neighbouring lanes with links without any irregularity.
       val links =

@@ -30,7 +30,7 @@ private[lanes] object GpuPrediction:
 
   /** The kind of prediction that a loop needs; None if the loop does not predict.
     *
-    * @return Left states why the GPU does not support it
+    * @return Left says why the GPU does not support it
     */
   def of(timing: LoopTiming): Either[String, Option[Kind]] = timing match
     case predictive: LoopTiming.Predictive =>

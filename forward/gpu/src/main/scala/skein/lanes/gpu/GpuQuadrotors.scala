@@ -42,7 +42,7 @@ private[skein] object GpuQuadrotors:
   private val Name          = "quadrotors"
   private val BlockVehicles = 128
 
-  /** Compiles the kernel. Left states why such quadrotors are not supported. */
+  /** Compiles the kernel. Left says why such quadrotors are not supported. */
   def of(gpu: Gpu, quadrotor: Quadrotor): Either[String, GpuQuadrotors] =
     QuadrotorLanes.of(quadrotor).map(new GpuQuadrotors(gpu, _))
 

@@ -23,12 +23,14 @@ private[lanes] trait GpuVehicle:
   def act(record: GpuRecord, north: Int, east: Int): Unit
 
 private[lanes] object GpuVehicle:
-  /** Creates a vehicle in a kernel, from the agent and the registers of its start, north and east, m. */
+  /** Creates a vehicle in a kernel from the kernel's code, the agent, and the registers that hold its start:
+    * north and east, m.
+    */
   type Kind = (Ptx, RolloutAgent, Int, Int) => GpuVehicle
 
   /** The kind of vehicle for a response.
     *
-    * @return Left states why the GPU does not support it
+    * @return Left says why the GPU does not support it
     */
   def of(response: VelocityResponse): Either[String, Kind] = response match
     case PlantResponse(plant)         => PlantLanes.of(plant).map(lanes => GpuPlant(_, _, _, _, lanes))

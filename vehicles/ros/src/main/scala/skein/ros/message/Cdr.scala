@@ -31,7 +31,7 @@ object Cdr:
 
   /** Reads a message in either byte order.
     *
-    * @return Left states what was expected, what was found, and at which byte after the first four
+    * @return Left says what was expected, what was found, and at which byte after the first four
     */
   def message[A](bytes: Array[Byte])(using cdr: Cdr[A]): Either[String, A] =
     try
