@@ -33,7 +33,7 @@ final case class ScenarioQuestion(
           plant <-
             WholeFlights.plant(engagement, WholeFlights.climbs(engagement), conditions.plant, plantIsTold)
           flown <- conditions
-            .copy(plant = plant, altitudeM = -engagement.agents.head.altitudeDownM)
+            .copy(plant = plant, altitudeM = engagement.altitudeM)
             .resolved
         yield WholeFlights
           .whole(engagement, objective)

@@ -99,7 +99,7 @@ final case class TeamQuestion(
             conditions.plant,
             plantIsTold
           )
-          flown  <- conditions.copy(plant = plant, altitudeM = altitudesM(all.head).head).resolved
+          flown  <- conditions.copy(plant = plant, altitudeM = engagements.head.altitudeM).resolved
           delays <- conditions.delays(link, engagements.head.agents.size).left.map("--link: " + _)
         yield WholeFlights
           .whole(engagements.head, by)

@@ -58,31 +58,38 @@ class SearchEnginesSuite extends munit.FunSuite, TemporaryFolders, Optimised:
   test("fresh episodes with the scalar engine are reported, with the reason"):
     val seeing = engines("paused", "vpn", Some(eyeFile()))
     assert(
-      seeing.matches("SIMD, .*; fresh episodes: scalar: who sees by a sensor while the world waits .*"),
+      seeing.matches("SIMD, .*; fresh episodes: scalar: a sensor under a loop that pauses the world .*"),
       seeing
     )
 
-  test("a team's fresh episodes run world by world, in parallel"):
-    val team = TeamQuestion(
-      scenario = "surround",
-      set = Map("vehicles" -> "3"),
-      vary = Vector(Varied("ring-m", 4, 12)),
-      objective = "off-ring",
-      method = "random",
-      conditions = Conditions("stream", "drag", 100, 10),
-      link = "vpn",
-      candidates = 256,
-      episodes = 1,
-      population = 4,
-      seed = 1,
-      fresh = 2
-    ).setup.fold(fail(_), identity)
-    assert(
-      team.engines.matches(
-        "SIMD, .* candidates of an episode at a time; fresh episodes: SIMD, .* worlds at a time"
-      ),
-      team.engines
+  for (scenario, varied, objective) <- Seq(
+      ("surround", Varied("ring-m", 4, 12), "off-ring"),
+      ("convoy", Varied("gap-m", 8, 20), "between-cars")
     )
+  do
+    test(
+      s"the candidates of $scenario share delays with SIMD, and its fresh episodes have their own with SIMD"
+    ):
+      val team = TeamQuestion(
+        scenario = scenario,
+        set = Map.empty,
+        vary = Vector(varied),
+        objective = objective,
+        method = "random",
+        conditions = Conditions("stream", "drag", 100, 10),
+        link = "vpn",
+        candidates = 256,
+        episodes = 1,
+        population = 4,
+        seed = 1,
+        fresh = 2
+      ).setup.fold(fail(_), identity)
+      assert(
+        team.engines.matches(
+          "SIMD, .* candidates of an episode at a time; fresh episodes: SIMD, .* worlds at a time"
+        ),
+        team.engines
+      )
 
   test("candidates with another engine are counted, and reported with its reason"):
     val by = new Evaluator:

@@ -67,6 +67,7 @@ final class Trace(most: Int = 200_000):
         case Mul if b.is(-1)                   => neg(a)
         case Mul if a.is(-1)                   => neg(b)
         case Sub if b.is(0) && 1 / b.value > 0 => a
+        case Min | Max if isWithin(op, a, b)   => a
         case Mul if a.isConst && ofConsts(b)   => leaves(b)(mul(a, _))
         case Mul if b.isConst && ofConsts(a)   => leaves(a)(mul(_, b))
         case _                                 => node(op, a, b)
@@ -131,6 +132,16 @@ final class Trace(most: Int = 200_000):
     else if a.op == Where then withoutConsts(a.args(2), withoutConsts(a.args(1), most))
     else -1
 
+  /** Whether a limit changes nothing, because the number is NaN or has such a limit already. */
+  private def isWithin(op: Op, a: Node, limit: Node, most: Int = Trace.MostLimits): Boolean =
+    def within(arg: Node) = isWithin(op, arg, limit, most - 1)
+    most > 0 && limit.isConst && (a.op match
+      case Const     => Op.compute(op, a.value, limit.value).equals(a.value)
+      case `op`      => a.args.exists(within)
+      case Min | Max => a.args.forall(within)
+      case Where     => within(a.args(1)) && within(a.args(2))
+      case _         => false)
+
   private def leaves(a: Node)(change: Node => Node): Node =
     if a.op == Where then where(a.args(0), leaves(a.args(1))(change), leaves(a.args(2))(change))
     else change(a)
@@ -158,6 +169,9 @@ final class Trace(most: Int = 200_000):
 
 object Trace:
   private val MostChosen = 64
+
+  /** Maximum depth of the operations that are searched for a limit. */
+  private val MostLimits = 6
 
   /** Identifies equal nodes: their operation, and the numbers of their arguments or of themselves. */
   private final case class Key(op: Int, first: Long, rest: Long):

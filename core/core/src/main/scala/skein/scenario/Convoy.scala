@@ -77,23 +77,27 @@ final case class Convoy(
     val (ahead, right) = places.unzip
     Series.of("off places, rms", "m", OffSlots(circuit, IArray.from(ahead), IArray.from(right)))
 
-  private def apart =
-    Series("between the cars", "m", Some(Bound("asked for", gapM)))(tracks =>
-      instant => tracks.distanceM(Lead, Rear, instant)
-    )
+  private def apart = Series.of("between the cars", "m", Apart, Some(Bound("asked for", gapM)))
 
-  /** Distance from each car to its nearest drone; the larger of the two. */
   private def unseen =
-    Series("from a car to its nearest drone", "m", Some(Bound("in view", sightM)))(tracks =>
-      instant =>
-        Seq(Lead, Rear).map(car => Drones.map(tracks.distanceM(car, _, instant)).min).max
-    )
+    Series.of("from a car to its nearest drone", "m", FromDrones, Some(Bound("in view", sightM)))
 
 object Convoy:
   // Indices of the vehicles. The drones follow the leading car, as the scores of slots require.
-  private val Lead   = 0
-  private val Drones = 1 to 3
-  private val Rear   = 4
+  private val Lead = 0
+  private val Rear = 4
+
+  private case object Apart extends Quantity:
+    def of(positions: Positions): Double = positions.distanceM(Lead, Rear)
+
+  /** Horizontal distance from each car to its nearest drone, m; the larger of the two. */
+  private case object FromDrones extends Quantity:
+    def of(positions: Positions): Double = nearest(positions, Lead).max(nearest(positions, Rear))
+
+    private def nearest(positions: Positions, car: Int): Double =
+      var least = Double.PositiveInfinity
+      for drone <- Lead + 1 until Rear do least = least.min(positions.distanceM(car, drone))
+      least
 
   /** Time ahead for which the cars are steered, s: about a driver's time for a turn, plus the tyres' lag. */
   private val AheadS = 1.0

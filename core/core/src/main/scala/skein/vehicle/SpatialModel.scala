@@ -73,4 +73,6 @@ object SpatialModel:
       Command(setpoint.first, setpoint.second, setpoint.third, 0)
     case (HorizontalMode.Velocity, VerticalMode.Position) =>
       Command(setpoint.first, setpoint.second, setpoint.third, 1)
-    case _ => Command(0, 0, 0, 0)
+    // As vehicles are assumed to do before their first command.
+    case (HorizontalMode.Position, VerticalMode.Position) => Command(0, 0, setpoint.third, 1)
+    case _                                                => Command(0, 0, 0, 0)

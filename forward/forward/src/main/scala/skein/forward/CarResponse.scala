@@ -7,8 +7,9 @@ import skein.vehicle.{ConstantVelocity, DrivenCar, VehicleModel}
   * `skein.airsim.AirSimCar` in that the driver reacts at every step of the model, not only to a new command.
   * The vertical part of a velocity is ignored; hovering and landing brake.
   */
-private[skein] final class CarResponse(startHeadingRad: Double) extends VelocityResponse:
-  def create(): Vehicle = PlantVehicle(DrivenCar(startHeadingRad = startHeadingRad))
+private[skein] final case class CarResponse(startHeadingRad: Double) extends VelocityResponse:
+  def plant: DrivenCar  = DrivenCar(startHeadingRad = startHeadingRad)
+  def create(): Vehicle = PlantVehicle(plant)
 
   override def regardsYaw: Boolean = false
 
@@ -17,3 +18,5 @@ private[skein] final class CarResponse(startHeadingRad: Double) extends Velocity
     case _: (Action.Position | Action.Turn | Action.Attitude)                                 => false
 
   override def predictor: VehicleModel[?] = ConstantVelocity
+
+  private[skein] override def predictorUnder(loop: VehicleModel[?]): VehicleModel[?] = predictor

@@ -53,7 +53,10 @@ final case class Engagement(
   def seeing(role: Role, eye: Option[SensorModel]): Engagement =
     copy(agents = agents.zip(roles).map((agent, own) => if own == role then agent.copy(eye = eye) else agent))
 
-  def hasCars: Boolean = agents.exists(_.kind == VehicleKind.Car)
+  /** Altitude at which the first multirotor starts, m; 0 without one. */
+  def altitudeM: Double = agents.find(_.kind != VehicleKind.Car).fold(0.0)(-_.altitudeDownM)
+
+  lazy val hasCars: Boolean = agents.exists(_.kind == VehicleKind.Car)
 
   /** The reason why some vehicle may turn or may leave the altitude of its start; None if all fly level. */
   lazy val climbs: Option[String] = agents.indices.iterator

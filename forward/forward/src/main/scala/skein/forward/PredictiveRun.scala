@@ -4,7 +4,6 @@ import skein.forecast.{Commanded, ForecastEvent, Forecast}
 import skein.policy.{Action, ActionGuidance}
 import skein.signal.Stamped
 import skein.units.Instant
-import skein.vehicle.VehicleKind
 
 /** The loop [[LoopTiming.Predictive]] in virtual time. The forecast is an immutable value: this loop
   * allocates.
@@ -20,8 +19,7 @@ private[skein] final class PredictiveRun(timing: LoopTiming.Predictive, world: R
   private var forecast    = Forecast(Vector.empty)
 
   override def start(): Unit =
-    forecast = Forecast(world.agents.toVector.zip(world.responses).map: (agent, response) =>
-      if agent.kind == VehicleKind.Car then response.predictor else timing.predictor)
+    forecast = Forecast(world.responses.map(_.predictorUnder(timing.predictor)))
     super.start()
     world.schedule(periodNs / 2, RolloutWorld.Due, 0, 0)
 

@@ -6,21 +6,26 @@ package skein.forward
   * exactly; `RolloutParitySimulation` compares the two. Mutable: one per thread.
   *
   * @param link delays of requests, answers, commands and acknowledgements; `Paused` ignores it
+  * @param responses by vehicle
   * @param asksPolicies see [[RolloutWorld]]
   */
-final class Rollout(
+final class Rollout private[skein] (
     engagement: Engagement,
     timing: LoopTiming,
     link: Delays,
-    model: VelocityResponse,
-    asksPolicies: Boolean = true
+    responses: Vector[VelocityResponse],
+    asksPolicies: Boolean
 ):
   import RolloutWorld.*
+
+  /** @param model of all vehicles but cars, which drive by [[CarResponse]] */
+  def this(engagement: Engagement, timing: LoopTiming, link: Delays, model: VelocityResponse) =
+    this(engagement, timing, link, TeamResponses.of(engagement.agents, model), asksPolicies = true)
 
   private val world = RolloutWorld(
     engagement,
     link,
-    model,
+    responses,
     LoopTiming.askingOf(timing),
     keepsAll = timing.isInstanceOf[LoopTiming.Predictive],
     asksPolicies,

@@ -4,7 +4,6 @@ import skein.policy.{Action, Assignment, Seen}
 import skein.scenario.Known
 import skein.signal.{Kinematics, Stamped}
 import skein.units.Span
-import skein.vehicle.VehicleKind
 
 /** The environment of a simulated loop: the vehicles of an engagement, the time, and the messages on their
   * way to and from the vehicles. Mutable; during a flight only the vehicles allocate.
@@ -18,7 +17,7 @@ import skein.vehicle.VehicleKind
 private[skein] final class RolloutWorld(
     engagement: Engagement,
     link: Delays,
-    model: VelocityResponse,
+    val responses: Vector[VelocityResponse],
     asking: Asking,
     keepsAll: Boolean,
     val asksPolicies: Boolean,
@@ -33,13 +32,10 @@ private[skein] final class RolloutWorld(
   /** Whether readings are kept whole, with attitude and rates. */
   val keepsKinematics: Boolean = keepsAll || asksPolicies || engagement.isOver.isDefined
 
-  val responses: Array[VelocityResponse] = agents.map: agent =>
-    if agent.kind == VehicleKind.Car then CarResponse(agent.startHeadingRad) else model
-
   val count: Int                     = agents.length
-  val vehicles: Array[Vehicle]       = responses.map(_.create())
+  val vehicles: Array[Vehicle]       = responses.map(_.create()).toArray
   private val queue                  = EventQueue(MostWaiting * agents.length)
-  private val handoverNs             = responses.map(response => Nanos.of(response.handoverS))
+  private val handoverNs             = responses.map(response => Nanos.of(response.handoverS)).toArray
   private val timeoutNs              = Nanos.of(asking.timeoutS)
   private var key                    = 0
   private var time                   = 0L

@@ -66,3 +66,6 @@ trait VelocityResponse:
 
   /** The model that best predicts such a vehicle. */
   def predictor: VehicleModel[?] = QuadrotorModel.AirSim
+
+  /** The model that predicts such a vehicle under a loop that predicts by `loop`. */
+  private[skein] def predictorUnder(loop: VehicleModel[?]): VehicleModel[?] = loop

@@ -1,12 +1,14 @@
 package skein.lanes
 
 import skein.forward.{
+  CarResponse,
   RolloutAgent,
   LoopTiming,
   Nanos,
   PlantResponse,
   QuadrotorResponse,
   SpatialResponse,
+  TeamResponses,
   VelocityResponse
 }
 import skein.lanes.loop.{LagVehicles, LanePredictor, LaneVehicles, LoopLanes, PlantFlights}
@@ -16,7 +18,6 @@ import skein.lanes.timetable.{
   StepClock,
   TimetableDynamics,
   TimetablePlants,
-  TimetablePredictor,
   TimetableQuadrotors,
   TimetableVehicles
 }
@@ -34,57 +35,77 @@ private[skein] trait LaneDynamics extends TimetableDynamics:
     */
   def fliesAlone: Boolean = true
 
+  /** Whether policies must keep the altitude of the vehicle's start. */
+  def fliesLevel: Boolean = false
+
+  override def predictor: Option[LanePredictor] = None
+
   /** The vehicles of one role in all worlds, whose commands take effect at different times. */
   private[lanes] def flights(agent: RolloutAgent, loop: LoopLanes): LaneVehicles
 
 private[skein] object LaneDynamics:
-  /** The dynamics of a model; Left says why SIMD does not support it. */
-  def of(model: VelocityResponse): Either[String, LaneDynamics] = model match
+  /** The dynamics of a model; Left says why SIMD does not support it.
+    *
+    * @param inSpace whether commands and readings of the team have a vertical part
+    */
+  def of(model: VelocityResponse, inSpace: Boolean = false): Either[String, LaneDynamics] = model match
     case quadrotor: QuadrotorResponse =>
       QuadrotorLanes.of(quadrotor.quadrotor).map(QuadrotorDynamics(quadrotor, _))
-    case PlantResponse(plant)   => PlantLanes.of(plant).map(PlantDynamics(_))
-    case SpatialResponse(plant) => PlantLanes.of(plant).map(PlantDynamics(_))
+    case PlantResponse(plant)   => PlantLanes.of(plant).map(PlantDynamics(_, inSpace, fliesLevel = true))
+    case SpatialResponse(plant) => PlantLanes.of(plant).map(PlantDynamics(_, true, fliesLevel = false))
+    case car: CarResponse       => PlantLanes.of(car.plant).map(PlantDynamics(_, inSpace, fliesLevel = false))
     case _                      => Left("SIMD does not support the vehicle")
 
   /** The dynamics of a model under a loop; if the loop predicts, SIMD must support its predictor too.
     *
     * @return Left says why SIMD does not support it
     */
-  def under(timing: LoopTiming, model: VelocityResponse): Either[String, LaneDynamics] =
-    of(model).flatMap: vehicles =>
+  def under(
+      timing: LoopTiming,
+      model: VelocityResponse,
+      inSpace: Boolean = false
+  ): Either[String, LaneDynamics] =
+    of(model, inSpace).flatMap: vehicles =>
       timing match
         case predictive: LoopTiming.Predictive =>
           for
-            predictor <- LanePredictor.of(predictive.predictor)
+            predictor <- LanePredictor.of(model.predictorUnder(predictive.predictor))
             _         <- Expect.that(predictor.inSpace == model.isInstanceOf[SpatialResponse]):
               "SIMD predicts climbs by a model in space, and level flight by another"
           yield PredictedDynamics(vehicles, predictor)
         case _ => Right(vehicles)
 
   /** Checks that all vehicles start high enough. Left says why SIMD does not support their start. */
-  def isHighEnough(model: VelocityResponse, vehicles: Seq[RolloutAgent]): Either[String, Unit] = Expect.that(
-    !model.isInstanceOf[QuadrotorResponse] || vehicles.forall(-_.altitudeDownM >= LeastAltitudeM)
-  )(s"SIMD simulates no ground: vehicles must start at $LeastAltitudeM m altitude or higher")
+  def isHighEnough(model: VelocityResponse, vehicles: Vector[RolloutAgent]): Either[String, Unit] =
+    val startsM = TeamResponses.of(vehicles, model).zip(vehicles).collect:
+      case (_: QuadrotorResponse, agent) => -agent.altitudeDownM
+    Expect.that(startsM.forall(_ >= LeastAltitudeM)):
+      s"SIMD simulates no ground: vehicles must start at $LeastAltitudeM m altitude or higher"
 
   /** Minimum altitude of the start, m: AirSim's quadrotor loses height while it turns. */
   private val LeastAltitudeM = 5.0
 
 /** Adds a loop's predictions to the dynamics of vehicles. */
-private final class PredictedDynamics(model: LaneDynamics, by: TimetablePredictor) extends LaneDynamics:
+private final class PredictedDynamics(model: LaneDynamics, by: LanePredictor) extends LaneDynamics:
   export model.{clock, deadTimeS, flights, handoverS, stepS}
   override def fliesAlone: Boolean                     = model.fliesAlone
-  override def predictor: Option[TimetablePredictor]   = Some(by)
+  override def fliesLevel: Boolean                     = model.fliesLevel
+  override def predictor: Option[LanePredictor]        = Some(by)
   def vehicles(agent: RolloutAgent): TimetableVehicles =
     val flown = model.vehicles(agent)
     flown.predicted = by.vehicles(agent)
     flown
 
-/** Dynamics by [[TimetablePlants]] and [[PlantFlights]]; a simple lag may also use [[LagVehicles]]. */
-private final class PlantDynamics(lanes: PlantLanes) extends LaneDynamics:
+/** Dynamics by [[TimetablePlants]] and [[PlantFlights]]; a simple lag may also use [[LagVehicles]].
+  *
+  * @param inSpace whether commands and readings have a vertical part, even if the plant has none
+  */
+private final class PlantDynamics(lanes: PlantLanes, inSpace: Boolean, override val fliesLevel: Boolean)
+    extends LaneDynamics:
   def stepS: Double                                    = lanes.plant.stepS
   def deadTimeS: Double                                = lanes.plant.deadTimeS
   def handoverS: Double                                = 0
-  def vehicles(agent: RolloutAgent): TimetableVehicles = TimetablePlants(agent, lanes)
+  def vehicles(agent: RolloutAgent): TimetableVehicles = TimetablePlants(agent, lanes, inSpace)
 
   def clock(): EventClock = StepClock(lanes, lanes.stages.tell(lanes.plant))
 
@@ -96,7 +117,7 @@ private final class PlantDynamics(lanes: PlantLanes) extends LaneDynamics:
             LagVehicles.canFly(lag, loop.longestS) =>
         val earliestS = stream.asking.timeoutS + stream.patienceS + stream.periodS
         LagVehicles(agent, lag, stream.periodS, loop.longestS, earliestS)
-      case _ => PlantFlights(agent, lanes, loop)
+      case _ => PlantFlights(agent, lanes, loop, inSpace)
 
 private object PlantDynamics:
   /** Shortest period for [[LagVehicles]], s; below it, too many commands are pending. */
@@ -115,6 +136,7 @@ private final class QuadrotorDynamics(model: QuadrotorResponse, lanes: Quadrotor
   def vehicles(agent: RolloutAgent): TimetableVehicles = TimetableQuadrotors(agent, LaneQuadrotors(lanes))
 
   override def fliesAlone: Boolean                                               = false
+  override def fliesLevel: Boolean                                               = true
   private[lanes] def flights(agent: RolloutAgent, loop: LoopLanes): LaneVehicles =
     throw UnsupportedOperationException(
       "quadrotors of worlds with delays of their own fly by SteppedRollouts"

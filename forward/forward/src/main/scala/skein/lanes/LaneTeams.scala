@@ -92,7 +92,7 @@ private[lanes] final class LoopTeams(
     timing: LoopTiming,
     maxDelayS: Double
 ) extends LaneTeams(form):
-  private val loop         = LoopLanes(timing, form.count, form.durationS, maxDelayS, form.sees)
+  private val loop = LoopLanes(timing, form.vehicles.map(_.predictor), form.durationS, maxDelayS, form.sees)
   private val (flown, eye) = form.policies match
     case team: TeamLanes =>
       (LoopTeamAgents.of(first.engagement.agents, loop, form.vehicles, TeamViews(team)), None)

@@ -1,7 +1,7 @@
 package skein.lanes
 
 import skein.forward.{Asking, Delays, LoopTiming, TabledDelays}
-import skein.lanes.loop.{LaneAgents, LaneFlights, LanePredictor, LaneViews, LoopLanes}
+import skein.lanes.loop.{LaneAgents, LaneFlights, LaneViews, LoopLanes}
 import skein.units.Expect
 
 /** Checks which loops SIMD supports with separate delays in every world. */
@@ -12,17 +12,18 @@ private[lanes] object LoopSupport:
   private val MostInTurnS = 3.5
 
   /** The reason why SIMD does not support this loop over a link, for the user; None if it does. */
-  def refusal(timing: LoopTiming, vehicles: Int, link: Delays, model: LaneDynamics): Option[String] =
+  def refusal(timing: LoopTiming, models: Vector[LaneDynamics], link: Delays): Option[String] =
     link match
-      case tabled: TabledDelays => refusal(timing, vehicles, tabled.maxS, model)
+      case tabled: TabledDelays => refusal(timing, models, tabled.maxS)
       case _                    => Some("SIMD supports delays of each world's own only from tables")
 
   private def refusal(
       timing: LoopTiming,
-      vehicles: Int,
-      maxDelayS: Double,
-      model: LaneDynamics
+      models: Vector[LaneDynamics],
+      maxDelayS: Double
   ): Option[String] =
+    val vehicles = models.size
+    val stepS    = models.map(_.stepS).max
     val steering = LoopTiming.steeringOf(timing)
     val timeoutS = LoopTiming.askingOf(timing).timeoutS
     val ofLoop   = timing match
@@ -38,23 +39,20 @@ private[lanes] object LoopSupport:
             s"$vehicles questions in turn may take longer than SIMD can represent"
           .map(_ => Vector.empty)
       case predictive: LoopTiming.Predictive =>
-        for
-          _ <- asksAtOnce(predictive.asking)
-          _ <- LanePredictor.of(predictive.predictor)
         // Decisions are due half-way between two requests.
-        yield Vector(predictive.periodS / 2)
+        asksAtOnce(predictive.asking).map(_ => Vector(predictive.periodS / 2))
       case _: LoopTiming.Paused => Left("worlds that stand still while it is decided meet no delays")
     val refused =
       for
-        _ <- Expect.that(model.fliesAlone):
+        _ <- Expect.that(models.forall(_.fliesAlone)):
           "worlds with delays of their own fly vehicle by vehicle with the quadrotor"
         _ <- Expect.that(steering.mostOutstanding >= LaneAgents.LEAST_UNDER_WAY):
           s"with ${steering.mostOutstanding} move in flight, a vehicle is commanded once"
         times <- ofLoop
-        _     <- Expect.that(model.stepS <= LaneFlights.MOST_PIECE_S):
-          s"SIMD supports steps of ${LaneFlights.MOST_PIECE_S} s at most, and the vehicle's take ${model.stepS} s"
+        _     <- Expect.that(stepS <= LaneFlights.MOST_PIECE_S):
+          s"SIMD supports steps of ${LaneFlights.MOST_PIECE_S} s at most, and the vehicle's take $stepS s"
         underWayS = times.headOption.getOrElse(0.0) + readingS(timing, vehicles, maxDelayS) + 2 * maxDelayS
-        _ <- Expect.that(timing.periodS + underWayS + model.deadTimeS <= MostS):
+        _ <- Expect.that(timing.periodS + underWayS + models.map(_.deadTimeS).max <= MostS):
           "a command may take effect later than SIMD can represent"
         own = Vector(timing.periodS, timeoutS, steering.minIntervalS, steering.handoverS)
         _ <- Expect.that((own ++ times).forall(LaneViews.isWhole)):

@@ -19,12 +19,12 @@ private[lanes] object Opponents:
     */
   def inEpisode(
       agents: Vector[RolloutAgent],
-      model: LaneDynamics,
+      models: Vector[LaneDynamics],
       policies: Vector[LanePolicy],
       eyes: Map[Int, TimetableEye]
   ): Array[OpponentAgents] = Array.tabulate(2): self =>
     val eye = eyes.getOrElse(self, null)
-    OpponentAgents(self, agents(self), model, policies(self), newEffort, LaneObservation(), eye)
+    OpponentAgents(self, agents(self), models(self), policies(self), newEffort, LaneObservation(), eye)
 
   def eyesOf(two: OpponentLanes): Map[Int, TimetableEye] =
     two.cameras.map((self, forms) => self -> TimetableEye(forms, two.agents(self), two.agents(1 - self)))
@@ -37,13 +37,13 @@ private[lanes] object Opponents:
   def inLoop(
       agents: Vector[RolloutAgent],
       loop: LoopLanes,
-      model: LaneDynamics,
+      models: Vector[LaneDynamics],
       policies: Vector[LanePolicy],
       cameras: Map[Int, CameraTrackerLanes.Forms],
       newEye: NewEye = LoopEye(_, _, _, _, _, _)
   ): (Array[LoopOpponentAgents], Option[LoopEye]) =
     val two = Array.tabulate(2): self =>
-      LoopOpponentAgents(self, agents(self), loop, model, policies(self), newEffort)
+      LoopOpponentAgents(self, agents(self), loop, models(self), policies(self), newEffort)
     val eye = cameras.headOption.map: (self, forms) =>
       val seen = newEye(forms, agents(self), agents(1 - self), loop, two(self), two(1 - self))
       two(self).seeBy(seen)

@@ -1,6 +1,5 @@
 package skein.lanes
 
-import scala.util.hashing.MurmurHash3
 import skein.forward.{Delays, LoopTiming, RolloutAgent}
 import skein.lanes.policy.{TeamPolicies, VehicleNumbers}
 import skein.lanes.score.ScoreLanes
@@ -10,15 +9,19 @@ import skein.lanes.timetable.Timetable
   *
   * @param efforts the vehicle whose effort each judged value is; None if the value is the next of `scores`
   * @param altitudesDownM altitudes of vehicles that fly level
+  * @param vehicles the dynamics of each vehicle, compared by reference
+  * @param byOneModel whether all vehicles move by the model of the batch
   */
 private[lanes] final case class TeamForm(
     policies: TeamPolicies,
     scores: ScoreLanes,
     efforts: Vector[Option[Int]],
     durationS: Double,
-    altitudesDownM: Vector[Double]
-)(val vehicles: LaneDynamics):
-  override val hashCode: Int = MurmurHash3.caseClassHash(this)
+    altitudesDownM: Vector[Double],
+    vehicles: Vector[LaneDynamics]
+)(byOneModel: Boolean):
+  // Without the vehicles, in which forms hardly ever differ alone.
+  override val hashCode: Int = (policies, scores, efforts, durationS, altitudesDownM).hashCode
 
   export policies.{count, inSpace}
 
@@ -26,8 +29,9 @@ private[lanes] final case class TeamForm(
   def sees: Boolean = policies.eyes.nonEmpty
 
   /** The reason why a GPU does not support such a team; None if it does. */
-  def refusedByGpu: Option[String] = policies.refusedByGpu.orElse:
-    Option.when(scores.hasEnd)("the GPU flies every episode to its duration")
+  def refusedByGpu: Option[String] = policies.refusedByGpu
+    .orElse(Option.when(scores.hasEnd)("the GPU flies every episode to its duration"))
+    .orElse(Option.unless(byOneModel)("the GPU flies vehicles of one model"))
 
   lazy val hasParameters: Boolean = (0 until scores.formulas).exists(scores.parameters(_) > 0)
 
@@ -76,9 +80,9 @@ private[lanes] final class Episodes(timing: LoopTiming):
   /** Everything that distinguishes an episode from others, as a key. */
   def nameOf(link: Delays, key: Int, form: TeamForm): Any =
     val delays = if areOne(form) then () else (link, key)
-    (delays, form.count, form.durationS, form.policies.needsMore, form.policies.eyes, form.scores.endsBy)
+    (delays, form.vehicles, form.durationS, form.policies.needsMore, form.policies.eyes, form.scores.endsBy)
 
   def timetable(link: Delays, key: Int, form: TeamForm): Timetable =
     import form.policies.{eyes, needsMore}
     import form.scores.endsBy
-    Timetable.of(form.count, form.durationS, timing, link, key, form.vehicles, eyes, needsMore, endsBy)
+    Timetable.of(form.vehicles, form.durationS, timing, link, key, eyes, needsMore, endsBy)

@@ -97,7 +97,7 @@ private final class SteppedRollouts private (
 
 private object SteppedRollouts:
   /** Creates rollouts for these vehicles; None if they cannot be stepped together. */
-  def of(model: VelocityResponse, vehicles: Seq[RolloutAgent]): Option[SteppedRollouts] =
+  def of(model: VelocityResponse, vehicles: Vector[RolloutAgent]): Option[SteppedRollouts] =
     val each = vehicles.size
     model match
       case stepped: SteppedResponse =>
@@ -119,7 +119,7 @@ private object SteppedRollouts:
       case _ => None
 
   /** The engine for such vehicles; None if they cannot be stepped together. */
-  def engine(model: VelocityResponse, vehicles: Seq[RolloutAgent]): Option[Engine] =
+  def engine(model: VelocityResponse, vehicles: Vector[RolloutAgent]): Option[Engine] =
     model match
       case _: SteppedResponse => Some(Engine(Engine.Kind.Bodies, s"vehicles side by side; $Loops"))
       case quadrotor: QuadrotorResponse if fliesByLanes(quadrotor, vehicles) =>
@@ -140,7 +140,7 @@ private object SteppedRollouts:
 
   private val Loops = "their loops by the scalar engine"
 
-  private def fliesByLanes(model: QuadrotorResponse, vehicles: Seq[RolloutAgent]) =
+  private def fliesByLanes(model: QuadrotorResponse, vehicles: Vector[RolloutAgent]) =
     LaneSupport.present.isRight && LaneDynamics.of(model).isRight &&
       LaneDynamics.isHighEnough(model, vehicles).isRight
 

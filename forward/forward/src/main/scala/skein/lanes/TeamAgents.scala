@@ -142,9 +142,9 @@ private[lanes] class TeamAgents(
     if decisions.actsInS != null then Arrays.fill(decisions.actsInS, more.actsInS(decision))
 
 private[lanes] object TeamAgents:
-  def of(team: Vector[RolloutAgent], model: LaneDynamics, views: TeamViews): Array[TeamAgents] =
+  def of(team: Vector[RolloutAgent], models: Vector[LaneDynamics], views: TeamViews): Array[TeamAgents] =
     val all = Array.tabulate(team.size): self =>
-      TeamAgents(self, team(self), model, views, team.map(_.altitudeDownM))
+      TeamAgents(self, team(self), models(self), views, team.map(_.altitudeDownM))
     for asking <- all; other <- all.indices if asking.decisions.asksHeading(other) do
       all(other).keepHeadings()
     all
@@ -228,11 +228,11 @@ private[lanes] object LoopTeamAgents:
   def of(
       team: Vector[RolloutAgent],
       loop: LoopLanes,
-      model: LaneDynamics,
+      models: Vector[LaneDynamics],
       views: TeamViews
   ): Array[LoopTeamAgents] =
     val all = Array.tabulate(team.size): self =>
-      LoopTeamAgents(self, team(self), loop, model, views, team.map(_.altitudeDownM))
+      LoopTeamAgents(self, team(self), loop, models(self), views, team.map(_.altitudeDownM))
     for (vehicle, self) <- all.zipWithIndex; call <- views.call +: all.toVector.flatMap(_.decisions.calls) do
       call.show(self, vehicle.seen, vehicle.seenFrom)
     for asking <- all; other <- all.indices if asking.decisions.asksHeading(other) && all(other).told == null

@@ -102,7 +102,7 @@ final class TeamBatch(
         "a scenario with an end of its own and a sensor uses SIMD only if candidates share episodes"
       val seen =
         for
-          _ <- Expect.that(form.vehicles.fliesAlone):
+          _ <- Expect.that(form.vehicles.forall(_.fliesAlone)):
             "quadrotors with a sensor use SIMD only if candidates share episodes"
           _ <- Expect.that(!timing.isInstanceOf[LoopTiming.Paused]):
             "a sensor under a loop that pauses the world uses SIMD only if candidates share episodes"
@@ -110,7 +110,7 @@ final class TeamBatch(
             "two vehicles that see each other by sensors use SIMD only if candidates share episodes"
         yield ()
       ends.left.toOption.orElse(seen.left.toOption.filter(_ => form.sees)).orElse:
-        LoopSupport.refusal(timing, form.count, link, form.vehicles)
+        LoopSupport.refusal(timing, form.vehicles, link)
 
   /** Simulates all worlds, unless it is cancelled.
     *

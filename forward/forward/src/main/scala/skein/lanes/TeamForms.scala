@@ -1,7 +1,7 @@
 package skein.lanes
 
 import java.util.concurrent.ConcurrentHashMap
-import skein.forward.{Engagement, LoopTiming, SpatialResponse, VelocityResponse}
+import skein.forward.{Engagement, LoopTiming, SpatialResponse, TeamResponses, VelocityResponse}
 import skein.lanes.policy.{OpponentLanes, TeamLanes, TeamPolicies}
 import skein.lanes.score.{Effort, ScoreLanes}
 import skein.units.Expect
@@ -18,12 +18,26 @@ private[lanes] final class TeamForms(
   private val inSpace     = model.isInstanceOf[SpatialResponse]
   private val isPredicted = timing.isInstanceOf[LoopTiming.Predictive]
 
-  private val dynamics: Either[String, LaneDynamics] =
+  private val flown: Either[String, LaneDynamics] =
     for
       _        <- LaneSupport.present
       _        <- Expect.that(!isReference)("the reference was asked for")
       vehicles <- LaneDynamics.under(timing, model)
     yield vehicles
+
+  /** One object for each other response, so that forms compare it by reference. */
+  private val others = ConcurrentHashMap[VelocityResponse, Either[String, LaneDynamics]]()
+
+  /** The dynamics of teams of one model by size: candidates of a search are many. */
+  private val alike = ConcurrentHashMap[Int, Vector[LaneDynamics]]()
+
+  private def dynamics(team: Engagement): Either[String, Vector[LaneDynamics]] =
+    flown.flatMap: own =>
+      if !team.hasCars then Right(alike.computeIfAbsent(team.agents.size, Vector.fill(_)(own)))
+      else
+        Expect.each(TeamResponses.of(team.agents, model)): response =>
+          if response eq model then Right(own)
+          else others.computeIfAbsent(response, LaneDynamics.under(timing, _, inSpace))
 
   /** One object for each form, so that forms are compared by reference. */
   private val forms = ConcurrentHashMap[TeamForm, TeamForm]()
@@ -34,14 +48,13 @@ private[lanes] final class TeamForms(
       case Effort(vehicle) => Some(vehicle)
       case _               => None
     for
-      vehicles <- dynamics
-      _        <- Expect.that(!engagement.hasCars)("it has cars")
+      vehicles <- dynamics(engagement)
       _        <- LaneDynamics.isHighEnough(model, engagement.agents)
       policies <- Option
         .when(candidate.areAtOnePace):
           OpponentLanes.of(engagement, efforts.flatten.contains, inSpace, isPredicted)
         .flatten
-        .getOrElse(teamOf(engagement, efforts.flatten))
+        .getOrElse(teamOf(engagement, vehicles, efforts.flatten))
       _ <- Expect.that(engagement.isOver.isEmpty || candidate.ownEnd.isDefined):
         "its end is no scenario's"
       scores <- ScoreLanes
@@ -50,11 +63,16 @@ private[lanes] final class TeamForms(
         .map(_.getMessage)
     yield
       val altitudes = if inSpace then Vector.empty else engagement.agents.map(_.altitudeDownM)
-      val form      = TeamForm(policies, scores, efforts, engagement.durationS, altitudes)(vehicles)
-      val known     = forms.putIfAbsent(form, form)
+      val form      = TeamForm(policies, scores, efforts, engagement.durationS, altitudes, vehicles):
+        !engagement.hasCars
+      val known = forms.putIfAbsent(form, form)
       if known == null then form else known
 
-  private def teamOf(engagement: Engagement, efforts: Vector[Int]): Either[String, TeamPolicies] =
+  private def teamOf(
+      engagement: Engagement,
+      vehicles: Vector[LaneDynamics],
+      efforts: Vector[Int]
+  ): Either[String, TeamPolicies] =
     for
       team <- TeamLanes
         .of(engagement.agents.map(_.policy), engagement.assignment, isPredicted, inSpace)
@@ -64,7 +82,11 @@ private[lanes] final class TeamForms(
         "SIMD sums efforts only of two that play against each other by headings"
       _ <- Expect.that(engagement.agents.forall(_.eye.isEmpty)):
         "SIMD supports a sensor only if two play against each other by headings"
-      _ <- team.leaves(engagement.agents).filterNot(_ => inSpace).toLeft(())
+      _ <- vehicles.indices.iterator
+        .filter(vehicles(_).fliesLevel)
+        .flatMap(self => team.leaves(self, engagement.agents(self)))
+        .nextOption()
+        .toLeft(())
       _ <- Expect.that(!team.looksUp || !model.regardsYaw):
         "a policy asks how high vehicles are, and the quadrotor's height is not told side by side"
       _ <- Expect.that(!team.turns || !model.regardsYaw):

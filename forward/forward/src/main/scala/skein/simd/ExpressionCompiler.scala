@@ -85,9 +85,12 @@ private[skein] abstract class ExpressionCompiler:
             val other = if node.args(0) == product then node.args(1) else node.args(0)
             fma(of(product.args(0)), of(product.args(1)), of(other))
           case _ => add(a, b)
-      case Op.Sub   => sub(a, b)
-      case Op.Mul   => mul(a, b)
-      case Op.Div   => div(a, b)
+      case Op.Sub => sub(a, b)
+      case Op.Mul => mul(a, b)
+      case Op.Div =>
+        val by = node.args(1)
+        // Exact either way.
+        if by.isConst && isPowerOf2(by.value) then mul(a, constant((1 / by.value).toFloat)) else div(a, b)
       case Op.Min   => extreme(node)((limit, value) => isLess(limit, value))
       case Op.Max   => extreme(node)((limit, value) => isLess(value, limit))
       case Op.Where => choose(of(node.args(2)), b, a)
@@ -234,6 +237,10 @@ private[skein] abstract class ExpressionCompiler:
     case Op.Min                               => node.args.forall(isPositive)
     case Op.Max                               => node.args.exists(isPositive)
     case _                                    => false
+
+  private def isPowerOf2(value: Double) =
+    val exponent = Math.getExponent(value)
+    exponent.abs < 32 && Math.scalb(1.0, exponent) == value.abs
 
   private def rint(x: Int): Int = sub(add(x, constant(Round)), constant(Round))
 

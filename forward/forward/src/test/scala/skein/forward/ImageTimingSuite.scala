@@ -53,7 +53,7 @@ class ImageTimingSuite extends munit.FunSuite:
     val world = RolloutWorld(
       Pair.paper.engagement,
       link,
-      plant,
+      Vector.fill(2)(plant),
       Asking(),
       keepsAll = false,
       asksPolicies = false,

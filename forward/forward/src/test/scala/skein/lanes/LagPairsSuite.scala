@@ -130,7 +130,7 @@ class LagPairsSuite extends munit.FunSuite:
 
     test(s"at $meanMs ms and $jitterMs ms of jitter kernel and scalar reference agree for 10 s"):
       assertEquals(
-        LoopSupport.refusal(LoopTiming.stream(0.1), 2, link, vehicles(lag)),
+        LoopSupport.refusal(LoopTiming.stream(0.1), Vector.fill(2)(vehicles(lag)), link),
         None,
         s"up to ${link.maxS} s"
       )

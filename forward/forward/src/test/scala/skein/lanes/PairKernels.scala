@@ -45,13 +45,14 @@ object PairKernels:
       eyes: Map[Int, TimetableEye] = Map.empty
   ): PairKernel =
     val vehicles = LaneDynamics.under(timing, model).fold(munit.Assertions.fail(_), identity)
-    val members  = Opponents.inEpisode(Vector(duel.evader, duel.pursuer), vehicles, policies, eyes)
+    val both     = Vector.fill(2)(vehicles)
+    val members  = Opponents.inEpisode(Vector(duel.evader, duel.pursuer), both, policies, eyes)
     val scores   = scoreboard(duel, timing, captureM)
     val sensors  = Vector(duel.evader, duel.pursuer).map(_.eye).zipWithIndex.collect {
       case (Some(eye), self) =>
         self -> eye
     }.toMap
-    val timetable = Timetable.of(2, duel.durationS, timing, link, key, vehicles, sensors)
+    val timetable = Timetable.of(both, duel.durationS, timing, link, key, sensors)
     TimetableKernel(members.map(identity), scores).fly(timetable, WORLDS)
     PairKernel(duel, timing, captureM, members, scores)
 
@@ -67,16 +68,23 @@ object PairKernels:
       newEye: Opponents.NewEye = LoopEye(_, _, _, _, _, _),
       shortCut: Boolean = true
   ): PairKernel =
-    val vehicles = LaneDynamics.of(model).fold(munit.Assertions.fail(_), identity)
+    val vehicles = Vector.fill(2)(LaneDynamics.under(timing, model).fold(munit.Assertions.fail(_), identity))
     munit.Assertions.assertEquals(
-      links.distinct.flatMap(LoopSupport.refusal(timing, 2, _, vehicles)).toSeq,
+      links.distinct.flatMap(LoopSupport.refusal(timing, vehicles, _)).toSeq,
       Nil
     )
     val agents  = Vector(duel.evader, duel.pursuer)
     val cameras = agents.map(_.eye).zipWithIndex.collect { case (Some(eye), self) =>
       self -> CameraTrackerLanes.of(eye).fold(munit.Assertions.fail(_), identity)
     }.toMap
-    val loop = LoopLanes(timing, 2, duel.durationS, links.map(_.maxS).max, cameras.nonEmpty, shortCut)
+    val loop = LoopLanes(
+      timing,
+      vehicles.map(_.predictor),
+      duel.durationS,
+      links.map(_.maxS).max,
+      cameras.nonEmpty,
+      shortCut
+    )
     val (members, eye) = Opponents.inLoop(agents, loop, vehicles, policies, cameras, newEye)
     val scores         = scoreboard(duel, timing, captureM)
     val kernel         = LoopKernel(loop, members.map(identity), scores)

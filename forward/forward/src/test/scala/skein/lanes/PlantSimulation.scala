@@ -157,7 +157,7 @@ class PlantSimulation extends munit.FunSuite, Unhurried:
     val told = engine(Gusty, shared = true)
     assert(told.startsWith("scalar: the vehicle is no formula: ") && told.contains("nanoTime"), told)
     val slow = engine(Bicycle(1.2, 0.3, 4, 0.4, stepS = 1.5), shared = false)
-    assert(slow.startsWith("scalar: ") && slow.contains("the vehicle's last 1.5"), slow)
+    assert(slow.startsWith("scalar: ") && slow.contains("the vehicle's take 1.5"), slow)
 
   private object Gusty extends Plant[PlaneReading]:
     def initial: PlaneReading     = PlaneReading(0, 0, 0, 0)

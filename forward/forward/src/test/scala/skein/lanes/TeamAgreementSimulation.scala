@@ -61,7 +61,7 @@ class TeamAgreementSimulation extends munit.FunSuite, Unhurried:
         val own = numbers(world)(self)
         agents(self).take(world, VehicleNumbers(drawn(world).agents(self), own))
       TimetableKernel(agents.map(identity[TimetableAgents]), NoScores)
-        .fly(Timetable.of(lanes.count, 6, timing, DelayTable.vpn, key, model), worlds)
+        .fly(Timetable.of(Vector.fill(lanes.count)(model), 6, timing, DelayTable.vpn, key), worlds)
       val forms     = Vector.tabulate(lanes.count)(self => Form(lanes, self))
       val agreement = Agreement()
       for world <- 0 until worlds by 7 do

@@ -123,20 +123,20 @@ class TeamLanesSimulation extends munit.FunSuite, Lengthy, Optimised:
     val random = SplitMix64(7)
     val all    = Vector.fill(worlds)(engagement(draw(random), durationS))
     val key    = WorldRandom.key(3, 1, 0)
-    val model  = LaneDynamics.under(timing, plant).fold(fail(_), identity)
     val lanes  = TeamLanes
       .of(all.head.agents.map(_.policy), all.head.assignment, isPredicted = false)
       .fold(throw _, identity)
     val count  = lanes.count
+    val models = Vector.fill(count)(LaneDynamics.under(timing, plant).fold(fail(_), identity))
     val team   = TeamViews(lanes)
-    val agents = TeamAgents.of(all.head.agents, model, team)
+    val agents = TeamAgents.of(all.head.agents, models, team)
     val places = PlacesByWorld(count)
     for (each, world) <- all.zipWithIndex do
       for (agent, self) <- agents.zipWithIndex do
         val own = each.agents(self)
         agent.take(world, VehicleNumbers(own, lanes.numbersOf(self, own.policy)))
     TimetableKernel(agents.map(identity[TimetableAgents]), places)
-      .fly(Timetable.of(count, durationS, timing, link, key, model), worlds)
+      .fly(Timetable.of(models, durationS, timing, link, key), worlds)
     for world <- 0 until worlds by every do
       val truth = scalar(all(world), timing, link, plant, key)
       assertEquals(truth.size, places.places.size)

@@ -29,13 +29,14 @@ import skein.signal.SplitMix64
     val random                   = SplitMix64(3)
     val candidates               = Array.fill(PairKernels.WORLDS)(draw(random))
     val lanes                    = LaneDynamics.of(model).fold(sys.error, identity)
-    val table                    = Timetable.of(2, 60, timing, DelayTable.vpn, 1, lanes)
+    val both                     = Vector.fill(2)(lanes)
+    val table                    = Timetable.of(both, 60, timing, DelayTable.vpn, 1)
     val started                  = System.nanoTime
     val pursuers                 = LanePolicy.of(candidates(0))
     val compiledMs               = (System.nanoTime - started) / 1_000_000
     val evaders                  = LanePolicy.of(UnseenPolicySuite.Evader)
     val agents                   = Vector(Pair.paper.evader, Pair.paper.pursuer)
-    val members                  = Opponents.inEpisode(agents, lanes, Vector(evaders, pursuers), Map.empty)
+    val members                  = Opponents.inEpisode(agents, both, Vector(evaders, pursuers), Map.empty)
     val scores                   = Scoreboard.ofDistance(Reduction.Mean -> 50.1)
     val kernel                   = TimetableKernel(members.map(identity), scores)
     def fly(episodes: Int): Unit = for _ <- 1 to episodes do

@@ -21,6 +21,11 @@ final class ForecastCoasting implements ForecastVehicles {
       vy.fma(end, FloatVector.fromArray(SPECIES, read, LaneVehicles.SEEN_Y + i)).intoArray(into, WORLDS + i);
       vx.intoArray(into, 2 * WORLDS + i);
       vy.intoArray(into, 3 * WORLDS + i);
+      if (into.length > 4 * WORLDS) {
+        FloatVector vz = FloatVector.fromArray(SPECIES, read, LaneVehicles.SEEN_VZ + i);
+        vz.fma(end, FloatVector.fromArray(SPECIES, read, LaneVehicles.SEEN_Z + i)).intoArray(into, 4 * WORLDS + i);
+        vz.intoArray(into, 5 * WORLDS + i);
+      }
     }
   }
 }

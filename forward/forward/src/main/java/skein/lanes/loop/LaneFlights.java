@@ -93,6 +93,13 @@ public abstract class LaneFlights extends LaneVehicles {
   /** Simulates the {@link #chosen} pieces of the first {@code count} vectors to their ends. */
   abstract void flyOn(int count);
 
+  /** Begins new pieces in all worlds, {@link #sinceS} after the start of their present ones and under the
+   * present commands; after 0 s they equal the present ones.
+   *
+   * @param from offset of the present pieces in {@link #pieces}, {@code to} of the new ones
+   */
+  abstract void flyOn(int from, int to);
+
   /** Begins new pieces at the ends computed by {@link #flyOn}, in worlds where {@code acts} is less than
    * {@link LaneOffers#NONE}; in other worlds copies the {@link #chosen} pieces.
    *
@@ -154,9 +161,14 @@ public abstract class LaneFlights extends LaneVehicles {
   /** Appends pieces until the newest lasts to {@link #until}. */
   private void goOn(int row, LaneVectors vectors) {
     while (findOver(vectors)) {
-      copyNewest(over);
-      flyOn(over.count);
-      begin(over, fill(row, over, next), ends, null);
+      if (over.count == ALL.count) {
+        int to = fill(row, over, next);
+        flyOn((filled - 2 & slots - 1) * size, to);
+      } else {
+        copyNewest(over);
+        flyOn(over.count);
+        begin(over, fill(row, over, next), ends, null);
+      }
     }
   }
 

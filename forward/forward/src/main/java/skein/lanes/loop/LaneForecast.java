@@ -31,14 +31,15 @@ public final class LaneForecast {
 
   private final int[] due = new int[WORLDS];
 
-  /** @param deadTimeS from the arrival of a command until a vehicle is assumed to follow it, s
+  /** @param deadTimesS by vehicle, from the arrival of a command until it is assumed to follow it, s
    * @param inSpace whether climbs are predicted
    */
-  LaneForecast(double periodS, int count, double deadTimeS, boolean inSpace) {
+  LaneForecast(double periodS, double[] deadTimesS, boolean inSpace) {
+    int count = deadTimesS.length;
     dueGrains = LaneViews.grains(periodS) / 2;
     Arrays.fill(due, dueGrains);
     tracks = new ForecastTrack[count];
-    for (int v = 0; v < count; v++) tracks[v] = new ForecastTrack(periodS, deadTimeS, inSpace);
+    for (int v = 0; v < count; v++) tracks[v] = new ForecastTrack(periodS, deadTimesS[v], inSpace);
     vehicles = new ForecastVehicles[count];
     read = new LaneVehicles[count];
     predicted = new float[count][(inSpace ? LaneObservation.IN_SPACE : LaneObservation.READ) * WORLDS];

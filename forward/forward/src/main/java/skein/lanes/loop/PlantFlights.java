@@ -28,11 +28,21 @@ public final class PlantFlights extends LaneFlights {
   private final int[] starts;
   private final LaneCall flown, position, look;
 
+  /** Computes {@link #flown} from slot to slot; its pieces are one input, of this index. */
+  private final LaneCall next;
+
+  private final int present;
+
   /** The state at the end of the simulated pieces. */
   private final float[] reached;
 
-  public PlantFlights(RolloutAgent agent, PlantLanes lanes, LoopLanes loop) {
-    super(agent, lanes.pieces().kept(), lanes.plant().stepS(), loop, lanes.inSpace());
+  /** Whether the plant itself has a vertical part. */
+  private final boolean climbs;
+
+  /** @param inSpace whether commands and readings have a vertical part, even if the plant has none */
+  public PlantFlights(RolloutAgent agent, PlantLanes lanes, LoopLanes loop, boolean inSpace) {
+    super(agent, lanes.pieces().kept(), lanes.plant().stepS(), loop, inSpace);
+    climbs = lanes.inSpace();
     PlantPieces pieces = lanes.pieces();
     this.lanes = lanes;
     firstOfState = pieces.firstOfState() * WORLDS;
@@ -41,6 +51,8 @@ public final class PlantFlights extends LaneFlights {
     float[] parameters = pieces.parametersOf(lanes.plant(), agent.speed());
     flown = bound(pieces.flown(), parameters);
     flown.output(0, reached, 0, 0);
+    next = bound(pieces.flown(), parameters);
+    present = pieces.flown().inputs()[0] == PlantPieces.Since() ? 1 : 0;
     position = bound(pieces.position(), parameters);
     look = bound(pieces.look(), parameters);
   }
@@ -54,7 +66,7 @@ public final class PlantFlights extends LaneFlights {
 
   @Override
   void rest(float[] pieces) {
-    if (inSpace) lanes.restInSpace(pieces, firstOfState, startZ);
+    if (climbs) lanes.restInSpace(pieces, firstOfState, startZ);
     else lanes.rest(pieces, firstOfState);
     Arrays.fill(pieces, ALONG_X, ALONG_X + WORLDS, Float.NaN);
     for (int axis = 0; axis < 2; axis++)
@@ -64,13 +76,13 @@ public final class PlantFlights extends LaneFlights {
 
   @Override
   public void fly(float[] into, int at, boolean withVelocity) {
-    if (inSpace && at == X) {
+    if (climbs && at == X) {
       position.output(0, into, X, 0);
       position.output(1, into, Y, 0);
       position.output(2, into, Z, 0);
       position.apply();
     } else {
-      LaneCall call = withVelocity || inSpace ? look : position;
+      LaneCall call = withVelocity || climbs ? look : position;
       call.output(0, into, at, 0);
       call.apply();
     }
@@ -80,6 +92,16 @@ public final class PlantFlights extends LaneFlights {
   void flyOn(int count) {
     flown.use(count * LANES);
     flown.apply();
+  }
+
+  @Override
+  void flyOn(int from, int to) {
+    next.input(present, pieces, from, 0);
+    next.output(0, pieces, to + firstOfState, 0);
+    next.apply();
+    int after = firstOfState + reached.length;
+    System.arraycopy(pieces, from, pieces, to, firstOfState);
+    System.arraycopy(pieces, from + after, pieces, to + after, chosen.length - after);
   }
 
   @Override
@@ -93,7 +115,7 @@ public final class PlantFlights extends LaneFlights {
       else {
         command(commanded.cos, ALONG_X, i, from, to, does);
         command(commanded.sin, ALONG_Y, i, from, to, does);
-        if (inSpace) {
+        if (climbs) {
           command(commanded.third, THIRD, i, from, to, does);
           command(commanded.holds, HOLDS, i, from, to, does);
         }

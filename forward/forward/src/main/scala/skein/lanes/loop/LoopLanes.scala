@@ -6,7 +6,7 @@ import skein.forward.{Delays, RolloutAgent, LoopTiming, Steering, TabledDelays}
 /** A loop for worlds with separate delays: it computes the offers, the pacing of commands, and how long the
   * vehicles' history is needed. Mutable, because its offers are; one per kernel.
   *
-  * @param vehicles number of vehicles that are read
+  * @param predictors of the vehicles that are read, if the loop predicts
   * @param maxDelayS the longest one-way delay of any link
   * @param sees whether images are taken, which require the vehicles' positions at any time
   * @param shortCut whether SIMD computes regular stretches of `stream`; if false, each world is computed
@@ -14,25 +14,25 @@ import skein.forward.{Delays, RolloutAgent, LoopTiming, Steering, TabledDelays}
   */
 private[lanes] final class LoopLanes(
     val timing: LoopTiming,
-    vehicles: Int,
+    predictors: Vector[Option[LanePredictor]],
     val durationS: Double,
     maxDelayS: Double,
     val sees: Boolean = false,
     shortCut: Boolean = true
 ):
-  private val predictor: Option[LanePredictor] = timing match
-    case predictive: LoopTiming.Predictive => LanePredictor.of(predictive.predictor).toOption
-    case _                                 => None
+  private val vehicles = predictors.size
 
   /** The forecast; null if decisions use the readings themselves. */
   val forecast: LaneForecast =
-    predictor.fold(null)(by => LaneForecast(timing.periodS, vehicles, by.deadTimeS, by.inSpace))
+    val by = predictors.flatten
+    if by.isEmpty then null
+    else LaneForecast(timing.periodS, by.map(_.deadTimeS).toArray, by.exists(_.inSpace))
 
   /** Sets the model that predicts a vehicle, and the source of its readings; does nothing in loops that do
     * not predict.
     */
   def carryForward(vehicle: Int, agent: RolloutAgent, read: LaneVehicles): Unit =
-    for by <- predictor do forecast.follow(vehicle, by.alone(agent), read)
+    for by <- predictors(vehicle) do forecast.follow(vehicle, by.alone(agent), read)
 
   val offers: LaneOffers = timing match
     case stream: LoopTiming.Stream         => StreamOffers(stream, vehicles, durationS, maxDelayS, shortCut)

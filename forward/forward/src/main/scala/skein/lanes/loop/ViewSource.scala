@@ -106,7 +106,7 @@ private[lanes] object ViewSource:
     val world    = RolloutWorld(
       StandingStill.engagement(vehicles, durationS),
       link,
-      StandingStill.Response(),
+      Vector.fill(vehicles)(StandingStill.Response()),
       timing.asking,
       keepsAll = false,
       asksPolicies = false,

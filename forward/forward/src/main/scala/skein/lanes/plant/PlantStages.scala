@@ -48,7 +48,7 @@ private[lanes] final class PlantStages(stepping: Formula, reading: Formula, inSp
         case 0 => true
         case 1 =>
           moved += node
-          node.op == Op.Add
+          node.op == Op.Add || node.op == Op.Sub && moved(node.args(0))
         case _ => false
       def moves(outputs: Vector[Node]) = outputs.indices.filter(i => moved(outputs(i)))
       order.forall(isAdded) && moves(stepped) == Seq(number) && moves(seen) == Seq(axis)
@@ -81,10 +81,16 @@ private[lanes] final class PlantStages(stepping: Formula, reading: Formula, inSp
       .map((node, i) => node -> trace.input(Kept + i))
       .toMap
 
+  /** Stored values that a later step would compute from the command alone, at some cost. */
+  private val ofCommand =
+    Trace.earliest(ofState)(command.contains).filter(node => node.op.isDear && !ofState.contains(node))
+
   /** The stored values, including the command itself if a later step needs it. */
   private val keeps =
-    val again = Trace.replaced(ofState, trace)(staying.get)
-    ofState ++ (if Trace.needed(again).exists(command.contains) then command else Vector.empty)
+    val known = staying ++ ofCommand.map(node => node -> trace.const(0))
+    val again = Trace.replaced(ofState, trace)(known.get)
+    val whole = if Trace.needed(again).exists(command.contains) then command else Vector.empty
+    ofState ++ ofCommand ++ whole
 
   val kept: Int = keeps.size
 
@@ -102,7 +108,8 @@ private[lanes] final class PlantStages(stepping: Formula, reading: Formula, inSp
 
   /** Computes the next step's stored values under the present command; see [[act]]. */
   val goOn: BoundFunction =
-    next(command.zipWithIndex.map((node, i) => node -> trace.input(Kept + ofState.size + i)).toMap ++ staying)
+    val stored = keeps.zipWithIndex.drop(ofState.size).map((node, i) => node -> trace.input(Kept + i))
+    next(staying ++ stored)
 
   private def next(known: Map[Node, Node]) = keeping(Trace.replaced(keeps, trace)(node =>
     known

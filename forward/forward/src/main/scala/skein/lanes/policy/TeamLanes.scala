@@ -193,11 +193,9 @@ private[lanes] final class TeamLanes private (
   def refusedByGpu: Option[String] =
     Option.unless(isPlain)("the GPU flies teams without memory that look at the newest readings alone")
 
-  /** Why some agent of a team does not keep the altitude of its start. */
-  def leaves(agents: Vector[RolloutAgent]): Option[String] =
-    agents.indices.iterator
-      .flatMap(self => formulas(self).leaves(agents(self).policy, Metres(agents(self).altitudeDownM)))
-      .nextOption()
+  /** Why an agent does not keep the altitude of its start. */
+  def leaves(self: Int, agent: RolloutAgent): Option[String] =
+    formulas(self).leaves(agent.policy, Metres(agent.altitudeDownM))
 
   private def fits(team: Team): Boolean =
     team.policies.size == count &&

@@ -72,7 +72,7 @@ private[lanes] object ImageSource:
     val world = RolloutWorld(
       StandingStill.engagement(2, durationS),
       link,
-      StandingStill.Response(),
+      Vector.fill(2)(StandingStill.Response()),
       Asking(),
       keepsAll = false,
       asksPolicies = false,

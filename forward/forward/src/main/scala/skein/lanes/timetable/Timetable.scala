@@ -58,33 +58,33 @@ private[skein] object Timetable:
   /** Minimum number of times per operation: some clocks need more. */
   private[lanes] val LeastNumbers: Int = 4
 
-  /** The timetable of a world of this key, for this number of vehicles of this kind.
+  /** The timetable of a world of this key, for as many vehicles as models.
     *
+    * @param models of the vehicles
     * @param eyes the cameras, by vehicle; only for two vehicles
     * @param tellsMore see [[Timetable.more]]; not for two vehicles that decide by
     *   [[skein.lanes.policy.OpponentLanes]]
     * @param end how the flight may end before its duration
     */
   def of(
-      vehicles: Int,
+      models: Vector[TimetableDynamics],
       durationS: Double,
       timing: LoopTiming,
       link: Delays,
       key: Int,
-      model: TimetableDynamics,
       eyes: Map[Int, SensorModel] = Map.empty,
       tellsMore: Boolean = false,
       end: OwnEnds = OwnEnds.None
   ): Timetable =
-    val notes = TimetableNotes(vehicles, model, eyes, tellsMore, end)
+    val notes = TimetableNotes(models, eyes, tellsMore, end)
     Rollout(
-      StandingStill.engagement(vehicles, durationS, eyes),
+      StandingStill.engagement(models.size, durationS, eyes),
       unpredicted(timing),
       link,
-      StandingStill.Response(model.handoverS),
+      models.map(model => StandingStill.Response(model.handoverS)),
       asksPolicies = false
     ).fly(key, observer = notes): Unit
-    TimetableCompiler(notes, vehicles, model).result
+    TimetableCompiler(notes, models).result
 
   /** The loop with a trivial predictor: vehicles at rest are predicted at no cost. */
   private def unpredicted(timing: LoopTiming): LoopTiming = timing match
@@ -110,11 +110,12 @@ private[skein] object Timetable:
   */
 private final class TimetableCompiler(
     notes: TimetableNotes,
-    vehicles: Int,
-    model: TimetableDynamics
+    models: Vector[TimetableDynamics]
 ):
   import Timetable.Fields
   import TimetableKernel.{ACT, DECIDE, END, ENTER, EXPOSE, JOIN, LOOK, PREDICT, SCORE}
+
+  private val vehicles = models.size
 
   /** Events by time; those of equal times in the order of recording. Only commands take effect later than
     * events recorded after them.
@@ -126,7 +127,7 @@ private final class TimetableCompiler(
 
   private val readings = Array.tabulate(vehicles)(vehicle => ReusedPlaces(notes.looks(vehicle) + 1))
   private val headings = Array.tabulate(vehicles)(vehicle => ReusedPlaces(notes.decisions(vehicle) + 1))
-  private val clocks   = Array.fill(vehicles)(model.clock())
+  private val clocks   = models.map(_.clock()).toArray
 
   /** Readings used by decisions; the others are used by scores, which need positions alone. */
   private val decidedUpon =

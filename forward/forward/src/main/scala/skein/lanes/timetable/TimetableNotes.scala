@@ -10,12 +10,12 @@ import skein.units.Instant
 
 /** Records the events of an episode in their order. Readings and decisions count from 1 for each vehicle. */
 private[lanes] final class TimetableNotes(
-    vehicles: Int,
-    model: TimetableDynamics,
+    models: Vector[TimetableDynamics],
     eyes: Map[Int, SensorModel],
     tellsMore: Boolean,
     end: OwnEnds
 ) extends LoopObserver:
+  private val vehicles               = models.size
   val all: mutable.ArrayBuffer[Note] = mutable.ArrayBuffer.empty
 
   /** For each vehicle, the readings that were added to the forecast. */
@@ -58,7 +58,7 @@ private[lanes] final class TimetableNotes(
       validAtNs: Long,
       legs: => Vector[Leg]
   ): Unit =
-    for predictor <- model.predictor do
+    for predictor <- models(vehicle).predictor do
       val reading    = readingOf(vehicle)(question)
       val before     = entered(vehicle).lastOption
       val flown      = before.fold(Vector.empty)(_ => legs.map(plotted(vehicle, _)))
@@ -152,7 +152,7 @@ private[lanes] final class TimetableNotes(
     decisionOf(vehicle) += decisions(vehicle)
 
   override def acts(vehicle: Int, number: Int, atNs: Long): Unit =
-    all += Note.Act(vehicle, atNs * 1e-9 + model.deadTimeS, decisionOf(vehicle)(number)): Unit
+    all += Note.Act(vehicle, atNs * 1e-9 + models(vehicle).deadTimeS, decisionOf(vehicle)(number)): Unit
 
   override def scored(timeS: Double, vehicle: Int, x: Double, y: Double, z: Double): Unit =
     placed(vehicle) = look(vehicle, timeS)

@@ -8,9 +8,11 @@ import skein.lanes.policy.Directions
 /** Vehicles that move by a [[skein.vehicle.Plant]]. Their clock represents a time by the number of steps that
   * end before it, and by the numbers of the time since the last step, as [[skein.lanes.plant.PlantStages]]
   * needs them. The scalar reference is `skein.forward.PlantVehicle`.
+  *
+  * @param amongClimbers whether commands and readings have a vertical part, even if the plant has none
   */
-private[lanes] final class TimetablePlants(agent: RolloutAgent, lanes: PlantLanes)
-    extends TimetableVehicles(agent, lanes.inSpace):
+private[lanes] final class TimetablePlants(agent: RolloutAgent, lanes: PlantLanes, amongClimbers: Boolean)
+    extends TimetableVehicles(agent, amongClimbers):
   import TimetableReadings.WORLDS
   private val flight      = StagedFlight(lanes, agent.speed, startX, startY)
   private val resting     = lanes.resting
@@ -19,6 +21,8 @@ private[lanes] final class TimetablePlants(agent: RolloutAgent, lanes: PlantLane
   def start(worlds: Int): Unit =
     flight.use(worlds)
     if lanes.inSpace then lanes.restInSpace(flight.state, 0, startZ)
+    else if amongClimbers then
+      for at <- 0 until seenZ.length by WORLDS do System.arraycopy(startZ, 0, seenZ, at, WORLDS)
     isCommanded = false
 
   def rest(world: Int): Unit = flight.rest(world)

@@ -12,7 +12,7 @@ class GpuEpisodesSuite extends munit.FunSuite:
     LaneDynamics.of(PlantResponse(ReducedModel.AirSimLag)).fold(fail(_), identity)
 
   private def timetable(key: Int): Timetable =
-    Timetable.of(2, 2, LoopTiming.Stream(), DelayTable.vpn, WorldRandom.key(1, 0, key), model)
+    Timetable.of(Vector.fill(2)(model), 2, LoopTiming.Stream(), DelayTable.vpn, WorldRandom.key(1, 0, key))
 
   private def episodes(mostBytes: Long) =
     GpuEpisodes(InterpretedGpu(), 2, shows = false, threads = 1, mostBytes)

@@ -20,7 +20,7 @@ import skein.vehicle.{Quadrotor, ReducedModel}
     val two     =
       OpponentLanes.of(duel, _ => false, inSpace = false, isPredicted = false).get.fold(sys.error, identity)
     val scores = ScoreLanes.ofDistance(Reduction.Mean -> 50.1)
-    val form   = TeamForm(two, scores, Vector(None), 60, Vector(-20, -20))(null)
+    val form   = TeamForm(two, scores, Vector(None), 60, Vector(-20, -20), Vector.empty)(byOneModel = true)
     val kernel = GpuOpponentKernel(InterpretedGpu(), duel.agents, vehicle, None, form, two, layout)
     Files.writeString(Path.of(folder, s"$name.ptx"), kernel.text): Unit
   duels("lag", PlantResponse(ReducedModel.AirSimLag), PaperPursuer())
