@@ -3,9 +3,9 @@ package skein.lanes
 import scala.collection.mutable.ArrayBuffer
 import skein.formula.{ErrorBound, Node}
 
-/** Compares SIMD worlds with the scalar engine. In every world both must make equal decisions,
-  * until a compared number is so near to a threshold that rounding decides, as [[ErrorBound]] shows; after
-  * that, the world may differ.
+/** Compares SIMD worlds with the scalar engine. In every world both must make equal decisions, until a
+  * compared number is so near to a threshold that rounding decides, as [[ErrorBound]] shows; after that, the
+  * world may differ.
   */
 private[skein] final class Agreement:
   import Agreement.*

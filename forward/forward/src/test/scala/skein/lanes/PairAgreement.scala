@@ -7,9 +7,9 @@ import skein.lanes.loop.LoopEye
 import skein.lanes.policy.{LaneObservation, PolicyLanes}
 import skein.policy.{Action, Observation, PlanarObservation, Policy}
 
-/** Compares SIMD duels with the scalar engine, decision by decision, by [[Agreement]]. All but the
-  * vehicles' motion is compared to the bit: a decision starts from the heading and memory of the SIMD
-  * engine's previous one, and the opponent's heading is that of the decision which the scalar engine knows.
+/** Compares SIMD duels with the scalar engine, decision by decision, by [[Agreement]]. All but the vehicles'
+  * motion is compared to the bit: a decision starts from the heading and memory of the SIMD engine's previous
+  * one, and the opponent's heading is that of the decision which the scalar engine knows.
   *
   * @param lanes the SIMD engine's policies, by agent, the evader first
   * @param policies the policies of one world, by agent

@@ -110,7 +110,6 @@ final class ForecastPlants implements ForecastVehicles {
     look.apply();
   }
 
-  /** Number of components of a reading. */
   private int read() {
     return lanes.inSpace() ? LaneObservation.IN_SPACE : LaneObservation.READ;
   }

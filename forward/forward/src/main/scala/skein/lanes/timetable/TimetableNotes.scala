@@ -117,7 +117,6 @@ private[lanes] final class TimetableNotes(
   /** View of the last note of an end. */
   private var ended = -1
 
-  /** Time of the first decision. */
   private var begunNs = -1L
 
   private def mayEnd(atNs: Long, upon: Grounds, ageS: Int => Double): Unit =
