@@ -18,7 +18,7 @@ import skein.vehicle.{GoTo, Setpoint}
   * @param heardAt time at which the last setpoint was received
   * @param stillSince while it lands, time since which it stands still
   * @param groundedAt time since which it is armed and on the ground
-  * @param hasFlown whether it has flown since it was armed
+  * @param hasFlown whether it took off since it was armed
   */
 final case class Autopilot(
     system: Int,
