@@ -5,7 +5,7 @@ import skein.forward.*
 import skein.lanes.Engine
 import skein.loop.LoopKind
 import skein.optimise.{Objective, ScenarioTerm, ValueEvaluator}
-import skein.scenario.{Measure, Scenario, Track, Tracks, Window}
+import skein.scenario.{EndFormula, Measure, OwnEnd, Scenario, Track, Tracks, Window}
 import skein.settings.{FlySettings, VehicleChoice}
 import skein.signal.LatencyProfile
 import skein.simd.WorldRandom
@@ -143,8 +143,11 @@ object WholeFlights:
     def keysWhere(is: Measure => Boolean) = objective.measures.map(_._2).filter(is).map(ScenarioTerm.keyOf)
     val plain                             = keysWhere(_.reduced.isEmpty)
     val partly                            = keysWhere(_.over != Window.Whole)
+    val refused =
+      flown.isOver.collect { case end: OwnEnd => EndFormula.of(end, flown.agents.size) }.flatMap(_.left.toOption)
     if plain.nonEmpty then
       Some(s"${plain.mkString(", ")} is of whole flights, not of a quantity by itself")
+    else if refused.nonEmpty then refused.map(why => s"its end is no formula: ${why.getMessage}")
     else
       Option.when(flown.isOver.nonEmpty && partly.nonEmpty)(
         s"it says itself when it is over, and ${partly.mkString(", ")} is of a part of the flight"

@@ -6,7 +6,7 @@ import skein.lanes.{Engine, TeamCandidate}
 import skein.learn.{Algorithm, LearnerSettings, SideTask}
 import skein.optimise.{Objective, TeamEvaluator, ValueEvaluator}
 import skein.policy.{LearnedPolicy, PolicyFamily, Role}
-import skein.scenario.{PaperDuel, ScenarioText, Scenarios}
+import skein.scenario.{OwnEnd, PaperDuel, ScenarioText, Scenarios}
 import skein.search.{Baseline, Conditions, Judge}
 import skein.settings.{PolicyFile, ScenarioSettings}
 import skein.units.Decimals.significant
@@ -145,7 +145,8 @@ final case class LearnSetup(
 
   private def flown: Engagement = game.opponent match
     case Some(other) => conditions.game.flownBy(other.role, other.policy)
-    case None        => Engagement.of(game.scenario.fleet, conditions.game.durationS)
+    case None        =>
+      Engagement.of(game.scenario.fleet, conditions.game.durationS).copy(isOver = OwnEnd.of(game.scenario))
 
   /** Evaluators of policies of [[family]], and of the baseline. */
   def judges(threads: Int): Judge => ValueEvaluator =

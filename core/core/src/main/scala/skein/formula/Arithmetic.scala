@@ -176,8 +176,7 @@ private[formula] final class Arithmetic(trace: Trace, assumed: Assumptions, refu
         Some(Number(trace.binary(op, number(args(0)), number(args(1)))))
       case ("(D)J", _, _) if name == "round" && number(args(0)).isConst =>
         Some(Long(Math.round(number(args(0)).value)))
-      // Only `Span.ofSeconds` and its like round numbers that depend on inputs: they make nanoseconds.
-      case ("(D)J", _, _) if name == "round" =>
+      case ("(D)J", _, _) if name == "round" && isNanos(number(args(0))) =>
         val nanos = trace.unary(Op.Floor, trace.add(number(args(0)), trace.const(0.5)))
         Some(Time(trace.mul(nanos, trace.const(1e-9))))
       case _ if Composed(name)                         => None
@@ -186,6 +185,12 @@ private[formula] final class Arithmetic(trace: Trace, assumed: Assumptions, refu
           s"$name is not among the functions of formulas " +
             s"(${(Unary.keys ++ Binary.keys).toSeq.sorted.mkString(", ")})"
         )
+
+  /** Whether a number is a length of time in nanoseconds, as `Span.ofSeconds` and `ofMillis` round it: other
+    * rounded numbers are no times.
+    */
+  private def isNanos(node: Node): Boolean =
+    node.op == Op.Mul && node.args.exists(factor => factor.is(1e9) || factor.is(1e6))
 
   def number(value: Value): Node = settled(value) match
     case Number(node)          => node

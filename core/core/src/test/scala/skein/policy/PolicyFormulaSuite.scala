@@ -154,6 +154,7 @@ class PolicyFormulaSuite extends munit.FunSuite:
       ("the attitude", Tilted, "it reads the attitude"),
       ("counted decisions", Counting, "it counts its decisions"),
       ("a loop without end", Endless, "a loop whose end depends on what is observed"),
+      ("a rounded number", Rounded, "round is not among the functions"),
       ("a product of lengths of time", Products, "it computes with a length of time"),
       ("what it remembers changes its form", Growing, "what it remembers is of another form")
     )
@@ -320,6 +321,9 @@ object PolicyFormulaSuite:
       var north = seen.own.kinematics.positionNed.x
       while north > 1 do north /= 2
       flying(seen, north, 0)
+  case object Rounded extends Forgetful:
+    def action(seen: Observation): Action =
+      flying(seen, math.round(seen.own.kinematics.positionNed.x).toDouble, 0)
   case object Products extends Forgetful:
     def action(seen: Observation): Action = flying(seen, (seen.elapsed / 3).toSeconds, 0)
   case object Growing extends Policy:

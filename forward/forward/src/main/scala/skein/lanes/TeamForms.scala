@@ -25,6 +25,9 @@ private[lanes] final class TeamForms(
       vehicles <- LaneDynamics.under(timing, model)
     yield vehicles
 
+  /** Maximum number of other responses: each makes forms, kernels and timetables of its own. */
+  private val MostOthers = 16
+
   /** One object for each other response, so that forms compare it by reference. */
   private val others = ConcurrentHashMap[VelocityResponse, Either[String, LaneDynamics]]()
 
@@ -37,6 +40,8 @@ private[lanes] final class TeamForms(
       else
         Expect.each(TeamResponses.of(team.agents, model)): response =>
           if response eq model then Right(own)
+          else if others.size >= MostOthers && !others.containsKey(response) then
+            Left(s"its cars start along more than $MostOthers headings")
           else others.computeIfAbsent(response, LaneDynamics.under(timing, _, inSpace))
 
   /** One object for each form, so that forms are compared by reference. */
@@ -57,6 +62,8 @@ private[lanes] final class TeamForms(
         .getOrElse(teamOf(engagement, vehicles, efforts.flatten))
       _ <- Expect.that(engagement.isOver.isEmpty || candidate.ownEnd.isDefined):
         "its end is no scenario's"
+      _ <- Expect.that(engagement.isOver.isEmpty || efforts.flatten.isEmpty):
+        "SIMD sums efforts only of episodes that last for their whole duration"
       scores <- ScoreLanes
         .of(quantities, engagement.agents.size, candidate.ownEnd)
         .left

@@ -4,7 +4,7 @@ import skein.forward.*
 import skein.lanes.score.{Judged, OfMoment}
 import skein.policy.*
 import skein.scenario.*
-import skein.signal.SplitMix64
+import skein.signal.{LatencyDistribution, SplitMix64}
 import skein.simd.WorldRandom
 import skein.testing.Optimised
 import skein.units.*
@@ -37,16 +37,17 @@ class OwnEndSuite extends munit.FunSuite, Optimised:
       timing: LoopTiming,
       model: VelocityResponse,
       shared: Boolean,
-      isReference: Boolean
+      isReference: Boolean,
+      over: Delays = DelayTable.vpn
   ): Vector[Array[Float]] =
     val batch  = TeamBatch(timing, model, threads = 1, isReference = isReference)
-    val engine = batch.engine(candidates.head, shared, Seq(DelayTable.vpn))
+    val engine = batch.engine(candidates.head, shared, Seq(over))
     assertEquals(engine.fliesByLanes, !isReference, engine.text)
     batch.fly(new TeamWorlds:
       def size: Int                            = 2 * candidates.size
       override def shareEpisodes: Boolean      = shared
       def key(world: Int): Int                 = WorldRandom.key(5, 0, if shared then world % 2 else world)
-      def link(world: Int): Delays             = DelayTable.vpn
+      def link(world: Int): Delays             = over
       def candidate(world: Int): TeamCandidate = candidates(world / 2)).values
 
   private def within(random: SplitMix64, least: Double, most: Double) =
@@ -58,7 +59,7 @@ class OwnEndSuite extends munit.FunSuite, Optimised:
   private val ends: Seq[(String, VelocityResponse, SplitMix64 => Scenario)] = Seq(
     ("by a place", level, random => ByPlace(within(random, 10, 50))),
     ("by altitudes of level flight, and speed", level, random => BySpeed(within(random, 1, 6))),
-    ("by the time", level, random => ByTime(within(random, 2, 15))),
+    (ByTime.Name, level, random => ByTime(within(random, 2, 15))),
     (ByAge.Name, level, random => ByAge(within(random, 0.05, 0.3))),
     (
       "from a file, by a place and ages",
@@ -70,9 +71,10 @@ class OwnEndSuite extends munit.FunSuite, Optimised:
 
   for
     (name, model, scenarios) <- ends
-    // One with all that an end may depend on flies in every loop.
+    // Those that tell most apart fly in every loop.
     timing <-
-      if name == ByAge.Name then TestLoops.unpredicted :+ LoopTiming.Predictive(predictor = level.predictor)
+      if Vector(ByAge.Name, ByTime.Name).contains(name) then
+        TestLoops.unpredicted :+ LoopTiming.Predictive(predictor = level.predictor)
       else Seq(LoopTiming.Stream())
     shared <- Seq(true, false)
     if shared || timing != LoopTiming.Paused()
@@ -88,6 +90,17 @@ class OwnEndSuite extends munit.FunSuite, Optimised:
       // Worlds end at different times, and some before the last score counts.
       assert(slow(2).distinct.length > 5, slow(2).mkString(", "))
       assert(slow(7).exists(_.isNaN), slow(7).mkString(", "))
+
+  for timing <- Seq(LoopTiming.Predictive(predictor = level.predictor), LoopTiming.Futures()) do
+    test(s"${timing.productPrefix}, own delays: what is over from the beginning ends at its first decision"):
+      // Some begin beyond the place where they end.
+      val all          = candidates(random => ByPlace(within(random, -5, 45)))
+      val far          = DelayTable.of(LatencyDistribution.Uniform(Span.ofMillis(60), Span.ofMillis(100)))
+      val (fast, slow) = (flown(all, timing, level, false, false, far), flown(all, timing, level, false, true, far))
+      for number <- fast.indices; world <- slow(0).indices do
+        val (value, expected) = (fast(number)(world).toDouble, slow(number)(world).toDouble)
+        assert(value.isNaN == expected.isNaN, s"number $number, world $world: $value, scalar $expected")
+        if !expected.isNaN then assertEqualsDouble(value, expected, 4e-3, s"number $number, world $world")
 
   test("an end that is no formula is refused with its line"):
     val all    = Vector.fill(2)(TeamCandidate(Engagement.ofScenario(ByList(3), durationS), judged))
@@ -167,6 +180,9 @@ object OwnEndSuite:
       0.2 * known.vehicles.map(_.age.toSeconds).sum + known.vehicles(
         1
       ).kinematics.positionNed.x / 200 > seconds
+
+  private object ByTime:
+    val Name = "by the time"
 
   private object ByAge:
     val Name = "by ages of readings"

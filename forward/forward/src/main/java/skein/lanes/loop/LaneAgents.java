@@ -134,6 +134,7 @@ public abstract class LaneAgents {
     Arrays.fill(sentAt, -1);
     for (int[] each : answered) Arrays.fill(each, -1);
     Arrays.fill(decidedLong, NEVER);
+    Arrays.fill(decides, NONE);
     Arrays.fill(goesFirst, 0);
     vehicles.start();
     if (vehicles.inSpace)
@@ -194,6 +195,7 @@ public abstract class LaneAgents {
    */
   public final void decide(LaneAgents[] all, LaneOffers offers, LaneVectors vectors, int[][] readAt) {
     look(vectors, offers.joinedAt, offers.nextAt);
+    if (vectors.count * LANES < WORLDS) forget(vectors);
     if (forecast != null) forecast.predict(vectors, decides);
     if (!sees()) choose(all, offers, vectors, readAt);
   }
@@ -249,7 +251,6 @@ public abstract class LaneAgents {
     if (!offers.delays.isSteady) draw(row, offers.delays, offers.place[self], vectors);
     send(place, offers.delays, offers.place[self], vectors);
     if (forecast != null) forecast.send(self, vectors, sends, answers, sent);
-    if (vectors.count * LANES < WORLDS) forget(vectors);
     remember(vectors, endGrains);
     vehicles.act(row, vectors, acts, sent);
   }
@@ -441,10 +442,10 @@ public abstract class LaneAgents {
    *
    * @param rowS time of the period's start, s
    */
-  final float decidesS(int world, double rowS) {
+  final double decidesS(int world, double rowS) {
     return decides[world] == NONE
-        ? Float.POSITIVE_INFINITY
-        : (float) (rowS + decides[world] * (double) LaneViews.GRAIN_S);
+        ? Double.POSITIVE_INFINITY
+        : rowS + decides[world] * (LaneViews.GRAIN_NS * 1e-9);
   }
 
   /** Computes the age of a vehicle's reading at the decision, s. */

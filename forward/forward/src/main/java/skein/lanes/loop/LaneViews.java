@@ -32,7 +32,7 @@ public final class LaneViews {
   static final int WORLDS = LanePolicy.WORLDS;
   final int vehicles;
 
-  private static final int GRAIN_NS = DelayTable.GrainNs();
+  static final int GRAIN_NS = DelayTable.GrainNs();
 
   /** Duration of a grain, s; see {@link DelayTable#GrainNs}. */
   public static final float GRAIN_S = GRAIN_NS * 1e-9f;

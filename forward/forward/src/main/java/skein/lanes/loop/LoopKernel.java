@@ -34,7 +34,7 @@ public final class LoopKernel {
   private final boolean isForecast;
 
   /** Time of each world's first decision, s. */
-  private final float[] begunS = new float[WORLDS];
+  private final double[] begunS = new double[WORLDS];
 
   private static final LaneVectors ALL = LaneVectors.all();
   private final int[][] readAt;
@@ -77,7 +77,7 @@ public final class LoopKernel {
     offers.start(worldKeys, links);
     for (LaneAgents each : agents) each.start();
     scores.start(WORLDS);
-    Arrays.fill(begunS, Float.POSITIVE_INFINITY);
+    Arrays.fill(begunS, Double.POSITIVE_INFINITY);
     for (int row = 0; row < steps; row++) {
       if (row > 0) {
         for (LaneAgents each : agents) each.startRow(row);
@@ -127,8 +127,9 @@ public final class LoopKernel {
     for (LaneAgents each : agents)
       if (offers.isFor(each.self)) {
         for (int i = 0; i < WORLDS; i++) {
-          nowS[i] = each.decidesS(i, rowS);
-          sinceS[i] = nowS[i] - begunS[i];
+          double decidesS = each.decidesS(i, rowS);
+          nowS[i] = (float) decidesS;
+          sinceS[i] = (float) (decidesS - begunS[i]);
         }
         if (scores.needsAges())
           for (int v = 0; v < agents.length; v++) each.sinceRead(v, readAt, scores.agesS()[v]);

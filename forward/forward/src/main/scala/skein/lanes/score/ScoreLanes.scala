@@ -206,6 +206,9 @@ private[lanes] object ScoreLanes:
       val (exact, near) = (Judged.afterS(fromS), Judged.afterS(fromS).toFloat)
       if near > exact then Math.nextDown(near) else near
 
+  /** A time rounded to a microsecond, s: the difference of two floats may be just below a round number. */
+  def microseconds(timeS: Float): Float = (math.round(timeS * 1e6) * 1e-6).toFloat
+
   /** The function that computes when each world ended, s: infinity until then.
     *
     * @param place index of the time among the accumulators

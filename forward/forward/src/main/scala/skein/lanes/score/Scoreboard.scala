@@ -135,7 +135,7 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
     var world = 0
     while world < worlds do
       if begunS(world).isNaN then begunS(world) = sinceS
-      this.sinceS(world) = sinceS - begunS(world)
+      this.sinceS(world) = ScoreLanes.microseconds(sinceS - begunS(world))
       world += 1
     for vehicle <- this.agesS.indices do Arrays.fill(this.agesS(vehicle), agesS(ages + vehicle))
     ending.look(agents, views, view)
