@@ -143,8 +143,10 @@ object WholeFlights:
     def keysWhere(is: Measure => Boolean) = objective.measures.map(_._2).filter(is).map(ScenarioTerm.keyOf)
     val plain                             = keysWhere(_.reduced.isEmpty)
     val partly                            = keysWhere(_.over != Window.Whole)
-    val refused =
-      flown.isOver.collect { case end: OwnEnd => EndFormula.of(end, flown.agents.size) }.flatMap(_.left.toOption)
+    val refused                           =
+      flown.isOver.collect { case end: OwnEnd => EndFormula.of(end, flown.agents.size) }.flatMap(
+        _.left.toOption
+      )
     if plain.nonEmpty then
       Some(s"${plain.mkString(", ")} is of whole flights, not of a quantity by itself")
     else if refused.nonEmpty then refused.map(why => s"its end is no formula: ${why.getMessage}")

@@ -96,7 +96,8 @@ class OwnEndSuite extends munit.FunSuite, Optimised:
       // Some begin beyond the place where they end.
       val all          = candidates(random => ByPlace(within(random, -5, 45)))
       val far          = DelayTable.of(LatencyDistribution.Uniform(Span.ofMillis(60), Span.ofMillis(100)))
-      val (fast, slow) = (flown(all, timing, level, false, false, far), flown(all, timing, level, false, true, far))
+      val (fast, slow) =
+        (flown(all, timing, level, false, false, far), flown(all, timing, level, false, true, far))
       for number <- fast.indices; world <- slow(0).indices do
         val (value, expected) = (fast(number)(world).toDouble, slow(number)(world).toDouble)
         assert(value.isNaN == expected.isNaN, s"number $number, world $world: $value, scalar $expected")
