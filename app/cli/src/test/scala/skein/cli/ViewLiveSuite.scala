@@ -98,6 +98,7 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
     val flying = Flying.start(out, Flown*)
     val shown  =
       "[...skein.flight.vehicles.values()].map(one => [one.name, one.north, one.east, one.trail.length])"
+    val altitude = "skein.flight.series.altitude.buckets.findLast(one => one.values[0] != null)"
     val seen = browse(
       flying.url,
       flying.token,
@@ -107,12 +108,9 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
       ),
       step("ask", "before", shown),
       step("ask", "obstacles", "skein.flight.obstacles.length"),
-      step("wait", "skein.flight.own.length && skein.flight.series.own0.buckets.length"),
-      step(
-        "ask",
-        "own",
-        "[skein.flight.own[0].title, skein.flight.series.altitude.buckets.at(-1).values[0]]"
-      ),
+      // A bucket has no altitude before its first reading.
+      step("wait", s"skein.flight.own.length && skein.flight.series.own0.buckets.length && $altitude"),
+      step("ask", "own", s"[skein.flight.own[0].title, $altitude.values[0]]"),
       step("wait", "skein.cameras.length === 2 && skein.cameras.every(one => one.shown > 3)"),
       step("ask", "cameras", "skein.cameras.map(one => [one.name, one.canvas.width, one.canvas.height])"),
       step(

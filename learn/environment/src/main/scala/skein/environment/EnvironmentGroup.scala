@@ -225,7 +225,8 @@ private final class EnvironmentGroup(
     for world <- 0 until count do begin(world)
     if !worlds.flyOn() then
       throw IllegalStateException(
-        "nothing is decided in an episode: are the answers later than the time-out?"
+        if worlds.hasEnded(0) then "the scenario is over before a learner decides"
+        else "nothing is decided in an episode: are the answers later than the time-out?"
       )
     java.util.Arrays.fill(beganS, 0f)
 
