@@ -34,7 +34,7 @@ final case class BudgetOptions(
     @arg(doc = "cells along the jitter (default: 20; of a scenario 5)")
     jitters: Option[Int],
     @arg(doc =
-      "episodes of each cell (default: 1000 with a reduced model with SIMD, fewer where an episode costs more)"
+      "episodes of each cell (default: 1000 for a reduced model with SIMD, fewer where an episode costs more)"
     )
     episodes: Option[Int],
     @arg(doc = "tolerance, in per cent of the truth (default: 5)")

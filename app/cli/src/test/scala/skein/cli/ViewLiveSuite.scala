@@ -99,7 +99,7 @@ class ViewLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy, Waiting:
     val shown  =
       "[...skein.flight.vehicles.values()].map(one => [one.name, one.north, one.east, one.trail.length])"
     val altitude = "skein.flight.series.altitude.buckets.findLast(one => one.values[0] != null)"
-    val seen = browse(
+    val seen     = browse(
       flying.url,
       flying.token,
       step(

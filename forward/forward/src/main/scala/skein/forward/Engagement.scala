@@ -44,14 +44,13 @@ final case class Engagement(
     agents.indices.forall(self => Level.formula(agents(self).policy, self, assignment, false).isRight)
 
   /** Replaces the policy of all agents of a role. */
-  def flownBy(role: Role, policy: Policy): Engagement =
-    copy(agents =
-      agents.zip(roles).map((agent, own) => if own == role then agent.copy(policy = policy) else agent)
-    )
+  def flownBy(role: Role, policy: Policy): Engagement = changed(role)(_.copy(policy = policy))
 
   /** Lets all agents of a role know their opponents by a camera alone; without one, by readings. */
-  def seeing(role: Role, eye: Option[SensorModel]): Engagement =
-    copy(agents = agents.zip(roles).map((agent, own) => if own == role then agent.copy(eye = eye) else agent))
+  def seeing(role: Role, eye: Option[SensorModel]): Engagement = changed(role)(_.copy(eye = eye))
+
+  private def changed(role: Role)(change: RolloutAgent => RolloutAgent) =
+    copy(agents = agents.zip(roles).map((agent, own) => if own == role then change(agent) else agent))
 
   /** Altitude at which the first multirotor starts, m; 0 without one. */
   def altitudeM: Double = agents.find(_.kind != VehicleKind.Car).fold(0.0)(-_.altitudeDownM)

@@ -96,6 +96,9 @@ private[lanes] final class ScoreLanes private (
   /** Whether the end depends on ages of readings. */
   def needsAges: Boolean = asks({ case _: Source.Age => true })
 
+  /** Whether the end depends on the time since the first decision. */
+  val asksSince: Boolean = asks({ case Source.Since => true })
+
   private def asks(what: PartialFunction[Source, Boolean]): Boolean =
     ending.exists(_.function.inputs.exists(input => what.isDefinedAt(source(input))))
 

@@ -132,14 +132,18 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
       ages: Int
   ): Unit =
     Arrays.fill(nowS, timeS)
-    var world = 0
-    while world < worlds do
-      if begunS(world).isNaN then begunS(world) = sinceS
-      this.sinceS(world) = ScoreLanes.microseconds(sinceS - begunS(world))
-      world += 1
+    if lanes.asksSince then elapse(sinceS)
     for vehicle <- this.agesS.indices do Arrays.fill(this.agesS(vehicle), agesS(ages + vehicle))
     ending.look(agents, views, view)
     end()
+
+  /** Computes the times since each world's first decision. */
+  private def elapse(runS: Float): Unit =
+    var world = 0
+    while world < worlds do
+      if begunS(world).isNaN then begunS(world) = runS
+      sinceS(world) = ScoreLanes.microseconds(runS - begunS(world))
+      world += 1
 
   def hasEnd: Boolean = ending != null
 
