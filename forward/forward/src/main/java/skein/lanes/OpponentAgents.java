@@ -66,7 +66,7 @@ final class OpponentAgents extends TimetableAgents implements TeamMember {
 
   @Override
   public void restart(int world, float headingRad) {
-    vehicles.restart(world);
+    vehicles.restart(world, headingRad);
     policy.restart(world, headingRad);
     float cos = (float) StrictMath.cos(headingRad), sin = (float) StrictMath.sin(headingRad);
     headings.point(world, WORLDS, cos, sin);

@@ -5,7 +5,6 @@ import skein.lanes.policy.OpponentLanes
 import skein.lanes.score.{OfMoment, Scoreboard}
 import skein.lanes.timetable.{Timetable, TimetableAgents, TimetableKernel, TimetableScores, Timetables}
 import skein.simd.WorldRandom
-import skein.units.Expect
 
 /** Teams with learners in many worlds by one timetable, with the results of [[TeamBatch]]. Allocates nothing
   * after construction, unless a timetable needs more slots than any before.
@@ -172,18 +171,14 @@ object LearnerTeams:
     private val timetables = Timetables()
 
     /** The reason why SIMD does not support a team; None if it does. */
-    def refusal(team: TeamCandidate): Option[String] = formOf(team).left.toOption
+    def refusal(team: TeamCandidate): Option[String] = forms.of(team).left.toOption
 
     /** @param learners indices of the vehicles that decide by [[LearnerPolicy]]
       * @param worlds number of worlds, at most [[LearnerWorlds.Most]]
       * @return Left says why SIMD does not support them
       */
     def of(team: TeamCandidate, learners: Vector[Int], worlds: Int): Either[String, LearnerTeams] =
-      formOf(team).map(form => LearnerTeams(form, team, learners.toArray, worlds, timetableOf(form, _)))
-
-    private def formOf(team: TeamCandidate) = Expect
-      .that(!team.engagement.hasCars)("it has cars, which restart at any heading")
-      .flatMap(_ => forms.of(team))
+      forms.of(team).map(form => LearnerTeams(form, team, learners.toArray, worlds, timetableOf(form, _)))
 
     private def timetableOf(form: TeamForm, draw: Long): Timetable =
       val key = keyOf(draw)

@@ -1,13 +1,14 @@
 package skein.environment
 
 import skein.lanes.{LearnerPolicy, LearnerWorlds, Tower}
-import skein.policy.Agent
-import skein.scenario.{Known, Scenario, ScenarioKind, Scenarios, Surround}
+import skein.policy.{Agent, Role}
+import skein.scenario.{Known, PaperDuel, Scenario, ScenarioKind, Scenarios, Surround}
 import skein.signal.SplitMix64
+import skein.vehicle.VehicleKind
 
 class LearnerWorldsSuite extends munit.FunSuite:
   private given Scenarios =
-    Scenarios(Scenarios.ours.kinds :+ ScenarioKind(Tower()) :+ ScenarioKind(Meeting()))
+    Scenarios(Scenarios.ours.kinds :+ ScenarioKind(Tower()) :+ ScenarioKind(Meeting()) :+ ScenarioKind(CarChase()))
 
   private val all = EnvironmentSettings(startWithinM = (2, 8), episodeS = 6)
 
@@ -55,7 +56,12 @@ class LearnerWorldsSuite extends munit.FunSuite:
       all.copy(scenario = "meeting", learners = "all")                                            -> 2e-3,
       all.copy(scenario = "meeting", learners = "pursuers", loop = "futures")                     -> 2e-3,
       all.copy(scenario = "tower", learners = "keeper", objective = "kept")                       -> 2e-2,
-      all.copy(scenario = "tower", learners = "inspectors", objective = "kept", plant = "tilt")   -> 2e-2
+      all.copy(scenario = "tower", learners = "inspectors", objective = "kept", plant = "tilt")   -> 2e-2,
+      all.copy(scenario = "car-chase")                                                            -> 2e-3,
+      all.copy(scenario = "car-chase", loop = "predictive", plant = "tilt")                       -> 2e-3,
+      all.copy(scenario = "convoy", learners = "escorts", objective = "between-cars")             -> 2e-3,
+      all.copy(scenario = "convoy", learners = "escort", loop = "predictive")                     -> 2e-3,
+      all.copy(scenario = "convoy", learners = "Escort2", loop = "futures", plant = "tilt")       -> 2e-3
     )
   do
     test(
@@ -112,3 +118,10 @@ final case class Meeting() extends Scenario:
     known.elapsed.toSeconds + 2 * known.vehicles(
       1
     ).age.toSeconds > 3.2 && known.vehicles.head.age.toSeconds > 0.01
+
+/** A drone chases a car. */
+final case class CarChase() extends Scenario:
+  def agents: Vector[Agent] = PaperDuel().agents.map: agent =>
+    if agent.role == Role.Evader then
+      agent.copy(kind = VehicleKind.Car, startPositionNed = agent.startPositionNed.copy(z = 0))
+    else agent
