@@ -60,7 +60,9 @@ final case class LearnInFlight(
         "--learn: in the loop plan no policy decides; expected other loops"
       _ <- Expect.that(settings.policies.isEmpty):
         "--learn: expected no --policy beside it, got one; fly it apart"
-      file  <- LearnFile.read(folder).left.map("--learn: " + _)
+      file <- LearnFile.read(folder).left.map("--learn: " + _)
+      _    <- Expect.that(file.question.climbMps == 0):
+        "--learn: expected a policy that keeps its altitude, got one that climbs; --policy flies it"
       setup <- file.question.setup.left.map(mistake => s"--learn: $folder: $mistake")
       count = settings.fleet.agents.count(_.role == setup.role)
       _ <- Expect.that(count == 1):

@@ -1,7 +1,7 @@
 package skein.policy
 
-/** A trained policy. The inputs of its network are the observation, [[PlanarObservation.fromOwnHeading]]
-  * divided by [[LearnedPolicy.scales]]; its one output, between −1 and 1, is the turn.
+/** A trained policy. The inputs of its network are the observation of [[LearnerSpace.Level]], scaled; its one
+  * output, between −1 and 1, is the turn.
   *
   * A decision allocates two arrays as wide as the widest layer, and one for the observation.
   *
@@ -15,40 +15,21 @@ final case class LearnedPolicy(
     turnRateRadPerS: Double,
     turnRad: Double
 ) extends HeadingPolicy.Memoryless:
-  require(
-    shape.inputs == LearnedPolicy.Inputs,
-    s"a learned policy has ${LearnedPolicy.Inputs} inputs, got ${shape.inputs}"
-  )
-  require(
-    shape.activations.last.squashes,
-    s"a learned policy's output is squashed by tanh or clipped, got ${shape.activations.last.label}"
-  )
-
-  private val network = DenseNetwork(shape, parameters)
-  private val scales  = LearnedPolicy.scales.toArray
+  private val network = LearnedNetwork(shape, parameters, LearnerSpace.Level)
 
   def heading(seen: PlanarObservation): Double =
     seen.ownHeadingRad + share(seen) * (turnRateRadPerS * seen.elapsedS + turnRad)
 
   /** The network's output: the share of the largest turn, between −1 and 1, positive to the right. */
-  def share(seen: PlanarObservation): Double =
-    val what  = seen.fromOwnHeading
-    val input = network.scratch
-    var i     = 0
-    while i < LearnedPolicy.Inputs do
-      input(i) = what(i) / scales(i)
-      i += 1
-    network.output(input)
+  def share(seen: PlanarObservation): Double = network.shares(seen.fromOwnHeading)(0)
 
 object LearnedPolicy:
-  val Inputs = 9
+  /** The shape of the networks that learners train: rectifiers in hidden layers, tanh at the outputs. */
+  def shape(hidden: Vector[Int], space: LearnerSpace = LearnerSpace.Level): NeuralShape =
+    ofSpace(hidden, Vector.fill(hidden.size)(Activation.Relu) :+ Activation.Tanh, space)
 
-  /** Divisors of a learner's inputs, which scale all inputs to about −1 to 1. */
-  val scales: Vector[Double] = Vector(20, 20, 10, 10, 1, 1, 0.2, 0.2, 0.2)
-
-  /** The shape of the networks that learners train: rectifiers in hidden layers, tanh at the output. */
-  def shape(hidden: Vector[Int]): NeuralShape =
-    NeuralShape(hidden, Inputs, Vector.fill(hidden.size)(Activation.Relu) :+ Activation.Tanh)
+  private def ofSpace(hidden: Vector[Int], activations: Vector[Activation], space: LearnerSpace) =
+    NeuralShape(hidden, space.inputs, activations, space.outputs)
 
   /** The default limits of a role's turns: rad/s until the next decision, and rad per decision.
     *
@@ -67,7 +48,7 @@ object LearnedPolicy:
                             else s":${shape.activations.last.label}")
 
   /** Reads the text form of [[label]], such as `64x64`. */
-  def parse(text: String): Either[String, NeuralShape] =
+  def parse(text: String, space: LearnerSpace): Either[String, NeuralShape] =
     def layer(text: String) =
       val (width, activation) = text.span(_.isDigit)
       for
@@ -81,7 +62,7 @@ object LearnedPolicy:
       _.squashes && layers.sizeIs <= NeuralShape.MostLayers && layers.forall(_.isDefined)
     ) match
       case Some(kind) =>
-        Right(NeuralShape(layers.flatten.map(_._1), Inputs, layers.flatten.map(_._2) :+ kind))
+        Right(ofSpace(layers.flatten.map(_._1), layers.flatten.map(_._2) :+ kind, space))
       case None =>
         Left(
           s"expected up to ${NeuralShape.MostLayers} widths of hidden layers from 1 to " +
@@ -90,3 +71,27 @@ object LearnedPolicy:
         )
 
   private def named(text: String) = Activation.values.find(_.label == text)
+
+/** The network of a trained policy: scales observations, and squashes its outputs to −1 to 1. */
+private final class LearnedNetwork(shape: NeuralShape, parameters: Vector[Double], space: LearnerSpace):
+  require(
+    shape.inputs == space.inputs && shape.outputs == space.outputs,
+    s"a learned policy has ${space.inputs} inputs and ${space.outputs} outputs, got ${shape.inputs} and " +
+      s"${shape.outputs}"
+  )
+  require(
+    shape.activations.last.squashes,
+    s"a learned policy's output is squashed by tanh or clipped, got ${shape.activations.last.label}"
+  )
+
+  private val network = DenseNetwork(shape, parameters)
+  private val scales  = space.scales.toArray
+
+  /** The shares of an action for an observation, in the order of [[LearnerSpace]]. */
+  def shares(observed: Array[Double]): Array[Double] =
+    val input = network.scratch
+    var i     = 0
+    while i < scales.length do
+      input(i) = observed(i) / scales(i)
+      i += 1
+    network.outputs(input)

@@ -40,6 +40,11 @@ class OnnxPolicySuite extends munit.FunSuite, OnnxFiles:
         if name.startsWith("learned") then assertEquals(heading(again.policy), heading(policy))
         else assertEqualsDouble(heading(again.policy), heading(policy), 1e-12)
 
+  folder.test("climbing:6x4tanh: a network that was written is read back, to the bit"): folder =>
+    val policy = drawn("climbing:6x4tanh")
+    val file   = written(folder, OnnxPolicy.write(policy, "pursuer").fold(fail(_), identity))
+    assertEquals(PolicyFile.read(file).map(_.policy), Right(policy))
+
   /** One network as the frameworks write it: by `Gemm` (PyTorch), by `MatMul` and `Add` (Keras, JAX). */
   private val weights = tensor(3, 9)(i => StrictMath.sin(i))
   private val across  = Tensor(Vector(9, 3), weights.values.grouped(9).toVector.transpose.flatten)
@@ -144,7 +149,7 @@ class OnnxPolicySuite extends munit.FunSuite, OnnxFiles:
     assert(
       refused(folder, wrong).endsWith(
         "expected one input of shape (batch, 9) and one output of shape (batch, 1), " +
-          "got input 'obs' of (any, 12) and output 'act' of (1, 2)"
+          "or (batch, 13) and (batch, 2) if it climbs, got input 'obs' of (any, 12) and output 'act' of (1, 2)"
       ),
       refused(folder, wrong)
     )

@@ -29,7 +29,9 @@ final class LearnerTeams private[lanes] (
   private val passing =
     team.quantities.indices.filter(team.quantities(_).reduction != OfMoment.Newest).toArray
   private val isOfTwo = form.policies.isInstanceOf[OpponentLanes]
-  private val learns  = Array.tabulate(form.count)(learners.contains(_))
+  private val spaces  = learners.map(team.engagement.agents(_).policy).collect:
+    case policy: LearnerPolicy => policy.space
+  private val learns = Array.tabulate(form.count)(learners.contains(_))
 
   private var timetable: Timetable   = null
   private var operations: Array[Int] = null
@@ -106,10 +108,12 @@ final class LearnerTeams private[lanes] (
 
   def observe(learner: Int, into: Array[Float]): Unit =
     kernel.observe(operationOf(learner))
-    System.arraycopy(members(learners(learner)).nextMemory, WORLDS, into, 0, LearnerPolicy.Fields * WORLDS)
+    val space = spaces(learner)
+    val from  = members(learners(learner)).nextMemory
+    System.arraycopy(from, space.outputs * WORLDS, into, 0, space.inputs * WORLDS)
 
-  def turn(learner: Int, numbers: Array[Float]): Unit =
-    System.arraycopy(numbers, 0, members(learners(learner)).memory, 0, worlds)
+  def act(learner: Int, component: Int, numbers: Array[Float]): Unit =
+    System.arraycopy(numbers, 0, members(learners(learner)).memory, component * WORLDS, worlds)
 
   def decide(): Unit =
     while next < dueUntil do

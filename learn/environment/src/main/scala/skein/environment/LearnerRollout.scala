@@ -4,7 +4,7 @@ import scala.util.control.ControlThrowable
 import skein.forward.{LoopObserver, Rollout}
 import skein.lanes.{LearnerPolicy, LearnerTeams, LearnerWorlds, TeamCandidate}
 import skein.lanes.score.OfMoment
-import skein.policy.{Action, HeadingPolicy, PlanarObservation}
+import skein.policy.{Action, Observation, Policy}
 import skein.scenario.{Positions, Quantity, Reduction}
 import skein.units.OwnFailure
 
@@ -22,8 +22,9 @@ private final class LearnerRollout(side: LearnerSide, team: TeamCandidate, learn
   private var isAnew          = false
   private var due             = Nobody
   private var untilS          = 0f
-  private val turns           = Array.ofDim[Float](learners.size)
-  private val observed        = Array.ofDim[Double](learners.size, LearnerPolicy.Fields)
+  private val space           = side.settings.space
+  private val actions         = Array.ofDim[Float](learners.size, 2)
+  private val observed        = Array.ofDim[Double](learners.size, space.inputs)
   private var (northM, eastM) = (Array.empty[Double], Array.empty[Double])
   private val downM           = Array.ofDim[Double](agents.length)
   private val values          = Array.ofDim[Double](team.quantities.size)
@@ -48,10 +49,11 @@ private final class LearnerRollout(side: LearnerSide, team: TeamCandidate, learn
   def isDue(learner: Int): Boolean = due == learner
 
   def observe(learner: Int, into: Array[Float]): Unit =
-    for field <- 0 until LearnerPolicy.Fields do
+    for field <- 0 until space.inputs do
       into(field * LearnerWorlds.Most) = observed(learner)(field).toFloat
 
-  def turn(learner: Int, numbers: Array[Float]): Unit = turns(learner) = numbers(0)
+  def act(learner: Int, component: Int, numbers: Array[Float]): Unit =
+    actions(learner)(component) = numbers(0)
 
   /** [[flyOn]] makes the decisions. */
   def decide(): Unit = ()
@@ -94,15 +96,24 @@ private final class LearnerRollout(side: LearnerSide, team: TeamCandidate, learn
         suspend()
       catch case Anew => ()
 
-  private final class Outside(learner: Int) extends HeadingPolicy.Memoryless:
+  private final class Outside(learner: Int) extends Policy:
     private val byRate = side.mostTurn(learners(learner))._1
 
-    def heading(now: PlanarObservation): Double =
-      observed(learner) = now.fromOwnHeading
+    type Memory = Unit
+
+    def start: Unit = ()
+
+    override def isAgainstOne: Boolean = true
+
+    override def isPlanar: Boolean = !space.climbs
+
+    def choose(now: Observation, memory: Unit): (Action, Unit) =
+      observed(learner) = space.observe(now)
       due = learner
       ask()
       if isAnew then throw Anew
-      LearnerPolicy.headingRad(now, turns(learner), byRate)
+      val turnRad = LearnerPolicy.turnRad(now, actions(learner)(0), byRate)
+      (space.action(now, turnRad, actions(learner)(1)), ())
 
   private object scores extends LoopObserver:
     override def scored(timeS: Double, vehicle: Int, x: Double, y: Double, z: Double): Unit =

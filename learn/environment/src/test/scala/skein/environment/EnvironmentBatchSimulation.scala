@@ -3,14 +3,16 @@ package skein.environment
 import java.nio.{ByteBuffer, ByteOrder}
 import skein.forward.{Delays, Engagement, EpisodeOutcome, PlantResponse, Rollout}
 import skein.lanes.{LearnerTeams, TeamBatch, TeamCandidate, TeamWorlds}
-import skein.lanes.LearnerPolicy.Fields
 import skein.lanes.score.Judged
+import skein.policy.LearnerSpace
 import skein.scenario.{PaperDuel, Reduction, Scenarios, Separation}
 import skein.signal.SplitMix64
 import skein.vehicle.ReducedModel
 
 class EnvironmentBatchSimulation extends munit.FunSuite:
   private given Scenarios = Scenarios.ours
+
+  private val Fields = LearnerSpace.Level.inputs
 
   /** A batch, with a learner's view of its buffers. */
   private final class Learner(

@@ -1,6 +1,6 @@
 package skein.environment
 
-import skein.lanes.{LearnerPolicy, LearnerWorlds, Tower}
+import skein.lanes.{LearnerWorlds, Tower}
 import skein.policy.{Agent, Role}
 import skein.scenario.{Known, PaperDuel, Scenario, ScenarioKind, Scenarios, Surround}
 import skein.signal.SplitMix64
@@ -8,13 +8,16 @@ import skein.vehicle.VehicleKind
 
 class LearnerWorldsSuite extends munit.FunSuite:
   private given Scenarios =
-    Scenarios(Scenarios.ours.kinds :+ ScenarioKind(Tower()) :+ ScenarioKind(Meeting()) :+ ScenarioKind(CarChase()))
+    Scenarios(
+      Scenarios.ours.kinds :+ ScenarioKind(Tower()) :+ ScenarioKind(Meeting()) :+ ScenarioKind(CarChase())
+    )
 
   private val all = EnvironmentSettings(startWithinM = (2, 8), episodeS = 6)
 
   /** Each learner's observations at its decisions, and the sums of the scores, until the last score. */
   private def flown(side: LearnerSide, learning: Vector[Int], worlds: LearnerWorlds) =
-    val (starts, seen) = (Starts(side), Array.ofDim[Float](LearnerPolicy.Fields * LearnerWorlds.Most))
+    val space          = side.settings.space
+    val (starts, seen) = (Starts(side), Array.ofDim[Float](space.inputs * LearnerWorlds.Most))
     val observed       = Array.fill(learning.size)(Vector.newBuilder[Vector[Float]])
     val judged         = side.team(learning, None).judged.indices
     val decisions      = Array.ofDim[Int](learning.size)
@@ -27,12 +30,11 @@ class LearnerWorldsSuite extends munit.FunSuite:
     while goesOn && !worlds.hasEnded(0) do
       for learner <- learning.indices if worlds.isDue(learner) do
         worlds.observe(learner, seen)
-        observed(learner) += Vector.tabulate(LearnerPolicy.Fields)(field => seen(field * LearnerWorlds.Most))
+        observed(learner) += Vector.tabulate(space.inputs)(field => seen(field * LearnerWorlds.Most))
         decisions(learner) += 1
-        worlds.turn(
-          learner,
-          Array.fill(LearnerWorlds.Most)(math.sin(decisions(learner) * 0.2 + learner).toFloat)
-        )
+        for component <- 0 until space.outputs do
+          val share = math.sin(decisions(learner) * (0.2 + 0.15 * component) + learner)
+          worlds.act(learner, component, Array.fill(LearnerWorlds.Most)(share.toFloat))
       worlds.decide()
       goesOn = worlds.flyOn()
     worlds.close()
@@ -57,6 +59,11 @@ class LearnerWorldsSuite extends munit.FunSuite:
       all.copy(scenario = "meeting", learners = "pursuers", loop = "futures")                     -> 2e-3,
       all.copy(scenario = "tower", learners = "keeper", objective = "kept")                       -> 2e-2,
       all.copy(scenario = "tower", learners = "inspectors", objective = "kept", plant = "tilt")   -> 2e-2,
+      all.copy(climbMps = 2)                                                                      -> 5e-3,
+      all.copy(climbMps = 2, learners = "both", loop = "predictive")                              -> 5e-3,
+      all.copy(scenario = "surround", learners = "all", climbMps = 3, loop = "paused")            -> 5e-3,
+      all.copy(scenario = "tower", learners = "keeper", climbMps = 1, loop = "futures")           -> 5e-3,
+      all.copy(scenario = "convoy", learners = "escorts", climbMps = 1)                           -> 5e-3,
       all.copy(scenario = "car-chase")                                                            -> 2e-3,
       all.copy(scenario = "car-chase", loop = "predictive", plant = "tilt")                       -> 2e-3,
       all.copy(scenario = "convoy", learners = "escorts", objective = "between-cars")             -> 2e-3,
@@ -90,7 +97,7 @@ class LearnerWorldsSuite extends munit.FunSuite:
     val side                    = LearnerSide.of(settings).fold(fail(_), identity)
     val learning                = side.turns.head
     val worlds                  = EnvironmentBatch.worlds(side, side.engine(None), learning, None, 4)
-    val seen                    = Array.ofDim[Float](LearnerPolicy.Fields * LearnerWorlds.Most)
+    val seen                    = Array.ofDim[Float](side.settings.space.inputs * LearnerWorlds.Most)
     def begin(world: Int): Unit =
       for vehicle <- side.names.indices do worlds.restart(world, vehicle, 10f * vehicle, 3, 0.5f)
     def look(world: Int) = Vector.tabulate(learning.size): learner =>
@@ -102,7 +109,7 @@ class LearnerWorldsSuite extends munit.FunSuite:
     assert(worlds.flyOn())
     val first = look(2)
     for _ <- 0 until 20 do
-      for learner <- learning.indices do worlds.turn(learner, Array.tabulate(LearnerWorlds.Most)(0.3f * _))
+      for learner <- learning.indices do worlds.act(learner, 0, Array.tabulate(LearnerWorlds.Most)(0.3f * _))
       worlds.decide()
       assert(worlds.flyOn())
     val before = look(1)

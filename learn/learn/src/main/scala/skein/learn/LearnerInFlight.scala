@@ -1,14 +1,14 @@
 package skein.learn
 
 import skein.loop.learning.{FlownLearner, Transition}
-import skein.policy.{LearnedPolicy, Role}
+import skein.policy.{LearnerSpace, Role}
 import skein.signal.SplitMix64
 
 /** Continues learning from the transitions of one flight, with a replay learner. Rewards are those of
   * [[SideTask]]: the pursuer is rewarded for a small distance, the evader for a great one. Equal transitions
   * in equal lessons give equal weights.
   *
-  * @param bounds maximum turns of its policies: the last parameters of a [[LearnedPolicy]]
+  * @param bounds maximum turns of its policies: the last parameters of a [[skein.policy.LearnedPolicy]]
   * @param updates number of updates per transition
   * @param transitionsPerVersion number of transitions after which the newest policy is used
   */
@@ -20,7 +20,7 @@ final class LearnerInFlight private (
     transitionsPerVersion: Int,
     seed: Long
 ) extends FlownLearner:
-  private val scales  = LearnedPolicy.scales.map(_.toFloat)
+  private val scales  = LearnerSpace.Level.scales.map(_.toFloat)
   private val random  = SplitMix64(seed)
   private var lessons = 0L
   private var learned = 0L
@@ -79,7 +79,7 @@ object LearnerInFlight:
       transitionsPerVersion: Int,
       seed: Long
   )(load: Learner => Either[String, Unit]): Either[String, (Vector[Double], LearnerInFlight)] =
-    algorithm.learner(LearnedPolicy.Inputs, 1, 1, settings, seed, BatchThreads(1)) match
+    algorithm.learner(LearnerSpace.Level.inputs, 1, 1, settings, seed, BatchThreads(1)) match
       case learner: OffPolicy =>
         load(learner).map: _ =>
           (

@@ -1,7 +1,7 @@
 package skein.learn
 
 import skein.loop.learning.Transition
-import skein.policy.{LearnedPolicy, Role}
+import skein.policy.{LearnedPolicy, LearnerSpace, Role}
 import skein.signal.SplitMix64
 
 class LearnerInFlightSuite extends munit.FunSuite:
@@ -16,7 +16,7 @@ class LearnerInFlightSuite extends munit.FunSuite:
   private def transitions(count: Int, nearer: Double = 20): Vector[Transition] =
     val random = SplitMix64(seed)
     Vector.fill(count):
-      def seen  = Vector.fill(LearnedPolicy.Inputs)(random.nextDouble())
+      def seen  = Vector.fill(LearnerSpace.Level.inputs)(random.nextDouble())
       val share = 2 * random.nextDouble() - 1
       Transition(seen, share, seen, 30 - nearer * share)
 
