@@ -188,5 +188,5 @@ object PolicyFamily:
         .find(_.name == text)
         .toRight(
           s"expected a family of policies (${known.map(_.name).mkString(", ")}, " +
-            s"${NeuralPrefix}8x8, or ${LearnedPrefix}64x64), got '$text'"
+            s"${NeuralPrefix}8x8, ${LearnedPrefix}64x64, or ${ClimbingPrefix}64x64), got '$text'"
         )

@@ -91,32 +91,44 @@ class LearnerWorldsSuite extends munit.FunSuite:
         )
       for (one, other) <- sums.zip(scalars) do assertEqualsDouble(one, other, toleranceM * 60)
 
-  test("a world that restarts alone has the given positions and previous commands of its vehicles"):
-    val settings =
-      all.copy(scenario = "surround", learners = "all", loop = "paused", link = "none", plant = "tilt")
-    val side                    = LearnerSide.of(settings).fold(fail(_), identity)
-    val learning                = side.turns.head
-    val worlds                  = EnvironmentBatch.worlds(side, side.engine(None), learning, None, 4)
-    val seen                    = Array.ofDim[Float](side.settings.space.inputs * LearnerWorlds.Most)
-    def begin(world: Int): Unit =
-      for vehicle <- side.names.indices do worlds.restart(world, vehicle, 10f * vehicle, 3, 0.5f)
-    def look(world: Int) = Vector.tabulate(learning.size): learner =>
-      worlds.observe(learner, seen)
-      // The age of the first decision's time differs.
-      Vector.tabulate(6)(field => seen(field * LearnerWorlds.Most + world))
-    worlds.start(1, 6)
-    (0 until 4).foreach(begin)
-    assert(worlds.flyOn())
-    val first = look(2)
-    for _ <- 0 until 20 do
-      for learner <- learning.indices do worlds.act(learner, 0, Array.tabulate(LearnerWorlds.Most)(0.3f * _))
-      worlds.decide()
+  for settings <- Seq(
+      all.copy(scenario = "surround", learners = "all", loop = "paused", link = "none", plant = "tilt"),
+      all.copy(learners = "both", loop = "paused", link = "none", climbMps = 2),
+      all.copy(scenario = "car-chase", loop = "paused", link = "none")
+    )
+  do
+    test(s"${settings.scenario}, climbing by ${settings.climbMps} m/s: a restart alone forgets what was before"):
+      val side                    = LearnerSide.of(settings).fold(fail(_), identity)
+      val space                   = settings.space
+      val learning                = side.turns.head
+      val worlds                  = EnvironmentBatch.worlds(side, side.engine(None), learning, None, 4)
+      val seen                    = Array.ofDim[Float](space.inputs * LearnerWorlds.Most)
+      def begin(world: Int): Unit =
+        for vehicle <- side.names.indices do worlds.restart(world, vehicle, 10f * vehicle, 3, 2.5f)
+      def look(world: Int) = Vector.tabulate(learning.size): learner =>
+        worlds.observe(learner, seen)
+        // The age of the first decision's time differs.
+        (0 until space.inputs).filterNot(6 to 8 contains _).map(at => seen(at * LearnerWorlds.Most + world))
+      def fly(decisions: Int)(share: Int => Float): Unit = for _ <- 0 until decisions do
+        for learner <- learning.indices; component <- 0 until space.outputs do
+          worlds.act(learner, component, Array.tabulate(LearnerWorlds.Most)(share))
+        worlds.decide()
+        assert(worlds.flyOn())
+      worlds.start(1, 6)
+      (0 until 4).foreach(begin)
       assert(worlds.flyOn())
-    val before = look(1)
-    assertNotEquals(look(2), first)
-    begin(2)
-    assertEquals(look(2), first)
-    assertEquals(look(1), before)
+      val first = look(2)
+      fly(20)(0.3f * _)
+      val before = look(1)
+      assertNotEquals(look(2), first)
+      begin(2)
+      assertEquals(look(2), first)
+      assertEquals(look(1), before)
+      begin(3)
+      fly(20)(_ => 0.2f)
+      assertEquals(look(2), look(3))
+      assertNotEquals(look(2), look(1))
+      assertNotEquals(look(2), first)
 
 /** Ends after some three seconds: the older the readings, the earlier. */
 final case class Meeting() extends Scenario:
