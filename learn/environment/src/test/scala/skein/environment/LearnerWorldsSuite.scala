@@ -97,7 +97,9 @@ class LearnerWorldsSuite extends munit.FunSuite:
       all.copy(scenario = "car-chase", loop = "paused", link = "none")
     )
   do
-    test(s"${settings.scenario}, climbing by ${settings.climbMps} m/s: a restart alone forgets what was before"):
+    test(
+      s"${settings.scenario}, climbing by ${settings.climbMps} m/s: a restart alone forgets what was before"
+    ):
       val side                    = LearnerSide.of(settings).fold(fail(_), identity)
       val space                   = settings.space
       val learning                = side.turns.head
