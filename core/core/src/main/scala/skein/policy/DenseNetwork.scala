@@ -18,13 +18,12 @@ private[policy] final class DenseNetwork(shape: NeuralShape, parameters: Vector[
   /** A new array with room for the inputs, and for the outputs of each layer. */
   def scratch: Array[Double] = Array.ofDim[Double](widest)
 
-  /** The network's first output.
+  def output(inputs: Array[Double]): Double = outputs(inputs)(0)
+
+  /** Evaluates the network; its outputs are the first elements of the result.
     *
     * @param inputs the network's inputs, in [[scratch]], which is overwritten
     */
-  def output(inputs: Array[Double]): Double = outputs(inputs)(0)
-
-  /** The network's outputs, the first elements of the result. */
   def outputs(inputs: Array[Double]): Array[Double] =
     var input  = inputs
     var output = scratch

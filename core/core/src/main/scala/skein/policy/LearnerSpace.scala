@@ -6,10 +6,8 @@ import skein.units.Vector3
   * and, if it climbs, of its greatest vertical speed, positive up.
   */
 final case class LearnerSpace(climbs: Boolean):
-  /** Number of components of an observation. */
-  def inputs: Int = if climbs then LearnerSpace.ClimbInputs else LearnerSpace.LevelInputs
-
-  /** Number of components of an action. */
+  /** Number of an observation's components; `outputs` is that of an action's. */
+  def inputs: Int  = if climbs then LearnerSpace.ClimbInputs else LearnerSpace.LevelInputs
   def outputs: Int = if climbs then 2 else 1
 
   /** Divisors of a network's inputs, which scale all inputs to about −1 to 1. */

@@ -33,7 +33,6 @@ trait LearnerWorlds extends AutoCloseable:
   /** Sets a component of the action of a learner that is due, by world; see [[LearnerPolicy]]. */
   def act(learner: Int, component: Int, numbers: Array[Float]): Unit
 
-  /** Makes the due decisions. */
   def decide(): Unit
 
   /** Whether the scenario was over in a world since its restart, by an end of its own. */

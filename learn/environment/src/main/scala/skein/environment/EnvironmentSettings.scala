@@ -57,7 +57,6 @@ final case class EnvironmentSettings(
 ):
   import EnvironmentSettings.*
 
-  /** What learners observe and decide. */
   def space: LearnerSpace = LearnerSpace(climbMps > 0)
 
   /** The maximum turn of a learner: rad/s until the next decision, and rad in one instant. */
