@@ -175,14 +175,18 @@ object LearnerTeams:
     private val timetables = Timetables()
 
     /** The reason why SIMD does not support a team; None if it does. */
-    def refusal(team: TeamCandidate): Option[String] = forms.of(team).left.toOption
+    def refusal(team: TeamCandidate): Option[String] = formOf(team).left.toOption
 
     /** @param learners indices of the vehicles that decide by [[LearnerPolicy]]
       * @param worlds number of worlds, at most [[LearnerWorlds.Most]]
       * @return Left says why SIMD does not support them
       */
     def of(team: TeamCandidate, learners: Vector[Int], worlds: Int): Either[String, LearnerTeams] =
-      forms.of(team).map(form => LearnerTeams(form, team, learners.toArray, worlds, timetableOf(form, _)))
+      formOf(team).map(form => LearnerTeams(form, team, learners.toArray, worlds, timetableOf(form, _)))
+
+    private def formOf(team: TeamCandidate) = forms
+      .of(team)
+      .filterOrElse(!_.scores.asksTime, "a measure depends on the time, and each world restarts at its own")
 
     private def timetableOf(form: TeamForm, draw: Long): Timetable =
       val key = keyOf(draw)
