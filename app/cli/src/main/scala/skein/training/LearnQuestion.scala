@@ -5,7 +5,7 @@ import skein.forward.{Delays, Engagement}
 import skein.lanes.{Engine, TeamCandidate}
 import skein.learn.{Algorithm, LearnerSettings, SideTask}
 import skein.optimise.{Objective, TeamEvaluator, ValueEvaluator}
-import skein.policy.{LearnedPolicy, PolicyFamily, Role}
+import skein.policy.{LearnedPolicy, LearnerSpace, PolicyFamily, Role}
 import skein.scenario.{PaperDuel, ScenarioText, Scenarios}
 import skein.search.{Baseline, Conditions, Judge}
 import skein.settings.{PolicyFile, ScenarioSettings}
@@ -126,8 +126,8 @@ final case class LearnSetup(
     conditions: Conditions.Resolved,
     delays: Delays
 ):
-  val family: PolicyFamily =
-    PolicyFamily.learned(LearnedPolicy.shape(question.learner.hidden, environment.space))
+  val space: LearnerSpace  = LearnerSpace(question.climbMps > 0)
+  val family: PolicyFamily = PolicyFamily.learned(LearnedPolicy.shape(question.learner.hidden, space))
 
   private def isOfTeam = game.opponent.isEmpty
 
@@ -210,7 +210,7 @@ final case class LearnSetup(
 
   /** The greatest turn rate and vertical speed, as the last parameters of [[family]]. */
   def bounds: Vector[Double] =
-    Vector(question.turnRateRadPerS, 0.0) ++ Option.when(question.climbMps > 0)(question.climbMps)
+    Vector(question.turnRateRadPerS, 0.0) ++ Option.when(space.climbs)(question.climbMps)
 
 object LearnSetup:
   /** Approximate number of evaluations in all. */

@@ -20,7 +20,7 @@ private[policy] final class DenseNetwork(shape: NeuralShape, parameters: Vector[
 
   def output(inputs: Array[Double]): Double = outputs(inputs)(0)
 
-  /** Evaluates the network; its outputs are the first elements of the result.
+  /** Evaluates the network.
     *
     * @param inputs the network's inputs, in [[scratch]], which is overwritten
     */
@@ -51,7 +51,7 @@ private[policy] final class DenseNetwork(shape: NeuralShape, parameters: Vector[
       input = output
       output = spare
       layer += 1
-    input
+    java.util.Arrays.copyOf(input, widths.last)
 
 private[policy] object DenseNetwork:
   private final val Relu = 0

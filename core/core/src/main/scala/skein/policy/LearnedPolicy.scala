@@ -1,27 +1,40 @@
 package skein.policy
 
-/** A trained policy. The inputs of its network are the observation of [[LearnerSpace.Level]], scaled; its one
-  * output, between −1 and 1, is the turn.
+/** A trained policy. The inputs of its network are the observation of its space, scaled; its outputs,
+  * squashed to −1 to 1, are the action.
   *
   * A decision allocates two arrays as wide as the widest layer, and one for the observation.
   *
   * @param parameters weights and biases in the order of [[NeuralShape]]
-  * @param turnRateRadPerS maximum turn rate until the next decision
-  * @param turnRad maximum turn of one decision, whatever the time since the last
   */
 final case class LearnedPolicy(
     shape: NeuralShape,
     parameters: Vector[Double],
     turnRateRadPerS: Double,
-    turnRad: Double
-) extends HeadingPolicy.Memoryless:
-  private val network = LearnedNetwork(shape, parameters, LearnerSpace.Level)
+    turnRad: Double,
+    climbMps: Double = 0
+) extends SharesPolicy:
+  val space: LearnerSpace = LearnerSpace.of(shape)
+  require(
+    shape.inputs == space.inputs && shape.outputs == space.outputs,
+    s"a learned policy has ${space.inputs} inputs and ${space.outputs} outputs, got ${shape.inputs} and " +
+      s"${shape.outputs}"
+  )
+  require(
+    shape.activations.last.squashes,
+    s"a learned policy's output is squashed by tanh or clipped, got ${shape.activations.last.label}"
+  )
 
-  def heading(seen: PlanarObservation): Double =
-    seen.ownHeadingRad + share(seen) * (turnRateRadPerS * seen.elapsedS + turnRad)
+  private val network = DenseNetwork(shape, parameters)
+  private val scales  = space.scales.toArray
 
-  /** The network's output: the share of the largest turn, between −1 and 1, positive to the right. */
-  def share(seen: PlanarObservation): Double = network.shares(seen.fromOwnHeading)(0)
+  def shares(observed: Array[Double]): Array[Double] =
+    val input = network.scratch
+    var i     = 0
+    while i < scales.length do
+      input(i) = observed(i) / scales(i)
+      i += 1
+    network.outputs(input)
 
 object LearnedPolicy:
   /** The shape of the networks that learners train: rectifiers in hidden layers, tanh at the outputs. */
@@ -71,27 +84,3 @@ object LearnedPolicy:
         )
 
   private def named(text: String) = Activation.values.find(_.label == text)
-
-/** The network of a trained policy: scales observations, and squashes its outputs to −1 to 1. */
-private final class LearnedNetwork(shape: NeuralShape, parameters: Vector[Double], space: LearnerSpace):
-  require(
-    shape.inputs == space.inputs && shape.outputs == space.outputs,
-    s"a learned policy has ${space.inputs} inputs and ${space.outputs} outputs, got ${shape.inputs} and " +
-      s"${shape.outputs}"
-  )
-  require(
-    shape.activations.last.squashes,
-    s"a learned policy's output is squashed by tanh or clipped, got ${shape.activations.last.label}"
-  )
-
-  private val network = DenseNetwork(shape, parameters)
-  private val scales  = space.scales.toArray
-
-  /** The shares of an action for an observation, in the order of [[LearnerSpace]]. */
-  def shares(observed: Array[Double]): Array[Double] =
-    val input = network.scratch
-    var i     = 0
-    while i < scales.length do
-      input(i) = observed(i) / scales(i)
-      i += 1
-    network.outputs(input)

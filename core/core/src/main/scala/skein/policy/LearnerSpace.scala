@@ -43,6 +43,35 @@ final case class LearnerSpace(climbs: Boolean):
         Vector3(speed * StrictMath.cos(headingRad), speed * StrictMath.sin(headingRad), -upMps)
       )
 
+/** A policy that observes and decides as learners do, without a memory. */
+trait SharesPolicy extends Policy:
+  type Memory = Unit
+
+  def space: LearnerSpace
+
+  /** The largest turn rate until the next decision, rad/s; the largest turn of one decision, whatever the
+    * time since the last, rad; and the greatest vertical speed, m/s.
+    */
+  def turnRateRadPerS: Double
+  def turnRad: Double
+  def climbMps: Double
+
+  /** The components of the action for an observation, each from −1 to 1. */
+  def shares(observed: Array[Double]): Array[Double]
+
+  final def start: Unit = ()
+
+  final override def isAgainstOne: Boolean = true
+
+  final override def isPlanar: Boolean = !space.climbs
+
+  final def act(seen: Observation, shares: Array[Double]): Action =
+    val turn = shares(0) * (turnRateRadPerS * seen.elapsed.toSeconds + turnRad)
+    space.action(seen, turn, if space.climbs then shares(1) * climbMps else 0)
+
+  final def choose(seen: Observation, memory: Unit): (Action, Unit) =
+    (act(seen, shares(space.observe(seen))), ())
+
 object LearnerSpace:
   private final val LevelInputs = 9
   private final val ClimbInputs = 13

@@ -135,8 +135,7 @@ object PolicyFamily:
       SearchSpace(shape.names.map(Axis(_, -3.0, 3.0)) ++ most(climbs)),
       parameters =>
         val (weights, most) = parameters.splitAt(shape.parameters)
-        if climbs then ClimbingPolicy(shape, weights, most(0), most(1), most(2))
-        else LearnedPolicy(shape, weights, most(0), most(1))
+        LearnedPolicy(shape, weights, most(0), most(1), most.lift(2).getOrElse(0))
     )
 
   /** The axes of what the largest shares of a learner's action stand for. */

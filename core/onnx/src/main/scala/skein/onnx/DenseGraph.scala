@@ -1,7 +1,7 @@
 package skein.onnx
 
 import skein.onnx.OnnxGraph.*
-import skein.policy.{Activation, LearnerSpace, NeuralShape}
+import skein.policy.{Activation, LearnedPolicy, LearnerSpace, NeuralShape}
 
 /** Converts between dense networks and ONNX graphs. A graph's input is the observation in SI units; its
   * output is the action, between −1 and 1 ([[LearnerSpace]]).
@@ -234,16 +234,16 @@ private[onnx] object DenseGraph:
     */
   private def quotient(one: Double, by: Double): Double = if one.toFloat == by.toFloat then 1 else one / by
 
-  /** Writes a network as a graph: the scales, then a `Gemm` and an activation for each layer. */
-  def graph(network: Network, metadata: Map[String, String]): OnnxGraph =
-    val (shape, parameters) = network
-    val widths              = shape.widths
-    val starts              =
+  /** Writes a policy's network as a graph: the scales, then a `Gemm` and an activation for each layer. */
+  def graph(policy: LearnedPolicy, metadata: Map[String, String]): OnnxGraph =
+    val shape  = policy.shape
+    val widths = shape.widths
+    val starts =
       widths.zip(widths.drop(1)).map((inputs, neurons) => neurons * (inputs + 1)).scanLeft(0)(_ + _)
     val layers  = shape.activations.indices.toVector
-    val scales  = "scales" -> Tensor(Vector(shape.inputs), LearnerSpace.of(shape).scales)
+    val scales  = "scales" -> Tensor(Vector(shape.inputs), policy.space.scales)
     val weights = layers.flatMap: layer =>
-      val rows = parameters.slice(starts(layer), starts(layer + 1)).grouped(widths(layer) + 1).toVector
+      val rows = policy.parameters.slice(starts(layer), starts(layer + 1)).grouped(widths(layer) + 1).toVector
       Vector(
         s"weights-${layer + 1}" -> Tensor(Vector(widths(layer + 1), widths(layer)), rows.flatMap(_.init)),
         s"biases-${layer + 1}"  -> Tensor(Vector(widths(layer + 1)), rows.map(_.last))

@@ -72,16 +72,19 @@ object OnnxPolicy:
     * @return Left says why the policy is no network
     */
   def write(policy: Policy, role: String): Either[String, Array[Byte]] =
-    def written(shape: NeuralShape, parameters: Vector[Double], most: (String, Double)*) =
-      val notes = most.map((note, value) => note -> value.toString) :+ (RoleNote -> role)
-      Right(OnnxFormat.write(DenseGraph.graph((shape, parameters), notes.toMap)))
-    policy match
-      case LearnedPolicy(shape, parameters, rate, turn) =>
-        written(shape, parameters, RateNote -> rate, TurnNote -> turn)
-      case ClimbingPolicy(shape, parameters, rate, turn, climb) =>
-        written(shape, parameters, RateNote -> rate, TurnNote -> turn, ClimbNote -> climb)
-      case neural: NeuralPolicy => write(seeingMore(neural), role)
+    (policy match
+      case learned: LearnedPolicy => Right(learned)
+      case neural: NeuralPolicy   => Right(seeingMore(neural))
       case _ => Left("only networks have an ONNX form: families neural:…, learned:… and climbing:…")
+    ).map: learned =>
+      OnnxFormat.write(DenseGraph.graph(
+        learned,
+        Map(
+          RoleNote -> role,
+          RateNote -> learned.turnRateRadPerS.toString,
+          TurnNote -> learned.turnRad.toString
+        ) ++ Option.when(learned.space.climbs)(ClimbNote -> learned.climbMps.toString)
+      ))
 
   /** An equal network with more inputs, whose weights are zero. */
   private def seeingMore(policy: NeuralPolicy): LearnedPolicy =
@@ -214,21 +217,13 @@ object OnnxPolicy:
     */
   private final class RunPolicy(
       asked: Array[Float] => Either[String, Array[Float]],
-      space: LearnerSpace,
-      turnRateRadPerS: Double,
-      turnRad: Double,
-      climbMps: Double
-  ) extends Policy:
-    type Memory = Unit
-
-    def start: Unit = ()
-
-    override def isAgainstOne: Boolean = true
-
-    override def isPlanar: Boolean = !space.climbs
-
-    def choose(seen: Observation, memory: Unit): (Action, Unit) =
-      val shares = answer(asked, space, space.observe(seen))
-        .fold(reason => throw IllegalStateException(s"the policy: $reason"), identity)
-      val turn = shares(0) * (turnRateRadPerS * seen.elapsed.toSeconds + turnRad)
-      (space.action(seen, turn, if space.climbs then shares(1) * climbMps else 0), ())
+      val space: LearnerSpace,
+      val turnRateRadPerS: Double,
+      val turnRad: Double,
+      val climbMps: Double
+  ) extends SharesPolicy:
+    def shares(observed: Array[Double]): Array[Double] =
+      answer(asked, space, observed).fold(
+        reason => throw IllegalStateException(s"the policy: $reason"),
+        identity
+      )

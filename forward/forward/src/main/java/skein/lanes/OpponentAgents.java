@@ -110,7 +110,6 @@ final class OpponentAgents extends TimetableAgents implements TeamMember {
     return policy.newMemory;
   }
 
-  /** Fills the observation of a decision. */
   private void see(TimetableAgents[] all, int[] views, int view, float[] times, int number) {
     if (eye != null) {
       believe(views[view + self] * WORLDS, times, number);

@@ -22,13 +22,8 @@ final case class LearnerPolicy(byRate: Boolean, space: LearnerSpace = LearnerSpa
   def choose(seen: Observation, memory: Memory): (Action, Memory) =
     val observed = space.observe(seen)
     val count    = space.outputs
-    val upMps    = if space.climbs then memory(1) else 0.0
+    val turnRad  = if byRate then memory(0) * seen.elapsed.toSeconds else memory(0)
     (
-      space.action(seen, LearnerPolicy.turnRad(seen, memory(0), byRate), upMps),
+      space.action(seen, turnRad, if space.climbs then memory(1) else 0),
       Vector.tabulate(memory.size)(i => if i < count then memory(i) else observed(i - count))
     )
-
-object LearnerPolicy:
-  /** A turn to the right, by a rate since the last decision or by an angle, rad. */
-  def turnRad(seen: Observation, turn: Double, byRate: Boolean): Double =
-    if byRate then turn * seen.elapsed.toSeconds else turn

@@ -2,9 +2,9 @@ package skein.environment
 
 import scala.util.control.ControlThrowable
 import skein.forward.{LoopObserver, Rollout}
-import skein.lanes.{LearnerPolicy, LearnerTeams, LearnerWorlds, TeamCandidate}
+import skein.lanes.{LearnerTeams, LearnerWorlds, TeamCandidate}
 import skein.lanes.score.OfMoment
-import skein.policy.{Action, Observation, Policy}
+import skein.policy.{Action, LearnerSpace, SharesPolicy}
 import skein.scenario.{Positions, Quantity, Reduction}
 import skein.units.OwnFailure
 
@@ -96,24 +96,21 @@ private final class LearnerRollout(side: LearnerSide, team: TeamCandidate, learn
         suspend()
       catch case Anew => ()
 
-  private final class Outside(learner: Int) extends Policy:
+  /** Its shares are rad/s or rad, and m/s: [[EnvironmentGroup]] has multiplied them already. */
+  private final class Outside(learner: Int) extends SharesPolicy:
     private val byRate = side.mostTurn(learners(learner))._1
 
-    type Memory = Unit
+    def space: LearnerSpace     = side.settings.space
+    def turnRateRadPerS: Double = if byRate then 1 else 0
+    def turnRad: Double         = if byRate then 0 else 1
+    def climbMps: Double        = 1
 
-    def start: Unit = ()
-
-    override def isAgainstOne: Boolean = true
-
-    override def isPlanar: Boolean = !space.climbs
-
-    def choose(now: Observation, memory: Unit): (Action, Unit) =
-      observed(learner) = space.observe(now)
+    def shares(seen: Array[Double]): Array[Double] =
+      observed(learner) = seen
       due = learner
       ask()
       if isAnew then throw Anew
-      val turnRad = LearnerPolicy.turnRad(now, actions(learner)(0), byRate)
-      (space.action(now, turnRad, actions(learner)(1)), ())
+      actions(learner).map(_.toDouble)
 
   private object scores extends LoopObserver:
     override def scored(timeS: Double, vehicle: Int, x: Double, y: Double, z: Double): Unit =

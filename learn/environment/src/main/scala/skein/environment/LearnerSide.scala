@@ -32,7 +32,6 @@ private[environment] final case class LearnerSide(
   /** Makes worlds that SIMD simulates. */
   val maker: LearnerTeams.Maker = LearnerTeams.Maker(timing, link, response)
 
-  /** Number of learners in an environment. */
   def learners: Int = turns.head.size
 
   def roleOf(vehicle: Int): Role = engagement.roles(vehicle)

@@ -51,8 +51,7 @@ class SideTaskSimulation extends munit.FunSuite:
     for (number, at) <- seen.fromOwnHeading.zip(LearnerSpace.Level.scales).map(_ / _).zipWithIndex do
       pass.input(at) = number.toFloat
     pass.forward(actor, 0, 1)
-    assertEqualsDouble(policy.share(seen), math.tanh(pass.output(0)), 1e-6)
-    assertEqualsDouble(policy.heading(seen), 0.7 + 0.1 * math.tanh(pass.output(0)), 1e-6)
+    assertEqualsDouble(policy.shares(seen.fromOwnHeading)(0), math.tanh(pass.output(0)), 1e-6)
 
   for side <- Seq("pursuer", "evader") do
     test(s"the $side's episode equals that of its policy in forward simulation"):

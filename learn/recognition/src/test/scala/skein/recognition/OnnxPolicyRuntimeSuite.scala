@@ -26,7 +26,7 @@ class OnnxPolicyRuntimeSuite extends munit.FunSuite, OnnxFiles, Unhurried:
         val differences = Vector.fill(500):
           val what   = seen(random, 0.2)
           val answer = model.run(what.fromOwnHeading.map(_.toFloat), Vector(1, 9)).fold(fail(_), identity)
-          math.abs(answer("action").values.head - policy.share(what))
+          math.abs(answer("action").values.head - policy.shares(what.fromOwnHeading)(0))
         assert(differences.max < 2e-6, s"seed $seed: ${differences.max}")
 
   private val weights = Tensor(Vector(9, 1), Vector(0.0, 1, 0, 0, 0, 0, 0, 0, 0))
