@@ -100,13 +100,13 @@ class LearnerWorldsSuite extends munit.FunSuite:
     test(
       s"${settings.scenario}, climbing by ${settings.climbMps} m/s: a restart alone forgets what was before"
     ):
-      val side                    = LearnerSide.of(settings).fold(fail(_), identity)
-      val space                   = settings.space
-      val learning                = side.turns.head
-      val worlds                  = EnvironmentBatch.worlds(side, side.engine(None), learning, None, 4)
-      val seen                    = Array.ofDim[Float](space.inputs * LearnerWorlds.Most)
-      def begin(world: Int): Unit =
-        for vehicle <- side.names.indices do worlds.restart(world, vehicle, 10f * vehicle, 3, 2.5f)
+      val side     = LearnerSide.of(settings).fold(fail(_), identity)
+      val space    = settings.space
+      val learning = side.turns.head
+      val worlds   = EnvironmentBatch.worlds(side, side.engine(None), learning, None, 4)
+      val seen     = Array.ofDim[Float](space.inputs * LearnerWorlds.Most)
+      def begin(world: Int, headingRad: Float): Unit =
+        for vehicle <- side.names.indices do worlds.restart(world, vehicle, 10f * vehicle, 3, headingRad)
       def look(world: Int) = Vector.tabulate(learning.size): learner =>
         worlds.observe(learner, seen)
         // The age of the first decision's time differs.
@@ -116,21 +116,25 @@ class LearnerWorldsSuite extends munit.FunSuite:
           worlds.act(learner, component, Array.tabulate(LearnerWorlds.Most)(share))
         worlds.decide()
         assert(worlds.flyOn())
-      worlds.start(1, 6)
-      (0 until 4).foreach(begin)
-      assert(worlds.flyOn())
-      val first = look(2)
-      fly(20)(0.3f * _)
-      val before = look(1)
-      assertNotEquals(look(2), first)
-      begin(2)
-      assertEquals(look(2), first)
-      assertEquals(look(1), before)
-      begin(3)
-      fly(20)(_ => 0.2f)
-      assertEquals(look(2), look(3))
-      assertNotEquals(look(2), look(1))
-      assertNotEquals(look(2), first)
+      // World 2 restarts along one heading, wherever it began.
+      val after = Seq(2.5f, 0.5f).map: headingRad =>
+        worlds.start(1, 6)
+        for world <- 0 until 4 do begin(world, headingRad)
+        assert(worlds.flyOn())
+        val first = look(2)
+        fly(20)(0.3f * _)
+        val before = look(1)
+        assertNotEquals(look(2), first)
+        begin(2, 2.5f)
+        val again = look(2)
+        assertEquals(again == first, headingRad == 2.5f)
+        assertEquals(look(1), before)
+        begin(3, 2.5f)
+        fly(20)(_ => 0.2f)
+        assertEquals(look(2), look(3))
+        assertNotEquals(look(2), look(1))
+        (again, look(2))
+      assertEquals(after(1), after(0))
 
 /** Ends after some three seconds: the older the readings, the earlier. */
 final case class Meeting() extends Scenario:
