@@ -30,6 +30,7 @@ skein-scenario 1
 
 from __future__ import annotations
 
+import dataclasses
 import os
 import re
 from collections.abc import Callable, Sequence
@@ -38,8 +39,10 @@ from pathlib import Path
 from typing import Any
 
 from .actions import Action, Yaw, along, attitude, hover, land, position, turn, velocity, velocity_at
+from .closures import bound
 from .formula import atan2, hypot, minimum, smallest, where
-from .untraceable import explained
+from .places import plainly
+from .untraceable import explained, refused
 
 __all__ = [
     "Action",
@@ -158,7 +161,9 @@ class Observation:
     @property
     def opponent(self) -> Known:
         """The nearest rival in the plane; of several, the first."""
-        rivals = self.rivals or [place for place in range(len(self.vehicles)) if place != self.place] or [self.place]
+        rivals = self.rivals or [place for place in range(len(self.vehicles)) if place != self.place]
+        if not rivals:
+            raise refused("it seeks an opponent of the only vehicle")
         return smallest([self.vehicles[one] for one in rivals], self.own.distance_m)
 
     def along(self, heading_rad: Any, speed_mps: Any, yaw: Yaw = Yaw()) -> Action:
@@ -207,6 +212,9 @@ class Vehicle:
     most_mps: Any = None
     least_apart_m: Any = 0.0
 
+    def __post_init__(self) -> None:
+        self.policy, self.wants = bound(self.policy), bound(self.wants)
+
 
 @dataclass(frozen=True)
 class Measure:
@@ -237,6 +245,9 @@ class Series:
     unit: str
     of: Callable[[Moment], Any]
     bound: tuple[str, Any] | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "of", bound(self.of))
 
     def mean(self, name: str, *, last_s: Any = None, after_s: Any = None) -> Measure:
         return self._reduced(name, "mean", last_s, after_s)
@@ -318,7 +329,7 @@ class Scenario:
     Attributes
     ----------
     name : str
-        Name in settings and recordings; by default the class's name in words.
+        Name in settings and recordings, in any case and with spaces; by default the class's name.
     duration_s : float
         Duration of a flight, s.
     note : str
@@ -332,10 +343,18 @@ class Scenario:
     note = ""
     scene = "empty"
 
+    def __new__(cls, *_: Any, **__: Any) -> Any:
+        __tracebackhide__ = True
+        for one in cls.__mro__[: cls.__mro__.index(Scenario)]:
+            settings = _undeclared(one)
+            if settings:
+                raise TypeError(f"{one.__name__} has settings ({', '.join(settings)}): write @dataclass above the class")
+        return super().__new__(cls)
+
     @property
     def title(self) -> str:
-        """The name in lower-case letters."""
-        return self.name or _words(type(self).__name__)
+        """The name in lower-case letters, with dashes between words."""
+        return "-".join(re.findall(r"\w+", (self.name or _words(type(self).__name__)).lower().replace("_", " ")))
 
     def vehicles(self) -> Sequence[Vehicle]:
         raise NotImplementedError("a scenario has a method vehicles()")
@@ -354,6 +373,7 @@ class Scenario:
         """Whether the flight ends before its duration."""
         return False
 
+    @plainly
     def text(self) -> str:
         """The scenario as data, which ``./skein fly --scenario FILE.scenario`` and all other commands accept.
 
@@ -362,15 +382,20 @@ class Scenario:
         Untraceable
             If a function's computation cannot be traced; with its line, and what to write instead.
         """
+        return self._file()[0]
+
+    def _file(self) -> tuple[str, dict[int, str]]:
+        """The text, and the places in Python of its lines, by their numbers."""
         from .written import Writer
 
         try:
-            return Writer(self).text()
-        except TypeError as error:
+            return Writer(self).file()
+        except (TypeError, ValueError) as error:
             if (better := explained(error)) is None:
                 raise
-            raise better from error
+            raise better.with_traceback(error.__traceback__) from None
 
+    @plainly
     def write(self, file: str | os.PathLike[str]) -> Path:
         """Writes `text` to a file, whose name ends in ``.scenario``."""
         path = Path(file)
@@ -378,6 +403,15 @@ class Scenario:
             raise ValueError(f"expected a file that ends in .scenario, got {path}")
         path.write_text(self.text(), encoding="utf-8")
         return path
+
+
+def _undeclared(of: type) -> list[str]:
+    """Names of the settings of a class that is no dataclass."""
+    if "__dataclass_fields__" in vars(of):
+        return []
+    fields = [name for name, value in vars(of).items() if isinstance(value, dataclasses.Field)]
+    typed = vars(of).get("__annotations__", {}).items()
+    return fields + [name for name, kind in typed if kind in (float, "float") and name not in (*fields, *vars(Scenario))]
 
 
 def _words(name: str) -> str:

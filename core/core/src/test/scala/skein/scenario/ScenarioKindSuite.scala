@@ -75,7 +75,7 @@ class ScenarioKindSuite extends munit.FunSuite:
     assertEquals(mistake("second", "A"), Left("agents: expected a name of its own for each, got 'A' twice"))
     assertEquals(
       mistake("speedMps", "-1"),
-      Left("agents: expected a speed of 0 or more, got -1.0 m/s, of A")
+      Left("agents: expected a speed from 0 to 100.0 m/s, got -1.0 m/s, of A")
     )
     assertEquals(
       mistake("north", "NaN"),
