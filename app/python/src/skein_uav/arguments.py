@@ -29,8 +29,8 @@ class WrittenFile(str):
             number = found[1]
             return f"{self.places.get(int(number), '')}: ".removeprefix(": ") if number else ""
 
-        option = r"(?:--scenario: )?"
-        return re.sub(rf"{option}{re.escape(self)}: (?:line (\d+): )?(?:by its defaults: )?", placed, complaint)
+        file = rf"(?:--scenario: )?{re.escape(self)}: (?:line (\d+): )?(?:by its defaults: )?"
+        return re.sub(file, placed, complaint).replace(": agents: ", ": vehicles(): ")
 
 
 def scenario_file(scenario: Scenario | str | os.PathLike[str] | None, folder: Path) -> str | None:

@@ -7,8 +7,8 @@ import os
 import signal
 import subprocess
 import tempfile
-from collections.abc import Iterable, Mapping
-from contextlib import ExitStack, nullcontext
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager, nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -210,9 +210,14 @@ def search(
     Returns
     -------
     Found
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If it was interrupted; states how it goes on.
     """
     arguments.renamed("search", options, set="settings")
-    with arguments.folder(out) as folder:
+    with arguments.folder(out) as folder, _goes_on(folder):
         tables = run(
             "search",
             family=family,
@@ -233,6 +238,17 @@ def search(
         pd.read_csv(landscape) if landscape.exists() else None,
         folder,
     )
+
+
+@contextmanager
+def _goes_on(folder: Path) -> Iterator[None]:
+    """Says how an interrupted search goes on."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        if not (folder / "search.json").exists():
+            raise
+        raise KeyboardInterrupt(f"skein.run('search', resume='{folder}') goes on with this search") from None
 
 
 @plainly

@@ -13,6 +13,8 @@ from typing import Any, ParamSpec, TypeVar
 
 from .errors import SkeinError
 
+_EXPLAINED = (SkeinError, TypeError, ValueError, KeyboardInterrupt)
+
 P = ParamSpec("P")
 T = TypeVar("T")
 
@@ -60,10 +62,10 @@ def plainly(function: Callable[P, T]) -> Callable[P, T]:
         __tracebackhide__ = True  # for IPython and pytest
         try:
             return function(*args, **kwargs)
-        except Exception as error:
+        except (Exception, KeyboardInterrupt) as error:
             frames = list(_each(error.__traceback__))
             own = [one for one in frames if is_users(one.tb_frame.f_code)]
-            if not isinstance(error, (SkeinError, TypeError, ValueError)) and frames[-1:] != own[-1:]:
+            if not isinstance(error, _EXPLAINED) and frames[-1:] != own[-1:]:
                 raise
             trace = None
             for one in reversed(own):

@@ -12,6 +12,7 @@ _NUMBER = r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?"
 
 #: Cells for people with several numbers, or one with its unit, and a suffix of the column's name for each number.
 _PARTS = [
+    (re.compile(f"({_NUMBER}) ± ({_NUMBER}), ({_NUMBER}) … ({_NUMBER})"), ("", " sd", " min", " max")),
     (re.compile(f"({_NUMBER})/({_NUMBER})/({_NUMBER})"), (" mean", " median", " p99")),
     (re.compile(f"({_NUMBER}) … ({_NUMBER})"), (" min", " max")),
     (re.compile(f"({_NUMBER}) %"), (" %",)),

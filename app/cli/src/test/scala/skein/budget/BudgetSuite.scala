@@ -106,6 +106,7 @@ class BudgetSuite extends munit.FunSuite, Optimised:
     assertEquals(json("engine").str, "SIMD")
     assertEquals(json("cells")(1)("meanMs").num, 25.0)
     assertEquals(json("truth").num, 8.0)
+    assertEquals(json("sentence").str, map.sentence(20))
     val texts = BudgetFigure(Vector(map)).shapes.collect { case text: Mark.Text => text.content }
     assert(texts.exists(_.contains("jitter")) && texts.exists(_.contains("mean")), texts)
 
