@@ -1,6 +1,5 @@
 package skein.simulator
 
-import java.nio.file.Path
 import skein.airsim.WorldSettings
 import skein.hil.AutopilotInterface
 import skein.link.Address
@@ -34,7 +33,6 @@ enum Overload:
   * @param mavlink ports on which its vehicles also speak MAVLink
   * @param hil external autopilots that fly its vehicles; then these do not speak MAVLink
   * @param kind the kind of its multirotors; without one, AirSim's quadrotors
-  * @param grids the folder for voxel grids that clients request; without one, none is written
   */
 final case class SimulatorSettings(
     world: WorldSettings = WorldSettings.Default,
@@ -47,8 +45,7 @@ final case class SimulatorSettings(
     mavlink: Option[MavlinkSettings] = None,
     hil: Option[HilSettings] = None,
     kind: Option[RotorcraftKind] = None,
-    patience: Option[Span] = None,
-    grids: Option[Path] = None
+    patience: Option[Span] = None
 ):
   require(mavlink.isEmpty || hil.isEmpty, "vehicles have one autopilot each: MAVLink's or one outside")
   require(speed > 0 && world.clockSpeed > 0, s"speeds must be positive: $speed, ${world.clockSpeed}")
