@@ -118,7 +118,7 @@ def test_files_hold_round_trips(tmp_path):
         ({"action_delay": -0.1}, r"action_delay: expected delays in s from 0 .*, got -0.1"),
         ({"action_delay": [0.1, math.nan]}, "action_delay: expected delays in s"),
         ({"observation_delay": Trace(np.ones(3), 0.0)}, "observation_delay: expected more than 0 s from one"),
-        ({"action_delay": 60.0}, "expected delays of at most 1000 steps of 0.05 s, got up to 60 s"),
+        ({"observation_delay": 60.0, "action_delay": 60.0}, "expected delays of at most 1000 steps of 0.05 s, got up to 60 s"),
         ({"step_s": 0}, "step_s: expected more than 0 s, got 0"),
         ({"dropout": 1}, "dropout: expected a share from 0 to 0.9, got 1"),
         ({"moves_in_flight": 1}, "moves_in_flight: expected None or at least 2, got 1"),
@@ -134,7 +134,7 @@ def test_wrong_settings_are_told(given, told):
 
 
 def test_a_step_that_is_far_longer_than_all_delays_is_doubted_and_a_step_before_reset_refused():
-    with pytest.warns(UserWarning, match="step_s is 20 s, and delays are of at most 0.104 s: is it in s?"):
+    with pytest.warns(UserWarning, match="step_s is 20 s, and delays are of at most 0.103 s: is it in s?"):
         Delay(4, 20, link="vpn")
     with pytest.raises(RuntimeError, match="expected reset, .* before the first step"):
         DelayEnv(Counter(10), STEP_S, link="vpn").step(0)

@@ -191,6 +191,7 @@ WRONG = [
     ("x = min(seen.own.north_m, 3)", "branches .* write minimum\\(a, b\\)"),
     ("x = max(seen.own.north_m, 3)", "branches .* write maximum\\(a, b\\)"),
     ("x = seen.own.north_m > 3 and seen.own.east_m > 3", "branches .* write logical_and\\(a, b\\)"),
+    ("x = f.where(seen.own.north_m > 3 and seen.own.east_m > 3, 1.0, 0.0)", "branches .* write logical_and\\(a, b\\)"),
     ("x = seen.own.north_m > 3 or seen.own.east_m > 3", "branches .* write logical_or\\(a, b\\)"),
     ("x = not seen.own.north_m > 3", "branches .* write logical_not\\(condition\\)"),
     ("x = 1 < seen.own.north_m < 3", "branches .* write logical_and\\(a < b, b < c\\)"),
@@ -257,13 +258,14 @@ def gap(index):
 
 
 SLIPS = [
-    (lone(measures=lambda self: [gap(0)]), "a list of Measure from .*, got the Series 'gap'; reduce it, .*mean gap"),
+    (lone(measures=lambda self: [gap(0)]), "a list of Measure from .*, got a Series; reduce it, .*mean gap"),
     (lone(measures=lambda self: [1.0]), "expected a list of Measure .*, got float 1.0"),
-    (lone(measures=lambda self: gap(0).mean("gap")), "expected a list of Measure .*, got one that is in no list"),
+    (lone(measures=lambda self: gap(0).mean("gap")), "expected a list of Measure .*, got one Measure without a list"),
     (lone(measures=lambda self: [gap(9).mean("gap")]), "reads vehicle 9 of a team of vehicles 0 to 0"),
     (lone(measures=lambda self: [Series("way", "rad", lambda now: now.vehicles[0].heading_rad).mean("way")]),
      "py:[0-9]+: the series way: expected positions, .* in a measure, got heading_rad"),
     (lone(vehicles=lambda self: None), "expected a list of Vehicle .*, got None; is a return missing"),
+    (Scenario(), "expected a method vehicles.. of Scenario, got none"),
     (lone(3.0), "expected a function as the policy of Own, got float 3.0"),
     (lone(lambda seen, memory: (hover(), memory)), "a function of an observation, as .* no memory, got one of .seen, memory"),
     (lone(memory=0.0), "a function of an observation and the memory, got one of .seen"),
@@ -275,7 +277,7 @@ SLIPS = [
 
 @pytest.mark.parametrize("made, told", SLIPS, ids=[one[1] for one in SLIPS])
 def test_a_slip_is_answered_with_what_was_expected_and_the_users_frames_alone(made, told):
-    with pytest.raises((Untraceable, TypeError, ValueError), match=f"(?s){told}") as caught:
+    with pytest.raises((Untraceable, TypeError, ValueError, NotImplementedError), match=f"(?s){told}") as caught:
         made.text()
     files = [Path(one.filename).name for one in traceback.extract_tb(caught.value.__traceback__)]
     assert files.count("places.py") == 1 and set(files) == {"places.py", "test_scenario.py"}

@@ -25,4 +25,4 @@ def needed(module: str, extra: str) -> Any:
     except ModuleNotFoundError as error:
         if error.name != module:
             raise
-    raise NotInstalled(f"{module} is not installed; pip install 'skein-uav[{extra}]' installs it", name=module)
+    raise NotInstalled(f"{module} is not installed; pip install 'skein-uav[{extra}]' installs it")

@@ -13,7 +13,7 @@ from typing import Any, ParamSpec, TypeVar
 
 from .errors import SkeinError
 
-_EXPLAINED = (SkeinError, TypeError, ValueError, KeyboardInterrupt)
+_EXPLAINED = (SkeinError, TypeError, ValueError, NotImplementedError, KeyboardInterrupt)
 
 P = ParamSpec("P")
 T = TypeVar("T")

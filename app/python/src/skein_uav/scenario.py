@@ -160,7 +160,7 @@ class Observation:
 
     @property
     def opponent(self) -> Known:
-        """The nearest rival in the plane; of several, the first."""
+        """The nearest rival in the plane; of several, the first. The only vehicle has none."""
         rivals = self.rivals or [place for place in range(len(self.vehicles)) if place != self.place]
         if not rivals:
             raise refused("it seeks an opponent of the only vehicle")
@@ -186,7 +186,7 @@ class Vehicle:
     name : str
     policy : callable
         Maps an `Observation` to an action, or, with `memory`, an observation and the memory to an action and the next
-        memory.
+        memory. Its closure keeps the values that it has now, also in a loop.
     start_ned_m : tuple of float
     speed_mps : float
         The value of `Observation.cruise_mps`.
@@ -195,7 +195,7 @@ class Vehicle:
     role : str
         Any word; vehicles of one role are not rivals.
     memory : optional
-        The memory before the first decision: a float or a bool, or a dataclass, tuple or list of them.
+        The memory before the first decision: a float or a bool, or a dataclass, tuple, list or array of them.
     wants : callable, optional
         Maps an observation and a time ahead, s, to the position wanted then, north and east, m: the input of planners,
         with `most_mps` and `least_apart_m`.
@@ -349,7 +349,8 @@ class Scenario:
         for one in cls.__mro__[: cls.__mro__.index(Scenario)]:
             settings = _undeclared(one)
             if settings:
-                raise TypeError(f"{one.__name__} has settings ({', '.join(settings)}): write @dataclass above the class")
+                names = ", ".join(settings)
+                raise TypeError(f"{one.__name__} has settings ({names}): write @dataclass above the class")
         return super().__new__(cls)
 
     @property
@@ -358,7 +359,7 @@ class Scenario:
         return "-".join(re.findall(r"\w+", (self.name or _words(type(self).__name__)).lower().replace("_", " ")))
 
     def vehicles(self) -> Sequence[Vehicle]:
-        raise NotImplementedError("a scenario has a method vehicles()")
+        raise NotImplementedError(f"expected a method vehicles() of {type(self).__name__}, got none")
 
     def limits(self) -> Sequence[Limit]:
         return []
@@ -412,7 +413,8 @@ def _undeclared(of: type) -> list[str]:
         return []
     fields = [name for name, value in vars(of).items() if isinstance(value, dataclasses.Field)]
     typed = vars(of).get("__annotations__", {}).items()
-    return fields + [name for name, kind in typed if kind in (float, "float") and name not in (*fields, *vars(Scenario))]
+    known = (*fields, *vars(Scenario))
+    return fields + [name for name, kind in typed if kind in (float, "float") and name not in known]
 
 
 def _words(name: str) -> str:

@@ -26,7 +26,8 @@ def refused(reason: str) -> Untraceable:
 
 def explained(error: Exception) -> Untraceable | None:
     """Replaces errors of Python and NumPy that are about numbers known only in flight."""
-    frames = [(one.f_code.co_filename, line) for one, line in traceback.walk_tb(error.__traceback__) if is_users(one.f_code)]
+    walked = traceback.walk_tb(error.__traceback__)
+    frames = [(frame.f_code.co_filename, line) for frame, line in walked if is_users(frame.f_code)]
     if not frames:
         return None
     if re.search(r"could not convert string to float: '<.*>'", str(error)):
@@ -45,7 +46,8 @@ def shown(value: Any) -> str:
         return "None; is a return missing?"
     if isinstance(value, type):
         return f"the class {value.__name__}"
-    return getattr(type(value), "words", None) or f"{type(value).__name__} {value!r}"
+    kind, text = type(value).__name__, repr(value)
+    return getattr(type(value), "words", None) or (text if text.startswith(kind) else f"{kind} {text}")
 
 
 def _at(name: str, line: int, reason: str) -> Untraceable:
@@ -97,7 +99,6 @@ _BRANCHES = [
     (r"\bnp\.maximum\(", "maximum(a, b) of skein_uav.formula, which takes arrays"),
     (r"\bnp\.minimum\(", "minimum(a, b) of skein_uav.formula, which takes arrays"),
     (r"\bnp\.clip\(", "clip(x, least, most) of skein_uav.formula, which takes arrays"),
-    (r"\bwhere\(", "maximum or minimum of skein_uav.formula, which take arrays, or where for each number of an array"),
     (r"\bfor\b.*\bin\b.*\bif\b", "a sum or minimum over all of them, with where(condition, value, neutral) for each"),
     (r"\bmax\(.*\bkey\s*=", "smallest(items, key) of skein_uav.formula with the key negated"),
     (r"\bmin\(.*\bkey\s*=", "smallest(items, key) of skein_uav.formula"),
@@ -108,6 +109,7 @@ _BRANCHES = [
     (r"\band\b", "logical_and(a, b), or a & b with each comparison in parentheses"),
     (r"\bor\b", "logical_or(a, b), or a | b with each comparison in parentheses"),
     (r"\bnot\b", "logical_not(condition), or ~condition"),
+    (r"\bwhere\(", "maximum or minimum of skein_uav.formula, which take arrays, or where for each number of an array"),
     (r"\bwhile\b", "a loop over a range that is known, with where(condition, changed, unchanged) in it"),
     (r"[<>]=?[^<>=]+[<>]=?", "logical_and(a < b, b < c)"),
     (r"^(?!.*\bfor\b).*\bin\b", "comparisons, joined by logical_or"),

@@ -48,7 +48,7 @@ class Writer:
 
     def file(self) -> tuple[str, dict[int, str]]:
         """The text of the file, and the places in Python of its lines, by their numbers."""
-        vehicles = self.listed(self.scenario.vehicles, Vehicle)
+        vehicles = self.listed("vehicles", Vehicle)
         at = place_of(self.scenario.vehicles)
         if not vehicles:
             raise ValueError(f"{at}: expected a list of Vehicle from vehicles(), one or more")
@@ -59,7 +59,7 @@ class Writer:
                 raise ValueError(f"{at}: expected a name of its own for each vehicle, got {vehicle.name!r} twice")
             self.vehicle(place, vehicle, vehicles)
         self.lines.at = place_of(self.scenario.limits)
-        for limit in self.listed(self.scenario.limits, Limit):
+        for limit in self.listed("limits", Limit):
             self.lines.add("limit", limit.kind, *(self.fixed(one, "a limit") for one in limit.numbers))
         self.drawn(len(vehicles))
         self.lines.at = place_of(self.scenario.is_over)
@@ -78,17 +78,18 @@ class Writer:
             lines.append(f"scene {self.scenario.scene}")
         return lines + [f"setting {key} {value!r} {quoted(meaning)}" for key, value, meaning in self.settings]
 
-    def listed(self, method: Callable[[], Any], kind: type) -> list[Any]:
+    def listed(self, name: str, kind: type) -> list[Any]:
         """What a method of the scenario returns, as a list of one kind."""
-        expected, answer = f"{place_of(method)}: expected a list of {kind.__name__} from {method.__name__}()", method()
+        method = getattr(self.scenario, name)
+        expected, answer = f"{place_of(method)}: expected a list of {kind.__name__} from {name}()", method()
         if isinstance(answer, kind):
-            raise TypeError(f"{expected}, got one that is in no list")
+            raise TypeError(f"{expected}, got one {kind.__name__} without a list")
         if not isinstance(answer, Iterable):
             raise TypeError(f"{expected}, got {shown(answer)}")
         all_ = list(answer)
         for one in all_:
             if kind is Measure and isinstance(one, Series):
-                raise TypeError(f"{expected}, got the Series {one.name!r}; reduce it, such as by .mean('mean {one.name}')")
+                raise TypeError(f"{expected}, got a Series; reduce it, such as by .mean('mean {one.name}')")
             if not isinstance(one, kind):
                 raise TypeError(f"{expected}, got {shown(one)}")
         return all_
@@ -170,7 +171,8 @@ class Writer:
         decided, memory = answer
         if form(memory) != form(of.memory):
             raise Untraceable(
-                f"{self.lines.at}: expected a next memory of the form of the first, {form(of.memory)}, got {form(memory)}"
+                f"{self.lines.at}: expected a next memory of the form of the first, {form(of.memory)}, "
+                f"got {form(memory)}"
             )
         return decided, leaves(memory, self.lines.at)
 
@@ -198,9 +200,9 @@ class Writer:
         return self.number(float(value) if isinstance(value, bool) else value, "a number of the memory")
 
     def drawn(self, count: int) -> None:
-        measures = self.listed(self.scenario.measures, Measure)
+        measures = self.listed("measures", Measure)
         series: list[Series] = []
-        for one in [*(each.of for each in measures), *self.listed(self.scenario.series, Series)]:
+        for one in [*(each.of for each in measures), *self.listed("series", Series)]:
             if one.name not in [each.name for each in series]:
                 series.append(one)
         for one in series:
