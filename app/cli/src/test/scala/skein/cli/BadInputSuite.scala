@@ -35,8 +35,9 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
 
   folder.test("flights in virtual time that memory cannot hold are refused"): path =>
     val flight = Seq("--duration", "60000s", "--period", "100ms")
-    val told   = "--duration: expected at most 50000 s in virtual time, which keeps the records of 2 vehicles " +
-      "in memory, got 60000 s"
+    val told   =
+      "--duration: expected at most 50000 s in virtual time, which keeps the records of 2 vehicles " +
+        "in memory, got 60000 s"
     assertRefused(SpreadCommand("skein.cli.Main"), flight, told)
     assertRefused(FlyCommand(), flight ++ Seq("--clock", "virtual", "--out", s"$path/out"), told)
     assert(Files.notExists(path.resolve("out")))

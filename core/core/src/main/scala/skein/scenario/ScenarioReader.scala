@@ -27,7 +27,8 @@ private[scenario] final class ScenarioReader private (text: String):
   private var line = 0
 
   private def file(): ScenarioFile =
-    if text.length > MostLetters then wrong(
+    if text.length > MostLetters then
+      wrong(
         s"expected at most $MostLetters letters, got ${text.length}: too many vehicles, or too long policies"
       )
     val lines = text.linesIterator
