@@ -148,7 +148,9 @@ object WholeFlights:
         _.left.toOption
       )
     if plain.nonEmpty then
-      Some(s"${plain.mkString(", ")} is of whole flights: expected a mean, rms, sd, least or most of a quantity of positions and time")
+      Some(
+        s"${plain.mkString(", ")} is of whole flights: expected a mean, rms, sd, least or most of a quantity of positions and time"
+      )
     else if refused.nonEmpty then refused.map(why => s"its end is no formula: ${why.getMessage}")
     else
       Option.when(flown.isOver.nonEmpty && partly.nonEmpty)(

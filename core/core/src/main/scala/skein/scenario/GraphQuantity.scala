@@ -20,7 +20,9 @@ private[scenario] final class QuantityGraph(
 
   val formula: Formula = Formula.ofGraph(
     trace,
-    Seq("north", "east", "down").toVector.flatMap(axis => (0 until vehicles).map(at => s"$axis($at)")) :+ "elapsed",
+    Seq("north", "east", "down").toVector.flatMap(axis =>
+      (0 until vehicles).map(at => s"$axis($at)")
+    ) :+ "elapsed",
     Vector("answer" -> value),
     settings
   ) {

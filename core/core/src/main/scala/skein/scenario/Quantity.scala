@@ -24,9 +24,9 @@ final case class Positions(
   def distanceM(vehicle: Int, north: Double, east: Double): Double =
     StrictMath.hypot(northM(vehicle) - north, eastM(vehicle) - east)
 
-/** A value computed from the positions of all vehicles at one moment, and from its time. Reports draw it, measures reduce it,
-  * and searches optimise it. Pure. If its method is plain arithmetic, it is compiled to SIMD, as policies are
-  * (`docs/guides/formulas.md`).
+/** A value computed from the positions of all vehicles at one moment, and from its time. Reports draw it,
+  * measures reduce it, and searches optimise it. Pure. If its method is plain arithmetic, it is compiled to
+  * SIMD, as policies are (`docs/guides/formulas.md`).
   */
 trait Quantity:
   def of(positions: Positions): Double
