@@ -188,11 +188,12 @@ def test_a_search_of_nothing_measured_is_refused():
 
 def test_a_search_that_is_interrupted_says_how_it_goes_on(monkeypatch, tmp_path):
     def interrupted(*_, **__):
-        (tmp_path / "search.json").touch()
+        for name in ("search.json", "policy.conf"):
+            (tmp_path / name).touch()
         raise KeyboardInterrupt
 
     monkeypatch.setattr("skein_uav.commands.run", interrupted)
-    with pytest.raises(KeyboardInterrupt, match=f"resume='{tmp_path}'. goes on"):
+    with pytest.raises(KeyboardInterrupt, match=f"resume='{tmp_path}'. goes on .*; the best so far is in .*policy.conf"):
         skein.search(out=tmp_path)
 
 

@@ -1,5 +1,6 @@
 """Scenarios in Python: what is traced, and what cannot be. None of these tests needs Java."""
 
+import functools
 import math
 import random
 import sys
@@ -319,6 +320,21 @@ def test_each_vehicle_of_a_loop_keeps_its_own_number():
     assert [line.split()[3] for line in lines if line.startswith("series")] == [
         line.split()[0] for line in lines if line[0].isdigit() and line.split()[1] == "north"
     ]
+
+
+def test_a_policy_may_be_a_part_of_a_function_or_an_object():
+    def fan(place, seen):
+        return seen.along(place, 1.0 if place else None)
+
+    class Fan:
+        def __call__(self, seen):
+            return fan(0, seen)
+
+    assert "does along" in scenario(functools.partial(fan, 1.0)).text()
+    for policy, code in ((functools.partial(fan, 0), fan.__code__), (Fan(), Fan.__call__.__code__)):
+        place = f"test_scenario.py:{code.co_firstlineno + 1}: the policy of Own"
+        with pytest.raises(Untraceable, match=f"^{place}: expected a number as argument 2 of along, got None"):
+            scenario(policy).text()
 
 
 def test_a_memory_may_be_an_array():

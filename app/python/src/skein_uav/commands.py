@@ -248,7 +248,9 @@ def _goes_on(folder: Path) -> Iterator[None]:
     except KeyboardInterrupt:
         if not (folder / "search.json").exists():
             raise
-        raise KeyboardInterrupt(f"skein.run('search', resume='{folder}') goes on with this search") from None
+        best = [file for file in (folder / "policy.conf", folder / "scenario.conf") if file.exists()]
+        so_far = f"; the best so far is in {best[0]}" if best else ""
+        raise KeyboardInterrupt(f"skein.run('search', resume='{folder}') goes on with this search{so_far}") from None
 
 
 @plainly

@@ -49,9 +49,12 @@ def place_of(function: Callable[..., Any], line: int | None = None) -> str:
 
 
 def code_of(function: Any) -> Any:
-    """The code of a function, a method or a `functools.partial`; None if it has none."""
+    """The code of a function, a method, a `functools.partial` or an object that can be called; None if it has none."""
     function = getattr(function, "func", function)
-    return getattr(getattr(function, "__func__", function), "__code__", None)
+    for one in (function, getattr(function, "__call__", None)):
+        if code := getattr(getattr(one, "__func__", one), "__code__", None):
+            return code
+    return None
 
 
 def plainly(function: Callable[P, T]) -> Callable[P, T]:
