@@ -10,6 +10,9 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
+from .errors import needed
+from .places import plainly
+
 #: Environments that share a link, and so one draw of its delays.
 _GROUP = 128
 _REWARD_M = 10.0
@@ -20,6 +23,7 @@ _T95 = (
 )
 
 
+@plainly
 def evaluate(
     policy: Callable[..., Any],
     candidates: ArrayLike | None = None,
@@ -67,6 +71,7 @@ def evaluate(
     ValueError
         If the policy returns anything but finite numbers of that shape, or a setting is invalid.
     """
+    needed("gymnasium", "learn")
     from .environments import PursuitVectorEnv
 
     if "capture_radius_m" in settings or "autoreset_mode" in settings:
