@@ -267,7 +267,7 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     assertEquals(told("skein = 5").linesIterator.size, 1)
     assertEquals(told("skein.fly = [1]").linesIterator.size, 1)
     assertEquals(told("skein.fly.seed = ${nothing}").linesIterator.size, 1)
-    for long <- Seq("seed = ", "loops = [", "scenario = ", "scene = ", "fallback = ", "planning.method = ") do
+    for long <- Seq("seed = ", "loops = [", "scenario = ", "scene = ", "fallback = ") do
       val end  = if long.endsWith("[") then "]" else ""
       val said = told(s"skein.fly.$long${"x" * 10_000}$end")
       assert(clue(said).length < Complaint.MostOfALine && said.contains("letters more"), long)
