@@ -45,8 +45,8 @@ class TeamParallelEnv(ParallelEnv[str, Floats, Floats]):
     backend : {'process', 'socket', 'unix:PATH'}
         As in `skein_uav.environments.PursuitVectorEnv`.
     **others
-        ``loop``, ``link``, ``period_ms``, ``plant``, ``altitude_m``, ``episode_s``, ``capture_radius_m``,
-        ``start_within_m``, ``moves_in_flight`` and ``objective``, as in `PursuitVectorEnv`.
+        ``loop``, ``link``, ``period_ms``, ``plant``, ``sensors``, ``altitude_m``, ``episode_s``,
+        ``capture_radius_m``, ``start_within_m``, ``moves_in_flight`` and ``objective``, as in `PursuitVectorEnv`.
     """
 
     metadata = {"name": "skein_uav_team_v0", "render_modes": ["rgb_array"], "render_fps": 10, "is_parallelizable": True}

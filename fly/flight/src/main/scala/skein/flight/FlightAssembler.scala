@@ -1,5 +1,6 @@
 package skein.flight
 
+import java.util.concurrent.atomic.AtomicBoolean
 import org.apache.pekko.Done
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.stream.Materializer
@@ -20,7 +21,7 @@ import skein.settings.{ChosenPolicy, FlightPlan, FlySettings, PolicyFile, Record
 import skein.scene.Moment
 import skein.signal.{LatencyProfile, SplitMix64}
 import skein.solver.{Briefing, SolverClient}
-import skein.simulator.{MavlinkSettings, SimulatorServer, SimulatorSettings}
+import skein.simulator.{MavlinkSettings, SimulatedSensing, SimulatorServer, SimulatorSettings}
 import skein.units.*
 import skein.units.Decimals.brief
 
@@ -108,18 +109,28 @@ final class FlightAssembler(
       recorder: Recorder,
       on: Option[Materializer] = None
   ): Future[Either[String, FlightAssembly]] =
-    val opened   = Opened()
+    val opened    = Opened()
+    val isAirSims = simulator.isDefined && settings.wire == Wire.AirSim
+    val monitor   = FlightMonitor(
+      recorder,
+      isStepped = plan.loop == LoopKind.Paused,
+      hasPlaces = isAirSims && settings.sensors.isEmpty,
+      movesLast = Option.when(isAirSims)(settings.loopSettings(plan).moveDuration)
+    )
+    val isFlying    = AtomicBoolean()
+    // MAVLink's vehicles count time from their boot, a simulator of our own from the clock's.
+    val clockBegins = if settings.wire == Wire.Mavlink then clock.now() else Instant.Epoch
+    val sensing     = settings.sensors.map: noise =>
+      SimulatedSensing(
+        noise,
+        SplitMix64.seedOf(plan.seed, -1),
+        (vehicle, at, positionNed) => monitor.offer(Truth(vehicle, Instant.Epoch + at.since(clockBegins), positionNed)),
+        () => isFlying.get
+      )
     val starting =
       for
-        server <- serve(plan.seed)
-        _         = server.foreach(opened.closing(_)(_.close()))
-        isAirSims = simulator.isDefined && settings.wire == Wire.AirSim
-        monitor   = FlightMonitor(
-          recorder,
-          isStepped = plan.loop == LoopKind.Paused,
-          hasPlaces = isAirSims,
-          movesLast = Option.when(isAirSims)(settings.loopSettings(plan).moveDuration)
-        )
+        server <- serve(plan.seed, sensing)
+        _ = server.foreach(opened.closing(_)(_.close()))
         _       <- notApart(plan).fold(Future.unit)(why => Future.failed(CannotFly(s"decentralised: $why")))
         solver  <- solverOf(plan, opened, monitor)
         reached <- elsewhere match
@@ -168,6 +179,7 @@ final class FlightAssembler(
         val teams =
           if reached.apart.isEmpty then Vector(team(reached.vehicles, None))
           else reached.apart.map(one => team(one.vehicles, Some(one.self)))
+        isFlying.set(true)
         val startedAt = clock.now()
         val watchdog  = SimulatorWatchdog(
           monitor,
@@ -367,7 +379,7 @@ final class FlightAssembler(
           reached.copy(vehicles = reached.vehicles.zipWithIndex.map: (vehicle, line) =>
             LinkedVehicle(vehicle, plan.link, plan.seed, line, clock))
 
-  private def serve(seed: Long): Future[Option[SimulatorServer]] =
+  private def serve(seed: Long, sensing: Option[SimulatedSensing]): Future[Option[SimulatorServer]] =
     if isShared then Future.successful(None)
     else
       val vehicles = fleet.agents.map(Vehicles.settings)
@@ -382,7 +394,8 @@ final class FlightAssembler(
               Option.when(settings.wire == Wire.Mavlink)(MavlinkSettings(listen =
                 Some(FlightAssembler.anyPort)
               )),
-            kind = kind
+            kind = kind,
+            sensing = sensing
           ),
           transport,
           clock

@@ -45,7 +45,8 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation, settings:
     val now = sinceBoot
     for (_, peer) <- channels; (system, id) <- peer.takeDue(now) do
       val one = autopilots(system - settings.firstSystem)
-      Telemetry.of(id, one.autopilot, one.motion).foreach(peer.write(system, _))
+      for motion <- one.reported(id); message <- Telemetry.of(id, one.autopilot, motion) do
+        peer.write(system, message)
     channels.iterator.map((id, peer) => (channel = id, datagrams = peer.take())).filter(
       _.datagrams.nonEmpty
     ).toVector
@@ -70,6 +71,12 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation, settings:
     def autopilot: Autopilot = decided
 
     def motion: VehicleMotion = motionAt(world.now)
+
+    /** The motion for a message of this number; None if it is about the motion, and sensors have no reading. */
+    def reported(id: Int): Option[VehicleMotion] =
+      val seen = vehicle.sensed(world.now)
+      Option.unless(seen.isMissing && Telemetry.ofMotion(id)):
+        VehicleMotion(world.now.since(startedAt), seen.motion, vehicle.flying)
 
     private def motionAt(at: Instant): VehicleMotion =
       val state = vehicle.state.kinematics.copy(

@@ -35,6 +35,7 @@ enum Overload:
   * @param hil external autopilots that fly its vehicles; then these do not speak MAVLink
   * @param kind the kind of its multirotors; without one, AirSim's quadrotors
   * @param grids the folder for voxel grids that clients request; without one, none is written
+  * @param sensing errors of readings; without it they are true. External autopilots have sensors of their own
   */
 final case class SimulatorSettings(
     world: WorldSettings = WorldSettings.Default,
@@ -48,7 +49,8 @@ final case class SimulatorSettings(
     hil: Option[HilSettings] = None,
     kind: Option[RotorcraftKind] = None,
     patience: Option[Span] = None,
-    grids: Option[Path] = None
+    grids: Option[Path] = None,
+    sensing: Option[SimulatedSensing] = None
 ):
   require(mavlink.isEmpty || hil.isEmpty, "vehicles have one autopilot each: MAVLink's or one outside")
   require(speed > 0 && world.clockSpeed > 0, s"speeds must be positive: $speed, ${world.clockSpeed}")

@@ -17,7 +17,8 @@ final private[skein] class Bench(
     scene: Scene = Scene.Empty,
     text: String = "{}",
     grids: Option[java.nio.file.Path] = None,
-    patience: Option[Span] = None
+    patience: Option[Span] = None,
+    sensing: Option[SimulatedSensing] = None
 ):
   private val start = Instant.ofNanos(1_000_000_000L)
 
@@ -32,7 +33,8 @@ final private[skein] class Bench(
       speed = speed,
       scene = scene,
       grids = grids,
-      patience = patience
+      patience = patience,
+      sensing = sensing
     ),
     start
   )
