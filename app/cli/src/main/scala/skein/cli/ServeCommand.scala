@@ -112,8 +112,9 @@ object ServeCommand
         options.hil.map(autopilotOf).fold[Either[String, Option[AutopilotKind]]](Right(None))(_.map(Some(_)))
       _ <- Expect.that(autopilot.isEmpty || !options.mavlink.value):
         "--hil: not together with --mavlink, which is an autopilot itself"
-      noise <- options.sensors.fold(Right(None))(SensorNoise.parse(_).map(Some(_))).left.map("--sensors: " + _)
-      _     <- Expect.that(noise.isEmpty || autopilot.isEmpty):
+      noise <-
+        options.sensors.fold(Right(None))(SensorNoise.parse(_).map(Some(_))).left.map("--sensors: " + _)
+      _ <- Expect.that(noise.isEmpty || autopilot.isEmpty):
         "--sensors: not together with --hil, whose autopilots have sensors of their own"
       _ <- autopilot.flatMap(_ => plant.refusesAutopilots).map("--plant: " + _).toLeft(())
       _ <- Expect.that(!options.ros.value || autopilot.isEmpty && !options.mavlink.value):

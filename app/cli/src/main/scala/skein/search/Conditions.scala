@@ -65,11 +65,11 @@ final case class Conditions(
   /** @return Left says what was expected and what was given */
   def resolved(using Scenarios): Either[String, Conditions.Resolved] =
     for
-      kind    <- checked
-      known   <- VehicleChoice.parse(plant, altitudeM).left.map("--plant: " + _)
-      noise   <- this.noise
+      kind  <- checked
+      known <- VehicleChoice.parse(plant, altitudeM).left.map("--plant: " + _)
+      noise <- this.noise
       vehicle = known.sensedBy(noise)
-      timing  <- Conditions
+      timing <- Conditions
         .timing(kind, Span.ofMillis(periodMs), movesInFlight, vehicle.response)
         .left.map("--loop: " + _)
       sensor <- eye.fold(Right(None))(SensorFile.read(_).map(Some(_))).left.map("--eye: " + _)

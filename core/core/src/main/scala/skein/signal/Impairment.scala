@@ -26,7 +26,7 @@ enum Impairment:
 
   /** In each direction a share of all packets, chosen independently, is on its way for `by` longer. Datagrams
     * sent less than `by` later overtake it, unless they are late themselves. It is then reordered as RFC 4737
-    * counts. Linux's netem instead sends a share at once, ahead of all others.
+    * counts. Linux's netem instead sends a share without delay, ahead of all others.
     */
   case Reordering(share: Double, by: Span)
 

@@ -160,7 +160,7 @@ private object LatencyText:
           latency <- before(rest, "reorder")(impaired(_.isInstanceOf[Impairment.Reordering]))
         yield LatencyProfile.Impaired(text, latency, by)
       case s"reorder:$came" => Left(malformed("a share, a delay and a profile such as 2%/10ms,vpn", came))
-      case s"outage:$came"          => Left(malformed("two times and a profile such as 1s/10s,vpn", came))
+      case s"outage:$came"  => Left(malformed("two times and a profile such as 1s/10s,vpn", came))
       case s"constant:$roundTrip"   => time(roundTrip).map(t => Steady(text, Constant(t)))
       case s"uniform:$least..$most" =>
         for

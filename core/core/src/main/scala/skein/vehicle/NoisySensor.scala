@@ -20,9 +20,11 @@ final class NoisySensor(noise: SensorNoise, seed: Long):
   /** The reading of a vehicle's motion; attitude but for the heading, and rates, are true. */
   def read(truth: Kinematics, at: Span): Kinematics =
     def white(first: Int, sd: Double) =
-      def error(axis: Int) = if sd == 0 then 0.0 else sd * NormalQuantile(uniform(first + axis, at).max(1e-12))
+      def error(axis: Int) =
+        if sd == 0 then 0.0 else sd * NormalQuantile(uniform(first + axis, at).max(1e-12))
       Vector3(error(0), error(1), error(2))
-    val drift = if noise.driftM == 0 then Vector3.Zero else Vector3(drifts(0)(at), drifts(1)(at), drifts(2)(at))
+    val drift =
+      if noise.driftM == 0 then Vector3.Zero else Vector3(drifts(0)(at), drifts(1)(at), drifts(2)(at))
     truth.copy(
       positionNed = truth.positionNed + white(Positions, noise.positionM) + drift,
       velocityNed = truth.velocityNed + white(Velocities, noise.velocityMps),
@@ -35,8 +37,7 @@ final class NoisySensor(noise: SensorNoise, seed: Long):
     SplitMix64(SplitMix64.seedOf(SplitMix64.seedOf(seed, quantity), at.toNanos)).nextDouble()
 
 object NoisySensor:
-  /** Interval at which drift is drawn; in between it is linear. */
-  private[vehicle] val Tick: Span = Span.ofMillis(100)
+  import SensorNoise.Tick
 
   // Numbers of the sequences of random numbers, after those of the three drifts.
   private val Outages    = 3

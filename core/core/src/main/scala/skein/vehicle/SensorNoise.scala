@@ -59,9 +59,14 @@ object SensorNoise:
     case _ => Left(s"expected $forms; got '$word'")
 
   private def time(word: String, text: String): Either[String, Span] =
-    Span.parse(text).toOption.filter(_ >= NoisySensor.Tick).toRight(s"expected times from 0.1s on, got '$word'")
+    Span.parse(
+      text
+    ).toOption.filter(_ >= Tick).toRight(s"expected times from 0.1s on, got '$word'")
 
   private val MostDropout = 0.9
+
+  /** Interval at which drift is drawn; in between it is linear. */
+  private[vehicle] val Tick: Span = Span.ofMillis(100)
 
   /** A simulator that is silent for 10 s ends a flight. */
   private val LongestOutage = Span.ofSeconds(5)

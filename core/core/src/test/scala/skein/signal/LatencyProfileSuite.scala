@@ -121,7 +121,9 @@ class LatencyProfileSuite extends munit.FunSuite:
     assertEqualsDouble(meanMs("vpn-mixed"), (40 * meanMs("vpn") + 55 * meanMs("direct")) / 95, 1e-3)
 
   test("rate, correlation, loss, outages and reordering may be stated in any order, each once"):
-    for texts <- List("rate:1mbit", "correlated:1s", "loss:5%/4", "outage:1s/10s", "reorder:2%/10ms").permutations do
+    for texts <-
+        List("rate:1mbit", "correlated:1s", "loss:5%/4", "outage:1s/10s", "reorder:2%/10ms").permutations
+    do
       val text    = texts.mkString(",") + ",vpn"
       val profile = parse(text).fold(error => fail(s"$text: ${error.message}"), identity)
       assertEquals(profile.name, text)
@@ -151,12 +153,12 @@ class LatencyProfileSuite extends munit.FunSuite:
         "loss:50%/1.5,vpn" ->
           "expected bursts of 2.00 packets, which independent losses have, to 10000, got \"50%/1.5\"",
         "loss:1%,loss:2%,vpn" -> "expected one loss, got \"loss:2%,vpn\"",
-        "reorder:2%,vpn"       -> "expected a share and an additional delay such as 2%/10ms, got \"2%\"",
-        "reorder:2%/0ms,vpn"   -> "expected a share and an additional delay such as 2%/10ms, got \"2%/0ms\"",
-        "reorder:2%/10ms"      -> "expected a share, a delay and a profile such as 2%/10ms,vpn, got \"2%/10ms\"",
-        "outage:1s"           -> "expected two times and a profile such as 1s/10s,vpn, got \"1s\"",
-        "outage:1s,vpn"       -> "expected two times such as 1s/10s, got \"1s\"",
-        "outage:10s/1s,vpn"   ->
+        "reorder:2%,vpn"      -> "expected a share and an additional delay such as 2%/10ms, got \"2%\"",
+        "reorder:2%/0ms,vpn"  -> "expected a share and an additional delay such as 2%/10ms, got \"2%/0ms\"",
+        "reorder:2%/10ms"   -> "expected a share, a delay and a profile such as 2%/10ms,vpn, got \"2%/10ms\"",
+        "outage:1s"         -> "expected two times and a profile such as 1s/10s,vpn, got \"1s\"",
+        "outage:1s,vpn"     -> "expected two times such as 1s/10s, got \"1s\"",
+        "outage:10s/1s,vpn" ->
           "expected outages of more than 0, and longer times from one to the next, got \"10s/1s\"",
         "outage:1s/9s,rate:1mbit,outage:1s/9s,vpn" ->
           "expected one outage, got \"rate:1mbit,outage:1s/9s,vpn\""

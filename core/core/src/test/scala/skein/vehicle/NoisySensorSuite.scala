@@ -14,8 +14,9 @@ class NoisySensorSuite extends munit.FunSuite:
 
   test("white noise has the stated deviations, also of the heading, and leaves the attitude"):
     val noisy = sensor("position=0.5,velocity=0.1,heading=0.02")
-    val tilt  = truth.copy(orientation = Quaternion.ofYaw(0.5) * Quaternion(math.cos(0.1), math.sin(0.1), 0, 0))
-    val read  = (0 until 20_000).map(i => noisy.read(tilt, Span.ofMillis(i)))
+    val tilt  =
+      truth.copy(orientation = Quaternion.ofYaw(0.5) * Quaternion(math.cos(0.1), math.sin(0.1), 0, 0))
+    val read = (0 until 20_000).map(i => noisy.read(tilt, Span.ofMillis(i)))
     for axis <- Seq[Vector3 => Double](_.x, _.y, _.z) do
       assertEqualsDouble(sd(read.map(one => axis(one.positionNed - truth.positionNed))), 0.5, 0.01)
       assertEqualsDouble(sd(read.map(one => axis(one.velocityNed - truth.velocityNed))), 0.1, 0.002)
@@ -32,7 +33,9 @@ class NoisySensorSuite extends munit.FunSuite:
     for seconds <- Seq(1, 5, 10, 20) do
       assertEqualsDouble(correlation(2 * seconds), math.exp(-seconds / 10.0), 0.04, s"after $seconds s")
 
-  test("equal seeds give equal readings at equal times, however often they are read; other seeds give others"):
+  test(
+    "equal seeds give equal readings at equal times, however often they are read; other seeds give others"
+  ):
     def at(seed: Long, times: Seq[Int]) =
       val noisy = sensor("position=1,velocity=1,heading=1,drift=1/5s,dropout=30%,outage=1s/3s", seed)
       times.map(ms => ms -> (noisy.isMissing(Span.ofMillis(ms)), noisy.read(truth, Span.ofMillis(ms)))).toMap
@@ -43,7 +46,11 @@ class NoisySensorSuite extends munit.FunSuite:
 
   test("the stated share of readings is missing, and all of them during outages"):
     val dropping = sensor("dropout=20%")
-    assertEqualsDouble((0 until 20_000).count(i => dropping.isMissing(Span.ofMillis(i))) / 20_000.0, 0.2, 0.012)
+    assertEqualsDouble(
+      (0 until 20_000).count(i => dropping.isMissing(Span.ofMillis(i))) / 20_000.0,
+      0.2,
+      0.012
+    )
     val out   = sensor("outage=1s/10s")
     val gone  = (0 until 100_000).map(i => out.isMissing(Span.ofMillis(10 * i)))
     val edges = gone.zip(gone.tail).count(_ != _)
@@ -54,12 +61,12 @@ class NoisySensorSuite extends munit.FunSuite:
   test("a mistake is one line that says what was expected"):
     for
       (text, expected) <- Seq(
-        "position=-1"             -> "expected a number from 0.0 to 100.0, got 'position=-1'",
-        "drift=1"                 -> s"expected ${SensorNoise.forms}; got 'drift=1'",
-        "drift=1/60"              -> "expected times from 0.1s on, got 'drift=1/60'",
-        "dropout=95%"             -> "expected a share from 0% to 90%, got 'dropout=95%'",
-        "outage=8s/60s"           ->
+        "position=-1"   -> "expected a number from 0.0 to 100.0, got 'position=-1'",
+        "drift=1"       -> s"expected ${SensorNoise.forms}; got 'drift=1'",
+        "drift=1/60"    -> "expected times from 0.1s on, got 'drift=1/60'",
+        "dropout=95%"   -> "expected a share from 0% to 90%, got 'dropout=95%'",
+        "outage=8s/60s" ->
           "expected at most 5 s, and a longer time from one to the next, got 'outage=8s/60s'",
-        "position=1,position=2"   -> "position stands twice"
+        "position=1,position=2" -> "position stands twice"
       )
     do assertEquals(SensorNoise.parse(text).left.getOrElse("was taken"), expected)

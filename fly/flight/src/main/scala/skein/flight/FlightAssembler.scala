@@ -117,14 +117,15 @@ final class FlightAssembler(
       hasPlaces = isAirSims && settings.sensors.isEmpty,
       movesLast = Option.when(isAirSims)(settings.loopSettings(plan).moveDuration)
     )
-    val isFlying    = AtomicBoolean()
+    val isFlying = AtomicBoolean()
     // MAVLink's vehicles count time from their boot, a simulator of our own from the clock's.
     val clockBegins = if settings.wire == Wire.Mavlink then clock.now() else Instant.Epoch
     val sensing     = settings.sensors.map: noise =>
       SimulatedSensing(
         noise,
         SplitMix64.seedOf(plan.seed, -1),
-        (vehicle, at, positionNed) => monitor.offer(Truth(vehicle, Instant.Epoch + at.since(clockBegins), positionNed)),
+        (vehicle, at, positionNed) =>
+          monitor.offer(Truth(vehicle, Instant.Epoch + at.since(clockBegins), positionNed)),
         () => isFlying.get
       )
     val starting =

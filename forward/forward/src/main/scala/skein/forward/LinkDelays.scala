@@ -19,8 +19,8 @@ object LinkDelays:
     val reorders = link.impairments.exists(_.isInstanceOf[Impairment.Reordering])
     val base     = link.delays match
       case _ if link.bandwidth.isDefined || reorders => None
-      case steady: LatencyProfile.Steady           => Some(of(steady), Seq(steady.roundTrip))
-      case alternating: LatencyProfile.Alternating =>
+      case steady: LatencyProfile.Steady             => Some(of(steady), Seq(steady.roundTrip))
+      case alternating: LatencyProfile.Alternating   =>
         Some(of(alternating), Seq(alternating.busy, alternating.quiet))
       case _ => None
     for

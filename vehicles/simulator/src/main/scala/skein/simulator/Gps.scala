@@ -5,8 +5,8 @@ import skein.units.*
 
 /** AirSim's default GPS (`GpsSimple`): silent for its first second, its dilutions of precision falling from
   * 100 to 0.1 with a time constant of 0.9 s, so that it has a fix in three dimensions after some 3.2 s. A
-  * reset restarts the dilutions, and does not silence it. It reports the current state as sensed; AirSim's is 0.2
-  * s late and updates every 20 ms.
+  * reset restarts the dilutions, and does not silence it. It reports the current state as sensed; AirSim's is
+  * 0.2 s late and updates every 20 ms.
   */
 private[simulator] object Gps:
   def read(vehicle: SimulatedVehicle, at: Instant): GpsData =

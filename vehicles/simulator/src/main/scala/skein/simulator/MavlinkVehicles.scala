@@ -72,7 +72,8 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation, settings:
 
     def motion: VehicleMotion = motionAt(world.now)
 
-    /** The motion for a message of this number; None if it is about the motion, and sensors have no reading. */
+    /** The motion for a message of this number; None if it is about the motion, and sensors have no reading.
+      */
     def reported(id: Int): Option[VehicleMotion] =
       val seen = vehicle.sensed(world.now)
       Option.unless(seen.isMissing && Telemetry.ofMotion(id)):

@@ -7,8 +7,7 @@ import skein.vehicle.{NoisySensor, SensorNoise}
 /** What the simulator reports of its vehicles' motion.
   *
   * @param seed of all errors; each vehicle has errors of its own
-  * @param truth receives every vehicle's name and true position, world NED, m, every
-  *   50 ms of simulated time
+  * @param truth receives every vehicle's name and true position, world NED, m, every 50 ms of simulated time
   * @param isOn whether there are errors by now; until then readings are true, and nothing receives the truth
   */
 final case class SimulatedSensing(

@@ -95,8 +95,8 @@ private[simulator] abstract class SimulatedVehicle(val settings: VehicleSettings
     at
   )
 
-  /** The motion at `at` as the vehicle's sensors report it. Where they have no reading, it is the last one, or
-    * the first one there is.
+  /** The motion at `at` as the vehicle's sensors report it. Where they have no reading, it is the last one,
+    * or the first one there is.
     *
     * @param mayMiss whether the sensors may have no reading. While the simulator is paused, none would ever
     *   follow

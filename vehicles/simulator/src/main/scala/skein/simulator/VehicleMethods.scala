@@ -143,7 +143,6 @@ private[simulator] object VehicleMethods:
   def sensed(simulation: Simulated, vehicle: SimulatedVehicle): Sensed =
     vehicle.sensed(simulation.world.now, mayMiss = !simulation.isPaused)
 
-  /** The vehicle's true motion. */
   def kinematics(vehicle: SimulatedVehicle, at: Instant): KinematicsState = kinematics(vehicle.truth(at))
 
   def kinematics(seen: Sensed): KinematicsState = KinematicsState(

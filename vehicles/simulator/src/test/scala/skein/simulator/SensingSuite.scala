@@ -15,7 +15,11 @@ class SensingSuite extends munit.FunSuite:
     val bench =
       Bench(sensing = Some(SimulatedSensing(SensorNoise.parse(text).fold(fail(_), identity), 7, told)))
     bench.tell("enableApiControl", Bool(true), Str(name))
-    bench.tell("skeinHoverAt", upickle.default.writeMsg(Pose(Vector3r(3, 4, -20), Quaternionr(Quaternion.Identity))), Str(name))
+    bench.tell(
+      "skeinHoverAt",
+      upickle.default.writeMsg(Pose(Vector3r(3, 4, -20), Quaternionr(Quaternion.Identity))),
+      Str(name)
+    )
 
     def state: MultirotorState = bench.now[MultirotorState]("getMultirotorState", Str(name))
     def truth: KinematicsState = bench.now[KinematicsState]("simGetGroundTruthKinematics", Str(name))
@@ -34,7 +38,7 @@ class SensingSuite extends munit.FunSuite:
     val sensed = Client("position=0.5,velocity=0.1,heading=0.1,drift=2/60s")
     sensed.bench.pass(2)
     val (state, again, truth) = (sensed.state, sensed.state, sensed.truth)
-    val gps = sensed.bench.now[GpsData]("getGpsData", Str(""), Str(name))
+    val gps                   = sensed.bench.now[GpsData]("getGpsData", Str(""), Str(name))
     assertEquals(again, state)
     assertEquals(off(truth.position, Vector3r(3, 4, -20)) < 0.1, true)
     assert(off(state.kinematics_estimated.position, truth.position) > 0.1)
@@ -67,7 +71,7 @@ class SensingSuite extends munit.FunSuite:
     val mavlink = MavlinkVehicles(sensed.bench.simulation, MavlinkSettings())
     val reader  = FrameReader()
     mavlink.join(0, Vector.empty, isDatagrams = false)
-    val _       = InProcess(sensed.bench.simulation, (at, vehicles) => seen += ((at = at, vehicles = vehicles)))
+    val _ = InProcess(sensed.bench.simulation, (at, vehicles) => seen += ((at = at, vehicles = vehicles)))
     def heard() = mavlink.take().flatMap(_.datagrams).flatMap(bytes => reader.read(bytes)).map(_.message)
     // What each 50 ms brought, and whether sensors had a reading at their end.
     val spans = (1 to 400).map: _ =>
