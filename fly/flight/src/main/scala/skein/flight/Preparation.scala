@@ -14,11 +14,13 @@ import skein.vehicle.CarControls
   * are above the origin of each vehicle's own frame.
   *
   * @param calledOff why vehicles must no longer move to their starts
+  * @param byTruth whether the vehicles' readings have errors, so that the ground truth decides where they are
   */
 final class Preparation(
     client: AirSimClient,
     clock: Clock,
-    calledOff: () => Option[String] = () => None
+    calledOff: () => Option[String] = () => None,
+    byTruth: Boolean = false
 )(using
     system: ActorSystem
 ):
@@ -61,7 +63,13 @@ final class Preparation(
         .fly(vehicles.collect { case (multirotor: Multirotor, agent) =>
           StartPositioning.Starting(
             agent.startPositionNed + Vector3(0, 0, multirotor.originNed.z),
-            Approach(agent.name, AirSimVehicle(multirotor, _ => ()), clock, calledOff),
+            Approach(
+              agent.name,
+              AirSimVehicle(multirotor, _ => ()),
+              clock,
+              calledOff,
+              Option.when(byTruth)(() => multirotor.groundTruth().map(_.left.map(_.message)))
+            ),
             () => leaveGround(multirotor)
           )
         })
