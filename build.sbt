@@ -17,12 +17,15 @@ ThisBuild / publishTo     := localStaging.value
 ThisBuild / scalaVersion  := "3.8.4"
 ThisBuild / scalacOptions ++= Seq(
   "-Werror",
-  "-Wunused:all",
   "-Wvalue-discard",
   "-deprecation",
   "-feature",
   "-unchecked"
 )
+// The search for what is unused takes an eighth of the compiler's time or more. Whoever only starts the program has
+// changed nothing; classes are equal, so nothing is compiled again with it.
+ThisBuild / scalacOptions ++= (if (sys.props.contains("skein.start")) Nil else Seq("-Wunused:all"))
+ThisBuild / incOptions ~= (options => options.withIgnoredScalacOptions(options.ignoredScalacOptions :+ "-Wunused.*"))
 // What is built at its first start need not wait for archives that nobody publishes: sources and documentation are made
 // by an sbt that was started to publish, `./sbtw publishLocal`.
 ThisBuild / packageDoc / publishArtifact := Publishing.isWanted

@@ -4,8 +4,11 @@ import sbt.*
 object Dependencies {
   private val pekkoVersion = "1.2.1"
 
-  /** Pekko refuses mixed versions at start, so every module is listed at one version. */
-  private def pekkoModules(names: String*) = names.map(m => "org.apache.pekko" %% s"pekko-$m" % pekkoVersion)
+  /** Pekko refuses mixed versions at start, so every module is listed at one version. LMDB would keep distributed data
+    * on disk, which nothing here does.
+    */
+  private def pekkoModules(names: String*) =
+    names.map(m => ("org.apache.pekko" %% s"pekko-$m" % pekkoVersion).exclude("org.lmdbjava", "lmdbjava"))
 
   val pekkoStream   = pekkoModules("actor", "stream")
   val pekkoTyped    = pekkoModules("actor-typed")

@@ -62,6 +62,9 @@ object Packaging {
 
   private val duckdb = "libduckdb_java.so"
 
+  /** What few need is in an archive of its own: clients of Kafka, with its compression, and of Postgres. */
+  private val extras = Seq("org.apache.kafka.", "org.xerial.snappy.", "org.postgresql.")
+
   /** Copies a jar without libraries for other platforms. DuckDB's, which it would write to a temporary file at every
     * start, goes beside its jar, where it looks for it, too.
     */
@@ -84,7 +87,10 @@ object Packaging {
     zip.close()
   }
 
-  /** Makes the folder, and removes those of other versions. A runtime that was linked before is kept.
+  /** The folder of the same name as the program's, to be unpacked over it. */
+  private def extrasOf(home: File) = home.getParentFile / "extras" / home.getName
+
+  /** Makes the folder, and one of [[extras]]; removes those of other versions. A runtime that was linked before is kept.
     *
     * @param stage
     *   with `lib`
@@ -103,7 +109,7 @@ object Packaging {
     val options = Seq("--add-modules", modules.mkString(","), "--strip-debug", "--no-header-files", "--no-man-pages")
     val wanted  = (IO.read(file(sys.props("java.home")) / "release") +: IO.read(linker) +: options).mkString("\n")
     val isLinked = runtime.exists && remembered.exists && IO.read(remembered) == wanted
-    IO.delete((home.getParentFile * "skein-*").get.filter(one => one.isDirectory && one != home))
+    IO.delete((home.getParentFile * "skein-*").get.filter(one => one.isDirectory && one != home) :+ extrasOf(home).getParentFile)
     IO.delete((home * "*").get.filterNot(isLinked && _ == runtime))
     IO.createDirectory(lib)
     (stage / "lib" * "*.jar").get.foreach(copyJar(_, lib))
@@ -118,7 +124,8 @@ object Packaging {
       IO.write(remembered, wanted)
     }
 
-    val jars = (lib * "*.jar").get.sortBy(_.getName)
+    val (extra, jars) = (lib * "*.jar").get.sortBy(_.getName).partition(jar => extras.exists(jar.getName.startsWith))
+    extra.foreach(jar => IO.move(jar, extrasOf(home) / "lib" / "extra" / jar.getName))
     jars.foreach(_.setLastModified(firstDay))
     IO.touch(lib / ".timed")
     val launcher = home / "bin" / "skein"
@@ -148,10 +155,14 @@ object Packaging {
     home
   }
 
-  /** Packs the folder into an archive. */
+  /** Packs the folder into an archive, and that of the extras into another. */
   def archive(home: File, log: Logger): File = {
-    val file   = home.getParentFile / s"${home.getName}.tar.gz"
-    val status = Process(Seq("tar", "-czf", file.getPath, home.getName), home.getParentFile).!(log)
+    packed(extrasOf(home), home.getParentFile / s"${home.getName}-extras.tar.gz", log)
+    packed(home, home.getParentFile / s"${home.getName}.tar.gz", log)
+  }
+
+  private def packed(folder: File, file: File, log: Logger): File = {
+    val status = Process(Seq("tar", "-czf", file.getPath, folder.getName), folder.getParentFile).!(log)
     if (status != 0) sys.error(s"tar ended with status $status")
     log.info(s"$file: ${file.length >> 20} MiB")
     file

@@ -222,7 +222,8 @@ class Measure:
 class Series:
     """A quantity over time: the report draws it, and measures reduce it.
 
-    Searches optimise measures of positions with SIMD.
+    Searches fly with SIMD by series of positions and `elapsed_s` alone that are reduced by `mean`, `rms`, `sd`, `least`
+    or `most`.
 
     Attributes
     ----------

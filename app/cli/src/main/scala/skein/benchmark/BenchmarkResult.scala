@@ -38,18 +38,28 @@ final case class BenchmarkRow(
 ):
   private def mean(values: Vector[Double]) = Distribution.of(values).map(_.mean)
 
-  val truth: Option[Double] = mean(truths.flatMap(_.headline))
+  private def stats(of: Vector[BenchmarkFlight]) =
+    val values = of.flatMap(_.headline)
+    RunningStats.of(values.size)(values)
 
-  /** Deviation of each flight's measure from the mean of the paused flights, as a share of that mean. */
-  val off: Vector[Double] =
-    truth.filter(_ != 0).toVector.flatMap(truth => flights.flatMap(_.headline).map(_ / truth - 1))
+  private val (paused, flown) = (stats(truths), stats(flights))
 
-  val meanOff: Option[Double] = mean(off)
+  val truth: Option[Double] = Option.when(paused.count > 0)(paused.mean)
 
-  /** Half of the 95 % interval of [[meanOff]], by Student's distribution; absent with fewer than two flights.
+  /** Deviation of the flights' mean measure from that of the paused flights, as a share of its size. */
+  val meanOff: Option[Double] =
+    truth.filter(_ != 0 && flown.count > 0).map(truth => (flown.mean - truth) / truth.abs)
+
+  /** Half of the 95 % interval of [[meanOff]], by Student's distribution, from the spread of the flights and
+    * of the paused flights; absent with fewer than two of either.
     */
   val halfOff: Option[Double] =
-    Option.when(off.sizeIs > 1)(RunningStats.of(off.size)(off).studentHalfWidth95)
+    for
+      truth <- truth.filter(_ != 0)
+      if paused.count > 1 && flown.count > 1
+    yield
+      val ratio = flown.mean / truth
+      math.hypot(flown.studentHalfWidth95, ratio * paused.studentHalfWidth95) / truth.abs
 
   /** Mean number of violations per flight, less that of the paused flights. */
   val violations: Double =

@@ -14,7 +14,11 @@ object BenchmarkTables:
         "the same world. Violations: of the scenario's limits, a flight, beyond those of `paused`.",
       Some(entries(rows))
     ),
-    Section("Cells", "± is half of the 95 % interval over seeds.", Some(cells(rows)))
+    Section(
+      "Cells",
+      "± is half of the 95 % interval over seeds, those of the paused loop included.",
+      Some(cells(rows))
+    )
   )
 
   private def entries(rows: Vector[BenchmarkRow]) = TextTable(

@@ -49,7 +49,8 @@ final class DecideCommand(using scenarios: Scenarios)
       secured <- options.secured.checked(Some(at))
       _       <- at match
         case SolverChoice.Kafka(at, prefix) =>
-          served(options)(kafka(KafkaTopics(at, prefix)(secured.kafka)))
+          Extra.Kafka.checked.left.map("--at: " + _)
+            .flatMap(_ => served(options)(kafka(KafkaTopics(at, prefix)(secured.kafka))))
         case SolverChoice.Tcp(address) => served(options)(tcp(address, secured))
         case SolverChoice.Link(_)      =>
           Left(

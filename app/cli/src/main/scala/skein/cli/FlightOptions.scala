@@ -7,7 +7,6 @@ import scala.deriving.Mirror
 import scala.jdk.CollectionConverters.*
 import scala.util.Try
 import skein.loop.{AnyLoop, Fallback, LoopKind, OpponentModel, Planning}
-import skein.planning.Planner
 import skein.scenario.Scenarios
 import skein.settings.{ConfigKeys, ConfigMistakes, FlySettings, HoconFile, ScenarioSettings, Wire}
 import skein.units.Expect
@@ -149,8 +148,7 @@ final case class FlightOptions(
   private[cli] def settingsOf(mayPause: Boolean)(using Scenarios): Either[String, FlySettings] =
     configurationOf(mayPause).flatMap(FlySettings.read).map: settings =>
       if settings.loops.contains(LoopKind.Plan) then
-        val slow = Option.when(!Planner.isFast)(FlightOptions.slow)
-        (slow ++ Planning.told(settings.fleet).toOption ++ OpponentModel.missing(settings.fleet))
+        (Planning.told(settings.fleet).toOption ++ OpponentModel.missing(settings.fleet))
           .foreach(Console.err.println)
       settings
 
@@ -272,10 +270,6 @@ object FlightOptions:
 
   private val paperLoops =
     Seq(LoopKind.Paused, LoopKind.Sequential, LoopKind.Futures, LoopKind.Stream).map(_.label)
-
-  private val slow =
-    "plan: this JVM runs without jdk.incubator.vector, so " +
-      "candidates are flown one by one, some fifty times fewer"
 
   /** Makes a configuration of flags, keys below `skein.fly`, and values: mistakes in these name the flag. */
   private def configured(values: Seq[(String, String, Any)]): Config =

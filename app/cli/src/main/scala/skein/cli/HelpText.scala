@@ -54,7 +54,7 @@ private[cli] object HelpText:
         "stall-every",
         "stall-lasts"
       ) ++
-        all("FOLDER", "out", "learn", "resume", "tls", "parquet", "grids") ++
+        all("FOLDER", "out", "learn", "resume", "tls", "parquet") ++
         all("FILE", "config", "settings", "mcap", "onnx", "conf", "file", "recording") ++
         all("FILE…", "files") ++
         all("HOST:PORT", "simulator", "listen", "to", "join", "cluster") ++

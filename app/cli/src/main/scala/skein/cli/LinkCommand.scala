@@ -31,17 +31,17 @@ final case class LinkOptions(
         "lognormal:36ms,0.3 or file:PATH; times are round trips; " +
         "before it correlated:250ms, keeps each for 250 ms on average, loss:5%, or loss:5%/4, loses packets, " +
         "in bursts of four, outage:1s/10s, everything for 1 s every 10 s, and reorder:2%/10ms, delays 2 % of " +
-        "them by 10 ms more"
+        "them by 10 ms more (default: direct)"
     )
-    profile: String = "direct",
+    profile: Option[String],
     @arg(name = "to-server", doc = "latency towards the server, where it differs")
     toServer: Option[String],
     @arg(name = "to-client", doc = "latency towards the client, where it differs")
     toClient: Option[String],
     @arg(name = "stall-every", doc = "mean time between stalls, in which nothing arrives, for example 30s")
     stallEvery: Option[String],
-    @arg(name = "stall-lasts", doc = "mean length of a stall")
-    stallLasts: String = "1s",
+    @arg(name = "stall-lasts", doc = "mean length of a stall (default: 1s)")
+    stallLasts: Option[String],
     @arg(name = "reset-every", doc = "mean time between resets of all connections, for example 5min")
     resetEvery: Option[String],
     @arg(doc =
@@ -55,11 +55,11 @@ final case class LinkOptions(
     seed: Long = 1
 )
 
-/** `./skein link`: an emulated network between any client and any server. */
+/** `./skein link`: an emulated network between a client and a server. */
 object LinkCommand
     extends OptionsCommand[LinkOptions](
       "link",
-      "puts an emulated network between any client and any server",
+      "puts an emulated network between any client and any server, unless they speak HTTP or TLS",
       ParserForClass[LinkOptions]
     ):
 
@@ -76,10 +76,16 @@ object LinkCommand
 
   private def profileOf(options: LinkOptions): Either[String, LinkProfile] =
     for
+      _ <- Expect.that(options.profile.isEmpty || options.toServer.isEmpty || options.toClient.isEmpty)(
+        "--profile: expected without --to-server or without --to-client, which name both directions already"
+      )
+      _ <- Expect.that(options.stallLasts.isEmpty || options.stallEvery.isDefined)(
+        "--stall-lasts: expected with --stall-every, without which nothing stalls"
+      )
       toServer   <- latency("--to-server", options.toServer, options)
       toClient   <- latency("--to-client", options.toClient, options)
       stallEvery <- every(options.stallEvery).left.map("--stall-every: " + _)
-      stallLasts <- Span.parse(options.stallLasts).left.map("--stall-lasts: " + _)
+      stallLasts <- Span.parse(options.stallLasts.getOrElse("1s")).left.map("--stall-lasts: " + _)
       resetEvery <- every(options.resetEvery).left.map("--reset-every: " + _)
       faults = Faults(stallEvery = stallEvery, stallLasts = stallLasts, resetEvery = resetEvery)
       duplicates <- duplicates(options)
@@ -97,7 +103,7 @@ object LinkCommand
       own: Option[String],
       options: LinkOptions
   ): Either[String, LatencyProfile] =
-    val (told, profile) = own.fold(("--profile", options.profile))((flag, _))
+    val (told, profile) = own.fold(("--profile", options.profile.getOrElse("direct")))((flag, _))
     for
       _       <- options.rate.fold[Either[String, Any]](Right(()))(Bandwidth.parse).left.map("--rate: " + _)
       limited <- Arguments

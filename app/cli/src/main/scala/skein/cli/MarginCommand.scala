@@ -189,7 +189,7 @@ final class MarginCommand(using scenarios: Scenarios)
       trial.warmUp()
       @volatile var stopped = false
       val runs              = MarginRuns(
-        trial,
+        trial.run(_, _, () => stopped),
         asked.judge,
         options.repeats,
         asked.atOnce,

@@ -1,6 +1,5 @@
 package skein.cli
 
-import java.io.IOException
 import java.nio.file.Path
 import java.util.concurrent.{CountDownLatch, Executors, TimeUnit}
 import mainargs.ParserForClass
@@ -66,7 +65,7 @@ object ObserveCommand
           .say("measuring topics of ROS 2" + (if command.isEmpty then "; Ctrl-C ends it" else ""))
         try
           viewing(shows, "topics", "ROS 2", loop.takeNew, () => findings()._2):
-            telling(loop.progress)(untilEnd(command))
+            telling(loop.progress)(untilEnd(options))
         finally loop.close()
       _ <- ended
       (observed, found) = findings()
@@ -220,7 +219,8 @@ object ObserveCommand
       )
       val ended =
         viewing(shows, "a program's loop", simulator.toString, proxy.takeNew, () => findings(proxy.observed)):
-          telling(proxy.progress)(untilEnd(command))
+          telling(proxy.progress)(untilEnd(options))
+      if command.nonEmpty then Edge.await(proxy.ended()): Unit
       Edge.await(proxy.close())
       Right((proxy.observed, ended))
     catch case error: TransportError => Left(error.getMessage)
@@ -240,24 +240,18 @@ object ObserveCommand
     try body
     finally timer.shutdown()
 
-  private def untilEnd(command: Seq[String]): Either[String, Unit] =
-    if command.isEmpty then untilInterrupted() else runToEnd(command)
+  private def untilEnd(options: ObserveOptions): Either[String, Unit] =
+    val command = options.command.words
+    if command.isEmpty then untilInterrupted()
+    else
+      InTerminal.run(command, forScripts = options.json.value).map: status =>
+        if status != 0 then
+          Console.err.println(s"skein observe: ${command.head} ended with exit status $status")
 
   private def untilInterrupted(): Either[String, Unit] =
     val stopped = CountDownLatch(1)
     Edge.untilInterrupted(() => stopped.countDown())(stopped.await())
     Right(())
-
-  /** Runs the command to its end in this terminal. */
-  private def runToEnd(command: Seq[String]): Either[String, Unit] =
-    try
-      val program = ProcessBuilder(command*).inheritIO().start()
-      Edge.untilInterrupted(() => OutsideProgram.stop(program)):
-        val status = program.waitFor()
-        if status != 0 then
-          Console.err.println(s"skein observe: ${command.head} ended with exit status $status")
-      Right(())
-    catch case absent: IOException => Left(s"cannot start ${command.head}: ${absent.getMessage}")
 
   private def text(tables: Vector[Section], findings: Vector[String]): String =
     (Section.text(tables) +: "" +: findings.flatMap(Paragraph.lines(_, 100))).mkString("\n")

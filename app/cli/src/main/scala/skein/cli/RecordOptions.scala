@@ -26,7 +26,8 @@ final case class RecordOptions(
     val untaken = Option.when(clock == ClockKind.Virtual && record.exists(isPostgres))(
       "--record: flights in virtual time are not written to Postgres; expected mcap"
     )
-    unknown.orElse(untaken).toLeft(())
+    unknown.orElse(untaken).toLeft(()).flatMap: _ =>
+      if record.exists(isPostgres) then Extra.Postgres.checked.left.map("--record: " + _) else Right(())
 
   /** Removes what follows a colon, which may be a password. */
   private def withoutSecrets(one: String) =

@@ -1,6 +1,5 @@
 package skein.cli
 
-import java.nio.file.{Files, Path}
 import mainargs.{Flag, ParserForClass, arg}
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.duration.DurationInt
@@ -79,10 +78,6 @@ final case class ServeOptions(
         "ardupilot (JSON, UDP 9002, 9012, …) or betaflight (UDP 9002, one vehicle)"
     )
     hil: Option[String],
-    @arg(doc =
-      "folder for voxel grids that clients ask for (simCreateVoxelGrid); without it, clients have no files written"
-    )
-    grids: Option[String],
     view: ViewOptions
 )
 
@@ -135,8 +130,7 @@ object ServeCommand
         s"--mavlink-instance: expected 0 to $mostInstance, got $instance"
       mavlink =
         Option.when(options.mavlink.value)(MavlinkSettings.asPx4(world.vehicles.size, address.host, instance))
-      hil = autopilot.map(HilSettings.usual(_, world.vehicles.size, address.host))
-      grids <- options.grids.fold[Either[String, Option[Path]]](Right(None))(gridsOf(_).map(Some(_)))
+      hil   = autopilot.map(HilSettings.usual(_, world.vehicles.size, address.host))
       shows = Shows()
       ros <-
         if options.ros.value then
@@ -154,7 +148,6 @@ object ServeCommand
             hil = hil,
             kind = kind,
             patience = Some(Patience),
-            grids = grids,
             sensing = noise.map(SimulatedSensing(_))
           ),
           Option.when(options.view.view.value)(shows),
@@ -191,10 +184,6 @@ object ServeCommand
       _    <- Expect.that(step > Span.Zero && step.toNanos % StepsOf.toNanos == 0):
         s"--ros-step: expected a multiple of ${StepsOf.toMillis.toInt}ms, got $text"
     yield step
-
-  private def gridsOf(folder: String): Either[String, Path] =
-    val path = Path.of(folder)
-    Expect.that(Files.isDirectory(path))(s"--grids: expected a folder, got '$folder'").map(_ => path)
 
   private[cli] def fileOf(name: String): Either[String, SettingsFile] =
     for

@@ -26,7 +26,8 @@ private[cli] object SolverOptions:
         s"--solver ${choice.text} is for --clock virtual; expected " +
           "tcp://HOST:PORT or kafka://HOST:PORT/PREFIX of ./skein decide"
       )
-    case _ => Right(())
+    case Some(choice: SolverChoice.Kafka) => Extra.Kafka.checked.left.map(s"--solver ${choice.text}: " + _)
+    case _                                => Right(())
 
   /** Connects to any kind of solver of a flight in real time. Only this needs the build's name, which takes a
     * while to compute.

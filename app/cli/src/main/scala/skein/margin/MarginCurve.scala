@@ -23,7 +23,7 @@ final case class MarginPoint(link: LatencyProfile, runs: Vector[MarginRun]):
     */
   def counts: Boolean = stats.count > 0 || without.exists:
     case MarginRun.NoResult.OfProgram(_) => true
-    case MarginRun.NoResult.Starved(_)   => false
+    case MarginRun.NoResult.OfMachine(_) => false
 
 /** How a program's result changes with the link's mean round trip.
   *

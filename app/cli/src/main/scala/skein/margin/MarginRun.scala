@@ -19,12 +19,13 @@ final case class MarginRun(
 )
 
 object MarginRun:
-  /** Why a run does not count: the program's fault, or the machine's. */
+  /** Why a run does not count: its program failed, or something else did. */
   enum NoResult(val why: String):
     /** The program did nothing that could be scored. */
     case OfProgram(reason: String) extends NoResult(reason)
 
-    case Starved(reason: String) extends NoResult(reason)
+    /** The machine was too busy, or the run could not begin. */
+    case OfMachine(reason: String) extends NoResult(reason)
 
   /** The course of a run, observed from outside.
     *
@@ -54,7 +55,7 @@ object MarginRun:
     died(ended)
       .orElse(hung(by, ended))
       .map(NoResult.OfProgram(_))
-      .orElse(ended.starved.map(NoResult.Starved(_)))
+      .orElse(ended.starved.map(NoResult.OfMachine(_)))
       .toLeft(())
       .flatMap(_ => value(by, ended).left.map(NoResult.OfProgram(_)))
 
@@ -85,11 +86,11 @@ object MarginRun:
         .flatMap(_.toDoubleOption)
         .filter(_.isFinite)
         .toRight(s"expected a number as the last line that it prints, got $came")
-    case MarginJudge.Contacts       => Right(ended.contacts.toDouble)
-    case MarginJudge.Flown(measure) =>
-      ended.tracks.flatMap(measure.of).toRight(
-        s"it has no value of '${measure.name}' after ${seconds(ended.lasted)}"
-      )
+    case MarginJudge.Contacts => ended.tracks.map(_ => ended.contacts.toDouble).toRight(noValue(by, ended))
+    case MarginJudge.Flown(measure) => ended.tracks.flatMap(measure.of).toRight(noValue(by, ended))
+
+  private def noValue(by: MarginJudge, ended: Ended) =
+    s"it has no value of '${by.name}' after ${seconds(ended.lasted)}"
 
   private def seconds(span: Span) = s"${span.toSeconds.fixed(1)} s"
 

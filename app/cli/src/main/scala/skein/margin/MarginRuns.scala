@@ -1,18 +1,20 @@
 package skein.margin
 
 import java.util.concurrent.{Callable, Executors}
+import scala.util.control.NonFatal
 import skein.signal.{LatencyProfile, SplitMix64}
 import skein.units.Decimals.brief
 
 /** All runs of a margin, in turns over the links, so that a change of the machine's load affects all links
   * alike.
   *
+  * @param run executes one run over a link, with a seed; Left says why it could not begin
   * @param atOnce maximum number of simultaneous runs
   * @param isStopped whether no further run begins
   * @param onEnded receives a line for each run that has ended
   */
 final class MarginRuns(
-    trial: MarginTrial,
+    run: (LatencyProfile, Long) => Either[String, MarginRuns.Outcome],
     judge: MarginJudge,
     repeats: Int,
     atOnce: Int,
@@ -22,7 +24,7 @@ final class MarginRuns(
 ):
   import MarginRuns.*
 
-  /** Executes all runs. Blocks.
+  /** Executes all runs. Blocks. A run that cannot begin has no result; runs cut short are left out.
     *
     * @param links the first one is the reference: if the program fails in its first run there, no other
     *   follows
@@ -30,9 +32,9 @@ final class MarginRuns(
     */
   def fly(links: Vector[LatencyProfile]): Either[String, Flown] =
     one(links, Run(0, 0)).flatMap: first =>
-      first.run.value match
-        case Left(MarginRun.NoResult.OfProgram(why)) if !isStopped() => Left(s"without a link: $why")
-        case _                                                       =>
+      first.ended.run.value match
+        case Left(MarginRun.NoResult.OfProgram(why)) if !first.ended.isCut => Left(s"without a link: $why")
+        case _                                                             =>
           val pool = Executors.newFixedThreadPool(atOnce, Thread.ofPlatform().daemon().factory())
           try
             val others =
@@ -41,27 +43,34 @@ final class MarginRuns(
                 link   <- links.indices if repeat > 0 || link > 0
               yield pool.submit((
                   () =>
-                    Option.unless(isStopped())(one(links, Run(link, repeat)))
-              ): Callable[Option[Either[String, Done]]])
-            val (failed, done) = others.flatMap(_.get()).partitionMap(identity)
-            failed.headOption.toLeft(flown(links, first +: done))
+                    Option.unless(isStopped())(further(links, Run(link, repeat)))
+              ): Callable[Option[Done]])
+            Right(flown(links, first +: others.flatMap(_.get())))
           finally pool.shutdown()
 
   private def one(links: Vector[LatencyProfile], which: Run): Either[String, Done] =
-    val link = links(which.link)
-    trial.run(link, SplitMix64.seedOf(seed, which.repeat * links.size + which.link), isStopped).map: ended =>
-      val came = ended.run.value.fold(_.why, value => s"${judge.name} ${value.brief} ${judge.unit}".trim)
-      if !isStopped() then onEnded(s"${link.name}, run ${which.repeat + 1} of $repeats: $came")
-      Done(which, ended.run, ended.printed)
+    run(links(which.link), SplitMix64.seedOf(seed, which.repeat * links.size + which.link))
+      .map(told(links, which, _))
+
+  /** A run after the first, whose program could be run. */
+  private def further(links: Vector[LatencyProfile], which: Run): Done =
+    val done =
+      try one(links, which)
+      catch case NonFatal(failure) => Left(Option(failure.getMessage).getOrElse(failure.toString))
+    done.fold(why => told(links, which, notRun(s"it could not be run: $why")), identity)
+
+  private def told(links: Vector[LatencyProfile], which: Run, ended: Outcome): Done =
+    val came = ended.run.value.fold(_.why, value => s"${judge.name} ${value.brief} ${judge.unit}".trim)
+    if !ended.isCut then onEnded(s"${links(which.link).name}, run ${which.repeat + 1} of $repeats: $came")
+    Done(which, ended)
 
   private def flown(links: Vector[LatencyProfile], done: Vector[Done]) =
-    // A run that was cut short is not counted.
-    val whole = if isStopped() then done.filter(_.run.value.isRight) else done
+    val whole = done.filterNot(_.ended.isCut)
     Flown(
       links.zipWithIndex.map((link, index) =>
-        MarginPoint(link, whole.filter(_.which.link == index).map(_.run))
+        MarginPoint(link, whole.filter(_.which.link == index).map(_.ended.run))
       ),
-      done.map(one => (links(one.which.link).name, one.which.repeat + 1, one.printed))
+      done.map(one => (links(one.which.link).name, one.which.repeat + 1, one.ended.printed))
     )
 
 object MarginRuns:
@@ -70,5 +79,15 @@ object MarginRuns:
     */
   final case class Flown(points: Vector[MarginPoint], printed: Vector[(String, Int, String)])
 
+  /** The end of a run.
+    *
+    * @param printed what the program printed
+    * @param isCut whether the run was ended early, so that its value means nothing
+    */
+  final case class Outcome(run: MarginRun, printed: String, isCut: Boolean)
+
+  private def notRun(why: String): Outcome =
+    Outcome(MarginRun(Left(MarginRun.NoResult.OfMachine(why)), 0, None, None), "", isCut = false)
+
   private final case class Run(link: Int, repeat: Int)
-  private final case class Done(which: Run, run: MarginRun, printed: String)
+  private final case class Done(which: Run, ended: Outcome)

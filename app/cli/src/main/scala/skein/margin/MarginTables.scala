@@ -77,15 +77,16 @@ object MarginTables:
   def remarks(curve: MarginCurve, atOnce: Int): Vector[String] =
     val all     = (curve.reference +: curve.points).flatMap(_.runs)
     val starved = all.count(_.value match
-      case Left(MarginRun.NoResult.Starved(_)) => true
-      case _                                   => false)
+      case Left(MarginRun.NoResult.OfMachine(_)) => true
+      case _                                     => false)
     Vector(
       s"${counted(all.size, "run")} by the clock, ${MarginTables.atOnce(atOnce)}. What is compared is the " +
         "program without an emulated link: its own pauses, its language and its client are in that already, " +
         "and what they cost cannot be told from here."
     ) ++ Option.when(starved > 0):
-      s"Not counted, for the machine was too busy: $starved of ${counted(all.size, "run")}. Others may have " +
-        "been slowed by less than can be told; let nothing else run meanwhile."
+      s"Not counted, for the machine was too busy or they could not begin: $starved of " +
+        s"${counted(all.size, "run")}. Others may have been slowed by less than can be told; let nothing else " +
+        "run meanwhile."
     ++ Option.when(curve.reference.stats.count < 2):
       "One run says nothing about chance: more --repeats give intervals."
 

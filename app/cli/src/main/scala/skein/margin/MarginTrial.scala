@@ -38,14 +38,10 @@ final class MarginTrial(
 
   /** Executes a run. Blocks.
     *
-    * @param isStopped whether the run must end early; its result is not counted then
-    * @return the run, and what the program printed; Left says why the program cannot be run
+    * @param isStopped whether the run must end early
+    * @return Left says why the program cannot be run
     */
-  def run(
-      link: LatencyProfile,
-      seed: Long,
-      isStopped: () => Boolean
-  ): Either[String, (run: MarginRun, printed: String)] =
+  def run(link: LatencyProfile, seed: Long, isStopped: () => Boolean): Either[String, MarginRuns.Outcome] =
     simulated(SimulatorSettings(world, AnyPort, scene = scene)): (server, transport, observer) =>
       for
         _   <- scenario.fold(Right(()))(place(_, server.address, transport))
@@ -103,9 +99,11 @@ final class MarginTrial(
           val watch = Watch(server, proxy, program, isStopped)
           try watch.untilEnd()
           finally program.stop()
+          watch.stopped()
           (watch, program)
       finally awaited(proxy.close()): Unit
-    watched.map((watch, program) => (run = watch.judged(proxy.observed), printed = program.printed))
+    watched.map: (watch, program) =>
+      MarginRuns.Outcome(watch.judged(proxy.observed), program.printed, watch.isCut)
 
   private def place(scenario: Scenario, at: Address, transport: Transport): Either[String, Unit] =
     val client = AirSimClient(RpcClient(transport, at, clock))
@@ -123,14 +121,19 @@ final class MarginTrial(
     private val truths    = ArrayBuffer.empty[SimulatorServer.Truth]
     private var lateness  = Lateness()
     private var begun     = Option.empty[Instant]
-    private var passed    = Span.Zero
-    private var passedAt  = startedAt
+    private var course    = MarginCourse(startedAt)
     private var exit      = Option.empty[Int]
-    private var lasted    = Span.Zero
+
+    var isCut = false
+
+    /** Notes whether the program was ended early: by us, or by Ctrl-C, perhaps before that is known here. */
+    def stopped(): Unit = isCut = !isOver && isStopped()
+
+    private def isOver = course.lasted >= MarginTrial.this.lasts
 
     def untilEnd(): Unit =
       var ticks = 0L
-      while exit.isEmpty && lasted < MarginTrial.this.lasts && !isStopped() do
+      while exit.isEmpty && !isOver && !isStopped() do
         val due = startedAt + Every * ticks
         program.await(due.since(clock.now()))
         val now = clock.now()
@@ -140,11 +143,8 @@ final class MarginTrial(
 
     private def look(now: Instant): Unit =
       exit = program.exit
-      lasted = now.since(startedAt)
       val progress = proxy.progress
-      if progress.lasted > passed then
-        passed = progress.lasted
-        passedAt = now
+      course = course.looked(now, progress.lasted)
       if progress.commands > 0 then
         val truth = awaited(Future.firstCompletedOf(Seq(server.truth(), server.failed.map(throw _))))
         if begun.isEmpty then begun = Some(truth.at + skip)
@@ -154,10 +154,10 @@ final class MarginTrial(
       val behind = server.behind
       val ended  = MarginRun.Ended(
         exit,
-        lasted,
+        course.lasted,
         observed.connections,
         observed.commands,
-        clock.now().since(passedAt).min(lasted),
+        course.silentFor,
         program.lastLine,
         program.lastError,
         contacts,

@@ -106,7 +106,7 @@ object ObservedTables:
       else if found.isEmpty then Vector("No fault of timing was found.")
       else found.map(one => s"${one.name.capitalize}: ${one.what}. Remedy: ${one.remedy}.")
     val paused = Option.when(observed.pauses > 0):
-      s"The program paused, stepped or reset the simulator ${observed.pauses} times: while time stands still, ages grow and data does not get old."
+      s"The program paused or stepped the simulator ${observed.pauses} times: while time stands still, ages grow and data does not get old."
     val lost =
       observed.lost.map(reason => s"Not understood from there on, and passed on all the same: $reason.")
     val more = Option.when(observed.notKept > 0)(

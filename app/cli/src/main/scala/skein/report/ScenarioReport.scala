@@ -65,6 +65,10 @@ object ScenarioReport:
 
   private object General extends ScenarioReport
 
-  /** The report of an unknown kind: trajectories need no scenario. */
+  /** The report of an unregistered kind: that of a scenario that a recording states whole, as one written in
+    * Python; else trajectories, which need no scenario.
+    */
   private object Unknown extends ScenarioReport:
-    override def figures(set: FlightSet): Vector[Figure] = Figure.trajectories(set).toVector
+    override def figures(set: FlightSet): Vector[Figure] =
+      val known = super.figures(set)
+      if known.isEmpty then Figure.trajectories(set).toVector else known

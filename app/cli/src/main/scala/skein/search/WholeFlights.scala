@@ -142,17 +142,19 @@ object WholeFlights:
   def whole(flown: Engagement, objective: Objective): Option[String] =
     def keysWhere(is: Measure => Boolean) = objective.measures.map(_._2).filter(is).map(ScenarioTerm.keyOf)
     val plain                             = keysWhere(_.reduced.isEmpty)
-    val partly                            = keysWhere(_.over != Window.Whole)
+    val partly                            = keysWhere(_.over.isInstanceOf[Window.Last])
     val refused                           =
       flown.isOver.collect { case end: OwnEnd => EndFormula.of(end, flown.agents.size) }.flatMap(
         _.left.toOption
       )
     if plain.nonEmpty then
-      Some(s"${plain.mkString(", ")} is of whole flights, not of a quantity by itself")
+      Some(
+        s"${plain.mkString(", ")} is of whole flights: expected a mean, rms, sd, least or most of a quantity of positions and time"
+      )
     else if refused.nonEmpty then refused.map(why => s"its end is no formula: ${why.getMessage}")
     else
       Option.when(flown.isOver.nonEmpty && partly.nonEmpty)(
-        s"it says itself when it is over, and ${partly.mkString(", ")} is of a part of the flight"
+        s"it says itself when it is over, and ${partly.mkString(", ")} is of the flight's last seconds"
       )
 
   /** The plant for a scenario.

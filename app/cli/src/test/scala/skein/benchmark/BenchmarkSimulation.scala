@@ -98,3 +98,14 @@ class BenchmarkSimulation extends munit.FunSuite, Unhurried:
     assertEqualsDouble(row.halfOff.get, 12.706 * 0.1, 1e-12)
     assertEqualsDouble(row.violations, 0, 0)
     assertEquals(BenchmarkRow(cell, few.entries.head, flights(0), flights(1), Vector.empty).meanOff, None)
+
+  test("the interval contains the error of the paused loop's mean, and more is more of a negative measure"):
+    def flights(values: Double*) =
+      values.toVector.map(value => BenchmarkFlight(Some(value), violations = 0, None, Vector.empty))
+    def row(truths: Vector[BenchmarkFlight], flown: Vector[BenchmarkFlight]) =
+      BenchmarkRow(few.cells.head, few.entries.head, truths, flown, Vector.empty)
+    val wide = row(flights(9, 11), flights(20, 20))
+    assertEqualsDouble(wide.meanOff.get, 1, 1e-12)
+    assertEqualsDouble(wide.halfOff.get, 2 * 12.706 * 0.1, 1e-3)
+    assertEqualsDouble(row(flights(-10), flights(-8)).meanOff.get, 0.2, 1e-12)
+    assertEquals(row(flights(9), flights(20, 20)).halfOff, None)

@@ -33,7 +33,10 @@ class ScenarioSubjectSimulation extends munit.FunSuite, Optimised:
     assertEquals((plain.formula, plain.unit), ("off-ring", "m"))
     val both   = subject(surround, Some("off-ring + 0*surrounded-after"))
     val scalar = both.engine(Vector.empty).text
-    assertEquals(scalar, "scalar: surrounded-after is of whole flights, not of a quantity by itself")
+    assertEquals(
+      scalar,
+      "scalar: surrounded-after is of whole flights: expected a mean, rms, sd, least or most of a quantity of positions and time"
+    )
     for latencyMs <- Seq(0.0, 200.0) do
       // Tracks are evaluated every 20 ms, on lines between the positions of each period; a quantity once a
       // period.

@@ -75,6 +75,12 @@ class LinkCommandsLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders:
       run(LinkCommand, between ++ Seq("--udp", "--buffer")*)._3.trim,
       "skein link: --buffer: expected without --udp, for a simulator that speaks AirSim's protocol over TCP"
     )
+    assertEquals(
+      run(LinkCommand, between ++ Seq("--stall-lasts", "2s")*)._3.trim,
+      "skein link: --stall-lasts: expected with --stall-every, without which nothing stalls"
+    )
+    val three = Seq("--profile", "vpn", "--to-server", "none", "--to-client", "direct")
+    assert(run(LinkCommand, between ++ three*)._3.startsWith("skein link: --profile: expected without "))
     for (option, more) <- Seq("--profile" -> Nil, "--to-client" -> Seq("--rate", "50mbit")) do
       val told = run(LinkCommand, between ++ Seq(option, "dsl") ++ more*)._3
       assert(told.startsWith(s"skein link: $option: ") && told.contains("vpn-mixed"), told)

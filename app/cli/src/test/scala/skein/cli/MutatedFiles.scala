@@ -163,7 +163,7 @@ object MutatedFiles:
     |  deadline = 50 ms
     |  fallback = hold
     |  images = ["front_center@5"]
-    |  planning { deadline = 40 ms, horizon-steps = 20, method = path-integral, separation-m = 1 }
+    |  planning { deadline = 40 ms, horizon-steps = 20, separation-m = 1 }
     |}
     |""".stripMargin
 

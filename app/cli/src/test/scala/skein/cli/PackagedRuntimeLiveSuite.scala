@@ -13,17 +13,21 @@ class PackagedRuntimeLiveSuite extends munit.FunSuite, Lengthy, Unhurried:
   private lazy val home: Option[Path] =
     val folder = Documentation.root.resolve("app/cli/target/package")
     Option.when(Files.isDirectory(folder))(folder).flatMap: folder =>
-      Using.resource(Files.list(folder))(_.iterator.asScala.find(_.getFileName.toString.startsWith("skein-")))
-        .filter(Files.isDirectory(_))
+      Using.resource(Files.list(folder)):
+        _.iterator.asScala.find(one =>
+          one.getFileName.toString.startsWith("skein-") && Files.isDirectory(one)
+        )
 
   /** Modules of code that Skein never calls: Agrona's generator of classes, and logins by Kerberos. */
   private val unused = Set("java.compiler", "java.security.jgss")
 
-  test("it has every module of the JDK that a class in the program's jars refers to"):
+  test("it has every module of the JDK that a class in the program's jars, or in its extras, refers to"):
     assume(home.isDefined, "./sbtw cli/program makes it")
-    val jars =
-      Using.resource(Files.list(home.get.resolve("lib")))(_.iterator.asScala.map(_.toString).toVector)
-        .filter(_.endsWith(".jar"))
+    val extras = home.get.resolveSibling("extras").resolve(home.get.getFileName).resolve("lib/extra")
+    val jars   = Vector(home.get.resolve("lib"), extras).flatMap: folder =>
+      Using.resource(
+        Files.list(folder)
+      )(_.iterator.asScala.map(_.toString).toVector).filter(_.endsWith(".jar"))
     val java    = home.get.resolve("runtime/bin/java").toString
     val listed  = ProcessBuilder(java, "--list-modules").start()
     val present = String(listed.getInputStream.readAllBytes()).linesIterator.map(_.takeWhile(_ != '@')).toSet

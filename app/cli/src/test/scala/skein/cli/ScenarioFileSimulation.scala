@@ -31,6 +31,9 @@ class ScenarioFileSimulation extends munit.FunSuite, TemporaryFolders, Unhurried
     assertEquals("all the same".r.findAllIn(replayed).size, 2, replayed)
     val reported = well(Seq("report", "--out", s"$path/report") ++ recording*)
     assert(reported.contains("off ring"), reported)
+    val pictures =
+      Files.list(path.resolve("report/figures")).iterator.asScala.map(_.getFileName.toString).toSet
+    assert(Set("ring-trajectories.svg", "ring-measure.svg").subsetOf(pictures), pictures)
     val other = Files.copy(ring, path.resolve("again.scenario"))
     val again = well(
       s"fly --clock virtual --loop predictive --link vpn --duration 6s --set ring-m=6 --scenario=$other --out $path/again".split(

@@ -57,14 +57,14 @@ class MarginCurveSuite extends munit.FunSuite:
     assertEquals(curve(reference, point(40, 101, 101), dies).toOption.get.margin, Bound.At(40))
 
   test("a link whose runs were spoiled by the machine is ignored"):
-    val busy  = failing(80, NoResult.Starved("too busy"))
+    val busy  = failing(80, NoResult.OfMachine("too busy"))
     val flown = curve(reference, point(40, 101, 101), busy, point(120, 101, 101)).toOption.get
     assertEquals(flown.margin, Bound.Beyond(120))
     val remark = MarginTables.remarks(flown, 1).find(_.contains("too busy"))
     assert(remark.exists(_.contains("2 of 9 runs")), remark)
 
   test("without a result of the reference, one line states why there is no curve"):
-    val spoilt = MarginPoint(LatencyProfile.none, Vector(run(Left(NoResult.Starved("too busy")))))
+    val spoilt = MarginPoint(LatencyProfile.none, Vector(run(Left(NoResult.OfMachine("too busy")))))
     assertEquals(
       curve(spoilt, point(50, 1)).left.toOption,
       Some("no run without a link has a result, to compare with: too busy")

@@ -48,12 +48,20 @@ class MarginRunSuite extends munit.FunSuite:
     assert(why(flown, fine.copy(silentFor = Span.ofSeconds(11))).exists(_.startsWith("it hung")))
     assertEquals(why(flown, fine.copy(silentFor = Span.ofSeconds(9))), None)
 
+  test("silence lasts from the last message to the last look, however long the program takes to end"):
+    def at(seconds: Double) = Instant.Epoch + Span.ofSeconds(seconds)
+    val course              = MarginCourse(at(3)).looked(at(4), Span.Zero).looked(at(5), Span.ofSeconds(1))
+      .looked(at(9), Span.ofSeconds(1))
+    assertEquals((course.lasted, course.silentFor), (Span.ofSeconds(6), Span.ofSeconds(4)))
+
   test("a flight too short for the measure has no result"):
-    assertEquals(why(flown, fine.copy(tracks = None)), Some("it has no value of 'last 10 s' after 20.0 s"))
+    val short = fine.copy(tracks = None)
+    assertEquals(why(flown, short), Some("it has no value of 'last 10 s' after 20.0 s"))
+    assertEquals(why(MarginJudge.Contacts, short), Some("it has no value of 'contacts' after 20.0 s"))
 
   test("a busy machine spoils a run, but a program that dies meanwhile counts as failed"):
     val starved = fine.copy(starved = Some("the machine was too busy"))
-    assertEquals(MarginRun.judged(flown, starved), Left(NoResult.Starved("the machine was too busy")))
+    assertEquals(MarginRun.judged(flown, starved), Left(NoResult.OfMachine("the machine was too busy")))
     assert(why(flown, starved.copy(exit = Some(2))).exists(_.contains("exit status 2")))
 
   test("a printed number must be the last line of a program that has ended"):

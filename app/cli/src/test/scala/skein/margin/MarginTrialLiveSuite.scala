@@ -18,17 +18,17 @@ class MarginTrialLiveSuite extends munit.FunSuite, Waiting:
   private val vehicles = duel.agents.map(Vehicles.settings)
 
   /** The run of a script, and its output. */
-  private def run(script: String, seconds: Double, judge: MarginJudge = MarginJudge.Contacts) =
+  private def run(script: String, seconds: Double, isStopped: Boolean = false) =
     MarginTrial(
       Seq("bash", "-c", script),
       WorldSettings.of(vehicles),
       Scene.Empty,
       Some(duel),
-      judge,
+      MarginJudge.Contacts,
       Span.ofSeconds(seconds),
       Span.Zero,
       Clock.system
-    ).run(LatencyProfile.none, 1, () => false).fold(fail(_), identity)
+    ).run(LatencyProfile.none, 1, () => isStopped).fold(fail(_), identity)
 
   private def why(run: MarginRun) = run.value.left.toOption.map(_.why)
 
@@ -45,8 +45,13 @@ class MarginTrialLiveSuite extends munit.FunSuite, Waiting:
   test("a program that connects, commands nothing and does not end is stopped when its time is over"):
     assertEquals(why(run(s"$connect; sleep 1000", 2).run), Some("it connected, and commanded nothing"))
 
+  test("a run that must stop before its time is marked as cut short, also if its program has ended"):
+    assert(run("sleep 1000", 60, isStopped = true).isCut)
+    assert(run("exit 130", 60, isStopped = true).isCut)
+    assert(!run("exit 0", 60).isCut)
+
   test("a program is scored from its first command on"):
-    val ended = run(s"$connect; $hover", 60).run
+    val ended = run(s"$connect; $hover; sleep 0.5", 60).run
     // A busy machine spoils a run, which is reported.
     assume(ended.value.left.forall(!_.why.contains("too busy")), "inconclusive")
     assertEquals(ended.value, Right(0.0))

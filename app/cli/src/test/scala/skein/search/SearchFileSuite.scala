@@ -3,7 +3,6 @@ package skein.search
 import com.typesafe.config.Config
 import java.nio.file.Files
 import scala.jdk.CollectionConverters.*
-import skein.forward.LoopTiming
 import skein.learn.LearnerSettings
 import skein.optimise.{Evaluator, SearchState, RunningStats}
 import skein.scenario.{Measure, Scenario, ScenarioKind, Scenarios, Surround}
@@ -209,7 +208,7 @@ class SearchFileSuite extends munit.FunSuite, TemporaryFolders, Optimised:
       assertEquals(ready.loop, text)
       ready.flownBy match
         case TeamEngine.Reduced(conditions, _) =>
-          assertEquals(LoopTiming.steeringOf(conditions.timing).mostOutstanding, moves)
+          assertEquals(conditions.timing.steering.mostOutstanding, moves)
         case other => fail(other.toString)
 
   for

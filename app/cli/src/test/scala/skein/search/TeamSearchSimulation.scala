@@ -167,4 +167,11 @@ object TeamSearchSimulation:
       .grouped(count)
       .toVector
       .takeRight(101)
-      .map(all => Positions(IArray.from(all.map(_._2)), IArray.from(all.map(_._3)), IArray.fill(count)(-5.0)))
+      .map(all =>
+        Positions(
+          IArray.from(all.map(_._2)),
+          IArray.from(all.map(_._3)),
+          IArray.fill(count)(-5.0),
+          Double.NaN
+        )
+      )

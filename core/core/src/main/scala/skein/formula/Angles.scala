@@ -41,8 +41,8 @@ final class Angles(
     land(node)
     inner(node)
 
-  /** Moves parts that both branches of a condition contain out of the condition, and combines constant
-    * factors.
+  /** Moves parts that both branches of a condition contain out of the condition, and combines factors that
+    * are constant or depend on parameters alone.
     */
   def factored(node: Node): Node =
     for each <- Trace.landings(node) do plained(each): Unit
@@ -66,15 +66,22 @@ final class Angles(
         choose(source, condition, a, b)
       case Div if node.args(1).isConst =>
         scaled(plained(node.args(0)), 1 / node.args(1).value)
-      case Mul if node.args(1).isConst => scaled(plained(node.args(0)), node.args(1).value)
-      case Mul if node.args(0).isConst => scaled(plained(node.args(1)), node.args(0).value)
-      case _                           => source.again(node, node.args.map(plained))
+      case Mul if node.args(1).isConst  => scaled(plained(node.args(0)), node.args(1).value)
+      case Mul if node.args(0).isConst  => scaled(plained(node.args(1)), node.args(0).value)
+      case Mul if isFixed(node.args(0)) => scaledBy(plained(node.args(1)), plained(node.args(0)))
+      case Mul if isFixed(node.args(1)) => scaledBy(plained(node.args(0)), plained(node.args(1)))
+      case _                            => source.again(node, node.args.map(plained))
   )
 
   private def scaled(node: Node, by: Double): Node =
     if node.op == Mul && node.args(1).isConst then
       source.mul(node.args(0), source.const(node.args(1).value * by))
     else source.mul(node, source.const(by))
+
+  /** A product with what depends on parameters alone: rounded like one with a constant of this value. */
+  private def scaledBy(node: Node, by: Node): Node =
+    if node.op == Mul && node.args(1).isConst then source.mul(node.args(0), source.mul(node.args(1), by))
+    else source.mul(node, by)
 
   private def cosSinOf(node: Node): (Node, Node) = directionOf(node) match
     case Some(way) => unit(way)

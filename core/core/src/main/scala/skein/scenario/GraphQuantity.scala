@@ -4,7 +4,7 @@ import skein.formula.{Evaluation, Formula, KnownFormula, Node, Trace}
 
 /** A quantity that is data, for example one traced in Python.
   *
-  * @param places index of the input for each position: north of all vehicles, then east, then down
+  * @param trace with inputs for north of all vehicles, then east, then down, then the time
   */
 private[scenario] final class QuantityGraph(
     trace: Trace,
@@ -14,17 +14,15 @@ private[scenario] final class QuantityGraph(
 ):
   private val evaluation = Evaluation(Vector(value))
 
-  def apply(
-      northM: Int => Double,
-      eastM: Int => Double,
-      downM: Int => Double
-  )(values: Array[Double]): Double =
-    val places = Seq(northM, eastM, downM).flatMap(of => (0 until vehicles).map(of))
-    evaluation(places.toArray, values)(0)
+  def apply(at: Positions, values: Array[Double]): Double =
+    val places = Seq(at.northM, at.eastM, at.downM).flatMap(_.take(vehicles))
+    evaluation((places :+ at.elapsedS).toArray, values)(0)
 
   val formula: Formula = Formula.ofGraph(
     trace,
-    Seq("north", "east", "down").toVector.flatMap(axis => (0 until vehicles).map(at => s"$axis($at)")),
+    Seq("north", "east", "down").toVector.flatMap(axis =>
+      (0 until vehicles).map(at => s"$axis($at)")
+    ) :+ "elapsed",
     Vector("answer" -> value),
     settings
   ) {
@@ -40,7 +38,6 @@ private[skein] final class GraphQuantity private[scenario] (
     private[scenario] val graph: QuantityGraph,
     private[scenario] val values: Array[Double]
 ) extends Quantity, KnownFormula:
-  def of(positions: Positions): Double =
-    graph(positions.northM(_), positions.eastM(_), positions.downM(_))(values)
+  def of(positions: Positions): Double = graph(positions, values)
 
   def formula: Formula = graph.formula

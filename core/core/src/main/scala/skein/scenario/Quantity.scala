@@ -2,8 +2,16 @@ package skein.scenario
 
 import skein.units.{OwnFailure, Vector3}
 
-/** Positions of all vehicles at one moment, by index in the scenario. World frame NED, m. */
-final case class Positions(northM: IArray[Double], eastM: IArray[Double], downM: IArray[Double]):
+/** Positions of all vehicles at one moment, by index in the scenario. World frame NED, m.
+  *
+  * @param elapsedS time since the flight's start, s
+  */
+final case class Positions(
+    northM: IArray[Double],
+    eastM: IArray[Double],
+    downM: IArray[Double],
+    elapsedS: Double = 0
+):
   def count: Int = northM.length
 
   def ned(vehicle: Int): Vector3 = Vector3(northM(vehicle), eastM(vehicle), downM(vehicle))
@@ -16,9 +24,9 @@ final case class Positions(northM: IArray[Double], eastM: IArray[Double], downM:
   def distanceM(vehicle: Int, north: Double, east: Double): Double =
     StrictMath.hypot(northM(vehicle) - north, eastM(vehicle) - east)
 
-/** A value computed from the positions of all vehicles at one moment. Reports draw it, measures reduce it,
-  * and searches optimise it. Pure. If its method is plain arithmetic, it is compiled to SIMD, as policies are
-  * (`docs/guides/formulas.md`).
+/** A value computed from the positions of all vehicles at one moment, and from its time. Reports draw it,
+  * measures reduce it, and searches optimise it. Pure. If its method is plain arithmetic, it is compiled to
+  * SIMD, as policies are (`docs/guides/formulas.md`).
   */
 trait Quantity:
   def of(positions: Positions): Double

@@ -198,12 +198,12 @@ private[scenario] final class ScenarioReader private (text: String):
   private def drawn(of: SeriesLines): Drawn =
     line = of.line
     val isOfPlaces = nodes.inputsOf(Seq(of.value)).forall:
-      case _: PolicyInput.Position => true
-      case _                       => false
+      case _: PolicyInput.Position | PolicyInput.Elapsed => true
+      case _                                             => false
     val seen  = watched(of.value, "series", PolicyInput.Elapsed, hasAges = false)
     val graph = Option.when(isOfPlaces):
       val places = for axis <- 0 to 2; vehicle <- vehicles.indices yield PolicyInput.Position(vehicle, axis)
-      val (trace, numbers) = nodes.moved(Vector(of.value), places.toVector)
+      val (trace, numbers) = nodes.moved(Vector(of.value), places.toVector :+ PolicyInput.Elapsed)
       QuantityGraph(trace, numbers.head, vehicles.size, settings.map(_.name).toVector)
     Drawn(of.name, of.unit, seen, graph, of.bound, of.measures.toVector)
 

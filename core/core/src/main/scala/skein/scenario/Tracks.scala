@@ -32,7 +32,7 @@ final class Tracks private (
 
   def positions(instant: Int): Positions =
     def now(values: Vector[Array[Double]]) = IArray.from(values.map(_(instant)))
-    Positions(now(northM), now(eastM), now(downM))
+    Positions(now(northM), now(eastM), now(downM), timeS(instant))
 
   def velocityNed(vehicle: Int, instant: Int): Vector3 =
     tracks(vehicle).velocityAt(from + Tracks.step * instant)

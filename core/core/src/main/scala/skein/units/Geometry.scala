@@ -56,6 +56,18 @@ final case class Quaternion(w: Double, x: Double, y: Double, z: Double):
 object Quaternion:
   val Identity: Quaternion = Quaternion(1, 0, 0, 0)
 
+  /** The orientation after a yaw, then a pitch about the turned axis, then a roll, rad. */
+  def of(rollRad: Double, pitchRad: Double, yawRad: Double): Quaternion =
+    val (cr, sr) = (StrictMath.cos(rollRad / 2), StrictMath.sin(rollRad / 2))
+    val (cp, sp) = (StrictMath.cos(pitchRad / 2), StrictMath.sin(pitchRad / 2))
+    val (cy, sy) = (StrictMath.cos(yawRad / 2), StrictMath.sin(yawRad / 2))
+    Quaternion(
+      cr * cp * cy + sr * sp * sy,
+      sr * cp * cy - cr * sp * sy,
+      cr * sp * cy + sr * cp * sy,
+      cr * cp * sy - sr * sp * cy
+    )
+
   /** The level orientation with this heading, rad from north towards east. */
   def ofYaw(headingRad: Double): Quaternion =
     Quaternion(StrictMath.cos(headingRad / 2), 0, 0, StrictMath.sin(headingRad / 2))

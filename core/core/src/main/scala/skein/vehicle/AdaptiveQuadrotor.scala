@@ -89,10 +89,11 @@ object AdaptiveQuadrotor extends VehicleModel[AdaptiveQuadrotor.Learning]:
     QuadrotorModel.AirSim.kinematics(if learning.helps then learning.flights.head else learning.nominal)
 
   private def learnt(learning: Learning, seen: Kinematics, sinceSeen: Span): Learning =
-    val measured  = outputs(seen)
-    val predicted = learning.flights.map(flight => outputs(QuadrotorModel.AirSim.kinematics(flight)))
-    val before    = learning.belief.drifted(drifts, sinceSeen.toSeconds, priors)
-    val after     = measured.indices.foldLeft(before): (belief, i) =>
+    val measured  = ParameterBelief.outputs(seen)
+    val predicted =
+      learning.flights.map(flight => ParameterBelief.outputs(QuadrotorModel.AirSim.kinematics(flight)))
+    val before = learning.belief.drifted(drifts, sinceSeen.toSeconds, priors)
+    val after  = measured.indices.foldLeft(before): (belief, i) =>
       val effects = Vector.tabulate(moves.size)(j => (predicted(j + 1)(i) - predicted.head(i)) / moves(j))
       // The update by an earlier output of this reading already changes the prediction of this output.
       val explained = (belief.mean.lazyZip(before.mean).map(_ - _)).lazyZip(effects).map(_ * _).sum
@@ -104,18 +105,10 @@ object AdaptiveQuadrotor extends VehicleModel[AdaptiveQuadrotor.Learning]:
       belief = belief,
       models = modelsOf(belief),
       nominalError =
-        learning.nominalError * keeps + off(outputs(QuadrotorModel.AirSim.kinematics(learning.nominal))),
+        learning.nominalError * keeps + off(
+          ParameterBelief.outputs(QuadrotorModel.AirSim.kinematics(learning.nominal))
+        ),
       learnedError = learning.learnedError * keeps + off(predicted.head)
-    )
-
-  private def outputs(of: Kinematics): Vector[Double] =
-    import of.orientation.{w, x, y, z}
-    Vector(
-      of.velocityNed.x,
-      of.velocityNed.y,
-      of.velocityNed.z,
-      2 * (x * z + w * y),
-      2 * (y * z - w * x)
     )
 
   private def modelsOf(belief: ParameterBelief): Vector[QuadrotorModel] =

@@ -1,5 +1,7 @@
 package skein.vehicle
 
+import skein.signal.Kinematics
+
 /** An estimate of a few parameters: their mean and covariance, as in a Kalman filter. Immutable.
   *
   * Source of the update: Gelb (ed.), "Applied Optimal Estimation", 1974, section 4.2, for one measurement at
@@ -38,6 +40,14 @@ final case class ParameterBelief private[vehicle] (mean: Vector[Double], covaria
     copy(mean = mean.lazyZip(most).map((x, limit) => x.max(-limit).min(limit)))
 
 object ParameterBelief:
+  /** What beliefs about a quadrotor are compared with: its velocity NED, m/s, and the horizontal components
+    * of the direction opposite to its thrust.
+    */
+  private[vehicle] def outputs(of: Kinematics): Vector[Double] =
+    import of.orientation.{w, x, y, z}
+    import of.velocityNed
+    Vector(velocityNed.x, velocityNed.y, velocityNed.z, 2 * (x * z + w * y), 2 * (y * z - w * x))
+
   /** Means of 0, and independent parameters with these standard deviations. */
   def apply(deviations: Vector[Double]): ParameterBelief = new ParameterBelief(
     deviations.map(_ => 0.0),

@@ -91,8 +91,8 @@ final class TurnBelief[S](model: VehicleModel[S]) extends VehicleModel[TurnBelie
   private def learnt(state: Believed[S], seen: Kinematics, s: Double): Believed[S] =
     val angle      = state.turns.mean * s
     val before     = Command.of(state.command)
-    val measured   = outputs(seen)
-    val predicted  = state.flights.map(flying => outputs(model.kinematics(flying)))
+    val measured   = ParameterBelief.outputs(seen)
+    val predicted  = state.flights.map(flying => ParameterBelief.outputs(model.kinematics(flying)))
     val turned     = before.turned(angle)
     val drifted    = state.command.drifted(DriftsMps, s, MostOffMps)
     val expected   = drifted.copy(mean = Vector(turned.north, turned.east, turned.down))
@@ -235,13 +235,3 @@ object TurnBelief:
   private def drawn(shares: Vector[Double], at: Double): Int =
     val index = shares.scanLeft(0.0)(_ + _).tail.indexWhere(_ >= at)
     if index < 0 then shares.size - 1 else index
-
-  private def outputs(of: Kinematics): Vector[Double] =
-    import of.orientation.{w, x, y, z}
-    Vector(
-      of.velocityNed.x,
-      of.velocityNed.y,
-      of.velocityNed.z,
-      2 * (x * z + w * y),
-      2 * (y * z - w * x)
-    )

@@ -268,9 +268,7 @@ final class FlightAssembler(
               .recoverWith:
                 case no: SolverClient.NoSolver =>
                   Future.failed(CannotFly(s"--solver ${choice.text}: ${no.reason}"))
-              .map: how =>
-                if plan.loop == LoopKind.Plan then how.warning.foreach(text => tell(s"${plan.id}: $text"))
-                Some(client)
+              .map(_ => Some(client))
 
   /** The fleet with policies that may learn during the flight. */
   private def learning(

@@ -10,13 +10,12 @@ import skein.units.*
   *
   * @param deadline time from the tick until the command is sent, with the best plan found by then
   * @param horizonSteps number of steps, of duration `step` each
-  * @param method `cross-entropy` or `path-integral`
   * @param behaviours number of behaviours of the opponent against which every candidate is simulated
   * @param searches number of concurrent searches: of threads in real time
   * @param slices number of slices of each search in virtual time, where the clock does not end it; several
   *   vehicles share them, and each gets at least one
-  * @param blocksPerSlice number of blocks of 128 candidates in a slice; between two slices a search checks
-  *   its time
+  * @param blocksPerSlice number of blocks of 128 candidates in a slice, which takes some 0.1 ms; between two
+  *   slices a search checks its time
   * @param turningRadiusM turning radius of a vehicle at its commanded speed, m
   * @param slowestShare least commanded speed, as a share of the vehicle's; 1: only its heading is planned
   * @param separationM separation to be kept from vehicles other than the opponent, m; 0: none
@@ -28,11 +27,10 @@ final case class PlanSettings(
     deadline: Span = Span.ofMillis(60),
     horizonSteps: Int = 30,
     step: Span = Span.ofMillis(100),
-    method: String = PlanSettings.CrossEntropy,
     behaviours: Int = 3,
     searches: Int = 2,
     slices: Int = 4,
-    blocksPerSlice: Int = PlanSettings.defaultBlocks,
+    blocksPerSlice: Int = 4,
     turningRadiusM: Double = 8,
     slowestShare: Double = 1,
     separationM: Double = 0,
@@ -57,12 +55,6 @@ final case class PlanSettings(
         step >= Span.ofMillis(10) && step <= Span.ofMillis(500),
         "10 to 500 ms"
       ),
-      check(
-        "method",
-        method,
-        PlanSettings.methods.contains(method),
-        PlanSettings.methods.keys.toSeq.sorted.mkString(" or ")
-      ),
       check("behaviours", behaviours, behaviours > 0 && behaviours <= 32, "1 to 32"),
       check("searches", searches, searches > 0 && searches <= 64, "1 to 64"),
       check("slices", slices, slices > 0, "1 or more"),
@@ -74,13 +66,7 @@ final case class PlanSettings(
     ).flatten
 
   def planner: PlannerSettings =
-    PlannerSettings(
-      horizonSteps,
-      step.toSeconds,
-      PlanSettings.methods(method),
-      blocksPerSlice,
-      stepsPerKnot = 3
-    )
+    PlannerSettings(horizonSteps, step.toSeconds, blocksPerSlice = blocksPerSlice, stepsPerKnot = 3)
 
   def geofences: Vector[Geofence] =
     Option.when(geofenceM > 0)(Geofence(Fence.rectangle(
@@ -119,9 +105,6 @@ final case class PlanSettings(
     .mkString(" ")
 
 object PlanSettings:
-  val CrossEntropy = "cross-entropy"
-  val PathIntegral = "path-integral"
-
   /** Maximum deadline: after a longer search, the data behind a plan would be older than in any other loop.
     */
   val MostDeadline: Span = Span.ofSeconds(2)
@@ -133,14 +116,6 @@ object PlanSettings:
 
   /** Margin of speed limits, as a share: vehicles overshoot commanded speeds. */
   val SpeedDoubt = 0.1
-
-  private val methods = Map(
-    CrossEntropy -> PlanMethod.CrossEntropy(elites = 48, smoothing = 0.2),
-    PathIntegral -> PlanMethod.PathIntegral(temperature = 0.1)
-  )
-
-  /** Blocks of a slice by default: a slice takes some 0.1 ms with SIMD, and 2 ms without. */
-  val defaultBlocks: Int = if Planner.isFast then 4 else 1
 
   /** The text form of a setting, if it is one word. */
   private final class Word[A](
@@ -157,7 +132,6 @@ object PlanSettings:
   private given Word[Span]   = word("Ns", _.toNanos.toString, _.toLongOption.map(Span.ofNanos))
   private given Word[Int]    = word("", _.toString, _.toIntOption)
   private given Word[Double] = word("", _.toString, _.toDoubleOption)
-  private given Word[String] = word("", identity, Some(_))
 
   // Set by the scenario.
   private given Word[Vector[Kept]] = Word("", _ => None, _ => Some(Vector.empty))

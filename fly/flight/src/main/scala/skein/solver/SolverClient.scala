@@ -3,7 +3,7 @@ package skein.solver
 import org.apache.pekko.Done
 import org.apache.pekko.actor.{ActorSystem, Cancellable}
 import scala.concurrent.{Future, Promise}
-import skein.loop.{LoopKind, Memory, Solved, Solver, TeamView}
+import skein.loop.{Memory, Solved, Solver, TeamView}
 import skein.record.EventKind
 import skein.solver.Exchange.{Counts, Verdict}
 import skein.units.*
@@ -30,7 +30,7 @@ final class SolverClient(
 
   private val hello   = SolverMessageCodec.bytes(SolverMessage.Hello(flight, build, briefing))
   private val lock    = Object()
-  private val started = Promise[Welcomed]()
+  private val started = Promise[Done]()
 
   // All below is guarded by the lock.
   private var exchange       = Exchange.of(vehicles)
@@ -52,7 +52,7 @@ final class SolverClient(
     * if one refuses, or none answers within the patience. A solver that reports that it prepares has
     * [[SolverClient.MostPrepared]] at most.
     */
-  def ready(patience: Span): Future[Welcomed] =
+  def ready(patience: Span): Future[Done] =
     val begun                        = clock.now()
     def expect(until: Instant): Unit =
       val timer = system.scheduler.scheduleOnce(until.since(clock.now()).toDuration):
@@ -115,7 +115,7 @@ final class SolverClient(
     case Right(message) =>
       message match
         case SolverMessage.Preparing(`flight`)                     => prepares()
-        case SolverMessage.Welcome(`flight`, _, byVectors)         => welcomed(Welcomed(byVectors))
+        case SolverMessage.Welcome(`flight`, _)                    => welcomed()
         case SolverMessage.Refused(`flight`, reason)               => refused(s"the solver refuses: $reason")
         case SolverMessage.Unknown(`flight`)                       => again("it does not know this flight")
         case SolverMessage.Tell(answer) if answer.flight == flight => heard(answer)
@@ -212,17 +212,14 @@ final class SolverClient(
     preparedAt = Some(clock.now())
     if standing.isInstanceOf[Standing.Greeting] then standing = Standing.Greeting(StillPreparing)
 
-  private def welcomed(how: Welcomed): Unit =
+  private def welcomed(): Unit =
     if rehearses() then greet()
     else
       val isNew = lock.synchronized:
         val was = standing
         standing = Standing.Welcome
         was != Standing.Welcome
-      if isNew && !started.trySuccess(how) then
-        val again =
-          "a solver is there again" +: how.warning.filter(_ => briefing.loop == LoopKind.Plan.label).toSeq
-        noted(EventKind.Reconnected, again.mkString("; "))
+      if isNew && !started.trySuccess(Done) then noted(EventKind.Reconnected, "a solver is there again")
 
   /** Whether it greets once more, before the first request. */
   private def rehearses(): Boolean = lock.synchronized:
@@ -249,17 +246,6 @@ object SolverClient:
 
   private val Silent         = "nobody has answered; is ./skein decide started?"
   private val StillPreparing = "the solver prepares for the flight, and has not finished"
-
-  /** The solver of a flight.
-    *
-    * @param byVectors whether its plans are searched by the JDK's vectors
-    */
-  final case class Welcomed(byVectors: Boolean):
-    /** A warning if a flight that plans has a slow solver. */
-    def warning: Option[String] = Option.when(!byVectors)(
-      "the solver runs without jdk.incubator.vector, so " +
-        "candidates are flown one by one, some fifty times fewer"
-    )
 
   /** No solver decides for the flight; the message states why. */
   final case class NoSolver(reason: String) extends RuntimeException(reason, null, false, false):

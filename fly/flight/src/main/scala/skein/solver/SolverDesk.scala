@@ -4,7 +4,6 @@ import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.pattern.after
 import scala.concurrent.{ExecutionContext, Future}
 import scala.util.{Failure, Success}
-import skein.planning.Planner
 import skein.units.*
 
 /** A solver: decides for every flight that it accepts, over any link.
@@ -16,7 +15,6 @@ import skein.units.*
   * @param clock the solver's clock, independent of the controllers'
   * @param workers the threads that execute decisions
   * @param takes artificial delay of each answer, for trials
-  * @param byVectors whether it searches plans with SIMD, of which flights are informed
   */
 final class SolverDesk(
     id: Long,
@@ -25,8 +23,7 @@ final class SolverDesk(
     clock: Clock,
     workers: ExecutionContext,
     takes: Question => Span = _ => Span.Zero,
-    told: String => Unit = _ => (),
-    byVectors: Boolean = Planner.isFast
+    told: String => Unit = _ => ()
 )(using system: ActorSystem):
   import SolverDesk.*
 
@@ -86,7 +83,7 @@ final class SolverDesk(
     if known then
       lock.synchronized:
         sessions = sessions.updatedWith(flight)(_.map(_.copy(reply = reply)))
-      answer(SolverMessage.Welcome(flight, id, byVectors))
+      answer(SolverMessage.Welcome(flight, id))
       true
     else if theirs != build then
       no(
@@ -110,7 +107,7 @@ final class SolverDesk(
                 told(
                   s"flight ${flight.toHexString}: ${briefing.scenario}, ${briefing.loop}, $vehicles vehicles"
                 )
-                answer(SolverMessage.Welcome(flight, id, byVectors))
+                answer(SolverMessage.Welcome(flight, id))
           case Success(Left(reason)) => no(reason)
           case Failure(error)        => no(s"it cannot be decided for: $error")
       }(using workers)

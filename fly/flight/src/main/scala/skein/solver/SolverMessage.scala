@@ -20,10 +20,9 @@ enum SolverMessage:
 
   /** The solver decides for the flight from now on.
     *
-    * @param byVectors whether its plans are searched by the JDK's vectors: else some fifty times fewer
-    *   candidates are tried
+    * candidates are tried
     */
-  case Welcome(flight: Long, solver: Long, byVectors: Boolean)
+  case Welcome(flight: Long, solver: Long)
 
   /** The solver refuses the flight, and states why. */
   case Refused(flight: Long, reason: String)

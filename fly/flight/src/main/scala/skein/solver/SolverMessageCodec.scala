@@ -12,7 +12,7 @@ import skein.units.*
 /** Messages as bytes: a byte for the version, then as [[Codec]] writes them. */
 object SolverMessageCodec:
   /** Version of the encoding; other versions are refused. */
-  val Version = 7
+  val Version = 8
 
   /** Maximum size of a message, bytes: a Kafka broker's default limit, less its own overhead. */
   val MostBytes = 900_000

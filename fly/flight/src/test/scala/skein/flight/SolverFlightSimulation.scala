@@ -1,5 +1,6 @@
 package skein.flight
 
+import org.apache.pekko.Done
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.pattern.after
 import org.apache.pekko.stream.scaladsl.{Sink, Source}
@@ -114,9 +115,8 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
   private def welcomed(
       briefing: Briefing,
       build: String = "ours",
-      byVectors: Boolean = true,
       prepares: Span = Span.Zero
-  ): Either[String, SolverClient.Welcomed] =
+  ): Either[String, Done] =
     VirtualTime
       .run(seed = 1): system =>
         given ActorSystem      = system
@@ -129,8 +129,7 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
           "ours",
           Briefing.plan(_).flatMap(FlightDeciders.of(_, FlightAssembler.threads)),
           clock,
-          Later(system, prepares),
-          byVectors = byVectors
+          Later(system, prepares)
         )
         for
           _ <- SolverServer.start(at, network.host("solver"), desk, clock)
@@ -143,7 +142,7 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
 
   test("a solver of another build, scenario or policy refuses, with the difference"):
     val briefing = Briefing.of(settings, settings.plans.last)
-    assertEquals(welcomed(briefing), Right(SolverClient.Welcomed(byVectors = true)))
+    assertEquals(welcomed(briefing), Right(Done))
     assertEquals(
       welcomed(briefing, build = "theirs"),
       Left(
@@ -155,10 +154,6 @@ class SolverFlightSimulation extends munit.FunSuite, Optimised:
     assert(unknown.left.exists(_.startsWith("the solver refuses: ")), unknown)
     val other = welcomed(briefing.copy(agents = briefing.agents.map(_.replace("PaperPursuer", "Ambush"))))
     assert(other.left.exists(_.contains("the scenario is another here: the flight has Pursuer")), other)
-
-  test("a solver without SIMD warns flights that plan"):
-    val told = welcomed(Briefing.of(settings, settings.plans.last), byVectors = false).map(_.warning)
-    assert(told.exists(_.exists(_.contains("jdk.incubator.vector"))), told)
 
   test("without a solver, a flight waits for its patience, and reports the address that it tried"):
     val run = VirtualTime.run(seed = 1): system =>

@@ -70,7 +70,7 @@ class PlanLoopSimulation extends munit.FunSuite, Optimised:
 
   test("settings are read back from their text"):
     val settings =
-      PlanSettings(deadline = Span.ofMillis(31.25), method = PlanSettings.PathIntegral, slices = 9)
+      PlanSettings(deadline = Span.ofMillis(31.25), slices = 9)
     assertEquals(PlanSettings.parse(settings.text), Some(settings))
     assertEquals(PlanSettings.parse(settings.copy(behaviours = 0).text), None)
     assertEquals(PlanSettings.parse("nothing"), None)

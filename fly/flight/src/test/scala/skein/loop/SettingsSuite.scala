@@ -79,7 +79,7 @@ class SettingsSuite extends munit.FunSuite:
         ),
         PlanSettings(ms(2000), horizonSteps = 200, step = ms(500), behaviours = 32, searches = 64),
         PlanSettings(slices = 1, blocksPerSlice = 1, turningRadiusM = 0.001, slowestShare = 0),
-        PlanSettings(slowestShare = 1, separationM = 0, geofenceM = 0, method = PlanSettings.PathIntegral)
+        PlanSettings(slowestShare = 1, separationM = 0, geofenceM = 0)
       )
     do assertEquals(mistake(settings), "")
 
@@ -96,7 +96,6 @@ class SettingsSuite extends munit.FunSuite:
         PlanSettings(horizonSteps = 201)   -> "horizonSteps: expected 1 to 200, got 201",
         PlanSettings(step = ms(9.5))       -> "step: expected 10 to 500 ms, got 9.5 ms",
         PlanSettings(step = ms(500.5))     -> "step: expected 10 to 500 ms, got 500.5 ms",
-        PlanSettings(method = "luck")      -> "method: expected cross-entropy or path-integral, got luck",
         PlanSettings(behaviours = 0)       -> "behaviours: expected 1 to 32, got 0",
         PlanSettings(behaviours = 33)      -> "behaviours: expected 1 to 32, got 33",
         PlanSettings(searches = 0)         -> "searches: expected 1 to 64, got 0",

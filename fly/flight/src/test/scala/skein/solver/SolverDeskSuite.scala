@@ -34,7 +34,7 @@ class SolverDeskSuite extends munit.FunSuite:
   private final class Trial(workers: ExecutionContext)(using ActorSystem):
     private var replies = Vector.empty[SolverMessage]
     val desk            =
-      SolverDesk(7, "ours", _ => Right(FlightDeciders(fleet)), () => Instant.Epoch, workers, byVectors = true)
+      SolverDesk(7, "ours", _ => Right(FlightDeciders(fleet)), () => Instant.Epoch, workers)
 
     def bytes(all: Array[Byte]*): Either[String, Boolean] =
       desk.received(all, reply => replies :+= SolverMessageCodec.message(reply).fold(fail(_), identity))
@@ -61,7 +61,7 @@ class SolverDeskSuite extends munit.FunSuite:
         Future.successful(body(Trial(workers)))
       .value
 
-  private def welcome(flight: Long) = SolverMessage.Welcome(flight, 7, byVectors = true)
+  private def welcome(flight: Long) = SolverMessage.Welcome(flight, 7)
 
   test("a flight is welcomed at each hello, and its requests are answered until its end"):
     on(): trial =>

@@ -153,7 +153,7 @@ class SolverMessageCodecLaws extends munit.ScalaCheckSuite:
 
   private val message: Gen[SolverMessage] = Gen.oneOf(
     Gen.zip(Gen.long, text, briefing).map(SolverMessage.Hello(_, _, _)),
-    Gen.zip(Gen.long, Gen.long, Gen.oneOf(true, false)).map(SolverMessage.Welcome(_, _, _)),
+    Gen.zip(Gen.long, Gen.long).map(SolverMessage.Welcome(_, _)),
     Gen.zip(Gen.long, text).map(SolverMessage.Refused(_, _)),
     Gen.long.map(SolverMessage.Unknown(_)),
     Gen.long.map(SolverMessage.Preparing(_)),
@@ -187,10 +187,10 @@ class SolverMessageCodecLaws extends munit.ScalaCheckSuite:
     )
 
   test("a mistake states what was expected and what was received"):
-    val welcome = SolverMessageCodec.bytes(SolverMessage.Welcome(1, 2, true))
+    val welcome = SolverMessageCodec.bytes(SolverMessage.Welcome(1, 2))
     assertEquals(
       SolverMessageCodec.message(welcome.updated(0, 9.toByte)),
-      Left("expected messages of version 7 of the solver's protocol, got version 9")
+      Left("expected messages of version 8 of the solver's protocol, got version 9")
     )
     assertEquals(
       SolverMessageCodec.message(welcome.updated(1, 42.toByte)),

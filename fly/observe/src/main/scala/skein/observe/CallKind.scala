@@ -11,7 +11,7 @@ enum CallKind(val label: String):
   /** Commands a vehicle; answered when the move ends or a newer one replaces it. */
   case Move extends CallKind("moves")
 
-  /** Pauses, continues or resets the simulator. */
+  /** Pauses, steps or continues the simulator. */
   case Time extends CallKind("time")
 
   case Other extends CallKind("other")
@@ -36,7 +36,7 @@ object CallKind:
   )
 
   private val images = Set("simGetImages", "simGetImage", "simGetDetections")
-  private val times  = Set("simPause", "simContinueForTime", "simContinueForFrames", "reset")
+  private val times  = Set("simPause", "simContinueForTime", "simContinueForFrames")
   private val moves  = Set("hover", "takeoff", "land", "goHome", "moveOnPath", "setCarControls")
 
   def of(method: String): CallKind =

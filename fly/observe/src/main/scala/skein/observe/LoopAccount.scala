@@ -10,7 +10,8 @@ import skein.units.*
   * A command is assumed to be based on the newest reading of each vehicle whose answer has passed before it.
   * A reading's age counts from its time stamp, by the clocks' estimated offset ([[ClockAlignment]]); an
   * answer without one is assumed to have been sampled halfway between call and answer, which bounds its age
-  * as well.
+  * as well. The reading of a vehicle or object that is never commanded counts as others' data for as long as
+  * the program goes on reading it.
   *
   * Memory: [[LoopAccount.MostPending]] unanswered calls a connection, [[LoopAccount.MostVehicles]] vehicles,
   * [[LoopAccount.MostMethods]] methods, a million samples of each quantity, and [[LoopAccount.MostLogged]]
@@ -50,7 +51,7 @@ final class LoopAccount:
     case called: Passed.Called                     => tick(called.at); call(called)
     case answered: Passed.Answered                 => tick(answered.at); answer(answered)
     case Passed.Unreadable(connection, reason, at) =>
-      if lost.size < MostLost then lost += s"connection ${connection + 1}: $reason"
+      if lost.size < MostLost then lost += s"connection $connection: $reason"
     case Passed.Closed(connection, at) =>
       tick(at)
       for open <- connections.remove(connection) do
@@ -111,8 +112,8 @@ final class LoopAccount:
       def sinceMs(last: Instant)  = at.since(last).toMillis
       def ageMs(reading: Reading) = reading.ageAt(at, clock).toMillis
       val own                     = commanded.reading.map(ageMs)
-      val others                  = rest.flatMap(_.reading).map(ageMs)
-      val command                 = ObservedCommand(
+      val others  = rest.filter(_.isUsed(at, commanded.account.commandedAt)).flatMap(_.reading).map(ageMs)
+      val command = ObservedCommand(
         at.since(begunAt.getOrElse(at)),
         called.vehicle,
         called.method,
@@ -164,12 +165,14 @@ final class LoopAccount:
         commanded.account.overtaken += 1
 
   private def read(pending: Pending, answered: Passed.Answered): Unit =
-    val sampled = answered.sampledAt.map(Stamped((), _, pending.at, answered.at))
-    sampled.foreach(stamped)
+    // A sensor's time stamp is when it measured: a scan or a contact may be seconds old.
     if pending.kind == CallKind.State then
+      answered.sampledAt.map(Stamped((), _, pending.at, answered.at)).foreach(stamped)
       for seen <- vehicle(pending.vehicle) do
         val reading = Reading(pending.at, answered.at, answered.sampledAt)
-        if seen.reading.forall(reading.isNewerThan) then seen.reading = Some(reading)
+        if seen.reading.forall(reading.isNewerThan) then
+          seen.readEvery = seen.reading.map(before => reading.receivedAt.since(before.receivedAt))
+          seen.reading = Some(reading)
 
   private def stamped(one: Stamped[Unit]): Unit =
     clock = Some(clock.fold(ClockAlignment.of(one))(_.updated(one)))
@@ -210,7 +213,7 @@ final class LoopAccount:
 
   /** The complete observations so far; sorts every sample. */
   def observed: Observed =
-    val periods = commands.toDouble / vehicles.all.count(_.account.commands > 0).max(1) - 1
+    val periods = vehicles.all.map(_.account.commands).maxOption.getOrElse(0L) - 1
     Observed(
       lasted = begunAt.fold(Span.Zero)(lastAt.since),
       connections = opened,
@@ -250,6 +253,9 @@ object LoopAccount:
 
   /** Maximum size of a small answer, bytes; larger ones occupy a link for a while. */
   private val SmallBytes = 16L << 10
+
+  /** Number of usual intervals without a reading after which a program has stopped reading. */
+  private val MissedReads = 3
 
   /** Duration from which a move counts as awaited by the program. */
   private val JoinedFor = Span.ofMillis(50)
@@ -302,6 +308,18 @@ object LoopAccount:
     val account  = VehicleAccount(name)
     val inFlight = mutable.LinkedHashSet.empty[Pending]
     var reading  = Option.empty[Reading]
+
+    // Between the last two readings.
+    var readEvery = Option.empty[Span]
+
+    /** Whether commands to another vehicle are assumed to use its newest reading.
+      *
+      * @param since when the other vehicle was commanded before
+      */
+    def isUsed(now: Instant, since: Option[Instant]): Boolean =
+      account.commands > 0 || reading.exists: newest =>
+        since.forall(newest.receivedAt > _) ||
+          readEvery.exists(every => now.since(newest.receivedAt) <= every * MissedReads)
 
   private final class Method(name: String, kind: CallKind):
     var calls, failed = 0L

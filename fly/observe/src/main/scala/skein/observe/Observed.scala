@@ -10,7 +10,7 @@ import skein.units.Span
   * @param methods the called methods, in the order of their first call
   * @param periodMs how a period from command to command was spent, on average; empty before the second
   *   command
-  * @param clock the simulator's clock; absent if no answer had a time stamp
+  * @param clock the simulator's clock; absent if no state had a time stamp
   * @param stalls stalls during which calls waited for much longer than usual, the longest first
   * @param smallCallMs round trips of small calls, without and with a simultaneous transfer of an image
   * @param lost descriptions of connections whose bytes could not be parsed
@@ -77,7 +77,7 @@ object NewCommands:
 /** The commands to one vehicle.
   *
   * @param ownAgeMs ages of the vehicle's newest reading, since physics was sampled
-  * @param othersAgeMs ages of the other vehicles' newest readings, the oldest of them
+  * @param othersAgeMs ages of the other vehicles' newest readings, the oldest of them; see [[LoopAccount]]
   * @param boundMs half width of the ages' uncertainty
   * @param everyMs times from one command to the next
   * @param sinceOthersMs times since any other vehicle was commanded

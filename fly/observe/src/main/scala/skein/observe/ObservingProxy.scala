@@ -11,7 +11,7 @@ import org.apache.pekko.util.ByteString
 import scala.concurrent.{ExecutionContext, Future, Promise}
 import scala.util.control.NonFatal
 import skein.link.*
-import skein.units.{Clock, Instant}
+import skein.units.{Clock, Instant, Span}
 
 /** A proxy between clients and their simulator that analyses their loop. It changes nothing: bytes pass in
   * their order, none is added, held back or lost, whatever they mean; datagrams as the link lets them.
@@ -38,13 +38,18 @@ final class ObservingProxy[A] private (
   /** The observations so far; later messages are analysed after it. */
   def observed: A = looking.observed
 
-  /** Accepts no more connections, closes the open ones, and analyses what has passed until now. Fails if the
+  /** Completes when the clients have left and their last bytes have arrived, at the latest after
+    * [[ObservingProxy.MostEnding]].
+    */
+  def ended(): Future[Done] = proxy.ended(MostEnding)
+
+  /** Accepts no more connections, closes the open ones, and analyses what has passed until then. Fails if the
     * analysis has failed, which is a defect; bytes passed nevertheless.
     */
   def close(): Future[Done] =
     given ExecutionContext = ExecutionContext.parasitic
     val looked             = Promise[Done]()
-    proxy.close().flatMap: _ =>
+    proxy.close().flatMap(_ => ended()).flatMap: _ =>
       looking.add(Piece.End(failure => looked.complete(failure.toLeft(Done).toTry): Unit))
       looked.future
 
@@ -57,6 +62,9 @@ object ObservingProxy:
 
   /** Maximum number of bytes that have passed and wait for analysis. */
   val MostWaiting: Long = 256L << 20
+
+  /** Datagrams have no end, so with them this time passes whole. */
+  val MostEnding: Span = Span.ofSeconds(2)
 
   private enum Piece:
     case Opened(connection: Int, at: Instant)

@@ -208,6 +208,57 @@ class LoopAccountSuite extends munit.FunSuite:
       still.called("getMultirotorState", "A", tick * 100.0, tick * 100.0 + 40, Some(20))
     assert(still.found("the simulator stands still"))
 
+  test("old time stamps of sensors, scans and contacts do not change the clock"):
+    val program = Program()
+    for tick <- 0 until 50 do
+      val ms = tick * 100.0
+      program.called("getMultirotorState", "A", ms, ms + 40, Some(ms + 20))
+      program.called("simGetCollisionInfo", "A", ms + 41, ms + 44, Some(-3_000))
+      program.called("getGpsData", "A", ms + 45, ms + 48, Some(ms - 200))
+      program.move("A", ms + 50)
+    assertEqualsDouble(program.vehicle("A").ownAgeMs.get.mean, 30, 1e-6)
+    assertEqualsDouble(program.vehicle("A").boundMs.get, 20, 0.2)
+    assertEquals(
+      program.observed.clock.map(clock => (clock.backwards, clock.stoodStill)),
+      Some((0L, Span.Zero))
+    )
+
+  test("a reset does not hide that the simulator's clock is slow, as a pause does"):
+    def slow(first: String) =
+      val program = Program()
+      program.called(first, "", 0, 5)
+      for tick <- 0 until 10 do
+        program.called("getMultirotorState", "A", 100 + tick * 100.0, 140 + tick * 100.0, Some(tick * 50.0))
+      program.found("the simulator is not at real time")
+    assert(slow("reset"))
+    assert(!slow("simPause"))
+
+  test("an object counts as others' data for as long as it is read, and no longer"):
+    def others(reads: Int => Boolean) =
+      val program = Program()
+      for tick <- 0 until 100 do
+        val ms = tick * 100.0
+        if reads(tick) then program.called("simGetObjectPose", "Goal", ms, ms + 10)
+        program.called("getMultirotorState", "A", ms + 10, ms + 30, Some(ms + 20))
+        program.answer(program.move("A", ms + 40), ms + 45)
+      program.vehicle("A").othersAgeMs.get
+    assertEqualsDouble(others(_ == 0).mean, 35, 1e-6)
+    assertEquals(others(_ == 0).count, 1)
+    assertEqualsDouble(others(_ % 5 == 0).mean, 235, 10)
+    assertEquals(others(_ < 10).most.round, 235L)
+
+  test("a period is that of the vehicle with the most commands"):
+    val program = Program()
+    for tick <- 0 until 101 do
+      program.move("A", tick * 100.0)
+      if tick % 10 == 0 then program.move("B", tick * 100.0 + 1): Unit
+    assertEqualsDouble(program.observed.periodMs.values.sum, 100, 0.1)
+
+  test("a connection that is not understood is reported with its number in the log of commands"):
+    val account = LoopAccount()
+    account.add(Passed.Unreadable(1, "no MessagePack", Instant.Epoch))
+    assertEquals(account.observed.lost, Vector("connection 1: no MessagePack"))
+
   test("commands that still run when their connection closes are reported"):
     val program = Program()
     program.move("A", 0)

@@ -2,7 +2,8 @@ package skein.observe
 
 import java.util.concurrent.ConcurrentLinkedQueue
 import org.apache.pekko.actor.ActorSystem
-import org.apache.pekko.stream.scaladsl.{Sink, Source}
+import org.apache.pekko.pattern.after
+import org.apache.pekko.stream.scaladsl.{Flow, Sink, Source}
 import org.apache.pekko.util.ByteString
 import scala.concurrent.duration.*
 import scala.concurrent.{ExecutionContext, Future}
@@ -14,6 +15,7 @@ import skein.simulator.{SimulatorServer, SimulatorSettings}
 import skein.testing.Unhurried
 import skein.units.*
 import skein.vtime.VirtualTime
+import upack.{Arr, Int32, Str}
 
 /** A program flies the built-in simulator through the observer, in virtual time; the data ages that the
   * observer reports are compared with the program's own records.
@@ -117,6 +119,40 @@ class ObservingProxySimulation extends munit.FunSuite, Unhurried:
       .value
     assertEquals(answered, (true, true, 0L))
     assert(clue(told).exists(_.toString.contains("got an HTTP request (POST)")))
+
+  test("what a program sent last arrives, and its move that still runs is seen, if it is closed thereafter"):
+    val move = ByteString(upack.write(Arr(Int32(0), Int32(1), Str("hover"), Arr(Str("Evader")))))
+    val (arrived, observed) = VirtualTime
+      .run(7): system =>
+        given ActorSystem      = system
+        given ExecutionContext = system.dispatcher
+        val clock              = VirtualClock(system)
+        val network            = MemoryNetwork(NetworkPlan(), 7, clock)
+        val here               = network.host("controller")
+        var arrived            = 0
+        val swallow            = Flow[ByteString].mapConcat: bytes =>
+          arrived += bytes.size
+          Vector.empty[ByteString]
+        for
+          _ <- network.host("simulator").listen(Address("simulator", 41451))
+            .to(Sink.foreach(_.flow.join(swallow).run(): Unit)).run()
+          proxy <- ObservingProxy.start(
+            AirSimAnalysis(),
+            Address("controller", 41452),
+            Address("simulator", 41451),
+            EmulatedLink(LinkProfile.symmetric(LatencyProfile.vpn), 7, clock),
+            here,
+            clock,
+            system.dispatcher
+          )
+          _ = Source.single(move).via(here.connect(proxy.address)).runWith(Sink.ignore)
+          _ <- after(1.milli, system.scheduler)(Future.unit)
+          _ <- proxy.ended()
+          _ <- proxy.close()
+        yield (arrived, proxy.observed)
+      .value
+    assertEquals(arrived, move.size)
+    assertEquals(observed.vehicles.map(_.leftRunning), Vector(1L))
 
   for profile <- Seq(LatencyProfile.direct, LatencyProfile.vpn) do
     test(s"over ${profile.name} the ages that the observer reports are the program's own, within its bounds"):

@@ -60,6 +60,13 @@ object BagLoop:
         failed.toLeft(topics.values.map(_.name))
     catch case failed: IOException => Left(s"cannot read $file: ${FileReason.of(failed)}")
 
+  /** Time of a file's first message; by their names, the eleventh file of a bag would come before the third.
+    */
+  private def begin(file: Path): Long =
+    try
+      McapFile.read(file)(_.collectFirst { case Right(one) => one.message.logTime }.getOrElse(Long.MaxValue))
+    catch case _: IOException => Long.MaxValue // it is reported when its messages are read
+
   private def mcapFiles(bag: Path): Either[String, Vector[Path]] =
     if Files.isRegularFile(bag) then Right(Vector(bag))
     else if !Files.isDirectory(bag) then Left(s"$bag: expected a bag's folder or an MCAP file, there is none")
@@ -68,7 +75,7 @@ object BagLoop:
       val mcap  = files.filter(_.toString.endsWith(".mcap"))
       Either.cond(
         mcap.nonEmpty,
-        mcap,
+        if mcap.sizeIs > 1 then mcap.sortBy(begin) else mcap,
         if files.exists(_.toString.endsWith(".db3")) then
           s"$bag: expected MCAP, got SQLite; `ros2 bag convert` makes the one from the other"
         else s"$bag: expected a bag's folder, it has no MCAP file"

@@ -1,6 +1,8 @@
 package skein.rosbag
 
 import java.nio.file.{Files, Path}
+import scala.collection.mutable
+import skein.mcap.TopicMessage
 import skein.mcap.file.McapFile
 import skein.record.{MemoryRecorder, Recording}
 import skein.ros.message.*
@@ -50,6 +52,27 @@ class RosBagSimulation extends munit.FunSuite, TemporaryFolders, Unhurried:
           case "tf2_msgs/msg/TFMessage"         => Cdr.message[TFMessage](bytes)
           case other                            => Left(other)
         assert(read.isRight, read)
+
+  private def copy(messages: Vector[TopicMessage], to: Path): Unit = McapFile.write(to): mcap =>
+    val channels = mutable.Map.empty[String, Int]
+    for TopicMessage(channel, schema, message) <- messages do
+      def made = mcap.channel(
+        channel.topic,
+        channel.messageEncoding,
+        schema.fold(0)(kind => mcap.schema(kind.name, kind.encoding, kind.data))
+      )
+      val id = channels.getOrElseUpdate(channel.topic, made)
+      mcap.message(id, message.sequence, message.logTime, message.publishTime, message.data)
+
+  folder.test("the files of a split bag are read in the order of their messages, not of their names"):
+    folder =>
+      McapFile.read(made.resolve("bag_0.mcap")): messages =>
+        val all           = messages.collect { case Right(message) => message }.toVector
+        val (first, last) = all.splitAt(all.size / 2)
+        copy(first, folder.resolve("bag_2.mcap"))
+        copy(last, folder.resolve("bag_10.mcap"))
+      def vehicles(bag: Path) = BagLoop(Set.empty, Set.empty).observed(bag).map(_.vehicles)
+      assertEquals(vehicles(folder), vehicles(made))
 
   folder.test("a missing topic, SQLite, and a file that is no bag are reported in a line"): folder =>
     def refused(bag: Path, topic: Option[String] = None) =

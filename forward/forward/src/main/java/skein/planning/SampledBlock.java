@@ -7,13 +7,10 @@ import static skein.simd.LaneMath.SPECIES;
 
 import jdk.incubator.vector.FloatVector;
 import jdk.incubator.vector.IntVector;
-import skein.simd.LaneMath;
 import skein.simd.LaneRandom;
 
-/** Draws and weights a block's candidates with SIMD. {@link ScalarBlock} is the scalar reference. */
+/** Draws a block's candidates with SIMD. */
 abstract class SampledBlock extends CandidateBlock {
-  private static final float LEAST_EXPONENT = -80f, MOST_EXPONENT = 20f;
-
   // The sum of a hash's four bytes is nearly normal, with mean 510; this is the reciprocal of its standard
   // deviation.
   private static final float NORMAL_SCALE = Draws.Scale();
@@ -30,7 +27,6 @@ abstract class SampledBlock extends CandidateBlock {
   private static final int SIZE = CandidateBlock.Size();
 
   private final int steps;
-  private final float[] weights = new float[SIZE];
   private final int[] bits = new int[SIZE];
   private final float[] turnNoise = new float[SIZE], speedNoise = new float[SIZE];
 
@@ -88,33 +84,6 @@ abstract class SampledBlock extends CandidateBlock {
       FloatVector turn = FloatVector.fromArray(SPECIES, turnNoise, i).fma(turnSd, turnMean);
       turn.max(limit.neg()).min(limit).intoArray(turnRates, at);
       speed.intoArray(speeds, at);
-    }
-  }
-
-  @Override
-  public void weigh(float base, float temperature) {
-    float[] turnRates = turnRates(), speeds = speeds(), costs = costs();
-    float[] turnSums = turnSums(), speedSums = speedSums(), weightSums = weightSums();
-    float coldness = -1 / temperature;
-    for (int i = 0; i < SIZE; i += LANES)
-      FloatVector.fromArray(SPECIES, costs, i)
-          .sub(base)
-          .mul(coldness)
-          .max(LEAST_EXPONENT)
-          .min(MOST_EXPONENT)
-          .intoArray(weights, i);
-    LaneMath.exp(weights, 0, SIZE);
-    for (int i = 0; i < SIZE; i += LANES) {
-      FloatVector weight = FloatVector.fromArray(SPECIES, weights, i);
-      FloatVector.fromArray(SPECIES, weightSums, i).add(weight).intoArray(weightSums, i);
-      for (int step = 0, at = i; step < steps; step++, at += SIZE) {
-        FloatVector.fromArray(SPECIES, turnRates, at)
-            .fma(weight, FloatVector.fromArray(SPECIES, turnSums, at))
-            .intoArray(turnSums, at);
-        FloatVector.fromArray(SPECIES, speeds, at)
-            .fma(weight, FloatVector.fromArray(SPECIES, speedSums, at))
-            .intoArray(speedSums, at);
-      }
     }
   }
 }

@@ -28,6 +28,9 @@ import skein.vehicle.{QuadrotorModel, VehicleModel}
 enum LoopTiming:
   def periodS: Double
 
+  def asking: Asking     = Asking()
+  def steering: Steering = Steering()
+
   /** The world stands still while all vehicles are read, decided for and commanded; then it runs one period.
     */
   case Paused(periodS: Double = 0.1)
@@ -37,8 +40,8 @@ enum LoopTiming:
     */
   case Sequential(
       periodS: Double = 0.1,
-      asking: Asking = Asking(),
-      steering: Steering = Steering()
+      override val asking: Asking = Asking(),
+      override val steering: Steering = Steering()
   )
 
   /** Every period begins one task per vehicle. A task reads all vehicles in sequence; at the last answer it
@@ -49,8 +52,8 @@ enum LoopTiming:
     */
   case Futures(
       periodS: Double = 0.1,
-      asking: Asking = Asking(),
-      steering: Steering = Steering()
+      override val asking: Asking = Asking(),
+      override val steering: Steering = Steering()
   )
 
   /** Reads every vehicle once a period, while fewer than `window` of its requests are unanswered. The newest
@@ -68,8 +71,8 @@ enum LoopTiming:
       toleranceS: Double = 0.05,
       patienceS: Double = 0.1,
       decideThenPace: Boolean = false,
-      asking: Asking = Asking(),
-      steering: Steering = Steering()
+      override val asking: Asking = Asking(),
+      override val steering: Steering = Steering()
   )
 
   /** Reads like `Stream`. Readings, commands and their answers are added to a [[skein.forecast.Forecast]] as
@@ -83,8 +86,8 @@ enum LoopTiming:
   case Predictive(
       periodS: Double = 0.1,
       predictor: VehicleModel[?] = QuadrotorModel.AirSim,
-      asking: Asking = Asking(),
-      steering: Steering = Steering()
+      override val asking: Asking = Asking(),
+      override val steering: Steering = Steering()
   )
 
 object LoopTiming:
@@ -93,20 +96,6 @@ object LoopTiming:
     */
   def stream(periodS: Double): LoopTiming.Stream =
     LoopTiming.Stream(periodS, toleranceS = periodS / 2, patienceS = periodS)
-
-  private[skein] def askingOf(timing: LoopTiming): Asking = timing match
-    case _: LoopTiming.Paused              => Asking()
-    case sequential: LoopTiming.Sequential => sequential.asking
-    case futures: LoopTiming.Futures       => futures.asking
-    case stream: LoopTiming.Stream         => stream.asking
-    case predictive: LoopTiming.Predictive => predictive.asking
-
-  private[skein] def steeringOf(timing: LoopTiming): Steering = timing match
-    case _: LoopTiming.Paused              => Steering()
-    case sequential: LoopTiming.Sequential => sequential.steering
-    case futures: LoopTiming.Futures       => futures.steering
-    case stream: LoopTiming.Stream         => stream.steering
-    case predictive: LoopTiming.Predictive => predictive.steering
 
 /** How a loop reads vehicles.
   *

@@ -26,7 +26,7 @@ final class Rollout private[skein] (
     engagement,
     link,
     responses,
-    LoopTiming.askingOf(timing),
+    timing.asking,
     keepsAll = timing.isInstanceOf[LoopTiming.Predictive],
     asksPolicies,
     standsStill = timing.isInstanceOf[LoopTiming.Paused],

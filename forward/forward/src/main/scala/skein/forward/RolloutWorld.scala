@@ -261,7 +261,7 @@ private[skein] object RolloutWorld:
     * last delivered one, whose request may be as old again.
     */
   def ringOf(timing: LoopTiming, vehicles: Int): Int =
-    val asking                 = LoopTiming.askingOf(timing)
+    val asking                 = timing.asking
     def periods(timeS: Double) = math.ceil(timeS / timing.periodS)
     val needed: Double         = timing match
       case _: LoopTiming.Futures => vehicles * (periods(vehicles * asking.timeoutS) + asking.window + 1)

@@ -24,8 +24,8 @@ private[lanes] object LoopSupport:
   ): Option[String] =
     val vehicles = models.size
     val stepS    = models.map(_.stepS).max
-    val steering = LoopTiming.steeringOf(timing)
-    val timeoutS = LoopTiming.askingOf(timing).timeoutS
+    val steering = timing.steering
+    val timeoutS = timing.asking.timeoutS
     val ofLoop   = timing match
       case stream: LoopTiming.Stream =>
         for

@@ -36,15 +36,18 @@ private[skein] final class ScalarTeam(timing: LoopTiming, model: => VelocityResp
       case Effort(vehicle) => rollout.effortRad(vehicle)
       case _: Judged       => next.next().value
 
+  /** Of a flight that ends before a score begins, all of it counts. */
   private final class Judging(candidate: TeamCandidate) extends LoopObserver:
+    private val mayEnd               = candidate.engagement.isOver.nonEmpty
     private val count                = candidate.engagement.agents.size
     private val northM, eastM, downM = Array.ofDim[Double](count)
 
     override def scored(timeS: Double, vehicle: Int, x: Double, y: Double, z: Double): Unit =
       northM(vehicle) = x; eastM(vehicle) = y; downM(vehicle) = z
-      if vehicle == count - 1 && candidate.quantities.exists(_.counts(timeS)) then
-        val places = Positions(IArray.from(northM), IArray.from(eastM), IArray.from(downM))
-        for tally <- tallies if tally.judged.counts(timeS) do
+      if vehicle == count - 1 && (mayEnd || candidate.quantities.exists(_.counts(timeS))) then
+        val places = Positions(IArray.from(northM), IArray.from(eastM), IArray.from(downM), timeS)
+        for tally <- tallies if mayEnd || tally.judged.counts(timeS) do
+          if tally.judged.counts(timeS) then tally.begin()
           tally.add(timeS, Quantity.told(tally.judged.quantity, places))
 
 private[skein] object ScalarTeam:
@@ -54,6 +57,14 @@ private[skein] object ScalarTeam:
 private final class Tally(val judged: Judged):
   private val values = ArrayBuilder.ofDouble()
   private var firstS = Double.PositiveInfinity
+  private var begun  = false
+
+  /** Forgets what was added before the score's time. */
+  def begin(): Unit =
+    if !begun then
+      begun = true
+      values.clear()
+      firstS = Double.PositiveInfinity
 
   def add(timeS: Double, value: Double): Unit = judged.reduction match
     case OfMoment.FirstWithin(limit) => if value <= limit then firstS = firstS.min(timeS)

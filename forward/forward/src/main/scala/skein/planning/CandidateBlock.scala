@@ -8,12 +8,6 @@ private[planning] abstract class CandidateBlock(steps: Int):
 
   final val costs: Array[Float] = Array.ofDim(CandidateBlock.Size)
 
-  /** Weighted sums of the actions, by step, then by index in the block. */
-  final val turnSums, speedSums: Array[Float] = Array.ofDim(steps * CandidateBlock.Size)
-
-  /** Sums of the candidates' weights, by index in the block. */
-  final val weightSums: Array[Float] = Array.ofDim(CandidateBlock.Size)
-
   /** Sets the situation and the objective for all manoeuvres that follow. */
   def situate(situation: Situation, objective: PlanCost, dtS: Double): Unit
 
@@ -25,12 +19,6 @@ private[planning] abstract class CandidateBlock(steps: Int):
   def draw(keys: Array[Int], from: SamplingDistribution, limits: CommandLimits, stepsPerKnot: Int): Unit
 
   def fly(): Unit
-
-  final def forget(): Unit =
-    for sums <- Seq(turnSums, speedSums, weightSums) do java.util.Arrays.fill(sums, 0f)
-
-  /** Adds the candidates' actions to the sums, each weighted by e^(−(cost − base) / temperature). */
-  def weigh(base: Float, temperature: Float): Unit
 
 private[planning] object CandidateBlock:
   /** Number of candidates per block: a multiple of every lane count, and few enough for the caches. */

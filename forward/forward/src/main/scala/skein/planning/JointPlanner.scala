@@ -33,7 +33,7 @@ final class JointPlanner:
   private def made(settings: PlannerSettings, objective: PlanCost): Planner =
     if blocks.size >= JointPlanner.MostBlocks then blocks.clear()
     if planners.size >= JointPlanner.MostPlanners then planners.clear()
-    val block   = blocks.getOrElseUpdate(settings.steps, CandidateBlocks(settings.steps))
+    val block   = blocks.getOrElseUpdate(settings.steps, PlanKernel(settings.steps))
     val planner = new Planner(settings, objective, block)
     planners((settings, objective)) = planner
     planner

@@ -1,30 +1,18 @@
 package skein.planning
 
+import skein.lanes.LaneSupport
 import skein.lanes.plant.PlantLanes
 import skein.lanes.policy.PolicyLanes
 import skein.policy.Policy
 import skein.simd.WorldRandom
 import skein.vehicle.Plant
 
-/** The method by which a planner improves its manoeuvre. */
-enum PlanMethod:
-  /** Model predictive path integral control (Williams et al., ICRA 2017): the mean of the search moves to the
-    * mean of all candidates, each weighted by e^(−cost / temperature).
-    */
-  case PathIntegral(temperature: Double)
-
-  /** The cross-entropy method (Rubinstein, 1999): mean and deviation of the search move towards those of the
-    * best candidates.
-    *
-    * @param elites number of a slice's candidates that count as the best
-    * @param smoothing share of the old mean and deviation that is kept
-    */
-  case CrossEntropy(elites: Int, smoothing: Double)
-
 /** Settings of a planner.
   *
   * @param steps number of steps of the horizon
   * @param dtS length of a step, s
+  * @param elites number of a slice's candidates that count as the best
+  * @param smoothing share of the search's old mean and deviation that is kept
   * @param blocksPerSlice number of blocks of 128 candidates in a slice, which is searched between two checks
   *   of the clock
   * @param stepsPerKnot number of steps that share one random turn
@@ -34,7 +22,8 @@ enum PlanMethod:
 final case class PlannerSettings(
     steps: Int = 20,
     dtS: Double = 0.1,
-    method: PlanMethod = PlanMethod.CrossEntropy(elites = 48, smoothing = 0.2),
+    elites: Int = 48,
+    smoothing: Double = 0.2,
     blocksPerSlice: Int = 16,
     stepsPerKnot: Int = 4,
     turnSd: Double = 0.8,
@@ -42,17 +31,14 @@ final case class PlannerSettings(
 ):
   require(steps > 0 && dtS > 0, s"the horizon must be positive, got $steps steps of $dtS s")
   require(blocksPerSlice > 0 && stepsPerKnot > 0, "blocks per slice and steps per knot must be positive")
-  method match
-    case PlanMethod.CrossEntropy(elites, smoothing) =>
-      require(elites > 0, s"expected one elite at least, got $elites")
-      require(smoothing >= 0 && smoothing < 1, s"expected smoothing from 0 to below 1, got $smoothing")
-    case PlanMethod.PathIntegral(temperature) =>
-      require(temperature > 0, s"the temperature must be positive, got $temperature")
+  require(elites > 0, s"expected one elite at least, got $elites")
+  require(smoothing >= 0 && smoothing < 1, s"expected smoothing from 0 to below 1, got $smoothing")
 
   def horizonS: Double     = steps * dtS
   def sliceCandidates: Int = blocksPerSlice * CandidateBlock.Size
 
-/** Plans manoeuvres by an anytime algorithm: a plan is improved slice by slice, and its manoeuvre is always
+/** Plans manoeuvres by the cross-entropy method (Rubinstein, 1999), in which mean and deviation of the search
+  * move towards those of the best candidates. A plan is improved slice by slice, and its manoeuvre is always
   * the best found. Equal plans, situations and streams give equal plans, to the last bit, on every machine.
   *
   * Holds the memory for a block of candidates: one per thread.
@@ -68,9 +54,7 @@ final class Planner private[planning] (
   private val limits     = objective.limits
   private val cruise     = math.min(limits.maxSpeed, math.max(limits.minSpeed, objective.cruiseSpeed))
   private val keys       = Array.ofDim[Int](size)
-  private val eliteCosts = method match
-    case PlanMethod.CrossEntropy(elites, _) => Array.ofDim[Float](elites)
-    case _                                  => Array.emptyFloatArray
+  private val eliteCosts = Array.ofDim[Float](elites)
   private val eliteTurns, eliteSpeeds = Array.ofDim[Float](eliteCosts.length * steps)
 
   /** The initial plan: straight on, with the initial deviations. */
@@ -100,11 +84,9 @@ final class Planner private[planning] (
     */
   def improve(plan: Plan, situation: Situation, stream: Long): Plan =
     block.situate(situation, objective, dtS)
-    block.forget()
     java.util.Arrays.fill(eliteCosts, Float.PositiveInfinity)
     var best     = plan.manoeuvre
     var bestCost = plan.cost
-    var base     = 0f
     for number <- 0 until blocksPerSlice do
       for i <- 0 until size do
         keys(i) = WorldRandom.key(stream, plan.slices, number * size + i)
@@ -112,18 +94,18 @@ final class Planner private[planning] (
       block.draw(keys, plan.search.narrowed(width), limits, stepsPerKnot)
       if number == 0 then (known(plan) ++ situation.suggested).zipWithIndex.foreach(put)
       block.fly()
-      if number == 0 then base = block.costs(0)
       val least = cheapest
       if block.costs(least) < bestCost then
         bestCost = block.costs(least)
         best = manoeuvreAt(least)
-      method match
-        case PlanMethod.PathIntegral(temperature) => block.weigh(base, temperature.toFloat)
-        case _: PlanMethod.CrossEntropy           => gatherElites()
-    val search = method match
-      case _: PlanMethod.PathIntegral            => weightedSearch(plan.search)
-      case PlanMethod.CrossEntropy(_, smoothing) => eliteSearch(plan.search, smoothing.toFloat)
-    Plan(best, bestCost, search, plan.slices + 1, plan.candidates + blocksPerSlice.toLong * size)
+      gatherElites()
+    Plan(
+      best,
+      bestCost,
+      eliteSearch(plan.search),
+      plan.slices + 1,
+      plan.candidates + blocksPerSlice.toLong * size
+    )
 
   /** Manoeuvres that are always tried: the search's mean, the best, and a few that a pilot would try first.
     */
@@ -186,7 +168,8 @@ final class Planner private[planning] (
       i += 1
     worst
 
-  private def eliteSearch(before: SamplingDistribution, kept: Float): SamplingDistribution =
+  private def eliteSearch(before: SamplingDistribution): SamplingDistribution =
+    val kept                                                                    = smoothing.toFloat
     def moments(values: Array[Float], means: IArray[Float], sds: IArray[Float]) =
       val (newMeans, newSds) = (Array.ofDim[Float](steps), Array.ofDim[Float](steps))
       for step <- 0 until steps do
@@ -209,20 +192,6 @@ final class Planner private[planning] (
       elite += 1
     total / eliteCosts.length
 
-  private def weightedSearch(before: SamplingDistribution): SamplingDistribution =
-    val total                     = sum(block.weightSums, 0)
-    def means(sums: Array[Float]) = IArray.tabulate(steps)(step => (sum(sums, step) / total).toFloat)
-    if total > 0 then before.copy(turnMeans = means(block.turnSums), speedMeans = means(block.speedSums))
-    else before
-
-  private def sum(values: Array[Float], step: Int): Double =
-    var total = 0.0
-    var at    = step * size
-    while at < (step + 1) * size do
-      total += values(at)
-      at += 1
-    total
-
 object Planner:
   /** Scales of the search's deviations, by block: wide ones find other manoeuvres, narrow ones improve known
     * ones. With wide ones alone, a plan that is almost right is hardly ever improved.
@@ -230,16 +199,14 @@ object Planner:
   private val widths = Vector(1f, 0.5f, 0.25f, 0.125f)
 
   def apply(settings: PlannerSettings, objective: PlanCost): Planner =
-    new Planner(settings, objective, CandidateBlocks(settings.steps))
-
-  /** Whether candidates are simulated with SIMD; otherwise a deadline allows some fifty times fewer of them.
-    */
-  def isFast: Boolean = CandidateBlocks.isFast
+    new Planner(settings, objective, PlanKernel(settings.steps))
 
   /** Why plans against an opponent of this policy are not supported: for SIMD, it must be a formula. */
   def refusal(opponent: Policy): Option[String] =
-    if isFast then PolicyLanes.of(opponent).left.toOption.map(_.getMessage) else None
+    refusal(PolicyLanes.of(opponent).left.map(_.getMessage))
 
   /** Why plans for vehicles that move by this plant are not supported. */
-  def refusal(plant: Plant[?]): Option[String] =
-    if isFast then PlantLanes.of(plant).left.toOption else None
+  def refusal(plant: Plant[?]): Option[String] = refusal(PlantLanes.of(plant))
+
+  private def refusal(compiled: => Either[String, Any]): Option[String] =
+    LaneSupport.present.flatMap(_ => compiled).left.toOption

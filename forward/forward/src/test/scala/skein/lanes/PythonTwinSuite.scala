@@ -10,8 +10,8 @@ import skein.simd.WorldRandom
 import skein.testing.Unhurried
 import skein.units.*
 
-/** Scenarios written in Python, by the files next to the examples, and equal ones in Scala: equal bits,
-  * except for a network with SIMD. The package's tests compare the files with the Python.
+/** Scenarios written in Python, by the files next to the examples, and equal ones in Scala: equal bits. The
+  * package's tests compare the files with the Python.
   */
 class PythonTwinSuite extends munit.FunSuite, Unhurried:
   private val root = Iterator
@@ -102,7 +102,4 @@ class PythonTwinSuite extends munit.FunSuite, Unhurried:
           assert(isReference || engine.startsWith("SIMD"), engine)
           batch.fly(worlds).values.map(_.toVector).toVector
         val (one, other) = (flown(python), flown(scala))
-        // SIMD folds the scales of a network's inputs into known weights, but not into a policy's parameters.
-        if isReference || !name.contains("network") then assertEquals(one, other)
-        else
-          for (a, b) <- one.flatten.zip(other.flatten) do assertEqualsFloat(a, b, 1e-4f * b.abs.max(1))
+        assertEquals(one, other)

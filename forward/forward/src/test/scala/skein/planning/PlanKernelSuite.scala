@@ -194,22 +194,6 @@ class PlanKernelSuite extends munit.FunSuite:
     for i <- 0 until size if kernel.costs(i) < 900 do
       assertEquals(check.fly(manoeuvre(kernel, i)).breaches, Vector.empty)
 
-  test("weighted sums are those of the scalar reference"):
-    val kernel = flown(PlanKernel(steps), situation(Behaviour(evader)), objective)
-    val scalar = flown(ScalarBlock(steps), situation(Behaviour(evader)), objective)
-    for block <- Seq(kernel, scalar) do
-      block.forget()
-      block.weigh(block.costs.min, 2f)
-      block.weigh(block.costs.min, 5f)
-    for
-      (ours, reference) <- Seq(
-        kernel.weightSums -> scalar.weightSums,
-        kernel.turnSums   -> scalar.turnSums,
-        kernel.speedSums  -> scalar.speedSums
-      )
-      at <- ours.indices
-    do assertEqualsDouble(ours(at), reference(at), 1e-3 * (0.01 + reference(at).abs))
-
   test("drawn candidates are within the limits, differ, and use the whole of them"):
     val block = flown(PlanKernel(steps), situation(Behaviour(evader)), objective)
     for at <- block.turnRates.indices do

@@ -13,56 +13,50 @@ class PlannerSuite extends munit.FunSuite:
     Target.Opponent(vehicle(15, 3, 4, 0), speed = 5, headingRad = 0, PaperEvader())
   private val pursuit = Situation(vehicle(0, 0, 8, 0), 0, 0.1, Vector(Behaviour(evader)))
 
-  private val methods = Seq(
-    "path integral" -> PlanMethod.PathIntegral(temperature = 0.1),
-    "cross-entropy" -> PlanMethod.CrossEntropy(elites = 48, smoothing = 0.2)
-  )
-
   private def improved(planner: Planner, situation: Situation, slices: Int, stream: Long = 1): Plan =
     Iterator.iterate(planner.start)(planner.improve(_, situation, stream)).drop(slices).next()
 
   private def costs(manoeuvre: Manoeuvre, situation: Situation, planner: Planner): Double =
     ManoeuvreRollout(situation, planner.objective, planner.settings.dtS).fly(manoeuvre).cost
 
-  for (name, method) <- methods do
-    val settings = PlannerSettings(method = method)
+  private val settings = PlannerSettings()
 
-    test(s"$name: equal streams and slices give equal plans, to the last bit"):
-      val (one, other) = (
-        improved(Planner(settings, objective), pursuit, 5),
-        improved(Planner(settings, objective), pursuit, 5)
-      )
-      assertEquals(one.manoeuvre.turnRates.toSeq, other.manoeuvre.turnRates.toSeq)
-      assertEquals(one.cost, other.cost)
-      assertEquals(one.candidates, 5L * settings.sliceCandidates)
+  test("equal streams and slices give equal plans, to the last bit"):
+    val (one, other) = (
+      improved(Planner(settings, objective), pursuit, 5),
+      improved(Planner(settings, objective), pursuit, 5)
+    )
+    assertEquals(one.manoeuvre.turnRates.toSeq, other.manoeuvre.turnRates.toSeq)
+    assertEquals(one.cost, other.cost)
+    assertEquals(one.candidates, 5L * settings.sliceCandidates)
 
-    test(s"$name: another random stream draws other candidates"):
-      val planner = Planner(settings, objective)
-      assertNotEquals(
-        improved(planner, pursuit, 1, stream = 1).manoeuvre.turnRates.toSeq,
-        improved(planner, pursuit, 1, stream = 2).manoeuvre.turnRates.toSeq
-      )
+  test("another random stream draws other candidates"):
+    val planner = Planner(settings, objective)
+    assertNotEquals(
+      improved(planner, pursuit, 1, stream = 1).manoeuvre.turnRates.toSeq,
+      improved(planner, pursuit, 1, stream = 2).manoeuvre.turnRates.toSeq
+    )
 
-    test(s"$name: slices never make a plan worse, and its cost is that of its manoeuvre"):
-      val planner = Planner(settings, objective)
-      val plans   = Iterator.iterate(planner.start)(planner.improve(_, pursuit, 3)).slice(1, 8).toVector
-      for (before, after) <- plans.zip(plans.drop(1)) do assert(after.cost <= before.cost)
-      assertEqualsDouble(plans.last.cost, costs(plans.last.manoeuvre, pursuit, planner), 1e-3)
-      assert(plans.last.cost < costs(planner.start.manoeuvre, pursuit, planner))
+  test("slices never make a plan worse, and its cost is that of its manoeuvre"):
+    val planner = Planner(settings, objective)
+    val plans   = Iterator.iterate(planner.start)(planner.improve(_, pursuit, 3)).slice(1, 8).toVector
+    for (before, after) <- plans.zip(plans.drop(1)) do assert(after.cost <= before.cost)
+    assertEqualsDouble(plans.last.cost, costs(plans.last.manoeuvre, pursuit, planner), 1e-3)
+    assert(plans.last.cost < costs(planner.start.manoeuvre, pursuit, planner))
 
-    test(s"$name: ten slices find a manoeuvre at least as good as 30,000 random ones"):
-      val planner  = Planner(settings, objective)
-      val blind    = Planner(settings.copy(blocksPerSlice = 256), objective)
-      val found    = improved(planner, pursuit, 10)
-      val stumbled = improved(blind, pursuit, 1)
-      assert(found.cost <= stumbled.cost + 1e-3f, s"${found.cost} against ${stumbled.cost}")
+  test("ten slices find a manoeuvre at least as good as 30,000 random ones"):
+    val planner  = Planner(settings, objective)
+    val blind    = Planner(settings.copy(blocksPerSlice = 256), objective)
+    val found    = improved(planner, pursuit, 10)
+    val stumbled = improved(blind, pursuit, 1)
+    assert(found.cost <= stumbled.cost + 1e-3f, s"${found.cost} against ${stumbled.cost}")
 
-    test(s"$name: a plan resumed after a tick starts with a lower cost than a new plan"):
-      val planner = Planner(settings, objective)
-      val plan    = improved(planner, pursuit, 10)
-      val flown   = pursuit.copy(own = vehicle(0.8, 0, 8, 0))
-      val warm    = costs(planner.resumed(plan, 0.1).manoeuvre, flown, planner)
-      assert(warm < costs(planner.start.manoeuvre, flown, planner))
+  test("a plan resumed after a tick starts with a lower cost than a new plan"):
+    val planner = Planner(settings, objective)
+    val plan    = improved(planner, pursuit, 10)
+    val flown   = pursuit.copy(own = vehicle(0.8, 0, 8, 0))
+    val warm    = costs(planner.resumed(plan, 0.1).manoeuvre, flown, planner)
+    assert(warm < costs(planner.start.manoeuvre, flown, planner))
 
   test("a plan respects the turning radius and keeps apart from other vehicles"):
     val separation = SeparationCost(minimum = 2, margin = 1)

@@ -109,7 +109,7 @@ private final class LearnerRollout(side: LearnerSide, team: TeamCandidate, learn
       northM(vehicle) = x; eastM(vehicle) = y; downM(vehicle) = z
       if vehicle == agents.length - 1 && timeS <= untilS + EnvironmentGroup.Tolerance then
         lastScoredAtS = timeS
-        val places = Positions(IArray.from(northM), IArray.from(eastM), IArray.from(downM))
+        val places = Positions(IArray.from(northM), IArray.from(eastM), IArray.from(downM), timeS)
         for (judged, number) <- team.quantities.zipWithIndex do
           val value = Quantity.told(judged.quantity, places)
           judged.reduction match

@@ -2,10 +2,12 @@ package skein.link
 
 import org.apache.pekko.{Done, NotUsed}
 import org.apache.pekko.actor.ActorSystem
+import org.apache.pekko.pattern.after
 import org.apache.pekko.stream.scaladsl.{BidiFlow, Flow, Keep, Sink, Source}
 import org.apache.pekko.stream.{KillSwitches, SharedKillSwitch}
 import org.apache.pekko.util.ByteString
-import scala.concurrent.{ExecutionContext, Future}
+import scala.concurrent.{ExecutionContext, Future, Promise}
+import skein.units.Span
 
 /** Puts an emulated link between clients and a server: it listens, and forwards each connection that it
   * accepts to the server's address, over the link in both directions. A client that connects while the server
@@ -15,12 +17,26 @@ import scala.concurrent.{ExecutionContext, Future}
   * connection. A stream that begins as HTTP or TLS is closed, and nothing of it is forwarded
   * ([[FirstBytes]]): a browser cannot reach the server through the link.
   */
-final class LinkProxy private (listening: Listening, link: EmulatedLink, switch: SharedKillSwitch):
+final class LinkProxy private (
+    listening: Listening,
+    link: EmulatedLink,
+    switch: SharedKillSwitch,
+    open: LinkProxy.Open
+)(using system: ActorSystem):
 
   /** The address that clients connect to, with the actual port. */
   def address: Address = listening.address
 
   def counts: LinkCounts = link.counts
+
+  /** Completes when every connection has ended and what was sent on it has left the link, at the latest after
+    * `most`.
+    */
+  def ended(most: Span): Future[Done] =
+    given ExecutionContext = ExecutionContext.parasitic
+    Future.firstCompletedOf(
+      Seq(open.allClosed, after(most.toDuration, system.scheduler)(Future.successful(Done)))
+    )
 
   /** Stops accepting and closes the open connections. */
   def close(): Future[Done] =
@@ -55,6 +71,7 @@ object LinkProxy:
     given ExecutionContext = ExecutionContext.parasitic
     val switch             = KillSwitches.shared("link-proxy")
     val seats              = Seats(maxConnections, link.clock)
+    val open               = Open()
 
     def forward(incoming: Incoming, seat: Seats.Seat, own: SharedKillSwitch): Unit =
       // Data from either side keep the seat.
@@ -68,8 +85,9 @@ object LinkProxy:
         .atop(BidiFlow.fromFlows(switch.flow, noting.via(switch.flow)))
         .atop(link.connection(TransportError.Lost(to, "the link broke"), isDatagrams))
         .atop(beside())
-        .joinMat(transport.connect(to))(Keep.right)
-      val (sent, (reached, answered)) = client
+        .joinMat(watched(transport.connect(to)))(Keep.right)
+      open.opened()
+      val (sent, ((gone, reached, silent), answered)) = client
         .watchTermination()(Keep.right)
         .joinMat(server.watchTermination()(Keep.both))(Keep.both)
         .run()
@@ -81,6 +99,7 @@ object LinkProxy:
         answered.onComplete: _ =>
           watching.closed(seat.number)
           seat.left()
+          gone.onComplete(_ => silent.onComplete(_ => open.closed()))
 
     def accept(incoming: Incoming): Unit =
       val own = KillSwitches.shared("link-proxy-connection")
@@ -92,7 +111,39 @@ object LinkProxy:
       .listen(listenAt)
       .to(Sink.foreach(accept))
       .run()
-      .map(LinkProxy(_, link, switch))
+      .map(LinkProxy(_, link, switch, open))
+
+  /** A connection to the server, with the ends of what it is sent, of connecting, and of what it answers. */
+  private def watched(server: Flow[ByteString, ByteString, Future[Done]]) =
+    Flow[ByteString]
+      .watchTermination()(Keep.right)
+      .viaMat(server)(Keep.both)
+      .watchTermination():
+        case ((gone, reached), silent) => (gone, reached, silent)
+
+  /** Counts connections until they have ended; from any thread. */
+  private final class Open:
+    private var count   = 0
+    private var waiting = Vector.empty[Promise[Done]]
+
+    def opened(): Unit = synchronized(count += 1)
+
+    def closed(): Unit =
+      val told = synchronized:
+        count -= 1
+        if count > 0 then Vector.empty
+        else
+          val all = waiting
+          waiting = Vector.empty
+          all
+      told.foreach(_.success(Done))
+
+    def allClosed: Future[Done] = synchronized:
+      if count == 0 then Future.successful(Done)
+      else
+        val one = Promise[Done]()
+        waiting :+= one
+        one.future
 
   /** A stage that both directions of a connection pass through; its first side is the client's. */
   type Passing = BidiFlow[ByteString, ByteString, ByteString, ByteString, NotUsed]

@@ -23,8 +23,8 @@ import scala.util.Try
 import skein.units.Span
 
 /** Treats datagrams as connections: each sender to a port is one connection, until it has been silent for
-  * `idle`. The end of the other side is not reported, lost datagrams stay lost, and a message too large for a
-  * datagram is split. For protocols that find the beginning of a message by themselves, such as MAVLink.
+  * `idle`. Each piece of bytes is one datagram, sent and received whole; one of more than 65,507 bytes is
+  * dropped. The end of the other side is not reported, and lost datagrams stay lost.
   *
   * @param mostPeers maximum number of peers at one port. A further one takes the place of the one that has
   *   been silent for longest, if that is at least [[UdpSocket.Silence]]; else its datagrams are dropped
@@ -113,7 +113,7 @@ final class UdpSocket private (
     val flow: Flow[ByteString, ByteString, NotUsed] =
       Flow.fromSinkAndSourceCoupled(
         Sink
-          .foreach[ByteString](bytes => bytes.grouped(MostBytes).foreach(send(at, _)))
+          .foreach[ByteString](send(at, _))
           .mapMaterializedValue(_.onComplete: _ =>
             // By then another datagram may have been received from it.
             peers.remove(at, this)
@@ -190,9 +190,6 @@ object UdpSocket:
 
   /** A peer that was silent for this long makes room for others. */
   val Silence: Span = Span.ofSeconds(2)
-
-  /** Maximum number of bytes in a sent datagram, which fits into an Ethernet frame. */
-  private val MostBytes = 1400
 
   /** Maximum number of one peer's received datagrams that wait. */
   private val Waiting = 256

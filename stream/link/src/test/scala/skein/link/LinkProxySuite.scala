@@ -6,6 +6,7 @@ import org.apache.pekko.stream.scaladsl.{Flow, Keep, Sink, Source}
 import org.apache.pekko.util.ByteString
 import scala.concurrent.duration.*
 import scala.concurrent.{ExecutionContext, Future}
+import skein.signal.LatencyProfile
 import skein.units.*
 import skein.vtime.VirtualTime
 
@@ -84,6 +85,38 @@ class LinkProxySuite extends munit.FunSuite:
       assertEquals(first.ended.map(at => at > lasts && at < lasts + 0.2), Some(true))
       assertEquals(third, (came = 1, ended = None))
       assertEquals((counts.connections, counts.disconnects), (2L, 0L))
+
+  test("the end of all connections is awaited until the last bytes have arrived, or for a limited time"):
+    val profile = LatencyProfile.parse("constant:400ms", Left(_)).toOption.get
+    val waited  = VirtualTime
+      .run(1): system =>
+        given ActorSystem      = system
+        given ExecutionContext = system.dispatcher
+        val clock              = VirtualClock(system)
+        val start              = clock.now()
+        val network            = MemoryNetwork(NetworkPlan(), 1, clock)
+        val world              = World(network, () => clock.now().since(start).toSeconds)
+        var came               = 0
+        val heard              = Flow[ByteString].map: bytes =>
+          came += bytes.size
+          bytes
+        for
+          _ <- network.host("server").listen(serverAt).to(Sink.foreach(_.flow.join(heard).run(): Unit)).run()
+          link = EmulatedLink(LinkProfile.symmetric(profile), 1, clock)
+          proxy <- LinkProxy.start(proxyAt, serverAt, link, network.host("proxy"))
+          _ = Client(Source.single(ByteString("x")), world)
+          _ <- world.until(0.1)
+          before = came
+          _ <- proxy.ended(Span.ofSeconds(2))
+          after = (came, world.seconds() < 1)
+          _     = Client(once, world)
+          _ <- world.until(5)
+          _ <- proxy.ended(Span.ofSeconds(2))
+          late = world.seconds()
+          _ <- proxy.close()
+        yield (before, after, late)
+      .value
+    assertEquals(waited, (0, (1, true), 7.0))
 
   test("a connection that has ended frees its place"):
     val came = through: (world, _) =>

@@ -103,10 +103,10 @@ final class FrameReader(signing: Option[Signing] = None):
         val length     = 8 + byte(1)
         val definition = Dialect.of(byte(5))
         if left < length then Step.Cut
+        else if definition.isEmpty then skip(length)(_.copy(unknown = counted.unknown + 1))
         else
-          val sum =
-            Checksum.Start.add(all, at + 1, at + length - 2).add(definition.fold(0)(_.crcExtra)).value
-          if definition.isDefined && sum == (byte(length - 2) | byte(length - 1) << 8) then
+          val sum = Checksum.Start.add(all, at + 1, at + length - 2).add(definition.get.crcExtra).value
+          if sum == (byte(length - 2) | byte(length - 1) << 8) then
             skip(length)(_.copy(version1 = counted.version1 + 1))
           else skip(1)(_.copy(badChecksum = counted.badChecksum + 1))
       case _ => skip(1)(_.copy(garbageBytes = counted.garbageBytes + 1))

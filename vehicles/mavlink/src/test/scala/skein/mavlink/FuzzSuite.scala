@@ -49,6 +49,13 @@ class FuzzSuite extends munit.FunSuite:
     assertEquals(reader.read(version1 ++ Array(sum.toByte, (sum >> 8).toByte)), Vector.empty)
     assertEquals(reader.counts, ReaderCounts(version1 = 1))
 
+  test("a frame of MAVLink 1 with an unknown message is counted as such, and what follows is read"):
+    val strange = java.util.HexFormat.of().parseHex("fe0300010180fefdfe0000")
+    val good    = FrameWriter(1, 1).write(MissionItemReached(1))
+    val reader  = FrameReader()
+    assertEquals(reader.read(strange ++ strange ++ good).map(_.message), Vector(MissionItemReached(1)))
+    assertEquals(reader.counts, ReaderCounts(frames = 1, unknown = 2))
+
   test("an unfinished frame of a datagram does not continue in the next datagram"):
     val frame  = FrameWriter(1, 1).write(MissionItemReached(1))
     val reader = FrameReader()

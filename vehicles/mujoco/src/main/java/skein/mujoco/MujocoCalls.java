@@ -13,7 +13,8 @@ import java.lang.invoke.MethodHandle;
 
 /**
  * The functions of MuJoCo's C library that bodies need, as {@code mujoco.h} and {@code mjbatch.h} of
- * version 4 declare them. The library is {@link LoadedLibrary}'s and stays loaded until the process ends.
+ * version 4 declare them. The library is {@link LoadedLibrary}'s and stays loaded until the process ends. They
+ * throw nothing themselves: method handles declare {@code Throwable}.
  */
 @SuppressWarnings("restricted")
 final class MujocoCalls {
@@ -36,17 +37,7 @@ final class MujocoCalls {
   private static final MethodHandle STEP =
       function("mjb_step", JAVA_INT, ADDRESS, ADDRESS, JAVA_INT, JAVA_INT, JAVA_INT);
   private static final MethodHandle ROLLOUT =
-      function(
-          "mjb_rollout",
-          JAVA_INT,
-          ADDRESS,
-          ADDRESS,
-          JAVA_INT,
-          JAVA_INT,
-          ADDRESS,
-          JAVA_INT,
-          ADDRESS,
-          JAVA_INT);
+      function("mjb_rollout", JAVA_INT, ADDRESS, ADDRESS, JAVA_INT, JAVA_INT, ADDRESS, JAVA_INT, ADDRESS, JAVA_INT);
   private static final MethodHandle RESET =
       function("mjb_reset", JAVA_INT, ADDRESS, ADDRESS, JAVA_INT, ADDRESS, JAVA_INT);
   private static final MethodHandle ERROR = function("mjb_error", ADDRESS, ADDRESS, JAVA_INT);
@@ -63,124 +54,60 @@ final class MujocoCalls {
         .downcallHandle(LOOKUP.findOrThrow(name), FunctionDescriptor.ofVoid(takes));
   }
 
-  private static RuntimeException failed(Throwable error) {
-    return error instanceof RuntimeException known ? known : new IllegalStateException(error);
+  static int version() throws Throwable {
+    return (int) VERSION.invokeExact();
   }
 
-  static int version() {
-    try {
-      return (int) VERSION.invokeExact();
-    } catch (Throwable error) {
-      throw failed(error);
-    }
+  static MemorySegment load(MemorySegment file, MemorySegment error, int errorSize) throws Throwable {
+    return (MemorySegment) LOAD.invokeExact(file, MemorySegment.NULL, error, errorSize);
   }
 
-  static MemorySegment load(MemorySegment file, MemorySegment error, int errorSize) {
-    try {
-      return (MemorySegment) LOAD.invokeExact(file, MemorySegment.NULL, error, errorSize);
-    } catch (Throwable thrown) {
-      throw failed(thrown);
-    }
-  }
-
-  static void deleteModel(MemorySegment model) {
-    try {
-      DELETE_MODEL.invokeExact(model);
-    } catch (Throwable error) {
-      throw failed(error);
-    }
+  static void deleteModel(MemorySegment model) throws Throwable {
+    DELETE_MODEL.invokeExact(model);
   }
 
   static MemorySegment makeBatch(
-      MemorySegment model, int count, MemorySegment config, MemorySegment error, int errorSize) {
-    try {
-      return (MemorySegment) MAKE.invokeExact(model, count, config, error, errorSize);
-    } catch (Throwable thrown) {
-      throw failed(thrown);
-    }
+      MemorySegment model, int count, MemorySegment config, MemorySegment error, int errorSize) throws Throwable {
+    return (MemorySegment) MAKE.invokeExact(model, count, config, error, errorSize);
   }
 
-  static void deleteBatch(MemorySegment batch) {
-    try {
-      DELETE.invokeExact(batch);
-    } catch (Throwable error) {
-      throw failed(error);
-    }
+  static void deleteBatch(MemorySegment batch) throws Throwable {
+    DELETE.invokeExact(batch);
   }
 
-  static int rowSize(MemorySegment batch) {
-    try {
-      return (int) ROW.invokeExact(batch);
-    } catch (Throwable error) {
-      throw failed(error);
-    }
+  static int rowSize(MemorySegment batch) throws Throwable {
+    return (int) ROW.invokeExact(batch);
   }
 
-  static MemorySegment state(MemorySegment batch) {
-    try {
-      return (MemorySegment) STATE.invokeExact(batch);
-    } catch (Throwable error) {
-      throw failed(error);
-    }
+  static MemorySegment state(MemorySegment batch) throws Throwable {
+    return (MemorySegment) STATE.invokeExact(batch);
   }
 
-  static MemorySegment component(MemorySegment batch, int component, MemorySegment size) {
-    try {
-      return (MemorySegment) COMPONENT.invokeExact(batch, component, size);
-    } catch (Throwable error) {
-      throw failed(error);
-    }
+  static MemorySegment component(MemorySegment batch, int component, MemorySegment size) throws Throwable {
+    return (MemorySegment) COMPONENT.invokeExact(batch, component, size);
   }
 
   static MemorySegment expand(
-      MemorySegment batch, MemorySegment name, MemorySegment size, MemorySegment elementSize) {
-    try {
-      return (MemorySegment) EXPAND.invokeExact(batch, name, size, elementSize);
-    } catch (Throwable error) {
-      throw failed(error);
-    }
+      MemorySegment batch, MemorySegment name, MemorySegment size, MemorySegment elementSize) throws Throwable {
+    return (MemorySegment) EXPAND.invokeExact(batch, name, size, elementSize);
   }
 
   /** Steps the first {@code count} simulations, or those of {@code ids}; returns how many failed. */
-  static int step(MemorySegment batch, MemorySegment ids, int count, int steps) {
-    try {
-      return (int) STEP.invokeExact(batch, ids, count, steps, 0);
-    } catch (Throwable error) {
-      throw failed(error);
-    }
+  static int step(MemorySegment batch, MemorySegment ids, int count, int steps) throws Throwable {
+    return (int) STEP.invokeExact(batch, ids, count, steps, 0);
   }
 
   /** Steps all simulations with controls for every step (n × steps × size); returns how many failed. */
-  static int rollout(MemorySegment batch, int steps, MemorySegment controls, int controlSpec) {
-    try {
-      return (int)
-          ROLLOUT.invokeExact(
-              batch,
-              MemorySegment.NULL,
-              0,
-              steps,
-              controls,
-              controlSpec,
-              MemorySegment.NULL,
-              0);
-    } catch (Throwable error) {
-      throw failed(error);
-    }
+  static int rollout(MemorySegment batch, int steps, MemorySegment controls, int controlSpec) throws Throwable {
+    return (int)
+        ROLLOUT.invokeExact(batch, MemorySegment.NULL, 0, steps, controls, controlSpec, MemorySegment.NULL, 0);
   }
 
-  static int reset(MemorySegment batch) {
-    try {
-      return (int) RESET.invokeExact(batch, MemorySegment.NULL, 0, MemorySegment.NULL, 0);
-    } catch (Throwable error) {
-      throw failed(error);
-    }
+  static int reset(MemorySegment batch) throws Throwable {
+    return (int) RESET.invokeExact(batch, MemorySegment.NULL, 0, MemorySegment.NULL, 0);
   }
 
-  static MemorySegment error(MemorySegment batch, int place) {
-    try {
-      return (MemorySegment) ERROR.invokeExact(batch, place);
-    } catch (Throwable thrown) {
-      throw failed(thrown);
-    }
+  static MemorySegment error(MemorySegment batch, int place) throws Throwable {
+    return (MemorySegment) ERROR.invokeExact(batch, place);
   }
 }

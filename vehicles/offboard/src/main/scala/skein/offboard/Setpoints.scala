@@ -34,16 +34,10 @@ private[offboard] object Setpoints:
     case Action.Turn(yaw) =>
       Some(local(system, Vector3.Zero, Vector3.Zero, Position | Acceleration, turn(yaw, Vector3.Zero)))
     case Action.Attitude(roll, pitch, yaw, thrust) =>
-      val (r, p, y)    = (roll.value / 2, pitch.value / 2, yaw.value / 2)
-      val (sr, sp, sy) = (StrictMath.sin(r), StrictMath.sin(p), StrictMath.sin(y))
-      val (cr, cp, cy) = (StrictMath.cos(r), StrictMath.cos(p), StrictMath.cos(y))
-      val q            = Vector(
-        cr * cp * cy + sr * sp * sy,
-        sr * cp * cy - cr * sp * sy,
-        cr * sp * cy + sr * cp * sy,
-        cr * cp * sy - sr * sp * cy
+      val q = Quaternion.of(roll.value, pitch.value, yaw.value)
+      Some(
+        SetAttitudeTarget(0, system, 1, 7, Vector(q.w, q.x, q.y, q.z).map(_.toFloat), 0, 0, 0, thrust.toFloat)
       )
-      Some(SetAttitudeTarget(0, system, 1, 7, q.map(_.toFloat), 0, 0, 0, thrust.toFloat))
     case Action.Hover | Action.Land => None
 
   private val Position     = 1 | 2 | 4

@@ -33,19 +33,8 @@ final class Placement(val position: Vector3, val orientation: Quaternion = Quate
 object Placement:
   /** A placement turned by roll, then pitch, then yaw, degrees: the order of AirSim's settings. */
   def turned(position: Vector3, rollDeg: Double, pitchDeg: Double, yawDeg: Double): Placement =
-    def half(deg: Double) = StrictMath.toRadians(deg) / 2
-    val (cr, sr)          = (StrictMath.cos(half(rollDeg)), StrictMath.sin(half(rollDeg)))
-    val (cp, sp)          = (StrictMath.cos(half(pitchDeg)), StrictMath.sin(half(pitchDeg)))
-    val (cy, sy)          = (StrictMath.cos(half(yawDeg)), StrictMath.sin(half(yawDeg)))
-    Placement(
-      position,
-      Quaternion(
-        cr * cp * cy + sr * sp * sy,
-        sr * cp * cy - cr * sp * sy,
-        cr * sp * cy + sr * cp * sy,
-        cr * cp * sy - sr * sp * cy
-      )
-    )
+    import StrictMath.toRadians
+    Placement(position, Quaternion.of(toRadians(rollDeg), toRadians(pitchDeg), toRadians(yawDeg)))
 
 /** Scalar and vector products of two vectors. */
 extension (a: Vector3)

@@ -54,14 +54,4 @@ private[simulator] object CameraSet:
   )
 
   private def looking(position: Vector3, yawDeg: Double = 0, pitchDeg: Double = 0): Camera =
-    val yaw   = math.toRadians(yawDeg) / 2
-    val pitch = math.toRadians(pitchDeg) / 2
-    Camera(
-      position,
-      Quaternion(StrictMath.cos(yaw), 0, 0, StrictMath.sin(yaw)) * Quaternion(
-        StrictMath.cos(pitch),
-        0,
-        StrictMath.sin(pitch),
-        0
-      )
-    )
+    Camera(position, Quaternion.of(0, math.toRadians(pitchDeg), math.toRadians(yawDeg)))

@@ -4,7 +4,6 @@ import skein.airsim.VehicleSettings
 import skein.airsim.wire.*
 import skein.scene.Placement
 import skein.units.*
-import upack.Bool
 
 /** Functions of the scene's content: the ground, objects and vehicles. There are no assets, levels or meshes.
   */
@@ -72,24 +71,9 @@ private[simulator] object SceneMethods:
         GeoPoint(there.latitudeDeg, there.longitudeDeg, there.altitude.value.toFloat)
       answer(Seq(corner(-1, 0), corner(1, -ExtentM)))
     ,
-    many[(Vector3r, Int, Int, Int, Float, String)]("simCreateVoxelGrid"):
-      case (simulation, (centre, x, y, z, edge, path)) =>
-        val ready =
-          for
-            folder <- simulation.grids.toRight(NoGrids)
-            file   <- folder.file(path)
-            _      <- VoxelGrid.cells((x, y, z), edge)
-          yield (folder, file)
-        ready match
-          case Left(refusal)         => CallOutcome.Threw(refusal)
-          case Right((folder, file)) =>
-            val moment = simulation.objects.boxes
-            def grid   = VoxelGrid.render(moment, centre.toVector, (x, y, z), edge)
-            CallOutcome.Draws(() => Bool(folder.save(file)(grid.getOrElse(Array.emptyByteArray))))
+    // Clients have no files written.
+    many[(Vector3r, Int, Int, Int, Float, String)]("simCreateVoxelGrid")((_, _) => answer(false))
   )
-
-  private val NoGrids =
-    "this simulator writes no files; ./skein serve --grids FOLDER lets it write voxel grids"
 
   /** The world's extent as reported to clients, from the origin and upwards, m; the world has no edge. */
   private val ExtentM = 10_000.0

@@ -28,9 +28,6 @@ private[simulator] trait Simulated:
 
   private[simulator] def recording_=(on: Boolean): Unit
 
-  /** The folder for voxel grids, if they are written. */
-  private[simulator] def grids: Option[GridFolder]
-
   /** Adds a plan to a vehicle's buffer, in place of its move, if it has one. */
   private[simulator] def follow(
       vehicle: Int,

@@ -43,8 +43,6 @@ final class Simulation(
   val world: World =
     World(settings.world, startedAt, settings.multirotors, settings.scene, equipment, settings.sensing)
 
-  private[simulator] val grids: Option[GridFolder] = settings.grids.map(GridFolder(_))
-
   private[simulator] val objects   = SceneObjects(world)
   private[simulator] val cameras   = Cameras(equipment)
   private[simulator] var recording = false

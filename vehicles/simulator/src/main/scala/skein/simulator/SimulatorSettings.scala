@@ -1,6 +1,5 @@
 package skein.simulator
 
-import java.nio.file.Path
 import skein.airsim.WorldSettings
 import skein.hil.AutopilotInterface
 import skein.link.Address
@@ -34,7 +33,6 @@ enum Overload:
   * @param mavlink ports on which its vehicles also speak MAVLink
   * @param hil external autopilots that fly its vehicles; then these do not speak MAVLink
   * @param kind the kind of its multirotors; without one, AirSim's quadrotors
-  * @param grids the folder for voxel grids that clients request; without one, none is written
   * @param sensing errors of readings; without it they are true. External autopilots have sensors of their own
   */
 final case class SimulatorSettings(
@@ -49,7 +47,6 @@ final case class SimulatorSettings(
     hil: Option[HilSettings] = None,
     kind: Option[RotorcraftKind] = None,
     patience: Option[Span] = None,
-    grids: Option[Path] = None,
     sensing: Option[SimulatedSensing] = None
 ):
   require(mavlink.isEmpty || hil.isEmpty, "vehicles have one autopilot each: MAVLink's or one outside")

@@ -16,7 +16,6 @@ final private[skein] class Bench(
     speed: Double = 1.0,
     scene: Scene = Scene.Empty,
     text: String = "{}",
-    grids: Option[java.nio.file.Path] = None,
     patience: Option[Span] = None,
     sensing: Option[SimulatedSensing] = None
 ):
@@ -32,7 +31,6 @@ final private[skein] class Bench(
       overload = overload,
       speed = speed,
       scene = scene,
-      grids = grids,
       patience = patience,
       sensing = sensing
     ),

@@ -56,7 +56,7 @@ class FiniteSuite extends munit.FunSuite:
       bench.pass(0.2)
       bench.moveTo(10, 10, -10, 5): Unit
 
-  for method <- Simulation.methods if method.name != "simCreateVoxelGrid" do
+  for method <- Simulation.methods do
     test(s"${method.name}: for any numbers, states stay finite"):
       val params = SampleCalls.params(method.name)
       for

@@ -165,20 +165,6 @@ final private class LongAttack(rpc: Int, hil: Int, udp: Int, view: Int, seed: Lo
     again("patterns", 2)(random =>
       using(rpc)(ask(_, "simListSceneObjects" -> Seq(Str(nested(random.nextInt(4))))))
     )
-    again("grids")(random =>
-      using(rpc)(ask(
-        _,
-        "simCreateVoxelGrid" -> Seq(
-          writeMsg(Vector3r.Zero),
-          Int32(256),
-          Int32(256),
-          Int32(256),
-          Float32(1)
-        ).appended(
-          Str(s"/tmp/${random.nextInt(50)}.binvox")
-        )
-      ))
-    )
     again("pages", 2): random =>
       val methods = Seq("POST", "GET", "OPTIONS", "PUT")
       val ports   = Seq(rpc, hil, view).filter(_ > 0)

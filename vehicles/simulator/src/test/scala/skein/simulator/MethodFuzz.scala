@@ -14,10 +14,9 @@ private[simulator] object MethodFuzz:
 
   /** @param methods the table
     * @param vehicle the name of a vehicle that exists
-    * @param file a path that a simulator may write a voxel grid to; without it none is written
     */
-  final class Calls(methods: Seq[ServerMethod], vehicle: String, file: Option[String] = None):
-    private val palette = plain(vehicle) ++ file.map(Str(_)) ++ nested(vehicle)
+  final class Calls(methods: Seq[ServerMethod], vehicle: String):
+    private val palette = plain(vehicle) ++ nested(vehicle)
     private val right   = methods.map: method =>
       method.arguments.map(argument => palette.filter(accepts(argument, _)).toIndexedSeq)
     private val wrong = (palette ++ extreme).toIndexedSeq

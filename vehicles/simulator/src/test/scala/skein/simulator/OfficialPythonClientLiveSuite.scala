@@ -1,6 +1,5 @@
 package skein.simulator
 
-import java.nio.file.Files
 import org.apache.pekko.actor.ActorSystem
 import scala.concurrent.Await
 import scala.concurrent.duration.*
@@ -54,11 +53,10 @@ class OfficialPythonClientLiveSuite extends munit.FunSuite, Conclusive, Lengthy,
     conclusive(flyOnce(script, world))
 
   private def flyOnce(script: String, world: WorldSettings): Unit =
-    val grids    = Files.createTempDirectory("grids")
-    val settings = SimulatorSettings(world, Address("127.0.0.1", 0), speed = 5, grids = Some(grids))
+    val settings = SimulatorSettings(world, Address("127.0.0.1", 0), speed = 5)
     val server   = Await.result(SimulatorServer.start(settings, TcpTransport(), Clock.system), 10.seconds)
     try
-      val (status, output) = OfficialPythonClient.run(script, s"${server.address.port}", s"$grids")
+      val (status, output) = OfficialPythonClient.run(script, s"${server.address.port}")
       println(output)
       assertEquals(status, 0, output)
       val passed = output.linesIterator.toSeq.lastOption.getOrElse("")

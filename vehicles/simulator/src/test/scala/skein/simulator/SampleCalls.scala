@@ -1,6 +1,5 @@
 package skein.simulator
 
-import java.nio.file.Files
 import scala.language.implicitConversions
 import skein.airsim.VehicleSettings
 import skein.airsim.wire.*
@@ -18,12 +17,10 @@ private[simulator] object SampleCalls:
       if name.contains("Car") then Bench.of(VehicleSettings("Evader", vehicleType = "PhysXCar"))
       else if name.contains("ComputerVision") then
         Bench.of(VehicleSettings("Evader", vehicleType = "ComputerVision"))
-      else Bench(Seq("Evader"), grids = grids).hovering(-5)
+      else Bench(Seq("Evader")).hovering(-5)
     val token = bench.call(name, params(name)*)
     while bench.answeredAt(token).isEmpty && bench.elapsedS < 70 do bench.pass(1)
     bench.answerOf(token)
-
-  private lazy val grids = Some(Files.createTempDirectory("grids"))
 
   def params(name: String): Seq[Msg] =
     given Conversion[String, Msg]  = Str(_)

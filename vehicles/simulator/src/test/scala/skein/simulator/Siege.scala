@@ -3,7 +3,6 @@ package skein.simulator
 import com.typesafe.config.ConfigFactory
 import java.io.IOException
 import java.net.{InetAddress, Socket}
-import java.nio.file.Files
 import java.util.concurrent.atomic.{AtomicBoolean, AtomicLong}
 import java.util.concurrent.{ConcurrentHashMap, ConcurrentLinkedQueue, Semaphore}
 import org.apache.pekko.actor.ActorSystem
@@ -38,11 +37,9 @@ object Siege:
     val attacks               = args.lift(3).fold(Attacks)(_.split(',').toSeq)
     given system: ActorSystem =
       ActorSystem("siege", ConfigFactory.parseString(AsServed).withFallback(ConfigFactory.load()))
-    val folder   = Files.createTempDirectory("siege")
-    val settings =
-      SimulatorSettings(address = Address("127.0.0.1", 0), overload = Overload.Never, grids = Some(folder))
-    val server = Await.result(SimulatorServer.start(settings, TcpTransport(), Clock.system), 10.seconds)
-    val honest = Honest(server.address.port)
+    val settings = SimulatorSettings(address = Address("127.0.0.1", 0), overload = Overload.Never)
+    val server   = Await.result(SimulatorServer.start(settings, TcpTransport(), Clock.system), 10.seconds)
+    val honest   = Honest(server.address.port)
     println(s"seed $seed; honest client: getMultirotorState every 5 ms; waits in ms")
     println(
       f"${"what"}%-12s ${"polls"}%6s ${"p50"}%6s ${"p99"}%6s " +
@@ -64,17 +61,9 @@ object Siege:
           f"${settings.limits.heldBytes >> 20}  $said"
       )
     row("nobody") { Thread.sleep(5000); "" }
-    if attacks.contains("fuzz") then
-      row("fuzz"):
-        val grid = folder.resolve("grid.binvox")
-        try
-          val said = child("fuzz", server.address.port, calls, seed, grid.toString)
-          s"$said; voxel grid written: ${Files.exists(grid)}; heap ${heapMiB()} MiB"
-        finally
-          Files.deleteIfExists(grid): Unit
-          Files.delete(folder)
-    for attack <- attacks if attack != "fuzz" do
-      row(attack)(s"${child(attack, server.address.port, seconds, seed)}; heap ${heapMiB()} MiB")
+    for attack <- attacks.sortBy(_ != "fuzz") do
+      val amount = if attack == "fuzz" then calls else seconds
+      row(attack)(s"${child(attack, server.address.port, amount, seed)}; heap ${heapMiB()} MiB")
     println(server.stats)
     println(s"simulation failed: ${server.failed.value}; honest answers wrong: ${honest.wrong}")
     honest.stop()
@@ -99,7 +88,7 @@ object Siege:
     System.gc()
     (Runtime.getRuntime.totalMemory - Runtime.getRuntime.freeMemory) >> 20
 
-  private def child(attack: String, port: Int, amount: Int, seed: Long, more: String*): String =
+  private def child(attack: String, port: Int, amount: Int, seed: Long): String =
     val java    = ProcessHandle.current.info.command.get
     val command = Seq(
       java,
@@ -113,7 +102,7 @@ object Siege:
       s"$port",
       s"$amount",
       s"$seed"
-    ) ++ more
+    )
     val process = ProcessBuilder(command.asJava).redirectErrorStream(true).start()
     val said    = String(process.getInputStream.readAllBytes())
     val code    = process.waitFor()
@@ -172,14 +161,12 @@ private final class Connection(port: Int):
 
   def close(): Unit = socket.close()
 
-/** The attackers' process of [[Siege]]; loopback only. Arguments: attack, port, amount, seed; for the fuzz, a
-  * file that voxel grids may be written to.
-  */
+/** The attackers' process of [[Siege]]; loopback only. Arguments: attack, port, amount, seed. */
 object Attackers:
   def main(args: Array[String]): Unit =
-    val Array(attack, port, amount, seed) = args.take(4): @unchecked
+    val Array(attack, port, amount, seed) = args: @unchecked
     attack match
-      case "fuzz"       => fuzz(port.toInt, amount.toInt, seed.toLong, args.lift(4))
+      case "fuzz"       => fuzz(port.toInt, amount.toInt, seed.toLong)
       case "pipelining" => many(200, port.toInt, amount.toInt)(pipelining)
       case "colliding"  => many(20, port.toInt, amount.toInt)(colliding)
       case "unfinished" => many(200, port.toInt, amount.toInt)(unfinished)
@@ -280,7 +267,7 @@ object Attackers:
 
   private inline val Nudge = 1_000_000_000L
 
-  private def fuzz(port: Int, calls: Int, seed: Long, file: Option[String]): Unit =
+  private def fuzz(port: Int, calls: Int, seed: Long): Unit =
     val lanes   = 8
     val left    = AtomicLong(calls)
     val ended   = AtomicLong()
@@ -290,7 +277,7 @@ object Attackers:
     val threads =
       for lane <- 0 until lanes yield Thread.ofPlatform().start: () =>
         val random     = Random(seed * 1000 + lane)
-        val source     = MethodFuzz.Calls(Simulation.methods, "SimpleFlight", file)
+        val source     = MethodFuzz.Calls(Simulation.methods, "SimpleFlight")
         val connection = Connection(port)
         // Some 80 of the largest messages fit into a server's memory limit for all clients.
         val window = Semaphore(16)

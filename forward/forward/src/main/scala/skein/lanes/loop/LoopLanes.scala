@@ -42,7 +42,7 @@ private[lanes] final class LoopLanes(
     case other => throw IllegalArgumentException(s"expected a loop that is not refused, got $other")
 
   def periodS: Double    = timing.periodS
-  val steering: Steering = LoopTiming.steeringOf(timing)
+  val steering: Steering = timing.steering
 
   /** Minimum time between two decisions, or between two commands if [[decidesFirst]], s. */
   val intervalS: Double = timing match
@@ -76,7 +76,7 @@ private[lanes] object LoopLanes:
     val inTurn = timing match
       case _: (LoopTiming.Stream | LoopTiming.Predictive) => 2
       case _                                              => vehicles
-    inTurn * LoopTiming.askingOf(timing).timeoutS.min(2 * maxDelayS)
+    inTurn * timing.asking.timeoutS.min(2 * maxDelayS)
 
 /** Caches objects that are made for a longest delay, one for all links of about equal delay. The delay
   * determines how far a loop is computed ahead, and has no effect on results.

@@ -32,10 +32,19 @@ private[lanes] final class ScoreLanes private (
     Angles(
       formula.trace,
       trace,
-      if number < judged.size then trace.input else ofEnd,
+      if number < judged.size then ofPositions else ofEnd,
       _ => None,
       parameter => trace.input(FirstParameter + number * Stride + parameter)
     )
+
+  /** The node for an input of a quantity's formula. */
+  private def ofPositions(input: Int): Node =
+    if input == 3 * count then trace.param(Time) else trace.input(input)
+
+  /** Whether a quantity depends on the time. */
+  val asksTime: Boolean = quantities.exists(each =>
+    Trace.needed(each.outputs.map(_._2)).exists(node => node.op == Op.Input && node.index == 3 * count)
+  )
 
   /** The node for an input of the end's formula. */
   private def ofEnd(input: Int): Node = end.get.inputs(input) match
@@ -126,9 +135,17 @@ private[lanes] final class ScoreLanes private (
   private val derived = angles.map(_.derived)
   private val numbers = derived.map(Evaluation(_))
 
+  private def startsS(number: Int): Double = if hasEnd then 0 else judged(number).fromS
+
+  /** The scores that begin anew at their time in worlds that have not ended by then, in the order of these
+    * times: of a shorter flight, all of it counts.
+    */
+  val renewed: Vector[Int] =
+    judged.indices.toVector.filter(number => startsS(number) < judged(number).fromS).sortBy(judged(_).fromS)
+
   /** The functions to use, each from its time until that of the next. */
-  val stages: Vector[Stage] = judged.map(_.fromS).distinct.sorted.map: fromS =>
-    val numbers = judged.indices.filter(judged(_).fromS <= fromS).toVector
+  val stages: Vector[Stage] = judged.indices.map(startsS).distinct.sorted.toVector.map: fromS =>
+    val numbers = judged.indices.filter(startsS(_) <= fromS).toVector
     Stage(
       fromS,
       numbers,

@@ -28,6 +28,10 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
   private val stages = lanes.stages.map(Stage(_)).toArray
 
   private val hasShare = judged.indices.map(lanes.hasShare).toArray
+  private val renewed  = lanes.renewed.toArray
+
+  /** How many of [[renewed]] have begun anew. */
+  private var begun = 0
 
   for case (Judged(_, OfMoment.FirstWithin(limit), _), number) <- judged.zipWithIndex do
     this.limit(number, limit.toFloat)
@@ -96,6 +100,7 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
     for stage <- stages do stage.shown.call.use(worlds)
     if ending != null then ending.call.use(worlds)
     shared(ScoreLanes.Time) = 0
+    begun = 0
     Arrays.fill(counts, 0)
     Arrays.fill(begunS, Float.NaN)
     for place <- lanes.initial.indices do begin(place)
@@ -187,6 +192,9 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
 
   private def add(stage: Stage, timeS: Float): Unit =
     shared(ScoreLanes.Time) = timeS
+    while begun < renewed.length && Judged.counts(timeS, judged(renewed(begun)).fromS) do
+      renew(renewed(begun), timeS)
+      begun += 1
     var i = 0
     while i < stage.judged.length do
       val number = stage.judged(i)
@@ -194,6 +202,14 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
       if hasShare(number) then shared(ScoreLanes.ownParameter(number)) = 1f / counts(number)
       i += 1
     stage.shown.call.apply()
+
+  /** Begins a score anew in all worlds that have not ended before a time. */
+  private def renew(number: Int, timeS: Float): Unit =
+    counts(number) = 0
+    val ended = lanes.ending.get.place * worlds
+    for world <- 0 until worlds if kept(ended + world) >= timeS do
+      forgetIn(world, number)
+      for place <- lanes.counted(number) do kept(place * worlds + world) = 0
 
   /** Time of the last score, since the start, s. */
   def scoredAtS: Float = shared(ScoreLanes.Time)

@@ -1,8 +1,6 @@
 package skein.planning
 
-/** Simulates its candidates one by one, for JVMs without the vector module. The candidates are those of
-  * [[PlanKernel]]; it is some fifty times slower.
-  */
+/** Simulates the candidates of [[PlanKernel]] one by one: its reference. */
 private[planning] final class ScalarBlock(steps: Int) extends CandidateBlock(steps):
   private val size = CandidateBlock.Size
 
@@ -37,12 +35,3 @@ private[planning] final class ScalarBlock(steps: Int) extends CandidateBlock(ste
       IArray.tabulate(steps)(step => turnRates(step * size + i)),
       IArray.tabulate(steps)(step => speeds(step * size + i))
     )
-
-  def weigh(base: Float, temperature: Float): Unit =
-    for i <- 0 until size do
-      val exponent = math.min(math.max((base - costs(i)) / temperature, -80f), 20f)
-      val weight   = StrictMath.exp(exponent).toFloat
-      weightSums(i) += weight
-      for at <- i until steps * size by size do
-        turnSums(at) += weight * turnRates(at)
-        speedSums(at) += weight * speeds(at)

@@ -1,0 +1,25 @@
+package skein.margin
+
+import skein.units.{Instant, Span}
+
+/** How long a run has lasted, and when something passed between program and simulator.
+  *
+  * @param at the last look
+  * @param passed time from the first message to the last one
+  * @param passedAt the look that saw the last message; at first the start
+  */
+private[margin] final case class MarginCourse(
+    startedAt: Instant,
+    at: Instant,
+    passed: Span,
+    passedAt: Instant
+):
+  def lasted: Span = at.since(startedAt)
+
+  def silentFor: Span = at.since(passedAt)
+
+  def looked(now: Instant, passed: Span): MarginCourse =
+    if passed > this.passed then copy(at = now, passed = passed, passedAt = now) else copy(at = now)
+
+private[margin] object MarginCourse:
+  def apply(startedAt: Instant): MarginCourse = MarginCourse(startedAt, startedAt, Span.Zero, startedAt)
