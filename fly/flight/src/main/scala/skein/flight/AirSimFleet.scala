@@ -175,8 +175,9 @@ private[flight] final class AirSimFleet(
   /** Prepares the vehicles over a separate connection without the link: this is not part of the flight. */
   private def prepare(plan: FlightPlan, address: Address): Future[Vector[VehicleClient]] =
     val client      = AirSimClient(RpcClient(transport, address, clock))
-    val preparation = Preparation(client, clock, () => calledOff(plan.id), byTruth = settings.sensors.isDefined)
-    val prepared    =
+    val preparation =
+      Preparation(client, clock, () => calledOff(plan.id), byTruth = settings.sensors.isDefined)
+    val prepared =
       if startsAirborne then preparation.place(settings.fleet)
       else preparation.climb(settings.fleet, address, settings.commands)
     prepared

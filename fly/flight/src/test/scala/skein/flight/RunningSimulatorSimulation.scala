@@ -225,7 +225,9 @@ class RunningSimulatorSimulation extends munit.FunSuite, Unhurried:
       last.own.state.value.positionNed.horizontalDistance(last.opponent.state.value.positionNed)
     assertEqualsDouble(apartM(raised), apartM(level), 0.1)
 
-  test("flights by readings with errors begin where the vehicles truly are, and errors are no other client's"):
+  test(
+    "flights by readings with errors begin where the vehicles truly are, and errors are no other client's"
+  ):
     val noise   = SensorNoise.parse("position=1,velocity=0.3,heading=0.1,dropout=20%,outage=1s/4s").toOption
     val flights = on(duel, sensors = noise)(_.command(settings.copy(sensors = noise)))
     for recording <- orFail(flights) do
