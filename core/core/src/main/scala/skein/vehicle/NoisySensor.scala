@@ -13,7 +13,7 @@ final class NoisySensor(noise: SensorNoise, seed: Long):
   private val drifts  = Vector.tabulate(3)(axis => Drift(noise, SplitMix64.seedOf(seed, axis)))
   private val outages = noise.outage.map(OutageTimes(_, SplitMix64.seedOf(seed, Outages)))
 
-  /** Whether there is no reading of this time. */
+  /** Whether the sensors have no reading of this time. */
   def isMissing(at: Span): Boolean =
     outages.exists(_.isOut(at)) || noise.dropout > 0 && uniform(Dropouts, at) < noise.dropout
 

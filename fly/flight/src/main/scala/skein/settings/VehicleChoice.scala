@@ -26,7 +26,6 @@ final case class VehicleChoice(name: String, description: String, response: Velo
   /** Whether an episode costs as much as physics in steps of milliseconds. */
   def fliesInSteps: Boolean = VehicleChoice.isStepped(response)
 
-  /** This vehicle with errors of its readings. */
   def sensedBy(noise: Option[SensorNoise]): VehicleChoice =
     noise.fold(this)(errors => copy(response = SensedResponse(response, errors)))
 
