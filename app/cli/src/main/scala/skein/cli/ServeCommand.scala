@@ -191,7 +191,6 @@ object ServeCommand
       file <- SettingsFile.read(text).left.map(error => s"$name: ${error.message}")
     yield file
 
-  /** @param notice printed after the start */
   private def serve(
       settings: SimulatorSettings,
       shows: Option[Shows],

@@ -82,7 +82,6 @@ final case class FlySettings(
   lazy val recordedImaging: Set[ImagingSensor] =
     (if images.contains(ImageSource.Seen) then seen.toSet else Set.empty) ++ filmed.map((sensor, _) => sensor)
 
-  /** The sensors that its policies use. */
   private def seen: Vector[ImagingSensor] =
     scenario.eyes.map(eye => ImagingSensor.camera(eye.vehicle, eye.camera, "Scene")) ++
       scenario.equipment.collect { case lidar: Equipment.Lidar =>
