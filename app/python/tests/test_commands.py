@@ -4,7 +4,7 @@ import pandas as pd
 import pytest
 
 import skein_uav as skein
-from skein_uav import commands, installation
+from skein_uav import arguments, installation, tables
 from skein_uav.formula import atan2
 from skein_uav.scenario import Series, Vehicle, setting
 
@@ -22,7 +22,7 @@ def test_a_flight_comes_as_frames_with_numbers(flights):
 
 
 def test_columns_have_names_of_their_own_and_hold_numbers(flights):
-    table = commands._frame(
+    table = tables.frame(
         {
             "columns": ["loop", "last 10 s m", "min … max", "vs paused", "paper m", "min … max", "vs paused", "age ms"],
             "rows": [
@@ -40,6 +40,14 @@ def test_columns_have_names_of_their_own_and_hold_numbers(flights):
     assert table["age ms p99"].iloc[0] == 119
     with pytest.raises(KeyError, match="expected one of .*, got .*nothing"):
         flights["nothing"]
+
+
+def test_a_spread_has_a_column_for_each_of_its_numbers():
+    cells = [["3.27 ± 0.01, 3.2 … 1.5E-4"]]
+    table = tables.frame({"columns": ["mean gap m"], "rows": cells, "note": ""})
+    assert table.iloc[0].to_dict() == {
+        **{"mean gap m": 3.27, "mean gap m sd": 0.01, "mean gap m min": 3.2, "mean gap m max": 1.5e-4},
+    }
 
 
 def test_a_notebook_shows_the_first_table_and_the_reports_figures(flights):
@@ -113,11 +121,80 @@ def test_a_missing_java_is_told_with_where_it_was_looked_for(monkeypatch, tmp_pa
 
 
 def test_options_become_flags():
-    assert commands._flags({"moves_in_flight": 6, "link": ["vpn", "none"], "as_paper": True, "out": None}) == [
+    assert arguments.flags({"moves_in_flight": 6, "link": ["vpn", "none"], "as_paper": True, "out": None}) == [
         *("--moves-in-flight", "6"),
         *("--link", "vpn", "--link", "none"),
         "--as-paper",
     ]
+    assert arguments.flags({"period_ms": 50, "deadline_s": 0.5, "period": "50ms"}) == [
+        *("--period", "50ms", "--deadline", "0.5s", "--period", "50ms"),
+    ]
+
+
+WRONG = [
+    (dict(loop=[]), ValueError, "loop: expected one or more, got none"),
+    (dict(link=[]), ValueError, "link: expected one or more, got none"),
+    (dict(duration_s="8s"), TypeError, "duration_s: expected a number of s, got '8s'"),
+    (dict(deadline_ms="8"), TypeError, "deadline_ms: expected a number of ms, got '8'"),
+    (dict(scenario=skein.Scenario), TypeError, "expected a scenario, such as Scenario\\(\\), got the class Scenario"),
+    (dict(scenario=3), TypeError, "expected a scenario, its file or its name, got int 3"),
+]
+
+
+@pytest.mark.parametrize("given, error, told", WRONG)
+def test_an_argument_of_the_wrong_kind_is_refused_before_java_starts(given, error, told):
+    with pytest.raises(error, match=told):
+        skein.fly(**given)
+
+
+def test_bounds_of_a_search_are_two_numbers():
+    with pytest.raises(TypeError, match=r"vary: expected the least and the greatest value of ring_m, such as .* got 5"):
+        skein.search("surround", vary={"ring_m": 5})
+    assert arguments.varied({"ring_m": (4, 12.5)}) == ["ring-m=4..12.5"]
+
+
+class Broken(skein.Scenario):
+    heading = 90.0
+
+    def vehicles(self):
+        return [Vehicle("Own", lambda seen: seen.along(0.0, 1.0), heading_rad=self.heading)]
+
+
+def test_a_message_about_a_file_is_of_the_place_in_python(tmp_path):
+    file = arguments.scenario_file(Broken(), tmp_path)
+    number = next(at for at, line in enumerate(Broken().text().splitlines(), 1) if line.startswith("vehicle"))
+    place = f"test_commands.py:{Broken.vehicles.__code__.co_firstlineno + 1}: the policy of Own"
+    assert file.explained(f"skein fly: --scenario: {file}: line {number}: no") == f"skein fly: {place}: no"
+    assert file.explained(f"skein fly: --scenario: {file}: by its defaults: agents: no") == "skein fly: vehicles(): no"
+    with pytest.raises(skein.SkeinError, match="fly: vehicles..: expected a heading .* in radians, .* got 90.0, of Own"):
+        skein.fly(Broken())
+    with pytest.raises(skein.SkeinError, match="out: cannot write to /proc/x: "):
+        skein.fly(Broken(), out="/proc/x")
+
+
+def test_a_flight_that_memory_cannot_hold_is_refused_at_its_start_and_leaves_no_folder(monkeypatch, tmp_path):
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    with pytest.raises(skein.SkeinError, match="--duration: expected at most .* in virtual time, .* got 60000 s"):
+        skein.fly(duration_s=60_000)
+    assert list(tmp_path.glob("skein-*")) == []
+
+
+def test_a_search_of_nothing_measured_is_refused():
+    unmeasured = Broken()
+    unmeasured.heading = 1.0
+    with pytest.raises(skein.SkeinError, match="expected measures to optimise, got none in broken"):
+        skein.search(unmeasured, vary={"pace": (1, 2)})
+
+
+def test_a_search_that_is_interrupted_says_how_it_goes_on(monkeypatch, tmp_path):
+    def interrupted(*_, **__):
+        for name in ("search.json", "policy.conf"):
+            (tmp_path / name).touch()
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("skein_uav.commands.run", interrupted)
+    with pytest.raises(KeyboardInterrupt, match=f"resume='{tmp_path}'. goes on .*; the best so far is in .*policy.conf"):
+        skein.search(out=tmp_path)
 
 
 def test_a_scenario_in_python_is_flown_searched_and_budgeted(tmp_path):
@@ -146,8 +223,10 @@ def test_a_scenario_in_python_is_flown_searched_and_budgeted(tmp_path):
         Chase(), vary={"pace_mps": (4, 9)}, objective="mean-gap", candidates=12, episodes=2, fresh=4, link="vpn"
     )
     assert "SIMD" in " ".join(found.result.astype(str).iloc[0])
+    assert found.result["policy"].tolist() == ["chase", "chase, unchanged"] and 4 <= found.parameters["pace-mps"] <= 9
     cells = skein.budget(Chase(), episodes=16, means=2, jitters=2)
-    assert set(cells.map["meanMs"]) == {0.0, 100.0}
+    assert set(cells.map["meanMs"]) == {0.0, 100.0} and "deviation %" in cells.map
+    assert "SIMD" in cells.engine and "within 5 % of the truth" in cells.sentence
     assert cells._repr_html_().count("<img") == 1 and list(cells.figures) == ["map"]
     (spread,) = skein.spread(Chase(), seeds=2).values()
     assert spread["flights"].tolist() == [2]

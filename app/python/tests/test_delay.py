@@ -113,10 +113,12 @@ def test_files_hold_round_trips(tmp_path):
         ({"link": "uniform:40ms..10ms"}, "link: expected the smaller time first"),
         ({"link": "lognormal:36ms,x"}, "link: expected a standard deviation"),
         ({"link": "correlated:0s,vpn"}, "link: expected a time constant of more than 0"),
-        ({"link": -0.1}, r"link: expected delays in s from 0 .*, got -0.1"),
+        ({"link": 0.1}, "link: expected a profile, .* got 0.1; delays of one direction in s are observation_delay"),
+        ({"link": "vpn", "observation_delay": 0.1, "action_delay": 0.1}, "link: expected none beside"),
+        ({"action_delay": -0.1}, r"action_delay: expected delays in s from 0 .*, got -0.1"),
         ({"action_delay": [0.1, math.nan]}, "action_delay: expected delays in s"),
         ({"observation_delay": Trace(np.ones(3), 0.0)}, "observation_delay: expected more than 0 s from one"),
-        ({"link": 60.0}, "expected delays of at most 1000 steps of 0.05 s, got up to 60 s"),
+        ({"observation_delay": 60.0, "action_delay": 60.0}, "expected delays of at most 1000 steps of 0.05 s, got up to 60 s"),
         ({"step_s": 0}, "step_s: expected more than 0 s, got 0"),
         ({"dropout": 1}, "dropout: expected a share from 0 to 0.9, got 1"),
         ({"moves_in_flight": 1}, "moves_in_flight: expected None or at least 2, got 1"),
@@ -129,6 +131,13 @@ def test_files_hold_round_trips(tmp_path):
 def test_wrong_settings_are_told(given, told):
     with pytest.raises(ValueError, match=told):
         Delay(4, **{"step_s": STEP_S, **given})
+
+
+def test_a_step_that_is_far_longer_than_all_delays_is_doubted_and_a_step_before_reset_refused():
+    with pytest.warns(UserWarning, match="step_s is 20 s, and delays are of at most 0.103 s: is it in s?"):
+        Delay(4, 20, link="vpn")
+    with pytest.raises(RuntimeError, match="expected reset, .* before the first step"):
+        DelayEnv(Counter(10), STEP_S, link="vpn").step(0)
 
 
 # The schedule.
@@ -241,7 +250,7 @@ def test_substeps_are_as_fine_as_steps_and_add_rewards():
 
 
 def test_shares_last_however_long_the_episode():
-    env = DelayEnv(Counter(2000), STEP_S, link=0.07, substeps=5, arrival="share")
+    env = DelayEnv(Counter(2000), STEP_S, observation_delay=0.07, action_delay=0.07, substeps=5, arrival="share")
     env.reset()
     for decision in range(1, 300):
         _, reward, *_ = env.step(np.array([float(decision)]))

@@ -339,6 +339,40 @@ def test_another_scenario_is_learned_in_by_one_of_its_pursuers():
         assert env.unwrapped.engine.startswith("scalar: SIMD simulates no ground")
 
 
+@pytest.mark.parametrize("backend", ["process", "socket"])
+def test_a_learner_climbs_and_sees_how_high_vehicles_are(make, backend):
+    env = make(2, climb_mps=2.0, link="none", backend=backend)
+    assert env.engine.startswith("SIMD, ")
+    assert env.single_observation_space.shape == (13,) and env.single_action_space.shape == (2,)
+    seen, infos = env.reset(seed=1)
+    assert env.observation_space.contains(seen)
+    np.testing.assert_allclose(seen[:, 9:], [[0, 0, 20, 0]] * 2, atol=1e-4)
+    for _ in range(60):
+        seen, *_, infos = env.step(np.array([[0, 1], [0, -0.5]], np.float32))
+    height, relative, altitude, own = seen[:, 9:].T
+    np.testing.assert_allclose(own, [2, -1], atol=0.1)
+    np.testing.assert_allclose(altitude + height, 20, atol=0.1)
+    np.testing.assert_allclose(relative, -own, atol=0.4)
+    assert altitude[0] > altitude[1] + 12
+    np.testing.assert_allclose(infos["distance_m"], np.hypot(np.hypot(seen[:, 0], seen[:, 1]), height), rtol=0.1)
+    with pytest.raises(ValueError, match=r"expected numbers of shape \(2, 2\)"):
+        env.step(np.zeros((2, 1), np.float32))
+    with pytest.raises(ValueError, match="plant: expected tilt or quadrotor, got drag: learners climb"):
+        make(1, climb_mps=2.0, plant="drag")
+
+
+def test_frameworks_find_nothing_wrong_with_a_learner_that_climbs():
+    check_env(gym.make("skein_uav/Evasion-v0", climb_mps=3.0).unwrapped, skip_render_check=True)
+    pytest.importorskip("pettingzoo")
+    from pettingzoo.test import parallel_api_test
+
+    from skein_uav.parallel import TeamParallelEnv
+
+    with contextlib.closing(TeamParallelEnv("surround", "all", climb_mps=1.0, episode_s=3)) as env:
+        parallel_api_test(env, num_cycles=100)
+        assert env.action_space(env.possible_agents[0]).shape == (2,)
+
+
 def test_both_sides_may_turn_by_a_rate():
     def seen(name, action, **settings):
         with contextlib.closing(gym.make(f"skein_uav/{name}-v0", link="none", **settings)) as env:

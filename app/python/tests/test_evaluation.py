@@ -24,6 +24,17 @@ def test_the_papers_pursuer_in_numpy_scores_as_in_the_search():
     assert "SIMD" in found.attrs["engine"]
 
 
+def test_a_policy_that_climbs_returns_two_numbers():
+    def climb(up):
+        return lambda seen: np.stack([paper(seen), np.full(seen.shape[:-1], up)], -1)
+
+    given = dict(link="none", draws=2, episode_s=15.0, climb_mps=2.0)
+    level, high = (skein.evaluate(climb(up), **given)["mean m"][0] for up in (0.0, 1.0))
+    assert high > level + 5
+    with pytest.raises(ValueError, match=r"policy: expected numbers of shape \(256, 2\)"):
+        skein.evaluate(paper, **given)
+
+
 def test_equal_seeds_score_equally_and_other_seeds_do_not():
     given = dict(link="vpn", draws=2, episode_s=15.0, start_within_m=(5, 30))
     one, again, other = (skein.evaluate(paper, seed=seed, **given)["mean m"][0] for seed in (1, 1, 50))

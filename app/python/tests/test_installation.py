@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+import skein_uav
+from skein_uav.errors import NotInstalled
 from skein_uav.installation import find
 
 
@@ -36,3 +38,12 @@ def test_the_program_skein_becomes_the_launcher(home: Path) -> None:
         check=True,
     )
     assert said.stdout == "started: fly --loop\n"
+
+
+@pytest.mark.parametrize("module", ["gymnasium", "jpype"])
+def test_a_package_of_an_extra_that_is_missing_is_told_with_the_extra(monkeypatch: pytest.MonkeyPatch, module: str) -> None:
+    if module == "jpype":
+        pytest.importorskip("gymnasium")
+    monkeypatch.setitem(sys.modules, module, None)
+    with pytest.raises(NotInstalled, match=rf"{module} is not installed; pip install 'skein-uav\[learn\]' installs it"):
+        skein_uav.evaluate(lambda seen: seen[..., 0], draws=2)

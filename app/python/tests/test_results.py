@@ -27,7 +27,7 @@ def test_tables_are_shown_with_their_titles_and_notes_as_text():
 def test_results_without_figures_are_shown_as_tables(tmp_path):
     frame = pd.DataFrame({"policy": ["lead-pursuit"]})
     assert "<img" not in Found(frame, None, None, tmp_path)._repr_html_()
-    assert "lead-pursuit" in Budget(frame, tmp_path)._repr_html_()
+    assert "lead-pursuit" in Budget(frame, "holds", "SIMD", tmp_path)._repr_html_()
     assert Flights(Tables(), [], tmp_path / "report.html")._repr_html_() == ""
 
 
@@ -36,7 +36,30 @@ def test_only_figures_of_the_command_are_shown_beside_files_of_others(tmp_path):
         (tmp_path / f"{name}.svg").write_text(f"<svg>{name}</svg>")
     frame = pd.DataFrame({"policy": ["lead-pursuit"]})
     assert list(Found(frame, None, None, tmp_path).figures) == ["landscape"]
-    assert Budget(frame, tmp_path).figures["map"]._repr_svg_() == "<svg>map</svg>"
+    assert Budget(frame, "holds", "SIMD", tmp_path).figures["map"]._repr_svg_() == "<svg>map</svg>"
+
+
+def test_a_budget_says_its_sentence_and_its_deviations_in_per_cent(tmp_path):
+    (tmp_path / "map.csv").write_text("periodMs,meanMs,deviation\n100.0,50.0,0.025\n")
+    one = {"policy": "patrol", "sentence": "holds up to 50 ms", "engine": "SIMD", "deviation": "share of the truth"}
+    found = Budget.of([one], tmp_path)
+    assert found.map["deviation %"].tolist() == [2.5] and found.engine == "SIMD"
+    assert repr(found).startswith("Budget(patrol: holds up to 50 ms; engine: SIMD; 1 cells")
+    assert "holds up to 50 ms" in found._repr_html_()
+    within = Budget.of([{**one, "deviation": "distance from the truth"}], tmp_path)
+    assert within.map["deviation"].tolist() == [0.025]
+
+
+def test_the_parameters_that_a_search_found_are_numbers(tmp_path):
+    frame = pd.DataFrame({"policy": ["patrol"], "parameters": ["ring-m = 2.5, gain-per-s = 1.0E-4"]})
+    assert Found(frame, None, None, tmp_path).parameters == {"ring-m": 2.5, "gain-per-s": 1e-4}
+
+
+def test_a_name_that_is_missing_is_answered_with_those_there_are(tmp_path):
+    (tmp_path / "map.svg").write_text("<svg></svg>")
+    for names in (Budget(pd.DataFrame(), "", "", tmp_path).figures, Tables({"map": pd.DataFrame()})):
+        with pytest.raises(KeyError, match="expected one of 'map', got 'maps'"):
+            names["maps"]
 
 
 def test_progress_is_a_bar_for_each_part_of_the_work_and_other_lines_stay(capsys):

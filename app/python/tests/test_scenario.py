@@ -1,8 +1,10 @@
 """Scenarios in Python: what is traced, and what cannot be. None of these tests needs Java."""
 
+import functools
 import math
 import random
 import sys
+import traceback
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -178,9 +180,19 @@ WRONG = [
     ("if seen.own.north_m > 3: pass", "branches on a number .* write where\\(condition, a, b\\)"),
     ("while seen.own.north_m > 3: pass", "branches .* write a loop over a range that is known"),
     ("x = 1 if seen.own.north_m > 3 else 2", "branches .* write where\\(condition, a, b\\)"),
+    ("x = min(seen.vehicles, key=lambda one: one.north_m)", "branches .* write smallest\\(items, key\\) of"),
+    ("x = max(seen.vehicles, key=lambda one: one.north_m)", "branches .* write smallest\\(items, key\\) .* negated"),
+    ("x = [one for one in seen.vehicles if one.north_m > 3]", "branches .* write a sum or minimum over all of them"),
+    ("x = np.median([seen.own.north_m, seen.own.east_m])", "branches .* write smallest\\(items, key\\)"),
+    ("x = np.clip(np.array([seen.own.north_m]), 0, 1)", "branches .* write clip\\(x, least, most\\) of"),
+    ("x = np.zeros(3); x[0] = seen.own.north_m", "needs the value .* np.zeros\\(3, dtype=object\\)"),
+    ("x = np.log(np.array([seen.own.north_m, 1.0]))", "NumPy has no log for this array; nor have formulas"),
+    ("x = float(f'{seen.own.north_m}')", "needs the value .* leave it a number"),
+    ("x = seen.vehicles[2]", "reads vehicle 2 of a team of vehicles 0 to 1"),
     ("x = min(seen.own.north_m, 3)", "branches .* write minimum\\(a, b\\)"),
     ("x = max(seen.own.north_m, 3)", "branches .* write maximum\\(a, b\\)"),
     ("x = seen.own.north_m > 3 and seen.own.east_m > 3", "branches .* write logical_and\\(a, b\\)"),
+    ("x = f.where(seen.own.north_m > 3 and seen.own.east_m > 3, 1.0, 0.0)", "branches .* write logical_and\\(a, b\\)"),
     ("x = seen.own.north_m > 3 or seen.own.east_m > 3", "branches .* write logical_or\\(a, b\\)"),
     ("x = not seen.own.north_m > 3", "branches .* write logical_not\\(condition\\)"),
     ("x = 1 < seen.own.north_m < 3", "branches .* write logical_and\\(a < b, b < c\\)"),
@@ -223,6 +235,124 @@ def test_what_cannot_be_written_down_is_told_with_its_line_and_what_to_write(lin
         scenario(names["policy"]).text()
     if expected is Untraceable:
         assert "patrol.py:" in str(caught.value)
+
+
+def test_a_standard_deviation_of_numpy_is_written_down():
+    def policy(seen):
+        return seen.along(0.0, np.std([one.north_m for one in seen.vehicles]))
+
+    seen, text = Observation(0, drawn(random.Random(1), 2)), scenario(policy).text()
+    does = next(line for line in text.splitlines() if line.startswith("does"))
+    assert interpreted(text)(inputs_of(seen, None))[int(does.split()[3])] == pytest.approx(policy(seen).numbers[1])
+
+
+def lone(policy=lambda seen: seen.along(0.0, 1.0), **given):
+    """A scenario whose methods and vehicle are replaced."""
+    methods = {name: value for name, value in given.items() if callable(value) and name != "memory"}
+    of = {name: value for name, value in given.items() if name not in methods}
+    vehicles = {"vehicles": lambda self: [Vehicle("Own", policy, **of)]}
+    return type("Lone", (Scenario,), {**vehicles, **methods})()
+
+
+def gap(index):
+    return Series("gap", "m", lambda now: now.distance_m(0, index))
+
+
+SLIPS = [
+    (lone(measures=lambda self: [gap(0)]), "a list of Measure from .*, got a Series; reduce it, .*mean gap"),
+    (lone(measures=lambda self: [1.0]), "expected a list of Measure .*, got float 1.0"),
+    (lone(measures=lambda self: gap(0).mean("gap")), "expected a list of Measure .*, got one Measure without a list"),
+    (lone(measures=lambda self: [gap(9).mean("gap")]), "reads vehicle 9 of a team of vehicles 0 to 0"),
+    (lone(measures=lambda self: [Series("way", "rad", lambda now: now.vehicles[0].heading_rad).mean("way")]),
+     "py:[0-9]+: the series way: expected positions, .* in a measure, got heading_rad"),
+    (lone(vehicles=lambda self: None), "expected a list of Vehicle .*, got None; is a return missing"),
+    (Scenario(), "expected a method vehicles.. of Scenario, got none"),
+    (lone(3.0), "expected a function as the policy of Own, got float 3.0"),
+    (lone(lambda seen, memory: (hover(), memory)), "a function of an observation, as .* no memory, got one of .seen, memory"),
+    (lone(memory=0.0), "a function of an observation and the memory, got one of .seen"),
+    (lone(lambda seen: seen.along(seen.opponent.north_m, 1.0)), "it seeks an opponent of the only vehicle"),
+    (lone(vehicles=lambda self: [Vehicle("A", lambda seen: hover())] * 2), "a name of its own .*, got 'A' twice"),
+    (lone(vehicles=lambda self: [Vehicle("A", lambda seen: hover(), speed_mps="5")]), "the vehicle's speed, got str '5'"),
+]
+
+
+@pytest.mark.parametrize("made, told", SLIPS, ids=[one[1] for one in SLIPS])
+def test_a_slip_is_answered_with_what_was_expected_and_the_users_frames_alone(made, told):
+    with pytest.raises((Untraceable, TypeError, ValueError, NotImplementedError), match=f"(?s){told}") as caught:
+        made.text()
+    files = [Path(one.filename).name for one in traceback.extract_tb(caught.value.__traceback__)]
+    assert files.count("places.py") == 1 and set(files) == {"places.py", "test_scenario.py"}
+    assert caught.value.__cause__ is None or caught.value.__suppress_context__
+
+
+def test_settings_of_a_class_that_is_no_dataclass_are_refused_where_it_is_made():
+    class Bare(Scenario):
+        pace_mps: float = setting(3.0, "pace, m/s")
+        turn_rad: float = 0.5
+        duration_s: float = 3.0
+
+    with pytest.raises(TypeError, match="Bare has settings \\(pace_mps, turn_rad\\): write @dataclass above the class"):
+        Bare(pace_mps=4.0)
+    assert dataclass(Bare)(pace_mps=4.0).pace_mps == 4.0
+
+
+def test_a_name_is_made_of_the_words_of_a_class_or_a_text():
+    assert [type(name, (Scenario,), {})().title for name in ("Maypole", "MyMay_pole2")] == ["maypole", "my-may-pole2"]
+    named = lone()
+    named.name = "My Maypole!"
+    assert named.title == "my-maypole" and "name my-maypole\n" in named.text()
+    named.name = "Дрон"
+    with pytest.raises(ValueError, match="expected a name of Latin letters, .*, got the name 'Дрон'"):
+        named.text()
+
+
+def test_each_vehicle_of_a_loop_keeps_its_own_number():
+    class Fan(Scenario):
+        def vehicles(self):
+            return [Vehicle(f"V{i}", lambda seen: seen.along(float(i), 1.0)) for i in range(3)]
+
+        def measures(self):
+            return [Series(f"d{i}", "m", lambda now: now.vehicles[i].north_m).mean(f"m{i}") for i in range(3)]
+
+    lines = Fan().text().splitlines()
+    does = [line.split()[2] for line in lines if line.startswith("does")]
+    assert [next(line for line in lines if line.startswith(f"{one} const")).split()[2] for one in does] == ["0.0", "1.0", "2.0"]
+    assert [line.split()[3] for line in lines if line.startswith("series")] == [
+        line.split()[0] for line in lines if line[0].isdigit() and line.split()[1] == "north"
+    ]
+
+
+def test_a_policy_may_be_a_part_of_a_function_or_an_object():
+    def fan(place, seen):
+        return seen.along(place, 1.0 if place else None)
+
+    class Fan:
+        def __call__(self, seen):
+            return fan(0, seen)
+
+    assert "does along" in scenario(functools.partial(fan, 1.0)).text()
+    for policy, code in ((functools.partial(fan, 0), fan.__code__), (Fan(), Fan.__call__.__code__)):
+        place = f"test_scenario.py:{code.co_firstlineno + 1}: the policy of Own"
+        with pytest.raises(Untraceable, match=f"^{place}: expected a number as argument 2 of along, got None"):
+            scenario(policy).text()
+
+
+def test_a_memory_may_be_an_array():
+    def policy(seen, memory):
+        return seen.along(0.0, memory @ memory), memory + np.array([seen.elapsed_s, 1.0])
+
+    text = scenario(policy, np.array([0.5, 2.0])).text()
+    evaluate = interpreted(text)(inputs_of(Observation(0, drawn(random.Random(1), 2)), None, [0.5, 2.0]))
+    remembers = [line.split()[1:] for line in text.splitlines() if line.startswith("remembers")]
+    assert [[evaluate[int(one)] for one in row] for row in remembers] == [[0.5, 0.6], [2.0, 3.0]]
+    with pytest.raises(Untraceable, match="of the first, array\\(2\\) of float, got array\\(1\\) of float"):
+        scenario(lambda seen, memory: (hover(), memory[:1]), np.zeros(2)).text()
+
+
+def test_more_operations_than_a_file_takes_are_refused_with_what_helps(monkeypatch):
+    monkeypatch.setattr("skein_uav.lines._MOST_NODES", 3)
+    with pytest.raises(Untraceable, match="at most 3 operations .* got [0-9]+; write fewer vehicles, or shorter policies"):
+        ring.Ring().text()
 
 
 def test_what_an_observation_lacks_is_told_with_what_it_has():

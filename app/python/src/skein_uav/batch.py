@@ -14,6 +14,9 @@ from .errors import SkeinError
 #: Number of components of an observation.
 FIELDS = 9
 
+#: Numbers of components of an observation and of an action, of a learner that climbs.
+CLIMBING = 13, 2
+
 Floats = NDArray[np.float32]
 Flags = NDArray[np.bool_]
 
@@ -28,11 +31,13 @@ class Block:
         Number of learners; they are in the scenario's order.
     count : int
         Number of environments.
+    climbs : bool
+        Whether learners climb.
 
     Attributes
     ----------
-    actions : (agents, count) float32
-    observations, finals : (agents, FIELDS, count) float32
+    actions : (agents, 1, count) float32, or (agents, 2, count)
+    observations, finals : (agents, 9, count) float32, or (agents, 13, count)
     rewards : (agents, count) float32
     distance : (agents, count) float32
         Distance to the nearest opponent, m.
@@ -43,8 +48,9 @@ class Block:
         Which learners decide now.
     """
 
-    def __init__(self, memory: NDArray[np.uint8], agents: int, count: int) -> None:
+    def __init__(self, memory: NDArray[np.uint8], agents: int, count: int, climbs: bool = False) -> None:
         self.memory = memory
+        fields, shares = _components(climbs)
         at = 0
 
         def part(kind: type, *shape: int) -> NDArray[Any]:
@@ -53,9 +59,9 @@ class Block:
             at += size
             return memory[at - size : at].view(kind).reshape(shape)
 
-        self.actions: Floats = part(np.float32, agents, count)
-        self.observations: Floats = part(np.float32, agents, FIELDS, count)
-        self.finals: Floats = part(np.float32, agents, FIELDS, count)
+        self.actions: Floats = part(np.float32, agents, shares, count)
+        self.observations: Floats = part(np.float32, agents, fields, count)
+        self.finals: Floats = part(np.float32, agents, fields, count)
         self.rewards: Floats = part(np.float32, agents, count)
         self.distance: Floats = part(np.float32, agents, count)
         self.time: Floats = part(np.float32, count)
@@ -64,9 +70,14 @@ class Block:
         self.due: Flags = part(np.bool_, agents, count)
 
     @staticmethod
-    def size(agents: int, count: int) -> int:
+    def size(agents: int, count: int, climbs: bool = False) -> int:
         """Size of a block in bytes."""
-        return (4 * (3 * agents + 2 * agents * FIELDS + 1) + 2 + agents) * count
+        fields, shares = _components(climbs)
+        return (4 * (agents * (shares + 2 * fields + 2) + 1) + 2 + agents) * count
+
+
+def _components(climbs: bool) -> tuple[int, int]:
+    return CLIMBING if climbs else (FIELDS, 1)
 
 
 class Backend(Protocol):
@@ -87,6 +98,11 @@ class Backend(Protocol):
 class InProcess:
     """Runs the batch by Java in this process, directly on the memory of its block.
 
+    Parameters
+    ----------
+    climbs : bool
+        Whether learners climb.
+
     Attributes
     ----------
     learners : list of str
@@ -94,7 +110,7 @@ class InProcess:
     block : Block
     """
 
-    def __init__(self, settings: Mapping[str, str], count: int, autoreset: int) -> None:
+    def __init__(self, settings: Mapping[str, str], count: int, autoreset: int, climbs: bool = False) -> None:
         jpype = jvm.start()
         self._jpype = jpype
         batches = jpype.JClass("skein.environment.EnvironmentBatch")
@@ -102,7 +118,7 @@ class InProcess:
         self.learners = str(prepared.learners()).splitlines()
         agents = len(self.learners)
         # Java writes to it for the lifetime of this object.
-        self.block = Block(np.zeros(Block.size(agents, count), dtype=np.uint8), agents, count)
+        self.block = Block(np.zeros(Block.size(agents, count, climbs), dtype=np.uint8), agents, count, climbs)
         buffer = jpype.nio.convertToDirectBuffer(memoryview(self.block.memory))
         self._batch = self._told(lambda: prepared.make(count, autoreset, buffer))
         self._step = self._batch.step

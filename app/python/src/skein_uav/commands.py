@@ -4,29 +4,32 @@ from __future__ import annotations
 
 import json
 import os
-import re
 import signal
 import subprocess
 import tempfile
-from collections.abc import Iterable, Mapping
-from contextlib import ExitStack, nullcontext
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager, nullcontext
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
+from . import arguments
 from .errors import SkeinError
 from .installation import find
+from .places import plainly
 from .policies import Policy, PolicyServer
 from .progress import Progress
 from .results import Budget, Flights, Found, Tables
 from .scenario import Scenario
 from .seeds import folded
+from .tables import frame
 
 #: Deadline of policies in Python in real time.
 _DEADLINE_MS = 20.0
 
 
+@plainly
 def fly(
     scenario: Scenario | str | os.PathLike[str] | None = None,
     *,
@@ -94,9 +97,10 @@ def fly(
     SkeinError
         If the command failed; with its error output.
     """
-    _told_here("fly", options, duration="duration_s", deadline="deadline_ms", set="settings")
-    folder = _folder(out)
+    arguments.renamed("fly", options, duration="duration_s", deadline="deadline_ms", set="settings")
+    arguments.some(loop=loop, link=link)
     with ExitStack() as served:
+        folder = served.enter_context(arguments.folder(out))
         given = [(role, one) for role, one in (("pursuer", pursuer), ("evader", evader)) if one is not None]
         policies: list[Any] = [served.enter_context(PolicyServer(one, role)).option for role, one in given]
         if given and clock == "real" and deadline_ms is None:
@@ -105,14 +109,14 @@ def fly(
             "fly",
             loop=loop,
             link=link,
-            duration=_duration(duration_s, scenario),
+            duration=arguments.duration(duration_s, scenario),
             seed=seed if seed < 0 else folded(seed),
             clock=clock,
-            scenario=_scenario(scenario, folder),
-            set=_settings(settings),
+            scenario=arguments.scenario_file(scenario, folder),
+            set=arguments.set_to(settings),
             policy=[policy, *policies],
             only_policies=policy is not None or bool(policies),
-            deadline=None if deadline_ms is None else _ms(deadline_ms / 1000),
+            deadline=None if deadline_ms is None else arguments.milliseconds("deadline_ms", deadline_ms, "ms"),
             out=folder,
             verbose=verbose,
             **options,
@@ -120,6 +124,7 @@ def fly(
     return Flights(tables, sorted(folder.glob("*.duckdb")), folder / "report.html")
 
 
+@plainly
 def spread(
     scenario: Scenario | str | os.PathLike[str] | None = None,
     *,
@@ -147,21 +152,23 @@ def spread(
     dict of str to DataFrame
         Mean and spread over the seeds, by title; units are in the columns' names.
     """
-    _told_here("spread", options, duration="duration_s", set="settings")
+    arguments.renamed("spread", options, duration="duration_s", set="settings")
+    arguments.some(loop=loop, link=link)
     with tempfile.TemporaryDirectory(prefix="skein-") as folder:
         return run(
             "spread",
             loop=loop,
             link=link,
             seeds=seeds,
-            duration=_duration(duration_s, scenario),
-            scenario=_scenario(scenario, Path(folder)),
-            set=_settings(settings),
+            duration=arguments.duration(duration_s, scenario),
+            scenario=arguments.scenario_file(scenario, Path(folder)),
+            set=arguments.set_to(settings),
             verbose=verbose,
             **options,
         )
 
 
+@plainly
 def search(
     scenario: Scenario | str | os.PathLike[str] | None = None,
     *,
@@ -203,22 +210,27 @@ def search(
     Returns
     -------
     Found
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If it was interrupted; states how it goes on.
     """
-    _told_here("search", options, set="settings")
-    folder = _folder(out)
-    tables = run(
-        "search",
-        family=family,
-        link=link,
-        candidates=candidates,
-        episodes=episodes,
-        scenario=_scenario(scenario, folder),
-        set=_settings(settings),
-        vary=[f"{_key(name)}={low}..{high}" for name, (low, high) in (vary or {}).items()],
-        out=folder,
-        verbose=verbose,
-        **options,
-    )
+    arguments.renamed("search", options, set="settings")
+    with arguments.folder(out) as folder, _goes_on(folder):
+        tables = run(
+            "search",
+            family=family,
+            link=link,
+            candidates=candidates,
+            episodes=episodes,
+            scenario=arguments.scenario_file(scenario, folder),
+            set=arguments.set_to(settings),
+            vary=arguments.varied(vary),
+            out=folder,
+            verbose=verbose,
+            **options,
+        )
     policy, landscape = folder / "policy.conf", folder / "landscape.csv"
     return Found(
         next(iter(tables.values())),
@@ -228,6 +240,20 @@ def search(
     )
 
 
+@contextmanager
+def _goes_on(folder: Path) -> Iterator[None]:
+    """Says how an interrupted search goes on."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        if not (folder / "search.json").exists():
+            raise
+        best = [file for file in (folder / "policy.conf", folder / "scenario.conf") if file.exists()]
+        so_far = f"; the best so far is in {best[0]}" if best else ""
+        raise KeyboardInterrupt(f"skein.run('search', resume='{folder}') goes on with this search{so_far}") from None
+
+
+@plainly
 def budget(
     scenario: Scenario | str | os.PathLike[str] | None = None,
     *,
@@ -251,20 +277,14 @@ def budget(
     -------
     Budget
     """
-    _told_here("budget", options, set="settings")
-    folder = _folder(out)
-    given = {"scenario": _scenario(scenario, folder), "set": _settings(settings)}
-    _ran("budget", **given, out=folder, verbose=verbose, **options)
-    return Budget(pd.read_csv(folder / "map.csv"), folder)
+    arguments.renamed("budget", options, set="settings")
+    with arguments.folder(out) as folder:
+        given = {"scenario": arguments.scenario_file(scenario, folder), "set": arguments.set_to(settings)}
+        maps = _ran("budget", **given, out=folder, verbose=verbose, **options)
+    return Budget.of(maps, folder)
 
 
-def _told_here(function: str, options: Mapping[str, Any], **names: str) -> None:
-    """Options of the command for which the function uses another name."""
-    for option, name in names.items():
-        if option in options:
-            raise TypeError(f"{function}() takes {name}, not {option}")
-
-
+@plainly
 def to_onnx(policy: str | os.PathLike[str], file: str | os.PathLike[str]) -> Path:
     """Writes the network of a policy file as an ONNX file.
 
@@ -289,6 +309,7 @@ def to_onnx(policy: str | os.PathLike[str], file: str | os.PathLike[str]) -> Pat
     return Path(file)
 
 
+@plainly
 def run(command: str, *words: str, verbose: bool = False, **options: Any) -> Tables:
     """Runs a command of ``./skein`` and reads the tables that it prints.
 
@@ -301,8 +322,8 @@ def run(command: str, *words: str, verbose: bool = False, **options: Any) -> Tab
     verbose : bool
         Shows its progress on ``stderr``.
     **options
-        ``moves_in_flight=6`` is ``--moves-in-flight 6``; a list is the option several times, True a bare flag, None
-        no option.
+        ``moves_in_flight=6`` is ``--moves-in-flight 6``, and ``period_ms=50`` is ``--period 50ms``; a list is the option
+        several times, True a bare flag, None no option.
 
     Returns
     -------
@@ -314,17 +335,17 @@ def run(command: str, *words: str, verbose: bool = False, **options: Any) -> Tab
         If the command failed; with its error output.
     """
     printed = _ran(command, *words, verbose=verbose, **options)["tables"]
-    return Tables({table["title"]: _frame(table) for table in printed})
+    return Tables({table["title"]: frame(table) for table in printed})
 
 
 def _ran(command: str, *words: str, verbose: bool = False, **options: Any) -> Any:
     """Runs a command and returns the output of ``--json``."""
     installed = find()
-    arguments = [command, "--json", *_flags(options), *words]
+    words = (command, "--json", *arguments.flags(options), *words)
     environment = {**os.environ, "JAVA_HOME": str(installed.java)}
     with tempfile.TemporaryFile() as tables:
         process = subprocess.Popen(
-            ["bash", str(installed.launcher), *arguments],
+            ["bash", str(installed.launcher), *words],
             stdin=subprocess.DEVNULL,
             stdout=tables,
             stderr=subprocess.PIPE,
@@ -340,7 +361,9 @@ def _ran(command: str, *words: str, verbose: bool = False, **options: Any) -> An
             process.wait()
             raise
         if process.returncode != 0:
-            raise SkeinError(_reason(complained) or f"skein {command} ended with status {process.returncode}")
+            reason = _reason(complained) or f"skein {command} ended with status {process.returncode}"
+            scenario = options.get("scenario")
+            raise SkeinError(scenario.explained(reason) if isinstance(scenario, arguments.WrittenFile) else reason)
         tables.seek(0)
         return json.load(tables)
 
@@ -363,93 +386,3 @@ def _reason(complained: str) -> str:
     lines = [line for line in complained.splitlines() if line.strip()]
     first = next((number for number, line in enumerate(lines) if line.startswith("skein")), max(len(lines) - 1, 0))
     return "\n".join(lines[first:])
-
-
-def _flags(options: Mapping[str, Any]) -> list[str]:
-    flags: list[str] = []
-    for name, value in options.items():
-        option = "--" + name.replace("_", "-")
-        several = value if isinstance(value, (list, tuple, set)) else [value]
-        for one in several:
-            if one is True:
-                flags.append(option)
-            elif one is not None and one is not False:
-                flags += [option, os.fspath(one) if isinstance(one, os.PathLike) else str(one)]
-    return flags
-
-
-_NUMBER = r"[-+]?\d+(?:\.\d+)?"
-
-#: Cells for people with several numbers, or one with its unit, and a suffix of the column's name for each number.
-_PARTS = [
-    (re.compile(f"({_NUMBER})/({_NUMBER})/({_NUMBER})"), (" mean", " median", " p99")),
-    (re.compile(f"({_NUMBER}) … ({_NUMBER})"), (" min", " max")),
-    (re.compile(f"({_NUMBER}) %"), (" %",)),
-]
-
-
-def _frame(table: Mapping[str, Any]) -> pd.DataFrame:
-    columns: dict[str, list[Any]] = {}
-    titles = list(table["columns"])
-    for number, title in enumerate(titles):
-        cells = [row[number] for row in table["rows"]]
-        for name, values in _numbers(_title(titles, number), cells):
-            columns[name] = values
-    frame = pd.DataFrame(columns)
-    frame.attrs["note"] = table["note"]
-    return frame
-
-
-def _title(titles: list[str], number: int) -> str:
-    """Qualifies a repeated title by the last title before it that was not repeated: ``paper m: closest m``."""
-    title = titles[number]
-    if title not in titles[:number]:
-        return title
-    before = next((one for at, one in reversed(list(enumerate(titles[:number]))) if one not in titles[:at]), "")
-    return f"{before}: {title}"
-
-
-def _numbers(title: str, cells: list[Any]) -> list[tuple[str, list[Any]]]:
-    """One column, or several if each cell holds several numbers."""
-    for pattern, names in _PARTS:
-        found = [None if cell is None else pattern.fullmatch(str(cell)) for cell in cells]
-        if any(found) and all(cell is None or one for cell, one in zip(cells, found, strict=True)):
-            stem = title.removesuffix(" min … max").removesuffix("min … max").removesuffix(" ")
-            return [
-                (f"{stem}{name}".strip(), [None if one is None else float(one[part + 1]) for one in found])
-                for part, name in enumerate(names)
-            ]
-    return [(title, cells)]
-
-
-def _folder(out: str | os.PathLike[str] | None) -> Path:
-    return Path(tempfile.mkdtemp(prefix="skein-")) if out is None else Path(out)
-
-
-def _scenario(scenario: Scenario | str | os.PathLike[str] | None, folder: Path) -> str | None:
-    """The value of ``--scenario``; a scenario written in Python is saved as a file in the folder."""
-    if not isinstance(scenario, Scenario):
-        return None if scenario is None else os.fspath(scenario)
-    folder.mkdir(parents=True, exist_ok=True)
-    return str(scenario.write(folder / f"{scenario.title}.scenario"))
-
-
-def _duration(duration_s: float | None, scenario: object) -> str | None:
-    if duration_s is None:
-        return None if isinstance(scenario, Scenario) or str(scenario).endswith(".scenario") else _ms(60)
-    return _ms(duration_s)
-
-
-def _key(name: str) -> str:
-    return name.replace("_", "-")
-
-
-def _ms(seconds: float) -> str:
-    return f"{seconds * 1000:.12g}ms"
-
-
-def _settings(settings: Mapping[str, Any] | None) -> list[str]:
-    def text(value: Any) -> Any:
-        return str(value).lower() if isinstance(value, bool) else value
-
-    return [f"{_key(name)}={text(value)}" for name, value in (settings or {}).items()]

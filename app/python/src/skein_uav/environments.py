@@ -24,6 +24,19 @@ Action, 1 number from -1 to 1 (values beyond are clipped): the rate of turn to t
 evader an immediate turn to the right, as a share of half a turn. With ``turn_rate_rad_per_s`` it is, for both, the share
 of that rate.
 
+With ``climb_mps`` the learner also climbs and sinks, by the plants ``tilt`` and ``quadrotor``. Its action has a second
+number from -1 to 1: the vertical speed, positive up, as a share of ``climb_mps``. Its observation has four more numbers, all
+positive up:
+
+== ================= ===== ====================================================
+9  height            m     the opponent's above the learner
+10 vertical speed    m/s   the opponent's minus the learner's
+11 altitude          m     the learner's, above z = 0
+12 vertical speed    m/s   the learner's
+== ================= ===== ====================================================
+
+Distances, also those of rewards and captures, are then in space.
+
 Reward of a pursuer: minus the distance to its nearest opponent divided by 10 m, once a period, and 10 for a capture. Of an
 evader: the opposite. ``objective`` may replace the distance.
 """
@@ -39,7 +52,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
-from .batch import Backend, Flags, Floats, InProcess
+from .batch import CLIMBING, Backend, Flags, Floats, InProcess
 from .errors import SkeinError
 from .seeds import folded
 from .pictures import picture
@@ -50,19 +63,18 @@ _LARGEST_MPS = 1e3
 _LARGEST_S = 1e4
 
 
-def observation_space() -> gym.spaces.Box:
+def observation_space(climbs: bool = False) -> gym.spaces.Box:
     """The observation space of one environment; the module describes its components."""
-    most = np.array(
-        [_LARGEST_M, _LARGEST_M, _LARGEST_MPS, _LARGEST_MPS, 1.001, 1.001, _LARGEST_S, _LARGEST_S, _LARGEST_S],
-        dtype=np.float32,
-    )
-    least = np.where(np.arange(9) < 6, -most, np.float32(0))
-    return gym.spaces.Box(least, most, dtype=np.float32)
+    most = [_LARGEST_M, _LARGEST_M, _LARGEST_MPS, _LARGEST_MPS, 1.001, 1.001, _LARGEST_S, _LARGEST_S, _LARGEST_S]
+    if climbs:
+        most += [_LARGEST_M, _LARGEST_MPS] * 2
+    least = [0.0 if 6 <= number < 9 else -value for number, value in enumerate(most)]
+    return gym.spaces.Box(np.array(least, np.float32), np.array(most, np.float32), dtype=np.float32)
 
 
-def action_space() -> gym.spaces.Box:
-    """The action space of one environment; the module describes its component."""
-    return gym.spaces.Box(-1.0, 1.0, (1,), dtype=np.float32)
+def action_space(climbs: bool = False) -> gym.spaces.Box:
+    """The action space of one environment; the module describes its components."""
+    return gym.spaces.Box(-1.0, 1.0, (CLIMBING[1] if climbs else 1,), dtype=np.float32)
 
 
 class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
@@ -113,6 +125,8 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
         it, unless ``minimise`` or ``maximise`` precedes it.
     turn_rate_rad_per_s : float, optional
         Greatest turn rate of the learner. By default 1 rad/s; an evader's actions are immediate turns.
+    climb_mps : float
+        Greatest vertical speed of the learner, m/s; 0: it keeps the altitude of its start.
     autoreset_mode : AutoresetMode or str
         When an ended episode is reset, as Gymnasium defines it.
     copy : bool
@@ -156,6 +170,7 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
         settings: Mapping[str, Any] | None = None,
         objective: str = "",
         turn_rate_rad_per_s: float | None = None,
+        climb_mps: float = 0.0,
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
         copy: bool = True,
         render_mode: str | None = None,
@@ -170,8 +185,8 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
         self.render_mode = render_mode
         self.autoreset_mode = AutoresetMode(autoreset_mode)
         self.metadata = {**self.metadata, "autoreset_mode": self.autoreset_mode}
-        self.single_observation_space = observation_space()
-        self.single_action_space = action_space()
+        self.single_observation_space = observation_space(climb_mps > 0)
+        self.single_action_space = action_space(climb_mps > 0)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
         texts = {
@@ -190,6 +205,7 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
             "moves_in_flight": moves_in_flight,
             "scenario": scenario,
             "objective": objective,
+            "climb_mps": climb_mps,
         }
         texts |= {f"set.{name}": value for name, value in (settings or {}).items()}
         if turn_rate_rad_per_s is not None:
@@ -224,7 +240,7 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
 
         Returns
         -------
-        observations : ndarray, shape (num_envs, 9)
+        observations : ndarray, shape (num_envs, 9), or (num_envs, 13) if the learner climbs
         infos : dict
             ``distance_m`` and ``time_s``, one value per environment.
         """
@@ -242,11 +258,11 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
 
         Parameters
         ----------
-        actions : ndarray, shape (num_envs, 1)
+        actions : ndarray, shape (num_envs, 1), or (num_envs, 2) if the learner climbs
 
         Returns
         -------
-        observations : ndarray of float32, shape (num_envs, 9)
+        observations : ndarray of float32, as those of `reset`
         rewards : ndarray of float32, shape (num_envs,)
         terminations, truncations : ndarray of bool, shape (num_envs,)
         infos : dict
@@ -262,11 +278,11 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
         """
         self._assert_open()
         chosen = np.asarray(actions)
-        if chosen.shape != (self.num_envs, 1) or chosen.dtype.kind not in "fiu":
+        if chosen.shape != self.action_space.shape or chosen.dtype.kind not in "fiu":
             raise ValueError(
-                f"actions: expected numbers of shape {(self.num_envs, 1)}, got {chosen.dtype} of shape {chosen.shape}"
+                f"actions: expected numbers of shape {self.action_space.shape}, got {chosen.dtype} of shape {chosen.shape}"
             )
-        self._actions[:] = chosen[:, 0]
+        self._actions[:] = chosen.T
         self._backend.step()
         block = self._block
         terminated, truncated = block.terminated.copy(), block.truncated.copy()
@@ -338,8 +354,9 @@ class PursuitEnv(gym.Env[Floats, Floats]):
     def step(self, action: Floats) -> tuple[Floats, float, bool, bool, dict[str, Any]]:
         """Makes one decision."""
         chosen = np.asarray(action)
-        if chosen.shape != (1,):
-            raise ValueError(f"action: expected a number of shape (1,), got {chosen.dtype} of shape {chosen.shape}")
+        shape = self.action_space.shape
+        if chosen.shape != shape:
+            raise ValueError(f"action: expected a number of shape {shape}, got {chosen.dtype} of shape {chosen.shape}")
         seen, reward, terminated, truncated, infos = self._one.step(chosen[None, :])
         return seen[0], float(reward[0]), bool(terminated[0]), bool(truncated[0]), self._info(infos)
 
@@ -362,11 +379,12 @@ def open_batch(settings: dict[str, Any], count: int, autoreset: AutoresetMode, b
     if altitude_m is not None and not altitude_m > 0:
         raise ValueError(f"altitude_m: expected more than 0 m, got {altitude_m!r}")
     texts = {name: str(value) for name, value in settings.items() if value is not None}
+    climbs = (settings.get("climb_mps") or 0) > 0
     number = [AutoresetMode.NEXT_STEP, AutoresetMode.SAME_STEP, AutoresetMode.DISABLED].index(autoreset)
     if backend == "process":
-        return InProcess(texts, count, number)
+        return InProcess(texts, count, number, climbs)
     if backend == "socket" or backend.startswith("unix:"):
-        return Served(texts, count, number, backend[5:] if backend.startswith("unix:") else None)
+        return Served(texts, count, number, backend[5:] if backend.startswith("unix:") else None, climbs)
     raise ValueError(f"backend: expected 'process', 'socket' or 'unix:PATH', got {backend!r}")
 
 

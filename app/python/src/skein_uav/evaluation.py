@@ -10,6 +10,9 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
+from .errors import needed
+from .places import plainly
+
 #: Environments that share a link, and so one draw of its delays.
 _GROUP = 128
 _REWARD_M = 10.0
@@ -20,6 +23,7 @@ _T95 = (
 )
 
 
+@plainly
 def evaluate(
     policy: Callable[..., Any],
     candidates: ArrayLike | None = None,
@@ -42,7 +46,8 @@ def evaluate(
     ----------
     policy : callable
         ``policy(seen)``, with an observation of `skein_uav.environments` in the last axis, returns a number from -1 to 1
-        for each. With candidates ``policy(seen, candidates)``: seen of shape (episodes, candidates, 9).
+        for each, or with ``climb_mps`` two in the last axis. With candidates ``policy(seen, candidates)``: seen of shape
+        (episodes, candidates, 9).
     candidates : array, shape (candidates, parameters), optional
         Parameters of the policy, one row for each candidate.
     draws : int
@@ -66,6 +71,7 @@ def evaluate(
     ValueError
         If the policy returns anything but finite numbers of that shape, or a setting is invalid.
     """
+    needed("gymnasium", "learn")
     from .environments import PursuitVectorEnv
 
     if "capture_radius_m" in settings or "autoreset_mode" in settings:
@@ -86,12 +92,15 @@ def evaluate(
     try:
         began = time.perf_counter()
         seen, infos = environments.reset(seed=seeds)
-        actions = np.zeros((len(seeds), 1), np.float32)
+        actions = np.zeros(environments.action_space.shape, np.float32)
+        climbs = environments.single_action_space.shape != (1,)
+        shape = (*asked.shape, actions.shape[1]) if climbs else asked.shape
         flying = np.ones(len(seeds), np.bool_)
         before, total, count = infos["time_s"], np.zeros(len(seeds)), np.zeros(len(seeds))
         steps = 0
         while flying.any():
-            actions[asked, 0] = _numbers(policy(np.moveaxis(seen.T[:, asked], 0, -1), *with_candidates), asked.shape)
+            chosen = _numbers(policy(np.moveaxis(seen.T[:, asked], 0, -1), *with_candidates), shape)
+            actions[asked] = chosen.reshape(*asked.shape, -1)
             seen, rewards, _, truncated, infos = environments.step(actions)
             now = infos["time_s"]
             counts = flying & (now > episode_s - last_s + 1e-3)

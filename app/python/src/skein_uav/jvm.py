@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from .errors import SkeinError
+from .errors import SkeinError, needed
 from .installation import find
 
 _forked = False
@@ -54,7 +54,7 @@ def start() -> Any:
     SkeinError
         In a process that was forked after Java had been started: Java does not run there.
     """
-    import jpype
+    jpype = needed("jpype", "learn")
 
     if _forked:
         raise SkeinError(

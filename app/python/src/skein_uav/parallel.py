@@ -45,8 +45,8 @@ class TeamParallelEnv(ParallelEnv[str, Floats, Floats]):
     backend : {'process', 'socket', 'unix:PATH'}
         As in `skein_uav.environments.PursuitVectorEnv`.
     **others
-        ``loop``, ``link``, ``period_ms``, ``plant``, ``sensors``, ``altitude_m``, ``episode_s``,
-        ``capture_radius_m``, ``start_within_m``, ``moves_in_flight`` and ``objective``, as in `PursuitVectorEnv`.
+        ``loop``, ``link``, ``period_ms``, ``plant``, ``sensors``, ``altitude_m``, ``episode_s``, ``capture_radius_m``,
+        ``start_within_m``, ``moves_in_flight``, ``climb_mps`` and ``objective``, as in `PursuitVectorEnv`.
     """
 
     metadata = {"name": "skein_uav_team_v0", "render_modes": ["rgb_array"], "render_fps": 10, "is_parallelizable": True}
@@ -75,8 +75,9 @@ class TeamParallelEnv(ParallelEnv[str, Floats, Floats]):
         self.agents: list[str] = []
         self.render_mode = render_mode
         # By name, too, as PettingZoo's wrappers and skrl read them.
-        self.observation_spaces = {agent: observation_space() for agent in self.possible_agents}
-        self.action_spaces = {agent: action_space() for agent in self.possible_agents}
+        climbs = others.get("climb_mps", 0) > 0
+        self.observation_spaces = {agent: observation_space(climbs) for agent in self.possible_agents}
+        self.action_spaces = {agent: action_space(climbs) for agent in self.possible_agents}
         self._random = np.random.default_rng()
         self._is_reset = self._is_closed = False
 
@@ -113,11 +114,12 @@ class TeamParallelEnv(ParallelEnv[str, Floats, Floats]):
             if agent not in actions:
                 raise ValueError(f"actions: expected one of {agent}, got {', '.join(actions) or 'none'}")
             chosen = np.asarray(actions[agent])
-            if chosen.shape != (1,) or chosen.dtype.kind not in "fiu":
+            shape = self.action_spaces[agent].shape
+            if chosen.shape != shape or chosen.dtype.kind not in "fiu":
                 raise ValueError(
-                    f"action of {agent}: expected a number of shape (1,), got {chosen.dtype} of shape {chosen.shape}"
+                    f"action of {agent}: expected a number of shape {shape}, got {chosen.dtype} of shape {chosen.shape}"
                 )
-            self._block.actions[number, 0] = chosen[0]
+            self._block.actions[number, :, 0] = chosen
         self._backend.step()
         block = self._block
         terminated, truncated = bool(block.terminated[0]), bool(block.truncated[0])

@@ -17,7 +17,7 @@ def picture(seen: Floats) -> NDArray[np.uint8]:
 
     Parameters
     ----------
-    seen : ndarray, shape (9,)
+    seen : ndarray, shape (9,) or (13,)
 
     Returns
     -------

@@ -6,13 +6,24 @@ import base64
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
+from typing import Any, TypeVar
 
 import pandas as pd
 
 from .recording import Recording, load
 
 
-class Tables(dict[str, pd.DataFrame]):
+T = TypeVar("T")
+
+
+class Named(dict[str, T]):
+    """A dict that lists its keys if one is missing."""
+
+    def __missing__(self, name: str) -> T:
+        raise KeyError(f"expected one of {', '.join(map(repr, self))}, got {name!r}")
+
+
+class Tables(Named[pd.DataFrame]):
     """A command's output: data frames by their titles, which a notebook shows one below the other."""
 
     def _repr_html_(self) -> str:
@@ -65,8 +76,6 @@ class Flights:
 
     def __getitem__(self, title: str) -> pd.DataFrame:
         """The table of this title."""
-        if title not in self.tables:
-            raise KeyError(f"expected one of {', '.join(map(repr, self.tables))}, got {title!r}")
         return self.tables[title]
 
     def __repr__(self) -> str:
@@ -90,7 +99,7 @@ class Found:
     result : DataFrame
         The policy found and the one it started from, each with its mean on fresh episodes and a 95 % interval.
     policy : Path or None
-        A policy file in `folder`, for ``fly(policy=…)``; None for a team's scenario, whose settings are in `result`.
+        A policy file in `folder`, for ``fly(policy=…)``; None for a team's scenario, whose settings are `parameters`.
     landscape : DataFrame or None
         The objective around the policy found; None if the search was stopped before.
     folder : Path
@@ -101,6 +110,12 @@ class Found:
     policy: Path | None
     landscape: pd.DataFrame | None
     folder: Path
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """The parameters found; of a scenario its settings, for ``fly(settings=…)``."""
+        words = [one.rsplit(" = ", 1) for one in self.result["parameters"].iloc[0].split(", ")]
+        return {name: float(value) for name, value in words}
 
     @property
     def figures(self) -> dict[str, Figure]:
@@ -122,13 +137,32 @@ class Budget:
     Attributes
     ----------
     map : DataFrame
-        A row for each cell: mean and jitter of the latency in ms, the objective there, and its deviation from `paused`.
+        A row for each cell: mean and jitter of the latency in ms, the objective there, and its deviation from `paused`,
+        in per cent of it, or with ``within=`` in the objective's unit.
+    sentence : str
+        How much latency is tolerated; of several periods, a line for each.
+    engine : str
+        What simulated it.
     folder : Path
         The map's files; temporary, unless ``budget(out=…)`` named it.
     """
 
     map: pd.DataFrame
+    sentence: str
+    engine: str
     folder: Path
+
+    @staticmethod
+    def of(maps: list[dict[str, Any]], folder: Path) -> Budget:
+        """A command's maps as JSON, and the folder in which it wrote their cells."""
+        cells = pd.read_csv(folder / "map.csv")
+        if maps[0]["deviation"].startswith("share"):
+            cells["deviation %"] = 100 * cells.pop("deviation")
+        sentences = "\n".join(f"{one['policy']}: {one['sentence']}" for one in maps)
+        return Budget(cells, sentences, ", ".join(dict.fromkeys(one["engine"] for one in maps)), folder)
+
+    def __repr__(self) -> str:
+        return f"Budget({self.sentence}; engine: {self.engine}; {len(self.map)} cells; folder: {self.folder})"
 
     @property
     def figures(self) -> dict[str, Figure]:
@@ -136,12 +170,13 @@ class Budget:
         return _figures(self.folder, "map")
 
     def _repr_html_(self) -> str:
-        return _pictures(self.figures) + _folded("Cells", _table("", self.map))
+        said = f"<p>{escape(self.sentence)}</p><p><small>engine: {escape(self.engine)}</small></p>"
+        return said + _pictures(self.figures) + _folded("Cells", _table("", self.map))
 
 
 def _figures(folder: Path, name: str = "*") -> dict[str, Figure]:
     files = sorted(folder.glob(f"{name}.svg"), key=lambda file: (file.stem.startswith("graph-"), file.stem))
-    return {file.stem: Figure(file) for file in files}
+    return Named({file.stem: Figure(file) for file in files})
 
 
 def _table(title: str, frame: pd.DataFrame) -> str:

@@ -30,6 +30,7 @@ skein-scenario 1
 
 from __future__ import annotations
 
+import dataclasses
 import os
 import re
 from collections.abc import Callable, Sequence
@@ -38,8 +39,10 @@ from pathlib import Path
 from typing import Any
 
 from .actions import Action, Yaw, along, attitude, hover, land, position, turn, velocity, velocity_at
+from .closures import bound
 from .formula import atan2, hypot, minimum, smallest, where
-from .untraceable import explained
+from .places import plainly
+from .untraceable import explained, refused
 
 __all__ = [
     "Action",
@@ -157,8 +160,10 @@ class Observation:
 
     @property
     def opponent(self) -> Known:
-        """The nearest rival in the plane; of several, the first."""
-        rivals = self.rivals or [place for place in range(len(self.vehicles)) if place != self.place] or [self.place]
+        """The nearest rival in the plane; of several, the first. The only vehicle has none."""
+        rivals = self.rivals or [place for place in range(len(self.vehicles)) if place != self.place]
+        if not rivals:
+            raise refused("it seeks an opponent of the only vehicle")
         return smallest([self.vehicles[one] for one in rivals], self.own.distance_m)
 
     def along(self, heading_rad: Any, speed_mps: Any, yaw: Yaw = Yaw()) -> Action:
@@ -181,7 +186,7 @@ class Vehicle:
     name : str
     policy : callable
         Maps an `Observation` to an action, or, with `memory`, an observation and the memory to an action and the next
-        memory.
+        memory. Its closure keeps the values that it has now, also in a loop.
     start_ned_m : tuple of float
     speed_mps : float
         The value of `Observation.cruise_mps`.
@@ -190,7 +195,7 @@ class Vehicle:
     role : str
         Any word; vehicles of one role are not rivals.
     memory : optional
-        The memory before the first decision: a float or a bool, or a dataclass, tuple or list of them.
+        The memory before the first decision: a float or a bool, or a dataclass, tuple, list or array of them.
     wants : callable, optional
         Maps an observation and a time ahead, s, to the position wanted then, north and east, m: the input of planners,
         with `most_mps` and `least_apart_m`.
@@ -206,6 +211,9 @@ class Vehicle:
     wants: Callable[..., Any] | None = None
     most_mps: Any = None
     least_apart_m: Any = 0.0
+
+    def __post_init__(self) -> None:
+        self.policy, self.wants = bound(self.policy), bound(self.wants)
 
 
 @dataclass(frozen=True)
@@ -238,6 +246,9 @@ class Series:
     unit: str
     of: Callable[[Moment], Any]
     bound: tuple[str, Any] | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "of", bound(self.of))
 
     def mean(self, name: str, *, last_s: Any = None, after_s: Any = None) -> Measure:
         return self._reduced(name, "mean", last_s, after_s)
@@ -319,7 +330,7 @@ class Scenario:
     Attributes
     ----------
     name : str
-        Name in settings and recordings; by default the class's name in words.
+        Name in settings and recordings, in any case and with spaces; by default the class's name.
     duration_s : float
         Duration of a flight, s.
     note : str
@@ -333,13 +344,22 @@ class Scenario:
     note = ""
     scene = "empty"
 
+    def __new__(cls, *_: Any, **__: Any) -> Any:
+        __tracebackhide__ = True
+        for one in cls.__mro__[: cls.__mro__.index(Scenario)]:
+            settings = _undeclared(one)
+            if settings:
+                names = ", ".join(settings)
+                raise TypeError(f"{one.__name__} has settings ({names}): write @dataclass above the class")
+        return super().__new__(cls)
+
     @property
     def title(self) -> str:
-        """The name in lower-case letters."""
-        return self.name or _words(type(self).__name__)
+        """The name in lower-case letters, with dashes between words."""
+        return "-".join(re.findall(r"\w+", (self.name or _words(type(self).__name__)).lower().replace("_", " ")))
 
     def vehicles(self) -> Sequence[Vehicle]:
-        raise NotImplementedError("a scenario has a method vehicles()")
+        raise NotImplementedError(f"expected a method vehicles() of {type(self).__name__}, got none")
 
     def limits(self) -> Sequence[Limit]:
         return []
@@ -355,6 +375,7 @@ class Scenario:
         """Whether the flight ends before its duration."""
         return False
 
+    @plainly
     def text(self) -> str:
         """The scenario as data, which ``./skein fly --scenario FILE.scenario`` and all other commands accept.
 
@@ -363,15 +384,20 @@ class Scenario:
         Untraceable
             If a function's computation cannot be traced; with its line, and what to write instead.
         """
+        return self._file()[0]
+
+    def _file(self) -> tuple[str, dict[int, str]]:
+        """The text, and the places in Python of its lines, by their numbers."""
         from .written import Writer
 
         try:
-            return Writer(self).text()
-        except TypeError as error:
+            return Writer(self).file()
+        except (TypeError, ValueError) as error:
             if (better := explained(error)) is None:
                 raise
-            raise better from error
+            raise better.with_traceback(error.__traceback__) from None
 
+    @plainly
     def write(self, file: str | os.PathLike[str]) -> Path:
         """Writes `text` to a file, whose name ends in ``.scenario``."""
         path = Path(file)
@@ -379,6 +405,16 @@ class Scenario:
             raise ValueError(f"expected a file that ends in .scenario, got {path}")
         path.write_text(self.text(), encoding="utf-8")
         return path
+
+
+def _undeclared(of: type) -> list[str]:
+    """Names of the settings of a class that is no dataclass."""
+    if "__dataclass_fields__" in vars(of):
+        return []
+    fields = [name for name, value in vars(of).items() if isinstance(value, dataclasses.Field)]
+    typed = vars(of).get("__annotations__", {}).items()
+    known = (*fields, *vars(Scenario))
+    return fields + [name for name, kind in typed if kind in (float, "float") and name not in known]
 
 
 def _words(name: str) -> str:

@@ -75,6 +75,8 @@ class Served:
     ----------
     path : str or None
         Socket of a running server; None starts a server for this batch alone.
+    climbs : bool
+        Whether learners climb.
 
     Attributes
     ----------
@@ -83,13 +85,15 @@ class Served:
     block : Block
     """
 
-    def __init__(self, settings: Mapping[str, str], count: int, autoreset: int, path: str | None) -> None:
+    def __init__(
+        self, settings: Mapping[str, str], count: int, autoreset: int, path: str | None, climbs: bool = False
+    ) -> None:
         self._server = None if path else Server()
         self._socket = socket.socket(socket.AF_UNIX)
         at = path or str(self._server.path)  # type: ignore[union-attr]
         try:
             self._socket.connect(at)
-            self._open(settings, count, autoreset)
+            self._open(settings, count, autoreset, climbs)
         except OSError as mistake:
             self.close()
             raise SkeinError(f"expected a server of environments at {at}: {mistake}") from None
@@ -97,15 +101,15 @@ class Served:
             self.close()
             raise
 
-    def _open(self, settings: Mapping[str, str], count: int, autoreset: int) -> None:
+    def _open(self, settings: Mapping[str, str], count: int, autoreset: int, climbs: bool) -> None:
         self._ask(_text(settings))
         self.learners = self._receive_text().splitlines()
         agents = len(self.learners)
-        size = Block.size(agents, count)
+        size = Block.size(agents, count, climbs)
         with tempfile.NamedTemporaryFile(prefix="skein-") as file:
             file.truncate(size)
             self._map = mmap.mmap(file.fileno(), size)
-            self.block = Block(np.frombuffer(self._map, dtype=np.uint8), agents, count)
+            self.block = Block(np.frombuffer(self._map, dtype=np.uint8), agents, count, climbs)
             self._ask(_text({"count": count, "autoreset": autoreset, "file": file.name, **settings}))
 
     def reset(self, seeds: NDArray[np.int64], mask: Flags | None) -> None:

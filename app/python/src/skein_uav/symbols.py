@@ -31,6 +31,15 @@ class Graph:
             self.lines.append(key)
         return self._known[key]
 
+    def inputs(self, node: int) -> set[str]:
+        """The operations without arguments on which a node depends."""
+        left, known = [node], {node}
+        while left:
+            more = [one for one in self.lines[left.pop()][1] if one not in known]
+            known.update(more)
+            left.extend(more)
+        return {op for op, args, _ in map(self.lines.__getitem__, known) if not args}
+
     def leaf(self, op: str, text: str = "", of: object = None) -> Number:
         """An input, of the decision or the settings that it belongs to."""
         return Number(self, self.add(op, (), text), of)
@@ -97,6 +106,7 @@ class Condition(Symbol):
     """A condition whose value is known only in flight."""
 
     __slots__ = ()
+    words = "a condition"
 
     def __and__(self, other: Any) -> Condition:
         return operation("and", self, other)
@@ -211,7 +221,10 @@ class Number(Symbol):
         op, _, text = self.graph.lines[self.node]
         return f"<{op} {text}>" if text else f"<{op}>"
 
-    # NumPy applies these to each number of an array.
+    # NumPy applies these to each number of an array; `std` and `var` take the conjugate.
+    def conjugate(self) -> Any:
+        return self
+
     def sin(self) -> Any:
         return operation("sin", self)
 

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import linecache
-import os
 import re
 import sys
 import traceback
+from typing import Any
 
 from .errors import SkeinError
-
-_HERE = os.path.dirname(os.path.abspath(__file__)) + os.sep
+from .places import is_users, place
 
 
 class Untraceable(SkeinError):
@@ -20,30 +19,40 @@ class Untraceable(SkeinError):
 def refused(reason: str) -> Untraceable:
     """The error for the line of the user's code that runs now."""
     frame = sys._getframe(1)
-    while frame.f_back is not None and not _is_users(frame.f_code.co_filename):
+    while frame.f_back is not None and not is_users(frame.f_code):
         frame = frame.f_back
     return _at(frame.f_code.co_filename, frame.f_lineno, reason)
 
 
-def explained(error: TypeError) -> Untraceable | None:
-    """Replaces NumPy's error about an array that mixes numbers known only in flight with others."""
-    lacking = re.search(r"has no callable (\w+) method", str(error))
-    frames = [one for one in traceback.extract_tb(error.__traceback__) if _is_users(one.filename)]
-    if lacking is None or not frames:
+def explained(error: Exception) -> Untraceable | None:
+    """Replaces errors of Python and NumPy that are about numbers known only in flight."""
+    walked = traceback.walk_tb(error.__traceback__)
+    frames = [(frame.f_code.co_filename, line) for frame, line in walked if is_users(frame.f_code)]
+    if not frames:
         return None
-    reason = f"NumPy has no {lacking[1]} for this array; write {lacking[1]} of skein_uav.formula, which takes arrays"
-    return _at(frames[-1].filename, frames[-1].lineno or 0, reason)
+    if re.search(r"could not convert string to float: '<.*>'", str(error)):
+        return _at(*frames[-1], f"{VALUE}; a text of it is no number: leave it a number")
+    lacking = re.search(r"has no callable (\w+) method", str(error))
+    if lacking is None:
+        return None
+    name = lacking[1]
+    instead = f"write {name} of skein_uav.formula, which takes arrays" if name in _KNOWN else "nor have formulas"
+    return _at(*frames[-1], f"NumPy has no {name} for this array; {instead}")
+
+
+def shown(value: Any) -> str:
+    """A value of the wrong kind, for a message."""
+    if value is None:
+        return "None; is a return missing?"
+    if isinstance(value, type):
+        return f"the class {value.__name__}"
+    kind, text = type(value).__name__, repr(value)
+    return getattr(type(value), "words", None) or (text if text.startswith(kind) else f"{kind} {text}")
 
 
 def _at(name: str, line: int, reason: str) -> Untraceable:
     code = linecache.getline(name, line).strip()
-    shown = f": {code}" if code else ""
-    return Untraceable(f"{os.path.basename(name)}:{line}{shown}\n  {_better(reason, code)}")
-
-
-def _is_users(name: str) -> bool:
-    inside = os.path.abspath(name).startswith(_HERE) or name.startswith("<")
-    return not inside and f"{os.sep}numpy{os.sep}" not in name and "dataclasses.py" not in name
+    return Untraceable(f"{place(name, line)}{f': {code}' if code else ''}\n  {_better(reason, code)}")
 
 
 def _better(reason: str, code: str) -> str:
@@ -84,20 +93,24 @@ _VALUES = [
     (r"\bint\(", "write floor(x) or ceil(x) of skein_uav.formula"),
     (r"\bfloat\(", "leave it a number, without float"),
     (r"\bf[\"']|\bformat\(|%", "a text cannot hold it; leave it away, or make it a series of the scenario"),
+    (r"(?:^|[;\s])[\w.]+\[[^\]]*\]\s*[-+*/]?=(?!=)", "make it an array of objects, such as np.zeros(3, dtype=object)"),
 ]
 _BRANCHES = [
     (r"\bnp\.maximum\(", "maximum(a, b) of skein_uav.formula, which takes arrays"),
     (r"\bnp\.minimum\(", "minimum(a, b) of skein_uav.formula, which takes arrays"),
     (r"\bnp\.clip\(", "clip(x, least, most) of skein_uav.formula, which takes arrays"),
-    (r"\bwhere\(", "maximum or minimum of skein_uav.formula, which take arrays, or where for each number of an array"),
+    (r"\bfor\b.*\bin\b.*\bif\b", "a sum or minimum over all of them, with where(condition, value, neutral) for each"),
+    (r"\bmax\(.*\bkey\s*=", "smallest(items, key) of skein_uav.formula with the key negated"),
+    (r"\bmin\(.*\bkey\s*=", "smallest(items, key) of skein_uav.formula"),
     (r"\bmin\(", "minimum(a, b)"),
     (r"\bmax\(", "maximum(a, b)"),
-    (r"\b(?:sorted|\.sort)\(", "smallest(items, key), or minimum and maximum of neighbours"),
+    (r"(?:\bsorted|\.sort|\.median)\(", "smallest(items, key), or minimum and maximum of neighbours"),
     (r"\b(?:argmin|argmax)\(", "smallest(items, key)"),
     (r"\band\b", "logical_and(a, b), or a & b with each comparison in parentheses"),
     (r"\bor\b", "logical_or(a, b), or a | b with each comparison in parentheses"),
     (r"\bnot\b", "logical_not(condition), or ~condition"),
+    (r"\bwhere\(", "maximum or minimum of skein_uav.formula, which take arrays, or where for each number of an array"),
     (r"\bwhile\b", "a loop over a range that is known, with where(condition, changed, unchanged) in it"),
     (r"[<>]=?[^<>=]+[<>]=?", "logical_and(a < b, b < c)"),
-    (r"\bin\b", "comparisons, joined by logical_or"),
+    (r"^(?!.*\bfor\b).*\bin\b", "comparisons, joined by logical_or"),
 ]

@@ -5,17 +5,19 @@ from __future__ import annotations
 import copy
 import dataclasses
 import math
-import os
 import re
-import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 from .actions import Action, Choice, cases
+from .answers import answered
 from .formula import where
-from .scenario import Known, Moment, Observation, Scenario, Series, Vehicle
+from .lines import Lines, quoted
+from .memory import filled, form, leaves
+from .places import place_of
+from .scenario import Known, Limit, Measure, Moment, Observation, Scenario, Series, Vehicle
 from .symbols import Condition, Graph, Number, constant
-from .untraceable import Untraceable
+from .untraceable import Untraceable, refused, shown
 
 
 def _key(name: str) -> str:
@@ -27,9 +29,11 @@ class Writer:
 
     def __init__(self, scenario: Scenario) -> None:
         self.graph = Graph()
-        self.lines: list[tuple[Any, ...]] = []
+        self.lines = Lines(self.graph)
         self.name = scenario.title
-        self.note, self.scene = scenario.note, scenario.scene
+        if not re.fullmatch(r"[a-z][a-z0-9]*(-[a-z0-9]+)*", self.name):
+            what = f"the name {scenario.name!r}" if scenario.name else f"the class {type(scenario).__name__}"
+            raise ValueError(f"expected a name of Latin letters, such as name = 'my-patrol', got {what}")
         self.settings: list[tuple[str, float, str]] = []
         self.scenario = copy.copy(scenario)
         for each in dataclasses.fields(scenario) if dataclasses.is_dataclass(scenario) else ():
@@ -42,43 +46,70 @@ class Writer:
                 self.settings.append((key, value, each.metadata.get("meaning", "")))
                 object.__setattr__(self.scenario, each.name, self.graph.leaf("setting", key))
 
-    def text(self) -> str:
-        vehicles = list(self.scenario.vehicles())
-        if not all(isinstance(one, Vehicle) for one in vehicles) or not vehicles:
-            raise ValueError("expected a list of Vehicle from vehicles(), one or more")
-        self.add("duration", self.fixed(self.scenario.duration_s, "duration_s"))
+    def file(self) -> tuple[str, dict[int, str]]:
+        """The text of the file, and the places in Python of its lines, by their numbers."""
+        vehicles = self.listed("vehicles", Vehicle)
+        at = place_of(self.scenario.vehicles)
+        if not vehicles:
+            raise ValueError(f"{at}: expected a list of Vehicle from vehicles(), one or more")
+        self.lines.at = f"the scenario {self.name}"
+        self.lines.add("duration", self.fixed(self.scenario.duration_s, "duration_s"))
         for place, vehicle in enumerate(vehicles):
+            if vehicle.name in [one.name for one in vehicles[:place]]:
+                raise ValueError(f"{at}: expected a name of its own for each vehicle, got {vehicle.name!r} twice")
             self.vehicle(place, vehicle, vehicles)
-        for limit in self.scenario.limits():
-            self.add("limit", limit.kind, *(self.fixed(one, "a limit") for one in limit.numbers))
+        self.lines.at = place_of(self.scenario.limits)
+        for limit in self.listed("limits", Limit):
+            self.lines.add("limit", limit.kind, *(self.fixed(one, "a limit") for one in limit.numbers))
         self.drawn(len(vehicles))
+        self.lines.at = place_of(self.scenario.is_over)
         over = self.scenario.is_over(self.moment(len(vehicles), object()))
         if over is not False:
             if not isinstance(over, Condition):
-                place = _place(self.scenario.is_over)
-                raise Untraceable(f"{place}: expected a condition from is_over, got {_came(over)}")
-            self.add("over", over)
-        return self.file()
+                raise Untraceable(f"{self.lines.at}: expected a condition from is_over, got {shown(over)}")
+            self.lines.add("over", over)
+        return self.lines.file(self.head())
 
-    def add(self, *words: Any) -> None:
-        self.lines.append(words)
+    def head(self) -> list[str]:
+        lines = ["skein-scenario 1", f"name {self.name}"]
+        if self.scenario.note:
+            lines.append(f"note {quoted(self.scenario.note)}")
+        if self.scenario.scene != "empty":
+            lines.append(f"scene {self.scenario.scene}")
+        return lines + [f"setting {key} {value!r} {quoted(meaning)}" for key, value, meaning in self.settings]
 
-    def number(self, value: Any, what: str, where_: str = "") -> Number:
+    def listed(self, name: str, kind: type) -> list[Any]:
+        """What a method of the scenario returns, as a list of one kind."""
+        method = getattr(self.scenario, name)
+        expected, answer = f"{place_of(method)}: expected a list of {kind.__name__} from {name}()", method()
+        if isinstance(answer, kind):
+            raise TypeError(f"{expected}, got one {kind.__name__} without a list")
+        if not isinstance(answer, Iterable):
+            raise TypeError(f"{expected}, got {shown(answer)}")
+        all_ = list(answer)
+        for one in all_:
+            if kind is Measure and isinstance(one, Series):
+                raise TypeError(f"{expected}, got a Series; reduce it, such as by .mean('mean {one.name}')")
+            if not isinstance(one, kind):
+                raise TypeError(f"{expected}, got {shown(one)}")
+        return all_
+
+    def number(self, value: Any, what: str) -> Number:
         if isinstance(value, Number):
             return value
         if isinstance(value, Condition) or isinstance(value, bool) or not isinstance(value, (int, float)):
             if hasattr(value, "item") and getattr(value, "shape", None) == ():
-                return self.number(value.item(), what, where_)
+                return self.number(value.item(), what)
             instead = "; write where(condition, a, b)" if isinstance(value, Condition) else ""
-            raise Untraceable(f"{_at(where_)}expected a number as {what}, got {_came(value)}{instead}")
+            raise Untraceable(f"{self.lines.at}: expected a number as {what}, got {shown(value)}{instead}")
         if not math.isfinite(value):
-            raise Untraceable(f"{_at(where_)}expected a finite number as {what}, got {value}")
+            raise Untraceable(f"{self.lines.at}: expected a finite number as {what}, got {value}")
         return constant(self.graph, float(value))
 
     def fixed(self, value: Any, what: str) -> Number:
         number = self.number(value, what)
         if number.of is not None:
-            raise Untraceable(f"expected a number of settings alone as {what}, got one of a decision")
+            raise Untraceable(f"{self.lines.at}: expected a number of settings alone as {what}, got one of a decision")
         return number
 
     def known(self, place: int, of: object) -> Known:
@@ -86,208 +117,122 @@ class Writer:
         return Known(*(self.graph.leaf(word, str(place), of) for word in words))
 
     def moment(self, count: int, of: object) -> Moment:
-        return Moment([self.known(place, of) for place in range(count)], self.graph.leaf("elapsed", "", of))
+        return Moment(_Team(self.known(place, of) for place in range(count)), self.graph.leaf("elapsed", "", of))
 
     def seen(self, place: int, vehicles: Sequence[Vehicle], of: object) -> Observation:
         others = [one for one in range(len(vehicles)) if one != place]
         rivals = [one for one in others if _role(vehicles[one].role) != _role(vehicles[place].role)]
         leaves = (self.graph.leaf(word, "", of) for word in ("elapsed", "acts-in", "cruise", "start-down"))
-        known = [self.known(one, of) for one in range(len(vehicles))]
-        return Observation(place, known, *leaves, rivals=rivals or others or [place])
+        known = _Team(self.known(one, of) for one in range(len(vehicles)))
+        return Observation(place, known, *leaves, rivals=rivals or others)
 
     def vehicle(self, place: int, vehicle: Vehicle, all_: Sequence[Vehicle]) -> None:
+        what = f"the policy of {vehicle.name}"
+        self.lines.at = f"{place_of(vehicle.policy)}: {what}"
         if len(vehicle.start_ned_m) != 3:
             raise ValueError(f"{vehicle.name}: expected north, east and down as its start, got {vehicle.start_ned_m}")
-        what = f"the {{}} of {vehicle.name}"
-        self.add(
+        self.lines.add(
             "vehicle",
-            _quoted(vehicle.name),
-            _quoted(vehicle.role),
-            self.fixed(vehicle.speed_mps, what.format("speed")),
-            *(self.fixed(one, what.format("start")) for one in vehicle.start_ned_m),
-            self.fixed(vehicle.heading_rad, what.format("heading")),
+            quoted(vehicle.name),
+            quoted(vehicle.role),
+            self.fixed(vehicle.speed_mps, "the vehicle's speed"),
+            *(self.fixed(one, "the vehicle's start") for one in vehicle.start_ned_m),
+            self.fixed(vehicle.heading_rad, "the vehicle's heading"),
         )
         of = object()
         seen = self.seen(place, all_, of)
-        where_ = f"{_place(vehicle.policy)}: the policy of {vehicle.name}"
-        starts: list[Any] = _leaves(vehicle.memory, where_) if vehicle.memory is not None else []
+        starts: list[Any] = [] if vehicle.memory is None else leaves(vehicle.memory, self.lines.at)
         if vehicle.memory is None:
-            (decided, place_), after = _answered(vehicle.policy, seen), []
-            where_ = f"{place_}: the policy of {vehicle.name}"
+            (decided, self.lines.at), after = answered(vehicle.policy, what, seen), []
         else:
-            held = iter(
-                [
-                    self.graph.leaf("memory", str(number), of) > 0.5
-                    if isinstance(start, bool)
-                    else self.graph.leaf("memory", str(number), of)
-                    for number, start in enumerate(starts)
-                ]
-            )
-            answer, place_ = _answered(vehicle.policy, seen, _filled(vehicle.memory, held))
-            where_ = f"{place_}: the policy of {vehicle.name}"
-            if not isinstance(answer, tuple) or len(answer) != 2:
-                raise Untraceable(f"{where_}: expected an action and the next memory, got {_came(answer)}")
-            decided, memory = answer
-            if _form(memory) != _form(vehicle.memory):
-                raise Untraceable(
-                    f"{where_}: expected a next memory of the form of the first, {_form(vehicle.memory)}, "
-                    f"got {_form(memory)}"
-                )
-            after = _leaves(memory, where_)
-        if not isinstance(decided, (Action, Choice)):
-            raise Untraceable(
-                f"{where_}: expected an action, such as seen.along(heading, speed), got {_came(decided)}"
-            )
-        listed = cases(decided, True)
-        for number, (condition, action) in enumerate(listed):
-            when = ["when", condition] if number < len(listed) - 1 and isinstance(condition, Condition) else []
-            numbers = [
-                self.number(one, f"argument {place} of {action.kind}", where_)
-                for place, one in enumerate(action.numbers, 1)
-            ]
-            yaw: list[Any] = [] if action.yaw.kind == "still" else ["yaw", action.yaw.kind]
-            if action.yaw.number is not None:
-                yaw.append(self.number(action.yaw.number, "a yaw", where_))
-            self.add("does", *when, action.kind, *numbers, *yaw)
-            if not when:
-                break
+            decided, after = self.remembering(vehicle, what, seen, starts, of)
+        self.does(decided)
         for start, next_ in zip(starts, after, strict=True):
             first = float(start) if isinstance(start, bool) else start
-            self.add("remembers", self.fixed(first, "a memory"), self.remembered(next_, where_))
+            self.lines.add("remembers", self.fixed(first, "a memory"), self.remembered(next_))
         if vehicle.wants is not None:
             wanted = vehicle.wants(seen, self.graph.leaf("ahead", "", of))
             if not isinstance(wanted, tuple) or len(wanted) != 2 or vehicle.most_mps is None:
                 raise ValueError(f"{vehicle.name}: expected north and east from wants, and most_mps")
-            self.add(
+            self.lines.add(
                 "wants",
                 *(self.number(one, "a place wanted") for one in wanted),
                 self.fixed(vehicle.most_mps, "most_mps"),
                 self.fixed(vehicle.least_apart_m, "least_apart_m"),
             )
 
-    def remembered(self, value: Any, where_: str) -> Number:
+    def remembering(self, of: Vehicle, what: str, seen: Observation, starts: list[Any], decision: object) -> Any:
+        """The decision of a policy with memory, and the numbers of the next memory."""
+        held = (self.graph.leaf("memory", str(number), decision) for number in range(len(starts)))
+        given = (one > 0.5 if isinstance(start, bool) else one for start, one in zip(starts, held, strict=True))
+        answer, self.lines.at = answered(of.policy, what, seen, filled(of.memory, given))
+        if not isinstance(answer, tuple) or len(answer) != 2:
+            raise Untraceable(f"{self.lines.at}: expected an action and the next memory, got {shown(answer)}")
+        decided, memory = answer
+        if form(memory) != form(of.memory):
+            raise Untraceable(
+                f"{self.lines.at}: expected a next memory of the form of the first, {form(of.memory)}, "
+                f"got {form(memory)}"
+            )
+        return decided, leaves(memory, self.lines.at)
+
+    def does(self, decided: Any) -> None:
+        if not isinstance(decided, (Action, Choice)):
+            raise Untraceable(
+                f"{self.lines.at}: expected an action, such as seen.along(heading, speed), got {shown(decided)}"
+            )
+        listed = cases(decided, True)
+        for number, (condition, action) in enumerate(listed):
+            when = ["when", condition] if number < len(listed) - 1 and isinstance(condition, Condition) else []
+            numbers = [
+                self.number(one, f"argument {place} of {action.kind}") for place, one in enumerate(action.numbers, 1)
+            ]
+            yaw: list[Any] = [] if action.yaw.kind == "still" else ["yaw", action.yaw.kind]
+            if action.yaw.number is not None:
+                yaw.append(self.number(action.yaw.number, "a yaw"))
+            self.lines.add("does", *when, action.kind, *numbers, *yaw)
+            if not when:
+                break
+
+    def remembered(self, value: Any) -> Number:
         if isinstance(value, Condition):
             return where(value, 1.0, 0.0)
-        return self.number(float(value) if isinstance(value, bool) else value, "a number of the memory", where_)
+        return self.number(float(value) if isinstance(value, bool) else value, "a number of the memory")
 
     def drawn(self, count: int) -> None:
-        measures = list(self.scenario.measures())
+        measures = self.listed("measures", Measure)
         series: list[Series] = []
-        for one in [*(each.of for each in measures), *self.scenario.series()]:
+        for one in [*(each.of for each in measures), *self.listed("series", Series)]:
             if one.name not in [each.name for each in series]:
                 series.append(one)
         for one in series:
-            value = one.of(self.moment(count, object()))
-            bound = [] if one.bound is None else ["bound", _quoted(one.bound[0]), self.fixed(one.bound[1], "a bound")]
-            node = self.number(value, f"the series {one.name}", _place(one.of))
-            self.add("series", _quoted(one.name), _quoted(one.unit), node, *bound)
+            self.lines.at = f"{place_of(one.of)}: the series {one.name}"
+            value = self.number(one.of(self.moment(count, object())), "its value")
+            unknown = self.graph.inputs(value.node) & {"heading", "age"}
+            if unknown:
+                name = "heading_rad" if "heading" in unknown else "age_s"
+                raise Untraceable(
+                    f"{self.lines.at}: expected positions, velocities and elapsed_s alone in a measure, got {name}"
+                )
+            bound = [] if one.bound is None else ["bound", quoted(one.bound[0]), self.fixed(one.bound[1], "a bound")]
+            self.lines.add("series", quoted(one.name), quoted(one.unit), value, *bound)
+            self.lines.at = place_of(self.scenario.measures)
             for each in measures:
                 if each.of.name == one.name:
                     window = [] if each.window is None else [each.window[0], self.fixed(each.window[1], "a window")]
-                    self.add("measure", _quoted(each.name), each.reduction, *window)
+                    self.lines.add("measure", quoted(each.name), each.reduction, *window)
 
-    def file(self) -> str:
-        """The lines, with the nodes that they need, arguments first."""
-        needed: set[int] = set()
-        left = [word.node for words in self.lines for word in words if isinstance(word, (Number, Condition))]
-        while left:
-            node = left.pop()
-            if node not in needed:
-                needed.add(node)
-                left.extend(self.graph.lines[node][1])
-        places = {node: place for place, node in enumerate(sorted(needed))}
-        lines = ["skein-scenario 1", f"name {self.name}"]
-        if self.note:
-            lines.append(f"note {_quoted(self.note)}")
-        if self.scene != "empty":
-            lines.append(f"scene {self.scene}")
-        lines += [f"setting {key} {value!r} {_quoted(meaning)}" for key, value, meaning in self.settings]
-        for node, place in places.items():
-            op, args, text = self.graph.lines[node]
-            lines.append(" ".join([str(place), op, *(str(places[one]) for one in args), *([text] if text else [])]))
-        for words in self.lines:
-            lines.append(
-                " ".join(str(places[one.node]) if isinstance(one, (Number, Condition)) else str(one) for one in words)
-            )
-        return "\n".join(lines) + "\n"
+
+class _Team(list[Known]):
+    """The vehicles, by their indices."""
+
+    def __getitem__(self, place: Any) -> Any:
+        try:
+            return super().__getitem__(place)
+        except IndexError:
+            raise refused(f"it reads vehicle {place} of a team of vehicles 0 to {len(self) - 1}") from None
 
 
 def _role(name: str) -> str:
     """Skein's own roles are recognised in any letter case."""
     return name.lower() if name.lower() in ("pursuer", "evader", "leader", "follower", "traveller") else name
-
-
-def _quoted(text: str) -> str:
-    plain = " ".join(str(text).split())
-    if re.fullmatch(r"[A-Za-z][\w-]*", plain):
-        return plain
-    return '"' + plain.replace("\\", "\\\\").replace('"', '\\"') + '"'
-
-
-def _place(function: Callable[..., Any], line: int | None = None) -> str:
-    code = _code(function)
-    return f"{os.path.basename(code.co_filename)}:{line or code.co_firstlineno}" if code else repr(function)
-
-
-def _code(function: Callable[..., Any]) -> Any:
-    return getattr(getattr(function, "__func__", function), "__code__", None)
-
-
-def _answered(function: Callable[..., Any], *arguments: Any) -> tuple[Any, str]:
-    """A function's answer, and the line that returned it."""
-    line: int | None = None
-
-    def note(frame: Any, event: str, _: Any) -> None:
-        nonlocal line
-        if event == "return" and frame.f_code is _code(function):
-            line = frame.f_lineno
-
-    before = sys.getprofile()
-    sys.setprofile(note)
-    try:
-        answer = function(*arguments)
-    finally:
-        sys.setprofile(before)
-    return answer, _place(function, line)
-
-
-def _at(where_: str) -> str:
-    return f"{where_}: " if where_ else ""
-
-
-def _came(value: Any) -> str:
-    if isinstance(value, Condition):
-        return "a condition"
-    return "None; is a return missing?" if value is None else f"{type(value).__name__} {value!r}"
-
-
-def _leaves(memory: Any, where_: str) -> list[Any]:
-    """The numbers and truth values of a memory, in order."""
-    if dataclasses.is_dataclass(memory) and not isinstance(memory, type):
-        return [leaf for each in dataclasses.fields(memory) for leaf in _leaves(getattr(memory, each.name), where_)]
-    if isinstance(memory, (tuple, list)):
-        return [leaf for each in memory for leaf in _leaves(each, where_)]
-    if isinstance(memory, (int, float, Number, Condition)):
-        return [memory]
-    raise Untraceable(f"{where_}: expected a memory of floats, in dataclasses, tuples or lists, got {_came(memory)}")
-
-
-def _filled(memory: Any, held: Any) -> Any:
-    """A memory of this form with other values."""
-    if dataclasses.is_dataclass(memory) and not isinstance(memory, type):
-        parts = {each.name: _filled(getattr(memory, each.name), held) for each in dataclasses.fields(memory)}
-        return dataclasses.replace(memory, **parts)
-    if isinstance(memory, (tuple, list)):
-        return type(memory)(_filled(each, held) for each in memory)
-    return next(held)
-
-
-def _form(memory: Any) -> str:
-    if dataclasses.is_dataclass(memory) and not isinstance(memory, type):
-        parts = ", ".join(_form(getattr(memory, each.name)) for each in dataclasses.fields(memory))
-        return f"{type(memory).__name__}({parts})"
-    if isinstance(memory, (tuple, list)):
-        return f"{type(memory).__name__}({', '.join(map(_form, memory))})"
-    if isinstance(memory, (bool, Condition)):
-        return "bool"
-    return "float" if isinstance(memory, (int, float, Number)) else _came(memory)

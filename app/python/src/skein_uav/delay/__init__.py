@@ -26,5 +26,8 @@ def __getattr__(name: str) -> Any:
     if name in _WRAPPERS:
         from importlib import import_module
 
+        from ..errors import needed
+
+        needed("pettingzoo" if name == "DelayParallelEnv" else "gymnasium", "delay")
         return getattr(import_module(f".{_WRAPPERS[name]}", __name__), name)
     raise AttributeError(f"module {__name__} has no {name}")

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable, Sequence
+from numbers import Real
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -62,10 +64,11 @@ class Delay:
         Number of environments.
     step_s : float
         Simulated time of a step of the environment, s.
-    link : str, float, array or Trace
-        Delays of both directions: a profile (`skein_uav.delay.profiles`), or one-way delays in s.
+    link : str, array or Trace, optional
+        Delays of both directions: a profile (`skein_uav.delay.profiles`), whose times are round trips, or one-way delays
+        in s; by default none. A single number is refused, since it could be either.
     observation_delay, action_delay : str, float, array or Trace, optional
-        Delays of one direction, instead of ``link``. A profile states round trips here, too: one direction takes half.
+        Delays of one direction, s, instead of ``link``. A profile states round trips here, too: one direction takes half.
     compute_s : float
         Time from an observation to the departure of the action chosen on it, s.
     dropout : float
@@ -114,7 +117,7 @@ class Delay:
         count: int,
         step_s: float,
         *,
-        link: Link = "none",
+        link: Link | None = None,
         observation_delay: Link | None = None,
         action_delay: Link | None = None,
         compute_s: float = 0.0,
@@ -143,9 +146,21 @@ class Delay:
                 raise ValueError(f"{what}: expected {expected}, got {came!r}")
         if moves_in_flight is not None and dropout:
             raise ValueError("dropout: expected 0 beside moves_in_flight, since a lost action is never answered")
-        both = delays(link, "link")
+        if isinstance(link, Real):
+            raise ValueError(
+                f"link: expected a profile, whose times are round trips, such as 'constant:200ms', got {link!r}; "
+                "delays of one direction in s are observation_delay and action_delay"
+            )
+        if link is not None and observation_delay is not None and action_delay is not None:
+            raise ValueError("link: expected none beside observation_delay and action_delay, which are both directions")
+        both = delays("none" if link is None else link, "link")
         back = both if observation_delay is None else delays(observation_delay, "observation_delay")
         to = both if action_delay is None else delays(action_delay, "action_delay")
+        longest_s = max(back.longest_s, to.longest_s) + compute_s
+        if 0 < longest_s < step_s / 20:
+            warnings.warn(
+                f"step_s is {step_s:g} s, and delays are of at most {longest_s:.3g} s: is it in s?", stacklevel=3
+            )
         self.step_s, self._every, self._pending, self._encode = step_s, every, pending, encode
         self._is_zero, self._is_shared, self._predict = first == "zeros", arrival == "share", predict
         self._idle_action = idle_action
@@ -230,6 +245,8 @@ class Delay:
         actions : Tree, optional
             The decided actions; None in the steps between two decisions.
         """
+        if not self._is_begun:
+            raise RuntimeError("expected reset, or begin of a Delay, before the first step")
         at = self._in_block()
         if actions is not None:
             if type(actions) is not np.ndarray or self._xp is not np:

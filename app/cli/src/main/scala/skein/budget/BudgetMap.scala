@@ -91,8 +91,9 @@ enum Legs(val text: String, val perRoundTrip: Double):
 object BudgetMap:
   val CsvHeader = "periodMs,meanMs,jitterMs,objective,sd,episodes,deviation"
 
-  /** All maps as JSON: the question, and for each map the paused loop's value and the cells. */
-  def json(maps: Vector[BudgetMap]): String = write(maps.map(Shown.of), indent = 1)
+  /** All maps as JSON: the question, and for each map its sentence, the paused loop's value and the cells. */
+  def json(maps: Vector[BudgetMap], atJitterMs: Double): String =
+    write(maps.map(Shown.of(_, atJitterMs)), indent = 1)
 
   private final case class Cell(
       meanMs: Double,
@@ -103,6 +104,7 @@ object BudgetMap:
   )
 
   private final case class Shown(
+      sentence: String,
       policy: String,
       loop: String,
       periodMs: Double,
@@ -123,7 +125,8 @@ object BudgetMap:
     given ReadWriter[Cell]  = macroRW
     given ReadWriter[Shown] = macroRW
 
-    def of(map: BudgetMap): Shown = Shown(
+    def of(map: BudgetMap, atJitterMs: Double): Shown = Shown(
+      map.sentence(atJitterMs),
       map.policy,
       map.loop,
       map.periodMs,

@@ -93,7 +93,7 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
             fly(options, _, tolerance, axes, legs)
           isWhole = maps.size == subjects.size && maps.forall(_.budget.jittersMs == axes.jittersMs)
           _       = tell(options, maps, atJitterMs)
-          files <- write(maps, isWhole, folder)
+          files <- write(maps, isWhole, atJitterMs, folder)
           _ = Shown(options.json.value).say(s"written: ${files.mkString(", ")}")
           _ <-
             Expect.that(isWhole)(
@@ -104,7 +104,7 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
 
   private def tell(options: BudgetOptions, maps: Vector[BudgetMap], atJitterMs: Double): Unit =
     val shown = Shown(options.json.value)
-    if options.json.value then Console.out.println(BudgetMap.json(maps))
+    if options.json.value then Console.out.println(BudgetMap.json(maps, atJitterMs))
     for map <- maps do
       shown.say(s"${map.policy}: ${map.sentence(atJitterMs)}")
       map.markLines.foreach(line => shown.say(s"  $line"))
@@ -242,6 +242,7 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
   private def write(
       maps: Vector[BudgetMap],
       isWhole: Boolean,
+      atJitterMs: Double,
       folder: Path
   ): Either[String, Vector[Path]] =
     val csv  = (BudgetMap.CsvHeader +: maps.flatMap(_.csvRows)).mkString("", "\n", "\n")
@@ -249,7 +250,7 @@ final class BudgetCommand(program: String)(using scenarios: Scenarios)
     OutFolder.write(
       folder,
       (if isWhole then OutFolder.picture(name, BudgetFigure(maps), "latency budget") else Vector.empty) :+
-        OutFolder.text(s"$name.csv", csv) :+ OutFolder.text(s"$name.json", BudgetMap.json(maps))
+        OutFolder.text(s"$name.csv", csv) :+ OutFolder.text(s"$name.json", BudgetMap.json(maps, atJitterMs))
     )
 
 private object BudgetCommand:

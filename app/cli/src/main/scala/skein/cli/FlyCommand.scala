@@ -107,6 +107,7 @@ final class FlyCommand(using Scenarios)
       _ <- options.beside.checked(clock)
       _ <-
         if clock == ClockKind.Virtual then SolverOptions.virtual(settings) else SolverOptions.real(settings)
+      _ <- VirtualFlights.tooLong(settings).filter(_ => clock == ClockKind.Virtual).map("--" + _).toLeft(())
       secured <- options.secured.checked(settings.solver)
       _       <- Expect.that(settings.solver.isEmpty || learning.isEmpty):
         "--learn: a policy learns in the flight's own process; not together with --solver"

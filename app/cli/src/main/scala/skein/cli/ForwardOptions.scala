@@ -100,8 +100,10 @@ object ForwardOptions:
     case Some(objective) => Right(objective)
     case None            =>
       stated(scenario, settings).flatMap: read =>
+        val (name, names) = (ScenarioText.called(scenario), known(read))
         Left(
-          s"--objective: expected a sum of the measures of ${ScenarioText.called(scenario)}: ${known(read).mkString(", ")}"
+          if names.isEmpty then s"--scenario: expected measures to optimise, got none in $name"
+          else s"--objective: expected a sum of the measures of $name: ${names.mkString(", ")}"
         )
 
   given ParserForClass[ForwardOptions] = ParserForClass[ForwardOptions]

@@ -10,7 +10,7 @@ import skein.policy.{NeuralShape, Role}
 import skein.report.{Section, Typed}
 import skein.scenario.{PaperDuel, Scenarios}
 import skein.search.{ClusterEvaluator, Conditions, Effort, Judge, NamedFiles}
-import skein.settings.{PolicyFile, ScenarioSettings}
+import skein.settings.{PolicyFile, ScenarioSettings, VehicleChoice}
 import skein.training.*
 import skein.units.Decimals.significant
 import skein.units.{Expect, Span}
@@ -50,6 +50,10 @@ final case class LearnOptions(
     start: Option[String],
     @arg(doc = "the largest turn rate, rad/s (default: 3, as for families of search)")
     turnRate: Option[Double],
+    @arg(doc =
+      "the largest vertical speed, m/s: the policy climbs and sinks, by --plant tilt or quadrotor (default: 0, it keeps its altitude)"
+    )
+    climb: Option[Double],
     @arg(doc = "learning rate of Adam (default: 0.001; ppo: 0.0003)")
     learningRate: Option[Double],
     @arg(doc = "discount of a reward per decision (default: 0.98; ppo and evaders: 0.99)")
@@ -271,7 +275,11 @@ object LearnCommand:
     * @return Left says what was expected, what was given, and in which option
     */
   def question(options: LearnOptions)(using scenarios: Scenarios): Either[String, LearnQuestion] =
-    import options.forward
+    val climbMps = options.climb.getOrElse(0.0)
+    val forward  =
+      if climbMps > 0 then
+        options.forward.copy(plant = options.forward.plant.orElse(Some(VehicleChoice.Tilt)))
+      else options.forward
     val algorithm = options.algorithm.getOrElse("sac")
     val onPolicy  = algorithm == "ppo"
     val scenario  = options.scenario.orElse(scenarios.firstWithoutGame).getOrElse(PaperDuel.Name)
@@ -315,7 +323,8 @@ object LearnCommand:
       options.fresh.getOrElse(1000),
       forward.seed.getOrElse(1),
       scenario,
-      set
+      set,
+      climbMps
     )
 
   /** Conditions of a scenario's team, at its altitude. */

@@ -70,6 +70,7 @@ final case class LearnInFlight(
           setup.algorithm,
           file.question.learner,
           setup.role,
+          setup.space,
           setup.bounds,
           updates,
           every,

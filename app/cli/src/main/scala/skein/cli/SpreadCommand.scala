@@ -2,7 +2,7 @@ package skein.cli
 
 import java.nio.file.Path
 import mainargs.{Flag, ParserForClass, arg}
-import skein.flight.NotFlown
+import skein.flight.{NotFlown, VirtualFlights}
 import skein.measure.FlightSummary
 import skein.report.{Report, ReportSections, Section}
 import skein.scenario.Scenarios
@@ -46,6 +46,7 @@ final class SpreadCommand(program: String)(using Scenarios)
     for
       settings <- options.flights.settings
       _        <- SolverOptions.virtual(settings)
+      _        <- VirtualFlights.tooLong(settings).map("--" + _).toLeft(())
       _        <- Expect.that(settings.only.isEmpty)("--only: expected with fly alone")
       _        <- Expect.that(settings.images.isEmpty):
         "--images: expected with fly alone; spread keeps no recordings"

@@ -44,5 +44,5 @@ object Section:
   /** A cell's value; the left columns are names, even if these look like numbers. */
   private def cell(text: String, column: String): Value =
     if text.isEmpty then Null
-    else if column.startsWith("<") || !text.matches("[-+]?[0-9]+(\\.[0-9]+)?") then Str(text)
+    else if column.startsWith("<") || !text.matches("[-+]?[0-9]+(\\.[0-9]+)?(E-?[0-9]+)?") then Str(text)
     else Num(text.toDouble)

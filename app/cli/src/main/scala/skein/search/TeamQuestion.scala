@@ -148,7 +148,7 @@ private final class SearchedScenario(question: TeamQuestion, kind: ScenarioKind[
   val baseline: Baseline =
     Baseline(
       "plain",
-      s"plain ${kind.name}",
+      s"${kind.name}, unchanged",
       space.axes.map(_.name).zip(space.defaults),
       told(space.defaults, " = ")(_.significant(4))
     )

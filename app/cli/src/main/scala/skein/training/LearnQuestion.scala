@@ -5,8 +5,8 @@ import skein.forward.{Delays, Engagement}
 import skein.lanes.{Engine, TeamCandidate}
 import skein.learn.{Algorithm, LearnerSettings, SideTask}
 import skein.optimise.{Objective, TeamEvaluator, ValueEvaluator}
-import skein.policy.{LearnedPolicy, PolicyFamily, Role}
-import skein.scenario.{OwnEnd, PaperDuel, ScenarioText, Scenarios}
+import skein.policy.{LearnedPolicy, LearnerSpace, PolicyFamily, Role}
+import skein.scenario.{PaperDuel, ScenarioText, Scenarios}
 import skein.search.{Baseline, Conditions, Judge}
 import skein.settings.{PolicyFile, ScenarioSettings}
 import skein.units.Decimals.significant
@@ -24,6 +24,7 @@ import upickle.default.ReadWriter
   * @param lessonS duration of a learning episode, s
   * @param startLeastM least initial distance of the evader, m
   * @param turnRateRadPerS greatest turn rate of the policy
+  * @param climbMps greatest vertical speed of the policy; 0: it keeps its altitude
   * @param episodes number of episodes of an evaluation during learning
   * @param fresh number of episodes of the final evaluation
   */
@@ -45,7 +46,8 @@ final case class LearnQuestion(
     fresh: Int,
     seed: Long,
     scenario: String = PaperDuel.Name,
-    set: Map[String, String] = Map.empty
+    set: Map[String, String] = Map.empty,
+    climbMps: Double = 0
 ) derives ReadWriter:
   import LearnQuestion.*
 
@@ -62,6 +64,7 @@ final case class LearnQuestion(
       _      <- whole("--environments", environments, 1, MostEnvironments)
       _      <- within("--lesson", lessonS, 1, 3600, " s")
       _      <- within("--turn-rate", turnRateRadPerS, 1e-3, 50, " rad/s")
+      _      <- within("--climb", climbMps, 0, EnvironmentSettings.MostClimbMps, " m/s")
       _      <- whole("--episodes", episodes, 2, MostEpisodes)
       _      <- whole("--fresh", fresh, 2, MostEpisodes)
       _      <- learner.mistake.map(asOption).toLeft(())
@@ -123,7 +126,8 @@ final case class LearnSetup(
     conditions: Conditions.Resolved,
     delays: Delays
 ):
-  val family: PolicyFamily = PolicyFamily.learned(LearnedPolicy.shape(question.learner.hidden))
+  val space: LearnerSpace  = LearnerSpace(question.climbMps > 0)
+  val family: PolicyFamily = PolicyFamily.learned(LearnedPolicy.shape(question.learner.hidden, space))
 
   private def isOfTeam = game.opponent.isEmpty
 
@@ -146,7 +150,7 @@ final case class LearnSetup(
   private def flown: Engagement = game.opponent match
     case Some(other) => conditions.game.flownBy(other.role, other.policy)
     case None        =>
-      Engagement.of(game.scenario.fleet, conditions.game.durationS).copy(isOver = OwnEnd.of(game.scenario))
+      Engagement.ofScenario(game.scenario, conditions.game.durationS)
 
   /** Evaluators of policies of [[family]], and of the baseline. */
   def judges(threads: Int): Judge => ValueEvaluator =
@@ -185,6 +189,7 @@ final case class LearnSetup(
       startWithinM = (question.startLeastM, question.startMostM),
       turnRateRadPerS = question.turnRateRadPerS,
       evaderRateRadPerS = question.turnRateRadPerS,
+      climbMps = question.climbMps,
       scenario = question.scenario,
       set = question.set,
       objective = if isOfTeam then game.text else ""
@@ -204,8 +209,9 @@ final case class LearnSetup(
   def policy(weights: Vector[Double]): PolicyFile =
     PolicyFile(role, family, weights ++ bounds)
 
-  /** The greatest turn rate, as a [[LearnedPolicy]]'s last parameters. */
-  def bounds: Vector[Double] = Vector(question.turnRateRadPerS, 0.0)
+  /** The greatest turn rate and vertical speed, as the last parameters of [[family]]. */
+  def bounds: Vector[Double] =
+    Vector(question.turnRateRadPerS, 0.0) ++ Option.when(space.climbs)(question.climbMps)
 
 object LearnSetup:
   /** Approximate number of evaluations in all. */

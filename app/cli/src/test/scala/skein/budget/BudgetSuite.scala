@@ -102,10 +102,11 @@ class BudgetSuite extends munit.FunSuite, Optimised:
     val map = shown(Vector(8, 8.2, 8.6), Legs.OneWay)
     assertEquals(map.csvRows.size, 6)
     assert(map.csvRows(1).startsWith("100.0,25.0,0.0,8.2,0.0,1,0.0249999"), map.csvRows(1))
-    val json = ujson.read(BudgetMap.json(Vector(map)))(0)
+    val json = ujson.read(BudgetMap.json(Vector(map), 20))(0)
     assertEquals(json("engine").str, "SIMD")
     assertEquals(json("cells")(1)("meanMs").num, 25.0)
     assertEquals(json("truth").num, 8.0)
+    assertEquals(json("sentence").str, map.sentence(20))
     val texts = BudgetFigure(Vector(map)).shapes.collect { case text: Mark.Text => text.content }
     assert(texts.exists(_.contains("jitter")) && texts.exists(_.contains("mean")), texts)
 

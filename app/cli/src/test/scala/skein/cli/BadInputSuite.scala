@@ -33,6 +33,15 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       assertRefused(command, Seq("--out", s"$file/in"), "--out: cannot write into the folder")
       assertRefused(command, Seq("--out", ""), "--out: expected a folder, got ''")
 
+  folder.test("flights in virtual time that memory cannot hold are refused"): path =>
+    val flight = Seq("--duration", "60000s", "--period", "100ms")
+    val told   =
+      "--duration: expected at most 50000 s in virtual time, which keeps the records of 2 vehicles " +
+        "in memory, got 60000 s"
+    assertRefused(SpreadCommand("skein.cli.Main"), flight, told)
+    assertRefused(FlyCommand(), flight ++ Seq("--clock", "virtual", "--out", s"$path/out"), told)
+    assert(Files.notExists(path.resolve("out")))
+
   folder.test("an exception of a scenario's own code is reported in a line, and leaves no folder"): path =>
     final case class Broken(where: String = "") extends Scenario:
       def agents: Vector[Agent] =
@@ -258,7 +267,7 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
     assertEquals(told("skein = 5").linesIterator.size, 1)
     assertEquals(told("skein.fly = [1]").linesIterator.size, 1)
     assertEquals(told("skein.fly.seed = ${nothing}").linesIterator.size, 1)
-    for long <- Seq("seed = ", "loops = [", "scenario = ", "scene = ", "fallback = ", "planning.method = ") do
+    for long <- Seq("seed = ", "loops = [", "scenario = ", "scene = ", "fallback = ") do
       val end  = if long.endsWith("[") then "]" else ""
       val said = told(s"skein.fly.$long${"x" * 10_000}$end")
       assert(clue(said).length < Complaint.MostOfALine && said.contains("letters more"), long)

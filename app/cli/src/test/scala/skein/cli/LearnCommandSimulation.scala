@@ -52,6 +52,23 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     val Seq(learned, own, flown) = rows.map(_(2).num).toSeq: @unchecked
     assert(own < learned - 10 && math.abs(flown - learned) < 5, rows.toString)
 
+  test("a pursuer that climbs is learned by tilt, flies, and learns on in flight"):
+    val folder             = temporaryFolder().resolve("learned")
+    val words              = Seq("--climb", "2", "--batch", "32", "--json", "--out", folder.toString)
+    val (status, out, err) = run(words ++ short)
+    assertEquals(status, 0, err)
+    assert(err.contains("engine: SIMD, ") && err.contains("in space"), err)
+    val rows = ujson.read(out)("tables")(0)("rows").arr
+    assertEquals(rows.map(_(0).str).toSeq, Seq("climbing:8", "paper-pursuer", "climbing:8"))
+    val policy = PolicyFile.read(folder.resolve("policy.conf").toString).fold(fail(_), identity)
+    assertEquals(policy.text.split(' ').takeRight(2).toSeq, Seq("turnRad=0.0", "climbMps=2.0"))
+    val flight = "fly --clock virtual --loop stream --link vpn --duration 6s --learn-version 10".split(' ').toSeq
+    val flown  = folder.resolve("flown")
+    val beside = Ran.of(Main.run(flight ++ Seq("--learn", folder.toString, "--out", flown.toString)))
+    assertEquals(beside.status, 0, beside.said)
+    val file = flown.resolve("stream-vpn-learning.duckdb")
+    assertEquals(Ran.of(Main.run(Seq("replay", file.toString))).status, 0)
+
   test("a learned policy continues to learn in flight, and a replay has an equal digest"):
     val folder           = temporaryFolder()
     val learned          = folder.resolve("learned").toString
@@ -187,6 +204,8 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
     refused("expected one of off-ring, gap, got 'ring'", team("surround", "ring")*)
     refused("learners: expected one of leader, follower", team("formation", "slot-rms")*)
     refused("no measure of a quantity", team("blind-pursuit", "distance")*)
+    refused("plant: expected tilt or quadrotor, got drag: learners climb", "--climb=2", "--plant=drag")
+    refused("--climb: expected 0.0 to 50 m/s, got -1 m/s", "--climb=-1")
     refused("--side: expected pursuer or evader", "--side", "both")
     refused("--network: expected", "--network", "0x3")
     refused("discount: expected 0 up to less than 1", "--discount", "NaN")

@@ -9,7 +9,7 @@ class SectionSuite extends munit.FunSuite:
 
   private val table = TextTable(
     Vector("<loop", "<at", "m", "share", "range"),
-    Vector(Vector("stream", "12", "8.50", "+2.0", "1 … 2"), Vector("paused", "", "", "-0.5", ""))
+    Vector(Vector("stream", "12", "8.50", "+2.0", "1 … 2"), Vector("paused", "", "7.5E-4", "-0.5", ""))
   )
 
   test("data: numbers are numbers, empty cells are null, names are text"):
@@ -24,7 +24,7 @@ class SectionSuite extends munit.FunSuite:
             "columns" -> ujson.Arr("loop", "at", "m", "share", "range"),
             "rows"    -> ujson.Arr(
               ujson.Arr("stream", "12", 8.5, 2.0, "1 … 2"),
-              ujson.Arr("paused", ujson.Null, ujson.Null, -0.5, ujson.Null)
+              ujson.Arr("paused", ujson.Null, 7.5e-4, -0.5, ujson.Null)
             )
           )
         )

@@ -1,6 +1,6 @@
 package skein.policy
 
-/** A network of one output, evaluated by an ordinary loop over arrays, which the SIMD compiler can trace.
+/** A network, evaluated by an ordinary loop over arrays, which the SIMD compiler can trace.
   *
   * @param parameters weights and biases in the order of [[NeuralShape]]
   */
@@ -18,11 +18,13 @@ private[policy] final class DenseNetwork(shape: NeuralShape, parameters: Vector[
   /** A new array with room for the inputs, and for the outputs of each layer. */
   def scratch: Array[Double] = Array.ofDim[Double](widest)
 
+  def output(inputs: Array[Double]): Double = outputs(inputs)(0)
+
   /** Evaluates the network.
     *
     * @param inputs the network's inputs, in [[scratch]], which is overwritten
     */
-  def output(inputs: Array[Double]): Double =
+  def outputs(inputs: Array[Double]): Array[Double] =
     var input  = inputs
     var output = scratch
     var at     = 0
@@ -49,7 +51,7 @@ private[policy] final class DenseNetwork(shape: NeuralShape, parameters: Vector[
       input = output
       output = spare
       layer += 1
-    input(0)
+    java.util.Arrays.copyOf(input, widths.last)
 
 private[policy] object DenseNetwork:
   private final val Relu = 0

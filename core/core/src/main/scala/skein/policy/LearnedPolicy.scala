@@ -1,23 +1,24 @@
 package skein.policy
 
-/** A trained policy. The inputs of its network are the observation, [[PlanarObservation.fromOwnHeading]]
-  * divided by [[LearnedPolicy.scales]]; its one output, between −1 and 1, is the turn.
+/** A trained policy. The inputs of its network are the observation of its space, scaled; its outputs,
+  * squashed to −1 to 1, are the action.
   *
   * A decision allocates two arrays as wide as the widest layer, and one for the observation.
   *
   * @param parameters weights and biases in the order of [[NeuralShape]]
-  * @param turnRateRadPerS maximum turn rate until the next decision
-  * @param turnRad maximum turn of one decision, whatever the time since the last
   */
 final case class LearnedPolicy(
     shape: NeuralShape,
     parameters: Vector[Double],
     turnRateRadPerS: Double,
-    turnRad: Double
-) extends HeadingPolicy.Memoryless:
+    turnRad: Double,
+    climbMps: Double = 0
+) extends SharesPolicy:
+  val space: LearnerSpace = LearnerSpace.of(shape)
   require(
-    shape.inputs == LearnedPolicy.Inputs,
-    s"a learned policy has ${LearnedPolicy.Inputs} inputs, got ${shape.inputs}"
+    shape.inputs == space.inputs && shape.outputs == space.outputs,
+    s"a learned policy has ${space.inputs} inputs and ${space.outputs} outputs, got ${shape.inputs} and " +
+      s"${shape.outputs}"
   )
   require(
     shape.activations.last.squashes,
@@ -25,30 +26,23 @@ final case class LearnedPolicy(
   )
 
   private val network = DenseNetwork(shape, parameters)
-  private val scales  = LearnedPolicy.scales.toArray
+  private val scales  = space.scales.toArray
 
-  def heading(seen: PlanarObservation): Double =
-    seen.ownHeadingRad + share(seen) * (turnRateRadPerS * seen.elapsedS + turnRad)
-
-  /** The network's output: the share of the largest turn, between −1 and 1, positive to the right. */
-  def share(seen: PlanarObservation): Double =
-    val what  = seen.fromOwnHeading
+  def shares(observed: Array[Double]): Array[Double] =
     val input = network.scratch
     var i     = 0
-    while i < LearnedPolicy.Inputs do
-      input(i) = what(i) / scales(i)
+    while i < scales.length do
+      input(i) = observed(i) / scales(i)
       i += 1
-    network.output(input)
+    network.outputs(input)
 
 object LearnedPolicy:
-  val Inputs = 9
+  /** The shape of the networks that learners train: rectifiers in hidden layers, tanh at the outputs. */
+  def shape(hidden: Vector[Int], space: LearnerSpace = LearnerSpace.Level): NeuralShape =
+    ofSpace(hidden, Vector.fill(hidden.size)(Activation.Relu) :+ Activation.Tanh, space)
 
-  /** Divisors of a learner's inputs, which scale all inputs to about −1 to 1. */
-  val scales: Vector[Double] = Vector(20, 20, 10, 10, 1, 1, 0.2, 0.2, 0.2)
-
-  /** The shape of the networks that learners train: rectifiers in hidden layers, tanh at the output. */
-  def shape(hidden: Vector[Int]): NeuralShape =
-    NeuralShape(hidden, Inputs, Vector.fill(hidden.size)(Activation.Relu) :+ Activation.Tanh)
+  private def ofSpace(hidden: Vector[Int], activations: Vector[Activation], space: LearnerSpace) =
+    NeuralShape(hidden, space.inputs, activations, space.outputs)
 
   /** The default limits of a role's turns: rad/s until the next decision, and rad per decision.
     *
@@ -67,7 +61,7 @@ object LearnedPolicy:
                             else s":${shape.activations.last.label}")
 
   /** Reads the text form of [[label]], such as `64x64`. */
-  def parse(text: String): Either[String, NeuralShape] =
+  def parse(text: String, space: LearnerSpace): Either[String, NeuralShape] =
     def layer(text: String) =
       val (width, activation) = text.span(_.isDigit)
       for
@@ -81,7 +75,7 @@ object LearnedPolicy:
       _.squashes && layers.sizeIs <= NeuralShape.MostLayers && layers.forall(_.isDefined)
     ) match
       case Some(kind) =>
-        Right(NeuralShape(layers.flatten.map(_._1), Inputs, layers.flatten.map(_._2) :+ kind))
+        Right(ofSpace(layers.flatten.map(_._1), layers.flatten.map(_._2) :+ kind, space))
       case None =>
         Left(
           s"expected up to ${NeuralShape.MostLayers} widths of hidden layers from 1 to " +

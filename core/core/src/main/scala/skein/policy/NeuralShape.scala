@@ -1,12 +1,17 @@
 package skein.policy
 
-/** The layers of a network with one output. Parameters are ordered layer by layer, neuron by neuron: a weight
-  * per input, then the bias.
+/** The layers of a network. Parameters are ordered layer by layer, neuron by neuron: a weight per input, then
+  * the bias.
   *
   * @param hidden number of neurons in each hidden layer
-  * @param activations the activation of each hidden layer, and of the output
+  * @param activations the activation of each hidden layer, and of the outputs
   */
-final case class NeuralShape(hidden: Vector[Int], inputs: Int, activations: Vector[Activation]):
+final case class NeuralShape(
+    hidden: Vector[Int],
+    inputs: Int,
+    activations: Vector[Activation],
+    outputs: Int = 1
+):
   require(
     hidden.forall(width =>
       width >= 1 && width <= NeuralShape.MostWidth
@@ -15,7 +20,7 @@ final case class NeuralShape(hidden: Vector[Int], inputs: Int, activations: Vect
       s"1 to ${NeuralShape.MostWidth} neurons, got $this"
   )
 
-  def widths: Vector[Int] = inputs +: hidden :+ 1
+  def widths: Vector[Int] = inputs +: hidden :+ outputs
 
   def widest: Int = widths.max
 

@@ -123,23 +123,29 @@ object PolicyFamily:
     parameters => NeuralPolicy(shape, parameters.init, parameters.last)
   )
 
-  /** Networks as `./skein learn` trains them, named like `learned:64x64` ([[LearnedPolicy.label]]); the
-    * default's weights are all zero.
+  /** Networks as `./skein learn` trains them, named like `learned:64x64`, or `climbing:64x64` if they climb
+    * ([[LearnedPolicy.label]]); the default's weights are all zero.
     */
-  def learned(shape: NeuralShape): PolicyFamily = PolicyFamily(
-    s"$LearnedPrefix${LearnedPolicy.label(shape)}",
-    s"a neural network of all that a learner sees, with hidden layers of $shape",
-    Set(Role.Pursuer, Role.Evader),
-    SearchSpace(
-      shape.names.map(Axis(_, -3.0, 3.0)) ++
-        Vector(turnRate, Axis("turnRad", 0.0, math.Pi, 0.0))
-    ),
-    parameters =>
-      LearnedPolicy(shape, parameters.dropRight(2), parameters(parameters.size - 2), parameters.last)
-  )
+  def learned(shape: NeuralShape): PolicyFamily =
+    val climbs = LearnerSpace.of(shape).climbs
+    PolicyFamily(
+      s"${if climbs then ClimbingPrefix else LearnedPrefix}${LearnedPolicy.label(shape)}",
+      s"a neural network of all that a learner sees, with hidden layers of $shape",
+      Set(Role.Pursuer, Role.Evader),
+      SearchSpace(shape.names.map(Axis(_, -3.0, 3.0)) ++ most(climbs)),
+      parameters =>
+        val (weights, most) = parameters.splitAt(shape.parameters)
+        LearnedPolicy(shape, weights, most(0), most(1), most.lift(2).getOrElse(0))
+    )
 
-  private val NeuralPrefix  = "neural:"
-  private val LearnedPrefix = "learned:"
+  /** The axes of what the largest shares of a learner's action stand for. */
+  private[skein] def most(climbs: Boolean): Vector[Axis] =
+    Vector(turnRate, Axis("turnRad", 0.0, math.Pi, 0.0)) ++
+      Option.when(climbs)(Axis("climbMps", 0.0, 10.0, LearnerSpace.ClimbMps))
+
+  private val NeuralPrefix   = "neural:"
+  private val LearnedPrefix  = "learned:"
+  private val ClimbingPrefix = "climbing:"
 
   /** Why a family's name conflicts with the others, if it does. */
   def mistake(own: Vector[PolicyFamily]): Option[String] =
@@ -173,11 +179,13 @@ object PolicyFamily:
     def known = all ++ own
     if text.startsWith(NeuralPrefix) then NeuralShape.parse(text.stripPrefix(NeuralPrefix)).map(neural)
     else if text.startsWith(LearnedPrefix) then
-      LearnedPolicy.parse(text.stripPrefix(LearnedPrefix)).map(learned)
+      LearnedPolicy.parse(text.stripPrefix(LearnedPrefix), LearnerSpace.Level).map(learned)
+    else if text.startsWith(ClimbingPrefix) then
+      LearnedPolicy.parse(text.stripPrefix(ClimbingPrefix), LearnerSpace.Climbing).map(learned)
     else
       known
         .find(_.name == text)
         .toRight(
           s"expected a family of policies (${known.map(_.name).mkString(", ")}, " +
-            s"${NeuralPrefix}8x8, or ${LearnedPrefix}64x64), got '$text'"
+            s"${NeuralPrefix}8x8, ${LearnedPrefix}64x64, or ${ClimbingPrefix}64x64), got '$text'"
         )

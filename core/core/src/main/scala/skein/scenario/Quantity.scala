@@ -4,7 +4,7 @@ import skein.units.{OwnFailure, Vector3}
 
 /** Positions of all vehicles at one moment, by index in the scenario. World frame NED, m.
   *
-  * @param elapsedS time since the flight's start, s
+  * @param elapsedS time since all vehicles were first read, s: in forward simulation, since its start
   */
 final case class Positions(
     northM: IArray[Double],

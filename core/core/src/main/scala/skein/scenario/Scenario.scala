@@ -101,14 +101,19 @@ object Scenario:
       .orElse(agents.flatMap(agent => unflyable(agent).map(_ + s", of ${agent.name}")).headOption)
       .map("agents: expected " + _)
 
+  /** Faster than any model of a vehicle flies or drives. */
+  private val MostSpeedMps = 100.0
+
   private def unflyable(agent: Agent): Option[String] =
-    val place = agent.startPositionNed
-    val speed = agent.speed.value
-    if !(speed >= 0 && speed.isFinite) then Some(s"a speed of 0 or more, got $speed m/s")
+    val place   = agent.startPositionNed
+    val speed   = agent.speed.value
+    val heading = agent.startHeading.value
+    if !(speed >= 0 && speed <= MostSpeedMps) then
+      Some(s"a speed from 0 to $MostSpeedMps m/s, got $speed m/s")
     else if !Seq(place.x, place.y, place.z).forall(_.isFinite) then
       Some(s"finite numbers as a start, got ${place.x}, ${place.y}, ${place.z}")
-    else if !agent.startHeading.value.isFinite then
-      Some(s"a finite number as the start's heading, got ${agent.startHeading.value}")
+    else if !(heading.abs <= 2 * math.Pi) then
+      Some(s"a heading at the start in radians, from -2π to 2π, got $heading")
     else None
 
   /** A message if a value is outside its bounds. */

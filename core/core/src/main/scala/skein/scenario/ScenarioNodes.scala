@@ -110,7 +110,7 @@ private[scenario] object ScenarioNodes:
   val MostVehicles = 100
   val MostMemory   = 1024
 
-  private val MostNodes      = 30_000
+  private val MostNodes      = 120_000
   private val MostOperations = 120_000
   private val MostDepth      = 5_000
 

@@ -27,7 +27,10 @@ private[scenario] final class ScenarioReader private (text: String):
   private var line = 0
 
   private def file(): ScenarioFile =
-    if text.length > MostLetters then wrong(s"expected at most $MostLetters letters, got ${text.length}")
+    if text.length > MostLetters then
+      wrong(
+        s"expected at most $MostLetters letters, got ${text.length}: too many vehicles, or too long policies"
+      )
     val lines = text.linesIterator
     line = 1
     val head = ScenarioWords(if lines.hasNext then lines.next() else "", nodes)
@@ -241,7 +244,7 @@ private[scenario] object ScenarioReader:
   ):
     val measures: mutable.ArrayBuffer[ScenarioFile.Reduced] = mutable.ArrayBuffer.empty
 
-  private val MostLetters  = 400 << 10
+  private val MostLetters  = 4 << 20
   private val MostUsed     = 200_000
   private val MostNote     = 1000
   private val MostSettings = 200

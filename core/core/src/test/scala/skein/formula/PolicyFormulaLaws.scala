@@ -44,22 +44,23 @@ class PolicyFormulaLaws extends munit.FunSuite:
             s"$policy of ${seen.mkString(" ")}"
           )
 
-  for name <- Seq("learned:8x8", "learned:6tanhx5clip:clip", "learned::clip") do
-    test(s"$name: the formula of the observation returns the method's result, to the bit (seed $seed)"):
-      val random  = SplitMix64(seed)
-      val family  = PolicyFamily.parse(name).fold(fail(_), identity)
-      val formula = Formula.of(drawn(family)(random), "decide").fold(throw _, identity)
+  for name <- Seq("learned:8x8", "learned:6tanhx5clip:clip", "learned::clip", "climbing:8x8", "climbing:") do
+    test(s"$name: the formula of the action returns the method's result, to the bit (seed $seed)"):
+      val random   = SplitMix64(seed)
+      val family   = PolicyFamily.parse(name).fold(fail(_), identity)
+      def policy() =
+        val numbers = Vector.fill(family.space.dimension)(random.nextDouble())
+        family.policy(family.space.at(numbers)).asInstanceOf[LearnedPolicy]
+      val inputs  = policy().space.inputs
+      val formula = Formula.of(policy(), "shares", Map("observed" -> inputs)).fold(throw _, identity)
       for _ <- 1 to 40 do
-        val policy  = drawn(family)(random).asInstanceOf[LearnedPolicy]
-        def place() = 50 * random.nextDouble() - 25
-        val seen    = Array.fill(9)(place())
-        val decided = policy.heading(
-          PlanarObservation(seen(0), seen(1), seen(2), seen(3), seen(4), seen(5), seen(6), seen(7), seen(8))
-        )
+        val drawn    = policy()
+        val observed = Array.fill(inputs)(50 * random.nextDouble() - 25)
         assertEquals(
-          java.lang.Double.doubleToRawLongBits(
-            formula.evaluate(seen, formula.parametersOf(policy))(0)
-          ),
-          java.lang.Double.doubleToRawLongBits(decided),
-          s"$policy of ${seen.mkString(" ")}"
+          formula.evaluate(
+            observed,
+            formula.parametersOf(drawn)
+          ).map(java.lang.Double.doubleToRawLongBits).toVector,
+          drawn.shares(observed).map(java.lang.Double.doubleToRawLongBits).toVector,
+          s"$drawn of ${observed.mkString(" ")}"
         )

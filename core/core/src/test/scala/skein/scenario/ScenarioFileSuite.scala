@@ -255,5 +255,9 @@ object ScenarioFileSuite:
         line("measure nearest least", "measure \"nearest least"),
         "line 37: expected a quotation mark at the end of a text, got the line's end"
       ),
-      ("too long a file", _ + "#".repeat(500_000), "expected at most 409600 letters, got 500722")
+      (
+        "too long a file",
+        _ + "#".repeat(5_000_000),
+        "expected at most 4194304 letters, got 5000722: too many vehicles, or too long policies"
+      )
     )

@@ -58,7 +58,8 @@ class ScenarioKindSuite extends munit.FunSuite:
     )
 
   test("vehicles that cannot fly are reported with their names"):
-    final case class Pair(second: String = "B", speedMps: Double = 1, north: String = "0") extends Scenario:
+    final case class Pair(second: String = "B", speedMps: Double = 1, north: String = "0", rad: Double = 0)
+        extends Scenario:
       def agents: Vector[Agent] =
         for (name, north) <- Vector("A" -> 0.0, second -> this.north.toDouble)
         yield Agent(
@@ -66,7 +67,7 @@ class ScenarioKindSuite extends munit.FunSuite:
           Role("Scout"),
           MetresPerSecond(speedMps),
           Vector3(north, 0, -10),
-          Radians(0),
+          Radians(rad),
           PaperDuel().agents.head.policy
         )
     val pair                                    = ScenarioKind(Pair())
@@ -75,11 +76,15 @@ class ScenarioKindSuite extends munit.FunSuite:
     assertEquals(mistake("second", "A"), Left("agents: expected a name of its own for each, got 'A' twice"))
     assertEquals(
       mistake("speedMps", "-1"),
-      Left("agents: expected a speed of 0 or more, got -1.0 m/s, of A")
+      Left("agents: expected a speed from 0 to 100.0 m/s, got -1.0 m/s, of A")
     )
     assertEquals(
       mistake("north", "NaN"),
       Left("agents: expected finite numbers as a start, got NaN, 0.0, -10.0, of B")
+    )
+    assertEquals(
+      mistake("rad", "90"),
+      Left("agents: expected a heading at the start in radians, from -2π to 2π, got 90.0, of A")
     )
 
   test("an exception in a scenario's own code is reported with the scenario's name and the line"):

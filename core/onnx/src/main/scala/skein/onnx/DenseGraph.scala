@@ -1,10 +1,10 @@
 package skein.onnx
 
 import skein.onnx.OnnxGraph.*
-import skein.policy.{Activation, LearnedPolicy, NeuralShape}
+import skein.policy.{Activation, LearnedPolicy, LearnerSpace, NeuralShape}
 
 /** Converts between dense networks and ONNX graphs. A graph's input is the observation in SI units; its
-  * output is the share of the largest turn, between −1 and 1.
+  * output is the action, between −1 and 1 ([[LearnerSpace]]).
   */
 private[onnx] object DenseGraph:
   /** A network with its parameters, in the order of [[NeuralShape]]. */
@@ -34,14 +34,14 @@ private[onnx] object DenseGraph:
     "Clip"
   )
 
-  /** Reads a graph as a network of [[LearnedPolicy]]. Multiplications, additions and divisions between two
+  /** Reads a graph as the network of a trained policy. Multiplications, additions and divisions between two
     * layers are folded into their weights, in doubles.
     *
     * @return Left says why the graph is not such a network
     */
-  def network(graph: OnnxGraph): Either[String, Network] =
+  def network(graph: OnnxGraph, space: LearnerSpace): Either[String, Network] =
     try
-      val start: Value = Flow(Vector.empty, Affine.scaled(LearnedPolicy.scales))
+      val start: Value = Flow(Vector.empty, Affine.scaled(space.scales))
       val constants    = graph.constants.map((name, tensor) => name -> Fixed(tensor))
       val values       = graph.nodes.foldLeft(constants + (graph.inputs.head.name -> start)): (known, node) =>
         val inputs = node.inputs.map(name =>
@@ -51,7 +51,7 @@ private[onnx] object DenseGraph:
         )
         known ++ node.outputs.headOption.map(_ -> value(node, inputs))
       values.get(graph.outputs.head.name) match
-        case Some(flow: Flow) => Right(flow.network)
+        case Some(flow: Flow) => Right(flow.network(space))
         case _ => Left(s"its output '${graph.outputs.head.name}' does not depend upon its input")
     catch case reason: NotDense => Left(reason.getMessage)
 
@@ -68,8 +68,9 @@ private[onnx] object DenseGraph:
       Flow(layers :+ (sums, kind), Affine.scaled(Vector.fill(sums.rows)(1.0)))
 
     /** The complete network. An output without a limiting activation is clipped to −1 and 1. */
-    def network: Network =
-      if sums.rows != 1 then throw NotDense(s"expected one output, got ${sums.rows}")
+    def network(space: LearnerSpace): Network =
+      if sums.rows != space.outputs then
+        throw NotDense(s"expected ${space.outputs} outputs, got ${sums.rows}")
       val isSquashed = layers.lastOption.exists(_._2.squashes) && sums.isIdentity
       val all        = if isSquashed then layers else layers :+ (sums, Activation.Clip)
       val hidden     = all.init.map(_._1.rows)
@@ -79,7 +80,7 @@ private[onnx] object DenseGraph:
           s"expected at most ${NeuralShape.MostLayers} hidden layers of at most " +
             s"${NeuralShape.MostWidth} neurons, got ${hidden.mkString("x")}"
         )
-      (NeuralShape(hidden, LearnedPolicy.Inputs, all.map(_._2)), all.flatMap(_._1.parameters))
+      (NeuralShape(hidden, space.inputs, all.map(_._2), space.outputs), all.flatMap(_._1.parameters))
 
   /** Sums of inputs, each with a bias.
     *
@@ -240,7 +241,7 @@ private[onnx] object DenseGraph:
     val starts =
       widths.zip(widths.drop(1)).map((inputs, neurons) => neurons * (inputs + 1)).scanLeft(0)(_ + _)
     val layers  = shape.activations.indices.toVector
-    val scales  = "scales" -> Tensor(Vector(LearnedPolicy.Inputs), LearnedPolicy.scales)
+    val scales  = "scales" -> Tensor(Vector(shape.inputs), policy.space.scales)
     val weights = layers.flatMap: layer =>
       val rows = policy.parameters.slice(starts(layer), starts(layer + 1)).grouped(widths(layer) + 1).toVector
       Vector(
@@ -276,8 +277,8 @@ private[onnx] object DenseGraph:
     OnnxGraph(
       scaled +: nodes,
       (scales +: (weights ++ bounds)).toMap,
-      Vector(Port(Input, Float32, Some(Vector(None, Some(LearnedPolicy.Inputs))))),
-      Vector(Port(Output, Float32, Some(Vector(None, Some(1))))),
+      Vector(Port(Input, Float32, Some(Vector(None, Some(shape.inputs))))),
+      Vector(Port(Output, Float32, Some(Vector(None, Some(shape.outputs))))),
       metadata
     )
 

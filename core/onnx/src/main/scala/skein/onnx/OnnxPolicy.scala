@@ -8,11 +8,10 @@ import java.util.{HexFormat, ServiceLoader}
 import scala.jdk.CollectionConverters.*
 import skein.onnx.OnnxGraph.{Float32, Port}
 import skein.policy.*
-import skein.units.Expect
+import skein.units.{Decimals, Expect}
 
-/** A policy of an ONNX file. Its input is [[PlanarObservation.fromOwnHeading]], as in environments; its
-  * single output is a share, −1 to 1, of the largest turn: until the next decision (pursuer) or of one
-  * decision (evader).
+/** A policy of an ONNX file. Its input and its output are those of environments ([[LearnerSpace]]); the
+  * largest turn is one until the next decision (pursuer) or of one decision (evader).
   *
   * @param role the role that the file notes
   * @param family `learned:…` if the network is one of Skein's
@@ -31,9 +30,10 @@ object OnnxPolicy:
   /** Default maximum turn rate of a pursuer, as in environments. */
   private val TurnRateRadPerS = 1.0
 
-  private val RoleNote = "skein.role"
-  private val RateNote = "skein.turnRateRadPerS"
-  private val TurnNote = "skein.turnRad"
+  private val RoleNote  = "skein.role"
+  private val RateNote  = "skein.turnRateRadPerS"
+  private val TurnNote  = "skein.turnRad"
+  private val ClimbNote = "skein.climbMps"
 
   /** Reads a policy file; Left says what was expected, what was found, and where. */
   def read(path: String): Either[String, OnnxPolicy] =
@@ -44,10 +44,10 @@ object OnnxPolicy:
         .read(bytes, beside(file))
         .left
         .map(reason => s"expected an ONNX model: $reason")
-      _     <- shapes(graph)
-      found <- DenseGraph.network(graph) match
+      space <- spaceOf(graph)
+      found <- DenseGraph.network(graph, space) match
         case Right((shape, parameters)) => ours(graph, shape, parameters)
-        case Left(reason)               => other(file, bytes, graph, reason)
+        case Left(reason)               => other(file, bytes, graph, space, reason)
     yield found).left.map(mistake => s"$path: $mistake")
 
   /** The family of a recorded policy that a runtime evaluated.
@@ -75,7 +75,7 @@ object OnnxPolicy:
     (policy match
       case learned: LearnedPolicy => Right(learned)
       case neural: NeuralPolicy   => Right(seeingMore(neural))
-      case _                      => Left("only networks have an ONNX form: families neural:… and learned:…")
+      case _ => Left("only networks have an ONNX form: families neural:…, learned:… and climbing:…")
     ).map: learned =>
       OnnxFormat.write(DenseGraph.graph(
         learned,
@@ -83,18 +83,19 @@ object OnnxPolicy:
           RoleNote -> role,
           RateNote -> learned.turnRateRadPerS.toString,
           TurnNote -> learned.turnRad.toString
-        )
+        ) ++ Option.when(learned.space.climbs)(ClimbNote -> learned.climbMps.toString)
       ))
 
   /** An equal network with more inputs, whose weights are zero. */
   private def seeingMore(policy: NeuralPolicy): LearnedPolicy =
+    val inputs       = LearnerSpace.Level.inputs
     val first        = policy.shape.widths(1)
     val (seen, rest) = policy.parameters.splitAt(first * (NeuralShape.Inputs + 1))
     val widened      = seen
       .grouped(NeuralShape.Inputs + 1)
-      .flatMap(row => row.init ++ Vector.fill(LearnedPolicy.Inputs - NeuralShape.Inputs)(0.0) :+ row.last)
+      .flatMap(row => row.init ++ Vector.fill(inputs - NeuralShape.Inputs)(0.0) :+ row.last)
     LearnedPolicy(
-      policy.shape.copy(inputs = LearnedPolicy.Inputs),
+      policy.shape.copy(inputs = inputs),
       widened.toVector ++ rest,
       policy.turnRateRadPerS,
       0
@@ -127,17 +128,20 @@ object OnnxPolicy:
             s"expected its weights up to byte $until of $name, which has ${all.length}"
           )
 
-  private def shapes(graph: OnnxGraph): Either[String, Unit] =
+  private def spaceOf(graph: OnnxGraph): Either[String, LearnerSpace] =
     def fits(port: Port, numbers: Int) =
       port.shape.forall: shape =>
         val last = shape.lastOption.flatten
         if shape.sizeIs == 1 && numbers > 1 then last.forall(_ == numbers)
         else shape.sizeIs <= 2 && last.forall(_ == numbers) && (shape.sizeIs < 2 || shape.head.forall(_ == 1))
-    val isRight = graph.inputs.sizeIs == 1 && graph.outputs.sizeIs == 1 &&
-      fits(graph.inputs.head, LearnedPolicy.Inputs) && fits(graph.outputs.head, 1)
-    Expect.that(isRight):
-      s"expected one input of shape (batch, ${LearnedPolicy.Inputs}) and one output of shape (batch, 1), " +
-        s"got ${told("input", graph.inputs)} and ${told("output", graph.outputs)}"
+    val isOne = graph.inputs.sizeIs == 1 && graph.outputs.sizeIs == 1
+    Seq(LearnerSpace.Level, LearnerSpace.Climbing)
+      .find(space =>
+        isOne && fits(graph.inputs.head, space.inputs) && fits(graph.outputs.head, space.outputs)
+      )
+      .toRight:
+        "expected one input of shape (batch, 9) and one output of shape (batch, 1), " +
+          s"or (batch, 13) and (batch, 2) if it climbs, got ${told("input", graph.inputs)} and ${told("output", graph.outputs)}"
 
   private def told(what: String, ports: Vector[Port]): String =
     if ports.isEmpty then s"no $what" else s"$what ${ports.map(_.text).mkString(", ")}"
@@ -152,21 +156,23 @@ object OnnxPolicy:
       OnnxPolicy(
         graph.metadata.get(RoleNote),
         PolicyFamily.learned(shape),
-        role => parameters ++ mostTurn(graph, role)
+        role => parameters ++ most(graph, role, LearnerSpace.of(shape).climbs)
       ),
       "expected finite weights, got some that are none"
     )
 
-  private def mostTurn(graph: OnnxGraph, role: Role): Vector[Double] =
+  private def most(graph: OnnxGraph, role: Role, climbs: Boolean): Vector[Double] =
     def note(key: String)  = graph.metadata.get(key).flatMap(_.toDoubleOption).filter(_.isFinite)
     val Vector(rate, turn) = LearnedPolicy.mostTurn(role, TurnRateRadPerS): @unchecked
-    Vector(note(RateNote).getOrElse(rate), note(TurnNote).getOrElse(turn))
+    Vector(note(RateNote).getOrElse(rate), note(TurnNote).getOrElse(turn)) ++
+      Option.when(climbs)(note(ClimbNote).getOrElse(LearnerSpace.ClimbMps))
 
   /** A model that is not one of Skein's networks, evaluated by a [[skein.policy.ModelRunner]]. */
   private def other(
       file: Path,
       bytes: Array[Byte],
       graph: OnnxGraph,
+      space: LearnerSpace,
       why: String
   ): Either[String, OnnxPolicy] =
     val input   = graph.inputs.head
@@ -178,8 +184,8 @@ object OnnxPolicy:
         s"it is no dense network ($why), and runs on 32-bit floats alone: got input of type ${input.element}"
       model <- runner.load(bytes).left.map(reason => s"it is no dense network ($why): $reason")
       rank  = input.shape.fold(2)(_.size)
-      asked = (seen: Array[Float]) => model(seen, Vector(LearnedPolicy.Inputs).reverse.padTo(rank, 1).reverse)
-      _ <- answer(asked, PlanarObservation(10, 0, 0, 0, 0, 0, 0, 0, 0)).left.map(reason =>
+      asked = (seen: Array[Float]) => model(seen, Vector(space.inputs).reverse.padTo(rank, 1).reverse)
+      _ <- answer(asked, space, 10.0 +: Array.fill(space.inputs - 1)(0.0)).left.map(reason =>
         s"it was tried: $reason"
       )
     yield
@@ -189,31 +195,35 @@ object OnnxPolicy:
         name,
         "a model that a runtime decides for",
         Set(Role.Pursuer, Role.Evader),
-        SearchSpace(Vector(
-          Axis("turnRateRadPerS", 0.2, 3.0, TurnRateRadPerS),
-          Axis("turnRad", 0.0, math.Pi, 0.0)
-        )),
-        numbers => RunPolicy(asked, numbers(0), numbers(1))
+        SearchSpace(PolicyFamily.most(space.climbs)),
+        numbers => RunPolicy(asked, space, numbers(0), numbers(1), numbers.lift(2).getOrElse(0))
       )
-      OnnxPolicy(graph.metadata.get(RoleNote), family, mostTurn(graph, _))
+      OnnxPolicy(graph.metadata.get(RoleNote), family, most(graph, _, space.climbs))
 
   private def answer(
       asked: Array[Float] => Either[String, Array[Float]],
-      seen: PlanarObservation
-  ): Either[String, Double] =
-    asked(seen.fromOwnHeading.map(_.toFloat)).flatMap:
-      case Array(share) if share.isFinite => Right(share.toDouble.max(-1).min(1))
-      case Array(share)                   => Left(s"expected a number from -1 to 1, got $share")
-      case others                         => Left(s"expected one number, got ${others.length}")
+      space: LearnerSpace,
+      observed: Array[Double]
+  ): Either[String, Array[Double]] =
+    asked(observed.map(_.toFloat)).flatMap: shares =>
+      if shares.length != space.outputs then
+        Left(s"expected ${Decimals.counted(space.outputs, "number")}, got ${shares.length}")
+      else
+        shares.find(!_.isFinite) match
+          case Some(share) => Left(s"expected a number from -1 to 1, got $share")
+          case None        => Right(shares.map(_.toDouble.max(-1).min(1)))
 
   /** A policy that a runtime evaluates; thread-safe. Throws if the model fails or its output is not a number.
     */
   private final class RunPolicy(
       asked: Array[Float] => Either[String, Array[Float]],
-      turnRateRadPerS: Double,
-      turnRad: Double
-  ) extends HeadingPolicy.Memoryless:
-    def heading(seen: PlanarObservation): Double =
-      val share =
-        answer(asked, seen).fold(reason => throw IllegalStateException(s"the policy: $reason"), identity)
-      seen.ownHeadingRad + share * (turnRateRadPerS * seen.elapsedS + turnRad)
+      val space: LearnerSpace,
+      val turnRateRadPerS: Double,
+      val turnRad: Double,
+      val climbMps: Double
+  ) extends SharesPolicy:
+    def shares(observed: Array[Double]): Array[Double] =
+      answer(asked, space, observed).fold(
+        reason => throw IllegalStateException(s"the policy: $reason"),
+        identity
+      )

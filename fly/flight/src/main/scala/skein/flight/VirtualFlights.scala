@@ -15,6 +15,7 @@ import skein.settings.{FlightPlan, FlySettings, RecordedPlan, SolverChoice}
 import skein.signal.LatencyProfile
 import skein.solver.{FlightDeciders, SolverDesk, SolverServer, TcpLink}
 import skein.units.*
+import skein.units.Decimals.brief
 import skein.vtime.{Problem, RunLimits, VirtualTime, VirtualTimeException}
 
 /** Flights in virtual time: the simulator, link, client and loop of live flights, with the clock, the
@@ -77,6 +78,18 @@ object VirtualFlights:
     */
   def fly(settings: FlySettings, plan: FlightPlan): Either[String, VirtualFlightResult] =
     fly(settings, plan, RunLimits())
+
+  /** The mistake of flights whose records cannot fit into a [[MemoryRecorder]]. */
+  def tooLong(settings: FlySettings): Option[String] =
+    val vehicles = settings.fleet.agents.size
+    val longest  = settings.period * (MemoryRecorder.defaultCapacity / LeastRecords / vehicles)
+    Option.when(settings.duration > longest)(
+      s"duration: expected at most ${longest.toSeconds.brief} s in virtual time, which keeps the records of " +
+        s"${Decimals.counted(vehicles, "vehicle")} in memory, got ${settings.duration.toSeconds.brief} s"
+    )
+
+  /** Records that a vehicle makes in a period; loops over links have made 6 and more. */
+  private val LeastRecords = 4
 
   /** Simulates a flight.
     *

@@ -149,4 +149,5 @@ object PlanSettings:
     val read   = words.flatMap((field, word) => word.read(values, field))
     Option
       .when(read.size == words.size)(mirror.fromProduct(Tuple.fromArray(read.toArray)))
-      .filter(_.mistakes.isEmpty)
+      // Plans were searched by path integrals, too.
+      .filter(read => read.mistakes.isEmpty && values.get("method").forall(_ == "cross-entropy"))

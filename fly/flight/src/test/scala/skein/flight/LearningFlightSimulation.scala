@@ -62,7 +62,7 @@ class LearningFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimis
     for (one, next) <- seen.zip(seen.drop(1)) do assertEquals(one.reached, next.seen)
     for (one, decision) <- seen.zip(decisions) do
       assertEqualsDouble(
-        decision.headingBefore.value + one.share * 2 * decision.elapsed.toSeconds,
+        decision.headingBefore.value + one.shares.head * 2 * decision.elapsed.toSeconds,
         decision.heading.value,
         1e-12
       )
@@ -81,7 +81,7 @@ class LearningFlightSimulation extends munit.FunSuite, TemporaryFolders, Optimis
     val same  = flown(_ => None, explore = 0)
     assertEquals(headings(same.recorder.recording), headings(alone.fold(fail(_), _.recorder.recording)))
     var shares = Vector.empty[Double]
-    val noisy  = flown(transitions => { shares ++= transitions.map(_.share); None }, explore = 1)
+    val noisy  = flown(transitions => { shares ++= transitions.flatMap(_.shares); None }, explore = 1)
     assertNotEquals(headings(noisy.recorder.recording), headings(same.recorder.recording))
     assertEquals((shares.min, shares.max), (-1.0, 1.0))
     assert(shares.distinct.sizeIs > shares.size / 3, shares)

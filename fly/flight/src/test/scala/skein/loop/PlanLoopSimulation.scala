@@ -74,3 +74,5 @@ class PlanLoopSimulation extends munit.FunSuite, Optimised:
     assertEquals(PlanSettings.parse(settings.text), Some(settings))
     assertEquals(PlanSettings.parse(settings.copy(behaviours = 0).text), None)
     assertEquals(PlanSettings.parse("nothing"), None)
+    assertEquals(PlanSettings.parse(s"${settings.text} method=cross-entropy"), Some(settings))
+    assertEquals(PlanSettings.parse(s"${settings.text} method=path-integral"), None)

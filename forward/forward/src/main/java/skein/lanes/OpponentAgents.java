@@ -66,7 +66,7 @@ final class OpponentAgents extends TimetableAgents implements TeamMember {
 
   @Override
   public void restart(int world, float headingRad) {
-    vehicles.restart(world);
+    vehicles.restart(world, headingRad);
     policy.restart(world, headingRad);
     float cos = (float) StrictMath.cos(headingRad), sin = (float) StrictMath.sin(headingRad);
     headings.point(world, WORLDS, cos, sin);
@@ -110,7 +110,6 @@ final class OpponentAgents extends TimetableAgents implements TeamMember {
     return policy.newMemory;
   }
 
-  /** Fills the observation of a decision. */
   private void see(TimetableAgents[] all, int[] views, int view, float[] times, int number) {
     if (eye != null) {
       believe(views[view + self] * WORLDS, times, number);

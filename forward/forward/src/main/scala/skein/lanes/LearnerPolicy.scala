@@ -1,46 +1,29 @@
 package skein.lanes
 
-import skein.policy.{HeadingPolicy, PlanarObservation}
+import skein.policy.{Action, LearnerSpace, Observation, Policy}
 
-/** Turns by an amount in its memory, which a caller sets before each decision. Its next memory contains its
+/** Acts as its memory says, which a caller sets before each decision. Its next memory contains its
   * observation. So a learner's vehicle decides and observes by the code that other policies use.
+  *
+  * Its memory begins with the action: the turn and, if it climbs, the vertical speed, m/s. The components of
+  * the observation follow.
   *
   * @param byRate whether the turn is a rate, rad/s; otherwise it is an angle, rad
   */
-final case class LearnerPolicy(byRate: Boolean) extends HeadingPolicy:
-  type Memory = LearnerPolicy.Memory
+final case class LearnerPolicy(byRate: Boolean, space: LearnerSpace = LearnerSpace.Level) extends Policy:
+  type Memory = Vector[Double]
 
-  def start: Memory = LearnerPolicy.start
+  def start: Memory = Vector.fill(space.outputs + space.inputs)(0.0)
 
-  def decide(seen: PlanarObservation, memory: Memory): (Double, Memory) =
+  override def isAgainstOne: Boolean = true
+
+  override def isPlanar: Boolean = !space.climbs
+
+  def choose(seen: Observation, memory: Memory): (Action, Memory) =
+    val observed = space.observe(seen)
+    val count    = space.outputs
+    val turnRad  = if byRate then memory(0) * seen.elapsed.toSeconds else memory(0)
     (
-      LearnerPolicy.headingRad(seen, memory.turn, byRate),
-      LearnerPolicy.memory(memory.turn, seen.fromOwnHeading)
+      space.action(seen, turnRad, if space.climbs then memory(1) else 0),
+      Vector.tabulate(memory.size)(i => if i < count then memory(i) else observed(i - count))
     )
-
-object LearnerPolicy:
-  /** Number of components of an observation, see [[PlanarObservation.fromOwnHeading]]. */
-  final val Fields = 9
-
-  /** The turn to make, to the right, and the components of [[PlanarObservation.fromOwnHeading]]. */
-  final case class Memory(
-      turn: Double,
-      aheadM: Double,
-      rightM: Double,
-      aheadMps: Double,
-      rightMps: Double,
-      cos: Double,
-      sin: Double,
-      elapsedS: Double,
-      ownAgeS: Double,
-      opponentAgeS: Double
-  )
-
-  /** The heading after a turn to the right, by a rate since the last decision or by an angle, rad. */
-  def headingRad(seen: PlanarObservation, turn: Double, byRate: Boolean): Double =
-    seen.ownHeadingRad + (if byRate then turn * seen.elapsedS else turn)
-
-  private val start = Memory(0, 0, 0, 0, 0, 1, 0, 0, 0, 0)
-
-  private def memory(told: Double, seen: Array[Double]) =
-    Memory(told, seen(0), seen(1), seen(2), seen(3), seen(4), seen(5), seen(6), seen(7), seen(8))

@@ -5,7 +5,6 @@ import skein.lanes.policy.OpponentLanes
 import skein.lanes.score.{OfMoment, Scoreboard}
 import skein.lanes.timetable.{Timetable, TimetableAgents, TimetableKernel, TimetableScores, Timetables}
 import skein.simd.WorldRandom
-import skein.units.Expect
 
 /** Teams with learners in many worlds by one timetable, with the results of [[TeamBatch]]. Allocates nothing
   * after construction, unless a timetable needs more slots than any before.
@@ -30,7 +29,9 @@ final class LearnerTeams private[lanes] (
   private val passing =
     team.quantities.indices.filter(team.quantities(_).reduction != OfMoment.Newest).toArray
   private val isOfTwo = form.policies.isInstanceOf[OpponentLanes]
-  private val learns  = Array.tabulate(form.count)(learners.contains(_))
+  private val spaces  = learners.map(team.engagement.agents(_).policy).collect:
+    case policy: LearnerPolicy => policy.space
+  private val learns = Array.tabulate(form.count)(learners.contains(_))
 
   private var timetable: Timetable   = null
   private var operations: Array[Int] = null
@@ -107,10 +108,12 @@ final class LearnerTeams private[lanes] (
 
   def observe(learner: Int, into: Array[Float]): Unit =
     kernel.observe(operationOf(learner))
-    System.arraycopy(members(learners(learner)).nextMemory, WORLDS, into, 0, LearnerPolicy.Fields * WORLDS)
+    val space = spaces(learner)
+    val from  = members(learners(learner)).nextMemory
+    System.arraycopy(from, space.outputs * WORLDS, into, 0, space.inputs * WORLDS)
 
-  def turn(learner: Int, numbers: Array[Float]): Unit =
-    System.arraycopy(numbers, 0, members(learners(learner)).memory, 0, worlds)
+  def act(learner: Int, component: Int, numbers: Array[Float]): Unit =
+    System.arraycopy(numbers, 0, members(learners(learner)).memory, component * WORLDS, worlds)
 
   def decide(): Unit =
     while next < dueUntil do
@@ -181,9 +184,8 @@ object LearnerTeams:
     def of(team: TeamCandidate, learners: Vector[Int], worlds: Int): Either[String, LearnerTeams] =
       formOf(team).map(form => LearnerTeams(form, team, learners.toArray, worlds, timetableOf(form, _)))
 
-    private def formOf(team: TeamCandidate) = Expect
-      .that(!team.engagement.hasCars)("it has cars, which restart at any heading")
-      .flatMap(_ => forms.of(team))
+    private def formOf(team: TeamCandidate) = forms
+      .of(team)
       .filterOrElse(!_.scores.asksTime, "a measure depends on the time, and each world restarts at its own")
 
     private def timetableOf(form: TeamForm, draw: Long): Timetable =

@@ -26,15 +26,13 @@ trait LearnerWorlds extends AutoCloseable:
 
   def isDue(learner: Int): Boolean
 
-  /** Writes what a learner that is due observes: [[LearnerPolicy.Fields]] rows of [[LearnerWorlds.Most]]
-    * worlds.
+  /** Writes what a learner that is due observes: a row of [[LearnerWorlds.Most]] worlds for each component.
     */
   def observe(learner: Int, into: Array[Float]): Unit
 
-  /** Sets the turns of a learner that is due, by world; see [[LearnerPolicy]]. */
-  def turn(learner: Int, numbers: Array[Float]): Unit
+  /** Sets a component of the action of a learner that is due, by world; see [[LearnerPolicy]]. */
+  def act(learner: Int, component: Int, numbers: Array[Float]): Unit
 
-  /** Makes the due decisions. */
   def decide(): Unit
 
   /** Whether the scenario was over in a world since its restart, by an end of its own. */

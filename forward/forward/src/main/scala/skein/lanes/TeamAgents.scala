@@ -68,7 +68,7 @@ private[lanes] class TeamAgents(
 
   override def restart(world: Int, headingRad: Float): Unit =
     val (cos, sin) = (StrictMath.cos(headingRad).toFloat, StrictMath.sin(headingRad).toFloat)
-    vehicles.restart(world)
+    vehicles.restart(world, headingRad)
     decisions.restart(world, cos, sin)
     if told != null then told.point(world, WORLDS, cos, sin)
     val mps = decisions.speedMps(world)

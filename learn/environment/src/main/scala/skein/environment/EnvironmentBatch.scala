@@ -34,7 +34,7 @@ final class EnvironmentBatch private (
     autoreset: Autoreset,
     block: ByteBuffer
 ) extends AutoCloseable:
-  private val buffers = EnvironmentBuffers(block, side.learners, count)
+  private val buffers = EnvironmentBuffers(block, side.learners, count, side.settings.space)
   private var flownBy = side.engine(None)
   private var groups  = groupsOf(None)
   private var isReset = false

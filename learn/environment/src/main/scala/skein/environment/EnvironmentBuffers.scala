@@ -1,17 +1,17 @@
 package skein.environment
 
 import java.nio.{ByteBuffer, ByteOrder, FloatBuffer}
-import skein.lanes.LearnerPolicy.Fields
+import skein.policy.LearnerSpace
 
 /** The memory that an environment batch shares with its caller: one block, in the machine's byte order. It
   * contains the following arrays one after the other, for A learners in the scenario's order and n
-  * environments:
+  * environments; observations have F components and actions K ([[LearnerSpace]]):
   *
   * | what                                                                | type | shape   |
   * |:--------------------------------------------------------------------|:-----|:--------|
-  * | actions, −1 to 1                                                    | f32  | A, n    |
-  * | observations                                                        | f32  | A, 9, n |
-  * | last observations of episodes that ended, under same-step autoreset | f32  | A, 9, n |
+  * | actions, −1 to 1                                                    | f32  | A, K, n |
+  * | observations                                                        | f32  | A, F, n |
+  * | last observations of episodes that ended, under same-step autoreset | f32  | A, F, n |
   * | rewards                                                             | f32  | A, n    |
   * | distance to the nearest opponent at the last score, m               | f32  | A, n    |
   * | time since the episode's beginning, s                               | f32  | n       |
@@ -19,11 +19,15 @@ import skein.lanes.LearnerPolicy.Fields
   * | truncated                                                           | u8   | n       |
   * | whether the learner decides now                                     | u8   | A, n    |
   */
-final class EnvironmentBuffers(block: ByteBuffer, val agents: Int, val count: Int):
-  require(
-    block.capacity == EnvironmentBuffers.bytes(agents, count),
-    s"expected a block of ${EnvironmentBuffers.bytes(agents, count)} bytes, got ${block.capacity}"
-  )
+final class EnvironmentBuffers(
+    block: ByteBuffer,
+    val agents: Int,
+    val count: Int,
+    val space: LearnerSpace = LearnerSpace.Level
+):
+  locally:
+    val bytes = EnvironmentBuffers.bytes(agents, count, space)
+    require(block.capacity == bytes, s"expected a block of $bytes bytes, got ${block.capacity}")
 
   private var at = 0
 
@@ -32,9 +36,9 @@ final class EnvironmentBuffers(block: ByteBuffer, val agents: Int, val count: In
     at += bytes
     slice
 
-  val actions: FloatBuffer      = part(4 * agents * count).asFloatBuffer
-  val observations: FloatBuffer = part(4 * agents * Fields * count).asFloatBuffer
-  val finals: FloatBuffer       = part(4 * agents * Fields * count).asFloatBuffer
+  val actions: FloatBuffer      = part(4 * agents * space.outputs * count).asFloatBuffer
+  val observations: FloatBuffer = part(4 * agents * space.inputs * count).asFloatBuffer
+  val finals: FloatBuffer       = part(4 * agents * space.inputs * count).asFloatBuffer
   val rewards: FloatBuffer      = part(4 * agents * count).asFloatBuffer
   val distances: FloatBuffer    = part(4 * agents * count).asFloatBuffer
   private val times             = part(4 * count).asFloatBuffer
@@ -103,5 +107,6 @@ final class EnvironmentBuffers(block: ByteBuffer, val agents: Int, val count: In
   private def byte(value: Boolean): Byte            = if value then 1 else 0
 
 object EnvironmentBuffers:
-  def bytes(agents: Int, count: Int): Int =
-    Math.toIntExact((4L * (3 * agents + 2 * agents * Fields + 1) + 2 + agents) * count)
+  def bytes(agents: Int, count: Int, space: LearnerSpace = LearnerSpace.Level): Int =
+    val floats = agents * (space.outputs + 2 * space.inputs + 2) + 1
+    Math.toIntExact((4L * floats + 2 + agents) * count)

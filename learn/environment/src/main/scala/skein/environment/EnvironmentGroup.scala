@@ -1,7 +1,7 @@
 package skein.environment
 
 import java.nio.FloatBuffer
-import skein.lanes.{LearnerPolicy, LearnerWorlds}
+import skein.lanes.LearnerWorlds
 import skein.signal.SplitMix64
 
 /** Environments that run simultaneously over one link: delays and losses of messages are equal in all of
@@ -26,27 +26,30 @@ private final class EnvironmentGroup(
     into: EnvironmentBuffers
 ) extends AutoCloseable:
   import EnvironmentGroup.{CaptureReward, Tolerance}
-  import LearnerPolicy.Fields
   import LearnerWorlds.Most
 
-  private val settings  = side.settings
-  private val vehicles  = learning.toArray
-  private val agents    = vehicles.length
-  private val mostTurns = vehicles.map(side.mostTurn(_)._2)
-  private val gains     = vehicles.map(CaptureReward * side.captureSign(_))
-  private val apart     = side.apart(learning).size
-  private val weights   = vehicles.indices.map(side.weights(learning, _)).toArray
-  private val starts    = Starts(side)
-  private val seeds     = Array.ofDim[Long](count)
-  private val episodes  = Array.ofDim[Long](count)
-  private val isDone    = Array.ofDim[Boolean](count)
+  private val settings   = side.settings
+  private val vehicles   = learning.toArray
+  private val agents     = vehicles.length
+  private val components = settings.space.outputs
+  private val fields     = settings.space.inputs
+
+  /** What an action of 1 stands for, by learner and component. */
+  private val most     = vehicles.map(vehicle => Array(side.mostTurn(vehicle)._2, settings.climbMps.toFloat))
+  private val gains    = vehicles.map(CaptureReward * side.captureSign(_))
+  private val apart    = side.apart(learning).size
+  private val weights  = vehicles.indices.map(side.weights(learning, _)).toArray
+  private val starts   = Starts(side)
+  private val seeds    = Array.ofDim[Long](count)
+  private val episodes = Array.ofDim[Long](count)
+  private val isDone   = Array.ofDim[Boolean](count)
 
   /** When each world's episode began, since the run's start, s. */
   private val beganS = Array.ofDim[Float](count)
-  private val seen   = Array.ofDim[Float](Fields * Most)
+  private val seen   = Array.ofDim[Float](fields * Most)
 
   // Of the present step, by world.
-  private val actions   = Array.ofDim[Float](agents, Most)
+  private val actions   = Array.ofDim[Float](agents, components, Most)
   private val row, cost = Array.ofDim[Float](Most)
   private val isCapture = Array.ofDim[Boolean](count)
   private val startM    = Array.ofDim[Float](agents * count)
@@ -97,12 +100,15 @@ private final class EnvironmentGroup(
     var agent = 0
     while agent < agents do
       if worlds.isDue(agent) then
-        val read = actions(agent)
-        into.read(into.actions, agent, first, stride, read, count)
-        var world = 0
-        while world < count do
-          if !(Math.abs(read(world)) <= Float.MaxValue) then return numberOf(world)
-          world += 1
+        var component = 0
+        while component < components do
+          val read = actions(agent)(component)
+          into.read(into.actions, agent * components + component, first, stride, read, count)
+          var world = 0
+          while world < count do
+            if !(Math.abs(read(world)) <= Float.MaxValue) then return numberOf(world)
+            world += 1
+          component += 1
       agent += 1
     -1
 
@@ -117,7 +123,7 @@ private final class EnvironmentGroup(
     else
       var agent = 0
       while agent < agents do
-        if worlds.isDue(agent) then turn(agent)
+        if worlds.isDue(agent) then act(agent)
         agent += 1
       worlds.decide()
       // Scores before the first decision count for the first step.
@@ -131,13 +137,16 @@ private final class EnvironmentGroup(
         agent += 1
       judge()
 
-  private def turn(agent: Int): Unit =
-    val numbers = actions(agent)
-    var world   = 0
-    while world < count do
-      numbers(world) = math.max(-1f, math.min(1f, numbers(world))) * mostTurns(agent)
-      world += 1
-    worlds.turn(agent, numbers)
+  private def act(agent: Int): Unit =
+    var component = 0
+    while component < components do
+      val numbers = actions(agent)(component)
+      var world   = 0
+      while world < count do
+        numbers(world) = math.max(-1f, math.min(1f, numbers(world))) * most(agent)(component)
+        world += 1
+      worlds.act(agent, component, numbers)
+      component += 1
 
   /** Writes a learner's rewards and distances, and notes captures. */
   private def reward(agent: Int): Unit =
@@ -248,14 +257,14 @@ private final class EnvironmentGroup(
 
   /** Clears the observations of an episode that has ended, for learners that are not due. */
   private def hide(world: Int): Unit =
-    for agent <- 0 until agents if !worlds.isDue(agent); field <- 0 until Fields do
-      into.observations.put((agent * Fields + field) * into.count + numberOf(world), 0f): Unit
+    for agent <- 0 until agents if !worlds.isDue(agent); field <- 0 until fields do
+      into.observations.put((agent * fields + field) * into.count + numberOf(world), 0f): Unit
 
   /** Writes the last observations of all learners, also of those that are not due. */
   private def showFinals(): Unit =
     show(into.finals)
-    for agent <- 0 until agents if !worlds.isDue(agent); field <- 0 until Fields do
-      val of = agent * Fields + field
+    for agent <- 0 until agents if !worlds.isDue(agent); field <- 0 until fields do
+      val of = agent * fields + field
       into.read(into.observations, of, first, stride, row, count)
       into.write(into.finals, of, first, stride, row, 0, count)
 
@@ -270,8 +279,8 @@ private final class EnvironmentGroup(
       if isDue then
         worlds.observe(agent, seen)
         var field = 0
-        while field < Fields do
-          into.write(to, agent * Fields + field, first, stride, seen, field * Most, count)
+        while field < fields do
+          into.write(to, agent * fields + field, first, stride, seen, field * Most, count)
           field += 1
       agent += 1
 

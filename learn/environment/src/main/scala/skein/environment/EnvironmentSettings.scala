@@ -4,7 +4,7 @@ import java.util.Locale
 import scala.jdk.CollectionConverters.*
 import skein.forward.{Delays, LinkDelays, LoopTiming}
 import skein.loop.{LoopKind, LoopSettings, LoopTimings}
-import skein.policy.{Agent, Role}
+import skein.policy.{Agent, LearnerSpace, Role}
 import skein.port.Moves
 import skein.scenario.{PaperDuel, Scenarios}
 import skein.settings.{FlySettings, OutsidePolicy, PolicyFile, TextFile, VehicleChoice}
@@ -31,11 +31,12 @@ import skein.vehicle.SensorNoise
   * @param turnRateRadPerS maximum turn rate of a learner other than an evader
   * @param evaderRateRadPerS maximum turn rate of a learning evader; 0: its actions are immediate turns by up
   *   to half a turn
+  * @param climbMps greatest vertical speed of learners; 0: they keep the altitude of their start
   * @param scenario the scenario whose vehicles learn
   * @param set settings of the scenario, by their keys
   * @param objective reward: a sum of the scenario's measures that are means over time, or one root mean
-  *   square, over whole episodes; empty: the distance to the nearest opponent, which evaders maximise and
-  *   others minimise
+  *   square, over whole episodes; empty: the distance to the nearest opponent, in space if learners climb,
+  *   which evaders maximise and others minimise
   */
 final case class EnvironmentSettings(
     learners: String = "pursuer",
@@ -52,11 +53,14 @@ final case class EnvironmentSettings(
     movesInFlight: Int = Moves.InFlight,
     turnRateRadPerS: Double = OutsidePolicy.MostTurnRadPerS,
     evaderRateRadPerS: Double = 0,
+    climbMps: Double = 0,
     scenario: String = PaperDuel.Name,
     set: Map[String, String] = Map.empty,
     objective: String = ""
 ):
   import EnvironmentSettings.*
+
+  def space: LearnerSpace = LearnerSpace(climbMps > 0)
 
   /** The maximum turn of a learner: rad/s until the next decision, and rad in one instant. */
   def mostTurn(role: Role): (Double, Double) =
@@ -107,6 +111,7 @@ final case class EnvironmentSettings(
       _     <- Moves.mistake(movesInFlight).map("moves_in_flight: " + _).toLeft(())
       _     <- within("turn_rate_rad_per_s", turnRateRadPerS, 1e-3, MostRateRadPerS)
       _     <- within("evader_rate_rad_per_s", evaderRateRadPerS, 0, MostRateRadPerS)
+      _     <- within("climb_mps", climbMps, 0, MostClimbMps)
       known <- VehicleChoice.parse(if plant.nonEmpty then plant else otherwise, atM).left.map("plant: " + _)
       noise <- Expect.each(Option(sensors).filter(_.nonEmpty))(SensorNoise.parse).left.map("sensors: " + _)
       vehicle = known.sensedBy(noise.headOption)
@@ -141,6 +146,8 @@ object EnvironmentSettings:
 
   private val MostRateRadPerS = 50.0
 
+  private[skein] val MostClimbMps = 50.0
+
   /** @return Left says what was expected and what was given */
   private[environment] def read(texts: java.util.Map[String, String]): Either[String, EnvironmentSettings] =
     texts.asScala.foldLeft[Either[String, EnvironmentSettings]](Right(EnvironmentSettings())):
@@ -169,6 +176,7 @@ object EnvironmentSettings:
             case "moves_in_flight"       => number(value => settings.copy(movesInFlight = value.toInt))
             case "turn_rate_rad_per_s"   => number(value => settings.copy(turnRateRadPerS = value))
             case "evader_rate_rad_per_s" => number(value => settings.copy(evaderRateRadPerS = value))
+            case "climb_mps"             => number(value => settings.copy(climbMps = value))
             case _                       => Left(s"no setting '$name'")
 
   private def within(name: String, value: Double, least: Double, most: Double): Either[String, Unit] =

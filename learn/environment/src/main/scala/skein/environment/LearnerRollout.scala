@@ -2,9 +2,9 @@ package skein.environment
 
 import scala.util.control.ControlThrowable
 import skein.forward.{LoopObserver, Rollout}
-import skein.lanes.{LearnerPolicy, LearnerTeams, LearnerWorlds, TeamCandidate}
+import skein.lanes.{LearnerTeams, LearnerWorlds, TeamCandidate}
 import skein.lanes.score.OfMoment
-import skein.policy.{Action, HeadingPolicy, PlanarObservation}
+import skein.policy.{Action, LearnerSpace, SharesPolicy}
 import skein.scenario.{Positions, Quantity, Reduction}
 import skein.units.OwnFailure
 
@@ -22,8 +22,9 @@ private final class LearnerRollout(side: LearnerSide, team: TeamCandidate, learn
   private var isAnew          = false
   private var due             = Nobody
   private var untilS          = 0f
-  private val turns           = Array.ofDim[Float](learners.size)
-  private val observed        = Array.ofDim[Double](learners.size, LearnerPolicy.Fields)
+  private val space           = side.settings.space
+  private val actions         = Array.ofDim[Float](learners.size, 2)
+  private val observed        = Array.ofDim[Double](learners.size, space.inputs)
   private var (northM, eastM) = (Array.empty[Double], Array.empty[Double])
   private val downM           = Array.ofDim[Double](agents.length)
   private val values          = Array.ofDim[Double](team.quantities.size)
@@ -48,10 +49,11 @@ private final class LearnerRollout(side: LearnerSide, team: TeamCandidate, learn
   def isDue(learner: Int): Boolean = due == learner
 
   def observe(learner: Int, into: Array[Float]): Unit =
-    for field <- 0 until LearnerPolicy.Fields do
+    for field <- 0 until space.inputs do
       into(field * LearnerWorlds.Most) = observed(learner)(field).toFloat
 
-  def turn(learner: Int, numbers: Array[Float]): Unit = turns(learner) = numbers(0)
+  def act(learner: Int, component: Int, numbers: Array[Float]): Unit =
+    actions(learner)(component) = numbers(0)
 
   /** [[flyOn]] makes the decisions. */
   def decide(): Unit = ()
@@ -94,15 +96,21 @@ private final class LearnerRollout(side: LearnerSide, team: TeamCandidate, learn
         suspend()
       catch case Anew => ()
 
-  private final class Outside(learner: Int) extends HeadingPolicy.Memoryless:
+  /** Its shares are rad/s or rad, and m/s: [[EnvironmentGroup]] has multiplied them already. */
+  private final class Outside(learner: Int) extends SharesPolicy:
     private val byRate = side.mostTurn(learners(learner))._1
 
-    def heading(now: PlanarObservation): Double =
-      observed(learner) = now.fromOwnHeading
+    def space: LearnerSpace     = side.settings.space
+    def turnRateRadPerS: Double = if byRate then 1 else 0
+    def turnRad: Double         = if byRate then 0 else 1
+    def climbMps: Double        = 1
+
+    def shares(seen: Array[Double]): Array[Double] =
+      observed(learner) = seen
       due = learner
       ask()
       if isAnew then throw Anew
-      LearnerPolicy.headingRad(now, turns(learner), byRate)
+      actions(learner).map(_.toDouble)
 
   private object scores extends LoopObserver:
     override def scored(timeS: Double, vehicle: Int, x: Double, y: Double, z: Double): Unit =

@@ -32,7 +32,6 @@ private[environment] final case class LearnerSide(
   /** Makes worlds that SIMD simulates. */
   val maker: LearnerTeams.Maker = LearnerTeams.Maker(timing, link, response)
 
-  /** Number of learners in an environment. */
   def learners: Int = turns.head.size
 
   def roleOf(vehicle: Int): Role = engagement.roles(vehicle)
@@ -55,12 +54,13 @@ private[environment] final case class LearnerSide(
     */
   def team(learning: Vector[Int], beside: Option[Policy]): TeamCandidate =
     val agents = engagement.agents.zipWithIndex.map: (agent, place) =>
-      if learning.contains(place) then agent.copy(policy = LearnerPolicy(mostTurn(place)._1))
+      if learning.contains(place) then agent.copy(policy = LearnerPolicy(mostTurn(place)._1, settings.space))
       else if roleOf(place) == roleOf(learning.head) then
         beside.fold(agent)(policy => agent.copy(policy = policy))
       else agent
-    val distances = apart(learning).map(learner => Nearest(learner, rivals(learner).toArray))
-    val costs     = objectives match
+    val distances = apart(learning).map: learner =>
+      Nearest(learner, rivals(learner).toArray, settings.space.climbs)
+    val costs = objectives match
       case None      => distances.map(Judged(_, Reduction.Mean, 0))
       case Some(all) =>
         all.head.measures.flatMap(_._2.reduced).map(each => Judged(each.quantity, each.reduction, 0))
@@ -140,7 +140,8 @@ private[environment] object LearnerSide:
       objectives <-
         if settings.objective.isEmpty then Right(None) else objectivesOf(settings, scenario).map(Some(_))
       altitudeM = -engagement.agents(turns.head.head).altitudeDownM
-      climbs    = climbing(engagement, turns)
+      climbs    =
+        if settings.space.climbs then Some("learners climb (climb_mps)") else climbing(engagement, turns)
       resolved <-
         settings.flown(altitudeM, climbs.fold(levelAt(altitudeM))(_ => VehicleChoice.Tilt), agents.size)
       (timing, delays, vehicle) = resolved

@@ -2,12 +2,16 @@ package skein.environment
 
 import skein.scenario.{Positions, Quantity}
 
-/** Horizontal distance of a vehicle from the nearest of some others, m. */
-private final class Nearest(self: Int, others: Array[Int]) extends Quantity:
+/** Distance of a vehicle from the nearest of some others, in the plane or in space, m. */
+private final class Nearest(self: Int, others: Array[Int], inSpace: Boolean) extends Quantity:
   def of(positions: Positions): Double =
-    var least = positions.distanceM(self, others(0))
+    var least = distanceM(positions, others(0))
     var i     = 1
     while i < others.length do
-      least = least.min(positions.distanceM(self, others(i)))
+      least = least.min(distanceM(positions, others(i)))
       i += 1
     least
+
+  private def distanceM(positions: Positions, other: Int) =
+    val level = positions.distanceM(self, other)
+    if inSpace then StrictMath.hypot(level, positions.downM(self) - positions.downM(other)) else level

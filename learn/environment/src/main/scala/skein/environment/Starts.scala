@@ -35,8 +35,10 @@ private final class Starts(side: LearnerSide):
     northM(vehicle) = (agents(of).startX + distanceM * StrictMath.cos(bearingRad)).toFloat
     eastM(vehicle) = (agents(of).startY + distanceM * StrictMath.sin(bearingRad)).toFloat
 
-  /** Distance of a vehicle from its nearest opponent, m. */
+  /** Distance of a vehicle from its nearest opponent, in space if learners climb, m. */
   def distanceM(vehicle: Int): Float =
-    side.rivals(vehicle).map(other =>
-      StrictMath.hypot(northM(vehicle) - northM(other), eastM(vehicle) - eastM(other)).toFloat
-    ).min
+    side.rivals(vehicle).map: other =>
+      val level = StrictMath.hypot(northM(vehicle) - northM(other), eastM(vehicle) - eastM(other))
+      val downM = agents(vehicle).altitudeDownM - agents(other).altitudeDownM
+      (if side.settings.space.climbs then StrictMath.hypot(level, downM) else level).toFloat
+    .min

@@ -3,14 +3,16 @@ package skein.environment
 import java.nio.{ByteBuffer, ByteOrder}
 import skein.forward.{Delays, Engagement, EpisodeOutcome, PlantResponse, Rollout}
 import skein.lanes.{LearnerTeams, TeamBatch, TeamCandidate, TeamWorlds}
-import skein.lanes.LearnerPolicy.Fields
 import skein.lanes.score.Judged
+import skein.policy.LearnerSpace
 import skein.scenario.{PaperDuel, Reduction, Scenarios, Separation}
 import skein.signal.SplitMix64
 import skein.vehicle.ReducedModel
 
 class EnvironmentBatchSimulation extends munit.FunSuite:
   private given Scenarios = Scenarios.ours
+
+  private val Fields = LearnerSpace.Level.inputs
 
   /** A batch, with a learner's view of its buffers. */
   private final class Learner(
@@ -20,11 +22,14 @@ class EnvironmentBatchSimulation extends munit.FunSuite:
   ):
     val agents: Int   = if settings.learners == "both" then 2 else 1
     private val block =
-      ByteBuffer.allocateDirect(EnvironmentBuffers.bytes(agents, count)).order(ByteOrder.nativeOrder)
+      ByteBuffer.allocateDirect(EnvironmentBuffers.bytes(agents, count, settings.space)).order(
+        ByteOrder.nativeOrder
+      )
+    private val fields          = settings.space.inputs
     private val floats          = block.asFloatBuffer
-    private val seenAt          = agents * count
-    private val finalsAt        = seenAt + agents * Fields * count
-    private val rewardsAt       = finalsAt + agents * Fields * count
+    private val seenAt          = agents * settings.space.outputs * count
+    private val finalsAt        = seenAt + agents * fields * count
+    private val rewardsAt       = finalsAt + agents * fields * count
     private val endsAt          = 4 * (rewardsAt + 2 * agents * count + count)
     val batch: EnvironmentBatch =
       EnvironmentBatch.of(settings, count, autoreset, block).fold(fail(_), identity)
@@ -32,7 +37,7 @@ class EnvironmentBatchSimulation extends munit.FunSuite:
     def act(number: Int, action: Float, agent: Int = 0): Unit =
       floats.put(agent * count + number, action): Unit
     def seen(number: Int, field: Int, agent: Int = 0): Float =
-      floats.get(seenAt + (agent * Fields + field) * count + number)
+      floats.get(seenAt + (agent * fields + field) * count + number)
     def last(number: Int, field: Int): Float       = floats.get(finalsAt + field * count + number)
     def reward(number: Int, agent: Int = 0): Float = floats.get(rewardsAt + agent * count + number)
     def distance(number: Int): Float               = floats.get(rewardsAt + agents * count + number)
@@ -155,6 +160,26 @@ class EnvironmentBatchSimulation extends munit.FunSuite:
             (0 until 40).filter(number => learner.terminated(number) || learner.truncated(number)).toSet
           else Set.empty
       assert(captured > 20, s"$mode: $captured captures")
+
+  test("learners climb by tilt with SIMD, by the quadrotor one by one, and not by a level model"):
+    val settings = EnvironmentSettings(climbMps = 2, link = "none", episodeS = 10)
+    for plant <- Seq("tilt", "quadrotor") do
+      val learner = Learner(settings.copy(plant = plant), 2)
+      assertEquals(learner.batch.engine.fliesByLanes, plant == "tilt", learner.batch.engine.text)
+      learner.reset(1, 2)
+      for _ <- 0 until 40 do
+        for number <- 0 to 1 do learner.act(number, if number == 0 then 1 else -0.5f, agent = 1)
+        learner.batch.step()
+      for number <- 0 to 1 do
+        val upMps = if number == 0 then 2f else -1f
+        assertEqualsFloat(learner.seen(number, 12), upMps, 0.1f)
+        assertEqualsFloat(learner.seen(number, 9), 20 - learner.seen(number, 11), 0.3f)
+      assert(learner.seen(0, 11) > learner.seen(1, 11) + 6)
+      learner.batch.close()
+    assertEquals(
+      LearnerSide.of(settings.copy(plant = "reduced")).left.toOption,
+      Some("plant: expected tilt or quadrotor, got reduced: learners climb (climb_mps)")
+    )
 
   test("ages are those of the link"):
     def age(link: String) =

@@ -27,11 +27,15 @@ private[environment] final class RateRow(name: String, count: Int) extends LongU
   private val settings = all(name)._2
   private val agents   = if settings.learners == "both" then 2 else 1
   private val block    =
-    ByteBuffer.allocateDirect(EnvironmentBuffers.bytes(agents, count)).order(ByteOrder.nativeOrder)
+    ByteBuffer.allocateDirect(EnvironmentBuffers.bytes(
+      agents,
+      count,
+      settings.space
+    )).order(ByteOrder.nativeOrder)
   private val batch = EnvironmentBatch
     .of(settings, count, Autoreset.SameStep, block)(using RateRow.scenarios)
     .fold(sys.error(_), identity)
-  private val buffers = EnvironmentBuffers(block, agents, count)
+  private val buffers = EnvironmentBuffers(block, agents, count, settings.space)
 
   private def restart(): Unit = batch.reset(Array.tabulate(count)(_ + 7L))
 
@@ -39,10 +43,10 @@ private[environment] final class RateRow(name: String, count: Int) extends LongU
     restart()
     var digest = 0
     for step <- 0 until 300 do
-      for agent <- 0 until agents; number <- 0 until count do
+      for row <- 0 until agents * settings.space.outputs; number <- 0 until count do
         buffers.actions.put(
-          agent * count + number,
-          StrictMath.sin(step * 0.3 + number + agent).toFloat
+          row * count + number,
+          StrictMath.sin(step * 0.3 + number + row).toFloat
         ): Unit
       batch.step()
       for i <- 0 until agents * count do
@@ -77,6 +81,9 @@ private[environment] object RateRow:
       "paused"     -> (2, duel.copy(loop = "paused", link = "none", learners = "both")),
       "drag"       -> (2, duel.copy(plant = "drag")),
       "quadrotor"  -> (2, duel.copy(plant = "quadrotor")),
+      "climbing"   -> (2, duel.copy(climbMps = 3)),
+      "level"      -> (2, duel.copy(plant = "tilt")),
       "surround"   -> (6, surround),
+      "convoy"     -> (5, EnvironmentSettings(scenario = "convoy", learners = "escort", plant = "drag")),
       "tower"      -> (5, tower)
     )

@@ -1,26 +1,28 @@
 package skein.learn
 
 import skein.loop.learning.{FlownLearner, Transition}
-import skein.policy.{LearnedPolicy, Role}
+import skein.policy.{LearnerSpace, Role}
 import skein.signal.SplitMix64
 
 /** Continues learning from the transitions of one flight, with a replay learner. Rewards are those of
   * [[SideTask]]: the pursuer is rewarded for a small distance, the evader for a great one. Equal transitions
   * in equal lessons give equal weights.
   *
-  * @param bounds maximum turns of its policies: the last parameters of a [[LearnedPolicy]]
+  * @param bounds maximum turns and vertical speed of its policies: the last parameters of a
+  *   [[skein.policy.LearnedPolicy]]
   * @param updates number of updates per transition
   * @param transitionsPerVersion number of transitions after which the newest policy is used
   */
 final class LearnerInFlight private (
     learner: OffPolicy,
     role: Role,
+    space: LearnerSpace,
     bounds: Vector[Double],
     updates: Double,
     transitionsPerVersion: Int,
     seed: Long
 ) extends FlownLearner:
-  private val scales  = LearnedPolicy.scales.map(_.toFloat)
+  private val scales  = space.scales.map(_.toFloat)
   private val random  = SplitMix64(seed)
   private var lessons = 0L
   private var learned = 0L
@@ -31,7 +33,7 @@ final class LearnerInFlight private (
     learner.begin(SplitMix64.seedOf(seed, lessons) & Long.MaxValue)
     val versions = learned / transitionsPerVersion
     for transition <- transitions do
-      learner.replay.add(row(transition.seen), Array(transition.share.toFloat), reached(transition))
+      learner.replay.add(row(transition.seen), transition.shares.map(_.toFloat).toArray, reached(transition))
       learned += 1
       if learner.replay.size >= learner.batch.count then
         due += updates
@@ -46,16 +48,20 @@ final class LearnerInFlight private (
 
   private def reached(transition: Transition): Task =
     val loss = (transition.distanceM * SideTask.RewardPerM).toFloat
-    LearnerInFlight.OneStep(row(transition.reached), if role == Role.Pursuer then -loss else loss)
+    LearnerInFlight.OneStep(
+      space.outputs,
+      row(transition.reached),
+      if role == Role.Pursuer then -loss else loss
+    )
 
 object LearnerInFlight:
 
   /** The result of one decision, as a task's step. A flight is one episode; its end counts as truncation, not
     * as termination.
     */
-  private final class OneStep(val reached: Array[Float], reward: Float) extends Task:
+  private final class OneStep(val actions: Int, val reached: Array[Float], reward: Float)
+      extends Task:
     def count: Int                               = 1
-    def actions: Int                             = 1
     def observations: Int                        = reached.length
     def seen: Array[Float]                       = reached
     val rewards: Array[Float]                    = Array(reward)
@@ -74,17 +80,18 @@ object LearnerInFlight:
       algorithm: Algorithm,
       settings: LearnerSettings,
       role: Role,
+      space: LearnerSpace,
       bounds: Vector[Double],
       updates: Double,
       transitionsPerVersion: Int,
       seed: Long
   )(load: Learner => Either[String, Unit]): Either[String, (Vector[Double], LearnerInFlight)] =
-    algorithm.learner(LearnedPolicy.Inputs, 1, 1, settings, seed, BatchThreads(1)) match
+    algorithm.learner(space.inputs, space.outputs, 1, settings, seed, BatchThreads(1)) match
       case learner: OffPolicy =>
         load(learner).map: _ =>
           (
             SideTask.parameters(learner.actor) ++ bounds,
-            LearnerInFlight(learner, role, bounds, updates, transitionsPerVersion, seed)
+            LearnerInFlight(learner, role, space, bounds, updates, transitionsPerVersion, seed)
           )
       case _ =>
         Left(

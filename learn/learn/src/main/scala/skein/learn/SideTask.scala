@@ -2,29 +2,30 @@ package skein.learn
 
 import java.nio.ByteBuffer
 import skein.environment.{Autoreset, EnvironmentBatch, EnvironmentBuffers, EnvironmentSettings}
-import skein.policy.{LearnedPolicy, Role}
+import skein.policy.{LearnedPolicy, LearnerSpace, PolicyFamily, Role}
 import skein.scenario.Scenarios
 import skein.settings.PolicyFile
 import skein.signal.SplitMix64
 
 /** A side of the duel or of another scenario as a learning task, under the loop's timing. Observations are
-  * scaled as [[LearnedPolicy]] scales them, and rewards so that a policy's discounted return is about 1. If a
-  * side has several vehicles, one per environment learns; the others use the policy from before the round.
+  * scaled as [[LearnerSpace]] states, and rewards so that a policy's discounted return is about 1. If a side
+  * has several vehicles, one per environment learns; the others use the policy from before the round.
   *
   * @param seed seed of the initial positions and of the messages' delays
   */
 final class SideTask private (
     batch: EnvironmentBatch,
     buffers: EnvironmentBuffers,
-    bounds: (Double, Double),
+    bounds: Vector[Double],
     seed: Long
 ) extends Task,
       AutoCloseable:
-  private val scales = LearnedPolicy.scales.map(_.toFloat).toArray
+  import buffers.space
+  private val scales = space.scales.map(_.toFloat).toArray
 
   val count: Int        = batch.count
-  val observations: Int = LearnedPolicy.Inputs
-  val actions: Int      = 1
+  val observations: Int = space.inputs
+  val actions: Int      = space.outputs
 
   val seen, reached: Array[Float]       = Array.ofDim(count * observations)
   val rewards: Array[Float]             = Array.ofDim(count)
@@ -32,13 +33,15 @@ final class SideTask private (
 
   def begin(round: Long, actor: Network): Unit =
     val hidden = actor.widths.tail.init
-    batch.fly(LearnedPolicy(LearnedPolicy.shape(hidden), SideTask.parameters(actor), bounds._1, bounds._2))
+    val family = PolicyFamily.learned(LearnedPolicy.shape(hidden, space))
+    batch.fly(family.policy(SideTask.parameters(actor) ++ bounds))
     val ofRound = SplitMix64.seedOf(seed, round)
     batch.reset(Array.tabulate(count)(number => SplitMix64.seedOf(ofRound, number) & Long.MaxValue))
     copy(buffers.observations, seen)
 
   def step(actions: Array[Float]): Unit =
-    buffers.actions.put(0, actions, 0, count): Unit
+    for component <- 0 until this.actions; number <- 0 until count do
+      buffers.actions.put(component * count + number, actions(number * this.actions + component)): Unit
     batch.step()
     copy(buffers.observations, seen)
     System.arraycopy(seen, 0, reached, 0, seen.length)
@@ -78,22 +81,27 @@ object SideTask:
     else if count < 1 || count > EnvironmentBatch.Most then
       Left(s"environments: expected 1 to ${EnvironmentBatch.Most}, got $count")
     else
-      val block = ByteBuffer.allocateDirect(EnvironmentBuffers.bytes(1, count))
+      val block = ByteBuffer.allocateDirect(EnvironmentBuffers.bytes(1, count, settings.space))
       EnvironmentBatch
         .of(settings, count, Autoreset.SameStep, block, opponent)
-        .map(batch => SideTask(batch, EnvironmentBuffers(block, 1, count), bounds(settings), seed))
+        .map: batch =>
+          SideTask(batch, EnvironmentBuffers(block, 1, count, settings.space), bounds(settings), seed)
 
   private def bounds(settings: EnvironmentSettings) =
-    settings.mostTurn(if settings.learners == "pursuer" then Role.Pursuer else Role.Evader)
+    val (rate, angle) =
+      settings.mostTurn(if settings.learners == "pursuer" then Role.Pursuer else Role.Evader)
+    Vector(rate, angle) ++ Option.when(settings.space.climbs)(settings.climbMps)
 
-  /** The parameters of a [[LearnedPolicy]] from an actor, whose first output is the turn: neuron by neuron.
-    */
+  /** The weights of a trained policy from an actor, whose first outputs are the action: neuron by neuron. */
   def parameters(actor: Network): Vector[Double] =
-    require(
-      actor.inputs == LearnedPolicy.Inputs,
-      s"expected ${LearnedPolicy.Inputs} inputs, got ${actor.inputs}"
-    )
-    val widths = actor.widths.init :+ 1
+    val spaces = Seq(LearnerSpace.Level, LearnerSpace.Climbing)
+    val space  = spaces
+      .find(_.inputs == actor.inputs)
+      .getOrElse:
+        throw IllegalArgumentException(
+          s"expected ${spaces.map(_.inputs).mkString(" or ")} inputs, got ${actor.inputs}"
+        )
+    val widths = actor.widths.init :+ space.outputs
     for
       layer  <- (0 until actor.layers).toVector
       neuron <- 0 until widths(layer + 1)

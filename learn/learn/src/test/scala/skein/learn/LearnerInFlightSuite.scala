@@ -1,7 +1,7 @@
 package skein.learn
 
 import skein.loop.learning.Transition
-import skein.policy.{LearnedPolicy, Role}
+import skein.policy.{LearnedPolicy, LearnerSpace, Role}
 import skein.signal.SplitMix64
 
 class LearnerInFlightSuite extends munit.FunSuite:
@@ -10,15 +10,17 @@ class LearnerInFlightSuite extends munit.FunSuite:
   private val bounds   = Vector(3.0, 0.0)
 
   private def begun(algorithm: Algorithm, updates: Double = 1, role: Role = Role.Pursuer) =
-    LearnerInFlight.of(algorithm, settings, role, bounds, updates, 10, seed)(_ => Right(()))
+    LearnerInFlight.of(algorithm, settings, role, LearnerSpace.Level, bounds, updates, 10, seed)(_ =>
+      Right(())
+    )
 
   /** Transitions in which turning right brings the opponent nearer. */
   private def transitions(count: Int, nearer: Double = 20): Vector[Transition] =
     val random = SplitMix64(seed)
     Vector.fill(count):
-      def seen  = Vector.fill(LearnedPolicy.Inputs)(random.nextDouble())
+      def seen  = Vector.fill(LearnerSpace.Level.inputs)(random.nextDouble())
       val share = 2 * random.nextDouble() - 1
-      Transition(seen, share, seen, 30 - nearer * share)
+      Transition(seen, Vector(share), seen, 30 - nearer * share)
 
   for algorithm <- Seq(Algorithm.Sac, Algorithm.Ddpg) do
     test(
@@ -42,7 +44,7 @@ class LearnerInFlightSuite extends munit.FunSuite:
           val policy = LearnedPolicy(LearnedPolicy.shape(settings.hidden), weights.dropRight(2), 3, 0)
           val random = SplitMix64(seed + 1)
           Vector
-            .fill(50)(policy.share(skein.policy.PlanarObservation(
+            .fill(50)(policy.shares(skein.policy.PlanarObservation(
               random.nextDouble(),
               random.nextDouble(),
               random.nextDouble(),
@@ -52,7 +54,7 @@ class LearnerInFlightSuite extends munit.FunSuite:
               0.1,
               0.1,
               0.1
-            )))
+            ).fromOwnHeading)(0))
             .sum / 50
         assert(sign * mean(last) > sign * mean(first) + 0.1, s"$role: from ${mean(first)} to ${mean(last)}")
 

@@ -8,7 +8,7 @@ import skein.onnx.{OnnxFiles, OnnxFormat, OnnxGraph, OnnxPolicy}
 import skein.onnx.OnnxGraph.*
 import skein.policy.*
 import skein.settings.{FlySettings, PolicyFile}
-import skein.signal.{LatencyProfile, SplitMix64}
+import skein.signal.{Kinematics, LatencyProfile, SplitMix64}
 import skein.testing.Unhurried
 import skein.units.*
 
@@ -26,7 +26,7 @@ class OnnxPolicyRuntimeSuite extends munit.FunSuite, OnnxFiles, Unhurried:
         val differences = Vector.fill(500):
           val what   = seen(random, 0.2)
           val answer = model.run(what.fromOwnHeading.map(_.toFloat), Vector(1, 9)).fold(fail(_), identity)
-          math.abs(answer("action").values.head - policy.share(what))
+          math.abs(answer("action").values.head - policy.shares(what.fromOwnHeading)(0))
         assert(differences.max < 2e-6, s"seed $seed: ${differences.max}")
 
   private val weights = Tensor(Vector(9, 1), Vector(0.0, 1, 0, 0, 0, 0, 0, 0, 0))
@@ -53,8 +53,22 @@ class OnnxPolicyRuntimeSuite extends munit.FunSuite, OnnxFiles, Unhurried:
     val file   = written(folder, model("Erf"))
     val policy = PolicyFile.read(file).fold(fail(_), identity)
     assert(policy.name.startsWith("onnx:"), policy.name)
-    val heading = policy.policy.asInstanceOf[HeadingPolicy]
-    assertEqualsDouble(heading.heading(0, 0.4, 0, 0, 0, 0, 0.1), 0.1 * 0.42839235, 1e-7)
+    def still(eastM: Double) =
+      val there = Kinematics(Vector3(0, eastM, -20), Vector3.Zero, Quaternion.Identity, Vector3.Zero)
+      Seen(there, Span.Zero, isPredicted = false)
+    val now = Observation(
+      self = 0,
+      vehicles = Vector(still(0), still(0.4)),
+      opponent = 1,
+      headings = Vector(Radians(0), Radians(0)),
+      elapsed = Span.ofMillis(100),
+      decisions = 1,
+      cruise = MetresPerSecond(10),
+      startDown = Metres(-20)
+    )
+    val decides  = policy.policy
+    val (act, _) = decides.choose(now, decides.start)
+    assertEqualsDouble(act.headingRad(0), 0.1 * 0.42839235, 1e-7)
     val (one, other) =
       (flown(policy), flown(PolicyFile.parse(policy.role, policy.text).fold(fail(_), identity)))
     assertEquals(one.landed.outcome, FlightOutcome.Completed)

@@ -29,7 +29,7 @@ final class MemoryRecorder(heading: RecordingHeader, capacity: Int = MemoryRecor
       if kept.size < capacity then kept += record: Unit
       else
         closed = true
-        val _ = failed.trySuccess(RecordError.QueueFull(capacity))
+        val _ = failed.trySuccess(RecordError.MemoryFull(capacity))
 
   def failure: Future[RecordError] = failed.future
 

@@ -20,6 +20,12 @@ enum RecordError(val message: String):
   case QueueFull(capacity: Int)
       extends RecordError(s"recording cannot keep up: $capacity records wait to be written and no more fit")
 
+  /** A recording in memory has as many records as it may: the flight is too long. */
+  case MemoryFull(capacity: Int)
+      extends RecordError(
+        s"expected a shorter flight: a recording in memory has at most $capacity records, and it has as many"
+      )
+
   case NoSuchFile(file: Path) extends RecordError(s"there is no file $file")
 
   /** The file is in use, for example by a flight that still writes to it, or may not be read. */

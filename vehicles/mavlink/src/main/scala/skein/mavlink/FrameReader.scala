@@ -24,7 +24,7 @@ final case class ReaderCounts(
     garbageBytes: Long = 0
 )
 
-/** Decodes bytes to frames; after invalid input it resumes at the next frame. Holds less than one frame. Not
+/** Decodes bytes to frames; after invalid input it resumes at the next frame. Holds one frame at most. Not
   * thread-safe.
   *
   * @param signing the key: with it, a frame without a valid signature is refused
@@ -39,13 +39,15 @@ final class FrameReader(signing: Option[Signing] = None):
   def counts: ReaderCounts = counted
 
   /** Reads the next bytes of a stream, split anywhere. */
-  def read(bytes: Array[Byte]): Vector[Frame] =
+  def read(bytes: Array[Byte]): Vector[Frame] = read(bytes, isWhole = false)
+
+  private def read(bytes: Array[Byte], isWhole: Boolean): Vector[Frame] =
     val all    = pending ++ bytes
     val frames = Vector.newBuilder[Frame]
     var at     = 0
     var isCut  = false
     while at < all.length && !isCut do
-      step(all, at) match
+      step(all, at, isWhole) match
         case Step.Cut                 => isCut = true
         case Step.Skip(length)        => at += length
         case Step.Take(frame, length) =>
@@ -56,7 +58,7 @@ final class FrameReader(signing: Option[Signing] = None):
 
   /** Reads a datagram: its bytes never continue in the next one. */
   def readDatagram(bytes: Array[Byte]): Vector[Frame] =
-    val frames = read(bytes)
+    val frames = read(bytes, isWhole = true)
     counted = counted.copy(garbageBytes = counted.garbageBytes + pending.length)
     pending = Array.emptyByteArray
     frames
@@ -66,7 +68,7 @@ final class FrameReader(signing: Option[Signing] = None):
     case Skip(length: Int)
     case Take(frame: Frame, length: Int)
 
-  private def step(all: Array[Byte], at: Int): Step =
+  private def step(all: Array[Byte], at: Int, isWhole: Boolean): Step =
     def byte(offset: Int) = all(at + offset) & 0xff
     val left              = all.length - at
     byte(0) match
@@ -79,7 +81,7 @@ final class FrameReader(signing: Option[Signing] = None):
         val definition = Dialect.of(id)
         if (flags & ~Signed) != 0 then skip(1)(_.copy(notUnderstood = counted.notUnderstood + 1))
         else if left < length then Step.Cut
-        else if definition.isEmpty then skip(length)(_.copy(unknown = counted.unknown + 1))
+        else if definition.isEmpty then unknown(all, at, length, isWhole)
         else
           val frame = all.slice(at, at + frameEnd)
           val sum = Checksum.Start.add(frame, 1, frameEnd - ChecksumLength).add(definition.get.crcExtra).value
@@ -103,13 +105,23 @@ final class FrameReader(signing: Option[Signing] = None):
         val length     = 8 + byte(1)
         val definition = Dialect.of(byte(5))
         if left < length then Step.Cut
-        else if definition.isEmpty then skip(length)(_.copy(unknown = counted.unknown + 1))
+        else if definition.isEmpty then unknown(all, at, length, isWhole)
         else
           val sum = Checksum.Start.add(all, at + 1, at + length - 2).add(definition.get.crcExtra).value
           if sum == (byte(length - 2) | byte(length - 1) << 8) then
             skip(length)(_.copy(version1 = counted.version1 + 1))
           else skip(1)(_.copy(badChecksum = counted.badChecksum + 1))
       case _ => skip(1)(_.copy(garbageBytes = counted.garbageBytes + 1))
+
+  /** Skips a frame whose checksum cannot be computed, if another one follows it or the datagram ends; else
+    * its first byte alone, since it may be none.
+    */
+  private def unknown(all: Array[Byte], at: Int, length: Int, isWhole: Boolean): Step =
+    val end = at + length
+    if end == all.length && !isWhole then Step.Cut
+    else
+      val isFrame = end == all.length || Set(Start, StartVersion1)(all(end) & 0xff)
+      skip(if isFrame then length else 1)(_.copy(unknown = counted.unknown + 1))
 
   private def skip(length: Int)(count: ReaderCounts => ReaderCounts): Step =
     counted = count(counted)

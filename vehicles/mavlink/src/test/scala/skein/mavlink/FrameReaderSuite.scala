@@ -16,3 +16,12 @@ class FrameReaderSuite extends munit.FunSuite:
     for bytes <- Seq(Array.emptyByteArray, beat.take(beat.length - 1), older.init, Array.fill[Byte](100)(0))
     do
       assert(!FrameReader.isSpoken(bytes))
+
+  test("bytes that look like a frame of an unknown message lose no frame after them"):
+    for start <-
+        Seq[Array[Int]](Array(0xfe, 200, 0, 1, 1, 0xf0), Array(0xfd, 200, 0, 0, 0, 1, 1, 0xee, 0xee, 0xee))
+    do
+      val reader = FrameReader()
+      val frames = reader.read(start.map(_.toByte) ++ Array.fill(20)(beat).flatten)
+      assertEquals(frames.size, 20)
+      assertEquals(reader.counts.unknown, 1L)

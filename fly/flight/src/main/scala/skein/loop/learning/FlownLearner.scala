@@ -1,15 +1,15 @@
 package skein.loop.learning
 
-/** One step of a policy, for learning: observation, action and result. Observations are
-  * [[skein.policy.PlanarObservation.fromOwnHeading]].
+/** One step of a policy, for learning: observation, action and result. Observations and actions are those of
+  * the policy's [[skein.policy.LearnerSpace]].
   *
-  * @param share the chosen turn as a share of the largest, −1 to 1
+  * @param shares the chosen action
   * @param reached the observation at the next decision
-  * @param distanceM distance to the opponent at the next decision, m
+  * @param distanceM distance to the opponent at the next decision, in space if the policy climbs, m
   */
 final case class Transition(
     seen: Vector[Double],
-    share: Double,
+    shares: Vector[Double],
     reached: Vector[Double],
     distanceM: Double
 )

@@ -4,12 +4,12 @@ import skein.policy.*
 import skein.signal.{NormalQuantile, SplitMix64}
 
 /** A network whose parameters change during a flight, between two decisions and never within one. It
-  * explores: normal noise is added to its output, drawn from the seed and the decision's number. A repetition
-  * with the recorded versions gives equal decisions.
+  * explores: normal noise is added to its outputs, drawn from the seed and the decision's number. A
+  * repetition with the recorded versions gives equal decisions.
   *
   * @param first decides until the first update
   * @param version makes a policy of other parameters
-  * @param explore the noise's deviation, as a share of the largest turn
+  * @param explore the noise's deviation, as a share of the largest action
   * @param note called with all updates, and the number of the next decision
   */
 final class LearningPolicy(
@@ -30,7 +30,7 @@ final class LearningPolicy(
 
   override def isAgainstOne: Boolean = true
 
-  override def isPlanar: Boolean = true
+  override def isPlanar: Boolean = !first.space.climbs
 
   /** The newest policy, without exploration. */
   override def guessed(draw: Int => Double): Policy = newest
@@ -39,25 +39,28 @@ final class LearningPolicy(
     for news <- lessons.news(seen.decisions) do
       note(seen.decisions, news)
       news.parameters.foreach(parameters => newest = version(parameters))
-    val observed = PlanarObservation.of(seen)
-    val numbers  = observed.fromOwnHeading.toVector
+    val observed = first.space.observe(seen)
+    val numbers  = observed.toVector
     memory match
       // After a decision that something else made instead, the effect of its own decision is unknown.
-      case Some(Before(decision, before, share)) if decision + 1 == seen.decisions =>
-        lessons.flown(Transition(before, share, numbers, StrictMath.hypot(observed.dxM, observed.dyM)))
+      case Some(Before(decision, before, shares)) if decision + 1 == seen.decisions =>
+        lessons.flown(Transition(before, shares, numbers, distanceM(seen)))
       case _ => ()
+    val random = SplitMix64(SplitMix64.seedOf(seed, seen.decisions))
     val policy = newest
-    val share  = (policy.share(observed) + explore * normal(seen.decisions)).max(-1.0).min(1.0)
-    val turn   = share * (policy.turnRateRadPerS * observed.elapsedS + policy.turnRad)
-    val next   = Before(seen.decisions, numbers, share)
-    (seen.along(observed.ownHeadingRad + turn, seen.cruise.value), Some(next))
+    val shares = policy.shares(observed).map(share => (share + noise(random)).max(-1.0).min(1.0))
+    (policy.act(seen, shares), Some(Before(seen.decisions, numbers, shares.toVector)))
 
-  private def normal(decision: Long) =
-    if explore == 0 then 0.0
-    else NormalQuantile(SplitMix64(SplitMix64.seedOf(seed, decision)).nextDouble().max(Least))
+  private def noise(random: SplitMix64) =
+    if explore == 0 then 0.0 else explore * NormalQuantile(random.nextDouble().max(Least))
+
+  private def distanceM(seen: Observation) =
+    val toOpponent = seen.vehicles(seen.opponent).kinematics.positionNed - seen.own.kinematics.positionNed
+    val level      = StrictMath.hypot(toOpponent.x, toOpponent.y)
+    if first.space.climbs then StrictMath.hypot(level, toOpponent.z) else level
 
 object LearningPolicy:
   private val Least = 1e-12
 
-  /** The last decision: its observation, and its share of the largest turn. */
-  final case class Before(decision: Long, seen: Vector[Double], share: Double)
+  /** The last decision: its observation, and its action. */
+  final case class Before(decision: Long, seen: Vector[Double], shares: Vector[Double])

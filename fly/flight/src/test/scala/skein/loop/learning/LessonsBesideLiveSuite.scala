@@ -18,7 +18,7 @@ class LessonsBesideLiveSuite extends munit.FunSuite:
       None
     try
       val lessons    = LessonsBeside(learner, ExecutionContext.fromExecutor(thread))
-      val transition = Transition(Vector(1), 0, Vector(2), 3)
+      val transition = Transition(Vector(1), Vector(0), Vector(2), 3)
       lessons.flown(transition)
       assert(began.await(10, TimeUnit.SECONDS))
       // While it hangs, all later calls return, more than the queue holds.
@@ -49,7 +49,7 @@ class LessonsBesideLiveSuite extends munit.FunSuite:
       Some(Vector(part.last.distanceM))
     try
       val lessons                  = LessonsBeside(learner, ExecutionContext.fromExecutor(thread))
-      def flown(number: Int): Unit = lessons.flown(Transition(Vector(1), 0, Vector(2), number))
+      def flown(number: Int): Unit = lessons.flown(Transition(Vector(1), Vector(0), Vector(2), number))
       flown(0)
       assert(began.await(10, TimeUnit.SECONDS))
       for number <- 1 to 100 do flown(number)

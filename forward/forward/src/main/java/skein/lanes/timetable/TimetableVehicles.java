@@ -68,8 +68,11 @@ public abstract class TimetableVehicles extends TimetableReadings {
 
   public abstract void start(int worlds);
 
-  /** Restarts one world: sets its vehicle, and all its readings, to its start at rest. */
-  public final void restart(int world) {
+  /** Restarts one world: sets its vehicle, and all its readings, to its start at rest.
+   *
+   * @param headingRad where a car points
+   */
+  public final void restart(int world, float headingRad) {
     for (int i = world; i < seenX.length; i += WORLDS) {
       seenX[i] = startX[world];
       seenY[i] = startY[world];
@@ -81,11 +84,11 @@ public abstract class TimetableVehicles extends TimetableReadings {
       }
     }
     if (predicted != null) predicted.restart(world, this);
-    rest(world);
+    rest(world, headingRad);
   }
 
   /** Sets one world's vehicle to its start, at rest. */
-  abstract void rest(int world);
+  abstract void rest(int world, float headingRad);
 
   /** Reads the vehicles.
    *

@@ -4,7 +4,7 @@ import java.util.Arrays
 import java.util.concurrent.ConcurrentHashMap
 import skein.formula.{Formula, Untraceable}
 import skein.simd.{FixedFormula, Forms, LaneFunction}
-import skein.vehicle.{PlaneReading, Plant, PlantState, PlantTiming, SpatialPlant}
+import skein.vehicle.{DrivenCar, PlaneReading, Plant, PlantState, PlantTiming, SpatialPlant}
 
 /** Simulates a [[skein.vehicle.Plant]] or a [[skein.vehicle.SpatialPlant]] in many worlds with SIMD. Compiled
   * from the plant's own methods.
@@ -43,6 +43,13 @@ private[skein] final class PlantLanes private (val plant: PlantTiming, form: Pla
     val worlds = LaneFunction.COUNT
     for i <- 0 until count do
       Arrays.fill(array, from + i * worlds, from + (i + 1) * worlds, initial(i))
+
+  /** Writes one world's state at rest, if it depends on where the vehicle points. */
+  def face(array: Array[Float], world: Int, headingRad: Double): Unit = plant match
+    case car: DrivenCar =>
+      val initial = PlantState.numbers(car.copy(startHeadingRad = headingRad).initial)
+      for i <- initial.indices do array(i * LaneFunction.COUNT + world) = initial(i).toFloat
+    case _ => ()
 
   /** The compiled step: inputs are the state's components, then the commanded velocity and the duration. */
   def step: FixedFormula = form.step.of(plant)

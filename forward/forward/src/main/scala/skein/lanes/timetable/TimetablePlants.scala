@@ -25,7 +25,9 @@ private[lanes] final class TimetablePlants(agent: RolloutAgent, lanes: PlantLane
       for at <- 0 until seenZ.length by WORLDS do System.arraycopy(startZ, 0, seenZ, at, WORLDS)
     isCommanded = false
 
-  def rest(world: Int): Unit = flight.rest(world)
+  def rest(world: Int, headingRad: Float): Unit =
+    lanes.face(flight.state, world, headingRad)
+    flight.rest(world)
 
   def look(times: Array[Float], at: Int, into: Int, withVelocity: Boolean): Unit =
     if isCommanded then

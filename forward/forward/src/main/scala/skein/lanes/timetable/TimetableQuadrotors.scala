@@ -25,9 +25,9 @@ private[lanes] final class TimetableQuadrotors(agent: RolloutAgent, flown: LaneQ
     flown.use(worlds)
     position.use(worlds)
     velocity.use(worlds)
-    for world <- 0 until WORLDS do rest(world)
+    for world <- 0 until WORLDS do rest(world, 0)
 
-  def rest(world: Int): Unit = flown.hover(world, hold)
+  def rest(world: Int, headingRad: Float): Unit = flown.hover(world, hold)
 
   def look(times: Array[Float], at: Int, into: Int, withVelocity: Boolean): Unit =
     flown.fly(times(at).toInt)

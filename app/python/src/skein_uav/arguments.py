@@ -1,0 +1,141 @@
+"""Arguments of Skein's commands, from those of Python's functions."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import shutil
+import tempfile
+from collections.abc import Iterator, Mapping
+from numbers import Real
+from pathlib import Path
+from typing import Any
+
+from .errors import SkeinError
+from .scenario import Scenario
+from .untraceable import shown
+
+
+class WrittenFile(str):
+    """The path of the file of a scenario in Python, which knows the places in Python of its lines."""
+
+    places: dict[int, str]
+
+    def explained(self, complaint: str) -> str:
+        """A command's error message, with places in Python in place of the file and its lines."""
+
+        def placed(found: re.Match[str]) -> str:
+            number = found[1]
+            return f"{self.places.get(int(number), '')}: ".removeprefix(": ") if number else ""
+
+        file = rf"(?:--scenario: )?{re.escape(self)}: (?:line (\d+): )?(?:by its defaults: )?"
+        return re.sub(file, placed, complaint).replace(": agents: ", ": vehicles(): ")
+
+
+def scenario_file(scenario: Scenario | str | os.PathLike[str] | None, folder: Path) -> str | None:
+    """The value of ``--scenario``; a scenario written in Python is saved as a file in the folder."""
+    if isinstance(scenario, type) and issubclass(scenario, Scenario):
+        raise TypeError(f"expected a scenario, such as {scenario.__name__}(), got the class {scenario.__name__}")
+    if not isinstance(scenario, Scenario):
+        if scenario is not None and not isinstance(scenario, (str, os.PathLike)):
+            raise TypeError(f"expected a scenario, its file or its name, got {shown(scenario)}")
+        return None if scenario is None else os.fspath(scenario)
+    text, places = scenario._file()
+    file = folder / f"{scenario.title}.scenario"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        file.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise SkeinError(f"out: cannot write to {folder}: {error.strerror}") from None
+    written = WrittenFile(file)
+    written.places = places
+    return written
+
+
+@contextlib.contextmanager
+def folder(out: str | os.PathLike[str] | None) -> Iterator[Path]:
+    """The folder of a command's files: without `out` a new temporary one, which goes if the command fails."""
+    if out is not None:
+        yield Path(out)
+        return
+    made = Path(tempfile.mkdtemp(prefix="skein-"))
+    try:
+        yield made
+    except Exception:
+        shutil.rmtree(made, ignore_errors=True)
+        raise
+
+
+def renamed(function: str, options: Mapping[str, Any], **names: str) -> None:
+    """Refuses options of the command for which the function uses another name."""
+    for option, name in names.items():
+        if option in options:
+            raise TypeError(f"{function}() takes {name}, not {option}")
+
+
+def some(**options: Any) -> None:
+    """Refuses empty lists, which a command would take for its default."""
+    for name, value in options.items():
+        if isinstance(value, (list, tuple, set)) and not value:
+            raise ValueError(f"{name}: expected one or more, got none")
+
+
+def flags(options: Mapping[str, Any]) -> list[str]:
+    """Options as words of the command line; ``period_ms=50`` is ``--period 50ms``."""
+    words: list[str] = []
+    for name, value in options.items():
+        unit = re.search(r"_(ms|s)$", name)
+        several = value if isinstance(value, (list, tuple, set)) else [value]
+        for one in several:
+            if unit and isinstance(one, Real) and not isinstance(one, bool):
+                words += [_option(name[: unit.start()]), f"{float(one):.12g}{unit[1]}"]
+            elif one is True:
+                words.append(_option(name))
+            elif one is not None and one is not False:
+                words += [_option(name), os.fspath(one) if isinstance(one, os.PathLike) else str(one)]
+    return words
+
+
+def _option(name: str) -> str:
+    return "--" + name.replace("_", "-")
+
+
+def duration(duration_s: float | None, scenario: object) -> str | None:
+    """The value of ``--duration``: by default that of a scenario's file, else 60 s."""
+    if duration_s is None:
+        return None if isinstance(scenario, Scenario) or str(scenario).endswith(".scenario") else "60000ms"
+    return milliseconds("duration_s", duration_s, "s")
+
+
+def milliseconds(name: str, time: float, unit: str) -> str:
+    if not isinstance(time, Real) or isinstance(time, bool):
+        raise TypeError(f"{name}: expected a number of {unit}, got {time!r}")
+    return f"{float(time) * {'s': 1000, 'ms': 1}[unit]:.12g}ms"
+
+
+def key(name: str) -> str:
+    return name.replace("_", "-")
+
+
+def set_to(settings: Mapping[str, Any] | None) -> list[str]:
+    """The values of ``--set``."""
+
+    def text(value: Any) -> Any:
+        return str(value).lower() if isinstance(value, bool) else value
+
+    return [f"{key(name)}={text(value)}" for name, value in (settings or {}).items()]
+
+
+def varied(vary: Mapping[str, tuple[float, float]] | None) -> list[str]:
+    """The values of ``--vary``."""
+    words = []
+    for name, bounds in (vary or {}).items():
+        try:
+            least, most = (float(one) for one in bounds)
+        except (TypeError, ValueError):
+            raise TypeError(
+                f"vary: expected the least and the greatest value of {name}, such as (1, 10), got {bounds!r}"
+            ) from None
+        words.append(f"{key(name)}={least:.12g}..{most:.12g}")
+    return words
