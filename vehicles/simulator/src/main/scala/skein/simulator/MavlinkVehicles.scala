@@ -97,7 +97,7 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation, settings:
       else None
 
     def hear(message: Message, from: (system: Int, component: Int), peer: MavlinkChannel): Unit =
-      val heard = decided.heard(message, from, motion)
+      val heard = decided.heard(message, from, motion, reported)
       decided = heard.next
       takeOver()
       heard.answers.foreach(peer.write(system, _))
