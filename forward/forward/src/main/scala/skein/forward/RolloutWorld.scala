@@ -60,8 +60,14 @@ private[skein] final class RolloutWorld(
   /** Resets to the start of an episode.
     *
     * @param firstQuestion the number of each vehicle's next request
+    * @param sensorSeed of the errors of readings, by default the key
     */
-  def start(worldKey: Int, listener: LoopObserver, firstQuestion: Int = 0): Unit =
+  def start(
+      worldKey: Int,
+      listener: LoopObserver,
+      firstQuestion: Int = 0,
+      sensorSeed: Option[Long] = None
+  ): Unit =
     key = worldKey
     time = 0
     watching = listener
@@ -70,7 +76,8 @@ private[skein] final class RolloutWorld(
     queue.clear()
     for vehicle <- vehicles.indices do
       sensors(vehicle) =
-        responses(vehicle).sensors.map(NoisySensor(_, SplitMix64.seedOf(worldKey, vehicle)))
+        responses(vehicle).sensors.map: noise =>
+          NoisySensor(noise, SplitMix64.seedOf(sensorSeed.getOrElse(worldKey), vehicle))
       vehicles(vehicle).start(agents(vehicle).startX, agents(vehicle).startY, agents(vehicle).altitudeDownM)
       asked(vehicle) = firstQuestion; commanded(vehicle) = 0; commandAt(vehicle) = 0; ackAt(vehicle) = 0
 
