@@ -15,7 +15,7 @@ import skein.loop.*
 import skein.loop.learning.{Learning, Lessons, LessonsAgain, LessonsBeside}
 import skein.loop.planning.{CountedPlanWorkers, PlanThread, PlanWorkers, ThreadedPlanWorkers}
 import skein.policy.{ActionGuidance, Fleet}
-import skein.port.{CommandPlan, VehicleError, VehiclePort}
+import skein.port.{CommandPlan, SteppedTime, VehicleError, VehiclePort}
 import skein.record.*
 import skein.settings.{ChosenPolicy, FlightPlan, FlySettings, PolicyFile, RecordedPlan, Wire}
 import skein.scene.Moment
@@ -118,14 +118,16 @@ final class FlightAssembler(
       movesLast = Option.when(isAirSims)(settings.loopSettings(plan).moveDuration)
     )
     val isFlying = AtomicBoolean()
-    // MAVLink's vehicles count time from their boot, a simulator of our own from the clock's.
-    val clockBegins = if settings.wire == Wire.Mavlink then clock.now() else Instant.Epoch
-    val sensing     = settings.sensors.map: noise =>
+    val isOver   = AtomicBoolean()
+    val sensing  = settings.sensors.map: noise =>
       SimulatedSensing(
         noise,
         SplitMix64.seedOf(plan.seed, -1),
-        (vehicle, at, positionNed) =>
-          monitor.offer(Truth(vehicle, Instant.Epoch + at.since(clockBegins), positionNed)),
+        seen =>
+          // MAVLink's vehicles count time from their boot.
+          val at = if settings.wire == Wire.Mavlink then Instant.Epoch + seen.sinceStart else seen.at
+          if !isOver.get then monitor.offer(Truth(seen.vehicle, at, seen.positionNed))
+        ,
         () => isFlying.get
       )
     val starting =
@@ -197,7 +199,7 @@ final class FlightAssembler(
         val flight = Flight.start(
           plan.loop,
           teams.head,
-          reached.time,
+          reached.time.map(FlightAssembler.noting(_, () => isOver.set(true))),
           settings.duration,
           clock,
           endCondition,
@@ -205,6 +207,7 @@ final class FlightAssembler(
           on,
           teams.tail
         )
+        flight.ending.foreach(_ => isOver.set(true))
         endCondition.isOver.foreach(_ => flight.complete())
         if plan.loop != LoopKind.Paused then
           for one <- reached.cameras do
@@ -420,6 +423,13 @@ object FlightAssembler:
 
   /** Planning in virtual time, where a search has a fixed number of slices. */
   def counted(planning: PlanSettings): PlanWorkers = CountedPlanWorkers(planning.searches, planning.slices)
+
+  /** Calls `onResumed` before time runs again, which it does after a flight's last step. */
+  private def noting(time: SteppedTime, onResumed: () => Unit): SteppedTime = new SteppedTime:
+    export time.{continueFor, pause}
+    def resume(): Future[Either[VehicleError, Unit]] =
+      onResumed()
+      time.resume()
 
   private def noSteps(where: String) =
     s"paused needs a simulator whose time passes in steps, which vehicles of $where have not"

@@ -64,6 +64,13 @@ class SensedFlightSimulation extends munit.FunSuite, Unhurried:
       val result = flown("velocity=0.05,outage=1s/4s", loop, seconds = 8)
       assertEquals(result.landed.outcome, FlightOutcome.Completed, loop.label)
 
+  test("the recorded truth ends with the flight, before its vehicles brake"):
+    for loop <- Seq(LoopKind.Paused, LoopKind.Stream) do
+      val recording = flown("position=0.1", loop, seconds = 4).recorder.recording
+      val begun     = recording.readings.map(_.state.validAt).min
+      val lastS     = recording.truths.map(_.validAt).max.since(begun).toSeconds
+      assert(lastS > 3.8 && lastS <= 4, s"${loop.label}: $lastS s")
+
   test("over MAVLink readings have the stated errors, too"):
     val recording = flown("position=0.5,outage=1s/5s", LoopKind.Stream, 20, Wire.Mavlink).recorder.recording
     assertEqualsDouble(sd(errorsM(recording)), 0.5, 0.05)

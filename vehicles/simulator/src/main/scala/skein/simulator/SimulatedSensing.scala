@@ -7,13 +7,13 @@ import skein.vehicle.{NoisySensor, SensorNoise}
 /** What the simulator reports of its vehicles' motion.
   *
   * @param seed of all errors; each vehicle has errors of its own
-  * @param truth receives every vehicle's name and true position, world NED, m, every 50 ms of simulated time
+  * @param truth receives every vehicle's true position every 50 ms of simulated time
   * @param isOn whether there are errors by now; until then readings are true, and nothing receives the truth
   */
 final case class SimulatedSensing(
     noise: SensorNoise,
     seed: Long = 1,
-    truth: (String, Instant, Vector3) => Unit = (_, _, _) => (),
+    truth: TruePosition => Unit = _ => (),
     isOn: () => Boolean = () => true
 ):
   private[simulator] def sensor(vehicle: Int): NoisySensor =
@@ -21,6 +21,12 @@ final case class SimulatedSensing(
 
 object SimulatedSensing:
   private[simulator] val TruthEvery: Span = Span.ofMillis(50)
+
+/** @param at the instant that it shows, on the simulator's clock
+  * @param sinceStart time since the simulation's start, as MAVLink's vehicles count it
+  * @param positionNed world NED, m
+  */
+final case class TruePosition(vehicle: String, at: Instant, sinceStart: Span, positionNed: Vector3)
 
 /** A reading of a vehicle's motion, in its own frame, or its true motion.
   *

@@ -229,7 +229,8 @@ final class World(
       vehicles.foreach(_.step(nextStep, scene))
       for to <- sensing if nextStep >= truthAt && to.isOn() do
         for vehicle <- vehicles do
-          to.truth(vehicle.settings.name, nextStep, vehicle.worldPosition(nextStep))
+          val place = vehicle.worldPosition(nextStep)
+          to.truth(TruePosition(vehicle.settings.name, nextStep, nextStep.since(start), place))
         truthAt = nextStep + SimulatedSensing.TruthEvery
       nextStep = nextStep + stepLength
     clock = clock.max(to)
