@@ -49,6 +49,8 @@ final case class ServeOptions(
         "drift=1.5/60s (of the position, slowly varying), dropout=2%, outage=1s/20s"
     )
     sensors: Option[String],
+    @arg(doc = "seed of gusts and of errors of readings")
+    seed: Long = 1,
     @arg(doc =
       "speaks MAVLink too, as PX4's simulation does: UDP to 14550 for a ground station, and to " +
         "14540, 14541, … for programs, one port for each vehicle; all vehicles also at UDP 18570"
@@ -102,7 +104,7 @@ object ServeCommand
       address   <- addressOf(options.listen, world)
       scene     <- NamedScene.read(options.scene).left.map("--scene: " + _)
       plant     <- SimulatedBody.parse(options.plant).left.map("--plant: " + _)
-      kind      <- plant.kind(seed = 1)
+      kind      <- plant.kind(options.seed)
       autopilot <-
         options.hil.map(autopilotOf).fold[Either[String, Option[AutopilotKind]]](Right(None))(_.map(Some(_)))
       _ <- Expect.that(autopilot.isEmpty || !options.mavlink.value):
@@ -148,7 +150,7 @@ object ServeCommand
             hil = hil,
             kind = kind,
             patience = Some(Patience),
-            sensing = noise.map(SimulatedSensing(_))
+            sensing = noise.map(SimulatedSensing(_, options.seed))
           ),
           Option.when(options.view.view.value)(shows),
           ros,

@@ -120,6 +120,9 @@ class RunningSimulatorSimulation extends munit.FunSuite, Unhurried:
               )
             )
 
+    def missing(sensors: Option[SensorNoise]): Future[Either[String, Unit]] = server.flatMap: server =>
+      AirSimFleet.missing(settings.fleet, sensors, server.address, network, clock)
+
     /** Every vehicle's state in its own frame, at every tick until `done`. */
     def watch(done: Future[?]): Future[Vector[Vector[Kinematics]]] = operate: client =>
       val watched = vehicles.map(vehicle => Multirotor(client, vehicle.name))
@@ -233,6 +236,31 @@ class RunningSimulatorSimulation extends munit.FunSuite, Unhurried:
     for recording <- orFail(flights) do
       assertEquals(recording.ending.map(_.how), Some(EndingKind.Completed))
       assert(recording.readings.sizeIs > 60, recording.readings.size)
+
+  test("by readings with errors, too, vehicles take off and climb vertically to their layers"):
+    val noise         = SensorNoise.parse("velocity=0.3,drift=30/60s").toOption
+    val (seen, taken) = on(duel, sensors = noise): bench =>
+      import bench.system.dispatcher
+      val flown = bench.command(brief.copy(sensors = noise)).map(orFail)
+      bench.watch(flown).zip(flown).map((seen, _) => (seen, bench.taken))
+    assertEquals(taken.count(_ == "takeoff"), 2)
+    for vehicle <- duel.indices do
+      val rising = seen.map(_(vehicle).positionNed).takeWhile(_.z > -15)
+      assert(rising.nonEmpty && rising.last.z < -10, rising.lastOption)
+      val sideways = rising.map(place => place.copy(z = 0).norm).max
+      assert(sideways < 1, s"$sideways m")
+
+  test("a simulator of other sensors than stated is refused"):
+    val noise                 = SensorNoise.parse("position=1,velocity=0.1").toOption
+    def against(text: String) = on(duel, sensors = noise): bench =>
+      bench.missing(Option(text).filter(_.nonEmpty).flatMap(SensorNoise.parse(_).toOption))
+    assertEquals(against("velocity=0.1,position=1.0"), Right(()))
+    for text <- Seq("", "position=2,velocity=0.1") do
+      assert(
+        against(text).left.exists(why =>
+          why.startsWith("--sensors: expected position=1,velocity=0.1, as in the simulator at ")
+        )
+      )
 
   test("a simulator that stands still is resumed"):
     val recordings = on(duel): bench =>

@@ -2,7 +2,7 @@ package skein.simulator
 
 import scala.collection.mutable.ArrayBuffer
 import skein.airsim.wire.*
-import skein.mavlink.{FrameReader, Heartbeat, LocalPositionNed}
+import skein.mavlink.*
 import skein.units.*
 import skein.vehicle.SensorNoise
 import upack.{Bool, Str}
@@ -11,7 +11,7 @@ import upack.{Bool, Str}
 class SensingSuite extends munit.FunSuite:
   private val name = "Evader"
 
-  private final class Client(text: String, told: (String, Instant, Vector3) => Unit = (_, _, _) => ()):
+  private final class Client(text: String, told: TruePosition => Unit = _ => ()):
     val bench =
       Bench(sensing = Some(SimulatedSensing(SensorNoise.parse(text).fold(fail(_), identity), 7, told)))
     bench.tell("enableApiControl", Bool(true), Str(name))
@@ -88,12 +88,39 @@ class SensingSuite extends munit.FunSuite:
     assert(clear.filter(_._1).exists(_._2.exists(_.isInstanceOf[Heartbeat])))
     assert(clear.filterNot(_._1).exists(_._2.exists(_.isInstanceOf[LocalPositionNed])))
 
+  test("MAVLink answers requests by readings, and refuses them during an outage"):
+    val sensed  = Client("position=5,outage=1s/3s")
+    val mavlink = MavlinkVehicles(sensed.bench.simulation, MavlinkSettings())
+    mavlink.join(0, Vector.empty, isDatagrams = false)
+    val (reader, writer) = (FrameReader(), FrameWriter(system = 245, component = 190))
+    // Its result, and the position if it is answered.
+    def requested() =
+      val _ = mavlink.take()
+      mavlink.receive(0, writer.write(CommandLong(1, 1, 512, 0, 32, 0, 0, 0, 0, 0, 0)))
+      val heard = mavlink.take().flatMap(_.datagrams).flatMap(bytes => reader.read(bytes)).map(_.message)
+      val ack   = heard.collectFirst { case ack: CommandAck => ack.result }
+      val after = heard.dropWhile(!_.isInstanceOf[CommandAck])
+      (ack, after.collectFirst { case it: LocalPositionNed => Vector3(it.x, it.y, it.z) })
+    sensed.untilMissing()
+    assertEquals(requested(), (Some(1), None))
+    while sensed.state.skein_missing do sensed.bench.pass(0.1)
+    val seen            = sensed.state.kinematics_estimated.position.toVector
+    val (result, place) = requested()
+    assertEquals(result, Some(0))
+    assert(place.exists(place => (place - seen).norm < 1e-4), s"$place, $seen")
+
+  test("clients read which errors there are"):
+    assertEquals(Client("position=1").bench.now[String]("skeinSensors"), "position=1")
+    assertEquals(Bench().now[String]("skeinSensors"), "")
+
   test("the truth is told every 50 ms of simulated time, to a step of physics"):
-    val told   = ArrayBuffer.empty[(String, Instant, Vector3)]
-    val sensed = Client("position=5", (vehicle, at, place) => told += ((vehicle, at, place)): Unit)
+    val told   = ArrayBuffer.empty[TruePosition]
+    val sensed = Client("position=5", one => told += one: Unit)
+    val start  = sensed.bench.simulation.world.now - Span.ofSeconds(sensed.bench.simulatedS)
     told.clear()
     sensed.bench.pass(3)
-    assertEquals(told.map(_._1).toSet, Set(name))
+    assertEquals(told.map(_.vehicle).toSet, Set(name))
     assertEqualsDouble(told.size.toDouble, 59, 2)
-    assert(told.map(_._2.toNanos).sliding(2).forall(pair => pair(1) - pair(0) <= 54_000_000L))
-    assert(told.forall((_, _, place) => (place - Vector3(3, 4, -20)).norm < 0.1))
+    assert(told.map(_.at.toNanos).sliding(2).forall(pair => pair(1) - pair(0) <= 54_000_000L))
+    assert(told.forall(one => (one.positionNed - Vector3(3, 4, -20)).norm < 0.1))
+    assert(told.forall(one => one.sinceStart == one.at.since(start)))
