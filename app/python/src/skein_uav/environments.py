@@ -101,6 +101,9 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
     plant : str, optional
         The vehicle model: ``reduced``, ``drag``, ``quadrotor``, ``tilt`` or a model file; by default ``reduced`` at 20 m
         altitude and ``drag`` at others, or ``tilt`` if a policy may climb.
+    sensors : str
+        Errors of readings, such as ``position=0.1,velocity=0.05,dropout=2%`` (standard deviations in m and m/s); by default
+        readings are true. Environments are then simulated one by one.
     altitude_m : float, optional
         Altitude of all vehicles at the start; by default the scenario's.
     episode_s : float
@@ -157,6 +160,7 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
         link: str = "vpn",
         period_ms: float = 100.0,
         plant: str = "",
+        sensors: str = "",
         altitude_m: float | None = None,
         episode_s: float = 60.0,
         capture_radius_m: float = 0.0,
@@ -192,6 +196,7 @@ class PursuitVectorEnv(VectorEnv[Floats, Floats, NDArray[Any]]):
             "link": link,
             "period_ms": period_ms,
             "plant": plant,
+            "sensors": sensors,
             "altitude_m": altitude_m,
             "episode_s": episode_s,
             "capture_radius_m": capture_radius_m,

@@ -45,7 +45,7 @@ class TeamParallelEnv(ParallelEnv[str, Floats, Floats]):
     backend : {'process', 'socket', 'unix:PATH'}
         As in `skein_uav.environments.PursuitVectorEnv`.
     **others
-        ``loop``, ``link``, ``period_ms``, ``plant``, ``altitude_m``, ``episode_s``, ``capture_radius_m``,
+        ``loop``, ``link``, ``period_ms``, ``plant``, ``sensors``, ``altitude_m``, ``episode_s``, ``capture_radius_m``,
         ``start_within_m``, ``moves_in_flight``, ``climb_mps`` and ``objective``, as in `PursuitVectorEnv`.
     """
 

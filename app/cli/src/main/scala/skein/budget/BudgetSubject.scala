@@ -23,8 +23,12 @@ trait BudgetSubject(
     val formula: String,
     val unit: String
 ):
-  /** The value in a world that stands still while the controller decides; Left says why there is none. */
-  def truth: Either[String, Double]
+  /** The value in a world that stands still while the controller decides; Left says why there is none.
+    *
+    * @param episodes number of the cells' episodes over which it is averaged if readings have errors; without
+    *   errors, one is simulated
+    */
+  def truth(episodes: Int): Either[String, Double]
 
   def engine(links: Vector[LatencyDistribution]): Engine
 
@@ -86,10 +90,11 @@ final class TeamSubject(
 
   private def of(team: Engagement) = TeamCandidate(team, objective.judged(durationS, flown.timing.periodS))
 
-  /** Simulates the paused loop, which waits for every answer, so that neither delay nor chance matters. */
-  def truth: Either[String, Double] =
-    val paused = flown.paused.batch(1).fly(Worlds(of(atRest), Vector(DelayTable.none), 1))
-    Right(objective.value(paused, 0, durationS))
+  /** Simulates the paused loop, which waits for every answer, so that delays do not matter. */
+  def truth(episodes: Int): Either[String, Double] =
+    val each   = if named.sensors.isEmpty then 1 else episodes
+    val paused = flown.paused.batch(threads.min(each)).fly(Worlds(of(atRest), Vector(DelayTable.none), each))
+    Right(RunningStats.of(each)(objective.value(paused, _, durationS)).mean)
 
   def engine(links: Vector[LatencyDistribution]): Engine =
     batch.engine(candidate, shareEpisodes = false, links.map(DelayTable.of))

@@ -38,7 +38,7 @@ final class BudgetSweep(subject: BudgetSubject, axes: BudgetAxes, tolerance: Tol
       onRow: BudgetSweep.Rows => Unit = _ => ()
   ): Either[String, LatencyBudget] =
     for
-      truth <- subject.truth
+      truth <- subject.truth(episodes)
       per   <- tolerance.per(truth).left.map(mistake => s"${subject.formula}: $mistake")
       rows  <- rowsFrom(Vector.empty, onProgress, isCancelled, onRow)
     yield LatencyBudget(axes.meansMs, axes.jittersMs.take(rows.size), rows, truth, per)

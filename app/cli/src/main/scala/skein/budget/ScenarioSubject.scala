@@ -96,7 +96,12 @@ final class FlownSubject private (
 
   def cellEpisodes(links: Vector[LatencyDistribution]): Int = effort.cellEpisodes
 
-  def truth: Either[String, Double] = value(None, 0).map(_.getOrElse(Double.NaN))
+  def truth(episodes: Int): Either[String, Double] =
+    val each             = if question.conditions.sensors.isEmpty then 1 else episodes
+    val (missing, flown) = InParallel
+      .map(Vector.range(0, each), question.threads)(value(None, _).map(_.getOrElse(Double.NaN)))
+      .partitionMap(identity)
+    missing.headOption.toLeft(RunningStats.of(each)(flown).mean)
 
   private def value(link: Option[LatencyDistribution], episode: Int): Either[String, Option[Double]] =
     over(link)(episode).map(WholeFlights.sum(question.objective.measures, _))

@@ -68,6 +68,12 @@ final case class FlightOptions(
     )
     plant: Option[String],
     @arg(doc =
+      "errors of the vehicles' readings, such as position=0.1,velocity=0.05,heading=0.02 (standard deviations in m, " +
+        "m/s, rad), drift=1.5/60s (of the position, slowly varying), dropout=2%, outage=1s/20s; with --simulator, those " +
+        "of its serve --sensors"
+    )
+    sensors: Option[String],
+    @arg(doc =
       "model that predicts, in `predictive` and `plan`: reduced, drag, quadrotor, constant-velocity, " +
         "constant-turn, adaptive, a model file of `skein identify`, or reduced:FILE for its model of three parameters"
     )

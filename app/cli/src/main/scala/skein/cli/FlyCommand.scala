@@ -90,6 +90,8 @@ final class FlyCommand(using Scenarios)
         "--scene is for the built-in simulator; --simulator has a scene of its own"
       _ <- Expect.that(simulator.isEmpty || settings.plant.isAirSim):
         "--plant is for the built-in simulator; --simulator has models of its own"
+      _ <- Expect.that(simulator.isEmpty || settings.sensors.isEmpty || settings.wire == Wire.AirSim):
+        "--sensors: not together with --simulator over MAVLink, which does not say what errors its readings have"
       _ <- Expect.that(settings.only.isEmpty || simulator.isDefined && options.twins.forall(_ == 0)):
         "--only: expected with --simulator, where other processes fly the rest, and without --twins"
       twins = options.twins.getOrElse(if settings.only.isEmpty then FlyCommand.Twins else 0)
@@ -302,7 +304,8 @@ private[cli] object FlyCommand:
       case None     => Right(())
       case Some(at) =>
         given system: ActorSystem = ActorSystem("skein-names")
-        try Edge.await(AirSimFleet.missing(settings.fleet, at, TcpTransport(), Clock.system))
+        try
+          Edge.await(AirSimFleet.missing(settings.fleet, settings.sensors, at, TcpTransport(), Clock.system))
         finally
           val _ = Edge.await(system.terminate())
 

@@ -30,6 +30,11 @@ final case class ForwardOptions(
     )
     plant: Option[String],
     @arg(doc =
+      "errors of the vehicles' readings, such as position=0.1,velocity=0.05,heading=0.02 (standard deviations in m, " +
+        "m/s, rad), drift=1.5/60s, dropout=2%, outage=1s/20s; then world by world, without SIMD"
+    )
+    sensors: Option[String],
+    @arg(doc =
       "altitude of all vehicles, in metres (default: 20); a fitted model holds at the altitude of its flights"
     )
     altitude: Option[Double],
@@ -57,7 +62,8 @@ final case class ForwardOptions(
       duration.toNanos / 1e9,
       altitude.getOrElse(PaperDuel.AltitudeM),
       eye,
-      movesInFlight.getOrElse(Moves.InFlight)
+      movesInFlight.getOrElse(Moves.InFlight),
+      sensors
     )
 
   def threadCount: Either[String, Int] = ForwardOptions.threadCount(threads)

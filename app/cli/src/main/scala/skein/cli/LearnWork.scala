@@ -68,8 +68,9 @@ private[cli] object LearnWork:
     import setup.question as asked
     import asked.conditions
     for
-      loop <- LoopKind.parse(conditions.loop)
-      link <- Arguments.latency(asked.link)
+      loop  <- LoopKind.parse(conditions.loop)
+      link  <- Arguments.latency(asked.link)
+      noise <- conditions.noise
     yield
       val settings = FlySettings(
         List(loop),
@@ -78,7 +79,8 @@ private[cli] object LearnWork:
         Span.ofMillis(conditions.periodMs),
         asked.seed,
         setup.game.scenario,
-        movesInFlight = conditions.movesInFlight
+        movesInFlight = conditions.movesInFlight,
+        sensors = noise
       )
       val plans =
         for plan <- settings.plansWith(ChosenPolicy(policy.name, policy)); number <- 0 until count

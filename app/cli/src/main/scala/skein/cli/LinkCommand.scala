@@ -30,7 +30,8 @@ final case class LinkOptions(
       "latency in both directions: none, direct, vpn, vpn-mixed, constant:200ms, uniform:10ms..40ms, " +
         "lognormal:36ms,0.3 or file:PATH; times are round trips; " +
         "before it correlated:250ms, keeps each for 250 ms on average, loss:5%, or loss:5%/4, loses packets, " +
-        "in bursts of four, and outage:1s/10s, everything for 1 s every 10 s (default: direct)"
+        "in bursts of four, outage:1s/10s, everything for 1 s every 10 s, and reorder:2%/10ms, delays 2 % of " +
+        "them by 10 ms more (default: direct)"
     )
     profile: Option[String],
     @arg(name = "to-server", doc = "latency towards the server, where it differs")

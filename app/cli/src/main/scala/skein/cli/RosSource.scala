@@ -56,8 +56,8 @@ private[cli] object RosSource:
         _ <- Expect.that(cars.isEmpty)(s"expected multirotors alone, got the car ${cars.mkString(", ")}")
         _ <- Expect.that(settings.images.isEmpty)("expected no --images")
         _ <- Expect.that(!settings.decentralised)("not together with --decentralised")
-        _ <- Expect.that(settings.scene.isEmpty && settings.plant.isAirSim):
-          "--scene and --plant are for the built-in simulator"
+        _ <- Expect.that(settings.scene.isEmpty && settings.plant.isAirSim && settings.sensors.isEmpty):
+          "--scene, --plant and --sensors are for the built-in simulator"
         _ <- RosNode.missing.toLeft(())
       yield ()
     all.left.toOption.map("--ros: " + _)

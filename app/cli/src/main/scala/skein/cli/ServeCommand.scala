@@ -14,11 +14,12 @@ import skein.simulator.{
   MavlinkSettings,
   Overload,
   SettingsFile,
+  SimulatedSensing,
   SimulatorServer,
   SimulatorSettings
 }
 import skein.units.{Clock, Expect, Span}
-import skein.vehicle.PathFollowing
+import skein.vehicle.{PathFollowing, SensorNoise}
 import skein.view.Shows
 
 /** Command-line options of `./skein serve`, with their help texts. */
@@ -43,6 +44,13 @@ final case class ServeOptions(
       "model that flies: airsim, airsim:DEVIATION such as airsim:mass=1.3,drag=2,wind=8/0/0, or mujoco:FILE"
     )
     plant: String = "airsim",
+    @arg(doc =
+      "errors of readings, such as position=0.1,velocity=0.05,heading=0.02 (standard deviations in m, m/s, rad), " +
+        "drift=1.5/60s (of the position, slowly varying), dropout=2%, outage=1s/20s"
+    )
+    sensors: Option[String],
+    @arg(doc = "seed of gusts and of errors of readings")
+    seed: Long = 1,
     @arg(doc =
       "speaks MAVLink too, as PX4's simulation does: UDP to 14550 for a ground station, and to " +
         "14540, 14541, … for programs, one port for each vehicle; all vehicles also at UDP 18570"
@@ -96,11 +104,15 @@ object ServeCommand
       address   <- addressOf(options.listen, world)
       scene     <- NamedScene.read(options.scene).left.map("--scene: " + _)
       plant     <- SimulatedBody.parse(options.plant).left.map("--plant: " + _)
-      kind      <- plant.kind(seed = 1)
+      kind      <- plant.kind(options.seed)
       autopilot <-
         options.hil.map(autopilotOf).fold[Either[String, Option[AutopilotKind]]](Right(None))(_.map(Some(_)))
       _ <- Expect.that(autopilot.isEmpty || !options.mavlink.value):
         "--hil: not together with --mavlink, which is an autopilot itself"
+      noise <-
+        options.sensors.fold(Right(None))(SensorNoise.parse(_).map(Some(_))).left.map("--sensors: " + _)
+      _ <- Expect.that(noise.isEmpty || autopilot.isEmpty):
+        "--sensors: not together with --hil, whose autopilots have sensors of their own"
       _ <- autopilot.flatMap(_ => plant.refusesAutopilots).map("--plant: " + _).toLeft(())
       _ <- Expect.that(!options.ros.value || autopilot.isEmpty && !options.mavlink.value):
         "--ros: not together with --mavlink or --hil, which fly the vehicles themselves"
@@ -137,7 +149,8 @@ object ServeCommand
             mavlink = mavlink,
             hil = hil,
             kind = kind,
-            patience = Some(Patience)
+            patience = Some(Patience),
+            sensing = noise.map(SimulatedSensing(_, options.seed))
           ),
           Option.when(options.view.view.value)(shows),
           ros,
@@ -180,7 +193,6 @@ object ServeCommand
       file <- SettingsFile.read(text).left.map(error => s"$name: ${error.message}")
     yield file
 
-  /** @param notice printed after the start */
   private def serve(
       settings: SimulatorSettings,
       shows: Option[Shows],

@@ -9,6 +9,7 @@ import skein.scenario.{PaperDuel, Scenarios}
 import skein.settings.{FlySettings, SensorFile, TextFile, VehicleChoice}
 import skein.signal.LatencyProfile
 import skein.units.{Decimals, Expect, Span}
+import skein.vehicle.SensorNoise
 import upickle.default.ReadWriter
 import upickle.implicits.key
 
@@ -17,6 +18,7 @@ import upickle.implicits.key
   * @param plant see [[VehicleChoice.parse]]
   * @param eye a file of [[SensorFile]]: the pursuer observes the evader only through this sensor
   * @param movesInFlight maximum number of one vehicle's unanswered moves
+  * @param sensors see [[SensorNoise.parse]]; without it readings are true
   */
 final case class Conditions(
     loop: String,
@@ -25,7 +27,8 @@ final case class Conditions(
     durationS: Double,
     altitudeM: Double = PaperDuel.AltitudeM,
     eye: Option[String] = None,
-    movesInFlight: Int = Moves.InFlight
+    movesInFlight: Int = Moves.InFlight,
+    sensors: Option[String] = None
 ) derives ReadWriter:
 
   def loopText: String =
@@ -45,6 +48,10 @@ final case class Conditions(
       _ <- Moves.mistake(movesInFlight).map("--moves-in-flight: " + _).toLeft(())
     yield kind
 
+  /** Errors of readings; Left says what was expected. */
+  def noise: Either[String, Option[SensorNoise]] =
+    Expect.each(sensors)(SensorNoise.parse).map(_.headOption).left.map("--sensors: " + _)
+
   /** The delays of a link between the controller and this number of vehicles.
     *
     * @return Left says what was expected and what was given
@@ -58,9 +65,11 @@ final case class Conditions(
   /** @return Left says what was expected and what was given */
   def resolved(using Scenarios): Either[String, Conditions.Resolved] =
     for
-      kind    <- checked
-      vehicle <- VehicleChoice.parse(plant, altitudeM).left.map("--plant: " + _)
-      timing  <- Conditions
+      kind  <- checked
+      known <- VehicleChoice.parse(plant, altitudeM).left.map("--plant: " + _)
+      noise <- this.noise
+      vehicle = known.sensedBy(noise)
+      timing <- Conditions
         .timing(kind, Span.ofMillis(periodMs), movesInFlight, vehicle.response)
         .left.map("--loop: " + _)
       sensor <- eye.fold(Right(None))(SensorFile.read(_).map(Some(_))).left.map("--eye: " + _)

@@ -112,17 +112,17 @@ object WholeFlights:
   ): Either[String, Tracks] =
     import conditions.{durationS, movesInFlight, periodMs}
     val (duration, period) = (Span.ofSeconds(durationS), Span.ofMillis(periodMs))
-    VirtualFlights
-      .result(FlySettings(
+    conditions.noise.flatMap: noise =>
+      VirtualFlights.result(FlySettings(
         List(loop),
         List(link),
         duration,
         period,
         seed + episode,
         scenario,
-        movesInFlight = movesInFlight
-      ))
-      .map(_.tracks)
+        movesInFlight = movesInFlight,
+        sensors = noise
+      )).map(_.tracks)
 
   /** Episodes by forward simulation, world by world.
     *

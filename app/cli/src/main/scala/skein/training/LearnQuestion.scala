@@ -183,6 +183,7 @@ final case class LearnSetup(
       link = question.link,
       periodMs = question.conditions.periodMs,
       plant = question.conditions.plant,
+      sensors = question.conditions.sensors.getOrElse(""),
       altitudeM = if isOfTeam then 0 else question.conditions.altitudeM,
       episodeS = question.lessonS,
       startWithinM = (question.startLeastM, question.startMostM),

@@ -44,20 +44,30 @@ class ScenarioSubjectSimulation extends munit.FunSuite, Optimised:
 
   test("without latency the result equals the paused flight's, and more latency deviates further"):
     val plain = subject(surround)
-    val truth = plain.truth.fold(fail(_), identity)
+    val truth = plain.truth(1).fold(fail(_), identity)
     val off   = Seq(0.0, 200.0, 400.0).map(at(plain, _) - truth).map(_.abs)
     assert(off(0) < 0.02 * truth && off(1) > off(0) && off(2) > off(1), s"$off off $truth")
 
+  test("where readings have errors, the truth is the mean over the cells' episodes"):
+    def truths(objective: Option[String]) =
+      val conditions = Conditions("stream", "drag", 100, 20, sensors = Some("position=5"))
+      val noisy      = subject(surround, objective, conditions)
+      for episodes <- Vector(1, 2, 4) yield noisy.truth(episodes).fold(fail(_), identity)
+    for objective <- Seq(None, Some("off-ring + 0*surrounded-after")) do
+      assertEquals(clue(truths(objective)).distinct.size, 3)
+    val calm = subject(surround)
+    assertEquals(calm.truth(4), calm.truth(1))
+
   test("any measure can be used: crossing vehicles reach their goals later over a slow link"):
     val crossing = subject(Crossing(vehicles = 4), Some("to-goal"))
-    val truth    = crossing.truth.fold(fail(_), identity)
+    val truth    = crossing.truth(1).fold(fail(_), identity)
     assertEqualsDouble(at(crossing, 0), truth, 0.1)
     assert(at(crossing, 400) > truth + 0.1, s"$truth")
 
   test("a policy in three dimensions is simulated in space, for any measure"):
     val drifting = subject(Drift(), conditions = Conditions("stream", "drag", 100, 10))
     assert(drifting.engine(Vector.empty).text.startsWith("scalar: furthest is of whole flights"))
-    val truth = drifting.truth.fold(fail(_), identity)
+    val truth = drifting.truth(1).fold(fail(_), identity)
     assert(at(drifting, 400) > truth, s"$truth")
 
   test("a measure that a flight never reaches deviates more than any other"):

@@ -226,6 +226,11 @@ class BadInputSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
       Seq("--mavlink", "--simulator", "tcp://127.0.0.1"),
       "expected HOST:PORT, for example 127.0.0.1:41451, got '127.0.0.1'"
     )
+    assertRefused(
+      FlyCommand(),
+      Seq("--mavlink", "--loop", "stream", "--simulator", "127.0.0.1:5760", "--sensors", "position=1"),
+      "--sensors: not together with --simulator over MAVLink"
+    )
     assertRefused(ServeCommand, Seq("--mavlink-instance", "1"), "expected together with --mavlink")
     assertRefused(
       ServeCommand,

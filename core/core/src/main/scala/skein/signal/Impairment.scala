@@ -2,8 +2,9 @@ package skein.signal
 
 import skein.units.*
 
-/** A way in which a link loses packets. The effect of a loss depends on the transport: TCP sends the packet
-  * again, and later bytes wait for it ([[Retransmission]]); a datagram is lost for good.
+/** A way in which a link loses or reorders packets. The effect depends on the transport: TCP sends a lost
+  * packet again, and later bytes wait for it ([[Retransmission]]), as they wait for a late one; a datagram is
+  * lost for good, and overtaken where it is late.
   */
 enum Impairment:
 
@@ -22,6 +23,12 @@ enum Impairment:
     * between two outages.
     */
   case Outage(lasts: Span, every: Span)
+
+  /** In each direction a share of all packets, chosen independently, is on its way for `by` longer. Datagrams
+    * sent less than `by` later overtake it, unless they are late themselves. It is then reordered as RFC 4737
+    * counts. Linux's netem instead sends a share without delay, ahead of all others.
+    */
+  case Reordering(share: Double, by: Span)
 
 object Impairment:
   private val MostShare = 0.9
@@ -63,6 +70,15 @@ object Impairment:
       _              <- Expect.that(lasts > Span.Zero && lasts < every):
         "outages of more than 0, and longer times from one to the next"
     yield Outage(lasts, every)
+
+  /** Reads `2%/10ms`: the share, and the additional delay. */
+  private[signal] def reordering(text: String, time: String => Option[Span]): Either[String, Impairment] =
+    val parts = text match
+      case s"$share/$by" => percent(share).filter(p => p >= 0 && p <= 1).zip(time(by))
+      case _             => None
+    parts
+      .collect { case (share, by) if by > Span.Zero => Reordering(share, by) }
+      .toRight("a share and an additional delay such as 2%/10ms")
 
   def percent(text: String): Option[Double] = text match
     case s"$number%" => number.trim.toDoubleOption.map(_ / 100)

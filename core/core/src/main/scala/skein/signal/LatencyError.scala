@@ -26,4 +26,4 @@ object LatencyError:
   val forms: String =
     "none, direct, vpn, vpn-mixed, constant:200ms, uniform:10ms..40ms, lognormal:36ms,0.3 " +
       "or file:PATH (times are round trips), or one of them after 'correlated:250ms,', 'rate:50mbit,', " +
-      "'loss:5%,', 'loss:5%/4,' or 'outage:1s/10s,'"
+      "'loss:5%,', 'loss:5%/4,', 'outage:1s/10s,' or 'reorder:2%/10ms,'"

@@ -32,7 +32,7 @@ enum LatencyProfile:
   /** Another profile behind a line of limited rate, at which bytes wait. */
   case Limited(name: String, latency: LatencyProfile, rate: Bandwidth)
 
-  /** Another profile that also loses packets. */
+  /** Another profile that also loses or reorders packets. */
   case Impaired(name: String, latency: LatencyProfile, by: Impairment)
 
   /** The text that [[LatencyProfile.parse]] reads back as this profile. */
@@ -43,7 +43,7 @@ enum LatencyProfile:
     case Limited(_, _, rate) => Some(rate)
     case _                   => within.flatMap(_.bandwidth)
 
-  /** The losses of packets, the outermost profile's first; empty if there are none. */
+  /** The losses and reordering of packets, the outermost profile's first; empty if there are none. */
   def impairments: Vector[Impairment] = this match
     case Impaired(_, latency, by) => by +: latency.impairments
     case _                        => within.fold(Vector.empty)(_.impairments)
@@ -62,7 +62,8 @@ enum LatencyProfile:
     case Limited(_, latency, _)                    => Some(latency)
     case Impaired(_, latency, _)                   => Some(latency)
 
-  /** Mean round trip, without the time that bytes wait for the line or that packets are sent again. */
+  /** Mean round trip, without the time that bytes wait for the line, or that packets are sent again or late.
+    */
   def meanRoundTrip: Span = Span.ofMillis(average(_.mean.toMillis))
 
   /** Mean deviation of round trips from their mean, E|t − E t|. */
@@ -102,7 +103,8 @@ object LatencyProfile:
     * round trips; units are `us`, `ms`, `s`. Any of these may be preceded by the following, each once and in
     * any order: `correlated:250ms,`; `rate:50mbit,` or `rate:50mbit/64kB,` ([[Bandwidth.parse]]); `loss:5%,`,
     * or `loss:5%/4,` in bursts of four packets on average ([[Impairment.Loss]]); `outage:1s/10s,`, for 1 s
-    * every 10 s on average ([[Impairment.Outage]]).
+    * every 10 s on average ([[Impairment.Outage]]); `reorder:2%/10ms,`, 10 ms later
+    * ([[Impairment.Reordering]]).
     *
     * @param read returns the text of the file at a path, or why that fails
     */
@@ -152,7 +154,13 @@ private object LatencyText:
           by      <- Impairment.outage(outage, span).left.map(malformed(_, outage))
           latency <- before(rest, "outage")(impaired(_.isInstanceOf[Impairment.Outage]))
         yield LatencyProfile.Impaired(text, latency, by)
-      case s"outage:$came"          => Left(malformed("two times and a profile such as 1s/10s,vpn", came))
+      case s"reorder:$reorder,$rest" =>
+        for
+          by      <- Impairment.reordering(reorder, span).left.map(malformed(_, reorder))
+          latency <- before(rest, "reorder")(impaired(_.isInstanceOf[Impairment.Reordering]))
+        yield LatencyProfile.Impaired(text, latency, by)
+      case s"reorder:$came" => Left(malformed("a share, a delay and a profile such as 2%/10ms,vpn", came))
+      case s"outage:$came"  => Left(malformed("two times and a profile such as 1s/10s,vpn", came))
       case s"constant:$roundTrip"   => time(roundTrip).map(t => Steady(text, Constant(t)))
       case s"uniform:$least..$most" =>
         for

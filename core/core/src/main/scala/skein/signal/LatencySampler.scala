@@ -27,11 +27,17 @@ final class LatencySampler(profile: LatencyProfile, linkSeed: Long, lineSeed: Lo
     case LatencyProfile.Impaired(_, latency, _) => shareOf(latency)
     case _                                      => _ => random.nextDouble()
 
-  /** The delay of the next message: half of a sampled round trip.
+  private val reordering = profile.impairments.collectFirst:
+    case reordering: Impairment.Reordering => reordering
+
+  /** The delay of the next message: half of a sampled round trip, and more if it is late
+    * ([[Impairment.Reordering]]).
     *
     * @param sinceStart time since the link's start; must not decrease from call to call
     */
-  def oneWay(sinceStart: Span): Span = roundTrip(sinceStart).quantile(share(sinceStart)) / 2
+  def oneWay(sinceStart: Span): Span =
+    val delay = roundTrip(sinceStart).quantile(share(sinceStart)) / 2
+    reordering.filter(random.nextDouble() < _.share).fold(delay)(delay + _.by)
 
 /** A number in [0, 1) that is redrawn after exponentially distributed times. */
 private final class HeldShare(mean: Span, seed: Long):

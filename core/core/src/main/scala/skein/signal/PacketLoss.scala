@@ -42,7 +42,7 @@ private[signal] final class LossBursts(loss: Impairment.Loss, seed: Long):
     lost
 
 /** The times of [[Impairment.Outage]]s. A call may go back in time by [[OutageTimes.Kept]] outages. */
-private[signal] final class OutageTimes(outage: Impairment.Outage, seed: Long):
+private[skein] final class OutageTimes(outage: Impairment.Outage, seed: Long):
   private val random  = SplitMix64(seed)
   private val between = (outage.every - outage.lasts).toSeconds
   private val begins  = ArrayBuffer.empty[Span]
@@ -56,5 +56,5 @@ private[signal] final class OutageTimes(outage: Impairment.Outage, seed: Long):
     val last = begins.lastIndexWhere(_ <= at)
     last >= 0 && at < begins(last) + outage.lasts
 
-private[signal] object OutageTimes:
+private[skein] object OutageTimes:
   val Kept = 1000

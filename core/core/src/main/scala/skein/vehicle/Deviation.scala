@@ -2,7 +2,7 @@ package skein.vehicle
 
 import java.util.concurrent.atomic.AtomicLong
 import skein.signal.SplitMix64
-import skein.units.{Expect, Vector3}
+import skein.units.Vector3
 
 /** Differences of the simulated quadrotor and its air from AirSim's in still air, which models and predictors
   * assume.
@@ -39,22 +39,14 @@ final case class Deviation(
     )
 
 object Deviation:
+  import Assignments.{number, numbers}
+
   val forms: String =
     "mass=FACTOR, drag=FACTOR, lag=FACTOR, rotors=A/B/C/D (shares of their thrust), wind=NORTH/EAST/DOWN " +
       "(m/s), gusts=SPEED (m/s at 20 ft), shear=ROUGHNESS (m), separated by commas"
 
   /** Reads, for example, `mass=1.3,drag=2,wind=8/0/0`. Left says what was expected. */
-  def parse(text: String): Either[String, Deviation] =
-    type Read = (deviation: Deviation, names: Set[String])
-    val none: Either[String, Read] = Right((deviation = Deviation(), names = Set()))
-    val all                        = text.split(",", -1).foldLeft(none): (before, word) =>
-      for
-        read <- before
-        name = word.takeWhile(_ != '=')
-        _    <- Expect.that(!read.names(name))(s"$name stands twice")
-        next <- one(read.deviation, word)
-      yield (deviation = next, names = read.names + name)
-    all.map(_.deviation)
+  def parse(text: String): Either[String, Deviation] = Assignments.read(text, Deviation())(one)
 
   private def one(of: Deviation, word: String): Either[String, Deviation] = word match
     case s"mass=$x"   => number(word, x, 0.5, 1.6).map(mass => of.copy(mass = mass))
@@ -71,21 +63,3 @@ object Deviation:
     case _ => Left(s"expected $forms; got '$word'")
 
   private val MostWindMps = 30.0
-
-  private def number(word: String, text: String, least: Double, most: Double): Either[String, Double] =
-    text.toDoubleOption
-      .filter(x => x >= least && x <= most)
-      .toRight(s"expected a number from $least to $most, got '$word'")
-
-  private def numbers(
-      word: String,
-      text: String,
-      count: Int,
-      least: Double,
-      most: Double
-  ): Either[String, Vector[Double]] =
-    val parts = text.split("/", -1)
-    for
-      _    <- Expect.that(parts.length == count)(s"expected $count numbers between /, got '$word'")
-      read <- Expect.each(parts)(number(word, _, least, most))
-    yield read

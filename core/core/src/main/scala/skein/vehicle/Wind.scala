@@ -1,6 +1,6 @@
 package skein.vehicle
 
-import skein.signal.{NormalQuantile, SplitMix64}
+import skein.signal.SplitMix64
 import skein.units.Vector3
 
 /** The wind at a place: a steady part, which may increase with height, and gusts.
@@ -65,8 +65,7 @@ final class WindAlong(wind: Wind, seed: Long):
       steady + Vector3(north, east, down)
 
   private def next(gust: Double, sigma: Double, lengths: Double): Double =
-    val keeps = StrictMath.exp(-lengths)
-    gust * keeps + sigma * math.sqrt(1 - keeps * keeps) * NormalQuantile(random.nextDouble().max(1e-12))
+    GaussMarkov.next(gust, sigma, lengths, random)
 
 object WindAlong:
   private val LeastAirspeedMps = 1.0

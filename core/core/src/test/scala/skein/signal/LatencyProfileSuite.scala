@@ -49,7 +49,7 @@ class LatencyProfileSuite extends munit.FunSuite:
       messageOf("dsl"),
       "unknown latency profile \"dsl\"; expected none, direct, vpn, vpn-mixed, constant:200ms, " +
         "uniform:10ms..40ms, lognormal:36ms,0.3 or file:PATH (times are round trips), " +
-        "or one of them after 'correlated:250ms,', 'rate:50mbit,', 'loss:5%,', 'loss:5%/4,' or 'outage:1s/10s,'"
+        "or one of them after 'correlated:250ms,', 'rate:50mbit,', 'loss:5%,', 'loss:5%/4,', 'outage:1s/10s,' or 'reorder:2%/10ms,'"
     )
 
   test("the message about a mistake in a form states what was expected"):
@@ -120,22 +120,28 @@ class LatencyProfileSuite extends munit.FunSuite:
     assertEqualsDouble(meanMs("rate:1mbit,correlated:1s,constant:200ms"), 200, 1e-9)
     assertEqualsDouble(meanMs("vpn-mixed"), (40 * meanMs("vpn") + 55 * meanMs("direct")) / 95, 1e-3)
 
-  test("rate, correlation, loss and outages may be stated in any order, each once"):
-    for texts <- List("rate:1mbit", "correlated:1s", "loss:5%/4", "outage:1s/10s").permutations do
+  test("rate, correlation, loss, outages and reordering may be stated in any order, each once"):
+    for texts <-
+        List("rate:1mbit", "correlated:1s", "loss:5%/4", "outage:1s/10s", "reorder:2%/10ms").permutations
+    do
       val text    = texts.mkString(",") + ",vpn"
       val profile = parse(text).fold(error => fail(s"$text: ${error.message}"), identity)
       assertEquals(profile.name, text)
       assertEquals(profile.bandwidth, Some(Bandwidth.ofBitsPerSecond(1_000_000)))
       assertEquals(
         profile.impairments.toSet,
-        Set(Impairment.Loss(0.05, 4), Impairment.Outage(Span.ofSeconds(1), Span.ofSeconds(10)))
+        Set(
+          Impairment.Loss(0.05, 4),
+          Impairment.Outage(Span.ofSeconds(1), Span.ofSeconds(10)),
+          Impairment.Reordering(0.02, Span.ofMillis(10))
+        )
       )
       assertEquals(profile.meanRoundTrip, LatencyProfile.vpn.meanRoundTrip)
 
   test("losses without a stated burst length are independent"):
     assertEquals(parse("loss:20%,vpn").map(_.impairments), Right(Vector(Impairment.Loss(0.2, 1.25))))
 
-  test("the message about an invalid loss or outage states what was expected"):
+  test("the message about an invalid loss, outage or reordering states what was expected"):
     val share =
       "expected a share from 0% to 90% such as 5%, or with a mean length of bursts such as 5%/4, got "
     for (text, expected) <- List(
@@ -147,9 +153,12 @@ class LatencyProfileSuite extends munit.FunSuite:
         "loss:50%/1.5,vpn" ->
           "expected bursts of 2.00 packets, which independent losses have, to 10000, got \"50%/1.5\"",
         "loss:1%,loss:2%,vpn" -> "expected one loss, got \"loss:2%,vpn\"",
-        "outage:1s"           -> "expected two times and a profile such as 1s/10s,vpn, got \"1s\"",
-        "outage:1s,vpn"       -> "expected two times such as 1s/10s, got \"1s\"",
-        "outage:10s/1s,vpn"   ->
+        "reorder:2%,vpn"      -> "expected a share and an additional delay such as 2%/10ms, got \"2%\"",
+        "reorder:2%/0ms,vpn"  -> "expected a share and an additional delay such as 2%/10ms, got \"2%/0ms\"",
+        "reorder:2%/10ms"   -> "expected a share, a delay and a profile such as 2%/10ms,vpn, got \"2%/10ms\"",
+        "outage:1s"         -> "expected two times and a profile such as 1s/10s,vpn, got \"1s\"",
+        "outage:1s,vpn"     -> "expected two times such as 1s/10s, got \"1s\"",
+        "outage:10s/1s,vpn" ->
           "expected outages of more than 0, and longer times from one to the next, got \"10s/1s\"",
         "outage:1s/9s,rate:1mbit,outage:1s/9s,vpn" ->
           "expected one outage, got \"rate:1mbit,outage:1s/9s,vpn\""

@@ -17,6 +17,13 @@ class LatencySamplerSuite extends munit.FunSuite:
     assertEquals(delaysMs(LatencyProfile.vpnMixed, 1, 2, 2000), first)
     assertNotEquals(delaysMs(LatencyProfile.vpnMixed, 1, 3, 2000), first)
 
+  test("the reordered share is late by its time, the others are not"):
+    val profile = LatencyProfile.parse("reorder:2%/10ms,constant:200ms", Left(_)).toOption.get
+    val delays  = delaysMs(profile, 1, 2, 50_000)
+    assertEquals(delays.toSet, Set(100.0, 110.0))
+    // Four standard deviations of a binomial count.
+    assertEqualsDouble(delays.count(_ == 110).toDouble, 1000, 125)
+
   test("without a network there is no delay"):
     assertEquals(delaysMs(LatencyProfile.none, 1, 2, 2), Vector(0.0, 0.0))
 

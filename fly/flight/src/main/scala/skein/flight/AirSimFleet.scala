@@ -14,6 +14,7 @@ import skein.settings.{FlightPlan, FlySettings}
 import skein.signal.{LatencyProfile, SplitMix64}
 import skein.units.*
 import skein.units.Decimals.fixed
+import skein.vehicle.SensorNoise
 
 /** The vehicles of flights in a simulator that speaks AirSim's wire protocol.
   *
@@ -175,8 +176,9 @@ private[flight] final class AirSimFleet(
   /** Prepares the vehicles over a separate connection without the link: this is not part of the flight. */
   private def prepare(plan: FlightPlan, address: Address): Future[Vector[VehicleClient]] =
     val client      = AirSimClient(RpcClient(transport, address, clock))
-    val preparation = Preparation(client, clock, () => calledOff(plan.id))
-    val prepared    =
+    val preparation =
+      Preparation(client, clock, () => calledOff(plan.id), byTruth = settings.sensors.isDefined)
+    val prepared =
       if startsAirborne then preparation.place(settings.fleet)
       else preparation.climb(settings.fleet, address, settings.commands)
     prepared
@@ -212,24 +214,40 @@ object AirSimFleet:
   private def timeout(loop: AnyLoop): Span =
     if loop == LoopKind.Paused then Span.ofSeconds(3) else Asking.Timeout
 
-  /** Checks over a separate connection that the simulator has a fleet's vehicles.
+  /** Checks over a separate connection that the simulator has a fleet's vehicles, and readings with these
+    * errors.
     *
-    * @return Left says that it does not answer, or which of a fleet's vehicles it lacks
+    * @return Left says that it does not answer, or what it lacks
     */
-  def missing(fleet: Fleet, at: Address, transport: Transport, clock: Clock)(using
+  def missing(
+      fleet: Fleet,
+      sensors: Option[SensorNoise],
+      at: Address,
+      transport: Transport,
+      clock: Clock
+  )(using
       system: ActorSystem
   ): Future[Either[String, Unit]] =
     import system.dispatcher
     val rpc    = RpcClient(transport, at, clock, RpcSettings(controlConnections = 1))
     val client = AirSimClient(rpc, AirSimError.FirstWithin)
-    client
-      .vehicles()
-      .map:
-        case Left(error)  => Left(AirSimError.ofFirst(error, at))
-        case Right(there) => fleet.agents.map(_.name).filterNot(there.contains) match
-            case Vector() => Right(())
+    val answer =
+      for
+        there  <- client.vehicles()
+        errors <- client.sensors()
+      yield there.flatMap(there => errors.map((there, _))) match
+        case Left(error)            => Left(AirSimError.ofFirst(error, at))
+        case Right((there, errors)) =>
+          fleet.agents.map(_.name).filterNot(there.contains) match
+            case Vector() => otherSensors(sensors, errors, at).toLeft(())
             case names    => Left(AirSimError.unknown(names, there))
-      .flatMap(answer => client.close().map(_ => answer))
+    answer.flatMap(answer => client.close().map(_ => answer))
+
+  private def otherSensors(ours: Option[SensorNoise], theirs: String, at: Address): Option[String] =
+    def numbers(noise: SensorNoise) = noise.copy(text = "")
+    val there                       = Option(theirs).filter(_.nonEmpty)
+    Option.when(ours.map(numbers).map(Right(_)) != there.map(SensorNoise.parse(_).map(numbers))):
+      s"--sensors: expected ${there.getOrElse("none")}, as in the simulator at $at, got ${ours.fold("none")(_.text)}"
 
   def rpcSettings(loop: AnyLoop): RpcSettings = loop match
     // Each command must reach the simulator before the step that follows it: one ordered connection.

@@ -18,12 +18,14 @@ import skein.vehicle.GoTo
   * are unanswered.
   *
   * @param calledOff why it must stop, evaluated at every step
+  * @param truth reads where the vehicle truly is; without it, its own readings count
   */
 private[flight] final class Approach(
     name: String,
     vehicle: VehiclePort,
     clock: Clock,
-    calledOff: () => Option[String] = () => None
+    calledOff: () => Option[String] = () => None,
+    truth: Option[() => Future[Either[String, Kinematics]]] = None
 )(using
     system: ActorSystem
 ):
@@ -89,9 +91,8 @@ private[flight] final class Approach(
 
   private def look(next: Kinematics => Future[Either[String, Kinematics]])
       : Future[Either[String, Kinematics]] =
-    vehicle.read().flatMap:
-      case Left(error)  => Future.successful(Left(error.message))
-      case Right(state) => next(state.value)
+    val seen = truth.fold(vehicle.read().map(_.map(_.value).left.map(_.message)))(_())
+    seen.flatMap(_.fold(mistake => Future.successful(Left(mistake)), next))
 
 private[flight] object Approach:
   private type Move = Future[Either[VehicleError, Boolean]]

@@ -1,5 +1,6 @@
 package skein.flight
 
+import java.util.concurrent.atomic.AtomicBoolean
 import org.apache.pekko.Done
 import org.apache.pekko.actor.ActorSystem
 import org.apache.pekko.stream.Materializer
@@ -14,13 +15,13 @@ import skein.loop.*
 import skein.loop.learning.{Learning, Lessons, LessonsAgain, LessonsBeside}
 import skein.loop.planning.{CountedPlanWorkers, PlanThread, PlanWorkers, ThreadedPlanWorkers}
 import skein.policy.{ActionGuidance, Fleet}
-import skein.port.{CommandPlan, VehicleError, VehiclePort}
+import skein.port.{CommandPlan, SteppedTime, VehicleError, VehiclePort}
 import skein.record.*
 import skein.settings.{ChosenPolicy, FlightPlan, FlySettings, PolicyFile, RecordedPlan, Wire}
 import skein.scene.Moment
 import skein.signal.{LatencyProfile, SplitMix64}
 import skein.solver.{Briefing, SolverClient}
-import skein.simulator.{MavlinkSettings, SimulatorServer, SimulatorSettings}
+import skein.simulator.{MavlinkSettings, SimulatedSensing, SimulatorServer, SimulatorSettings}
 import skein.units.*
 import skein.units.Decimals.brief
 
@@ -108,18 +109,31 @@ final class FlightAssembler(
       recorder: Recorder,
       on: Option[Materializer] = None
   ): Future[Either[String, FlightAssembly]] =
-    val opened   = Opened()
+    val opened    = Opened()
+    val isAirSims = simulator.isDefined && settings.wire == Wire.AirSim
+    val monitor   = FlightMonitor(
+      recorder,
+      isStepped = plan.loop == LoopKind.Paused,
+      hasPlaces = isAirSims && settings.sensors.isEmpty,
+      movesLast = Option.when(isAirSims)(settings.loopSettings(plan).moveDuration)
+    )
+    val isFlying = AtomicBoolean()
+    val isOver   = AtomicBoolean()
+    val sensing  = settings.sensors.map: noise =>
+      SimulatedSensing(
+        noise,
+        SplitMix64.seedOf(plan.seed, -1),
+        seen =>
+          // MAVLink's vehicles count time from their boot.
+          val at = if settings.wire == Wire.Mavlink then Instant.Epoch + seen.sinceStart else seen.at
+          if !isOver.get then monitor.offer(Truth(seen.vehicle, at, seen.positionNed))
+        ,
+        () => isFlying.get
+      )
     val starting =
       for
-        server <- serve(plan.seed)
-        _         = server.foreach(opened.closing(_)(_.close()))
-        isAirSims = simulator.isDefined && settings.wire == Wire.AirSim
-        monitor   = FlightMonitor(
-          recorder,
-          isStepped = plan.loop == LoopKind.Paused,
-          hasPlaces = isAirSims,
-          movesLast = Option.when(isAirSims)(settings.loopSettings(plan).moveDuration)
-        )
+        server <- serve(plan.seed, sensing)
+        _ = server.foreach(opened.closing(_)(_.close()))
         _       <- notApart(plan).fold(Future.unit)(why => Future.failed(CannotFly(s"decentralised: $why")))
         solver  <- solverOf(plan, opened, monitor)
         reached <- elsewhere match
@@ -168,6 +182,7 @@ final class FlightAssembler(
         val teams =
           if reached.apart.isEmpty then Vector(team(reached.vehicles, None))
           else reached.apart.map(one => team(one.vehicles, Some(one.self)))
+        isFlying.set(true)
         val startedAt = clock.now()
         val watchdog  = SimulatorWatchdog(
           monitor,
@@ -184,7 +199,7 @@ final class FlightAssembler(
         val flight = Flight.start(
           plan.loop,
           teams.head,
-          reached.time,
+          reached.time.map(FlightAssembler.noting(_, () => isOver.set(true))),
           settings.duration,
           clock,
           endCondition,
@@ -192,6 +207,7 @@ final class FlightAssembler(
           on,
           teams.tail
         )
+        flight.ending.foreach(_ => isOver.set(true))
         endCondition.isOver.foreach(_ => flight.complete())
         if plan.loop != LoopKind.Paused then
           for one <- reached.cameras do
@@ -365,7 +381,7 @@ final class FlightAssembler(
           reached.copy(vehicles = reached.vehicles.zipWithIndex.map: (vehicle, line) =>
             LinkedVehicle(vehicle, plan.link, plan.seed, line, clock))
 
-  private def serve(seed: Long): Future[Option[SimulatorServer]] =
+  private def serve(seed: Long, sensing: Option[SimulatedSensing]): Future[Option[SimulatorServer]] =
     if isShared then Future.successful(None)
     else
       val vehicles = fleet.agents.map(Vehicles.settings)
@@ -380,7 +396,8 @@ final class FlightAssembler(
               Option.when(settings.wire == Wire.Mavlink)(MavlinkSettings(listen =
                 Some(FlightAssembler.anyPort)
               )),
-            kind = kind
+            kind = kind,
+            sensing = sensing
           ),
           transport,
           clock
@@ -406,6 +423,13 @@ object FlightAssembler:
 
   /** Planning in virtual time, where a search has a fixed number of slices. */
   def counted(planning: PlanSettings): PlanWorkers = CountedPlanWorkers(planning.searches, planning.slices)
+
+  /** Calls `onResumed` before time runs again, which it does after a flight's last step. */
+  private def noting(time: SteppedTime, onResumed: () => Unit): SteppedTime = new SteppedTime:
+    export time.{continueFor, pause}
+    def resume(): Future[Either[VehicleError, Unit]] =
+      onResumed()
+      time.resume()
 
   private def noSteps(where: String) =
     s"paused needs a simulator whose time passes in steps, which vehicles of $where have not"

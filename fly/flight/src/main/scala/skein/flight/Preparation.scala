@@ -14,11 +14,13 @@ import skein.vehicle.CarControls
   * are above the origin of each vehicle's own frame.
   *
   * @param calledOff why vehicles must no longer move to their starts
+  * @param byTruth whether the vehicles' readings have errors, so that the ground truth decides where they are
   */
 final class Preparation(
     client: AirSimClient,
     clock: Clock,
-    calledOff: () => Option[String] = () => None
+    calledOff: () => Option[String] = () => None,
+    byTruth: Boolean = false
 )(using
     system: ActorSystem
 ):
@@ -61,7 +63,13 @@ final class Preparation(
         .fly(vehicles.collect { case (multirotor: Multirotor, agent) =>
           StartPositioning.Starting(
             agent.startPositionNed + Vector3(0, 0, multirotor.originNed.z),
-            Approach(agent.name, AirSimVehicle(multirotor, _ => ()), clock, calledOff),
+            Approach(
+              agent.name,
+              AirSimVehicle(multirotor, _ => ()),
+              clock,
+              calledOff,
+              Option.when(byTruth)(() => multirotor.groundTruth().map(_.left.map(_.message)))
+            ),
             () => leaveGround(multirotor)
           )
         })
@@ -92,17 +100,19 @@ final class Preparation(
     yield car
 
   private def leaveGround(vehicle: Multirotor): Future[Vector3] =
+    def motion() = if byTruth then call(vehicle.groundTruth()) else call(vehicle.kinematics()).map(_.value)
     for
       status     <- call(vehicle.status()).map(_.value)
+      now        <- if byTruth then motion() else Future.successful(status.kinematics)
       controlled <- call(vehicle.isApiControlEnabled())
       _          <- if controlled then Future.unit else call(vehicle.enableApiControl())
       // AirSim's landed state is no flight's while a vehicle falls, so it has to be still, too.
-      stands = !status.flying && status.kinematics.velocityNed.norm <= StillMps
+      stands = !status.flying && now.velocityNed.norm <= StillMps
       _ <- if status.flying then Future.unit else call(vehicle.arm())
       // AirSim stops short of the take-off height and answers false; the position is what counts.
       _     <- if stands then call(vehicle.takeoff()) else Future.unit
-      above <- call(vehicle.kinematics()).map(_.value.positionNed)
-    yield above
+      above <- motion()
+    yield above.positionNed
 
   private def everyVehicle[A](fleet: Fleet)(use: (VehicleClient, Agent) => Future[A]): Future[Vector[A]] =
     Future.traverse(fleet.agents): agent =>

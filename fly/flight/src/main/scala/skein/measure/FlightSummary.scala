@@ -134,7 +134,11 @@ object FlightSummary:
     val scenario = RecordedScenario.of(recording).toOption
     FlightSummary(
       recording.flight,
-      (recording.flight.simulator.label +: Seq("wire", "plant").flatMap(recording.heading.parameter))
+      (recording.flight.simulator.label +: Seq(
+        "wire",
+        "plant",
+        "sensors"
+      ).flatMap(recording.heading.parameter))
         .mkString(", "),
       tracks,
       scenario,

@@ -14,7 +14,7 @@ import skein.scenario.{Equipment, Kept, PaperDuel, Scenario, Scenarios}
 import skein.scene.SceneFile
 import skein.signal.LatencyProfile
 import skein.units.*
-import skein.vehicle.VehicleKind
+import skein.vehicle.{SensorNoise, VehicleKind}
 
 /** The flights of an experiment: every loop over every link, and `paused`, the ground truth, once without a
   * network. The configuration has a key for each field, and a recording a parameter, in this order
@@ -37,6 +37,7 @@ import skein.vehicle.VehicleKind
   * @param between with `decentralised`, the link over which controllers send one another what they read of
   *   their own vehicles; then they do not read the others
   * @param plant the built-in simulator's kind of multirotor
+  * @param sensors errors of the vehicles' readings; without them readings are true
   * @param wire protocol of the simulator's connection
   * @param solver a remote solver for flights in addition to those that decide in this process; a decision
   *   then has a deadline, by default the period
@@ -64,6 +65,7 @@ final case class FlySettings(
     only: Option[String] = None,
     between: Option[VehicleLink] = None,
     plant: SimulatedBody = SimulatedBody.AirSim,
+    sensors: Option[SensorNoise] = None,
     wire: Wire = Wire.AirSim,
     solver: Option[SolverChoice] = None,
     images: List[ImageSource] = Nil,
@@ -80,7 +82,6 @@ final case class FlySettings(
   lazy val recordedImaging: Set[ImagingSensor] =
     (if images.contains(ImageSource.Seen) then seen.toSet else Set.empty) ++ filmed.map((sensor, _) => sensor)
 
-  /** The sensors that its policies use. */
   private def seen: Vector[ImagingSensor] =
     scenario.eyes.map(eye => ImagingSensor.camera(eye.vehicle, eye.camera, "Scene")) ++
       scenario.equipment.collect { case lidar: Equipment.Lidar =>
@@ -484,6 +485,7 @@ object FlySettings:
   private given ConfigReader[Strangers]  = parsed("strangers", Strangers.parse)
 
   private given ConfigReader[SimulatedBody] = parsed("plant", SimulatedBody.parse)
+  private given ConfigReader[SensorNoise]   = parsed("sensors", SensorNoise.parse)
 
   private given ConfigReader[VehicleLink] = parsed("link between vehicles", VehicleLink.parse)
 

@@ -7,6 +7,7 @@ import skein.record.ParameterRow
 import skein.scenario.{Scenario, Scenarios}
 import skein.signal.LatencyProfile
 import skein.units.{Expect, Span}
+import skein.vehicle.SensorNoise
 
 /** How a recording stores a setting: as parameters, under the name of its field. */
 private[settings] trait RecordedSetting[A]:
@@ -61,6 +62,9 @@ private[settings] object RecordedSetting:
 
   given RecordedSetting[SimulatedBody] =
     Text[SimulatedBody](SimulatedBody.forms, _.text, isUsual = _.isAirSim)(SimulatedBody.recorded(_).toOption)
+
+  given RecordedSetting[SensorNoise] =
+    Text[SensorNoise](SensorNoise.forms, _.text)(SensorNoise.parse(_).toOption)
 
   given RecordedSetting[Wire]      = labelled(Wire.values, _.label, usual = Wire.AirSim)
   given RecordedSetting[Knowledge] = labelled(Knowledge.values, _.label, usual = Knowledge.All)

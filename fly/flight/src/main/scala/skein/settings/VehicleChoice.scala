@@ -4,6 +4,7 @@ import java.nio.file.{Files, Path}
 import skein.forward.{
   PlantResponse,
   QuadrotorResponse,
+  SensedResponse,
   SpatialResponse,
   SteppedResponse,
   VelocityResponse,
@@ -14,7 +15,7 @@ import skein.scenario.Scenarios
 import skein.mujoco.{MujocoModel, MujocoResponse}
 import skein.units.Decimals.fixed
 import skein.units.Expect
-import skein.vehicle.{Deviation, DrivenCar, Quadrotor, ReducedModel, TiltModel}
+import skein.vehicle.{Deviation, DrivenCar, Quadrotor, ReducedModel, SensorNoise, TiltModel}
 
 /** Models of vehicles by the names that users give: one list for simulated vehicles (`--plant`) and, for
   * those that can predict, for predictions (`--predictor`, [[PredictionModel]]).
@@ -23,9 +24,10 @@ import skein.vehicle.{Deviation, DrivenCar, Quadrotor, ReducedModel, TiltModel}
   */
 final case class VehicleChoice(name: String, description: String, response: VelocityResponse):
   /** Whether an episode costs as much as physics in steps of milliseconds. */
-  def fliesInSteps: Boolean = response match
-    case _: (SteppedResponse | QuadrotorResponse) => true
-    case _                                        => false
+  def fliesInSteps: Boolean = VehicleChoice.isStepped(response)
+
+  def sensedBy(noise: Option[SensorNoise]): VehicleChoice =
+    noise.fold(this)(errors => copy(response = SensedResponse(response, errors)))
 
   /** Why it must not be used at an altitude, m, if so. */
   private[settings] def mistakeAt(altitudeM: Double): Option[String] =
@@ -33,6 +35,10 @@ final case class VehicleChoice(name: String, description: String, response: Velo
       s"expected drag, quadrotor or a model file at $altitudeM m altitude: reduced holds at ${ReducedModel.IdentifiedAtM} m"
 
 object VehicleChoice:
+  private def isStepped(response: VelocityResponse): Boolean = response match
+    case _: (SteppedResponse | QuadrotorResponse) => true
+    case SensedResponse(of, _)                    => isStepped(of)
+    case _                                        => false
 
   private val reduced = VehicleChoice(
     "reduced",

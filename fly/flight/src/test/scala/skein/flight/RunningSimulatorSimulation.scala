@@ -10,14 +10,15 @@ import skein.airsim.{AirSimClient, Multirotor, VehicleSettings, WorldSettings}
 import skein.link.*
 import skein.loop.{LoopKind, FlightOutcome}
 import skein.measure.FlightSummary
-import skein.record.{CameraImage, EventKind, MemoryRecorder, Recording}
+import skein.record.{CameraImage, EndingKind, EventKind, MemoryRecorder, Recording}
 import skein.rpc.RpcClient
 import skein.scenario.Scenarios
 import skein.settings.{FlightPlan, FlySettings, ImageSource}
 import skein.signal.{Kinematics, LatencyProfile}
-import skein.simulator.{SimulatorServer, SimulatorSettings}
+import skein.simulator.{SimulatedSensing, SimulatorServer, SimulatorSettings}
 import skein.testing.Unhurried
 import skein.units.*
+import skein.vehicle.SensorNoise
 import skein.vtime.VirtualTime
 
 /** Flights against a simulator that was started before and continues afterwards, as AirSim does. */
@@ -38,7 +39,11 @@ class RunningSimulatorSimulation extends munit.FunSuite, Unhurried:
   )
 
   /** A running simulator in virtual time, with its clients. */
-  private final class Bench(vehicles: Vector[VehicleSettings], losesCancel: () => Boolean)(using
+  private final class Bench(
+      vehicles: Vector[VehicleSettings],
+      losesCancel: () => Boolean,
+      sensors: Option[SensorNoise]
+  )(using
       val system: ActorSystem
   ):
     import system.dispatcher
@@ -47,7 +52,8 @@ class RunningSimulatorSimulation extends munit.FunSuite, Unhurried:
     private val world   = SimulatorSettings(
       WorldSettings.of(vehicles),
       Address("127.0.0.1", 0),
-      losesCancel = losesCancel
+      losesCancel = losesCancel,
+      sensing = sensors.map(SimulatedSensing(_))
     )
     val server: Future[SimulatorServer] = SimulatorServer.start(world, Tapped(network), clock)
 
@@ -114,6 +120,9 @@ class RunningSimulatorSimulation extends munit.FunSuite, Unhurried:
               )
             )
 
+    def missing(sensors: Option[SensorNoise]): Future[Either[String, Unit]] = server.flatMap: server =>
+      AirSimFleet.missing(settings.fleet, sensors, server.address, network, clock)
+
     /** Every vehicle's state in its own frame, at every tick until `done`. */
     def watch(done: Future[?]): Future[Vector[Vector[Kinematics]]] = operate: client =>
       val watched = vehicles.map(vehicle => Multirotor(client, vehicle.name))
@@ -129,13 +138,17 @@ class RunningSimulatorSimulation extends munit.FunSuite, Unhurried:
         val client = AirSimClient(RpcClient(network, server.address, clock))
         act(client).flatMap(done => client.close().map(_ => done))
 
-  private def on[A](vehicles: Vector[VehicleSettings], losesCancel: () => Boolean = () => false)(
+  private def on[A](
+      vehicles: Vector[VehicleSettings],
+      losesCancel: () => Boolean = () => false,
+      sensors: Option[SensorNoise] = None
+  )(
       use: Bench => Future[A]
   ): A = VirtualTime
     .run(seed = 1): system =>
       given ActorSystem = system
       import system.dispatcher
-      val bench = Bench(vehicles, losesCancel)
+      val bench = Bench(vehicles, losesCancel, sensors)
       for
         result <- use(bench)
         server <- bench.server
@@ -214,6 +227,40 @@ class RunningSimulatorSimulation extends munit.FunSuite, Unhurried:
       val last = recording.decisions.last
       last.own.state.value.positionNed.horizontalDistance(last.opponent.state.value.positionNed)
     assertEqualsDouble(apartM(raised), apartM(level), 0.1)
+
+  test(
+    "flights by readings with errors begin where the vehicles truly are, and errors are no other client's"
+  ):
+    val noise   = SensorNoise.parse("position=1,velocity=0.3,heading=0.1,dropout=20%,outage=1s/4s").toOption
+    val flights = on(duel, sensors = noise)(_.command(settings.copy(sensors = noise)))
+    for recording <- orFail(flights) do
+      assertEquals(recording.ending.map(_.how), Some(EndingKind.Completed))
+      assert(recording.readings.sizeIs > 60, recording.readings.size)
+
+  test("by readings with errors, too, vehicles take off and climb vertically to their layers"):
+    val noise         = SensorNoise.parse("velocity=0.3,drift=30/60s").toOption
+    val (seen, taken) = on(duel, sensors = noise): bench =>
+      import bench.system.dispatcher
+      val flown = bench.command(brief.copy(sensors = noise)).map(orFail)
+      bench.watch(flown).zip(flown).map((seen, _) => (seen, bench.taken))
+    assertEquals(taken.count(_ == "takeoff"), 2)
+    for vehicle <- duel.indices do
+      val rising = seen.map(_(vehicle).positionNed).takeWhile(_.z > -15)
+      assert(rising.nonEmpty && rising.last.z < -10, rising.lastOption)
+      val sideways = rising.map(place => place.copy(z = 0).norm).max
+      assert(sideways < 1, s"$sideways m")
+
+  test("a simulator of other sensors than stated is refused"):
+    val noise                 = SensorNoise.parse("position=1,velocity=0.1").toOption
+    def against(text: String) = on(duel, sensors = noise): bench =>
+      bench.missing(Option(text).filter(_.nonEmpty).flatMap(SensorNoise.parse(_).toOption))
+    assertEquals(against("velocity=0.1,position=1.0"), Right(()))
+    for text <- Seq("", "position=2,velocity=0.1") do
+      assert(
+        against(text).left.exists(why =>
+          why.startsWith("--sensors: expected position=1,velocity=0.1, as in the simulator at ")
+        )
+      )
 
   test("a simulator that stands still is resumed"):
     val recordings = on(duel): bench =>

@@ -6,6 +6,7 @@ import skein.record.{ParameterRow, Recording, RecordingHeader, Samples}
 import skein.scenario.{PaperDuel, Scenarios}
 import skein.signal.LatencyProfile
 import skein.units.*
+import skein.vehicle.SensorNoise
 
 /** Settings as a recording stores them: files of all versions use equal names. */
 class RecordedPlanSuite extends munit.FunSuite:
@@ -26,6 +27,7 @@ class RecordedPlanSuite extends munit.FunSuite:
     only = Some("Pursuer"),
     between = Some(right(VehicleLink.parse("range:60m,loss:10%/4,vpn"))),
     plant = right(SimulatedBody.recorded("mujoco:gone.xml")),
+    sensors = Some(right(SensorNoise.parse("position=0.1,dropout=2%"))),
     wire = Wire.Mavlink,
     images = List(ImageSource.Seen, right(ImageSource.parse("front@10"))),
     deadline = Some(Span.ofMillis(20)),
@@ -58,6 +60,7 @@ class RecordedPlanSuite extends munit.FunSuite:
         "only"           -> "Pursuer",
         "between"        -> "range:60m,loss:10%/4,vpn",
         "plant"          -> "mujoco:gone.xml",
+        "sensors"        -> "position=0.1,dropout=2%",
         "wire"           -> "mavlink",
         "solver"         -> "link:vpn",
         "images"         -> "seen front@10.0",

@@ -1,6 +1,6 @@
 package skein.forward
 
-import skein.signal.{LatencyProfile, Retransmission}
+import skein.signal.{Impairment, LatencyProfile, Retransmission}
 import skein.simd.WorldRandom
 import skein.units.Expect
 
@@ -16,15 +16,16 @@ object LinkDelays:
     * @return Left says what was expected and what was given
     */
   def checked(link: LatencyProfile, packetsPerS: Double): Either[String, Delays] =
-    val base = link.delays match
-      case _ if link.bandwidth.isDefined           => None
-      case steady: LatencyProfile.Steady           => Some(of(steady), Seq(steady.roundTrip))
-      case alternating: LatencyProfile.Alternating =>
+    val reorders = link.impairments.exists(_.isInstanceOf[Impairment.Reordering])
+    val base     = link.delays match
+      case _ if link.bandwidth.isDefined || reorders => None
+      case steady: LatencyProfile.Steady             => Some(of(steady), Seq(steady.roundTrip))
+      case alternating: LatencyProfile.Alternating   =>
         Some(of(alternating), Seq(alternating.busy, alternating.quiet))
       case _ => None
     for
       (delays, roundTrips) <- base.toRight(
-        s"expected a link without rate and correlation, which forward simulation does not have, got ${link.name}"
+        s"expected a link without rate, correlation and reordering, which forward simulation does not have, got ${link.name}"
       )
       longestS = roundTrips.map(_.quantile(1).toSeconds).max
       _ <- Expect.that(longestS <= LongestRoundTripS):

@@ -51,23 +51,26 @@ final class Rollout private[skein] (
   /** Simulates one episode.
     *
     * @param worldKey the world's key of [[WorldRandom]], which determines all delays
+    * @param sensorSeed of the errors of readings, by default the key
     */
   def fly(
       worldKey: Int,
       captureRadiusM: Double = 0.0,
-      observer: LoopObserver = LoopObserver.Nobody
+      observer: LoopObserver = LoopObserver.Nobody,
+      sensorSeed: Option[Long] = None
   ): EpisodeOutcome =
-    start(worldKey, captureRadiusM, observer)
+    start(worldKey, captureRadiusM, observer, sensorSeed)
     while !isOver do handle(world.next())
     outcome
 
   private[skein] def start(
       worldKey: Int,
       captureRadiusM: Double,
-      observer: LoopObserver = LoopObserver.Nobody
+      observer: LoopObserver = LoopObserver.Nobody,
+      sensorSeed: Option[Long] = None
   ): Unit =
     tallies = judged.map(_ => Score(captureRadiusM, last10s))
-    world.start(worldKey, observer)
+    world.start(worldKey, observer, sensorSeed = sensorSeed)
     for tracker <- trackers; eye <- tracker do eye.start(worldKey)
     world.schedule(periodNs, ScoreNow, 0, 1)
     for controller <- loop.controllers do controller.start()

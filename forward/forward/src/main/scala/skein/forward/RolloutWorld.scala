@@ -2,8 +2,9 @@ package skein.forward
 
 import skein.policy.{Action, Assignment, Seen}
 import skein.scenario.Known
-import skein.signal.{Kinematics, Stamped}
+import skein.signal.{Kinematics, SplitMix64, Stamped}
 import skein.units.Span
+import skein.vehicle.NoisySensor
 
 /** The environment of a simulated loop: the vehicles of an engagement, the time, and the messages on their
   * way to and from the vehicles. Mutable; during a flight only the vehicles allocate.
@@ -34,6 +35,7 @@ private[skein] final class RolloutWorld(
 
   val count: Int                     = agents.length
   val vehicles: Array[Vehicle]       = responses.map(_.create()).toArray
+  private val sensors                = Array.fill(agents.length)(Option.empty[NoisySensor])
   private val queue                  = EventQueue(MostWaiting * agents.length)
   private val handoverNs             = responses.map(response => Nanos.of(response.handoverS)).toArray
   private val timeoutNs              = Nanos.of(asking.timeoutS)
@@ -58,8 +60,14 @@ private[skein] final class RolloutWorld(
   /** Resets to the start of an episode.
     *
     * @param firstQuestion the number of each vehicle's next request
+    * @param sensorSeed of the errors of readings, by default the key
     */
-  def start(worldKey: Int, listener: LoopObserver, firstQuestion: Int = 0): Unit =
+  def start(
+      worldKey: Int,
+      listener: LoopObserver,
+      firstQuestion: Int = 0,
+      sensorSeed: Option[Long] = None
+  ): Unit =
     key = worldKey
     time = 0
     watching = listener
@@ -67,6 +75,9 @@ private[skein] final class RolloutWorld(
     begunAtNs = RolloutWorld.NotBegun
     queue.clear()
     for vehicle <- vehicles.indices do
+      sensors(vehicle) =
+        responses(vehicle).sensors.map: noise =>
+          NoisySensor(noise, SplitMix64.seedOf(sensorSeed.getOrElse(worldKey), vehicle))
       vehicles(vehicle).start(agents(vehicle).startX, agents(vehicle).startY, agents(vehicle).altitudeDownM)
       asked(vehicle) = firstQuestion; commanded(vehicle) = 0; commandAt(vehicle) = 0; ackAt(vehicle) = 0
 
@@ -117,7 +128,8 @@ private[skein] final class RolloutWorld(
   def askerOf(vehicle: Int, question: Int): Int     = askers(slot(vehicle, question))
   def seen(vehicle: Int, question: Int): Kinematics = kinematics(slot(vehicle, question))
 
-  /** Requests a reading of a vehicle; [[Answered]] or [[TimedOut]] follows.
+  /** Requests a reading of a vehicle; [[Answered]] or [[TimedOut]] follows, the latter also when the answer
+    * says that sensors have no reading.
     *
     * @return the request's number: they count per vehicle, over all controllers
     */
@@ -134,9 +146,10 @@ private[skein] final class RolloutWorld(
   def sampled(vehicle: Int, number: Int): Unit =
     val at = slot(vehicle, number)
     read(vehicle, number)
-    val delay = link.delayNs(key, Delays.answer(askers(at), vehicle), steps(at), number, time)
+    val delay  = link.delayNs(key, Delays.answer(askers(at), vehicle), steps(at), number, time)
+    val answer = if sensors(vehicle).exists(_.isMissing(Span.ofNanos(time))) then TimedOut else Answered
     if delay > sentAtNs(at) + timeoutNs - time then timeOut(vehicle, number)
-    else schedule(time + delay, Answered, vehicle, number)
+    else schedule(time + delay, answer, vehicle, number)
 
   /** Schedules a time-out after all other events of its time, as in a flight (`skein.rpc.ChannelStage`). */
   private def timeOut(vehicle: Int, number: Int): Unit =
@@ -160,8 +173,15 @@ private[skein] final class RolloutWorld(
     val body = vehicles(vehicle)
     val at   = slot(vehicle, number)
     body.advance(nowS)
-    x(at) = body.seenX; y(at) = body.seenY; vx(at) = body.seenVx; vy(at) = body.seenVy
-    if keepsKinematics then kinematics(at) = body.seen
+    sensors(vehicle) match
+      case None =>
+        x(at) = body.seenX; y(at) = body.seenY; vx(at) = body.seenVx; vy(at) = body.seenVy
+        if keepsKinematics then kinematics(at) = body.seen
+      case Some(sensor) =>
+        val sensed = sensor.read(body.seen, Span.ofNanos(time))
+        x(at) = sensed.positionNed.x; y(at) = sensed.positionNed.y
+        vx(at) = sensed.velocityNed.x; vy(at) = sensed.velocityNed.y
+        if keepsKinematics then kinematics(at) = sensed
     validAtNs(at) = time
     observer.read(vehicle, number, time, x(at), y(at), body.seenZ)
 

@@ -3,7 +3,7 @@ package skein.forward
 import skein.policy.Action
 import skein.signal.Kinematics
 import skein.units.{Quaternion, Vector3}
-import skein.vehicle.{QuadrotorModel, VehicleModel}
+import skein.vehicle.{QuadrotorModel, SensorNoise, VehicleModel}
 
 /** One vehicle of a rollout. Mutable; one per vehicle and thread. */
 trait Vehicle:
@@ -63,6 +63,9 @@ trait VelocityResponse:
 
   /** Whether the vehicles' motion depends on a commanded yaw. */
   def regardsYaw: Boolean = true
+
+  /** Errors of the vehicles' readings; without them readings are true. */
+  def sensors: Option[SensorNoise] = None
 
   /** The model that best predicts such a vehicle. */
   def predictor: VehicleModel[?] = QuadrotorModel.AirSim

@@ -7,6 +7,7 @@ import skein.forward.{
   Nanos,
   PlantResponse,
   QuadrotorResponse,
+  SensedResponse,
   SpatialResponse,
   TeamResponses,
   VelocityResponse
@@ -54,6 +55,7 @@ private[skein] object LaneDynamics:
     case PlantResponse(plant)   => PlantLanes.of(plant).map(PlantDynamics(_, inSpace, fliesLevel = true))
     case SpatialResponse(plant) => PlantLanes.of(plant).map(PlantDynamics(_, true, fliesLevel = false))
     case car: CarResponse       => PlantLanes.of(car.plant).map(PlantDynamics(_, inSpace, fliesLevel = false))
+    case _: SensedResponse      => Left("SIMD does not support errors of readings")
     case _                      => Left("SIMD does not support the vehicle")
 
   /** The dynamics of a model under a loop; if the loop predicts, SIMD must support its predictor too.

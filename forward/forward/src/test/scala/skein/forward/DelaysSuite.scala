@@ -96,7 +96,7 @@ class DelaysSuite extends munit.FunSuite:
       assertEquals(
         checked(text),
         Left(
-          s"expected a link without rate and correlation, which forward simulation does not have, got $text"
+          s"expected a link without rate, correlation and reordering, which forward simulation does not have, got $text"
         )
       )
     assert(checked("loss:0%,vpn").exists(_.isInstanceOf[DelayTable]))

@@ -10,6 +10,7 @@ import skein.scenario.{PaperDuel, Scenarios}
 import skein.settings.{FlySettings, OutsidePolicy, PolicyFile, TextFile, VehicleChoice}
 import skein.signal.LatencyProfile
 import skein.units.{Expect, Span}
+import skein.vehicle.SensorNoise
 
 /** Settings of environments, in the user's terms.
   *
@@ -20,6 +21,7 @@ import skein.units.{Expect, Span}
   *   if an evader learns; empty: their own policies
   * @param plant see [[VehicleChoice.parse]]; empty: `reduced` at the altitude where it was identified, `drag`
   *   at others, `tilt` where a policy may climb
+  * @param sensors errors of readings, see [[SensorNoise.parse]]; empty: readings are true
   * @param altitudeM altitude of all vehicles at the start; 0: that of the scenario
   * @param captureRadiusM distance that ends an episode; 0: none does
   * @param startWithinM minimum and maximum initial distance, in a random direction and with a random first
@@ -43,6 +45,7 @@ final case class EnvironmentSettings(
     link: String = "vpn",
     periodMs: Double = 100,
     plant: String = "",
+    sensors: String = "",
     altitudeM: Double = 0,
     episodeS: Double = 60,
     captureRadiusM: Double = 0,
@@ -98,19 +101,21 @@ final case class EnvironmentSettings(
       vehicles: Int
   )(using Scenarios): Either[String, (LoopTiming, Delays, VehicleChoice)] =
     for
-      kind    <- LoopKind.parse(loop).left.map("loop: " + _)
-      _       <- within("period_ms", periodMs, 1, 10_000)
-      _       <- within("altitude_m", atM, 1e-3, FlySettings.MostAltitudeM)
-      _       <- within("episode_s", episodeS, 1, 3600)
-      _       <- within("capture_radius_m", captureRadiusM, 0, MostM)
-      _       <- within("start_within_m", startWithinM._1, 0, MostM)
-      _       <- within("start_within_m", startWithinM._2, startWithinM._1, MostM)
-      _       <- Moves.mistake(movesInFlight).map("moves_in_flight: " + _).toLeft(())
-      _       <- within("turn_rate_rad_per_s", turnRateRadPerS, 1e-3, MostRateRadPerS)
-      _       <- within("evader_rate_rad_per_s", evaderRateRadPerS, 0, MostRateRadPerS)
-      _       <- within("climb_mps", climbMps, 0, MostClimbMps)
-      vehicle <- VehicleChoice.parse(if plant.nonEmpty then plant else otherwise, atM).left.map("plant: " + _)
-      delays  <- delaysOf(link, vehicles).left.map("link: " + _)
+      kind  <- LoopKind.parse(loop).left.map("loop: " + _)
+      _     <- within("period_ms", periodMs, 1, 10_000)
+      _     <- within("altitude_m", atM, 1e-3, FlySettings.MostAltitudeM)
+      _     <- within("episode_s", episodeS, 1, 3600)
+      _     <- within("capture_radius_m", captureRadiusM, 0, MostM)
+      _     <- within("start_within_m", startWithinM._1, 0, MostM)
+      _     <- within("start_within_m", startWithinM._2, startWithinM._1, MostM)
+      _     <- Moves.mistake(movesInFlight).map("moves_in_flight: " + _).toLeft(())
+      _     <- within("turn_rate_rad_per_s", turnRateRadPerS, 1e-3, MostRateRadPerS)
+      _     <- within("evader_rate_rad_per_s", evaderRateRadPerS, 0, MostRateRadPerS)
+      _     <- within("climb_mps", climbMps, 0, MostClimbMps)
+      known <- VehicleChoice.parse(if plant.nonEmpty then plant else otherwise, atM).left.map("plant: " + _)
+      noise <- Expect.each(Option(sensors).filter(_.nonEmpty))(SensorNoise.parse).left.map("sensors: " + _)
+      vehicle = known.sensedBy(noise.headOption)
+      delays <- delaysOf(link, vehicles).left.map("link: " + _)
       loopSettings = LoopSettings
         .every(Span.ofMillis(periodMs))
         .copy(model = _ => vehicle.response.predictor, movesInFlight = movesInFlight)
@@ -156,6 +161,7 @@ object EnvironmentSettings:
             case "loop"             => Right(settings.copy(loop = text))
             case "link"             => Right(settings.copy(link = text))
             case "plant"            => Right(settings.copy(plant = text))
+            case "sensors"          => Right(settings.copy(sensors = text))
             case "scenario"         => Right(settings.copy(scenario = text))
             case "objective"        => Right(settings.copy(objective = text))
             case s"set.$key"        => Right(settings.copy(set = settings.set + (key -> text)))

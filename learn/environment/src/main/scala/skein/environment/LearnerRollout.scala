@@ -18,7 +18,7 @@ private final class LearnerRollout(side: LearnerSide, team: TeamCandidate, learn
   private val flying          = Resumed(fly)
   private var ask: () => Unit = () => ()
   private val agents          = team.engagement.agents.toArray
-  private var key             = 0
+  private var draw            = 0L
   private var isAnew          = false
   private var due             = Nobody
   private var untilS          = 0f
@@ -34,7 +34,7 @@ private final class LearnerRollout(side: LearnerSide, team: TeamCandidate, learn
   def restartAlone: Boolean = false
 
   def start(draw: Long, untilS: Float): Unit =
-    key = LearnerTeams.keyOf(draw)
+    this.draw = draw
     this.untilS = untilS
     isAnew = true
 
@@ -90,7 +90,8 @@ private final class LearnerRollout(side: LearnerSide, team: TeamCandidate, learn
         northM = agents.map(_.startX)
         eastM = agents.map(_.startY)
         val rollout = Rollout(team.engagement.copy(agents = flown), side.timing, side.link, side.response)
-        rollout.fly(key, observer = scores): Unit
+        // More draws than keys, of which each needs a timetable.
+        rollout.fly(LearnerTeams.keyOf(draw), observer = scores, sensorSeed = Some(draw)): Unit
         hasEnded = rollout.hasEnded
         due = Nobody
         suspend()

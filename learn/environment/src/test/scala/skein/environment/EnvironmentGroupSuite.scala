@@ -40,9 +40,26 @@ class EnvironmentGroupSuite extends munit.FunSuite, TemporaryFolders:
       assert(clue(engine(settings)).startsWith("SIMD, "))
     val quadrotor = EnvironmentSettings(plant = "quadrotor", altitudeM = 3)
     assert(clue(engine(quadrotor)).startsWith("scalar: SIMD simulates no ground"))
+    val sensed = surround.copy(sensors = "position=1")
+    assert(clue(engine(sensed)).startsWith("scalar: SIMD does not support errors of readings"))
     val others = Scenarios(ScenarioKind(Own()), ScenarioKind(Short()))
     assert(clue(engine(own("", ""))(using others)).startsWith("scalar: a policy is no formula"))
     assert(clue(engine(EnvironmentSettings(scenario = "short"))(using others)).startsWith("SIMD, "))
+
+  test("learners see the errors of readings; a mistake in them names the setting"):
+    def seen(sensors: String) =
+      val learner = Learner(surround.copy(sensors = sensors), 1)
+      learner.batch.reset(Array(1L))
+      learner.act(0, 0)
+      learner.batch.step()
+      val all = Vector.tabulate(3)(learner.seen(0, _))
+      learner.batch.close()
+      all
+    assertNotEquals(seen("position=1"), seen("position=0"))
+    assertEquals(
+      EnvironmentBatch.engine(surround.copy(sensors = "position=x")).map(_.text),
+      Left("sensors: expected a number from 0.0 to 100.0, got 'position=x'")
+    )
 
   test("a scenario's own end terminates the episode"):
     given Scenarios = Scenarios(ScenarioKind(Short()))

@@ -15,14 +15,19 @@ class LearnerWorldsSuite extends munit.FunSuite:
   private val all = EnvironmentSettings(startWithinM = (2, 8), episodeS = 6)
 
   /** Each learner's observations at its decisions, and the sums of the scores, until the last score. */
-  private def flown(side: LearnerSide, learning: Vector[Int], worlds: LearnerWorlds) =
+  private def flown(
+      side: LearnerSide,
+      learning: Vector[Int],
+      worlds: LearnerWorlds,
+      draw: Long = SplitMix64.seedOf(3, 0)
+  ) =
     val space          = side.settings.space
     val (starts, seen) = (Starts(side), Array.ofDim[Float](space.inputs * LearnerWorlds.Most))
     val observed       = Array.fill(learning.size)(Vector.newBuilder[Vector[Float]])
     val judged         = side.team(learning, None).judged.indices
     val decisions      = Array.ofDim[Int](learning.size)
     starts.draw(5)
-    worlds.start(SplitMix64.seedOf(3, 0), 6)
+    worlds.start(draw, 6)
     for vehicle <- side.names.indices do
       import starts.{eastM, headingRad, northM}
       worlds.restart(0, vehicle, northM(vehicle), eastM(vehicle), headingRad(vehicle))
@@ -42,6 +47,15 @@ class LearnerWorldsSuite extends munit.FunSuite:
       observed.map(_.result()).toVector,
       judged.map(number => { worlds.soFar(number, seen); seen(0) }).toVector
     )
+
+  test("each draw has its own errors of readings, also where draws share delays"):
+    def seen(sensors: String, draw: Long) =
+      val side     = LearnerSide.of(all.copy(sensors = sensors)).fold(fail(_), identity)
+      val learning = side.turns.last
+      flown(side, learning, LearnerRollout(side, side.team(learning, None), learning), draw)._1
+    assertEquals(seen("position=0", 2), seen("position=0", 2 + 256))
+    assertEquals(seen("position=1", 2), seen("position=1", 2))
+    assertNotEquals(seen("position=1", 2), seen("position=1", 2 + 256))
 
   for
     (settings, toleranceM) <- Seq(

@@ -325,6 +325,25 @@ class DelayLineSuite extends munit.FunSuite:
     assertEquals(counts.packets.sentAgain.sum, 0L)
     assert(counts.bytesLost.sum > 0)
 
+  test("a late datagram is overtaken by those sent before its time; over TCP they wait for it"):
+    def once(isDatagrams: Boolean) =
+      over(profile("reorder:2%/12ms,constant:100ms"), isDatagrams = isDatagrams): line =>
+        arrivals(every(5, 5000), line)
+    val ids  = once(isDatagrams = true).map((text, ms) => text.stripSuffix(";").toInt -> ms)
+    val late = ids.filter((id, ms) => (ms - 5 * id - 62).abs < 1e-6).map(_._1)
+    assertEquals(ids.map(_._1).sorted, (0 until 5000).toVector)
+    assert(ids.forall((id, ms) => late.contains(id) || (ms - 5 * id - 50).abs < 1e-6))
+    assertEqualsDouble(late.size.toDouble, 100, 40)
+    // RFC 4737: reordered is what arrives after one that was sent later.
+    val reordered =
+      ids.map(_._1).scanLeft(-1)(_.max(_)).zip(ids.map(_._1)).collect { case (most, id) if id < most => id }
+    assertEquals(reordered, late)
+
+    val stream = once(isDatagrams = false)
+    assertEquals(stream.map(_._1).mkString, (0 until 5000).map(i => s"$i;").mkString)
+    // Those sent 5 and 10 ms later come out with it.
+    assert(stream.exists((text, _) => text.count(_ == ';') == 3), "nothing waited")
+
   test("also with losses, equal seeds give equal times, to the nanosecond"):
     def once = over(profile("loss:10%/3,outage:200ms/2s,vpn"))(line => arrivals(every(7, 1000), line))
     assertEquals(once, once)

@@ -20,7 +20,7 @@ import skein.vehicle.{CarControls, CarDriver, GoTo, SingleTrack}
 final class AirSimCar(car: Car, driver: CarDriver = CarDriver(), model: SingleTrack = SingleTrack())(using
     system: ActorSystem
 ) extends VehiclePort:
-  import VehicleErrors.errorOf
+  import VehicleErrors.{errorOf, noReading}
   import system.dispatcher
   private type Answer = Either[VehicleError, Boolean]
 
@@ -28,10 +28,10 @@ final class AirSimCar(car: Car, driver: CarDriver = CarDriver(), model: SingleTr
   private val underWay = AtomicReference(Promise[Answer]())
 
   def read(): Future[Either[VehicleError, Stamped[Kinematics]]] = car
-    .kinematics()
+    .status()
     .map: answer =>
-      answer.foreach(reading => seen.set(Some(reading.value)))
-      answer.left.map(errorOf)
+      answer.foreach(reading => seen.set(Some(reading.value.kinematics)))
+      answer.left.map(errorOf).filterOrElse(!_.value.isMissing, noReading).map(_.map(_.kinematics))
 
   def act(action: Action, lasts: Span): Future[Answer] = action match
     case Action.VelocityAt(north, east, _, _) => drive(lasts)(_ => (north, east))

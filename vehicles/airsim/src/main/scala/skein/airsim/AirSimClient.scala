@@ -63,6 +63,13 @@ final class AirSimClient(val rpc: RpcClient, val timeout: Span = Span.ofSeconds(
       case Right(text) if text.trim.isEmpty => Right(WorldSettings.Default)
       case Right(text)                      => WorldSettings.parse(text).left.map(AirSimError.Settings(_))
 
+  /** The errors of readings that the built-in simulator adds, as `--sensors` takes them. Without errors, and
+    * in another simulator, it is empty.
+    */
+  def sensors(): Future[Either[RpcError, String]] = get[Text]("skeinSensors").map:
+    case Left(_: RpcError.Refused) => Right("")
+    case answer                    => answer.map(_.value)
+
   /** @param windNed velocity of the air, m/s
     */
   def setWind(windNed: Vector3): Future[Either[RpcError, Unit]] =

@@ -29,7 +29,8 @@ final class Car(
           MetresPerSecond(state.speed),
           state.gear,
           state.rpm,
-          state.handbrake
+          state.handbrake,
+          state.skein_missing
         ),
         state.timestamp
       )
@@ -70,11 +71,13 @@ object Car:
   *
   * @param speed along its heading, negative in reverse
   * @param gear −1 is reverse
+  * @param isMissing whether its sensors have no reading now, so that `kinematics` are earlier ones
   */
 final case class CarStatus(
     kinematics: Kinematics,
     speed: MetresPerSecond,
     gear: Int,
     rpm: Double,
-    handbrake: Boolean
+    handbrake: Boolean,
+    isMissing: Boolean = false
 )

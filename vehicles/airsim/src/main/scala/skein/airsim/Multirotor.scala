@@ -33,7 +33,11 @@ final class Multirotor(
   def status(): Future[Either[RpcError, Stamped[MultirotorStatus]]] =
     stamped("getMultirotorState")((state: MultirotorReading) =>
       (
-        MultirotorStatus(inWorld(state.kinematics_estimated), flying = state.landed_state == 1),
+        MultirotorStatus(
+          inWorld(state.kinematics_estimated),
+          flying = state.landed_state == 1,
+          state.skein_missing
+        ),
         state.timestamp
       )
     ).map(_.filterOrElse(

@@ -5,6 +5,8 @@ import skein.rpc.RpcError
 
 private object VehicleErrors:
 
+  val noReading: VehicleError = VehicleError.TimedOut("the vehicle's sensors have no reading")
+
   /** Converts an RPC error to a vehicle's error. */
   def errorOf(error: RpcError): VehicleError = error match
     case _: RpcError.Timeout                       => VehicleError.TimedOut(error.message)

@@ -44,17 +44,31 @@ final case class Autopilot(
   /** Handles a message that is addressed to this vehicle, or to all.
     *
     * @param from system and component of the sender
+    * @param motion the true motion
+    * @param reported the motion for a message of this number; None if sensors have no reading for it
     */
-  def heard(message: Message, from: (system: Int, component: Int), motion: VehicleMotion): Heard =
+  def heard(
+      message: Message,
+      from: (system: Int, component: Int),
+      motion: VehicleMotion,
+      reported: Int => Option[VehicleMotion]
+  ): Heard =
+    def acknowledged(order: Order) =
+      def ack(result: Int) =
+        CommandAck(order.command, result, targetSystem = from.system, targetComponent = from.component)
+      obey(order, motion, reported) match
+        case Left(Refusal(result, why, more)) =>
+          Heard(this, Vector(ack(result)), (why +: more).map(text(Severity.Critical, _)))
+        case Right(heard) => heard.copy(answers = ack(Result.Accepted) +: heard.answers)
     message match
       case one: CommandLong =>
         val numbers =
           Vector(one.param1, one.param2, one.param3, one.param4, one.param5, one.param6, one.param7)
-        acknowledged(Order(one.command, numbers.map(_.toDouble), None), from, motion)
+        acknowledged(Order(one.command, numbers.map(_.toDouble), None))
       case one: CommandInt =>
         val numbers = Vector(one.param1, one.param2, one.param3, one.param4).map(_.toDouble) ++
           Vector(one.x * 1e-7, one.y * 1e-7, one.z.toDouble)
-        acknowledged(Order(one.command, numbers, Some(one.frame)), from, motion)
+        acknowledged(Order(one.command, numbers, Some(one.frame)))
       case Timesync(0, theirs, _, _)       => Heard(this, Vector(Timesync(motion.sinceBoot.toNanos, theirs)))
       case ParamRequestList(_, _)          => Heard(this, parameters.all)
       case ParamRequestRead(_, _, name, n) => Heard(this, parameters.one(name, n).toVector)
@@ -93,15 +107,11 @@ final case class Autopilot(
 
   private def refused(why: String): Heard = Heard(this, Vector(text(Severity.Critical, why)))
 
-  private def acknowledged(order: Order, from: (system: Int, component: Int), motion: VehicleMotion): Heard =
-    def ack(result: Int) =
-      CommandAck(order.command, result, targetSystem = from.system, targetComponent = from.component)
-    obey(order, motion) match
-      case Left(Refusal(result, why, more)) =>
-        Heard(this, Vector(ack(result)), (why +: more).map(text(Severity.Critical, _)))
-      case Right(heard) => heard.copy(answers = ack(Result.Accepted) +: heard.answers)
-
-  private def obey(order: Order, motion: VehicleMotion): Either[Refusal, Heard] = order.command match
+  private def obey(
+      order: Order,
+      motion: VehicleMotion,
+      reported: Int => Option[VehicleMotion]
+  ): Either[Refusal, Heard] = order.command match
     case Command.Arm if order.isOne(0)       => arm(motion)
     case Command.Arm                         => disarm(motion, order.numbers(1) == CommonDialect.Force)
     case Command.Terminate if order.isOne(0) => disarm(motion, isForced = true)
@@ -138,10 +148,12 @@ final case class Autopilot(
     case Command.GetHome             => Right(Heard(this, Vector(Telemetry.home(this))))
     case Command.RequestCapabilities => Right(Heard(this, Vector(Telemetry.version(this))))
     case Command.RequestMessage      =>
-      Telemetry
-        .of(order.whole(0), this, motion)
-        .map(message => Heard(this, Vector(message)))
-        .toRight(Refusal(Result.Unsupported, s"message ${order.whole(0)} unsupported"))
+      val id = order.whole(0)
+      for
+        shown   <- reported(id).toRight(Refusal(Result.Rejected, s"message $id: sensors have no reading"))
+        message <- Telemetry.of(id, this, shown)
+          .toRight(Refusal(Result.Unsupported, s"message $id unsupported"))
+      yield Heard(this, Vector(message))
     case Command.SetMessageInterval =>
       val id     = order.whole(0)
       val micros = order.numbers(1)

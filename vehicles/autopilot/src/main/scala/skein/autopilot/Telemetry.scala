@@ -25,6 +25,11 @@ object Telemetry:
     331 -> 50    // ODOMETRY
   ).view.mapValues(millis => Span.ofMillis(millis)).toMap
 
+  /** The messages about the vehicle's motion: GPS_RAW_INT, ATTITUDE, ATTITUDE_QUATERNION, LOCAL_POSITION_NED,
+    * GLOBAL_POSITION_INT, ODOMETRY.
+    */
+  val ofMotion: Set[Int] = Set(24, 30, 31, 32, 33, 331)
+
   /** The shortest interval at which any message is sent. */
   val Shortest: Span = Span.ofMillis(5)
 

@@ -36,7 +36,7 @@ class AutopilotSuite extends munit.FunSuite:
 
   extension (autopilot: Autopilot)
     private def told(message: Message, motion: VehicleMotion): Autopilot.Heard =
-      autopilot.heard(message, gcs, motion)
+      autopilot.heard(message, gcs, motion, _ => Some(motion))
     private def flown(motion: VehicleMotion): Autopilot = autopilot.steer(motion).heard.next
 
   private def results(heard: Autopilot.Heard): Vector[Int] = heard.answers.collect { case ack: CommandAck =>

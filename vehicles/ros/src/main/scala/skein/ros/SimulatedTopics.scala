@@ -105,12 +105,13 @@ final class SimulatedTopics private (
           last = Some(at)
 
   private def publish(at: Instant, seen: Vector[SeenVehicle], withFix: Boolean): Unit =
-    for (vehicle, topics) <- seen.zip(vehicles) do
+    val published = seen.flatMap(vehicle => vehicles.find(_.name == vehicle.name).map((vehicle, _)))
+    for (vehicle, topics) <- published do
       topics.odometry.foreach(_.publish(VehicleMessages.odometry(at, vehicle.name, vehicle.kinematics)))
       topics.imu.foreach(_.publish(VehicleMessages.imu(at, vehicle)))
       if withFix then topics.fix.foreach(_.publish(VehicleMessages.fix(at, vehicle)))
-    frames.foreach(_.publish(TFMessage(seen.take(vehicles.size).map(it =>
-      VehicleMessages.transform(at, it.name, it.kinematics)
+    frames.foreach(_.publish(TFMessage(published.map((vehicle, _) =>
+      VehicleMessages.transform(at, vehicle.name, vehicle.kinematics)
     ))))
     clock.publish(Clock(Time.of(at)))
 

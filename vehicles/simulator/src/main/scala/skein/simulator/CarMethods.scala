@@ -16,14 +16,15 @@ private[simulator] object CarMethods:
     ),
     one[String]("getCarState"): (simulation, name) =>
       car(simulation, name): (_, car) =>
-        val now = simulation.world.now
+        val seen = VehicleMethods.sensed(simulation, car)
         answer(CarState(
           car.speedMps.toFloat,
           car.gear,
           car.rpm.toFloat,
           SimulatedCar.MostRpm.toFloat,
           car.controls.handbrake,
-          VehicleMethods.kinematics(car, now),
-          now
+          VehicleMethods.kinematics(seen),
+          seen.at,
+          seen.isMissing
         ))
   )

@@ -5,8 +5,8 @@ import skein.units.*
 
 /** AirSim's default GPS (`GpsSimple`): silent for its first second, its dilutions of precision falling from
   * 100 to 0.1 with a time constant of 0.9 s, so that it has a fix in three dimensions after some 3.2 s. A
-  * reset restarts the dilutions, and does not silence it. It reports the current true state; AirSim's is 0.2
-  * s late and updates every 20 ms.
+  * reset restarts the dilutions, and does not silence it. It reports the current state as sensed; AirSim's is
+  * 0.2 s late and updates every 20 ms.
   */
 private[simulator] object Gps:
   def read(vehicle: SimulatedVehicle, at: Instant): GpsData =
@@ -14,15 +14,16 @@ private[simulator] object Gps:
     else
       val up       = vehicle.upFor(at).toSeconds
       val dilution = Final + (Initial - Final) * StrictMath.exp(-up / TimeConstantS)
+      val seen     = vehicle.sensed(at)
       val report   = GnssReport(
-        GeoPoint(vehicle.locationAt(at)),
+        GeoPoint(vehicle.home.locate(seen.motion.positionNed)),
         dilution.toFloat,
         dilution.toFloat,
-        Vector3r(vehicle.velocityAt(at)),
+        Vector3r(seen.motion.velocityNed),
         if dilution <= Most3d then Fix3d else if dilution <= Most2d then Fix2d else NoFix,
-        Instant.ofNanos(at.toNanos / 1000)
+        Instant.ofNanos(seen.at.toNanos / 1000)
       )
-      GpsData(at, report, is_valid = true)
+      GpsData(seen.at, report, is_valid = true)
 
   private val Initial       = 100.0
   private val Final         = 0.1

@@ -45,14 +45,16 @@ private[simulator] final class InProcess(
 
   private def see(at: Instant): Unit =
     seenAt = Some(at)
-    if lockstep.forall(_.isSeen(at)) then onlooker.see(at, world.vehicles.map(motionOf(_, at)))
+    if lockstep.forall(_.isSeen(at)) then onlooker.see(at, world.vehicles.flatMap(motionOf(_, at)))
 
-  private def motionOf(vehicle: SimulatedVehicle, at: Instant) = SeenVehicle(
-    vehicle.settings.name,
-    kinematicsOf(vehicle, at),
-    vehicle.accelerationNed,
-    vehicle.locationAt(at)
-  )
+  private def motionOf(vehicle: SimulatedVehicle, at: Instant) =
+    val seen = vehicle.sensed(at)
+    Option.unless(seen.isMissing)(SeenVehicle(
+      vehicle.settings.name,
+      seen.motion.copy(positionNed = vehicle.settings.startNed + seen.motion.positionNed),
+      vehicle.accelerationNed,
+      vehicle.home.locate(seen.motion.positionNed)
+    ))
 
   private def kinematicsOf(vehicle: SimulatedVehicle, at: Instant) = Kinematics(
     vehicle.worldPosition(at),

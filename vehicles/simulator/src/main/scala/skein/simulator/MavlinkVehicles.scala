@@ -45,7 +45,8 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation, settings:
     val now = sinceBoot
     for (_, peer) <- channels; (system, id) <- peer.takeDue(now) do
       val one = autopilots(system - settings.firstSystem)
-      Telemetry.of(id, one.autopilot, one.motion).foreach(peer.write(system, _))
+      for motion <- one.reported(id); message <- Telemetry.of(id, one.autopilot, motion) do
+        peer.write(system, message)
     channels.iterator.map((id, peer) => (channel = id, datagrams = peer.take())).filter(
       _.datagrams.nonEmpty
     ).toVector
@@ -71,6 +72,13 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation, settings:
 
     def motion: VehicleMotion = motionAt(world.now)
 
+    /** The motion for a message of this number; None if it is about the motion, and sensors have no reading.
+      */
+    def reported(id: Int): Option[VehicleMotion] =
+      val seen = vehicle.sensed(world.now)
+      Option.unless(seen.isMissing && Telemetry.ofMotion(id)):
+        VehicleMotion(world.now.since(startedAt), seen.motion, vehicle.flying)
+
     private def motionAt(at: Instant): VehicleMotion =
       val state = vehicle.state.kinematics.copy(
         positionNed = vehicle.positionAt(at),
@@ -89,7 +97,7 @@ private[simulator] final class MavlinkVehicles(simulation: Simulation, settings:
       else None
 
     def hear(message: Message, from: (system: Int, component: Int), peer: MavlinkChannel): Unit =
-      val heard = decided.heard(message, from, motion)
+      val heard = decided.heard(message, from, motion, reported)
       decided = heard.next
       takeOver()
       heard.answers.foreach(peer.write(system, _))

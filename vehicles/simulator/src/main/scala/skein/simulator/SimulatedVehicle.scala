@@ -3,7 +3,9 @@ package skein.simulator
 import skein.airsim.VehicleSettings
 import skein.airsim.wire.KinematicsState
 import skein.scene.{Scene, SceneObject}
+import skein.signal.Kinematics
 import skein.units.*
+import skein.vehicle.NoisySensor
 
 /** One vehicle of the simulator. All positions are in its own frame, whose origin is its start.
   *
@@ -22,6 +24,10 @@ private[simulator] abstract class SimulatedVehicle(val settings: VehicleSettings
   private var lastMet: Option[Touch]   = None
   private var met                      = 0L
   protected val obstacles: Obstacles   = Obstacles(settings.startNed)
+  private var startedAt                = Instant.Epoch
+  private var sensor                   = Option.empty[NoisySensor]
+  private var isSensing                = () => true
+  private var lastSensed               = Option.empty[Sensed]
 
   /** The vehicle's kind as a word, for messages. */
   def kind: String
@@ -81,6 +87,30 @@ private[simulator] abstract class SimulatedVehicle(val settings: VehicleSettings
   /** The cameras that its kind carries by default. */
   def cameras: CameraSet
 
+  /** The true motion at `at`, up to one step after the last. */
+  def truth(at: Instant): Sensed = Sensed(
+    Kinematics(positionAt(at), velocityAt(at), orientation, angularVelocityFrd),
+    accelerationNed,
+    angularAccelerationFrd,
+    at
+  )
+
+  /** The motion at `at` as the vehicle's sensors report it. Where they have no reading, it is the last one,
+    * or the first one there is.
+    *
+    * @param mayMiss whether the sensors may have no reading. While the simulator is paused, none would ever
+    *   follow
+    */
+  def sensed(at: Instant, mayMiss: Boolean = true): Sensed = sensor.filter(_ => isSensing()) match
+    case None          => truth(at)
+    case Some(sensors) =>
+      val age = at.since(startedAt)
+      lastSensed.filter(_ => mayMiss && sensors.isMissing(age)).map(_.copy(isMissing = true)).getOrElse:
+        val real   = truth(at)
+        val sensed = real.copy(motion = sensors.read(real.motion, age))
+        lastSensed = Some(sensed)
+        sensed
+
   def worldPosition(at: Instant): Vector3 = settings.startNed + positionAt(at)
 
   /** Contacts with objects of the scene so far, the ground aside. Touches of one object within
@@ -111,8 +141,15 @@ private[simulator] abstract class SimulatedVehicle(val settings: VehicleSettings
     */
   def hasGps(at: Instant): Boolean = at >= gpsFrom
 
-  /** Starts the vehicle's clocks: it exists from this time on. */
-  def start(at: Instant): Unit =
+  /** Starts the vehicle's clocks: it exists from this time on.
+    *
+    * @param sensing errors of its readings; without it they are true
+    * @param index the vehicle's number in its world
+    */
+  def start(at: Instant, sensing: Option[SimulatedSensing], index: Int): Unit =
+    startedAt = at
+    sensor = sensing.map(_.sensor(index))
+    for errors <- sensing do isSensing = errors.isOn
     gpsFrom = at + SimulatedVehicle.GpsStartup
     reset(at)
 
@@ -122,6 +159,7 @@ private[simulator] abstract class SimulatedVehicle(val settings: VehicleSettings
     sampledAt = at
     resetAt = at
     touched = None
+    lastSensed = None
 
   protected def sinceSample(at: Instant): Double = at.since(sampledAt).toSeconds
 

@@ -41,7 +41,7 @@ final class Simulation(
   private[simulator] val equipment = settings.equipment
 
   val world: World =
-    World(settings.world, startedAt, settings.multirotors, scene = settings.scene, equipment = equipment)
+    World(settings.world, startedAt, settings.multirotors, settings.scene, equipment, settings.sensing)
 
   private[simulator] val objects   = SceneObjects(world)
   private[simulator] val cameras   = Cameras(equipment)

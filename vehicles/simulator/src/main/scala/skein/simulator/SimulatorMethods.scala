@@ -22,6 +22,7 @@ private[simulator] object SimulatorMethods:
     // AirSim keeps them sorted by name.
     none("listVehicles")(simulation => answer(simulation.world.vehicles.map(_.settings.name).sorted)),
     none("getSettingsString")(simulation => answer(simulation.settings.world.text)),
+    none("skeinSensors")(simulation => answer(simulation.settings.sensing.fold("")(_.noise.text))),
     one[Vector3r]("simSetWind"): (simulation, wind) =>
       if wind.toVector.norm <= FastestWindMps then done(simulation.world.setWind(wind.toVector))
       else CallOutcome.Threw(s"a wind of at most ${FastestWindMps.round} m/s is wanted")

@@ -33,6 +33,7 @@ enum Overload:
   * @param mavlink ports on which its vehicles also speak MAVLink
   * @param hil external autopilots that fly its vehicles; then these do not speak MAVLink
   * @param kind the kind of its multirotors; without one, AirSim's quadrotors
+  * @param sensing errors of readings; without it they are true. External autopilots have sensors of their own
   */
 final case class SimulatorSettings(
     world: WorldSettings = WorldSettings.Default,
@@ -45,7 +46,8 @@ final case class SimulatorSettings(
     mavlink: Option[MavlinkSettings] = None,
     hil: Option[HilSettings] = None,
     kind: Option[RotorcraftKind] = None,
-    patience: Option[Span] = None
+    patience: Option[Span] = None,
+    sensing: Option[SimulatedSensing] = None
 ):
   require(mavlink.isEmpty || hil.isEmpty, "vehicles have one autopilot each: MAVLink's or one outside")
   require(speed > 0 && world.clockSpeed > 0, s"speeds must be positive: $speed, ${world.clockSpeed}")

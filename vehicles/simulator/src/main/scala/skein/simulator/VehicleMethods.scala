@@ -6,8 +6,8 @@ import skein.scene.Rays
 import skein.units.*
 import upickle.default.Writer
 
-/** Functions that read or set the state of one vehicle. Sensors report true values, without noise or delay;
-  * AirSim's GPS reports them 0.2 s late.
+/** Functions that read or set the state of one vehicle. The state and GPS are what [[SimulatedSensing]] makes
+  * of the truth; other sensors report true values. None has a delay; AirSim's GPS reports 0.2 s late.
   */
 private[simulator] object VehicleMethods:
   import ServerMethod.*
@@ -37,7 +37,9 @@ private[simulator] object VehicleMethods:
     one[String]("cancelLastTask")((simulation, name) =>
       vehicle(simulation, name)((index, _) => done(simulation.world.cancelMove(index)))
     ),
-    read("getMultirotorState", multirotor)(state),
+    one[String]("getMultirotorState")((simulation, name) =>
+      multirotor(simulation, name)((_, vehicle) => answer(state(vehicle, sensed(simulation, vehicle))))
+    ),
     read("getRotorStates", multirotor)(rotors),
     one[String]("getHomeGeoPoint")((simulation, name) =>
       vehicle(simulation, name)((_, vehicle) => answer(GeoPoint(vehicle.home)))
@@ -127,22 +129,29 @@ private[simulator] object VehicleMethods:
   def missing(kind: String, sensor: String): CallOutcome =
     CallOutcome.Threw(s"No $kind with name $sensor exist on vehicle")
 
-  private def state(vehicle: SimulatedMultirotor, at: Instant) = MultirotorState(
+  private def state(vehicle: SimulatedMultirotor, seen: Sensed) = MultirotorState(
     CollisionInfo.None,
-    kinematics(vehicle, at),
-    GeoPoint(vehicle.locationAt(at)),
-    at,
+    kinematics(seen),
+    GeoPoint(vehicle.home.locate(seen.motion.positionNed)),
+    seen.at,
     if vehicle.flying then 1 else 0,
-    vehicle.sticks
+    vehicle.sticks,
+    seen.isMissing
   )
 
-  def kinematics(vehicle: SimulatedVehicle, at: Instant): KinematicsState = KinematicsState(
-    Vector3r(vehicle.positionAt(at)),
-    Quaternionr(vehicle.orientation),
-    Vector3r(vehicle.velocityAt(at)),
-    Vector3r(vehicle.angularVelocityFrd),
-    Vector3r(vehicle.accelerationNed),
-    Vector3r(vehicle.angularAccelerationFrd)
+  /** What the vehicle's sensors report; there is always a reading while the simulator is paused. */
+  def sensed(simulation: Simulated, vehicle: SimulatedVehicle): Sensed =
+    vehicle.sensed(simulation.world.now, mayMiss = !simulation.isPaused)
+
+  def kinematics(vehicle: SimulatedVehicle, at: Instant): KinematicsState = kinematics(vehicle.truth(at))
+
+  def kinematics(seen: Sensed): KinematicsState = KinematicsState(
+    Vector3r(seen.motion.positionNed),
+    Quaternionr(seen.motion.orientation),
+    Vector3r(seen.motion.velocityNed),
+    Vector3r(seen.motion.angularVelocityFrd),
+    Vector3r(seen.accelerationNed),
+    Vector3r(seen.angularAccelerationFrd)
   )
 
   private def pose(vehicle: SimulatedVehicle, at: Instant) =

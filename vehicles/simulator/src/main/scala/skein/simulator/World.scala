@@ -20,7 +20,8 @@ final class World(
     start: Instant,
     kind: RotorcraftKind = RotorcraftKind.AirSim,
     private[simulator] var scene: Scene = Scene.Empty,
-    equipment: SensorSettings = SensorSettings.None
+    equipment: SensorSettings = SensorSettings.None,
+    sensing: Option[SimulatedSensing] = None
 ):
   import World.*
 
@@ -31,6 +32,7 @@ final class World(
   private val stepLength = Span.ofSeconds(kind.stepS)
   private var clock      = start
   private var nextStep   = start + stepLength
+  private var truthAt    = start
 
   private var wind = settings.windNed
 
@@ -45,7 +47,7 @@ final class World(
     (Vector.empty, 0, Vector.empty)
   settings.vehicles.zipWithIndex.foreach((vehicle, index) => equip(index, vehicle.name))
 
-  present.foreach(_.start(start))
+  present.zipWithIndex.foreach((vehicle, index) => vehicle.start(start, sensing, index))
   setWind(wind)
 
   /** The vehicles of the settings, then those added. */
@@ -71,7 +73,7 @@ final class World(
   /** Adds a vehicle, at rest at its start. */
   private[simulator] def add(vehicle: VehicleSettings): Unit =
     val added = made(vehicle)
-    added.start(clock)
+    added.start(clock, sensing, present.size)
     added.setWind(wind)
     moves += None
     present = present :+ added
@@ -225,6 +227,11 @@ final class World(
     while nextStep <= to do
       scans.note(nextStep - Span.ofNanos(1), scan)
       vehicles.foreach(_.step(nextStep, scene))
+      for to <- sensing if nextStep >= truthAt && to.isOn() do
+        for vehicle <- vehicles do
+          val place = vehicle.worldPosition(nextStep)
+          to.truth(TruePosition(vehicle.settings.name, nextStep, nextStep.since(start), place))
+        truthAt = nextStep + SimulatedSensing.TruthEvery
       nextStep = nextStep + stepLength
     clock = clock.max(to)
     scans.note(clock, scan)

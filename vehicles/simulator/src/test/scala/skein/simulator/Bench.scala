@@ -16,7 +16,8 @@ final private[skein] class Bench(
     speed: Double = 1.0,
     scene: Scene = Scene.Empty,
     text: String = "{}",
-    patience: Option[Span] = None
+    patience: Option[Span] = None,
+    sensing: Option[SimulatedSensing] = None
 ):
   private val start = Instant.ofNanos(1_000_000_000L)
 
@@ -30,7 +31,8 @@ final private[skein] class Bench(
       overload = overload,
       speed = speed,
       scene = scene,
-      patience = patience
+      patience = patience,
+      sensing = sensing
     ),
     start
   )

@@ -22,7 +22,9 @@ final private[skein] case class CarControls(
 final private[skein] case class ComputerVisionState(kinematics_estimated: KinematicsState, timestamp: Instant)
     derives ReadWriter
 
-/** A car's state: speed along the heading in m/s, negative in reverse; engine speed in turns a minute. */
+/** A car's state: speed along the heading in m/s, negative in reverse; engine speed in turns a minute.
+  * `skein_missing`: see [[MultirotorState]].
+  */
 final private[skein] case class CarState(
     speed: Float,
     gear: Int,
@@ -30,5 +32,6 @@ final private[skein] case class CarState(
     maxrpm: Float,
     handbrake: Boolean,
     kinematics_estimated: KinematicsState,
-    timestamp: Instant
+    timestamp: Instant,
+    skein_missing: Boolean = false
 ) derives ReadWriter

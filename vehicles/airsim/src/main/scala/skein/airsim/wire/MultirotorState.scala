@@ -5,22 +5,26 @@ import upickle.default.ReadWriter
 import upickle.implicits.serializeDefaults
 
 /** The part of `getMultirotorState`'s answer that our client reads; further keys, which differ between AirSim
-  * and its forks, are skipped.
+  * and its forks, are skipped. `skein_missing`: see [[MultirotorState]].
   */
 final private[skein] case class MultirotorReading(
     kinematics_estimated: KinematicsState,
     timestamp: Instant,
-    landed_state: Int
+    landed_state: Int,
+    skein_missing: Boolean = false
 ) derives ReadWriter
 
-/** The state as AirSim's server sends it. `landed_state` is 0 landed, 1 flying. */
+/** The state as AirSim's server sends it. `landed_state` is 0 landed, 1 flying. `skein_missing` is absent
+  * unless the built-in simulator's sensors have no reading: then this is an earlier one.
+  */
 final private[skein] case class MultirotorState(
     collision: CollisionInfo,
     kinematics_estimated: KinematicsState,
     gps_location: GeoPoint,
     timestamp: Instant,
     landed_state: Int,
-    rc_data: RcData
+    rc_data: RcData,
+    skein_missing: Boolean = false
 ) derives ReadWriter
 
 /** `object_id` is −1 if nothing was touched. */
