@@ -171,7 +171,7 @@ final class IdentifyCommand(using scenarios: Scenarios)
     s"${Path.of(file).getFileName}: ${flight.id}, seed ${flight.seed}, ${flight.clock} clock, simulator ${flight.simulator.label}"
 
   /** Notes which flights were virtual: these use only the built-in simulator and should not be mixed with
-    * fits to another one.
+    * fits to another.
     */
   private def clocks(recordings: Vector[Recording]): String =
     val byClock = recordings.groupBy(_.flight.clock).toVector.sortBy(_._1)

@@ -43,7 +43,7 @@ object ScenarioFigure:
       )
     )
 
-  /** The outline of a fence, cut to the panel. */
+  /** The outline of a fence, clipped to the panel. */
   private def outline(panel: Panel, fence: Fence): Vector[Mark] =
     val corners = fence match
       case Fence.Circle(north, east, radius) =>

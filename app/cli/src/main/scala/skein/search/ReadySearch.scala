@@ -55,7 +55,7 @@ trait Searched:
     */
   def effort(together: Engine, alone: Engine, by: Conditions.Resolved): Effort
 
-  /** Name and text of a file with the result that `./skein fly` accepts. */
+  /** Name and contents of a file that holds the result in a form that `./skein fly` accepts. */
   def file(found: Found, of: ReadySearch): (String, String)
 
 /** A search whose question is resolved: processes that resolve equal questions evaluate with identical bits.

@@ -53,7 +53,7 @@ class NoResultSuite extends munit.FunSuite:
       val row  = ages.rows.find(_.head.startsWith("stream")).get
       assertEquals(row(ages.header.indexOf("true own")), "")
 
-  test("a paused flight whose clock runs back, leaps or stands still is no reference"):
+  test("a paused flight whose clock runs back, leaps or stands still is not a reference"):
     for
       (clock, why) <- Seq[(Double => Double, String)](
         (s => if s < 6 then s else 12 - s, "ran back by"),

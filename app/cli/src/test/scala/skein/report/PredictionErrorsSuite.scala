@@ -60,7 +60,7 @@ class PredictionErrorsSuite extends munit.FunSuite, Unhurried:
     )
     assert(texts(both).contains("others, median"), texts(both))
 
-  test("two ages are no curve, in the picture and in its legend"):
+  test("two ages do not make a curve, in the picture and in its legend"):
     val shapes =
       PredictionFigure(Vector(PredictionGroup("predictive", "vpn", measured(20, 40), measured()))).get.shapes
     // Two discs each for the median and the 95 % quantile, and one each in the legend.

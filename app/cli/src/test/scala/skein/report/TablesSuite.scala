@@ -165,7 +165,7 @@ class TablesSuite extends munit.FunSuite:
     assertEquals(table.header.size, table.rows.head.size)
     assert(PlanTable.note(Report.of(Seq(catches))).contains("Captured: when"))
 
-  test("a distance of exactly 1.5 m is no capture"):
+  test("a distance of exactly 1.5 m is not a capture"):
     val plan = Planned("Pursuer", 1, 10, Vector(1), None, Span.ofMillis(50), 0)
     val row  = PlanTable.of(Report.of(Seq(duel("plan", 2)(_ => 1.5).copy(planned = Vector(plan))))).rows.head
     assertEquals(row.takeRight(2), Vector("never", "0.0 %"))

@@ -213,7 +213,7 @@ private[cluster] object CoordinatorBehavior:
   case object Cancel                             extends Local
   final case class Unreachable(address: Address) extends Local
 
-  /** The process at this address has left the cluster; another one may use the address. */
+  /** The process at this address has left the cluster; another may use the address. */
   final case class Removed(address: Address) extends Local
 
   final case class Ended(worker: String) extends Local

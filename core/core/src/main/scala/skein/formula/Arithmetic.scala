@@ -187,7 +187,7 @@ private[formula] final class Arithmetic(trace: Trace, assumed: Assumptions, refu
         )
 
   /** Whether a number is a length of time in nanoseconds, as `Span.ofSeconds` and `ofMillis` round it: other
-    * rounded numbers are no times.
+    * rounded numbers are not times.
     */
   private def isNanos(node: Node): Boolean =
     node.op == Op.Mul && node.args.exists(factor => factor.is(1e9) || factor.is(1e6))

@@ -29,11 +29,11 @@ final class PolicyFormula private (
   def fits(policy: Policy, assignment: Assignment): Boolean =
     formula.fits(Deciding(policy, assignment)) && (isBegun(policy) || start.isLike(memoryOf(policy)))
 
-  /** The formula's parameters for a policy that [[fits]]. */
+  /** The formula's parameters for `policy`, which must fit the formula (see [[fits]]). */
   def parametersOf(policy: Policy): Array[Double] =
     formula.parametersOf(Deciding(policy, assignment))
 
-  /** The initial memory of a policy that [[fits]]. */
+  /** The initial memory of `policy`, which must fit the formula (see [[fits]]). */
   def startOf(policy: Policy): Array[Double] =
     (if isBegun(policy) then start else memoryOf(policy)).numbers.toArray
 

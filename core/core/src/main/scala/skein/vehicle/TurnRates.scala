@@ -1,7 +1,7 @@
 package skein.vehicle
 
 /** An estimate of the rate at which a heading turns: probabilities of [[TurnRates.Each]], by Bayes' rule. A
-  * rate is assumed to be held for a while; then another one is taken, more likely one that was seen before.
+  * rate is assumed to be held for a while; then another is taken, more likely one that was seen before.
   * Immutable.
   *
   * At a constant rate the heading is a line in time; measured headings deviate from it, since commands are

@@ -68,7 +68,7 @@ class TimeAxisSuite extends munit.FunSuite:
     val wraps = 15.0
     assertFault(readings()((_, s) => s % wraps), "ran back by 14.")
 
-  test("clocks that differ between vehicles are a fault, whose message names both"):
+  test("clocks that differ between vehicles are reported as a fault that names both vehicles"):
     for by <- Seq(0.25, -0.25, 5.0, -3600.0) do
       val told = fault(readings()((vehicle, s) => if vehicle == "a" then s else s + by))
       assert(

@@ -69,7 +69,7 @@ object OnnxPolicy:
   /** Writes a network as an ONNX file.
     *
     * @param role the role for which it was trained
-    * @return Left says why the policy is no network
+    * @return Left says why the policy is not a network
     */
   def write(policy: Policy, role: String): Either[String, Array[Byte]] =
     (policy match

@@ -17,7 +17,7 @@ private[buffer] enum Wish:
   /** Lets a vehicle hover. Its plans end; older ones that arrive later have no effect. */
   case Hover(vehicle: String)
 
-  /** Ends a vehicle's plans like [[Hover]], by a call that is no move. */
+  /** Ends a vehicle's plans like [[Hover]], by a call that is not a move. */
   case Stop(vehicle: String)
 
   /** Places a vehicle. Its plans end, as with [[Move]]. */

@@ -179,7 +179,7 @@ private[skein] object CameraSensor:
 
   /** Counts of an eye's images. After its end, each due image is in one of the other counts.
     *
-    * @param missed number of due images that were not requested, since others were still on their way
+    * @param missed number of due images that were not requested, since others were still in transit
     * @param lost number of images without a result: the call failed, recognition failed or was late, or a
     *   newer one was received first
     * @param searched number of images searched by recognition, with or without a detection

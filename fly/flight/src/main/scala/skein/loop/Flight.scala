@@ -57,7 +57,7 @@ object Flight:
     * @param others the controllers of the other vehicles, if each vehicle has one, in a graph of its own. The
     *   first that ends or fails ends all
     * @param time advances the simulator; only `paused` needs it
-    * @param onTime the outcome when its time is over
+    * @param onTime the outcome when its time has elapsed
     * @param on the materializer for one of Skein's loops, by default the system's. A separate one can report
     *   the graph independently: a stream that ends before it answers delays the report of all on its
     *   materializer

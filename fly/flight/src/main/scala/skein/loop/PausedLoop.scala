@@ -184,7 +184,7 @@ private final class PausedFlight(
       case Left(error) if isInVain(error, since) => failed(error)
       case Left(_)                               => after(PausedFlight.LookEvery)(patiently(call, since))
 
-  /** Whether a retry cannot help, or the time for retries is over. */
+  /** Whether a retry cannot help, or the time for retries has elapsed. */
   private def isInVain(error: VehicleError, since: Instant): Boolean = error match
     case VehicleError.Refused(_) | VehicleError.Malformed(_) | VehicleError.Unsupported(_) |
         VehicleError.Cancelled(_) => true
@@ -192,7 +192,7 @@ private final class PausedFlight(
 
   private def failed(error: VehicleError) = Future.failed(LoopFailed(error.message))
 
-  /** Fails if the simulator's clock is no time axis for a flight. */
+  /** Fails if the simulator's clock is not a time axis for a flight. */
   private def verifyStep(step: PausedStep, readings: Vector[Reading]): Unit =
     val (before, read) = (step.view.readings.flatten.map(_.state), readings.map(_.state))
     PausedLoop

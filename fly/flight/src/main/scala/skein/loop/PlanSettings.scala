@@ -143,7 +143,7 @@ object PlanSettings:
       summonAll[Tuple.Map[mirror.MirroredElemTypes, Word]].toList.asInstanceOf[List[Word[Any]]]
     )
 
-  /** Reads settings back from their text; absent if it is no such text. */
+  /** Reads settings back from their text; absent if it is not such a text. */
   def parse(text: String): Option[PlanSettings] =
     val values = text.split(' ').collect { case s"$name=$value" => name -> value }.toMap
     val read   = words.flatMap((field, word) => word.read(values, field))

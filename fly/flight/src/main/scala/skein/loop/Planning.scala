@@ -6,9 +6,9 @@ import skein.record.PlannedPath
 import skein.units.*
 import skein.vehicle.{PlaneReading, VehicleKind}
 
-/** Plans for one vehicle of a scenario: the pure core of the `plan` loop, which its replay uses too.
+/** Plans for one vehicle of a scenario: the pure core of the `plan` loop, also used by its replay.
   *
-  * @param foreseen the prediction of the vehicle
+  * @param foreseen the model that predicts the vehicle
   */
 private abstract class Planning(
     fleet: Fleet,

@@ -53,7 +53,7 @@ private[skein] object ConfigMistakes:
   def at(path: String, config: Config): String =
     if config.hasPath(path) then at(path, config.getValue(path).origin) else path
 
-  /** Joins the lines of a message, such as a library's. */
+  /** Joins the lines of a message, such as a library's exception message, into one line. */
   def oneLine(text: String): String = text.linesIterator.map(_.trim).filter(_.nonEmpty).mkString(" ")
 
   /** Reads a configuration; converts an exception of the library to one line. */

@@ -196,7 +196,7 @@ class LyingSimulatorSimulation extends munit.FunSuite, Unhurried:
     test(s"${loop.label}: another client that $what ends the flight without result, and is reported"):
       fly(loop, acts = acts).assertNoResult(EventKind.VehicleTaken, words)
 
-  test("one or two foreign moves are tolerated, and so are moves whose time was over"):
+  test("one or two foreign moves are tolerated, and so are moves whose time had elapsed"):
     def at(ms: Double)    = Instant.Epoch + Span.ofMillis(ms)
     def move(number: Int) =
       CommandRow(number, "A", None, MetresPerSecond(0), MetresPerSecond(0), Metres(0), at(100.0 * number))

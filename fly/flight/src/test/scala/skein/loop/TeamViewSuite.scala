@@ -70,7 +70,7 @@ class TeamViewSuite extends munit.FunSuite:
     assert(view.isNews(reading(0, 3, 50, 131, 160)), "a simulator that was started again")
 
   test(
-    "a late answer from before the simulator's restart is no news, and does not move the clocks' estimate"
+    "a late answer from before the simulator's restart is not news, and does not move the clocks' estimate"
   ):
     val next = reading(0, 3, 20, 200, 230)
     val view = TeamView.empty(2).withReading(later).withReading(next)

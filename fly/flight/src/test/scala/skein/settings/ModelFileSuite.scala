@@ -123,7 +123,7 @@ class ModelFileSuite extends munit.FunSuite, TemporaryFolders:
         s"structure mine: expected another name of a parameter: '$key' is a key of model files"
       )
 
-  test("plans use a user's own plant if it is a formula; another one is refused before the flight"):
+  test("plans use a user's own plant if it is a formula; any other plant is refused before the flight"):
     val path = Files.writeString(temporaryFolder().resolve("model.conf"), text(late)).toString
     def read(loop: String, plant: ObservedPlant[?]) =
       val known = Structure("late", late.space, _ => plant)

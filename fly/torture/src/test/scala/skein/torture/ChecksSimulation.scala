@@ -59,7 +59,7 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     def agents: Vector[Agent] =
       Vector(Agent("Scout", Role.Traveller, MetresPerSecond(3), Vector3(0, 0, -20), Radians(0), Still))
 
-  test("the checks distinguish commands that are no velocities by their order alone"):
+  test("the checks distinguish commands that are not velocities by their order alone"):
     val seen = undisturbed(LoopKind.Stream, Patrol())
     assertEquals(Checks.violations(seen), Vector.empty)
     assert(
@@ -227,7 +227,7 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     assert(!found(paused).contains("no command came within"))
 
   test(
-    "the checks require control from three seconds after the faults until the flight's time is over"
+    "the checks require control from three seconds after the faults until the flight's time has elapsed"
   ):
     val due    = clean.calmFrom + FaultPlan.ResumesWithin
     val silent = clean.copy(arrivals =

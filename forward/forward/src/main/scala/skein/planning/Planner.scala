@@ -60,7 +60,7 @@ final class Planner private[planning] (
   /** The initial plan: straight on, with the initial deviations. */
   def start: Plan = around(Manoeuvre.straight(cruise, steps))
 
-  /** The initial plan after some time: the remainder of the last, to be evaluated anew. */
+  /** The initial plan after some time: the remainder of the last, to be evaluated again. */
   def resumed(plan: Plan, elapsedS: Double): Plan = around(plan.manoeuvre.shifted(elapsedS, dtS))
 
   private def around(manoeuvre: Manoeuvre): Plan =

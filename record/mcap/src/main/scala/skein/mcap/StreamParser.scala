@@ -53,7 +53,9 @@ final class StreamParser(limits: McapLimits = McapLimits()):
 
   def channel(id: Int): Option[Record.Channel] = known.channel(id)
 
-  /** Offers more of the file after `NeedsBytes`. The parser keeps the array until it needs bytes again. */
+  /** Passes the next part of the file after `NeedsBytes`. The parser keeps the array until it needs bytes
+    * again.
+    */
   def offer(bytes: Array[Byte], start: Int, end: Int): Unit =
     require(from == until && !noMore, "offered before it was needed")
     require(0 <= start && start <= end && end <= bytes.length, s"bytes $start until $end of ${bytes.length}")

@@ -463,7 +463,7 @@ enum EventKind:
   /** A policy did not decide in time. */
   case DeadlineMissed
 
-  /** A solver in another process was restarted or replaced: policies' memories start anew. */
+  /** A solver in another process was restarted or replaced: policies' memories start again. */
   case SolverRestarted
 
   /** An answer arrived more than once; it counts once. */
@@ -499,7 +499,7 @@ enum EventKind:
   /** The simulator's clock did not keep pace with the controller's for some seconds. */
   case ClockDrift
 
-  /** Readings contradicted the known offset of the clocks, so its estimation began anew. */
+  /** Readings contradicted the estimated clock offset, so its estimation was restarted. */
   case ClockRestarted
 
   /** The simulator's clock ran back, stood still, jumped or differed from vehicle to vehicle: the flight has

@@ -150,7 +150,7 @@ class McapRecordingSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(points.map(_.size), (1 to 29).map(second => (second * 10 + 1).min(201)).toVector)
     assertEquals((points.last.head, points.last.last), (91.1, 291.1))
 
-  folder.test("a file that is no exported recording is refused, and leaves no output behind"): folder =>
+  folder.test("a file that is not an exported recording is refused, and leaves no output behind"): folder =>
     val mcap                                        = exported(folder)
     val again                                       = folder.resolve("again.duckdb")
     def refused(change: McapWriter => Unit): String =

@@ -26,8 +26,8 @@ final case class Playback private (
 
   def hasEnded(now: Instant): Boolean = position(now) >= end
 
-  /** Plays or stops, from the current position or from another one, which is clamped to start and end.
-    * Playing from the end starts again from the beginning.
+  /** Plays or stops, from the current position or from another, which is clamped to start and end. Playing
+    * from the end starts again from the beginning.
     */
   def controlled(playing: Boolean, speed: Double, seek: Option[Instant], now: Instant): Playback =
     val wanted = seek.getOrElse(position(now))

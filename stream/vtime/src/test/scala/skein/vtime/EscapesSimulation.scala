@@ -117,7 +117,7 @@ class EscapesSimulation extends munit.FunSuite, Unhurried:
       case other => fail(s"another problem: $other")
     assert(clue(taken) < 10.seconds)
 
-  test("a stream of many elements at one instant is no livelock"):
+  test("a stream of many elements at one instant is not a livelock"):
     val run = VirtualTime.run(1): system =>
       given ActorSystem = system
       Source(1 to 3_000_000).runWith(Sink.fold(0L)(_ + _))

@@ -116,7 +116,7 @@ final class CallLines[Call](share: Int = 16, batch: Int = 4, isUrgent: Call => B
         gone.increment()
         place = line.calls.poll()
 
-  /** Moves newly filled queues into the round, and begins a round when the last is over. */
+  /** Moves newly filled queues into the round, and begins a round when the last has ended. */
   private def sort(): Unit =
     var line = came.poll()
     while line != null do

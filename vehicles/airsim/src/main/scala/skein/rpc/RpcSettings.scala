@@ -33,7 +33,7 @@ enum WhenFull:
   *   times, when its connection is lost
   * @param key calls with equal keys use one connection and are sent in the order of the calls
   * @param withdrawn when it completes, the answer is no longer awaited: [[RpcError.Timeout]] before the
-  *   timeout is over
+  *   timeout has elapsed
   */
 final case class CallOptions(
     timeout: Span = Span.ofSeconds(5),

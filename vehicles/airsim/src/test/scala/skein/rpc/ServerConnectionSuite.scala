@@ -98,7 +98,7 @@ class ServerConnectionSuite extends munit.FunSuite:
     r.ask(3, "now")
     assertEquals(r.reply(), RpcMessage.Reply(3, Null, Int32(1)))
 
-  test("values that are no messages are counted and the connection survives"):
+  test("values that are not messages are counted and the connection survives"):
     val r = Rig()
     r.ask(0, "now")
     assertEquals(r.reply(), RpcMessage.Reply(0, Null, Int32(1)))

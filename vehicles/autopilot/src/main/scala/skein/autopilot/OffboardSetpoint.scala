@@ -36,7 +36,7 @@ object OffboardSetpoint:
   /** Reads a setpoint from a message.
     *
     * @param home the origin of the vehicle's own frame
-    * @return None if it is no setpoint; Left says why it is refused
+    * @return None if it is not a setpoint; Left says why it is refused
     */
   def of(message: Message, home: GeoLocation): Option[Either[String, OffboardSetpoint]] = message match
     case one: SetPositionTargetLocalNed =>

@@ -10,7 +10,7 @@ import skein.units.Decimals.fixed
 
 /** Settings of vehicles controlled over MAVLink.
   *
-  * @param renewEvery interval at which a setpoint is repeated until its action's duration is over; then
+  * @param renewEvery interval at which a setpoint is repeated until its action's duration has elapsed; then
   *   setpoints to stay in place are sent as often, for as long as the link is open. PX4 leaves offboard below
   *   2 Hz
   * @param sampleEvery interval of motion samples that the vehicle is requested to send
@@ -211,7 +211,7 @@ final case class Control(
       ) ++ asked.lastOption
     )
 
-  /** Ends actions whose duration is over, and those whose receipt is overdue. */
+  /** Ends actions whose duration has elapsed, and those whose receipt is overdue. */
   private def ended(now: Instant): Step =
     val (lost, rest) = asked.partition(_.replacedAt.exists(at => now > at + settings.timeout))
     val (done, open) = rest.partition(one => one.replacedAt.isEmpty && now >= one.until)
@@ -392,7 +392,7 @@ object Control:
   /** Token of a request that needs no answer. */
   private[offboard] val Silent = -1L
 
-  /** The action of a vehicle after its action's duration is over. */
+  /** The action of a vehicle after its action's duration has elapsed. */
   private val Stay = Action.Velocity(Vector3.Zero)
 
   private def inMs(span: Span): String = s"${span.toMillis.fixed(0)} ms"

@@ -51,7 +51,9 @@ class ControlSuite extends munit.FunSuite:
   private def velocities(step: Control.Step): Vector[(Float, Float)] =
     step.messages.collect { case one: SetPositionTargetLocalNed => (one.vx, one.vy) }
 
-  test("a setpoint and a TIMESYNC are sent immediately, then every 100 ms until the action's time is over"):
+  test(
+    "a setpoint and a TIMESYNC are sent immediately, then every 100 ms until the action's time has elapsed"
+  ):
     val sent = known().act(7, forward, Span.ofMillis(250), at(100))
     assertEquals(velocities(sent), Vector((5f, 0f)))
     assertEquals(syncs(sent).size, 1)

@@ -8,7 +8,7 @@ import skein.units.*
   * neither the machine's load nor the clock's speed changes the flight. At the first stop it stands for
   * [[CommandLockstep.Settling]] of real time, in which nodes handle the messages that queued while it ran.
   *
-  * A command stamped before another one of its vehicle, by whichever topic, is left out: it is late.
+  * A command stamped before another of its vehicle, by whichever topic, is left out: it is late.
   *
   * It no longer waits if none has arrived for [[CommandLockstep.Patience]] of real time, until the next
   * command.

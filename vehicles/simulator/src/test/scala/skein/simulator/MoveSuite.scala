@@ -5,7 +5,7 @@ import upack.{Bool, Float32, Int32, Str}
 
 class MoveSuite extends munit.FunSuite:
 
-  test("a move answers true when its duration is over"):
+  test("a move answers true when its duration has elapsed"):
     val bench = Bench().hovering(-20)
     val move  = bench.velocityZ(5, 0, -20, 2)
     bench.pass(1.99)
@@ -50,7 +50,7 @@ class MoveSuite extends munit.FunSuite:
     assertEquals(bench.result(move), Some(true))
     assertEquals(bench.position(), Vector3.Zero)
 
-  test("takeoff climbs to about half a metre below its goal and answers false, as AirSim's does"):
+  test("takeoff climbs to about half a metre below its goal and returns false, as in AirSim"):
     val bench = Bench().ready()
     val move  = bench.call("takeoff", Float32(20), Str(""))
     bench.pass(10)

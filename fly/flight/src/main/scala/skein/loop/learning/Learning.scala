@@ -13,6 +13,6 @@ enum Learning:
 
   /** Repeats recorded learning.
     *
-    * @param news the updates, by the decision before which they took effect
+    * @param news the updates, keyed by the sequence number of the decision before which they took effect
     */
   case Again(explore: Double, news: Map[Long, Vector[LearnerUpdate]])

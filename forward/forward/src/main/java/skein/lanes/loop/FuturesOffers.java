@@ -75,7 +75,7 @@ final class FuturesOffers extends LaneOffers {
     // A decision waits at most for the answer to the previous command.
     double waitsS = 2 * maxDelayS + timing.steering().handoverS() + timing.steering().minIntervalS();
     ahead = 1 + rowsAhead + (int) Math.ceil(waitsS / periodS);
-    // A task may wait for one that waits for another one.
+    // A task may wait for one that waits for another.
     ring = Integer.highestOneBit(2 * (ahead + (int) Math.ceil(3 * taskS / periodS) + 4) - 1);
     most = vehicles * timing.asking().window();
     drawn = new int[2 * vehicles][WORLDS];

@@ -11,7 +11,7 @@ import java.util.stream.IntStream;
  * Makes the lambdas of a class file ordinary ones, which are no longer {@link java.io.Serializable}.
  *
  * <p>Scala links each lambda by {@code LambdaMetafactory.altMetafactory}. An ahead-of-time cache of JDK 25
- * contains only lambdas that are linked by {@code metafactory}; all others are generated anew at each start.
+ * contains only lambdas that are linked by {@code metafactory}; all others are generated again at each start.
  * Only the bootstrap methods are edited, by which lambdas are linked: no code, and so no stack map frame.
  */
 final class PlainLambdas {

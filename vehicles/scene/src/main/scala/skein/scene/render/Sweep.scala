@@ -3,9 +3,8 @@ package skein.scene.render
 import java.util.Arrays
 
 /** Decides which face is visible at each pixel. Row by row, it passes the edges of faces from left to right;
-  * the nearest open face is visible until it ends, another one begins, or one behind intersects it. So the
-  * cost depends on the number of edges, not of pixels, and visibility is exact whatever the order of the
-  * faces.
+  * the nearest open face is visible until it ends, another begins, or one behind intersects it. So the cost
+  * depends on the number of edges, not of pixels, and visibility is exact whatever the order of the faces.
   */
 final private[render] class Sweep(view: View, surfaces: Surfaces):
   import surfaces.{bottom, first, spans, top}
