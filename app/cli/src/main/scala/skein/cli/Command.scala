@@ -110,7 +110,7 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
     */
   protected def check(@unused options: A): Either[String, Unit] = Right(())
 
-  /** Parses the words before `--`; those behind it are another program's. */
+  /** Parses the words before `--`; the words after it belong to another program. */
   private def parsed(words: Seq[String]): Either[String, A] =
     val (arguments, behind) = words.span(_ != "--")
     val mistake = arguments.filterNot(ScenarioText.isText).flatMap(Complaint.ofWord).headOption.orElse(

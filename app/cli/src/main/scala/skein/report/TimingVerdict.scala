@@ -3,7 +3,8 @@ package skein.report
 import skein.measure.{DistanceCurve, Distribution, FlightSet, FlightSummary}
 import skein.units.Decimals.fixed
 
-/** Whether the timing of flights is good enough, in one sentence, by the criterion of the AirSim guide.
+/** Whether the timing of flights is good enough, in one sentence, according to the criterion of the AirSim
+  * guide.
   *
   * With a `paused` flight it is measured: a loop may deviate by [[Limit]] from the paused flight, the margin
   * of [[skein.optimise.LatencyBudget]]. Without one it is estimated: a vehicle moves from where it was read

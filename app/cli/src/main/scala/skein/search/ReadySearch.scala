@@ -39,7 +39,7 @@ trait Searched:
 
   /** The vehicles of forward simulation, with their objective.
     *
-    * @param candidate the parameters; the baseline's if `judge` is the baseline
+    * @param candidate the parameters; those of the baseline if `judge` is the baseline
     * @param by the objective of a candidate with default parameters
     */
   def team(candidate: Vector[Double], judge: Judge, by: Objective): (Engagement, Objective)

@@ -38,7 +38,7 @@ class LearnCommandSimulation extends munit.FunSuite, TemporaryFolders, Optimised
       assert(Files.size(folder.resolve("learning-curve.svg")) > 1000)
 
   test(
-    "a team's pursuers learn one policy, which replaces each one's in flights and forward simulation"
+    "a team's pursuers learn one policy, which replaces the policy of each in flights and forward simulation"
   ):
     val folder = temporaryFolder().resolve("learned")
     val words  = "--scenario surround --set vehicles=4 --objective off-ring --json".split(' ').toSeq

@@ -92,7 +92,7 @@ class TablesSuite extends munit.FunSuite:
     val usual = SummaryTables.counts(Report.of(Seq(paused))).header.map(_.stripPrefix("<"))
     assertEquals(usual.drop(5).toSet, Set("dropped", "skipped", "timed out"))
 
-  test("the text has the sections with content, and no others"):
+  test("the text has only the sections with content"):
     val text = ReportSections.text(set)
     for title <- Seq("Distance between pursuer", "Observations per decision", "What happened", "Deviation") do
       assert(text.contains(title), s"no $title")

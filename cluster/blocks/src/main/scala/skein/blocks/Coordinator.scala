@@ -6,7 +6,7 @@ import scala.collection.immutable.TreeSet
   * assigned several times; the first answer counts, and later ones are counted as repeats.
   *
   * @param waiting blocks without a worker
-  * @param leases blocks with at least one worker, by number
+  * @param leases blocks with at least one worker, keyed by number
   * @param seldom leases of a single worker, the oldest first; they are assigned again once nothing waits
   * @param workers records of the workers by name, including those that have left
   * @param cores number of cores of all current workers

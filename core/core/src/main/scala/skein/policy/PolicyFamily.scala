@@ -170,7 +170,7 @@ object PolicyFamily:
       chauffeurEvader
     )
 
-  /** The family of this name, Skein's or the program's own.
+  /** The family of this name, one of Skein's or of the program's own families.
     *
     * @param own further families that the program knows
     * @return Left says which names were expected

@@ -244,7 +244,7 @@ object PolicyFormula:
 private final class Tagged(val self: Int, count: Int, rivals: Vector[Int], isPredicted: Boolean):
   private val tags = InputTags()
 
-  /** The observation as an example for tracing; its inputs are in the order of the formula's. */
+  /** The observation as an example for tracing; its inputs have the order of the formula's inputs. */
   val example: Example = Example(
     "seen",
     Observation(

@@ -2,8 +2,8 @@ package skein.scenario
 
 import skein.units.*
 
-/** Positions of all vehicles of a flight at equidistant instants of the simulator's clock, by vehicle and
-  * instant. Vehicles are identified by their index in the scenario. World frame NED, m.
+/** Positions of all vehicles of a flight at equidistant instants of the simulator's clock, indexed by vehicle
+  * and instant. Vehicles are identified by their index in the scenario. World frame NED, m.
   */
 final class Tracks private (
     tracks: Vector[Track],

@@ -3,7 +3,7 @@ package skein.signal
 import skein.units.*
 import skein.units.Decimals.fixed
 
-/** Checks from readings alone whether the vehicles' clock runs like the controller's.
+/** Checks, using only readings, whether the vehicles' clock runs at the rate of the controller's clock.
   *
   * Physics was sampled between request and answer, so a reading bounds the clocks' offset from both sides
   * (see [[ClockAlignment]]). Between two readings the offset has changed by at least the gap between their

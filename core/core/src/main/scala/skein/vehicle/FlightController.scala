@@ -3,7 +3,8 @@ package skein.vehicle
 import scala.annotation.unused
 
 /** Gains and limits of AirSim's default flight controller, SimpleFlight (its `Params.hpp`, 1.8). Gains that
-  * are zero there have no field here: all derivatives, and all integrals except the vertical velocity's.
+  * are zero there have no field here: all derivatives, and all integrals except that of the vertical
+  * velocity.
   *
   * @param rateP gain: torque command per rad/s
   * @param maxRate maximum rate of roll, pitch and yaw, rad/s

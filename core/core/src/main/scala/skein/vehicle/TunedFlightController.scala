@@ -8,7 +8,7 @@ package skein.vehicle
   * clip(I-term · discount + dt·e·I, −1, 1), where only the vertical velocity's I-term is discounted. When the
   * mode of an axis changes, its controllers start again: the first update has neither integral nor
   * derivative, and the second computes the derivative from a previous error of zero, which causes a kick if D
-  * is not zero. So does AirSim's.
+  * is not zero. So does AirSim's controller.
   */
 final class TunedFlightController(gains: ControllerGains, val cascade: CascadeGains, stepS: Double)
     extends FlightController(gains, stepS):

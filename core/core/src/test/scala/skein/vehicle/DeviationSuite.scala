@@ -36,7 +36,7 @@ class DeviationSuite extends munit.FunSuite:
     assertEqualsDouble(Deviation(lag = 2).quadrotor.gains.velocityP, usual.gains.velocityP / 2, 1e-12)
     assertEquals(Deviation().quadrotor.airframe, usual.airframe)
 
-  test("without a deviation the vehicle flies as AirSim's, to the bit"):
+  test("without a deviation the vehicle flies exactly like AirSim's vehicle, to the bit"):
     val theirs   = Quadrotor.AirSim.hovering(Vector3(0, 0, -20))
     val ours     = theirs.copy
     val deviated = Deviation().kind(seed = 1).make()

@@ -40,7 +40,7 @@ private[buffer] object Wish:
     case "reset"                                 => Some(Reset)
     case _                                       => None
 
-  /** The meaning of a call too long to decode. A long move may be any vehicle's, so it ends all plans. */
+  /** The meaning of a call too long to decode. A long move may be for any vehicle, so it ends all plans. */
   def ofLong(method: String): Option[Wish] =
     if method == PlanCall.Function then
       Some(Plan(Left(PlanCall.refusal(s"expected a plan of at most $MostBytes bytes, got more"))))

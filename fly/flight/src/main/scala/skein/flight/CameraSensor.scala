@@ -44,7 +44,8 @@ private[skein] final class CameraSensor(
   private val newest                    = AtomicReference(Option.empty[Stamped[IArray[Double]]])
   private val stop                      = KillSwitches.shared(s"eye ${eye.vehicle}")
 
-  // Used by one thread at a time: the stream's, or a reader's while the simulator stands still.
+  // Used by one thread at a time: by the stream's thread, or by a reader's thread while the simulator stands
+  // still.
   private var images, found = 0
   private var newestSeen    = Option.empty[Seen]
   private var fusion        = Fusion(eye.fusion)

@@ -93,7 +93,7 @@ final class FlightMonitor(
   def simulated: Span =
     if lastAt.get < firstAt.get then Span.Zero else Span.ofNanos(lastAt.get - firstAt.get)
 
-  /** When the newest reading was received, by the controller's clock. */
+  /** When the newest reading was received, on the controller's clock. */
   def heardAt: Option[Instant] = Some(heard.get).filter(_ != Long.MinValue).map(Instant.ofNanos)
 
   /** The last event of a connection that was lost or could not be opened. */

@@ -14,7 +14,7 @@ import skein.units.*
   * be at their starts already.
   *
   * @param id the flight's name in tables and figures
-  * @param loop one of Skein's, or a user's own graph
+  * @param loop one of Skein's loops, or a user's own graph
   * @param scenario vehicles, policies and measures
   * @param link name of the network between loop and vehicles, for the report
   * @param simulator name of the vehicles' simulator, for the report

@@ -6,7 +6,7 @@ import skein.units.*
 
 /** A decision for one vehicle, with its inputs.
   *
-  * @param sequence counts the decisions for this vehicle
+  * @param sequence index of the decision among this vehicle's decisions
   * @param view the controller's knowledge
   * @param opponent index of the vehicle that the decision is against
   * @param headingBefore heading of the last command to this vehicle

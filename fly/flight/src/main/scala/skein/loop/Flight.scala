@@ -50,7 +50,7 @@ final class Flight private (
 
 object Flight:
 
-  /** Runs a loop for `duration`; for `paused`, by the simulator's clock. A failure of the recorder ends the
+  /** Runs a loop for `duration`; for `paused`, on the simulator's clock. A failure of the recorder ends the
     * flight.
     *
     * @param loop one of Skein's loops, or a user's own

@@ -13,7 +13,7 @@ import skein.signal.{Stamped, TimeAxis}
 import skein.units.*
 
 /** The paper's model 1, the ground truth: the simulator stands still while every vehicle is read and
-  * commanded; then it runs exactly one period. Time is the simulator's: no reading has an age.
+  * commanded; then it runs exactly one period. Time is simulated time, so no reading has an age.
   *
   * While time stands still readings do not age, so this loop waits: a request without an answer is repeated
   * for up to [[PausedLoop.Patience]], and a step whose answer is lost is repeated only if the simulator's
@@ -34,7 +34,7 @@ object PausedLoop:
       .toMat(Sink.ignore)(Keep.right)
       .mapMaterializedValue(flight.landed)
 
-  /** Time for which a step is retried by the controller's clock, before an error ends the flight: the longest
+  /** Time for which a step is retried on the controller's clock, before an error ends the flight: the longest
     * silence allowed to a simulator.
     */
   val Patience: Span = Span.ofSeconds(9)
@@ -152,7 +152,7 @@ private final class PausedFlight(
 
   /** Runs the simulator for a period from `from`, its present time.
     *
-    * @param since when that began, by the controller's clock
+    * @param since when that began, on the controller's clock
     */
   private def advance(from: Instant, since: Instant): Future[Unit] =
     stepper.continueFor(team.settings.period).flatMap:

@@ -42,7 +42,7 @@ private abstract class Planning(
 
   /** The decision for the plan found.
     *
-    * @param part the planning problem, whose situation includes the planned tracks of the others
+    * @param part the planning problem, whose situation includes the planned tracks of the other vehicles
     * @param isOld whether the vehicle's policy decides instead of the plan
     */
   final def decide(

@@ -10,7 +10,7 @@ trait Solver:
   /** Requests decisions for one vehicle, or for those that plan together. A request leaves every older one
     * for these vehicles without an answer.
     *
-    * @param deciders a constant group, and no vehicle in two groups
+    * @param deciders a group that never changes; no vehicle may be in two groups
     * @param remembered the last answer that was used, by which the solver finds its memory of these vehicles;
     *   absent before the first
     * @param askedAt time of the request, on the controller's clock, like `until`, after which an answer is

@@ -11,7 +11,7 @@ private[skein] object UntilCertain:
   /** Maximum number of attempts, the first one included. */
   val Attempts = 20
 
-  /** Pause between two attempts, by the actor system's clock. */
+  /** Pause between two attempts, on the actor system's clock. */
   val Pause: Span = Span.ofMillis(500)
 
   /** The result of the last attempt; one that fails is not certain. */

@@ -12,7 +12,7 @@ final case class NoResult(what: String, why: String)
 
 object NoResult:
 
-  /** The reason recorded in flight, or else shown by the readings' clock. */
+  /** The reason recorded in flight, or else shown on the readings' clock. */
   def of(recording: Recording): Option[NoResult] =
     val noted = recording.events.collectFirst:
       case event if named.contains(event.kind) => NoResult(named(event.kind), event.detail)

@@ -22,7 +22,7 @@ final case class ModelFile(
 
   val plant: ObservedPlant[?] = use.plant(models(use))
 
-  /** The three-parameter model, for code that supports no other. */
+  /** The three-parameter model, for code that supports only this one. */
   def reduced: Option[ReducedModel] =
     models.get(Structure.Lag).map(lag => ReducedModel.lag(lag(0), lag(1), lag(2)))
 

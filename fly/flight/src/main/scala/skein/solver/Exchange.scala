@@ -134,8 +134,8 @@ object Exchange:
   /** One vehicle's requests.
     *
     * @param next number of the next request
-    * @param open the newest requests without an answer, by number: time of request, deadline, and the part of
-    *   that time for searching
+    * @param open the newest requests without an answer, keyed by number: time of request, deadline, and the
+    *   part of that time for searching
     */
   final case class Vehicle(next: Long, open: Map[Long, (asked: Instant, until: Instant, searching: Span)]):
     private[Exchange] def asked(at: Instant, until: Instant, searching: Span): (Vehicle, Long) =

@@ -8,8 +8,8 @@ import skein.settings.{FlightPlan, FlySettings, RecordedPlan}
 import skein.signal.LatencyProfile
 import skein.units.*
 
-/** A message between a flight and a solver. Instants are the controller's, unless they are marked as the
-  * solver's. Flights and starts of solvers have identifiers that are unique at a solver.
+/** A message between a flight and a solver. Instants are on the controller's clock, unless they are marked as
+  * the solver's. Flights and starts of solvers have identifiers that are unique at a solver.
   */
 enum SolverMessage:
   /** A flight requests a solver's decisions. */

@@ -18,7 +18,7 @@ import skein.units.{Clock, Span}
 final class SolverServer private (listening: Listening, switch: SharedKillSwitch, seats: Seats):
   def address: Address = listening.address
 
-  /** Number of connections without useful messages that were closed for others. */
+  /** Number of connections without useful messages that were closed to make room for other connections. */
   def displacedConnections: Long = seats.displacedConnections
 
   /** Number of connections that were refused for lack of a seat. */

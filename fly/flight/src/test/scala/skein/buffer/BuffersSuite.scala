@@ -43,7 +43,7 @@ class BuffersSuite extends munit.FunSuite:
       for seed <- 1L to 20 do
         val random = SplittableRandom(seed)
         val bench  = BuffersBench(speed = speed)
-        // The moves of a buffer in the simulator, by the simulator's clock.
+        // The moves of a buffer in the simulator, on the simulator's clock.
         var own                       = PlanBuffer.empty[PlannedMove]
         var changes                   = Vector.empty[(Instant, PlannedMove)]
         var arrived                   = Vector.empty[Instant]

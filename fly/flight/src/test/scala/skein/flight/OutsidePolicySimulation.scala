@@ -9,7 +9,7 @@ import skein.signal.LatencyProfile
 import skein.testing.Unhurried
 import skein.units.*
 
-/** Flights in virtual time by a policy behind a socket. */
+/** Flights in virtual time with a policy behind a socket. */
 class OutsidePolicySimulation extends munit.FunSuite, Unhurried:
   private val settings = FlySettings(
     List(LoopKind.Stream),

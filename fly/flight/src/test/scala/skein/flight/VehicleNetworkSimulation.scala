@@ -53,7 +53,9 @@ class VehicleNetworkSimulation extends munit.FunSuite, TemporaryFolders, Optimis
     recording.events.filter(_.kind == EventKind.MessagesLost).flatMap(_.count).sum
 
   for loop <- loops do
-    folder.test(s"${loop.label}: equal seeds give equal flights, others others, and a recording replays"):
+    folder.test(
+      s"${loop.label}: equal seeds give equal flights, different seeds do not, and a recording replays"
+    ):
       folder =>
         val flight = settings(loop, "range:60m,loss:10%/4,vpn", scenario = PaperDuel(pairs = 2))
         val flown  = fly(flight)
@@ -90,7 +92,7 @@ class VehicleNetworkSimulation extends munit.FunSuite, TemporaryFolders, Optimis
         decisions(fly(byMessages.copy(between = None)).recording)
       )
 
-  test("each controller's link has one trace, its own vehicle's"):
+  test("the link of each controller has one trace, that of its own vehicle"):
     val recording = fly(settings(LoopKind.Stream, "vpn", scenario = Surround())).recording
     assertEquals(RoundTripTrace.of(recording).size, recording.heading.vehicles.size)
 

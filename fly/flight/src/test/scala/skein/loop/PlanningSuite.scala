@@ -250,7 +250,7 @@ class PlanningSuite extends munit.FunSuite:
     assertEquals((decision.action.speed, made.byPolicy), (MetresPerSecond(3), true))
 
   test(
-    "a plan is used if it saves a tenth of a metre against the policy's manoeuvre, else the policy's"
+    "a plan is used if it saves a tenth of a metre against the policy's manoeuvre; else the policy decides"
   ):
     val team                 = Fleet(fleet.agents.map(_.copy(policy = Moving())))
     val planning             = teamwork(team, Moving(), PlanSettings())

@@ -230,7 +230,7 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
       val said = read(text).left.getOrElse("")
       assert(clue(said).contains("expected a duration with unit, such as 40s, got '40'"))
 
-  test("a scene is one that ships, a file, or else the scenario's"):
+  test("a scene is a bundled scene, a file, or else the scenario's scene"):
     assertEquals(read("").map(_.world.name), Right("empty"))
     assertEquals(read("skein.fly.scenario = forest").map(_.world.name), Right("forest"))
     assertEquals(read("skein.fly { scenario = forest, scene = street }").map(_.world.name), Right("street"))

@@ -77,7 +77,7 @@ class ModelFileSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(predictor.map(_.at(20)), Right(PlantModel(Late(0.75, 0.25))))
     assertEquals(VehicleChoice.parse(path, 20).map(_.response), Right(PlantResponse(Late(0.75, 0.25))))
 
-  test("a file has tables of the measured errors, and no others"):
+  test("a file has tables only of errors that were measured"):
     val both                = fit(late, 0.75, 0.25)
     def tables(fitted: Fit) =
       val written = ModelFile.render(late, Vector(fitted), ModelFile.Provenance(Vector(), Vector(), 1, "v"))

@@ -194,7 +194,7 @@ class SolverSimulation extends munit.FunSuite, Optimised:
     assert(trial.byFallback.count(_._1 == "Pursuer") > 10, trial.byFallback)
     assert(trial.events(EventKind.SolverRestarted).exists(_.vehicle.contains("Pursuer")))
 
-  test("a team is planned by one request, and an answer decides for all of it or none"):
+  test("one request plans a whole team, and an answer decides either for all of its vehicles or for none"):
     val team  = Crossing(vehicles = 4).fleet
     val trial = checked(
       SolverTrial.fly(kind = LoopKind.Plan, fleet = team, seconds = 10): hand =>

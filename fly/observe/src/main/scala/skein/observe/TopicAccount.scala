@@ -112,7 +112,7 @@ final class TopicAccount:
 
   private def lasted: Span = begunAt.fold(Span.Zero)(lastAt.since)
 
-  /** Commands since the last call, by vehicle. */
+  /** Commands since the last call, for each vehicle. */
   def takeNew(): Vector[NewCommands] = vehicles.all.flatMap(_.account.takeNew()).toVector
 
   /** The complete observations so far; sorts every sample. */

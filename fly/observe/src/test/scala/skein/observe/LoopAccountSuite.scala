@@ -233,7 +233,7 @@ class LoopAccountSuite extends munit.FunSuite:
     assert(slow("reset"))
     assert(!slow("simPause"))
 
-  test("an object counts as others' data for as long as it is read, and no longer"):
+  test("an object counts as other vehicles' data only while it is read"):
     def others(reads: Int => Boolean) =
       val program = Program()
       for tick <- 0 until 100 do

@@ -49,7 +49,7 @@ final class GraphLoop private[rosbag] (readings: Set[String], commands: Set[Stri
 
   def progress: Progress = synchronized(loop.progress)
 
-  /** Commands since the last call, by vehicle. */
+  /** Commands since the last call, for each vehicle. */
   def takeNew(): Vector[NewCommands] = synchronized(loop.takeNew())
 
   def observed: ObservedTopics = synchronized(loop.observed)

@@ -56,8 +56,8 @@ object Delays:
 
 /** Recorded delays of one flight, used in every simulated world. A message without a record never arrives.
   *
-  * @param delaysNs delays, ns, by vehicle and kind (request, answer, command, acknowledgement), then by
-  *   message; [[RecordedDelays.Lost]] if the message did not arrive
+  * @param delaysNs delays, ns, indexed by vehicle and kind (request, answer, command, acknowledgement), then
+  *   by message; [[RecordedDelays.Lost]] if the message did not arrive
   */
 final class RecordedDelays(delaysNs: Vector[Vector[Array[Long]]]) extends Delays:
   import RecordedDelays.Lost

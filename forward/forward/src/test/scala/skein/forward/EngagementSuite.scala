@@ -175,7 +175,7 @@ class EngagementSuite extends munit.FunSuite:
     for (actual, expected) <- each.zip(Seq(15.0, 15.0, 45.0)) do assertEqualsDouble(actual, expected, 1e-6)
     assertEquals(flown.minDistanceM, each.min)
 
-  test("an engagement needs both sides, or none"):
+  test("an engagement needs either both sides or neither"):
     val mixed = Seq(Role.Evader, Role.Pursuer, Role.Traveller).zipWithIndex.map((role, number) =>
       agent(role, number, 10 * number, 0, KeepHeading)
     )

@@ -80,7 +80,7 @@ class ImageTimingSuite extends munit.FunSuite:
     images(steady(oneWayMs), LatencyDistribution.Constant(Span.ofMillis(takesMs)), workers, untilMs)._2
       .map((number, ns) => number -> (ns * 1e-6).round)
 
-  test("two images may be in transit; while as many are, none is taken"):
+  test("no image is taken while two images are in transit"):
     val link   = steady(160)
     val oneWay = link.delayNs(1, Delays.question(0, 0), 0, 0, 0)
     assertEquals(

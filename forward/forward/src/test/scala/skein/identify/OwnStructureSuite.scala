@@ -31,7 +31,7 @@ final case class Tilting(gain: Double, lagS: Double, tiltLagS: Double, override 
       east
     )
 
-/** A user's own structure is fitted like Skein's. */
+/** A user's own structure is fitted like a structure of Skein. */
 class OwnStructureSuite extends munit.FunSuite:
   private val structure = Structure(
     "tilting",

@@ -45,7 +45,7 @@ private[skein] object Agreement:
     */
   def mostOff(timeS: Double): Double = 1e-3 + 4e-4 * timeS
 
-  /** A decision of the SIMD engine that differs from the scalar engine's.
+  /** A decision of the SIMD engine that differs from the decision of the scalar engine.
     *
     * @param apart for each output its error, and the bound on the error if each comparison near its threshold
     *   had the other result

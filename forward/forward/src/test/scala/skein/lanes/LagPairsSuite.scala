@@ -119,7 +119,9 @@ class LagPairsSuite extends munit.FunSuite:
     test(s"over $name compared worlds have the decisions and captures of the scalar reference for 60 s"):
       agreement(link, 60).check(s"over $name", some)
 
-  test("with a period that does not divide 10 s, the mean of the last scores is the scalar reference's"):
+  test(
+    "with a period that does not divide 10 s, the mean of the last scores equals that of the scalar reference"
+  ):
     agreement(DelayTable.direct, 12, periodS = 0.3).check("every 0.3 s", some)
 
   private val badLinks = Seq((110.0, 60.0), (215.0, 36.0), (150.0, 150.0), (200.0, 300.0), (300.0, 300.0))

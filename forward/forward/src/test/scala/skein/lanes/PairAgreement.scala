@@ -12,7 +12,7 @@ import skein.policy.{Action, Observation, PlanarObservation, Policy}
   * one, and the opponent's heading is that of the decision which the scalar engine knows.
   *
   * @param lanes the SIMD engine's policies, by agent, the evader first
-  * @param policies the policies of one world, by agent
+  * @param policies the policies of one world, indexed by agent
   */
 private[skein] class PairAgreement(
     duel: Pair,

@@ -73,7 +73,7 @@ private final class EnvironmentGroup(
     for world <- 0 until count do clear(world)
     show(into.observations)
 
-  /** Resets the environments of the mask, with their seeds. */
+  /** Resets each environment that `mask` selects, with its entry in the seeds. */
   def reset(newSeeds: Array[Long], mask: Array[Boolean]): Unit =
     val chosen = (0 until count).filter(world => mask(numberOf(world)))
     for world <- chosen do seed(world, newSeeds(numberOf(world)))

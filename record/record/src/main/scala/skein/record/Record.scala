@@ -190,7 +190,7 @@ final case class Sensing(vehicle: String, decision: Long, sensor: String, measur
 
 /** One decision for one vehicle, with all its inputs.
   *
-  * @param sequence counts the decisions for this vehicle
+  * @param sequence index of the decision among this vehicle's decisions
   * @param own the vehicle's own reading that was used; its columns begin with `own`
   * @param opponent the opponent's reading that was used; its columns begin with `opponent`
   * @param relativeX the evader seen from the pursuer, along the pursuer's commanded heading; for vehicles of
@@ -271,7 +271,7 @@ final case class Planned(
   * @param question counts the questions for `vehicle`; those that are missing here were not answered in time
   * @param askedAt when the question left
   * @param receivedAt when the answer arrived
-  * @param thinking time from the question's arrival at the solver to the answer's departure, by the solver's
+  * @param thinking time from the question's arrival at the solver to the answer's departure, on the solver's
   *   clock
   * @param clock absent before the first answer of a solver
   */
@@ -383,7 +383,7 @@ final case class CommandRow(
 final case class Acknowledgement(vehicle: String, command: Long, endedAt: Instant, outcome: CommandOutcome)
     extends Record
 
-/** How a command ended; recorded by name, the error in a column of its own. */
+/** How a command ended; recorded under its name, the error in a column of its own. */
 enum CommandOutcome:
   case Done
 
@@ -424,7 +424,7 @@ final case class Truth(vehicle: String, validAt: Instant, positionNed: Vector3) 
   */
 final case class Ending(at: Instant, how: EndingKind, reason: Option[String]) extends Record
 
-/** Recorded by name. */
+/** Recorded under its name. */
 enum EndingKind:
   /** It lasted for its whole duration. */
   case Completed
@@ -435,7 +435,7 @@ enum EndingKind:
   /** It could not continue. */
   case Failed
 
-/** What an [[Event]] is about; recorded by name. */
+/** What an [[Event]] is about; recorded under its name. */
 enum EventSubject:
   /** A request for a vehicle's reading that was not answered. */
   case Reading
@@ -446,7 +446,7 @@ enum EventSubject:
   /** The solver in another process, its link, and questions to it. */
   case Solver
 
-/** The kind of an [[Event]]; recorded by name. */
+/** The kind of an [[Event]]; recorded under its name. */
 enum EventKind:
   /** A newer value replaced one that was not used yet. */
   case Dropped

@@ -178,5 +178,5 @@ class McapRecordingSuite extends munit.FunSuite, TemporaryFolders:
     val there = folder.resolve("flight.duckdb")
     assertEquals(McapRecording.read(mcap, there), Left(RecordError.AlreadyExists(there)))
 
-  test("texts are written by the rules of JSON"):
+  test("texts are written according to the rules of JSON"):
     assertEquals(Json.string("a\"b\\c\n\u0001é🛸"), "\"a\\\"b\\\\c\\u000a\\u0001é\\ud83d\\udef8\"")

@@ -86,7 +86,7 @@ class RecogniseSuite extends munit.FunSuite:
     assertEquals(mixed.emitted.size + mixed.replaced, 300)
     assertEquals(mixed.mostAtOnce, 3)
 
-  test("twice as many frames as workers wait behind an unfinished one, and then none is begun until it ends"):
+  test("twice as many frames as workers may wait behind an unfinished frame; no other starts until it ends"):
     val held = run(perSecond = 100, count = 80, workers = 2)(frame => if frame == 0 then 505 else 5)
     assertEquals(held.emitted.map(_.frame), Seq(0, 1, 2, 3) ++ (50 until 80))
     assertEquals((held.replaced, held.skipped), (46, Vector.empty))

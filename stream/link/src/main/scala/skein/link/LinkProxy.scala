@@ -145,7 +145,7 @@ object LinkProxy:
         waiting :+= one
         one.future
 
-  /** A stage that both directions of a connection pass through; its first side is the client's. */
+  /** A stage that both directions of a connection pass through; its first side is at the client. */
   type Passing = BidiFlow[ByteString, ByteString, ByteString, ByteString, NotUsed]
 
   /** Observes the connections of a proxy. Thread-safe. */

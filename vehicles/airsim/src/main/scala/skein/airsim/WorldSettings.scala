@@ -11,7 +11,7 @@ import ujson.Obj
   * @param firstPerson whether the view is its own (`IsFpvVehicle`), which makes it the default vehicle of
   *   calls that name none
   * @param armed whether it is armed after the start and after a reset (`DefaultVehicleState`)
-  * @param sensors the sensors that are switched on, by name
+  * @param sensors the sensors that are switched on, keyed by name
   */
 final case class VehicleSettings(
     name: String,

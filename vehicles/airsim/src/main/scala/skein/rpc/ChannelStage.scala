@@ -25,8 +25,8 @@ private[rpc] trait ChannelInput:
   def close(): Future[Done]
 
 /** One channel with all its connections in a single stage, hence on one thread at a time: a call costs one
-  * hop to that thread, calls made during that hop leave in one write, and every decision is
-  * [[ChannelState]]'s. The connections run fused inside this stage.
+  * hop to that thread, calls made during that hop leave in one write, and [[ChannelState]] makes every
+  * decision. The connections run fused inside this stage.
   *
   *   - '''Emits when''' nothing; it has no ports. Requests go to the channel's connections.
   *   - '''Backpressures when''' a connection takes no more bytes: its calls wait, unwritten, within its

@@ -196,7 +196,7 @@ object Px4Interface:
   /** Interval of HIL_SENSOR messages. */
   val Period: Span = Span.ofMillis(4)
 
-  /** The first vehicle's port; each further vehicle's is one higher. */
+  /** The first vehicle's port; the port of each further vehicle is one higher. */
   val Port = 4560
 
   /** MAVLink's component number, as in PX4's plugin for Gazebo. */

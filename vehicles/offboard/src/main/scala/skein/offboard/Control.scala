@@ -81,8 +81,8 @@ final case class Control(
         Option.when(estimate.newest.isEmpty)("ODOMETRY, or LOCAL_POSITION_NED and ATTITUDE_QUATERNION")
       ).flatten
 
-  /** The reason why the vehicle follows no setpoints: it is disarmed, or in a mode that it was switched to by
-    * others. None if it follows them.
+  /** The reason why the vehicle follows no setpoints: it is disarmed, or someone else switched its mode. None
+    * if it follows them.
     */
   def taken: Option[String] = firmware.toOption.flatMap: own =>
     if !isArmed then Some(s"$name is disarmed")

@@ -247,7 +247,7 @@ class ControlSuite extends munit.FunSuite:
     assertEquals(found.restarts, 0)
     assert(found.lower <= Span.ofSeconds(1000) && Span.ofSeconds(1000) <= found.upper, found.toString)
 
-  test("times are in the clock that the vehicles share, and with two clocks in the first vehicle's"):
+  test("times are on the clock that the vehicles share, and with two clocks on the first vehicle's clock"):
     val one   = VehicleClock.of(at(0), theirs(20), at(40))
     val same  = VehicleClock.of(at(5), theirs(15), at(35))
     val other = VehicleClock.of(at(0), theirs(520), at(40))

@@ -15,7 +15,7 @@ private[ros] final class LostMessages:
   /** Adds a message that was received.
     *
     * @param publisher the publisher's identifier, 16 bytes
-    * @param number sequence number of the message among its publisher's
+    * @param number sequence number of the message among all messages of its publisher
     */
   def add(publisher: (Long, Long), number: Long): Unit = newest.get(publisher) match
     case Some(before) =>

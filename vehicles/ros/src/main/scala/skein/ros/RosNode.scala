@@ -247,8 +247,8 @@ object RosNode:
   private val NumberAt    = 16L
   private val PublisherAt = 40L
 
-  /** Greatest accepted difference between the middleware's clock and this process's; some middleware states
-    * no time.
+  /** Greatest accepted difference between the middleware's clock and this process's clock; some middleware
+    * states no time.
     */
   private val MostApart = Span.ofSeconds(10)
 

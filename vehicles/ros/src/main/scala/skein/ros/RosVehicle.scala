@@ -41,7 +41,7 @@ final class RosVehicle private[ros] (
   /** Completes when the first odometry has been received. */
   private[ros] def isThere: Future[Unit] = first.future
 
-  /** The clock of the headers against this process's, as known so far. */
+  /** The clock of the headers relative to this process's clock, as known so far. */
   def clocks: Option[ClockAlignment] = synchronized(alignment)
 
   def read(): Future[Either[VehicleError, Stamped[Kinematics]]] = synchronized:

@@ -9,7 +9,7 @@ class LidarSuite extends munit.FunSuite:
     lidar.scan(moment, at, Item.Nothing, Vector3.Zero, count)
 
   test(
-    "AirSim's default lidar sees flat ground in 16 circles of 10,000 points per turn, except in the last degree"
+    "AirSim's default lidar sees flat ground in 16 circles of 10,000 points per turn, less the last degree"
   ):
     val points = scan(Lidar(), Placement(Vector3(0, 0, -10)), Moment(Scene.Empty, Vector.empty))
     assertEquals(points.items.toSet, Set(Item.Ground))

@@ -2,7 +2,7 @@ package skein.simulator
 
 import skein.units.Instant
 
-/** The vehicles of a simulation behind another protocol than AirSim's: bytes of peers go in, bytes for them
+/** The vehicles of a simulation behind a protocol other than AirSim's: bytes of peers go in, bytes for them
   * come out. Not thread-safe.
   */
 private[simulator] trait PeerProtocol:

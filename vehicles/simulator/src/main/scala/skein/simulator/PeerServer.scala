@@ -13,7 +13,7 @@ import skein.link.{Address, FirstBytes, Listening, Places, Transport, TransportE
 import skein.mavlink.FrameReader
 import skein.units.Span
 
-/** The ports of vehicles that speak another protocol than AirSim's.
+/** The ports of vehicles that speak a protocol other than AirSim's.
   *
   * @param streams ports for streams, by the simulator's own transport, which is TCP outside tests
   * @param datagrams ports for datagrams, whatever the transport

@@ -11,7 +11,7 @@ import upickle.default.{Writer, writeMsg}
 private[simulator] enum CallOutcome:
   case Answered(result: Msg | Encoded)
 
-  /** The function throws; `text` is the exception's. */
+  /** The function throws; `text` is the exception's message. */
   case Threw(text: String)
 
   case Flies(vehicle: Int, order: Move.Order)
@@ -22,7 +22,7 @@ private[simulator] enum CallOutcome:
   /** Physics must advance by this span and then stop; then the call is answered. */
   case Steps(span: Span)
 
-/** A function of the simulator's server, with as many parameters as AirSim's.
+/** A function of the simulator's server, with as many parameters as AirSim's function.
   *
   * @param arguments readers of the parameters; each throws [[BadArgument]] if it refuses
   * @param run computes the outcome from the read arguments
@@ -50,7 +50,7 @@ final private[simulator] class ServerMethod(
     def own(values: Tuple): Tuple = Tuple.fromArray(values.toArray.take(arity - 1).map(x => x: Any) :+ last)
     ServerMethod(name, arguments.init ++ read, (simulation, values) => run(simulation, own(values)))
 
-  /** Never throws: a function that fails answers with its exception, as AirSim's do. */
+  /** Never throws: a function that fails answers with its exception, as functions of AirSim do. */
   def apply(simulation: Simulated, params: IndexedSeq[Msg]): CallOutcome =
     try run(simulation, Tuple.fromArray(arguments.iterator.zip(params).map(_.read(_)).toArray[Any]))
     catch

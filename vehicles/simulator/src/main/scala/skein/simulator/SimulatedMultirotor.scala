@@ -110,7 +110,7 @@ final private[simulator] class SimulatedMultirotor(
     */
   def flyBy(autopilot: Option[Setpoint]): Unit = outside = autopilot
 
-  /** Gives control to the API or takes it away. Either way the goal becomes the remote control's, even if the
+  /** Gives control to the API or takes it away. Either way the remote control then sets the goal, even if the
     * API already had control. A vehicle that held its position thus falls: the throttle of an absent remote
     * control is idle, and AirSim assumes that a vehicle at rest under it has landed, so position hold does
     * not catch it either.

@@ -38,7 +38,9 @@ class MoveSuite extends munit.FunSuite:
     assert(math.abs(overshoot - 1.6) < 0.3, s"overshoot $overshoot m, AirSim's is 1.6 m")
     assert((back - left).norm < 0.1, s"holds at $back, wanted $left")
 
-  test("a duration of zero answers immediately: false for moveByVelocityZ, true for the others"):
+  test(
+    "a duration of zero is answered immediately: with false for moveByVelocityZ, with true for other moves"
+  ):
     val bench = Bench().hovering(-20)
     assertEquals(bench.result(bench.velocityZ(5, 0, -20, 0)), Some(false))
     assertEquals(bench.result(bench.velocity(5, 0, 0, 0)), Some(true))

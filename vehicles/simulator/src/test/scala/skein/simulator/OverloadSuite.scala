@@ -88,7 +88,7 @@ class OverloadSuite extends munit.FunSuite:
       assertEquals(moves.map(bench.result), Vector.fill(20)(Some(false)))
       assert(bench.isAnswered(read))
 
-  test("while paused the newest move replaces the older immediately, and no call waits"):
+  test("while paused, the newest move replaces the older one immediately, and no call waits"):
     val bench = Bench().hovering(-20)
     bench.tell("simPause", upack.Bool(true))
     val moves = for i <- 1 to 12 yield bench.velocityZ(1, i * 0.1, -5, 1000)

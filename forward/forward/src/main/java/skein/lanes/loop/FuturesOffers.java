@@ -32,7 +32,7 @@ final class FuturesOffers extends LaneOffers {
   /** Number of periods whose tasks are stored; a power of two. */
   private final int ring;
 
-  // Of tasks, by agent and slot, from the start of their own step: begin, and end with an offer.
+  // Of tasks, indexed by agent and slot, from the start of their own step: begin, and end with an offer.
   private final int[][][] beginAt, end;
 
   /** The n latest ends of all earlier tasks, the latest first, in grains from the start of the last drawn

@@ -157,8 +157,9 @@ public abstract class LaneAgents {
 
   /** Decides in all worlds; fills {@link #decidedNow}.
    *
-   * @param all the controllers, by vehicle, with their vehicles' readings
-   * @param readAt sampling times of the present readings, by vehicle; maintained only if {@link #needsAges}
+   * @param all the controllers, indexed by vehicle, with their vehicles' readings
+   * @param readAt sampling times of the present readings, indexed by vehicle; maintained only if {@link
+   *     #needsAges}
    */
   public abstract void choose(LaneAgents[] all, LaneOffers offers, LaneVectors vectors, int[][] readAt);
 

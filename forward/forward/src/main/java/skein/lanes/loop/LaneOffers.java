@@ -91,7 +91,7 @@ public abstract class LaneOffers {
 
   /** Whether no world has a time in a slot.
    *
-   * @param times the times, by vehicle, slot and world
+   * @param times the times, indexed by vehicle, slot and world
    */
   static boolean isEmpty(int[][][] times, int slot) {
     for (int[][] each : times) if (isBefore(each[slot], NONE)) return false;

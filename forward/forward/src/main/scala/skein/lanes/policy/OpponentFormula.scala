@@ -72,7 +72,7 @@ private[policy] object OpponentFormula:
         .toLeft(())
     yield OpponentFormula(formula, trace, nodes.head, nodes.tail)
 
-  // Inputs that are none of these are numbered from here on while the graph is searched for differences.
+  // Inputs other than these are numbered from here on while the graph is searched for differences.
   private final val Other = 1 << 20
 
   private def placeOf(input: PolicyInput, self: Int): Option[Int] = input match

@@ -61,7 +61,7 @@ private[skein] object Timetable:
   /** The timetable of a world of this key, for as many vehicles as models.
     *
     * @param models of the vehicles
-    * @param eyes the cameras, by vehicle; only for two vehicles
+    * @param eyes the cameras, indexed by vehicle; only for two vehicles
     * @param tellsMore see [[Timetable.more]]; not for two vehicles that decide by
     *   [[skein.lanes.policy.OpponentLanes]]
     * @param end how the flight may end before its duration
@@ -91,7 +91,7 @@ private[skein] object Timetable:
     case predictive: LoopTiming.Predictive => predictive.copy(predictor = ConstantVelocity)
     case other                             => other
 
-  /** Further inputs of decisions, by decision, then by vehicle.
+  /** Further inputs of decisions, indexed by decision, then by vehicle.
     *
     * @param headings slots of each vehicle's last known commanded heading
     * @param agesS ages of the readings, s

@@ -56,7 +56,7 @@ final private[render] class Sweep(view: View, surfaces: Surfaces):
       left(face) = spans(at)
       right(face) = spans(at + 1)
       inverse(face) = surfaces.c(face) + surfaces.b(face) * (row + 0.5) + surfaces.a(face) * 0.5
-      // The order of the previous row is nearly this row's.
+      // The order of the previous row is nearly that of this row.
       var j = i
       while j > 0 && left(active(j - 1)) > left(face) do
         active(j) = active(j - 1)
