@@ -66,7 +66,7 @@ abstract class OptionsCommand[A](name: String, summary: String, parser: ParserFo
   /** Defaults by option name, for options whose own description does not state one. */
   protected def defaults: Map[String, String] = Map.empty
 
-  /** Names of options that it shares with another command and refuses; help and completion leave them out. */
+  /** Names of options that it shares with another command but refuses; help and completion omit them. */
   protected def refusedAlways: Set[String] = Set.empty
 
   /** All values of an option, by option name, if the set is known. */

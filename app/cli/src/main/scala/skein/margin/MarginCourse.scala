@@ -2,7 +2,7 @@ package skein.margin
 
 import skein.units.{Instant, Span}
 
-/** How long a run has lasted, and when something passed between program and simulator.
+/** The duration of a run so far, and the times at which messages passed between program and simulator.
   *
   * @param at the last look
   * @param passed time from the first message to the last one

@@ -104,7 +104,7 @@ object TimingVerdict:
         s"${apartM.fixed(1)} m between vehicles, before a command answers to what was read"
     )
 
-  /** The median distance between the two vehicles with the least median distance, m. */
+  /** The smallest of the pairwise median distances between vehicles, m. */
   private def separationM(flight: FlightSummary): Option[Double] =
     val near  = flight.tracks.take(MostCompared)
     val apart =

@@ -123,7 +123,7 @@ class NoResultSuite extends munit.FunSuite:
     val said = TimingVerdict.sentence(Report.of(all)).getOrElse(fail("nothing was said"))
     assert(said.contains(" for futures and stream over direct and vpn (at worst "), said)
 
-  test("loops with one verdict are listed together, by link, with the worst of them"):
+  test("loops with equal verdicts are listed together for each link, with the worst of them"):
     val all =
       for
         (loop, index) <- Seq("sequential", "futures", "stream").zipWithIndex

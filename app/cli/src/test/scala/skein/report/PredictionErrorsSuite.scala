@@ -44,7 +44,7 @@ class PredictionErrorsSuite extends munit.FunSuite, Unhurried:
     )
     assertEquals(measured().stretches, Vector.empty)
 
-  test("curves break at ages without measurements, and the legend lists only drawn items"):
+  test("curves have gaps at ages without measurements, and the legend lists only drawn items"):
     def texts(of: PredictionGroup) =
       PredictionFigure(Vector(of)).get.shapes.collect { case text: Mark.Text => text.content }
     def curves(of: PredictionGroup) = PredictionFigure(Vector(of)).get.shapes.count:

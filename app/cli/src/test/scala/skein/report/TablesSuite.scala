@@ -243,7 +243,7 @@ class TablesSuite extends munit.FunSuite:
     assert(!table.header.contains("paper"), table.header)
     assert(table.rows.nonEmpty && table.rows.forall(_.size == table.header.size))
 
-  test("the page states the flights' parameters in their units, and the time of their begin"):
+  test("the page states the flights' parameters with units, and their start times"):
     val page =
       HtmlReport.render(Report.of(Seq(SyntheticFlight("stream", "direct", seed = 7, seconds = 12))), Nil)
     val row = page.drop(page.indexOf("Run parameters")).split("<tr>").last.replaceAll("<[^>]*>", "|")

@@ -208,7 +208,7 @@ object Coordinator:
   /** @param accepted number of blocks whose first answer was received
     * @param repeated number of answers that were not the first
     * @param doubled number of blocks assigned again because nothing else waited
-    * @param lost number of blocks that waited again because their worker was lost
+    * @param lost number of blocks that had to wait again because their worker was lost
     * @param overdue number of blocks that waited again because no answer arrived in time
     */
   final case class Counts(accepted: Long, repeated: Long, doubled: Long, lost: Long, overdue: Long)

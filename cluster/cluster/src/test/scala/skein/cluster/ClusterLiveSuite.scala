@@ -177,7 +177,7 @@ class ClusterLiveSuite extends munit.FunSuite, TemporaryFolders, Unhurried:
   test("garbage sent to the port by an outsider does no harm: members continue, and others can join"):
     coordinating(assertUnharmed(_, None)(garbage))
 
-  test("a stranger's garbage does no harm where certificates are required, either"):
+  test("garbage from a stranger does no harm where certificates are required, either"):
     val own = Some(tls(lab.head))
     coordinating(own)(assertUnharmed(_, own)(garbage))
 

@@ -44,7 +44,7 @@ trait Scenario extends Product:
     */
   def isPapersGame: Boolean = false
 
-  /** Whether loops run as in the paper's published code, which confounds its result. */
+  /** Whether loops run as in the paper's published code, whose timing confounds its result. */
   def isAsPublished: Boolean = false
 
   /** Explanation of the measures for the report, in whole sentences. */

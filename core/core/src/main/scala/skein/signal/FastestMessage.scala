@@ -23,8 +23,8 @@ final case class FastestMessage(offset: Span, at: Instant):
   def sentAt(validAt: Instant, receivedAt: Instant): Instant = (validAt + offset - Doubt).min(receivedAt)
 
 object FastestMessage:
-  /** Time by which a later message may be faster than the fastest so far; a larger difference contradicts the
-    * clocks' alignment.
+  /** Maximum time by which a later message may be faster than the fastest so far; a larger difference
+    * contradicts the clocks' alignment.
     */
   val Doubt: Span = Span.ofMillis(5)
 

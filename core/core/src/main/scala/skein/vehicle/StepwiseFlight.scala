@@ -7,7 +7,7 @@ import skein.units.OwnFailure
   * time into calls of [[advance]] has no effect on the flight. An exception in the plant's step becomes an
   * [[skein.units.OwnFailure]].
   *
-  * @param initial the state before another is set
+  * @param initial the state until another is set
   */
 abstract class StepwiseFlight[S](timing: PlantTiming, initial: S):
   private var stepAtS = 0.0

@@ -99,8 +99,8 @@ final class FlightMonitor(
   /** The last event of a connection that was lost or could not be opened. */
   def broken: Option[Event] = lastBroken
 
-  /** Distance between a vehicle and its opponent at the newest decision, unless the policy considers others
-    * too; and the present age of the newest reading.
+  /** Distance between a vehicle and its opponent at the newest decision, unless the policy also considers
+    * other vehicles; and the present age of the newest reading.
     */
   def lastSeen(now: Instant): Option[LastSeen] =
     for

@@ -23,8 +23,8 @@ private[flight] final case class ForeignMoves(
       sequence == move.command && move.endedAt.since(sentAt) < lasts
     copy(replaced = (replaced :+ isForeign).takeRight(ForeignMoves.Judged))
 
-  /** Whether other clients replaced several of the last moves. A few prove nothing: after a lost answer, the
-    * flight itself ends its newest move ([[skein.airsim.MoveQueue]]).
+  /** Whether other clients replaced several of the last moves. A few replaced moves prove nothing: after a
+    * lost answer, the flight itself ends its newest move ([[skein.airsim.MoveQueue]]).
     */
   def areMany: Boolean = replaced.count(identity) >= ForeignMoves.Many
 

@@ -19,7 +19,7 @@ object WarmUp:
   /** Number of virtual flights for a warm-up. */
   val Flights = 20
 
-  /** Real time after which the warm-up ends early, for large teams and for loops that plan. */
+  /** Maximum real time of the warm-up, which large teams and loops that plan would exceed. */
   val AtMost: Span = Span.ofSeconds(3)
 
   /** Duration of each virtual flight: short, so that every loop and link has its turn. */

@@ -37,7 +37,7 @@ final class Flight private (
   /** The outcome as soon as it is decided, before the vehicles hover. */
   def ending: Future[FlightOutcome] = stopping.future
 
-  /** Ends the flight immediately, because it cannot continue. */
+  /** Ends the flight immediately because it cannot continue. */
   def fail(reason: String): Unit =
     val _ = stopping.trySuccess(FlightOutcome.Failed(reason))
 
@@ -125,7 +125,7 @@ object Flight:
       case Some(error) if !outcome.isInstanceOf[FlightOutcome.Failed] => FlightOutcome.Failed(error.message)
       case _                                                          => outcome
 
-  /** Runs a user's graph. It may ignore the kill switch: then it is aborted after a time. */
+  /** Runs a user's graph. If the graph ignores the kill switch, it is aborted after a time. */
   private def runOwn(
       own: OwnLoop,
       team: Team,

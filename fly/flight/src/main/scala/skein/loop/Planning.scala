@@ -87,7 +87,7 @@ final case class PlannedDecision(
 ):
   /** The report of a planned decision.
     *
-    * @param slices number of slices each search has finished
+    * @param slices number of slices that each search has finished
     */
   def report(slices: Vector[Int]): PlanReport = PlanReport(
     plan.candidates,
@@ -103,7 +103,7 @@ final case class PlannedDecision(
 /** The recorded data of a planned decision.
   *
   * @param candidates number of candidates that all searches simulated together
-  * @param slices number of slices each search has finished
+  * @param slices number of slices that each search has finished
   * @param cost cost of the plan; absent if none was simulated
   * @param isSearched whether any search finished a slice for this vehicle
   * @param byPolicy whether the last plan was too old to continue
@@ -156,10 +156,10 @@ object Planning:
 
   private val MostNamed = 8
 
-  /** Cost by which a plan must be better than the policy's manoeuvre to be followed. A long search exploits
-    * every small gain of the simple model and of guesses about other vehicles, even if these are wrong; the
-    * policy does not. Vehicles at their goals follow the policy, and plans only if these save some 0.1 m for
-    * a second.
+  /** The cost advantage that a plan needs over the policy's manoeuvre in order to be followed. A long search
+    * exploits every small gain of the simple model and of guesses about other vehicles, even if these are
+    * wrong; the policy does not. Vehicles at their goals follow the policy, and plans only if these save some
+    * 0.1 m for a second.
     */
   private val ClearGain = 0.1
 

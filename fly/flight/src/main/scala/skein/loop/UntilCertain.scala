@@ -5,7 +5,7 @@ import org.apache.pekko.pattern.after
 import scala.concurrent.Future
 import skein.units.*
 
-/** Repeats a final command of a flight that must not get lost, with pauses, until its answer is certain. */
+/** Repeats a flight's final command, which must not get lost, at intervals until its answer is certain. */
 private[skein] object UntilCertain:
 
   /** Maximum number of attempts, the first one included. */

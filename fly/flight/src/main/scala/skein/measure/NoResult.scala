@@ -3,7 +3,7 @@ package skein.measure
 import skein.record.{EventKind, Recording}
 import skein.signal.TimeAxis
 
-/** Why a complete flight has no result: its basis of measurement is wrong.
+/** Why a complete flight has no result: the basis of its measurement is invalid.
   *
   * @param what the fault, in two or three words
   * @param why the reason, in a line

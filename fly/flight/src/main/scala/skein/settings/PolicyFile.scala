@@ -101,8 +101,8 @@ object PolicyFile:
 
   /** A policy from a file, or from a family with its defaults.
     *
-    * @param asked its role if neither file nor family states one; without it, such a family is refused and
-    *   such a file is a pursuer's policy
+    * @param asked role if neither file nor family states one; without it, such a family is refused and such a
+    *   file is a pursuer's policy
     * @return Left says what was expected and what was given
     */
   def named(text: String, asked: Option[Role])(using Scenarios): Either[String, PolicyFile] =

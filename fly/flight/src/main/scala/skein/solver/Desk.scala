@@ -39,7 +39,7 @@ final case class Desk private (vehicles: Vector[Desk.Vehicle], overtaken: Long, 
       val next = known.copy(waiting = None, isBusy = known.waiting.isDefined)
       (copy(vehicles = vehicles.updated(vehicle, next)), known.waiting)
 
-  /** The memory that a request continues; absent if it is not (or no longer) held. */
+  /** The memory from which a request continues; absent if it is not, or no longer, stored. */
   def memory(question: Question, solver: Long): Option[Any] =
     question.remembered.filter(_.solver == solver).flatMap(used =>
       vehicles(question.vehicle).memories.get(used.question)

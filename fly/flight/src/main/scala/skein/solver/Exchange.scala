@@ -73,7 +73,7 @@ final case class Exchange private (
       )
       (copy(told = now, counts = all), more)
 
-  /** Aligns the clocks. Another start of a solver has another clock, and begins new counts. */
+  /** Aligns the clocks. A restarted solver has a new clock, and its counts start at zero. */
   private def aligned(answer: Answer, asked: Instant, at: Instant): Exchange =
     val thinking = answer.answeredAt.since(answer.takenAt).max(Span.Zero)
     // As if the solver had taken no time: then both directions bound the offset.

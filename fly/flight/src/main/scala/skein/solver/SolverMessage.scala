@@ -120,7 +120,7 @@ final case class Question(
 
 /** An answer to a request.
   *
-  * @param vehicle the first of the request's vehicles
+  * @param vehicle the first vehicle of the request
   * @param solver this start of the solver
   * @param takenAt when the request was received, on the solver's clock
   * @param answeredAt when the answer was sent, on the solver's clock

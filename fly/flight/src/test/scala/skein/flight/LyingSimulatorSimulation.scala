@@ -227,7 +227,7 @@ class LyingSimulatorSimulation extends munit.FunSuite, Unhurried:
     assertEqualsDouble(disarmed._1, alone._1, 0.001, "it sank")
     assertEqualsDouble(disarmed._2, alone._2, 0.001, "it flew another way")
 
-  test("stream: another client that pauses the simulator ends the flight without result"):
+  test("stream: if another client pauses the simulator, the flight ends without a result"):
     fly(LoopKind.Stream, acts = _.pause()).assertNoResult(EventKind.ClockBroken, "stood still")
 
   test("paused: another client that resumes the simulator is recorded"):

@@ -91,7 +91,9 @@ class SensorSimulation extends munit.FunSuite, Optimised:
     -recording.readings.filter(_.vehicle == vehicle).last.state.value.positionNed.z
 
   for kind <- LoopKind.values do
-    test(s"${kind.label}: a policy climbs by its sensor, and its recording replays to equal decisions"):
+    test(
+      s"${kind.label}: a policy climbs using its sensor, and a replay of its recording makes equal decisions"
+    ):
       val recording = fly(kind)
       assertEqualsDouble(lastAltitude(recording, "Evader"), 26, 0.5)
       assertEqualsDouble(lastAltitude(recording, "Pursuer"), 15, 0.5)

@@ -155,7 +155,7 @@ class TeamViewSuite extends munit.FunSuite:
     assertEquals((one.unanswered, one.entered), (1L, 0L))
 
   test(
-    "a forecast receives sent, replaced and failed commands; a move that ran to its end changes nothing"
+    "a forecast learns of sent, replaced and failed commands; a move that ran to its end changes nothing"
   ):
     import scala.util.{Failure, Success}
     val pursuer  = Decider(PaperDuel().fleet, 1)

@@ -112,7 +112,7 @@ class OutsidePolicyLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders
           assertEquals(reason, "the policy: expected an answer within 30 ms, got none")
         assert(peer.asked <= 1)
 
-  test("a question that is not read in time is not sent"):
+  test("a question that the process does not read in time fails"):
     val path = temporaryFolder().resolve("policy")
     Using.resource(ServerSocketChannel.open(StandardProtocolFamily.UNIX)): listener =>
       listener.bind(UnixDomainSocketAddress.of(path)): Unit

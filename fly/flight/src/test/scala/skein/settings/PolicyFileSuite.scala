@@ -51,7 +51,7 @@ class PolicyFileSuite extends munit.FunSuite, TemporaryFolders:
       ("no HOCON", "family = {", Seq("policy.conf"))
     )
   do
-    folder.test(s"$what is refused with its place and what was expected"): folder =>
+    folder.test(s"$what is refused with its position and what was expected"): folder =>
       val mistake = read(folder, text).left.getOrElse("accepted")
       for part <- expected do assert(mistake.contains(part), mistake)
 

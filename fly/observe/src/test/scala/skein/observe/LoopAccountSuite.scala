@@ -167,7 +167,7 @@ class LoopAccountSuite extends munit.FunSuite:
     assert(loop(waits = true).found("waits for each move"))
     assert(!loop(waits = false).found("waits for each move"))
 
-  test("small calls that are slow during an image, and else quick, mean that images fill the link"):
+  test("small calls that are slow only during an image show that images fill the link"):
     val program = Program()
     for tick <- 0 until 40 do
       val ms = tick * 200.0

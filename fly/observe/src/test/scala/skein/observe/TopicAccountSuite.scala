@@ -47,7 +47,7 @@ class TopicAccountSuite extends munit.FunSuite:
     assertEquals(graph.ages, Vector(Some(30.0)))
     assertEquals(graph.observed.topics.head.backwards, 1L)
 
-  test("the age of others is that of the oldest of their newest readings"):
+  test("the age of the other vehicles' data is that of the oldest of their newest readings"):
     val graph = Graph()
     graph.reading("a", 10, 20)
     graph.reading("b", 5, 21)

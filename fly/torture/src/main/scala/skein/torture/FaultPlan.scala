@@ -107,7 +107,7 @@ final case class Restart(at: Span, lasts: Span, clockJump: Span)
 enum Disk:
   case Sound
 
-  /** It writes nothing for a while; meanwhile rows must fit into the recorder's queue. */
+  /** The disk accepts nothing for a while; meanwhile the rows must fit into the recorder's queue. */
   case Blocks(at: Span, lasts: Span, capacity: Int)
 
   case Fails(at: Span)

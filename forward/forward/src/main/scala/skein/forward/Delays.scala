@@ -29,7 +29,7 @@ object Delays:
 
   /** The line of a request.
     *
-    * @param asker the vehicle whose controller requests (`Futures`); 0 if one controller requests for all
+    * @param asker the vehicle whose controller sends the requests (`Futures`); 0 if one controller sends all
     */
   def question(asker: Int, vehicle: Int): Int =
     Lines * (asker / 2 * MostPairs + vehicle / 2) + 4 * (asker % 2) + 2 * (vehicle % 2)

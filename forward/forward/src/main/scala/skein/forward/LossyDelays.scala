@@ -134,8 +134,8 @@ private[skein] final class LossTimes(
 ):
   private val all = bursts.map(own => (own ++ outages).toArray)
 
-  /** Begin and end of the loss-free time that [[isLost]] found last, ns; if everything was lost, the end is
-    * not after the requested time.
+  /** Start and end of the loss-free interval that [[isLost]] found last, ns; if everything was lost, the end
+    * is not after the requested time.
     */
   var calmFromNs, calmUntilNs = 0L
 

@@ -10,7 +10,7 @@ import skein.lanes.timetable.Timetable
   * @param efforts the vehicle whose effort each judged value is; None if the value is the next of `scores`
   * @param altitudesDownM altitudes of vehicles that fly level
   * @param vehicles the dynamics of each vehicle, compared by reference
-  * @param byOneModel whether all vehicles move by the model of the batch
+  * @param byOneModel whether all vehicles move according to the batch's model
   */
 private[lanes] final case class TeamForm(
     policies: TeamPolicies,

@@ -152,7 +152,7 @@ class EngagementSuite extends munit.FunSuite:
     )
 
   test(
-    "in a team without sides each is scored by the distance to " +
+    "in a team without sides each vehicle is scored by the distance to " +
       "the nearest other, and policies choose the speed"
   ):
     // From north to south, towards the middle one, at 1, 2 and 3 m/s.

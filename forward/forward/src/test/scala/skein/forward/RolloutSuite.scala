@@ -118,7 +118,7 @@ class RolloutSuite extends munit.FunSuite:
       (LoopTiming.Stream(), DelayTable.vpn, "vpn", 9.9, 11.0)
     )
   do
-    test(s"$loop over $name settles where the reference flights did, between $least and $most m"):
+    test(s"$loop over $name settles, like the reference flights, between $least and $most m"):
       val rollout = Rollout(Pair.paper.engagement, loop, link, VelocityResponses.quadrotor())
       for episode <- 0 until 4 do
         val settled = rollout.fly(WorldRandom.key(1, 0, episode)).meanLast10sM

@@ -15,7 +15,7 @@ enum Parsed:
   /** The file is complete, and all its CRCs are right. */
   case Ended
 
-  /** Nothing more can be read; after `CutOff`, everything before the cut has been read. */
+  /** Nothing more can be read; after `CutOff`, everything before the cut was read. */
   case Failed(error: McapError)
 
 /** Reads a file from its start to its end, in pieces of any size: bytes in, records out, no I/O of its own.

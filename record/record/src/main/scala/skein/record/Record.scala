@@ -268,7 +268,7 @@ final case class Planned(
   *
   * @param decision the sequence of the decision of `vehicle`; the decision says when it was made, by what was
   *   known of the solver's clock
-  * @param question counts the questions for `vehicle`; those that are missing here were not answered in time
+  * @param question sequence number of the request for `vehicle`; missing numbers were not answered in time
   * @param askedAt when the question left
   * @param receivedAt when the answer arrived
   * @param thinking time from the question's arrival at the solver to the answer's departure, on the solver's
@@ -440,7 +440,7 @@ enum EventSubject:
   /** A request for a vehicle's reading that was not answered. */
   case Reading
 
-  /** A camera whose requested images did not arrive. */
+  /** A camera from which requested images did not arrive. */
   case Camera
 
   /** The solver in another process, its link, and questions to it. */

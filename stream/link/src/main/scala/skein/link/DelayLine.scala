@@ -145,7 +145,7 @@ private[link] final class DelayLine(
           repeatsAt = at
           scheduleOnce(Timer.Repeat, (at - sinceStart()).max(Span.Zero).toDuration)
 
-      /** Hands the bottleneck the bytes that it has room for.
+      /** Passes as many bytes to the bottleneck as it has room for.
         *
         * @param held whether there was no room before
         */

@@ -13,8 +13,8 @@ enum FirstBytes:
   /** The bytes fit the port's own protocol: the rest may be read. */
   case Own
 
-  /** The bytes so far could begin an HTTP request: the next ones decide, and until then nothing may be
-    * obeyed.
+  /** The bytes so far could begin an HTTP request: the next bytes decide, and until then none may be acted
+    * on.
     */
   case Undecided
 

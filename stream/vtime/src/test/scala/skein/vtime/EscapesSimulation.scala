@@ -23,7 +23,7 @@ class EscapesSimulation extends munit.FunSuite, Unhurried:
       "the cause does not show this suite's code"
     )
 
-  test("a promise completed by another thread is an escape and shows that thread's stack"):
+  test("a promise completed by another thread is reported as an escape, with that thread's stack"):
     val error = stopped(): system =>
       import system.dispatcher
       val promise = Promise[Int]()
@@ -124,7 +124,7 @@ class EscapesSimulation extends munit.FunSuite, Unhurried:
     assertEquals(run.value, 4_500_001_500_000L)
 
   test(
-    "a future that nothing can complete is a deadlock, with the time of the last event and the live actors"
+    "a future that nothing can complete is a deadlock; the report states the last event and the live actors"
   ):
     val error = stopped(): system =>
       system.actorOf(Props(Silent()), "silent"): Unit

@@ -15,12 +15,13 @@ import skein.units.*
   *     behind the second: from then on each move would begin when its successor arrives, for the rest of the
   *     flight.
   *
-  * So, when the answer to a replaced move is missing for [[MoveQueue.AnswerWithin]], a probe is sent behind
-  * the next move, on the same ordered connection. If the probe is answered and the move is not, the vehicle's
-  * task is cancelled once more, which adds no move to AirSim's queue: after a lost cancel, the replaced move
-  * ends and the next begins; after a lost answer, the next move ends, and the loop sends another. If the
-  * answer is still missing [[MoveQueue.Settles]] later, it is taken as lost and replaced by the answer it
-  * must have been: false, replaced. If the probe's answer is lost too, the procedure starts again.
+  * So when the answer to a replaced move has been missing for [[MoveQueue.AnswerWithin]], a probe is sent
+  * behind the next move, on the same ordered connection. If the probe is answered and the move is not, the
+  * vehicle's task is cancelled once more, which adds no move to AirSim's queue: after a lost cancel, the
+  * replaced move ends and the next begins; after a lost answer, the next move ends, and the loop sends
+  * another. If the answer is still missing [[MoveQueue.Settles]] later, it is taken as lost and replaced by
+  * the answer it must have been: false, replaced. If the probe's answer is lost too, the procedure starts
+  * again.
   *
   * @param onLost called with one line for each missed answer: what happened to it
   */

@@ -132,7 +132,7 @@ private[skein] object SettingsSection:
   final private class Misfit(val error: SettingsError)
       extends RuntimeException(error.message, null, false, false)
 
-  /** The position at which a text ceases to be JSON, and the mistake there.
+  /** The position at which a text stops being valid JSON, and the mistake there.
     *
     * @param mistake the exception of `ujson`, whose cause states the mistake after the whole path to it
     */

@@ -21,7 +21,8 @@ import java.util.concurrent.atomic.{AtomicLong, LongAdder}
   * @param lacking number of requests, replies and dropped notifications that were too large for the memory
   *   left
   * @param ignored number of values that were not messages
-  * @param dropped number of requests taken and not run, because their connection had closed before their turn
+  * @param dropped number of accepted requests that were not run because their connection closed before their
+  *   turn
   * @param heldBytes number of bytes held for peers now; see [[ServerLimits.heldBytes]]
   * @param mostHeldBytes the maximum of `heldBytes`
   */

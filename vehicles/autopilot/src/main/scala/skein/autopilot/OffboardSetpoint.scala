@@ -155,7 +155,7 @@ object OffboardSetpoint:
   extension (move: OffboardSetpoint.Move)
     private def hasPlace = (move.north ++ move.east ++ move.down).nonEmpty
 
-  /** Converts a target to the flight controller's setpoint.
+  /** Converts a target to a setpoint of the flight controller.
     *
     * @param cruise the greatest speed towards positions
     */

@@ -10,8 +10,7 @@ import skein.units.*
   *
   * A command stamped before another of its vehicle, by whichever topic, is left out: it is late.
   *
-  * It no longer waits if none has arrived for [[CommandLockstep.Patience]] of real time, until the next
-  * command.
+  * If none arrives within [[CommandLockstep.Patience]] of real time, it stops waiting until the next command.
   *
   * @param physics the step of physics, of which the first stop is a whole number after the start
   * @param now the simulator's clock, now at its start

@@ -13,7 +13,7 @@ private[simulator] trait PeerProtocol:
 
   def leave(channel: Long): Unit
 
-  /** Takes bytes that a peer sent; the simulation has been advanced to the present before. */
+  /** Handles bytes from a peer; the simulation must have been advanced to the present first. */
   def receive(channel: Long, bytes: Array[Byte]): Unit
 
   /** Takes the datagrams that are due for each peer. */

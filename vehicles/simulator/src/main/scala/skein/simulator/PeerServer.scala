@@ -106,7 +106,7 @@ private[simulator] object PeerServer:
   /** Time without a message after which the only peer that its port allows makes room for another. */
   private val AloneIdle = Span.ofSeconds(5)
 
-  /** Time without a message after which a peer makes room for another. */
+  /** Time without a message after which a peer may lose its place to another. */
   private val Silence = Span.ofSeconds(5)
 
   /** A stream's first message must be recognised within this many bytes; the longest has 280. */

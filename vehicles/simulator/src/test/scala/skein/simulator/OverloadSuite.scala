@@ -7,7 +7,7 @@ class OverloadSuite extends munit.FunSuite:
   private def burst(bench: Bench, moves: Int): Seq[Long] =
     for i <- 0 until moves yield bench.velocityZ(1, i * 0.1, -20, 4)
 
-  test("a burst of three four-second moves ends at 0, 4 and 8 s"):
+  test("the moves of a burst of three four-second moves end at 0, 4 and 8 s"):
     val bench = Bench(Seq("Evader", "Pursuer")).hovering(-20)
     val moves = burst(bench, 3)
     bench.pass(20)

@@ -14,7 +14,7 @@ object PlanStage:
   /** The result of a search at its deadline.
     *
     * @param best the best plans of all searches; the initial plans if none has finished a slice
-    * @param slices number of slices each search has finished
+    * @param slices number of slices that each search has finished
     * @param unsearchedS for each vehicle, time since any search finished a slice for it: 0 if one did now,
     *   infinite if none ever did
     */

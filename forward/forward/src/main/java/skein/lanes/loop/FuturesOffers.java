@@ -49,7 +49,7 @@ final class FuturesOffers extends LaneOffers {
   /** For each vehicle, the delay of a task's request, then of its answer. */
   private final int[][] drawn;
 
-  /** The oldest period with offers that may be pending, and the next period to draw. */
+  /** The oldest period whose offers may still be pending, and the next period to draw. */
   private int oldest, next;
 
   // By agent: the next offer and the one after it; and the step and the begin of the next one's task.
@@ -213,7 +213,7 @@ final class FuturesOffers extends LaneOffers {
     return true;
   }
 
-  /** Computes when the tasks of an agent's offers have read each vehicle; draws their delays again. */
+  /** Recomputes, by drawing their delays again, when the tasks of an agent's offers read each vehicle. */
   private void read(int agent) {
     delays.drawInTurn(taken, places, agent, (long) row * periodGrains, goesOn, drawn);
     for (int v = 0; v < vehicles; v++) {

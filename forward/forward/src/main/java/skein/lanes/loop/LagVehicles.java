@@ -86,8 +86,9 @@ public final class LagVehicles extends LaneVehicles {
   private int[] nearFrom;
   private float[] nearAge, nearYounger, nearAged;
 
-  /** Of each number of periods: their duration, s, and the share of a velocity error that remains after
-   * it. */
+  /** For each number of periods: their duration, s, and the fraction of a velocity error that remains after
+   * it.
+   */
   private final float[] rowsS, remains;
 
   /** Whether the powers of e fit into floats if commands are pending for up to {@code longestS}. */

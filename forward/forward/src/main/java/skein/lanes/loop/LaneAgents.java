@@ -80,7 +80,7 @@ public abstract class LaneAgents {
   /** The forecast that predicts the readings; null if decisions use the readings themselves. */
   public final LaneForecast forecast;
 
-  /** Time since the vehicle's previous decision, s. */
+  /** Time since this vehicle's previous decision, s. */
   public final float[] elapsedS = new float[WORLDS];
 
   /** Time of the last decision; and the number of spans of 2^28 grains to add to the time since, or {@link
@@ -174,7 +174,7 @@ public abstract class LaneAgents {
     if (row % Math.max(1, (1 << LONG) / periodGrains) == 0) drawNear();
   }
 
-  /** Moves stored times that are long past closer to the present. */
+  /** Moves stored times in the distant past closer to the present. */
   private void drawNear() {
     IntVector begin = IntVector.broadcast(INTS, now), past = IntVector.broadcast(INTS, -1);
     for (int i = 0; i < WORLDS; i += LANES) {

@@ -33,7 +33,7 @@ public abstract class LaneOffers {
   /** Whether an offer goes to all vehicles, or else to one. */
   final boolean together;
 
-  /** Number of later periods whose offers a round may contain. */
+  /** Number of later periods whose offers may be in a round. */
   final int rowsAhead;
 
   public int beat;

@@ -39,7 +39,7 @@ public abstract class TimetableVehicles extends TimetableReadings {
     startZ[world] = (float) agent.altitudeDownM();
   }
 
-  /** Sets where a world's vehicle starts from now on. */
+  /** Sets where a world's vehicle starts in all later episodes. */
   public final void place(int world, VehicleNumbers numbers) {
     startX[world] = numbers.northM();
     startY[world] = numbers.eastM();

@@ -41,7 +41,7 @@ private[lanes] final class ViewSource private (
 
   def controllers: Array[Controller] = Array.empty
 
-  /** Begins at a request when all requests before are answered and joined, if there were any. */
+  /** Starts at a request, once all earlier requests, if any, are answered and joined. */
   def begin(worldKey: Int, worldLink: TabledDelays, first: Int): Unit =
     link.delays = worldLink
     world.start(worldKey, LoopObserver.Nobody, first)

@@ -72,8 +72,8 @@ private[lanes] final class TeamLanes private (
       number => own(Own.Parameters + number)
     )
 
-  /** By vehicle: the commanded velocity, north and east; cosine and sine of its heading, or anything where it
-    * is not needed; in space the vertical part ([[PolicyFormula.Vertical]]); and the next memory.
+  /** For each vehicle: the commanded velocity, north and east; cosine and sine of its heading, or anything
+    * where it is not needed; in space the vertical part ([[PolicyFormula.Vertical]]); and the next memory.
     */
   val outputs: Vector[Vector[Node]] = Vector.tabulate(count): self =>
     val by     = angles(self)
@@ -154,8 +154,8 @@ private[lanes] final class TeamLanes private (
       field == 2 || field == 3
     )))
 
-  /** By vehicle: whether it needs ages of readings, commands of others, or the time until its command takes
-    * effect.
+  /** For each vehicle: whether it needs ages of readings, commands of others, or the time until its command
+    * takes effect.
     */
   val asksMore: Vector[Boolean] = sources.map(_.exists:
     case _: (Source.Age | Source.KnownCos | Source.KnownSin) | Source.ActsIn => true

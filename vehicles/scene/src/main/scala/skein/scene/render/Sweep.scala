@@ -97,8 +97,8 @@ final private[render] class Sweep(view: View, surfaces: Surfaces):
 
   private def inverseAt(face: Int, x: Int): Double = inverse(face) + surfaces.a(face) * x
 
-  /** The visible open face at this pixel; of equally near faces, the one added first. Closes faces that have
-    * ended.
+  /** The visible open face at this pixel; among equally near faces, the one added first. Closes faces that
+    * have ended.
     */
   private def nearestAt(x: Int): Int =
     var best   = Layer.Sky
