@@ -86,8 +86,7 @@ final class TeamSubject(
 
   private def of(team: Engagement) = TeamCandidate(team, objective.judged(durationS, flown.timing.periodS))
 
-  /** Simulates the paused loop, which waits for every answer, so neither delays nor random numbers affect it.
-    */
+  /** Simulates the paused loop, which waits for every answer, so that neither delay nor chance matters. */
   def truth: Either[String, Double] =
     val paused = flown.paused.batch(1).fly(Worlds(of(atRest), Vector(DelayTable.none), 1))
     Right(objective.value(paused, 0, durationS))

@@ -28,7 +28,7 @@ object TimingVerdict:
   /** The flights of one loop over one link, with the verdict if there is one. */
   private final case class Judged(name: String, link: String, verdict: Option[Verdict])
 
-  /** @param share deviation as a share of the paused flight's value, or of the distance between vehicles
+  /** @param share deviation as a fraction of the paused flight's value, or of the distance between vehicles
     * @param why the meaning of the share, in words
     */
   private final case class Verdict(isMeasured: Boolean, share: Double, why: String):

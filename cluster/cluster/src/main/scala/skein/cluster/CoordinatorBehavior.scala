@@ -42,11 +42,11 @@ private[cluster] final class CoordinatorBehavior private (
   private var unsaved = false
   private var isDone  = false
 
-  /** The actors to which messages for each worker go; also of workers that have only received the question.
+  /** The actors to which messages for each worker go; includes workers that have only received the question.
     */
   private var addresses = Map.empty[String, ActorRef[ToWorker]]
 
-  /** Workers with free cores to which no block could be given. */
+  /** Workers with free cores for which there was no block. */
   private var hungry = Set.empty[String]
 
   private var told = Set.empty[WorkerEvent]

@@ -16,7 +16,7 @@ import skein.units.*
   * @param detection probability that an opponent in view is detected
   * @param bearingSdRad standard deviation of the bearing
   * @param rangeBias mean of the measured range divided by the true range
-  * @param rangeSd standard deviation of the measured range, as a share of the range
+  * @param rangeSd standard deviation of the measured range, as a fraction of the range
   * @param takes duration of recognition
   * @param workers number of images recognised simultaneously
   * @param deadlineS deadline for each image's result; a later result is discarded

@@ -101,7 +101,7 @@ object Scenario:
       .orElse(agents.flatMap(agent => unflyable(agent).map(_ + s", of ${agent.name}")).headOption)
       .map("agents: expected " + _)
 
-  /** Faster than any model of a vehicle flies or drives. */
+  /** A speed above that of every vehicle model. */
   private val MostSpeedMps = 100.0
 
   private def unflyable(agent: Agent): Option[String] =

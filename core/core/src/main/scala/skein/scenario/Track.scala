@@ -65,7 +65,7 @@ final case class Track private (
     time.since(times(above - 1)).toSeconds / times(above).since(times(above - 1)).toSeconds
 
 object Track:
-  /** Gap between samples above which the track is a curve: five periods of the usual ten readings a second.
+  /** Gap between samples above which the track is a curve: five periods of the usual ten readings per second.
     */
   val LongGap: Span = Span.ofMillis(500)
 

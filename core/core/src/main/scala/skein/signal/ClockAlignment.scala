@@ -154,6 +154,6 @@ object ClockAlignment:
   private def boundsOf(reading: Stamped[?]) =
     NewestBounds.Bounds(reading.sentAt.since(reading.validAt), reading.receivedAt.since(reading.validAt))
 
-  /** The largest possible drift between the two clocks from one instant to another. */
+  /** The maximum possible drift between the two clocks from one instant to another. */
   private def drift(since: Instant, until: Instant): Span =
     Span.ofNanos(math.ceil(until.since(since).max(Span.Zero).toNanos * MaxDrift).toLong)

@@ -108,8 +108,8 @@ object TimeAxis:
   /** Duration of the window within which readings are compared, on the controller's clock. */
   val Window: Span = Span.ofSeconds(10)
 
-  /** Maximum change of the offset within the window, a twentieth of the window. A simulator that computes in
-    * real time stays far below; one on an overloaded machine loses some tenths of a second.
+  /** Maximum change of the offset within the window, a twentieth of the window. A simulator that keeps up
+    * with real time stays far below this; on an overloaded machine it loses some tenths of a second.
     */
   val Most: Span = Span.ofMillis(500)
 

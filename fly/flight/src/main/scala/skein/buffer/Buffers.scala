@@ -158,7 +158,7 @@ private[buffer] final case class Buffers(
       counts = if before.ours + before.theirs < Moves.InFlight || before.ours == 0 then counts else heldOne
     ))
 
-  /** Passes the calls that may pass, sends the moves that are due, and reads the clock if needed. */
+  /** Passes on the calls that may pass, sends the moves that are due, and reads the clock if needed. */
   private def settled(now: Instant): Stepped =
     vehicles.keys.toVector.sorted
       .foldLeft(letAll())((before, name) => before.and(_.turn(name, now)))

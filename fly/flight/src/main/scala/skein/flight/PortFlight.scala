@@ -70,7 +70,7 @@ final case class PortFlight(
       (if plans then RecordedPlan.parameters(settings.planning, predictor) else Nil)
   )
 
-  /** Starts it. The recorder receives every record to the last, and is then closed.
+  /** Starts the flight. The recorder receives every record up to the last, and is then closed.
     *
     * @param vehicles one for each agent of the scenario, in its order
     * @param time controls a simulator that can be stopped and stepped: `paused` needs it

@@ -168,8 +168,8 @@ private[flight] object SimulatorWatchdog:
     */
   private val AttemptsAtEnd = 10
 
-  /** Shortest silence that is reported: at ten decisions a second, it is reported within a second of the last
-    * answer.
+  /** Shortest silence that is reported: at ten decisions per second, it is reported within a second of the
+    * last answer.
     */
   private val ToldAfter = Span.ofMillis(700)
   private val LookEvery = Span.ofMillis(100)

@@ -44,8 +44,8 @@ object PausedLoop:
     */
   private[loop] def newest(states: Vector[Stamped[?]]): Instant = states.map(_.validAt).max
 
-  /** Inconsistencies in the readings of a step, a line each: time that passed during reading, and a step with
-    * a wrong duration.
+  /** Inconsistencies in the readings of a step, one line each: time that passed during reading, and a step
+    * with a wrong duration.
     *
     * @param before the readings of the previous step; empty if there is none
     */
@@ -165,7 +165,7 @@ private final class PausedFlight(
           done <- if at.since(from) >= team.settings.period / 2 then Future.unit else advance(from, since)
         yield done
 
-  /** The time at which the simulator stands still, as two readings in a row show it. */
+  /** The time at which the simulator stands still, established by two successive readings. */
   private def standing(before: Option[Instant]): Future[Instant] =
     for
       _  <- after(PausedFlight.LookEvery)(Future.unit)

@@ -81,7 +81,8 @@ final case class PlanSettings(
   /** These settings with a scenario's limits, except those of custom quantities. */
   def keeping(scenario: Scenario): PlanSettings = copy(kept = scenario.limits.flatMap(_.kept))
 
-  /** The separation of any two vehicles in the scenario's limits, opponents included, m; 0: none. */
+  /** The separation of any two vehicles in the scenario's limits, opponents included, m; 0 if there is none.
+    */
   def apartM: Double = kept.collect { case Kept.Apart(leastM) => leastM }.maxOption.getOrElse(0)
 
   /** A vehicle's speed limited by the scenario's limits, m/s. */

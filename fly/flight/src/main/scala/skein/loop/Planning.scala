@@ -135,7 +135,7 @@ object Planning:
 
   /** The vehicles that plan and those that do not, in a line for the user.
     *
-    * @return Left says that none would: the flight would be that of `predictive` under another name
+    * @return Left if no vehicle would plan: then the flight would be that of `predictive` under another name
     */
   def told(fleet: Fleet): Either[String, String] =
     val (planned, others)            = fleet.agents.partition(plans)

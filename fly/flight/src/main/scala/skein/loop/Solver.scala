@@ -16,7 +16,7 @@ trait Solver:
     * @param askedAt time of the request, on the controller's clock, like `until`, after which an answer is
     *   discarded
     * @param searching time that the solver has for its search: not counted in [[delay]]
-    * @return fails if no answer can be received; never completes if none is received in time
+    * @return fails if no answer can be received; never completes if no answer is received in time
     */
   def ask(
       deciders: Vector[(vehicle: Int, memory: Memory)],

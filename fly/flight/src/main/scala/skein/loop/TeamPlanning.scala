@@ -6,7 +6,7 @@ import skein.units.*
 import skein.vehicle.PlantModel
 
 /** Plans for one vehicle of a team: to reach its policy's goal, and to keep the configured separation from
-  * all others. Those that plan are assumed to follow their plans, the rest to fly straight on.
+  * all others. Vehicles that plan are assumed to follow their plans, the others to fly straight on.
   *
   * The planned separation is wider than the configured one by [[PlanSettings.Doubt]].
   */

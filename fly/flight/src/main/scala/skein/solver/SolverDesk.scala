@@ -10,7 +10,7 @@ import skein.units.*
   *
   * @param id unique identifier of this start
   * @param build this program's build; a flight's must be equal
-  * @param decidersOf the deciders for a flight's briefing, or why there are none; may be slow, of which the
+  * @param decidersOf makes the deciders for a flight's briefing, or states why it cannot; if it is slow, the
   *   flight is informed
   * @param clock the solver's clock, independent of the controllers'
   * @param workers the threads that execute decisions

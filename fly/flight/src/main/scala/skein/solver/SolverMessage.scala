@@ -40,7 +40,7 @@ enum SolverMessage:
 /** The data of a flight that a solver needs: the header of its recording, as far as it concerns decisions.
   *
   * @param parameters parameters as in a recording
-  * @param agents each vehicle and its policy, a line each: equal agents give equal lines in every program
+  * @param agents each vehicle and its policy, one line each: equal agents give equal lines in every program
   */
 final case class Briefing(
     scenario: String,

@@ -181,7 +181,7 @@ class LyingSimulatorSimulation extends munit.FunSuite, Unhurried:
     ("moves a vehicle", moves(_), "another client moves Pursuer")
   )
 
-  /** Moves the pursuer ten times a second, for three seconds. */
+  /** Moves the pursuer ten times per second, for three seconds. */
   private def moves(client: AirSimClient)(using system: ActorSystem): Future[Any] =
     val pursuer                        = Multirotor(client, "Pursuer")
     def again(left: Int): Future[Unit] =

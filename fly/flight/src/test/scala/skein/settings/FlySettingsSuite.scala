@@ -49,7 +49,7 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
     val said = read(s"skein.fly {\n$text\n}").left.getOrElse("").linesIterator.toSeq
     assertEquals(said.map(_.replaceAll("^.*String: ", "")), expected)
 
-  test("a null, a list, a single value and settings in one another's places are reported, in a line each"):
+  test("a null, a list, a single value and settings in one another's places are reported, in one line each"):
     assertTold(
       "scenario = surround, surround { ring-m = null }",
       "2: skein.fly.surround.ring-m: expected a value, got null"
@@ -73,7 +73,7 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
     )
     assertTold("only-policies = true", "2: skein.fly.only-policies: expected policies beside it, got none")
 
-  test("values of a wrong kind are reported in a line each, whatever reads them"):
+  test("values of a wrong kind are reported in one line each, whatever reads them"):
     assertTold("seed = many", "2: skein.fly.seed: expected a whole number, got 'many'")
     assertTold("seed = 1e30", "2: skein.fly.seed: expected a whole number, got '1.0E30'")
     assertTold(

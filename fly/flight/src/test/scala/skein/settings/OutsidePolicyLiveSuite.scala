@@ -25,7 +25,7 @@ class OutsidePolicyLiveSuite extends munit.FunSuite, Unhurried, TemporaryFolders
           case other              => throw other
 
   test(
-    "an answer is the share of the most that the pursuer turns, and values beyond are clipped"
+    "an answer is the fraction of the most that the pursuer turns, and values beyond are clipped"
   ):
     assertEquals(
       decided(Peer.number(0.5f), Peer.number(-7), Peer.number(1)),

@@ -188,5 +188,5 @@ private[torture] object KnowledgeChecks:
   /** Time after which an answer has timed out, and its view is joined without it. */
   private val Gone = Span.ofMillis(700)
 
-  /** A clock jump beyond the longest round trip contradicts what was known before. */
+  /** A clock jump longer than the longest round trip contradicts earlier readings. */
   private val Noticed = Span.ofSeconds(1)

@@ -199,7 +199,8 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
       found(short.copy(steps = few, period = Span.ofMillis(10))).contains("are many for this flight"),
       "one step is 10 ms"
     )
-    // As published every vehicle decides at every reading of any: 340 rows a second for each of two, not 300.
+    // As published every vehicle decides at every reading of any: 340 rows per second for each of two, not
+    // 300.
     val rows   = Recorded.rows(clean.recording)
     val flown  = Span.ofSeconds(rows / (2 * 325.0) - 1)
     val dense  = clean.copy(endedAt = clean.startedAt + flown)

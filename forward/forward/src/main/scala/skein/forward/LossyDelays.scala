@@ -52,7 +52,7 @@ final class LossyDelays private (
     val bits = WorldRandom.bits(Delays.keyOf(worldKey, line), step * Delays.Lines + line % Delays.Lines)
     base.delayNs(worldKey, line, step, number, sentAtNs) + waitNs(lossTimes, bits, line, sentAtNs)
 
-  /** The stretches of time in which one world's link loses everything. */
+  /** The intervals in which one world's link loses everything. */
   private[skein] def times(worldKey: Int): LossTimes = LossTimes(
     worldKey,
     Vector(BurstsToServer, BurstsToClient).map(line =>

@@ -107,7 +107,8 @@ final class Planner private[planning] (
       plan.candidates + blocksPerSlice.toLong * size
     )
 
-  /** Manoeuvres that are always tried: the search's mean, the best, and a few that a pilot would try first.
+  /** Manoeuvres that are always tried: the mean of the search, the best so far, and a few that a pilot would
+    * try first.
     */
   private def known(plan: Plan): Vector[Manoeuvre] =
     val (speed, limit) = (plan.manoeuvre.speeds(0).toDouble, limits.turnRateAt(plan.manoeuvre.speeds(0)))

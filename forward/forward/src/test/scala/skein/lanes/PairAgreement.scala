@@ -134,7 +134,7 @@ private[skein] class PairAgreement(
 private[skein] object PairAgreement:
   private val Heading = PolicyLanes.In.Heading
 
-  /** Rounding of a time, as a share of a second; grains of 4 ns are exact. */
+  /** Rounding of a time, as a fraction of a second; grains of 4 ns are exact. */
   private val TimeOff = 2e-7
 
   /** The value of a number that is not computed. */

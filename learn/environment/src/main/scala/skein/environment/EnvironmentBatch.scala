@@ -176,7 +176,7 @@ object EnvironmentBatch:
         made <- Try(new EnvironmentBatch(side, count, autoreset, block)).toEither.left.map(_.getMessage)
       yield made
 
-    /** The learners' names, a line each, for callers in other languages. */
+    /** The learners' names, one line each, for callers in other languages. */
     def learners: String = names.mkString("\n")
 
     /** Makes a batch, for callers in other languages.

@@ -22,7 +22,7 @@ sealed trait Record extends Recordable:
 sealed trait Recordable:
   def row: Record
 
-/** A row of any table that is made later. See [[LaterDecision]] for decisions. */
+/** A row of any table that is created later. See [[LaterDecision]] for decisions. */
 final class LaterRow(make: => Record) extends Recordable:
   lazy val row: Record = make
 
@@ -56,7 +56,7 @@ object Record:
   * @param id names the flight in tables and pictures, for example `stream-vpn`
   * @param clock the label of a [[ClockKind]]
   * @param scenario for people: the scenario's title, and the policy that replaced its own, if any
-  * @param version version of the program that recorded
+  * @param version version of the recording program
   * @param scenarioName the scenario's name for programs; without one, its title is its name
   */
 final case class FlightRow(

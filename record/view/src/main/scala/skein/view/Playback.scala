@@ -2,7 +2,7 @@ package skein.view
 
 import skein.units.{Instant, Span}
 
-/** The position in a recording that is played: a pure clock that can stop, seek and run at another speed.
+/** The position in a recording during playback: a pure clock that can stop, seek and run at another speed.
   *
   * @param start the recording's first time
   * @param end the recording's last time, at which playback stops

@@ -76,7 +76,7 @@ class ShowSuite extends munit.FunSuite:
   private val image  = "/vehicles/Pursuer/front_center/image"
   private val sensor = ImagingSensor.camera("Pursuer", "front_center", "Scene")
 
-  test("the newest of a camera's images is shown, as a JPEG, at most ten times a second"):
+  test("the newest of a camera's images is shown, as a JPEG, at most ten times per second"):
     val feed   = Feed()
     val show   = LiveShow(heading, feed, sensors = Vector(sensor))
     val viewer = watching(show, image, "/skein/image")

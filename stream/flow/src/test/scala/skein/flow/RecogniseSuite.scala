@@ -66,7 +66,7 @@ class RecogniseSuite extends munit.FunSuite:
     .value
     Run(emitted, skipped, replaced, most)
 
-  test("two workers that need 20 ms each keep all of 90 frames a second, in order and 20 ms old"):
+  test("two workers that need 20 ms each keep all of 90 frames per second, in order and 20 ms old"):
     val two = run(perSecond = 90, count = 900, workers = 2)(_ => 20)
     assertEquals(two.emitted.map(_.frame), 0 until 900)
     assert(two.emitted.forall(_.ageMs < 20.001), two.emitted.map(_.ageMs).max)

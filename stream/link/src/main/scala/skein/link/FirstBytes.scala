@@ -65,9 +65,7 @@ object FirstBytes:
       _ => None
     ).filter(_.nonEmpty)
 
-  /** HTTP methods that a page may send without permission by an OPTIONS request, and methods that programs
-    * send.
-    */
+  /** HTTP methods that a page may send without a prior OPTIONS request, and methods that programs send. */
   private val Methods =
     Vector("GET", "POST", "HEAD", "PUT", "DELETE", "OPTIONS", "CONNECT", "TRACE", "PATCH", "PRI")
       .map(word => ByteString(s"$word ".getBytes(US_ASCII)))

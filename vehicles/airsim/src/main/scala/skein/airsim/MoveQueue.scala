@@ -66,7 +66,7 @@ final class MoveQueue(multirotor: Multirotor, onLost: String => Unit)(using syst
     if !replaced.answer.isCompleted && replaced.withdrawn.trySuccess(()) then
       onLost("a replaced move was not answered: its answer is taken for lost")
 
-  /** Makes a call in addition to the moves, unless it is no longer needed. */
+  /** Sends a call in addition to the moves, unless it is no longer needed. */
   private def beside(replaced: Sent)(call: Multirotor => Future[Either[RpcError, Unit]])(
       next: Either[RpcError, Unit] => Unit
   ): Unit = if !replaced.answer.isCompleted then

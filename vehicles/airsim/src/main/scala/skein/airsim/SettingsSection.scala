@@ -76,7 +76,7 @@ final private[skein] class SettingsSection private (fields: Obj, path: String, r
   /** Counts the whole section as read: a part that is switched off has no effect in AirSim either. */
   def switchedOff(): Unit = read.all += path
 
-  /** Counts nothing of the section as read, whatever was read before. */
+  /** Marks every key of the section as unread, whatever was read before. */
   def passedOver(): Unit = read.none += path
 
   /** The paths of all keys that were not read, in the file's order; a section of which nothing was read

@@ -16,8 +16,8 @@ import scala.jdk.CollectionConverters.*
   *
   * While nothing else can be run, [[takeUrgent]] returns calls that need not wait for the others.
   *
-  * Any thread may add and forget calls; one thread takes them. The number that waits is bounded by the
-  * server, which lets each connection have a limited number of calls unanswered.
+  * Any thread may add and forget calls; one thread takes them. The server bounds the number of waiting calls
+  * by limiting each connection's unanswered calls.
   */
 final class CallLines[Call](share: Int = 16, batch: Int = 4, isUrgent: Call => Boolean = (_: Call) => false):
   require(share >= batch && batch > 0, s"a batch, $batch, must be positive and within the share, $share")

@@ -185,7 +185,7 @@ private[rpc] final class ChannelStage(
 
       def ignored(what: String): Unit = state.ignored(index, what)
 
-      /** Writes the calls assigned since the last write, together. */
+      /** Writes all calls assigned since the last write together. */
       def flush(): Unit =
         for target <- attempt if toWrite.nonEmpty && target.accepts do
           val now = clock.now()

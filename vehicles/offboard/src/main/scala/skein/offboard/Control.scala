@@ -143,7 +143,7 @@ final case class Control(
     val numbers = if own.takeoffM.isNaN then Vector.fill(7)(Float.NaN) else Vector.fill(6)(0f) :+ own.takeoffM
     guided(own, now).andThen(_.order(token, Command.Takeoff, now, numbers))
 
-  /** Enters the mode that follows setpoints, if this firmware takes off in it. */
+  /** Enters the mode that follows setpoints, if this firmware takes off in that mode. */
   private def guided(own: Firmware, now: Instant): Step =
     if own != Firmware.Copter || mode == own.offboard then Step(this)
     else enter(Silent, own, own.offboard, now)

@@ -53,7 +53,7 @@ private[simulator] final class CommandLockstep(step: Span, physics: Span, now: (
   private def goOn(): Unit =
     if !isWaiting then next = next.map(due => if due <= now() then due + step else due)
 
-  /** The first stop: physics has made a whole number of steps then. */
+  /** The first stop, at which physics has made a whole number of steps. */
   private def first: Instant =
     val (one, other) = (step.toNanos, physics.toNanos)
     val common       = one / BigInt(one).gcd(other).toLong * other

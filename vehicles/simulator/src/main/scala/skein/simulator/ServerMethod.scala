@@ -16,7 +16,7 @@ private[simulator] enum CallOutcome:
 
   case Flies(vehicle: Int, order: Move.Order)
 
-  /** A long computation that no longer needs the simulation: `work` may run on another thread. */
+  /** A long computation that does not need the simulation any more: `work` may run on another thread. */
   case Draws(work: () => Msg | Encoded)
 
   /** Physics must advance by this span and then stop; then the call is answered. */

@@ -169,7 +169,8 @@ final private[simulator] class SimulatedMultirotor(
     tuned = rotorcraft.tuned(gains)
     state.restartController()
 
-  /** Sets the vehicle's state of motion, in its own frame, bypassing its flight controller. It is in the air.
+  /** Sets the vehicle's state of motion, in its own frame, bypassing its flight controller. The vehicle is
+    * then in the air.
     */
   def setKinematics(kinematics: KinematicsState, at: Instant): Unit =
     val acceleration        = kinematics.linear_acceleration.toVector

@@ -49,7 +49,7 @@ final class Workers[Job, Flight](limit: Int, vehicles: Int, handover: Span):
     var holder     = Option.empty[Claim]
     var handoverAt = Option.empty[Instant]
 
-  /** Adds a lock for one more vehicle; the number of workers stays, as in AirSim. */
+  /** Adds a lock for one more vehicle; the number of workers does not change, as in AirSim. */
   def addVehicle(): Unit = locks += Lock()
 
   /** Whether a request offered now is run immediately. */

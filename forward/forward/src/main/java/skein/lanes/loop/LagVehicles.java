@@ -32,7 +32,8 @@ import skein.vehicle.ReducedModel;
  * on its own commands alone, to the bit: the commands of other worlds only decide whether zeros are added.
  *
  * <p>{@link PlantFlights} simulates an equal vehicle for every loop. This second implementation exists for
- * {@code stream}, where it reaches 100 million agent-steps a second; {@code PlantFlights} reaches 54 million.
+ * {@code stream}, where it reaches 100 million agent-steps per second; {@code PlantFlights} reaches 54
+ * million.
  */
 public final class LagVehicles extends LaneVehicles {
   private static final float FUTURE = 1e9f;
@@ -50,7 +51,7 @@ public final class LagVehicles extends LaneVehicles {
       LACK_X = OWN + 2 * WORLDS,
       LACK_Y = OWN + 3 * WORLDS;
 
-  /** Sampling times of the readings, s; and the share of a velocity error that remains at them. */
+  /** Sampling times of the readings, s; and the fraction of a velocity error that remains at them. */
   private static final int END = OWN + 4 * WORLDS, DECAY = OWN + 5 * WORLDS;
 
   /** The last commanded velocity, whether or not it has taken effect. */

@@ -423,7 +423,7 @@ public abstract class LaneAgents {
     }
   }
 
-  /** Makes the new command the last one, in worlds where one is sent. */
+  /** Makes the new command the last command, in worlds where one is sent. */
   protected final void tell(
       LaneVectors vectors, float[] cos, float[] sin, Directions told, Directions toldBefore) {
     IntVector none = IntVector.broadcast(INTS, NONE);

@@ -51,7 +51,7 @@ private[lanes] final class ViewSource private (
     java.util.Arrays.fill(sampledAt, Long.MinValue)
     begin(first)
 
-  /** Moves to the next view, or to the flight's end. */
+  /** Advances to the next view, or to the flight's end. */
   def next(): Unit =
     isJoined = false
     while !isJoined && world.nextNs <= endNs do handle(world.next())

@@ -19,7 +19,7 @@ private[lanes] trait TeamPolicies:
   /** The reason why a GPU does not support such a team; None if it does. */
   def refusedByGpu: Option[String]
 
-  /** Number of candidates with shared episodes that are simulated in the time of one. */
+  /** Number of candidates with shared episodes that can be simulated in the time of one. */
   def sideBySide: Int
 
   /** The values that distinguish a vehicle's policy from others of its form. */

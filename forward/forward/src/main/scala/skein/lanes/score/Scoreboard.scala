@@ -152,7 +152,7 @@ private[lanes] final class Scoreboard(lanes: ScoreLanes, altitudesDownM: Vector[
 
   def hasEnd: Boolean = ending != null
 
-  /** Whether the flight was over in a world, by an end of its own. */
+  /** Whether the flight had ended in a world by the scenario's own end condition. */
   def hasEnded(world: Int): Boolean =
     lanes.ending.exists(ending => kept(ending.place * worlds + world) < Float.PositiveInfinity)
 
