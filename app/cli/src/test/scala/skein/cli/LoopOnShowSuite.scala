@@ -34,7 +34,7 @@ class LoopOnShowSuite extends munit.FunSuite:
     now = now + Span.ofMillis(100)
     assertEquals(shown.json(), None)
 
-  test("findings are sought again after twenty times as long as the last ones took"):
+  test("findings are computed again after twenty times the duration of the last computation"):
     val shown                    = show(findingTakes = Span.ofSeconds(1))
     def after(seconds: Int): Int =
       now = now + Span.ofSeconds(seconds)

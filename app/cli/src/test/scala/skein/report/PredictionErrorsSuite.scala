@@ -26,7 +26,7 @@ class PredictionErrorsSuite extends munit.FunSuite, Unhurried:
     assertEquals(errors.samples.count(_._1 == 50.0), PredictionErrors.Fewest - 1)
     assertEquals(errors.around(60), None)
 
-  test("the table has no 95 % quantile of a small group, either"):
+  test("the table has no 95 % quantile of a small group"):
     def p95(count: Int) =
       val errors = PredictionErrors(count, Vector.fill(count)((100.0, 0.012)))
       PredictionTable.of(Vector(PredictionGroup("stream", "vpn", errors, PredictionErrors(0, Vector.empty))))

@@ -180,7 +180,7 @@ class TablesSuite extends munit.FunSuite:
     assertEquals((shown("live m"), shown("virtual m"), shown("difference")), ("2.01", "3.01", "-33.2 %"))
     assertEquals(shown("flown otherwise"), "")
 
-  test("plans of teams have no captures"):
+  test("plans of a team do not count captures"):
     val unseen = duel("plan", 2)(pass(0)).copy(
       planned = Vector(Planned("Pursuer", 1, 10, Vector(1), None, Span.ofMillis(50), 0)),
       readings = Vector.empty

@@ -88,7 +88,7 @@ class ClockAlignmentLaws extends munit.ScalaCheckSuite:
           assertEquals(aligned.restarts, 0, s"seed $seed")
 
   test(
-    "clocks whose rates differ by 50 parts per million stay aligned over ten minutes, also without a network"
+    "clocks whose rates differ by 50 parts per million stay aligned over ten minutes, even without a network"
   ):
     for
       legMs <- Seq(0.01, 9.0)

@@ -42,7 +42,7 @@ class TimeAxisSuite extends munit.FunSuite:
     assertEquals(fault(readings(10.4)((_, s) => s.min(10))), None)
     assertFault(readings()((_, _) => 0.0), "stood still")
 
-  test("a clock that jumps once is a fault, whatever the direction and size of the jump"):
+  test("a clock that jumps once is reported as a fault, whatever the direction and size of the jump"):
     for jump <- Seq(0.8, 5.0, 3600.0) do
       assertFault(readings()((_, s) => if s < 10 then s else s + jump), "advanced by")
     for jump <- Seq(0.3, 5.0, 3600.0) do
@@ -64,7 +64,7 @@ class TimeAxisSuite extends munit.FunSuite:
       val bad = sound.updated(100, (sound(100)._1, sound(100)._2.copy(validAt = Instant.ofNanos(at))))
       assert(fault(bad).isDefined, s"time stamp $at")
 
-  test("a counter that wraps around is a fault"):
+  test("a counter that wraps around is reported as a fault"):
     val wraps = 15.0
     assertFault(readings()((_, s) => s % wraps), "ran back by 14.")
 

@@ -48,7 +48,7 @@ class LoopAccountSuite extends munit.FunSuite:
     def found: Set[String]       = Diagnosis.of(observed).map(_.name).toSet
     def vehicle(name: String)    = observed.vehicles.find(_.name == name).get
 
-  test("to hover, which is answered before the end of the move that it replaces, has overtaken nothing"):
+  test("a hover that is answered before the end of the move that it replaces has overtaken nothing"):
     val program = Program()
     val moved   = program.move("A", 0)
     val hovers  = program.call("hover", "A", 100)

@@ -112,7 +112,7 @@ class EngagementSuite extends munit.FunSuite:
     assert(last(nearest)._3 > 5, s"${last(nearest)}: the nearer evader runs east")
     assertEqualsDouble(last(assigned)._3, 0, 1e-9)
 
-  test("an evader is captured by whichever pursuer comes near, and each has its own outcome"):
+  test("any pursuer that comes near captures the evader, and each evader has its own outcome"):
     val scenario = Fleet(
       Vector(
         agent(Role.Evader, 1, 0, 0, KeepHeading),

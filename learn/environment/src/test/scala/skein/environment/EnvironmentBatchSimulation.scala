@@ -183,7 +183,7 @@ class EnvironmentBatchSimulation extends munit.FunSuite:
       Some("plant: expected tilt or quadrotor, got reduced: learners climb (climb_mps)")
     )
 
-  test("ages are those of the link"):
+  test("ages equal the link's delays"):
     def age(link: String) =
       val learner = Learner(EnvironmentSettings(link = link, episodeS = 10), 1)
       learner.reset(3)

@@ -90,7 +90,7 @@ class McapRecordingSuite extends munit.FunSuite, TemporaryFolders:
     assertEquals(schemas.flatMap(one => refused(one.name, ujson.read(one.data.utf8))), Vector.empty)
 
   folder.test(
-    "log times are when the controller knew a fact, and publish times when it was made or sent"
+    "a log time is when the controller learned a fact; a publish time is when the fact was made or sent"
   ): folder =>
     val mcap                 = exported(folder)
     def times(table: String) =

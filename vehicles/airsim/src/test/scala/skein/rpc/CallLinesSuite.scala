@@ -100,7 +100,7 @@ class CallLinesSuite extends munit.FunSuite:
     assertEquals(urgent(), None)
     assertEquals(drain(lines).toSet, Set("read", "move b", "move a"))
 
-  test("an urgent call that was taken in its turn, or forgotten, is not taken again"):
+  test("an urgent call that was already taken in its turn, or was forgotten, is not taken again"):
     val lines = CallLines[String](isUrgent = _ => true)
     lines.put(1, "a")
     lines.put(2, "b")
