@@ -18,7 +18,7 @@ object PredictionFigure:
       legend(drawn, kinds.filter(kind => drawn.exists(kind.of(_).byAge.nonEmpty)).reverse)
     ))
 
-  /** A kind of predictions: the deciding vehicle's own, or those of the others. */
+  /** A kind of predictions: of the deciding vehicle itself, or of the other vehicles. */
   private final case class Kind(
       name: String,
       colour: Colour,

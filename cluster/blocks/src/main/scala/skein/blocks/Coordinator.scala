@@ -10,7 +10,7 @@ import scala.collection.immutable.TreeSet
   * @param seldom leases of a single worker, the oldest first; they are assigned again once nothing waits
   * @param workers records of the workers by name, including those that have left
   * @param cores number of cores of all current workers
-  * @param patienceNanos time after which a block is assigned to others, whatever its worker does
+  * @param patienceNanos time after which a block is assigned to other workers too, whatever its worker does
   * @param slowNanos time after which a block may go to a second worker, once nothing waits
   */
 final case class Coordinator private (
@@ -35,7 +35,7 @@ final case class Coordinator private (
       cores = this.cores - before + cores
     )
 
-  /** Removes a lost worker; blocks that only it had wait again, ahead of all others. */
+  /** Removes a lost worker; blocks that only this worker had wait again, ahead of all other blocks. */
   def lost(worker: String): Coordinator =
     workers.get(worker).filter(_.isHere).fold(this): record =>
       released(worker, record.holds).copy(

@@ -147,7 +147,7 @@ object PolicyFamily:
   private val LearnedPrefix  = "learned:"
   private val ClimbingPrefix = "climbing:"
 
-  /** Why a family's name conflicts with the others, if it does. */
+  /** Why a family's name conflicts with those of other families, if it does. */
   def mistake(own: Vector[PolicyFamily]): Option[String] =
     val names = (all ++ own).map(_.name)
     names

@@ -15,7 +15,8 @@ import skein.units.*
   * @param clocks the vehicles' clock against the controller's, as far as known before the first reading
   * @param only the one vehicle that this controller commands, while it reads all; None commands all vehicles
   * @param hold while it is held, the vehicles hover without decisions; they are still read
-  * @param messages messages from which one vehicle's controller knows the others, instead of reading them
+  * @param messages messages from which one vehicle's controller knows the other vehicles, instead of reading
+  *   them
   */
 final class Team(
     val fleet: Fleet,

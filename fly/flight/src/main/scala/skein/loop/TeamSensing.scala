@@ -88,7 +88,7 @@ private final class TeamSensing(
           log.unread(vehicle, sequence, error)
           Left(error)
 
-  /** Whether one answer was sampled later than another, by all readings of the team. */
+  /** Whether one answer was sampled later than another, according to all readings of the team. */
   def isNewer(one: Stamped[?], other: Stamped[?]): Boolean =
     clocks.get.getOrElse(ClockAlignment.of(one)).isNewer(one, other)
 

@@ -13,7 +13,7 @@ import skein.units.{Clock, Span}
 
 /** A solver that flights connect to; see [[TcpLink]]. A peer that sends invalid messages, or none at first,
   * loses its connection without further effect. If all seats are taken, a connection without useful messages
-  * is closed for another; its flight, if there is one, connects again.
+  * is closed to make room for a new one; its flight, if there is one, connects again.
   */
 final class SolverServer private (listening: Listening, switch: SharedKillSwitch, seats: Seats):
   def address: Address = listening.address

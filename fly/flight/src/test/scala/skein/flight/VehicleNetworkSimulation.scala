@@ -38,7 +38,8 @@ class VehicleNetworkSimulation extends munit.FunSuite, TemporaryFolders, Optimis
     assertEquals(flown.landed.outcome, FlightOutcome.Completed)
     flown.recorder
 
-  /** Readings of others, by the controller that received them, and the readings they were sent for. */
+  /** Readings of other vehicles, with the controller that received them, and the readings they were sent for.
+    */
   private def messages(recording: Recording): Vector[(to: Int, sent: ReadingRow, received: ReadingRow)] =
     val names = recording.heading.vehicles.map(_.name)
     val asked = Reading.asked(recording).map(read => (read.vehicle, read.sequence) -> read).toMap

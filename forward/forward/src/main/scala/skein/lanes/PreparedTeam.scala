@@ -77,7 +77,7 @@ private[lanes] final class Episodes(timing: LoopTiming):
     */
   def areOne(form: TeamForm): Boolean = timing.isInstanceOf[LoopTiming.Paused] && !form.sees
 
-  /** Everything that distinguishes an episode from others, as a key. */
+  /** Everything that distinguishes an episode from other episodes, as a key. */
   def nameOf(link: Delays, key: Int, form: TeamForm): Any =
     val delays = if areOne(form) then () else (link, key)
     (delays, form.vehicles, form.durationS, form.policies.needsMore, form.policies.eyes, form.scores.endsBy)

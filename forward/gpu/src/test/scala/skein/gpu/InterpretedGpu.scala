@@ -5,7 +5,7 @@ import scala.collection.mutable
 
 /** A GPU that interprets kernels thread by thread, according to the PTX specification, so that kernels are
   * tested on machines without a GPU. It is slow, supports the instructions that [[Ptx]] writes, and refuses
-  * others.
+  * all others.
   */
 final class InterpretedGpu extends Gpu:
   def name  = "an interpreter of PTX"

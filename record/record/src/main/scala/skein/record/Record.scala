@@ -77,7 +77,8 @@ final case class FlightRow(
   /** The kind of one of Skein's own loops; absent for a user's loop. */
   def loopKind: Option[LoopKind] = LoopKind.parse(loop).toOption
 
-  /** Whether it is a paused flight, a reference for others: the simulator stood still while a loop decided.
+  /** Whether it is a paused flight, a reference for other flights: the simulator stood still while a loop
+    * decided.
     */
   def isPaused: Boolean = loopKind.contains(LoopKind.Paused)
 
@@ -510,7 +511,7 @@ enum EventKind:
   /** Another client took control of a vehicle or moved it: the flight has no result. */
   case VehicleTaken
 
-  /** The machine was too busy to fly: the flight is not compared with others. */
+  /** The machine was too busy to fly: the flight is not compared with other flights. */
   case Starved
 
   /** A vehicle touched something. */

@@ -55,7 +55,7 @@ object LinkProxy:
     * @param watching observes each connection's bytes at the client's side of the link, so with the link's
     *   delay
     * @param beside makes a stage at the server's side of the link for each connection; unlike `watching`, the
-    *   stage may remove bytes and add others
+    *   stage may remove bytes and add new ones
     */
   def start(
       listenAt: Address,

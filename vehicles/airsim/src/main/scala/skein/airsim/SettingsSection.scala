@@ -25,7 +25,7 @@ object SettingsError:
   private val MostShown = 120
 
 /** An object of a `settings.json` and its path. A missing key reads as its default; the first invalid value
-  * ends all reading. Keys that are read are remembered: [[unread]] lists the others, so that nothing in a
+  * ends all reading. Keys that are read are remembered: [[unread]] lists all other keys, so that nothing in a
   * file is ignored silently.
   */
 final private[skein] class SettingsSection private (fields: Obj, path: String, read: SettingsSection.Read):

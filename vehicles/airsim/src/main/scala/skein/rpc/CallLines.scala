@@ -14,7 +14,7 @@ import scala.jdk.CollectionConverters.*
   * more than running most calls, so it is woken once for several. The first call of a queue waits for at most
   * `share` calls of every other connection.
   *
-  * While nothing else can be run, [[takeUrgent]] returns calls that need not wait for the others.
+  * While nothing else can be run, [[takeUrgent]] returns calls that need not wait for other calls.
   *
   * Any thread may add and forget calls; one thread takes them. The server bounds the number of waiting calls
   * by limiting each connection's unanswered calls.

@@ -103,7 +103,9 @@ private[simulator] object PeerServer:
   /** Maximum number of pieces that wait for one peer; further ones are dropped. */
   private val Waiting = 256
 
-  /** Time without a message after which the only peer that its port allows makes room for another. */
+  /** Time without a message after which the only peer that its port allows may lose its place to another
+    * peer.
+    */
   private val AloneIdle = Span.ofSeconds(5)
 
   /** Time without a message after which a peer may lose its place to another. */

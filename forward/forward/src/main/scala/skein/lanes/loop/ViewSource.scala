@@ -6,7 +6,7 @@ import skein.lanes.timetable.StandingStill
 /** The views of one world under the `stream` loop, in order, including requests that are overtaken, late,
   * failed, or held back by a full window. Views do not depend on decisions, so the loop's own joining
   * computes them ahead. [[LaneViews]] computes the regular views of many worlds with SIMD, and uses this
-  * class for the others. Mutable.
+  * class for irregular views. Mutable.
   *
   * @param ahead periods within which the requests of a regular view are answered
   */

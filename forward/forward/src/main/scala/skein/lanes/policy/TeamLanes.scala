@@ -154,8 +154,8 @@ private[lanes] final class TeamLanes private (
       field == 2 || field == 3
     )))
 
-  /** For each vehicle: whether it needs ages of readings, commands of others, or the time until its command
-    * takes effect.
+  /** For each vehicle: whether it needs ages of readings, commands of other vehicles, or the time until its
+    * command takes effect.
     */
   val asksMore: Vector[Boolean] = sources.map(_.exists:
     case _: (Source.Age | Source.KnownCos | Source.KnownSin) | Source.ActsIn => true
