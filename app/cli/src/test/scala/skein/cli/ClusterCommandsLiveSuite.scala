@@ -27,7 +27,7 @@ class ClusterCommandsLiveSuite extends munit.FunSuite, TemporaryFolders, Lengthy
   private lazy val parent          = temporaryFolder()
   private def folder(name: String) = parent.resolve(name)
 
-  /** The result of a search in this process alone. */
+  /** The result of a search in this process only. */
   private lazy val alone: Path =
     searched(question ++ Seq("--out", folder("alone").toString))
     folder("alone")

@@ -44,7 +44,7 @@ class RecordingCommandsSimulation extends munit.FunSuite, TemporaryFolders, Unhu
     val ran = Ran.of(command.run(arguments))
     (ran.status, ran.out, ran.err)
 
-  recordings.test("report rebuilds page and tables from the files alone"): folder =>
+  recordings.test("report rebuilds page and tables from the files only"): folder =>
     val files = Seq("paused-none", "stream-vpn").map(name => folder.resolve(s"$name.duckdb").toString)
     val (status, text, err) = run(ReportCommand(), files :+ "--out" :+ folder.resolve("report").toString*)
     assertEquals((status, err), (0, ""))

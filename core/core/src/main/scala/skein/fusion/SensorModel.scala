@@ -3,12 +3,12 @@ package skein.fusion
 import skein.signal.{LatencyDistribution, NormalQuantile}
 import skein.units.*
 
-/** A model of a vehicle that sees its opponent by a camera alone. It determines whether an image shows the
-  * opponent and whether it is detected, the measured position, and the time at which that is known. The model
-  * consists of formulas of both positions, which `skein.identify` fits to flights. Images are taken, sent and
-  * recognised as in `skein.flow.Frames` and `Recognise`; detections enter a [[Fusion]]. The camera points at
-  * the opponent's position as estimated at the last decision, as in `skein.policy.CameraPursuer`; turning and
-  * tilting take no time in this model.
+/** A model of a vehicle that sees its opponent only through a camera. It determines whether an image shows
+  * the opponent and whether it is detected, the measured position, and the time at which that is known. The
+  * model consists of formulas of both positions, which `skein.identify` fits to flights. Images are taken,
+  * sent and recognised as in `skein.flow.Frames` and `Recognise`; detections enter a [[Fusion]]. The camera
+  * points at the opponent's position as estimated at the last decision, as in `skein.policy.CameraPursuer`;
+  * turning and tilting take no time in this model.
   *
   * @param everyS time between images
   * @param fovRad horizontal field of view

@@ -17,7 +17,7 @@ import scala.annotation.unused
   * @param minThrottle minimum throttle of a velocity controller, so that a falling vehicle can still tilt
   * @param positionP gain: share of `maxVelocity` per m
   * @param maxVelocity maximum velocity that a position error commands, m/s
-  * @param minAnglingThrottle throttle below which all rotors receive the throttle alone, without roll, pitch
+  * @param minAnglingThrottle throttle below which all rotors receive only the throttle, without roll, pitch
   *   and yaw
   */
 final case class ControllerGains(

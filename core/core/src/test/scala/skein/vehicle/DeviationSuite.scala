@@ -23,7 +23,7 @@ class DeviationSuite extends munit.FunSuite:
     assert(mistake("").endsWith("; got ''"))
     assert(mistake("weight=2").startsWith("expected mass=FACTOR, "))
 
-  test("each factor changes its own quantity alone"):
+  test("each factor changes only its own quantity"):
     val usual   = Quadrotor.AirSim
     val heavier = Deviation(mass = 1.3).quadrotor
     assertEqualsDouble(heavier.hoverControl(0), 1.3 * usual.hoverControl(0), 1e-12)

@@ -14,7 +14,7 @@ import skein.units.{Decimals, Expect}
   * largest turn is one until the next decision (pursuer) or of one decision (evader).
   *
   * @param role the role that the file notes
-  * @param family `learned:…` if the network is a policy that Skein trained
+  * @param family `learned:…` if the network has the form of the networks that Skein trains
   * @param parameters values in the order of the family's axes, for a role
   */
 final case class OnnxPolicy(role: Option[String], family: PolicyFamily, parameters: Role => Vector[Double])

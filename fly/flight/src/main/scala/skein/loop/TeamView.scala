@@ -26,7 +26,7 @@ final case class SentCommand(
   * @param estimates the estimate of every vehicle for the time at which a command decided on this view takes
   *   effect; absent if none are made
   * @param knows what policies may see of the other vehicles
-  * @param strangers predicts each vehicle from its readings alone; present if the loop predicts and commands
+  * @param strangers predicts each vehicle from its readings only; present if the loop predicts and commands
   *   of others are not known
   * @param byMessages the vehicles that are known by messages: how long these took says nothing of when a
   *   command acts

@@ -15,7 +15,7 @@ import skein.vtime.VirtualTime
 /** Policies that read sensors, through every loop in virtual time. */
 class SensorSimulation extends munit.FunSuite, Optimised:
 
-  /** Climbs by its barometer alone, and hovers if that reading is too old. */
+  /** Climbs using only its barometer, and hovers if that reading is too old. */
   private final case class ByBarometer(topM: Double, oldest: Span) extends Policy:
     override def sensors: Set[String] = Set("barometer")
     type Memory = Unit

@@ -101,7 +101,7 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
       Right("plan: Pursuer plans; Evader flies by its own policy")
     )
 
-  test("knowledge of positions alone is refused if others' commands or policies are needed"):
+  test("knowledge that consists only of positions is refused if others' commands or policies are needed"):
     assertTold("knows = some", "2: skein.fly.knows: expected all or positions, got 'some'")
     assertTold(
       "knows = positions, loops = [plan]",
@@ -195,7 +195,7 @@ class FlySettingsSuite extends munit.FunSuite, TemporaryFolders:
     assert(read(s"skein.fly { deadline = 41 ms, $plans }").isRight)
     assert(read("skein.fly { period = 40 ms, loops = [plan], planning.deadline = 40 ms }").isRight)
 
-  test("flights have a name each, and differ in seed unless they differ in the policy alone"):
+  test("flights have a name each, and differ in seed unless they differ only in the policy"):
     val family = (name: String) => PolicyFile.ofDefaults(Role.Pursuer, PolicyFamily.parse(name).toOption.get)
     val flown  = FlySettings(
       List(LoopKind.Stream, LoopKind.Paused),

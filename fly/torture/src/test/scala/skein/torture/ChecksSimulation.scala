@@ -59,7 +59,7 @@ class ChecksSimulation extends munit.FunSuite, Unhurried:
     def agents: Vector[Agent] =
       Vector(Agent("Scout", Role.Traveller, MetresPerSecond(3), Vector3(0, 0, -20), Radians(0), Still))
 
-  test("the checks distinguish commands that are not velocities by their order alone"):
+  test("commands that are not velocities are distinguished only by their order"):
     val seen = undisturbed(LoopKind.Stream, Patrol())
     assertEquals(Checks.violations(seen), Vector.empty)
     assert(

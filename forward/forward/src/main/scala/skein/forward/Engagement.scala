@@ -46,7 +46,7 @@ final case class Engagement(
   /** Replaces the policy of all agents of a role. */
   def flownBy(role: Role, policy: Policy): Engagement = changed(role)(_.copy(policy = policy))
 
-  /** Lets all agents of a role know their opponents by a camera alone; without one, by readings. */
+  /** Lets all agents of a role know their opponents only through a camera; without one, by readings. */
   def seeing(role: Role, eye: Option[SensorModel]): Engagement = changed(role)(_.copy(eye = eye))
 
   private def changed(role: Role)(change: RolloutAgent => RolloutAgent) =

@@ -25,7 +25,7 @@ private[lanes] final case class TeamForm(
 
   export policies.{count, inSpace}
 
-  /** Whether some vehicle knows its opponent through a camera alone. */
+  /** Whether some vehicle knows its opponent only through a camera. */
   def sees: Boolean = policies.eyes.nonEmpty
 
   /** The reason why a GPU does not support such a team; None if it does. */

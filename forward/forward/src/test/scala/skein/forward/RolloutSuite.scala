@@ -54,7 +54,7 @@ class RolloutSuite extends munit.FunSuite:
       assert(clue(text).matches(".* failed: java.lang.Exception: no way \\(RolloutSuite.scala:\\d+\\)"))
 
   for loop <- loops do
-    test(s"under $loop the result of a world depends on its key alone"):
+    test(s"under $loop the result of a world depends only on its key"):
       val rollout = Rollout(Pair.paper.engagement, loop, DelayTable.vpn, lag)
       val alone   = rollout.fly(WorldRandom.key(7, 3, 11))
       for episode <- 0 until 5 do rollout.fly(WorldRandom.key(7, 3, episode))

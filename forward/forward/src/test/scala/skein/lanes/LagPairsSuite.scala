@@ -144,7 +144,7 @@ class LagPairsSuite extends munit.FunSuite:
       assertEquals(kernel(PairNumber.MeanLast10s).toSeq, longWay(PairNumber.MeanLast10s).toSeq)
       assertEquals(kernel(PairNumber.PursuerEffort).toSeq, longWay(PairNumber.PursuerEffort).toSeq)
 
-  test("a world's result depends on its key and parameters alone, not on its lane or its neighbours"):
+  test("a world's result depends only on its key and parameters, not on its lane or its neighbours"):
     val kernel   = fly(DelayTable.vpn, 60)
     val before   = kernel(PairNumber.MeanLast10s).clone
     val reversed = flown(over(DelayTable.vpn), order = Array.range(0, worlds).reverse)

@@ -273,7 +273,7 @@ class LoopPairSimulation extends LoopPairAgreement(isDaily = true):
       agreement(timing, DelayTable.vpn, 60, lag).check("60 s", 0 until worlds by 11)
 
     test(
-      s"$timing: a world's result depends on its key and parameters alone, not on its lane or its neighbours"
+      s"$timing: a world's result depends only on its key and parameters, not on its lane or its neighbours"
     ):
       for link <- Seq(wild(150, 150), changing) do
         val before = fly(timing, link, 20, lag)(PairNumber.MeanLast10s).clone

@@ -224,7 +224,7 @@ final case class Control(
       )
     )
 
-  /** Repeats the setpoint, with a TIMESYNC; without a setpoint, sends a TIMESYNC alone. */
+  /** Repeats the setpoint, with a TIMESYNC; without a setpoint, sends only a TIMESYNC. */
   private def send(now: Instant): Step =
     val at       = now.max(lastSync + Span.ofNanos(1))
     val setpoint =

@@ -29,7 +29,7 @@ import skein.vehicle.ReducedModel;
  * commands, plus, for each pending command from the time it takes effect, its change times its step response:
  * s(t) = t − lag·(1 − r(t)) for the position and 1 − r(t) for the velocity, where r(t) = exp(−t / lag). Since
  * r(end − at) = exp(−end / lag) · growth(at), one exponential serves all commands. A world's results depend
- * on its own commands alone, to the bit: the commands of other worlds only decide whether zeros are added.
+ * only on its own commands, to the bit: the commands of other worlds only decide whether zeros are added.
  *
  * <p>{@link PlantFlights} simulates an equal vehicle for every loop. This second implementation exists for
  * {@code stream}, where it reaches 100 million agent-steps per second; {@code PlantFlights} reaches 54

@@ -6,7 +6,7 @@ import skein.policy.PolicyFormula.Motion
 import skein.units.Expect
 
 /** The decision of one of two opponents, if it is a heading at the vehicle's own speed and at the altitude of
-  * its start, and depends on the difference of the two readings alone: a [[PolicyFormula]] with its inputs
+  * its start, and depends only on the difference of the two readings: a [[PolicyFormula]] with its inputs
   * replaced by those of [[OpponentFormula.In]].
   *
   * @param heading the commanded heading

@@ -170,7 +170,7 @@ private[lanes] final class TeamLanes private (
   /** Whether some policy may command its vehicle's yaw. */
   val turns: Boolean = formulas.exists(_.turns)
 
-  /** Whether all decide by positions, velocities, time and their own heading alone. */
+  /** Whether all decisions use only positions, velocities, time and the vehicle's own heading. */
   private val isPlain: Boolean = !inSpace && formulas.forall(_.memory.isEmpty) && sources.flatten.forall:
     case Source.Cos | Source.Sin | Source.Elapsed | _: (Source.Parameter | Source.Shared) => true
     case _                                                                                => false
@@ -284,7 +284,7 @@ private[lanes] object TeamLanes:
               .map(_ => TeamLanes(formulas, assignment, inSpace))
     forms(Team(policies, assignment))
 
-/** Subexpressions shared by several expressions, which depend on the first inputs alone.
+/** Subexpressions shared by several expressions, which depend only on the first inputs.
   *
   * @param nodes the subexpressions that are worth computing once
   */

@@ -13,7 +13,7 @@ private[lanes] trait TeamPolicies:
   /** Whether decisions need more than the readings and the vehicles' own decision times. */
   def needsMore: Boolean
 
-  /** The camera of each vehicle that knows its one opponent by a camera alone. */
+  /** The camera of each vehicle that knows its one opponent only through a camera. */
   def eyes: Map[Int, SensorModel]
 
   /** The reason why a GPU does not support such a team; None if it does. */

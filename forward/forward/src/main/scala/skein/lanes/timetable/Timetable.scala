@@ -129,7 +129,7 @@ private final class TimetableCompiler(
   private val headings = Array.tabulate(vehicles)(vehicle => ReusedPlaces(notes.decisions(vehicle) + 1))
   private val clocks   = models.map(_.clock()).toArray
 
-  /** Readings used by decisions; the others are used by scores, which need positions alone. */
+  /** Readings used by decisions; the others are used by scores, which need only positions. */
   private val decidedUpon =
     Array.tabulate(vehicles)(vehicle => Array.ofDim[Boolean](notes.looks(vehicle) + 1))
 

@@ -121,8 +121,8 @@ final class PlainLambdas {
   }
 
   /**
-   * Whether the lambda needs nothing of {@code altMetafactory}. A bridge of the lambda's own type is for
-   * reflection alone, by structural types.
+   * Whether the lambda needs nothing of {@code altMetafactory}. A bridge of the lambda's own type is only for
+   * reflection, by structural types.
    *
    * @param arguments the arguments' indices: type of the method, implementation, type of the lambda, flags;
    *     the number of bridges, and their types
